@@ -22,8 +22,9 @@ if "PYTEST_XDIST_WORKER" in os.environ:
 
 check()
 
-settings.register_profile("default", deadline=None)
-settings.register_profile("ci", deadline=None, derandomize=True, print_blob=True)
+settings.register_profile("default", deadline=None, max_examples=25)
+settings.register_profile("ci", settings.get_profile("default"), derandomize=True, print_blob=True)
+settings.register_profile("nightly", settings.get_profile("default"), max_examples=200)
 settings.load_profile("ci" if os.environ.get("CI") else "default")
 
 Install = Callable[..., Path]
@@ -177,3 +178,11 @@ def patient(monkeypatch: pytest.MonkeyPatch) -> None:
     from tangible_core.servo import host
 
     monkeypatch.setattr(host, "STANDSTILL_S", STANDSTILL_S)
+
+
+@pytest.fixture
+def loop_in_thread(monkeypatch: pytest.MonkeyPatch, patient: None) -> None:
+    """Force loops are threads of this process; see the helper of this name."""
+    from loop_in_thread import loops_in_threads  # after `check`
+
+    loops_in_threads(monkeypatch)

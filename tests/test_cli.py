@@ -105,6 +105,7 @@ def test_feel_records_every_tick(folder: Path):
         assert len(recording["time_s"]) == figures["ticks"] == 500
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 def test_feel_asks_first_where_hardly_anything_matched(folder: Path, monkeypatch: pytest.MonkeyPatch):
     from pictures import write_png
 
@@ -288,6 +289,7 @@ def test_a_time_that_is_none(folder: Path, seconds: str):
     assert "seconds" in mistake("feel", "p.yaml", "--seconds", seconds, cwd=folder)
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 def test_what_was_recorded_is_replayed_through_any_law(folder: Path):
     felt = ("feel", "p.yaml", "--set", "safety.ramp_s=0", "--seconds", 1, "--record", "hand.nc")
     assert tangible(*felt, cwd=folder).returncode == 0

@@ -1,5 +1,6 @@
 """Tabs of a browser that are watched: nothing that a page complains of is missed, nor whom it asks for something."""
 
+import asyncio
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,26 @@ HERE = ("http://127.0.0.1:", "ws://127.0.0.1:", "http://localhost:", "ws://local
 OPTIONS = {"locale": "en-GB", "viewport": {"width": 1180, "height": 720}}
 
 OpenPage = Callable[..., "Page"]
+
+
+class Chromium:
+    """A browser that lasts for many tests.
+
+    Playwright's event loop is the running one of this thread only while the browser is used: beside a running loop
+    `asyncio.run` does not work.
+    """
+
+    def __init__(self, browser: "Browser") -> None:
+        self.browser, self._loop = browser, asyncio.get_running_loop()
+
+    @contextmanager
+    def used(self) -> "Iterator[Browser]":
+        """Within this, the browser and what it opened can be asked for something."""
+        asyncio._set_running_loop(self._loop)
+        try:
+            yield self.browser
+        finally:
+            asyncio._set_running_loop(None)
 
 
 @contextmanager

@@ -1,20 +1,24 @@
 """A browser for the tests of the page: Chromium as the system has it, drawing in software.
 
-Everything that a page complains of fails its test, and so does every request that leaves this machine. A module that
-uses a browser has it for itself: playwright runs an event loop in the thread of the tests as long as it is open, beside
-which `asyncio.run` does not work.
+Everything that a page complains of fails its test, and so does every request that leaves this machine. A worker has one
+browser and one server for all tests of the page: a test has a context of its own in the one, and opens its file in the
+other. A test that ends its server, or looks at what its start does, starts one for itself.
 """
 
+import asyncio
 import os
 import shutil
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
-from browser_tabs import OpenPage, tabs
+from browser_tabs import Chromium, OpenPage, tabs
+from lasting_server import LastingServer
 from needed import lacking
+from page_files import built_page
 from ui_server import UiServer
 
 if TYPE_CHECKING:
@@ -32,18 +36,19 @@ FLAGS = [
 DIRS = ("CACHE", "RUNTIME", "CONFIG", "LOG", "DATA")
 
 Serve = Callable[..., UiServer]
+Opened = Callable[..., str]
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Whatever needs a browser or a server is slow."""
     for item in items:
-        if {"browser", "serve"} & set(getattr(item, "fixturenames", ())):
+        if {"browser", "serve", "opened"} & set(getattr(item, "fixturenames", ())):
             item.add_marker("slow")
 
 
-@pytest.fixture(scope="module")
-def browser() -> "Iterator[Browser]":
+@pytest.fixture(scope="package")
+def chromium() -> Iterator[Chromium]:
     """Chromium without a window, named by TANGIBLE_UI_BROWSER or found where the system keeps it."""
     found = [path for name in BROWSERS if (path := shutil.which(name))]
     path = os.environ.get("TANGIBLE_UI_BROWSER") or next(iter(found), "")
@@ -51,32 +56,60 @@ def browser() -> "Iterator[Browser]":
         lacking("no Chromium is installed (on Debian: apt-get install chromium), and TANGIBLE_UI_BROWSER names none")
     from playwright.sync_api import sync_playwright
 
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, args=FLAGS)
+    playwright = sync_playwright().start()
+    chromium = Chromium(playwright.chromium.launch(executable_path=path, args=FLAGS))
+    asyncio._set_running_loop(None)
+    yield chromium
+    with chromium.used():
+        chromium.browser.close()
+        playwright.stop()
+
+
+@pytest.fixture
+def browser(chromium: Chromium) -> "Iterator[Browser]":
+    """The worker's Chromium."""
+    with chromium.used() as browser:
         yield browser
-        browser.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def serve(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serve]:
-    """`serve("p.yaml", cwd=folder)` starts `tangible ui`, which has folders of its own; all end with the module.
+    """`serve("p.yaml", cwd=folder)` starts `tangible ui`, which has folders of its own; all end with the test."""
+    with ExitStack() as started:
 
-    A test that must not meet what another one left behind takes one for itself: `with serve(...) as server`.
+        def serve(*words: object, cwd: Path | None = None, **env: str) -> UiServer:
+            folder = tmp_path_factory.mktemp("served")
+            server = UiServer(*words, cwd=cwd or folder, env={**own_folders(folder), **env})
+            return started.enter_context(server)
+
+        yield serve
+
+
+@pytest.fixture(scope="package")
+def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LastingServer]:
+    """The worker's server, which `opened` opens files in."""
+    built_page()
+    folder = tmp_path_factory.mktemp("lasting")
+    with LastingServer(folder, own_folders(folder)) as server:
+        yield server
+
+
+@pytest.fixture
+def opened(lasting: LastingServer) -> Opened:
+    """`opened("p.yaml")`: the file is opened and felt in the worker's server; gives the page's address.
+
+    As after a start there are no recordings, no unsaved documents and no verdicts, and the page's own hand is felt;
+    what was made of earlier files is cached.
     """
-    started: list[UiServer] = []
+    return lasting.open
 
-    def serve(*words: object, cwd: Path | None = None, **env: str) -> UiServer:
-        folder = tmp_path_factory.mktemp("served")
-        own = {f"TANGIBLE_{name}_DIR": str(folder / name.lower()) for name in DIRS}
-        for path in own.values():
-            Path(path).mkdir()
-        started.append(UiServer(*words, cwd=cwd or folder, env={**own, **env}))
-        return started[-1]
 
-    yield serve
-    for server in started:
-        if server.process.returncode is None:
-            server.stop()
+def own_folders(folder: Path) -> dict[str, str]:
+    """Environment of a server that shares no folder with others."""
+    own = {f"TANGIBLE_{name}_DIR": folder / name.lower() for name in DIRS}
+    for path in own.values():
+        path.mkdir()
+    return {name: str(path) for name, path in own.items()}
 
 
 @pytest.fixture

@@ -69,6 +69,7 @@ def test_a_tab_asks_for_a_part_and_all_tabs_hear_of_it(tmp_path: Path, monkeypat
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_a_button_of_the_page_s_hand_releases_it_and_a_scene_and_a_stop_end_it() -> None:
     labels = np.zeros((32, 32), np.int32)
     labels[10:14, 24:28] = 3000

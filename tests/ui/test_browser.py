@@ -10,7 +10,6 @@ from PIL import Image
 
 from browser_tabs import tabs
 from needed import lacking
-from page_files import built_page
 from ui_server import UiServer
 
 NOT_HERE = "http://tangible.invalid/picture.png"
@@ -48,11 +47,9 @@ class TestWatch:
 
 
 class TestServed:
-    def test_the_page_is_served_and_drawn(self, serve, open_page):
+    def test_the_page_is_served_and_drawn(self, opened, open_page):
         """With what hangs together: the policy lets script and style in, WebGL is there, the surface is drawn."""
-        built_page()
-        server = serve("builtin/brick")
-        page = open_page(f"{server.url}&measure")
+        page = open_page(f"{opened('builtin/brick')}&measure")
         page.wait_for_function("() => window.figures?.firstMs > 0", timeout=60_000)
         assert page.title().endswith("Tangible Images")
         assert page.evaluate("document.styleSheets.length") == 1

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from needed import lacking
-from page_files import WEB, built_page
-from ui_server import UiServer
+from page_files import WEB
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -63,21 +62,17 @@ LOUDEST = """() => {
 Show = Callable[..., "Page"]
 
 
-@pytest.fixture(scope="module")
-def server(serve: Callable[..., UiServer]) -> UiServer:
-    built_page()
-    return serve("builtin/motorcycle")
-
-
 @pytest.fixture
-def show(open_page: Callable[..., Any], server: UiServer) -> Show:
+def show(open_page: Callable[..., Any], opened: Callable[..., str]) -> Show:
     """The page with its surface; `before` runs in it first, `?measure` lets tests look into it."""
+
+    url = opened("builtin/motorcycle")
 
     def show(before: str = "", measure: bool = False, **options: Any) -> "Page":
         page = open_page("about:blank", **options)
         if before:
             page.add_init_script(before)
-        page.goto(server.url + "&measure" * measure)
+        page.goto(url + "&measure" * measure)
         page.wait_for_function(
             "() => document.querySelector('#terrain').ariaLabel?.includes('motorcycle')", timeout=60_000
         )

@@ -113,6 +113,7 @@ def server(feeling: Feeling) -> Iterator[Server]:
         yield server
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 class TestTheHandIsWhereThePageSays:
     @pytest.mark.parametrize(
         "mapping",
@@ -159,6 +160,7 @@ class TestTheHandIsWhereThePageSays:
         assert not feeling.hand.holding
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 class TestSwaps:
     def test_another_law_goes_on_in_the_same_loop(self, feeling: Feeling) -> None:
         feeling.start()
@@ -220,6 +222,7 @@ class TestWhatEndsByItself:
         assert feeling.feel(felt(feeling)) is not None
         assert feeling.running
 
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_a_falcon_that_is_pulled_out_while_it_is_homed(self, feeling: Feeling) -> None:
         """The real driver says what happened."""
         falcon = load_method("device", "falcon-simulated")(faults=({"at": "read", "after": 200},))
@@ -252,6 +255,7 @@ class TestStop:
         assert not feeling.running
         return gave
 
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_a_loop_that_runs(self, feeling: Feeling, server: Server) -> None:
         feeling.feel(felt(feeling))
         servo = feeling.servo
@@ -268,6 +272,7 @@ class TestStop:
         feeling.allow()
         assert feeling.feel(felt(feeling)) is not None
 
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_feeling_again_at_once(self, feeling: Feeling) -> None:
         """The loop that was stopped is still there, and who waits for its end does not end the next one."""
         feeling.start()
@@ -285,11 +290,13 @@ class TestStop:
         """It never answers: its process is killed."""
         assert self.stops(feeling, lambda: feeling.feel(felt(feeling, Failing(opens="late")))) == [None]
 
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_while_a_scene_is_swapped(self, feeling: Feeling) -> None:
         feeling.start()
         made = felt(feeling, touch=FaultyTouch("begins slowly"))
         assert self.stops(feeling, lambda: feeling.feel(made)) == [None]
 
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_who_stops_does_not_wait_for_who_starts(self, feeling: Feeling, monkeypatch: pytest.MonkeyPatch) -> None:
         """Nor before there is a ring to write to."""
         entering, entered = threading.Event(), Servo.__enter__

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from page_files import built_page
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.servo.ring import Ring, shared_folder
 
@@ -59,17 +58,10 @@ class Felt:
         return last_s()
 
 
-@pytest.fixture(scope="module")
-def server(serve) -> Any:
-    """One for all: each test leaves it with a loop that runs on the page's own hand."""
-    built_page()
-    return serve("builtin/brick")
-
-
 @pytest.fixture
-def page(server: Any, open_page) -> Any:
+def page(opened, open_page) -> Any:
     """A page on which a surface is felt; nothing moves its hand yet."""
-    page = open_page(f"{server.url}&measure")
+    page = open_page(f"{opened('builtin/brick')}&measure")
     drawn(page)
     page.wait_for_function(
         "() => document.getElementById('log').textContent.includes('proxy:')", timeout=1000 * IN_TIME_S

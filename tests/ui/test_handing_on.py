@@ -4,8 +4,8 @@ import io
 import os
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import ZipFile
@@ -13,14 +13,14 @@ from zipfile import ZipFile
 import pytest
 import trimesh
 
-from browser_tabs import tabs
+from browser_tabs import OpenPage
 from desks import small_scene, striped_scene
-from page_files import built_page
+from lasting_server import LastingServer
 from tangible_core.errors import DeviceError
 from tangible_devices.pointer import PointerClient
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Download, Page
+    from playwright.sync_api import Download, Page
 
 LONGEST_S = 60
 SPY = """
@@ -48,32 +48,22 @@ def until(holds: Callable[[], Any], what: str = "") -> None:
 
 
 @pytest.fixture
-def show(
-    serve: Callable[..., Any], browser: "Browser", complaints: list[str], tmp_path: Path
-) -> Iterator[Callable[..., "Page"]]:
-    """The page with the small scene felt; `before` runs in it first, what is `said` more stands in its file.
-
-    Its server ends with the test, after the page: nine that feel at once leave no processor for a page, and a page
-    whose server ended before it complains that nobody answers.
-    """
-    built_page()
-    servers = ExitStack()
+def show(opened: Callable[..., str], open_page: OpenPage, tmp_path: Path) -> Callable[..., "Page"]:
+    """The page with the small scene felt; `before` runs in it first, what is `said` more stands in its file."""
 
     def show(said: str = "", before: str = "", scene: Callable[[Path], Path] = small_scene, **options: Any) -> "Page":
         file = scene(tmp_path)
         file.write_text(file.read_text() + said)
         page = open_page("about:blank", **options)
         page.add_init_script(SPY + before)
-        server = servers.enter_context(serve(file, cwd=tmp_path, TANGIBLE_RUNTIME_DIR=str(tmp_path)))
-        page.goto(server.url + "&measure")
+        page.goto(opened(file) + "&measure")
         until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
         return page
 
-    with servers, tabs(browser, complaints) as open_page:
-        yield show
+    return show
 
 
-def opened(page: "Page", panel: str) -> Any:
+def panel_of(page: "Page", panel: str) -> Any:
     """A panel, opened by the keyboard; what comes then is there."""
     page.locator(f"#{panel} > summary").press("Enter")
     until(lambda: page.locator(f"#{panel} > .inside > *").count() > 0, panel)
@@ -92,7 +82,7 @@ def text_of(page: "Page") -> str:
 class TestExport:
     def test_a_solid_and_all_files_in_one_by_the_keyboard(self, show: Callable[..., "Page"]) -> None:
         page = show()
-        panel = opened(page, "export")
+        panel = panel_of(page, "export")
         panel.get_by_label("3D print (STL)").press(" ")
         panel.get_by_label("3D print (3MF)").press(" ")
         panel.locator("summary", has_text="3D print (STL)").press("Enter")
@@ -120,7 +110,7 @@ class TestExport:
 
     def test_what_was_chosen_goes_into_the_file_and_comes_from_it(self, show: Callable[..., "Page"]) -> None:
         page = show("export: [{use: stl, rim_m: 0.01}, 3mf]\n")
-        panel = opened(page, "export")
+        panel = panel_of(page, "export")
         until(lambda: panel.get_by_label("3D print (STL)").is_checked(), "what the file says")
         assert panel.get_by_label("3D print (3MF)").is_checked()
         assert not panel.get_by_label("Heights (PNG, TIFF)").is_checked()
@@ -139,7 +129,7 @@ class TestExport:
 
     def test_what_cannot_be_written_is_said_and_leads_nowhere(self, show: Callable[..., "Page"]) -> None:
         page = show()
-        panel = opened(page, "export")
+        panel = panel_of(page, "export")
         panel.get_by_role("button", name="Export", exact=True).press("Enter")
         until(lambda: "Choose at least one." in panel.inner_text(), "nothing chosen")
         panel.locator("summary", has_text="3D print (STL)").press("Enter")
@@ -153,7 +143,7 @@ class TestExport:
 
     def test_a_file_that_says_an_exporter_twice_is_shown_twice(self, show: Callable[..., "Page"]) -> None:
         page = show("export: [stl, {use: stl, rim_m: 0.01}]\n")
-        panel = opened(page, "export")
+        panel = panel_of(page, "export")
         lines = panel.locator(".exporters > li")
         until(lambda: lines.get_by_label("3D print (STL)", exact=True).count() == 2, "both")
         count = lines.count()
@@ -166,7 +156,7 @@ class TestExport:
 class TestLegible:
     def test_what_fails_is_marked_and_said_and_its_cure_makes_it_pass(self, show: Callable[..., "Page"]) -> None:
         page = show(scene=striped_scene)
-        panel = opened(page, "legible")
+        panel = panel_of(page, "legible")
         panel.get_by_label("Read on").select_option("swell")
         panel.get_by_role("button", name="Check now").press("Enter")
         until(lambda: panel.locator(".sentence.illegible").count() == 1, "judged")
@@ -198,7 +188,7 @@ class TestLegible:
 
     def test_another_width_is_judged(self, show: Callable[..., "Page"]) -> None:
         page = show()
-        panel = opened(page, "legible")
+        panel = panel_of(page, "legible")
         panel.get_by_label("Width, mm").fill("400")
         panel.get_by_label("Read on").select_option("print")
         panel.get_by_role("button", name="Check now").press("Enter")
@@ -211,7 +201,7 @@ class TestLegible:
 class TestDescription:
     def test_it_is_read_heard_and_taken_along(self, show: Callable[..., "Page"]) -> None:
         page = show("language: de\n", VOICES, permissions=["clipboard-read", "clipboard-write"])
-        panel = opened(page, "description")
+        panel = panel_of(page, "description")
         region = panel.get_by_role("region", name="Description")
         until(lambda: "Eine Fläche" in region.inner_text(), "in the language of the document")
         assert region.get_attribute("lang") == "de"
@@ -240,10 +230,10 @@ class TestDescription:
 
 class TestBeacon:
     def test_a_device_guides_to_a_named_part_until_a_button_or_escape(
-        self, show: Callable[..., "Page"], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+        self, show: Callable[..., "Page"], lasting: LastingServer, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         """The page's own hand has no motor: it is asked for a device. Another program moves a pointer in its place."""
-        monkeypatch.setenv("TANGIBLE_RUNTIME_DIR", str(tmp_path))
+        monkeypatch.setenv("TANGIBLE_RUNTIME_DIR", str(lasting.runtime))
         channel = f"guided-{os.getpid()}"
         page = show(f"parts: {{0: {{name: wall}}}}\ndevice: {{use: pointer, channel: {channel}}}\n")
         panel = page.locator("#parts")

@@ -70,6 +70,7 @@ async def pressed(desk: Desk, until: Callable[[], bool]) -> None:
         await asyncio.sleep(0.01)
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 def test_the_other_law_is_computed_on_the_same_hand(tmp_path: Path) -> None:
     async def compare() -> None:
         async with felt_desk(tmp_path) as (desk, told):
@@ -93,6 +94,7 @@ def test_the_other_law_is_computed_on_the_same_hand(tmp_path: Path) -> None:
     asyncio.run(compare())
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 def test_blindly_nothing_says_which_law_is_felt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path / "data"))
 
@@ -120,6 +122,7 @@ def test_blindly_nothing_says_which_law_is_felt(tmp_path: Path, monkeypatch: pyt
     asyncio.run(compare())
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 def test_what_is_no_law_is_said_and_the_one_before_is_felt_on(tmp_path: Path) -> None:
     wrong = {("penalti", ""): "penalty", ("penalty", "{stifness: 3}"): "unknown option", ("penalty", "["): "not YAML"}
 
@@ -134,6 +137,7 @@ def test_what_is_no_law_is_said_and_the_one_before_is_felt_on(tmp_path: Path) ->
     asyncio.run(compare())
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 def test_no_motor_is_opened_that_nobody_said_yes_to(tmp_path: Path) -> None:
     async def compare() -> None:
         async with felt_desk(tmp_path) as (desk, _):

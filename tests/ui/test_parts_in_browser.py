@@ -10,7 +10,6 @@ import pytest
 from PIL import Image
 
 from browser_tabs import OpenPage
-from page_files import built_page
 from tangible_core.parts import PartChoice, find_parts
 from tangible_core.pipeline.config.parsing import load_config
 from tangible_core.plugins.registry import default_registry
@@ -115,10 +114,9 @@ def high(page: "Page", x: float, y: float) -> float:
     )
 
 
-def test_from_a_photograph_to_five_parts_by_mouse(serve: Callable[..., Any], open_page: OpenPage, photo: Path):
-    built_page()
+def test_from_a_photograph_to_five_parts_by_mouse(opened: Callable[..., str], open_page: OpenPage, photo: Path):
     (photo.parent / "ball.yaml").write_text(f"scene: {{photo: ball.png}}\ndepth: {{use: luminance}}\n{RELIEF}")
-    page = open_page(serve("ball.yaml", cwd=photo.parent).url + "&measure", has_touch=True)
+    page = open_page(opened(photo.parent / "ball.yaml") + "&measure", has_touch=True)
     felt(page)
     fetched: list[str] = []
     page.on("request", lambda request: fetched.append(request.url))
@@ -206,12 +204,11 @@ def test_from_a_photograph_to_five_parts_by_mouse(serve: Callable[..., Any], ope
     assert (true & drawn).sum() / (true | drawn).sum() > 0.9, "the proposal is the ball"
 
 
-def test_from_a_photograph_to_five_parts_by_keyboard(serve: Callable[..., Any], open_page: OpenPage, photo: Path):
+def test_from_a_photograph_to_five_parts_by_keyboard(opened: Callable[..., str], open_page: OpenPage, photo: Path):
     """Opened as a photograph; what is drawn is spoken, saved, and kept as a pipeline file."""
-    built_page()
     page = open_page("about:blank")
     page.add_init_script(SPY)
-    page.goto(serve("ball.png", cwd=photo.parent).url + "&measure")
+    page.goto(opened(photo) + "&measure")
     felt(page)
     keys = page.keyboard
     until(lambda: focus_on(page, "left"), "F6")

@@ -9,14 +9,15 @@ import json
 import math
 import time
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from browser_tabs import tabs
-from page_files import built_page
+from browser_tabs import Chromium, tabs
+from lasting_server import LastingServer
 
 WIDTH_M, LENGTH_M, HIGH_M = 0.08, 0.06, 0.006
 ROWS, COLUMNS = 90, 120
@@ -95,28 +96,31 @@ class Shown(NamedTuple):
 
 
 @pytest.fixture(scope="module")
-def shown(browser: Any, serve: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Shown]:
+def shown(chromium: Chromium, lasting: LastingServer, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Shown]:
     """The step, felt; what lies over the canvas is out of the way."""
-    built_page()
     folder = tmp_path_factory.mktemp("step")
     step = np.zeros((ROWS, COLUMNS), np.uint16)
     step[: ROWS * 3 // 4, COLUMNS // 2 :] = 50_000
     Image.fromarray(step).save(folder / "step.png")
     (folder / "p.yaml").write_text(PIPELINE)
-    server = serve("p.yaml", cwd=folder)
-    with tabs(browser, []) as open_page:
-        page = open_page(f"{server.url}&measure", viewport={"width": 1400, "height": 800})
-        page.wait_for_function("() => window.page?.scene && figures.firstMs > 0", timeout=1000 * LONGEST_S)
-        page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-        page.evaluate(
-            "() => { document.getElementById('data-cursor').open = false;"
-            "for (const id of ['ruler-panel', 'mapping-panel']) document.getElementById(id).open = true; }"
-        )
+    url = lasting.open(folder / "p.yaml")
+    with ExitStack() as pages:
+        with chromium.used() as browser:
+            open_page = pages.enter_context(tabs(browser, []))
+            page = open_page(f"{url}&measure", viewport={"width": 1400, "height": 800})
+            page.wait_for_function("() => window.page?.scene && figures.firstMs > 0", timeout=1000 * LONGEST_S)
+            page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+            page.evaluate(
+                "() => { document.getElementById('data-cursor').open = false;"
+                "for (const id of ['ruler-panel', 'mapping-panel']) document.getElementById(id).open = true; }"
+            )
         yield Shown(page)
+        with chromium.used():
+            pages.close()
 
 
 @pytest.fixture(autouse=True)
-def live_again(shown: Shown) -> Iterator[None]:
+def live_again(shown: Shown, browser: Any) -> Iterator[None]:
     yield
     shown.page.evaluate("() => { page.replayed = null; clearInterval(window.held); page.net.release(); }")
 

@@ -27,7 +27,7 @@ def bench(tmp_path: Path) -> Bench:
 
 
 @pytest.fixture
-def servo() -> Any:
+def servo(loop_in_thread: None) -> Any:
     surface = HapticSurface.from_heights(np.zeros((8, 8), np.float32))
     touch = load_method("render", "penalty")().touch(surface)
     with Servo(touch, load_method("device", "mock")(), seconds=20) as running:

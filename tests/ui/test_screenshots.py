@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from drawn_parts import drawn
-from page_files import ROOT, built_page
+from page_files import ROOT
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -34,10 +34,9 @@ HERE = """() => {
 }"""
 
 
-@pytest.fixture(scope="module")
-def url(serve: Callable[..., Any]) -> str:
-    built_page()
-    return serve("builtin/motorcycle").url
+@pytest.fixture
+def url(opened: Callable[..., str]) -> str:
+    return opened("builtin/motorcycle")
 
 
 @pytest.mark.parametrize("name", PICTURES)
@@ -73,9 +72,8 @@ def test_a_picture_of_each_panel(open_page: Callable[..., Any], url: str, tmp_pa
         panel.evaluate("(each) => (each.open = false)")
 
 
-def test_pictures_of_the_editor_of_parts(serve: Callable[..., Any], open_page: Callable[..., Any], tmp_path: Path):
+def test_pictures_of_the_editor_of_parts(opened: Callable[..., str], open_page: Callable[..., Any], tmp_path: Path):
     """A photograph with parts that were drawn by hand; and one that is proposed."""
-    built_page()
     astronaut = drawn("astronaut")
     Image.fromarray(astronaut.picture).save(tmp_path / "astronaut.png")
     Image.fromarray(astronaut.parts.labels.astype(np.uint8)).save(tmp_path / "parts.png")
@@ -84,9 +82,7 @@ def test_pictures_of_the_editor_of_parts(serve: Callable[..., Any], open_page: C
     text = "scene: {photo: astronaut.png, segments: parts.png}\nworkspace: {width_m: 0.1, relief_m: 0.0064}\n"
     text += f"render: {{use: penalty, stiffness_n_per_m: 400}}\nheights: {{by: given}}\nparts:\n{''.join(parts)}"
     (tmp_path / "astronaut.yaml").write_text(text)
-    page = open_page(
-        serve("astronaut.yaml", cwd=tmp_path).url, viewport={"width": 1180, "height": 720}, color_scheme="light"
-    )
+    page = open_page(opened(tmp_path / "astronaut.yaml"), viewport={"width": 1180, "height": 720}, color_scheme="light")
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'", timeout=120_000)
     page.locator("#parts-edit").click()
     page.locator("#parts-list [role=option]", has_text="helmet").first.click()

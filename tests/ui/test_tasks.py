@@ -13,7 +13,6 @@ import pytest
 
 from browser_tabs import OpenPage
 from desks import small_scene
-from page_files import built_page
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -22,11 +21,10 @@ LONGEST_S = 60
 
 
 @pytest.fixture
-def page(serve, open_page: OpenPage, tmp_path: Path) -> "Page":
-    built_page()
-    opened = open_page(serve(small_scene(tmp_path), cwd=tmp_path).url)
-    until(lambda: opened.locator("#status").get_attribute("data-state") == "felt")
-    return opened
+def page(opened, open_page: OpenPage, tmp_path: Path) -> "Page":
+    page = open_page(opened(small_scene(tmp_path)))
+    until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
+    return page
 
 
 def until(holds: Callable[[], bool]) -> None:

@@ -76,10 +76,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return at
 
 
-@pytest.fixture(scope="module")
-def url(serve, folder: Path) -> str:
-    built_page()
-    return serve(str(folder / "p.yaml")).url
+@pytest.fixture
+def url(opened, folder: Path) -> str:
+    return opened(folder / "p.yaml")
 
 
 def viridis(share: float) -> np.ndarray:
@@ -132,9 +131,8 @@ def test_a_curtain_is_shown_greyed_or_cut(url: str, open_page):
     assert np.ptp(seen["shown"]) > 40
 
 
-def test_a_large_relief_is_drawn_at_once_and_finer_where_one_looks(serve, open_page, tmp_path: Path):
+def test_a_large_relief_is_drawn_at_once_and_finer_where_one_looks(opened, open_page, tmp_path: Path):
     """Its grain is of two cells: from afar it is even, from near it is seen, and the hand knows it."""
-    built_page()
     rows, columns = np.indices((1400, 1500)) // 2
     heights = np.where((rows + columns) % 2, 1000, 0).astype(np.uint16)
     heights[0, 0] = 65535
@@ -143,7 +141,7 @@ def test_a_large_relief_is_drawn_at_once_and_finer_where_one_looks(serve, open_p
         f"scene: {{height: {tmp_path}/height.png}}\nworkspace: {{width_m: 0.08, relief_m: 0.002, finest_m: 0}}\n"
         "render: {use: penalty}\n"
     )
-    page = open_page(f"{serve(str(tmp_path / 'p.yaml')).url}&measure", reduced_motion="reduce")
+    page = open_page(f"{opened(tmp_path / 'p.yaml')}&measure", reduced_motion="reduce")
     settings(page, look="relief", raking=1)
     page.reload()
     from_above(page)

@@ -66,6 +66,7 @@ def test_what_cannot_be_felt_in_turn(folder: Path, words: tuple[object, ...], sa
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_a_pointer_that_nobody_moves_says_so_once(folder: Path):
     done = tangible("feel", "c.yaml", "--seconds", 2, cwd=folder)
     assert done.returncode == 0, done.stderr
@@ -103,6 +104,7 @@ def test_it_goes_on_until_it_is_asked_to_end(folder: Path, asked_by: signal.Sign
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_a_video_is_played_and_told_of(tmp_path: Path):
     import cv2
 

@@ -273,6 +273,7 @@ class TestWatching:
         assert [each.outcome for each in pipeline.outcomes if each.product == "disparity"] == ["failed"]
 
     @pytest.mark.parametrize("in_real_time", [True, False])
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_stopped_while_it_is_felt(self, in_real_time: bool):
         stop = threading.Event()
         pipeline = Pipeline(Scene.of(height=np.ones((8, 8))), render=Penalty(), cached=False)
@@ -283,6 +284,7 @@ class TestWatching:
         assert 0 < len(found.rows) < 600_000
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 class TestFeeling:
     @pytest.fixture
     def pipeline(self) -> Pipeline:

@@ -409,6 +409,7 @@ def test_in_the_loop_s_own_process_it_is_switched_while_feeling_and_released_by_
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("patient")
+@pytest.mark.usefixtures("loop_in_thread")
 def test_scenes_in_turn_pull_each_to_its_own_until_a_button_is_pressed():
     turns = [Turn(still(), AT_ONCE, SURFACE, beacon_to(SURFACE, part)) for part in (1, 4)]
     rows: list[np.ndarray] = []

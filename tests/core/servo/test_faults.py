@@ -196,6 +196,7 @@ class TestStandstill:
             assert servo.report().stopped == host.STOOD_STILL
             assert held(record) == 0
 
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_its_bound_is_in_looks_and_grows_with_the_period(self, tmp_path: Path) -> None:
         """Ticks are 0.3 s apart: no standstill."""
         with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE, seconds=1.5, period_s=0.3) as servo:
@@ -203,6 +204,7 @@ class TestStandstill:
             assert servo.report().ticks == 5
             assert servo.report().stopped == "the time is over"
 
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_a_law_that_compiles_itself_when_it_is_asked_first(self) -> None:
         """That happens before the first tick, and is no standstill."""
         with Servo(FaultyTouch("begins slowly"), Failing(fault="none"), AT_ONCE, seconds=0.2) as servo:
@@ -282,6 +284,7 @@ def answered(number: int, how: signal.Handlers) -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("patient")
+@pytest.mark.usefixtures("loop_in_thread")
 class TestWhatAPluginRaises:
     def test_an_error_that_cannot_be_unpickled_ends_the_session_with_its_text(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
@@ -327,6 +330,7 @@ def test_half_a_message_is_the_end(kept: int) -> None:
 
 @pytest.mark.usefixtures("patient")
 class TestSwaps:
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_a_scene_that_does_not_arrive_is_refused_and_the_one_before_felt_on(self) -> None:
         with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE) as servo:
             with pytest.raises(LookupError, match="not in process"):

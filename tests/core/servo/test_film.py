@@ -44,6 +44,7 @@ def left_behind() -> set[Path]:
     return set(shared_folder().glob(f"tangible-{os.getpid()}-*"))
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 class TestShow:
     @pytest.mark.parametrize("device", DEVICES)
     def test_what_is_shown_here_is_felt_there(self, device) -> None:
@@ -97,6 +98,7 @@ class TestShow:
         assert not left_behind()
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 class TestPacked:
     def test_whoever_packed_it_shows(self) -> None:
         """Also when another process feels it, which is given a name and a number alone."""

@@ -60,6 +60,7 @@ def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tm
 
 @pytest.mark.parametrize("name", ["hand.npz", "hand.csv"])
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_other_files_are_made_of_it_at_the_end(touch: Touch, tmp_path: Path, name: str) -> None:
     with keeping(tmp_path / name, About("circling", "proxy", "")) as writer:
         run_in_real_time(touch, Circling(), 0.2, Safety(), lambda _: None, writer.append)
@@ -164,6 +165,7 @@ def test_what_could_not_be_kept_is_handed_on_again(looped: Servo) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_a_full_disk_ends_it_with_no_force(touch: Touch, tmp_path: Path) -> None:
     force = tmp_path / "force"
     device = Failing(fault="none", record=str(force))

@@ -60,6 +60,7 @@ def parcels() -> set[Path]:
     return set(shared_folder().glob("*.parcel"))
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 class TestStiffness:
     @pytest.mark.parametrize("touch", [stiff(), Silent()])
     @pytest.mark.parametrize("limits", [Safety(), Safety(coupling="auto")])
@@ -112,6 +113,7 @@ class TestWhoseItIs:
         assert not parcels()
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 class TestHandedOn:
     def test_here_it_gives_no_force(self):
         one = packed(stiff(), SPEC)

@@ -70,6 +70,7 @@ class TestTicks:
         periods = 299 + report.overruns - int(1000 * late_s)  # a tick each, or none; and what the last one missed
         assert due_s == pytest.approx(0.001 * periods, abs=1e-9)
 
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_ticks_are_those_of_the_law_and_its_guard(self) -> None:
         """What the loop gave, replayed by the same law here, where nothing was limited."""
         heights = np.random.default_rng(0).uniform(0.002, 0.0024, (32, 32)).astype(np.float32)
@@ -82,6 +83,7 @@ class TestTicks:
         assert free.sum() > 400
         np.testing.assert_allclose(rows[free][:, FORCE], touch.path(rows[:, 2:5])[free], atol=1e-9)
 
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_it_goes_on_until_it_is_stopped(self) -> None:
         with Servo(proxy(), Circling()) as servo:
             until(lambda: servo.report().ticks > 50)
@@ -96,6 +98,7 @@ class TestTicks:
             Servo(proxy(), Circling(), seconds=seconds)
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 class TestSwap:
     @pytest.mark.parametrize("device", [Circling(z_m=0.0), Circling(z_m=0.0, exchanges=True), Failing(fault="none")])
     def test_another_scene_from_one_tick_to_the_next(self, device) -> None:
@@ -160,6 +163,7 @@ class TestNoForceIsLeft:
     @pytest.mark.parametrize(
         ("fault", "stopped"), [("unplugged", "does not answer"), ("none", OVER), ("nan", OVER), ("hangs", OVER)]
     )
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_whatever_the_device_does(self, fault, stopped: str, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with Servo(proxy(), Failing(fault=fault, record=str(record)), AT_ONCE, seconds=1.0) as servo:
@@ -172,6 +176,7 @@ class TestNoForceIsLeft:
             (bad,) = np.flatnonzero(rows[:, FLAGS].astype(int) & TickFlag.NOT_FINITE)
             np.testing.assert_array_equal(rows[bad, FORCE], 0)
 
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_a_fault_of_the_driver_is_raised_here(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with (
@@ -181,6 +186,7 @@ class TestNoForceIsLeft:
             until(lambda: not servo.running)
         assert held(record) == 0
 
+    @pytest.mark.usefixtures("loop_in_thread")
     def test_a_device_that_cannot_be_opened(self) -> None:
         before = set(shared_folder().glob(f"tangible-{os.getpid()}-*"))
         with pytest.raises(DeviceError, match="in use by another program"), Servo(proxy(), Failing(opens="never")):

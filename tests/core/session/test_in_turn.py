@@ -33,6 +33,7 @@ def soon(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_each_is_felt_in_its_turn_with_its_own_limits_and_the_first_again() -> None:
     kept: list[np.ndarray] = []
     stop = Event()
@@ -90,6 +91,7 @@ def test_a_device_that_goes_is_waited_for_without_force(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("soon")
+@pytest.mark.usefixtures("loop_in_thread")
 def test_a_device_that_is_not_there_yet(tmp_path: Path) -> None:
     said: list[str] = []
     device = Failing(fault="none", opens="second", record=str(tmp_path / "force"))
@@ -99,18 +101,21 @@ def test_a_device_that_is_not_there_yet(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_time_goes_on_without_a_device() -> None:
     last = run_in_turn([Turn(proxy(), AT_ONCE)], Failing(), 0.5, on_wait=lambda _: None)
     assert (last.stopped, last.ticks) == (OVER, 99)
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_without_the_word_to_wait_it_ends_with_its_device() -> None:
     last = run_in_turn([Turn(proxy(), AT_ONCE)], Failing())
     assert (last.stopped, last.ticks) == ("the failing device does not answer; plug it in", 99)
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_a_fault_of_a_plugin_is_not_waited_for(tmp_path: Path) -> None:
     record = tmp_path / "force"
     with pytest.raises(ZeroDivisionError, match="the driver's own fault"):
@@ -119,6 +124,7 @@ def test_a_fault_of_a_plugin_is_not_waited_for(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_a_scene_that_cannot_be_sent_ends_it(tmp_path: Path) -> None:
     class Local(PlainTouch):
         """Of a function: no other process finds it."""

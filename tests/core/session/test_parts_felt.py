@@ -89,6 +89,7 @@ def test_what_was_felt_of_each_part():
     assert parts_felt(replace(felt, rows=felt.rows[:0]), in_parts()) == ()
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 def test_reports_name_the_part_of_the_scene_that_is_felt():
     """The first scene is all door, the second all wall; the loop is told neither."""
     said: list[str] = []

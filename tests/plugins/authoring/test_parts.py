@@ -286,6 +286,7 @@ def test_full_disk_leaves_whole_files_or_none(folder: Path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_names_of_parts_reach_recording_and_replay(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
@@ -311,6 +312,7 @@ def test_names_of_parts_reach_recording_and_replay(folder: Path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_beacon_by_name_reaches_recording_and_replay(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"

@@ -5,12 +5,15 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from ctrl_c import HEARING
 from distributions import distribution
+from tangible_bench.worker import answer
 from tangible_core.plugins.registry import Registry
+from tangible_core.runtime.child_process import Place
 
 FAKES = """
 import os, signal, time
@@ -139,6 +142,19 @@ def registry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Registry:
     monkeypatch.setenv("PYTHONPATH", str(site), prepend=os.pathsep)
     monkeypatch.delitem(sys.modules, "bench_fakes", raising=False)
     return Registry()
+
+
+@pytest.fixture
+def cells_here(registry: Registry, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Measure in this process, not each cell in one of its own: what rows say and which are measured is the same."""
+    monkeypatch.setattr("tangible_core.plugins.registry.default_registry", lambda: registry)
+    measure_here(monkeypatch)
+
+
+def measure_here(patch: pytest.MonkeyPatch) -> None:
+    """As `cells_here`, of the methods that are installed."""
+    patch.setattr("tangible_bench.worker.gc", SimpleNamespace(collect=lambda: None, freeze=lambda: None))
+    patch.setattr("tangible_bench.run._outcome", lambda wanted, _: answer(Place(*wanted.place), wanted.job))
 
 
 Command = Callable[..., "subprocess.Popen[str]"]

@@ -27,6 +27,7 @@ def compared(registry: Registry, out: Path, methods: str = "constant", **how) ->
     return compare(parse_comparison(text, Path("c.yaml"), registry), **how)
 
 
+@pytest.mark.usefixtures("cells_here")
 def test_every_measurement_is_heard_of_as_it_begins_and_ends(registry: Registry, tmp_path: Path):
     heard: list[Step] = []
     found = compared(registry, tmp_path, "constant, half", progress=heard.append)
@@ -41,6 +42,7 @@ def test_every_measurement_is_heard_of_as_it_begins_and_ends(registry: Registry,
     assert all(path.exists() for path in found.files)
 
 
+@pytest.mark.usefixtures("cells_here")
 def test_it_goes_on_where_it_was_stopped(registry: Registry, tmp_path: Path):
     stop = threading.Event()
     with pytest.raises(Stopped):
@@ -57,6 +59,7 @@ def test_a_long_measurement_is_ended(registry: Registry, tmp_path: Path):
         compared(registry, tmp_path, "{use: constant, seconds: 200}", stop=stop)
 
 
+@pytest.mark.usefixtures("cells_here")
 def test_what_was_measured_is_read_again(registry: Registry, tmp_path: Path):
     found = compared(registry, tmp_path)
     again = read_comparison(tmp_path / "results.jsonl", earlier=list(read_rows(tmp_path / "results.jsonl").values()))

@@ -49,6 +49,7 @@ def test_a_row_says_everything(registry: Registry, tmp_path: Path):
     assert list(read_rows(tmp_path / "r.jsonl").values()) == [row]
 
 
+@pytest.mark.usefixtures("cells_here")
 def test_measures_are_those_of_the_truth(registry: Registry, tmp_path: Path):
     """A constant of 0 px is wrong by the truth itself."""
     from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
@@ -59,6 +60,7 @@ def test_measures_are_those_of_the_truth(registry: Registry, tmp_path: Path):
     assert row.measures["bad2_noc"] == pytest.approx(100 * (pair.truth_px > 2)[pair.visible].mean())
 
 
+@pytest.mark.usefixtures("cells_here")
 def test_an_option_that_the_scene_tells(registry: Registry, tmp_path: Path):
     """Disparities of this scene end below 16: the next multiple of 16, for the method that is told, and only that."""
     methods = "ranged, {use: ranged, label: told, given: [max_disparity_px]}"
@@ -78,6 +80,7 @@ def test_an_option_that_a_method_cannot_be_told(registry: Registry, tmp_path: Pa
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("cells_here")
 def test_filling_is_done_to_the_methods_that_are_named(registry: Registry, tmp_path: Path):
     rows = measured(registry, tmp_path / "r.jsonl", "half, {use: half, label: filled}", QUICK + "fill: [filled]\n")
     assert [(row.method, row.measures["density"], row.finishes) for row in rows] == [
@@ -122,6 +125,7 @@ def test_a_method_that_takes_too_long_is_ended(registry: Registry, tmp_path: Pat
     assert row.error == "took longer than 0.5 s and was ended; raise timeout_s or drop the method"
 
 
+@pytest.mark.usefixtures("cells_here")
 def test_what_failed_once_is_not_tried_in_later_rounds(registry: Registry, tmp_path: Path):
     more = "repeats: 3\nwarmups: 0\ncalls: 1\n"
     path = tmp_path / "r.jsonl"
@@ -170,6 +174,7 @@ def test_the_key_is_what_it_is_measured_with_too(registry: Registry, monkeypatch
     assert measurements(comparison(registry, "constant"))[0].row.key != first
 
 
+@pytest.mark.usefixtures("cells_here")
 def test_the_same_is_not_measured_again(registry: Registry, tmp_path: Path):
     path = tmp_path / "r.jsonl"
     measured(registry, path, "constant")
@@ -180,6 +185,7 @@ def test_the_same_is_not_measured_again(registry: Registry, tmp_path: Path):
     assert len(path.read_text().splitlines()) == 2
 
 
+@pytest.mark.usefixtures("cells_here")
 def test_a_torn_last_line_is_passed_over_and_goes(registry: Registry, tmp_path: Path):
     path = tmp_path / "r.jsonl"
     (row,) = measured(registry, path, "constant")

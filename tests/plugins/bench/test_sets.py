@@ -324,6 +324,7 @@ class TestCommand:
         monkeypatch.setattr("tangible_core.plugins.registry.default_registry", lambda: registry)
 
     @pytest.mark.slow
+    @pytest.mark.usefixtures("cells_here")
     def test_measure_a_set_that_nobody_wrote_a_file_for(self, registry: Registry, folder: Path):
         methods = "methods=[constant, {use: constant, label: other, value_px: 2}]"
         words = ("compare", "kitti-2015", "--set", methods, "--set", "warmups=0")

@@ -56,6 +56,7 @@ def test_the_time_is_guessed_and_corrected_by_what_was_measured(tmp_path: Path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("cells_here")
 def test_every_figure_is_written_for_other_programs(registry: Registry, tmp_path: Path):
     found = compare(quick(comparison(registry, tmp_path)))
     assert {"table.csv", "table.tex", "results.jsonl"} <= {path.name for path in found.files}

@@ -157,6 +157,7 @@ def test_scaling_down_leaves_no_false_pattern():
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("cells_here")
 def test_a_comparison_from_end_to_end(registry: Registry, tmp_path: Path):
     """Told the count, `gradient` finds a scene of two greys exactly, turned or not."""
     text = """\

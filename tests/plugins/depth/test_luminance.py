@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
@@ -52,7 +52,6 @@ def test_smoothing_flattens_noise_and_keeps_edges():
     assert np.median(found[:, 40] - found[:, 39]) > 0.9 * np.median(before[:, 40] - before[:, 39])
 
 
-@settings(max_examples=50)
 @given(
     hnp.arrays(np.float64, st.tuples(st.integers(1, 9), st.integers(1, 9)), elements=st.floats(0, 1)),
     st.integers(0, 30),

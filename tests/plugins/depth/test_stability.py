@@ -1,12 +1,13 @@
 """Pairs that break matchers, over every depth method that is shipped: one table of cases, each demanding a bound.
 
 Method by method exactness is tested beside the method; here every cell of cases x methods gets the same questions.
+`SLOW_PEERS`, which the conformance kit asks most of them every day, are asked all of them in the nightly tests.
 """
 
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import Any, NamedTuple
@@ -45,6 +46,13 @@ METHODS = [
     if (each.kind, each.distribution) == ("depth", "tangible-images") and each.name not in OTHERS_ANSWERS
 ]
 MATCHERS = [name for name in METHODS if name not in FROM_ONE_PICTURE]
+SLOW_PEERS = {"kornia-zncc", "kornia-report", "report"}
+"""Methods that others replace, and that take nine tenths of the time of all."""
+
+
+def each_of(names: Iterable[str]) -> list[Any]:
+    """Values of a parameter `name`; the slow peers among them are for the nightly tests."""
+    return [pytest.param(name, marks=pytest.mark.nightly if name in SLOW_PEERS else ()) for name in names]
 
 
 def method(name: str, **options: Any) -> DepthEstimator:
@@ -279,7 +287,10 @@ def cells() -> list[Any]:
             case,
             name,
             id=f"{case}-{name}",
-            marks=[pytest.mark.xfail(reason=NOT_KEPT[case, name], strict=True)] if (case, name) in NOT_KEPT else [],
+            marks=[
+                *([pytest.mark.xfail(reason=NOT_KEPT[case, name], strict=True)] if (case, name) in NOT_KEPT else []),
+                *([pytest.mark.nightly] if name in SLOW_PEERS else []),
+            ],
         )
         for case in CASES
         for name in METHODS
@@ -301,7 +312,7 @@ def test_method_on_a_case_keeps_its_bound(case: str, name: str):
 # What a table of pairs does not hold
 
 
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize("name", each_of(METHODS))
 def test_array_layout_hardly_changes_the_map(name: str):
     """8 and 16 bits, floats, RGBA, layouts: all but 1 % of the pixels within a twentieth of a pixel."""
     colour = [np.dstack([grey, 255 - grey // 2, grey // 3]) for grey in (planes().views.left, planes().views.right)]
@@ -313,7 +324,9 @@ def test_array_layout_hardly_changes_the_map(name: str):
         assert close.mean() >= 0.99, kind
 
 
-@pytest.mark.parametrize("name", [name for name in MATCHERS if name != "opencv-sgbm"])  # it searches what it is told
+@pytest.mark.parametrize(
+    "name", each_of(name for name in MATCHERS if name != "opencv-sgbm")
+)  # it searches what it is told
 def test_exchanged_views_are_reported(name: str, caplog: pytest.LogCaptureFixture):
     method(name).estimate(border().views)
     assert "exchanged" not in caplog.text
@@ -321,7 +334,7 @@ def test_exchanged_views_are_reported(name: str, caplog: pytest.LogCaptureFixtur
     assert "exchanged" in caplog.text
 
 
-@pytest.mark.parametrize("name", MATCHERS)
+@pytest.mark.parametrize("name", each_of(MATCHERS))
 def test_single_view_is_refused(name: str):
     with pytest.raises(PictureError, match="two views"):
         method(name).estimate(Views(noise(0)))
@@ -341,7 +354,7 @@ def test_value_that_is_not_finite_is_refused_with_its_place(value: float, side: 
         Views(**views)
 
 
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize("name", each_of(METHODS))
 def test_simultaneous_calls_are_independent(name: str):
     pairs = [planes().views, border().views, jump().views] * 2
     alone = [method(name).estimate(each).digest() for each in pairs[:3]] * 2
@@ -349,16 +362,23 @@ def test_simultaneous_calls_are_independent(name: str):
         assert [each.digest() for each in pool.map(method(name).estimate, pairs)] == alone
 
 
-def test_every_process_gives_the_same_maps():
+@pytest.mark.parametrize(
+    "names",
+    [
+        pytest.param([name for name in METHODS if name not in SLOW_PEERS], id="quick"),
+        pytest.param(sorted(SLOW_PEERS), id="slow", marks=pytest.mark.nightly),
+    ],
+)
+def test_every_process_gives_the_same_maps(names: list[str]):
     script = (
         "import json; from tangible_core.plugins.registry import default_registry as installed;"
         "from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair;"
         f"views = synthetic_pair('planes', {SHAPE[1]}, {SHAPE[0]}, 1).views;"
-        f"maps = {{n: installed().load('depth', n)().estimate(views).digest() for n in {METHODS}}};"
+        f"maps = {{n: installed().load('depth', n)().estimate(views).digest() for n in {names}}};"
         "print(json.dumps(maps))"
     )
     other = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
-    assert json.loads(other) == {name: method(name).estimate(planes().views).digest() for name in METHODS}
+    assert json.loads(other) == {name: method(name).estimate(planes().views).digest() for name in names}
 
 
 @pytest.mark.parametrize("name", ["semi-global", "zncc"])

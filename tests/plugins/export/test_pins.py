@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from exported_pictures import PICTURES, alpha, labels_work, work_of
@@ -63,7 +63,6 @@ def test_no_border_is_lost_and_none_is_made_up(tmp_path, name, display):
     assert 0.03 < (heights == levels).mean() < 0.25
 
 
-@settings(max_examples=25)
 @given(st.data())
 def test_no_border_of_a_map_of_fields_is_lost(tmp_path_factory, data):
     """Fields at least three pins wide, on displays of any size."""

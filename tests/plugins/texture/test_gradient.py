@@ -4,7 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
@@ -142,7 +142,6 @@ class TestGradient:
             assert Gradient().segment(picture).count == 1
 
     @given(st.integers(1, 40), st.integers(1, 40), st.integers(0, 9), st.sampled_from(["auto", 1, 2, 7, 10**6]))
-    @settings(max_examples=60)
     def test_labels_of_any_picture_are_sound(self, rows: int, columns: int, seed: int, segments: int | str):
         rng = np.random.default_rng(seed)
         picture = np.kron(rng.integers(0, 256, (2, 2)), np.ones((rows, columns)))[:rows, :columns].astype(np.uint8)

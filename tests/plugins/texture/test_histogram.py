@@ -4,7 +4,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
@@ -102,7 +102,6 @@ class TestHistogram:
             assert Histogram(segments=segments).segment(bars(np.array(levels))).count <= len(levels)
 
     @given(st.integers(1, 20), st.integers(1, 20), st.integers(0, 9), st.sampled_from(["auto", 1, 2, 7, 10**6]))
-    @settings(max_examples=40)
     def test_labels_of_any_picture_are_sound(self, rows: int, columns: int, seed: int, segments: int | str):
         picture = np.random.default_rng(seed).integers(0, 6, (rows, columns), np.uint8) * np.uint8(40)
         for options in ({}, {"sigma_px": 0, "smallest_px": 1}):

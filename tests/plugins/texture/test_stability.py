@@ -1,6 +1,7 @@
 """Pictures that break segmenters, over every installed texture method: one table of cases, each with a demand.
 
 Exactness is tested in each method's own module; here every pair of case and method gets the same questions.
+`SLOW_PEERS`, which the conformance kit asks most of them every day, are asked all of them in the nightly tests.
 """
 
 import subprocess
@@ -26,6 +27,8 @@ METHODS = [
     for each in default_registry().listings
     if (each.kind, each.distribution) == ("texture", "tangible-images")
 ]
+SLOW_PEERS = {"kornia-gabor", "kornia-gradient", "report"}
+"""Methods that others replace, and that take nine tenths of the time of all."""
 OF_GREY = {"gradient", "histogram", "kornia-gradient"}
 """The methods that separate by brightness. The others separate by texture, for which a checkerboard is one thing."""
 SHAPE = 64, 88
@@ -140,9 +143,14 @@ def cells() -> list[Any]:
             name,
             number,
             id=f"{case}-{name}-{number}",
-            marks=[pytest.mark.xfail(reason=KNOWN_FAILURES[case, name], strict=True)]
-            if (case, name) in KNOWN_FAILURES
-            else [],
+            marks=[
+                *(
+                    [pytest.mark.xfail(reason=KNOWN_FAILURES[case, name], strict=True)]
+                    if (case, name) in KNOWN_FAILURES
+                    else []
+                ),
+                *([pytest.mark.nightly] if name in SLOW_PEERS else []),
+            ],
         )
         for case in CASES
         for name in METHODS
@@ -162,7 +170,9 @@ def test_case_meets_its_demand(case: str, name: str, number: int | str):
 
 # Demands beyond the table of pictures
 
-by_method = pytest.mark.parametrize("name", METHODS)
+by_method = pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.nightly if name in SLOW_PEERS else ()) for name in METHODS]
+)
 SIZES = (*TINY, (3, 1), (5, 4), (8, 8), (9, 17), (16, 9), (31, 33), (61, 97), (100, 63))
 
 

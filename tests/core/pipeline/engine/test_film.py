@@ -103,6 +103,7 @@ def test_the_same_film_is_the_same_recording(filmed):
     assert np.array_equal(first.rows, again.rows, equal_nan=True)
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 def test_it_is_felt_in_real_time_and_recorded(filmed, tmp_path):
     reports, file = [], tmp_path / "hand.nc"
     recording = filmed().feel(Mock(path="circle"), 1.5, on_report=reports.append, record=file)
@@ -114,6 +115,7 @@ def test_it_is_felt_in_real_time_and_recorded(filmed, tmp_path):
     assert not [each for each in threading.enumerate() if each.name == "film"]
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 def test_films_and_stills_are_felt_in_turn_and_a_film_begins_anew(filmed, walk):
     still = Pipeline(Scene.of(photo=walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
     reports = []
@@ -177,6 +179,7 @@ FIRST_MEAN = 0.0
 
 
 @pytest.mark.parametrize("in_real_time", [True, False])
+@pytest.mark.usefixtures("loop_in_thread")
 def test_a_plugins_fault_ends_the_session(filmed, monkeypatch, in_real_time):
     pipeline = filmed(depth=Shrinks())
     monkeypatch.setitem(globals(), "FIRST_MEAN", pipeline.views.left.mean())
@@ -187,6 +190,7 @@ def test_a_plugins_fault_ends_the_session(filmed, monkeypatch, in_real_time):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
 def test_stop_ends_it_soon_and_leaves_no_thread(filmed):
     stop, began = threading.Event(), time.monotonic()
 

@@ -5,7 +5,7 @@ from collections import deque
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -74,7 +74,6 @@ def islands(disparity, step):
     return label
 
 
-@settings(max_examples=60)
 @given(MAPS, st.integers(0, 9))
 def test_speckle_filter_removes_small_islands(disparity, largest):
     label = islands(disparity, 16)
@@ -108,7 +107,6 @@ def test_small_island_among_few_matches_is_removed():
         assert np.count_nonzero(disparity == 300) == left
 
 
-@settings(max_examples=40)
 @given(MAPS, st.integers(0, 255))
 def test_filling_keeps_known_pixels_and_leaves_none_unknown(disparity, seed):
     grey = np.random.default_rng(seed).integers(0, 255, disparity.shape, np.uint8)

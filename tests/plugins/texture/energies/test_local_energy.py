@@ -4,7 +4,7 @@ from math import ceil
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import fftconvolve
 
@@ -136,7 +136,6 @@ def test_flat_picture_has_no_energy():
     assert not local_energy(np.ones((1, 1), np.float32), OCTAVES).any()
 
 
-@settings(max_examples=25)
 @given(st.integers(1, 20), st.integers(1, 20), st.integers(1, 9))
 def test_energies_of_every_size_are_finite(rows, columns, step_px):
     grey = np.random.default_rng(rows).random((rows, columns)).astype(np.float32)

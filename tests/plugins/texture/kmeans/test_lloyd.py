@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.compiled import threads
@@ -61,7 +61,6 @@ def test_cost_with_more_restarts_is_not_higher():
     assert costs[2] < costs[0]
 
 
-@settings(max_examples=40)
 @given(
     st.integers(1, 6), st.integers(1, 12), st.sampled_from(["plus-plus", "random"]), st.sampled_from([1e-15, 1, 1e15])
 )

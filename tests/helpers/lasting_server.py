@@ -1,0 +1,53 @@
+"""A server of the page that many tests use one after the other, each with its own file."""
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+from websockets.sync.client import connect
+
+from page_server import TestTab
+from ui_server import START, UiServer
+
+FORGETS = f"""
+import sys
+sys.path.insert(0, {str(Path(__file__).parent)!r})
+from lasting_server import forget
+from tangible_ui.asks import ASKS
+ASKS["forget"] = forget
+{START}
+"""
+
+
+class LastingServer(UiServer):
+    """It opens a built-in example first; `open` opens whatever a test wants."""
+
+    def __init__(self, folder: Path, env: dict[str, str]) -> None:
+        self._data = Path(env["TANGIBLE_DATA_DIR"])
+        """Recordings, what was opened by a page, unsaved documents."""
+        self.runtime = Path(env["TANGIBLE_RUNTIME_DIR"])
+        super().__init__("builtin/brick", cwd=folder, env=env, start=FORGETS)
+
+    def open(self, file: str | Path) -> str:
+        """Open a file of this machine or a scene that is built in, wait until it is felt; the page's address."""
+        for each in self._data.iterdir():
+            shutil.rmtree(each)
+        host, url = self.url.split("/")[2], self.url.replace("http", "ws").replace("/?", "/live?")
+        with TestTab(connect(url, origin=f"http://{host}", compression=None, max_size=None, proxy=None)) as tab:  # type: ignore[arg-type]
+            tab.until(event="hello")
+            for name, told in (
+                ("stop_making", {}),
+                ("forget", {}),
+                ("begin", {"files": [str(file)], "make_it": False}),
+            ):
+                tab.until(event="answer", number=tab.ask(name, **told))
+            tab.ask("choose_device", kind="hand")
+            tab.until(event="touch")
+        return self.url
+
+
+async def forget(desk: Any, tab: Any) -> None:
+    """What has happened: no verdict, file, comparison or step back is left of the documents before."""
+    desk._history.clear()
+    desk._logged.clear()
+    desk.texts = type(desk.texts)()

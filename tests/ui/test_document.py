@@ -9,8 +9,8 @@ import pytest
 
 from desks import TEXT, SmallDesk, small_scene
 from tangible_core.errors import ConfigError
-from tangible_ui.asks import ASKS
-from tangible_ui.desk.desk import MOST_HISTORY
+from tangible_ui.requests import ASKS
+from tangible_ui.state.session import MOST_HISTORY
 
 Run = Callable[[Callable[[SmallDesk, Any], Coroutine[Any, Any, None]]], None]
 

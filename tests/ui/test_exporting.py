@@ -15,8 +15,8 @@ from desks import TEXT, SmallDesk, small_scene, striped_scene
 from tangible_core.errors import ConfigError, TangibleError
 from tangible_core.pipeline.export_folder import LISTED
 from tangible_export.stl import Stl
-from tangible_ui.asks import ASKS
-from tangible_ui.maker.exporting import KEPT
+from tangible_ui.requests import ASKS
+from tangible_ui.worker.jobs.exporting import KEPT
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]
 STL = {"use": "stl", "longer_side_m": 0.06}

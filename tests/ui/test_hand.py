@@ -17,12 +17,12 @@ from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.runtime.child_process import dumps
 from tangible_core.servo import Safety, packed
 from tangible_core.testing.loop_devices import Circling, Failing
-from tangible_ui.asks import ASKS
-from tangible_ui.desk import desk as desk_module
-from tangible_ui.desk.desk import Desk
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.feeling.hand import high_without_client
+from tangible_ui.requests import ASKS
 from tangible_ui.serving.watching import watch
+from tangible_ui.state import session as desk_module
+from tangible_ui.state.session import Desk
 
 LEVEL = HapticSurface.from_heights(np.full((32, 32), 0.002, np.float32))
 IN_TIME_S = 20.0

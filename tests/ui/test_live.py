@@ -8,12 +8,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tangible_core.errors import TangibleError
-from tangible_ui import wire
-from tangible_ui.asks import ASKS
+from tangible_ui import framing as wire
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.serving import asking
-from tangible_ui.serving.asking import NotUnderstood, parse
+from tangible_ui.requests import ASKS
+from tangible_ui.serving import parsing as asking
 from tangible_ui.serving.live import LiveTab
+from tangible_ui.serving.parsing import NotUnderstood, parse
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),

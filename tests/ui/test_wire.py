@@ -11,8 +11,8 @@ import pytest
 
 from page_files import WEB, node
 from tangible_core.data import TICK_COLUMNS, TickFlag
-from tangible_ui import wire
-from tangible_ui.asks import ASKS
+from tangible_ui import framing as wire
+from tangible_ui.requests import ASKS
 from tangible_ui.serving.routes import WRONG_KEY
 
 SOURCES = Path(wire.__file__).parent

@@ -18,8 +18,8 @@ from tangible_core.errors import TangibleError
 from tangible_core.files.reading import MOST_BYTES, in_words
 
 from ..address import static
-from ..asks import feeling
-from ..desk.desk import Desk
+from ..requests import feeling
+from ..state.session import Desk
 from .live import LiveTab
 from .windows import WINDOW, read_window
 

@@ -17,11 +17,11 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from ..address import Address
-from ..asks import document, drafts
-from ..desk.desk import Desk
 from ..feeling.feeling import Feeling
-from ..left_behind import channel_of_this_process, folder_of_this_process
 from ..logs import silence, tell_pages
+from ..requests import document, drafts
+from ..stale_files import channel_of_this_process, folder_of_this_process
+from ..state.session import Desk
 from .connection import PING_S, Connection
 from .routes import application
 from .watching import watch

@@ -4,7 +4,7 @@ import asyncio
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ..desk.desk import Desk
+    from ..state.session import Desk
 
 KEEP_S = 0.01
 """How often the server says that it lives, and hands the hand on to a law that is computed beside."""

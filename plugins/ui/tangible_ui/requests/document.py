@@ -1,0 +1,126 @@
+"""The document: open, edit, one step back and forth."""
+
+from pathlib import Path
+from typing import Any
+
+from tangible_core.errors import ConfigError
+
+from ..state.session import Desk, Tab
+from ..state.texts import Text
+from .making import foresee, make
+
+
+async def begin(desk: Desk, tab: Tab | None, files: list[str], make_it: bool = True) -> dict[str, Any]:
+    """Open a pipeline file, pictures or a recording; what can be felt is made and felt.
+
+    Returns: where a recording lies, if it is one: it is for whoever shows recordings.
+    """
+    found = await desk.maker.quick("begin", files=[Path(each) for each in files])
+    if "text" not in found:
+        return found
+    text, path = found["text"], found["path"]
+    if desk.sets:  # of the command line: the text says them from now on
+        text, desk.sets = await desk.maker.quick("overridden", text=text, path=path, sets=desk.sets), []
+    desk.drafts.opened(text)
+    async with desk.texts.lock:
+        said = await take(desk, Text(text, path))
+    if make_it and not said["complaints"]:
+        desk.begin(make(desk, tab))
+    return {}
+
+
+async def edit(desk: Desk, tab: Tab | None, text: str, of: str = "", apply: bool = False) -> dict[str, Any]:
+    """Take another text for the document; all tabs hear what it says, or what is wrong with it.
+
+    of: digest of the text that was edited; if another took its place meanwhile, it is refused. apply: make and feel it
+    if nothing slow has to run. Raises: ConfigError.
+    """
+    async with desk.texts.lock:
+        if of and of != desk.digest:
+            raise ConfigError("the document was changed elsewhere meanwhile; look at what it says now")
+        return _then(desk, await take(desk, Text(text, desk.path)), apply)
+
+
+async def change(
+    desk: Desk,
+    tab: Tab | None,
+    changes: dict[str, Any] | None = None,
+    written: dict[str, str] | None = None,
+    removed: list[str] | None = None,
+    apply: bool = False,
+) -> dict[str, Any]:
+    """Change keys of the document, and nothing else in it: values, values written in YAML, keys to go.
+
+    Raises: ConfigError.
+    """
+    async with desk.texts.lock:
+        told = {"changes": changes or {}, "written": written or {}, "removed": removed or []}
+        found = await desk.maker.quick("change", text=desk.text, path=desk.path, sets=desk.sets, **told)
+        return _then(desk, _put(desk, Text(found["text"], desk.path), found), apply)
+
+
+async def undo(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
+    """The document as it was one step before."""
+    return await _step(desk, back=True, apply=apply)
+
+
+async def redo(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
+    """What was undone last."""
+    return await _step(desk, back=False, apply=apply)
+
+
+async def schema(desk: Desk, tab: Tab | None) -> dict[str, Any]:
+    """What forms are made of."""
+    return await desk.maker.quick("schema")
+
+
+async def library(desk: Desk, tab: Tab | None) -> list[dict[str, Any]]:
+    """The materials that the document can name."""
+    return await desk.maker.quick("library", text=desk.text, path=desk.path, sets=desk.sets)
+
+
+async def take(desk: Desk, text: Text) -> dict[str, Any]:
+    """Another text and place of the document, which all tabs hear of; under the lock of `desk.texts`."""
+    return _put(desk, text, await _checked(desk, text))
+
+
+async def _step(desk: Desk, *, back: bool, apply: bool) -> dict[str, Any] | None:
+    async with desk.texts.lock:
+        text = desk.texts.before() if back else desk.texts.after()
+        if text is None:
+            return None
+        found = await _checked(desk, text)
+        desk.texts.step(Text(desk.text, desk.path), back=back)
+        return _then(desk, _told(desk, text, found), apply)
+
+
+async def _checked(desk: Desk, text: Text) -> dict[str, Any]:
+    return await desk.maker.quick("check", text=text.text, path=text.path, sets=desk.sets)
+
+
+def _put(desk: Desk, text: Text, found: dict[str, Any]) -> dict[str, Any]:
+    """The document's text from now on, if it is another."""
+    now = Text(desk.text, desk.path)
+    if text != now:
+        desk.texts.leave(now)
+    return _told(desk, text, found)
+
+
+def _told(desk: Desk, text: Text, found: dict[str, Any]) -> dict[str, Any]:
+    desk.text, desk.path = text
+    desk.digest = found["digest"]
+    desk.begin(desk.drafts.keep(text))
+    found |= {"can_undo": desk.texts.can_undo, "can_redo": desk.texts.can_redo}
+    desk.tell("document", **found)
+    return found
+
+
+def _then(desk: Desk, found: dict[str, Any], apply: bool) -> dict[str, Any]:
+    if not found["complaints"]:
+        desk.begin(foresee(desk, apply))
+    return found
+
+
+ASKS = {
+    "begin": begin, "edit": edit, "set": change, "undo": undo, "redo": redo, "schema": schema, "library": library,
+}  # fmt: skip

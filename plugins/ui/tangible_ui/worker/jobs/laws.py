@@ -1,0 +1,46 @@
+"""Jobs that put several laws on one surface, and say nothing of it: who compares blindly shall not know."""
+
+import json
+from pathlib import Path
+from typing import Any, cast
+
+from tangible_core.errors import ConfigError, quoted
+from tangible_core.files.source import parse_value, plain
+
+from ..loop_input import felt
+from ..state import Bench, Job
+
+
+def law_names(bench: Bench) -> list[str]:
+    """The force laws that are installed."""
+    return sorted(bench.registry.names("render"))
+
+
+def law_block(bench: Bench, use: str, options: str) -> dict[str, Any]:
+    """A law as `render:` has it, its options written in YAML, such as {stiffness_n_per_m: 500}. Raises: ConfigError."""
+    try:
+        said = plain(parse_value(options)) if options.strip() else {}
+    except Exception as error:
+        raise ConfigError(f"{quoted(options)} is not YAML; write options as {{stiffness_n_per_m: 500}}") from error
+    if not isinstance(said, dict):
+        raise ConfigError(f"{quoted(options)}: write options as {{stiffness_n_per_m: 500}}")
+    return {"use": use, **cast("dict[str, Any]", said)}
+
+
+def laws(bench: Bench, text: str, path: Path, sets: list[str], others: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """What the force loop needs of the document's law, and then of others, blocks as `render:` has them.
+
+    Raises: ConfigError if the document has no law, or a block is wrong; TangibleError as `Pipeline.make`.
+    """
+    first = bench.pipeline_of(text, path, sets)
+    if first.config.render is None:
+        raise first.config.missing("render")
+    with_others = [bench.config_of(text, path, [*sets, f"render={json.dumps(each)}"]) for each in others]
+    return [felt(first), *(felt(first.changed(config)) for config in with_others)]
+
+
+JOBS = {
+    "law_names": Job(law_names, quick=True),
+    "law_block": Job(law_block, quick=True),
+    "laws": Job(laws),
+}

@@ -1,0 +1,192 @@
+"""Jobs that make heights and materials of parts felt while they are changed, and that show them.
+
+What does not depend on the heights is made once and kept. What is felt is, to the bit, what the document gives once it
+says these heights: the same steps make it (`felt.layered`, `fitted`, the law's own `touch`). Only where that has more
+than MOST_CELLS it is felt on a coarser grid until it is saved: a hand that drags a height waits for nothing.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import ceil, sqrt
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+from pydantic import BaseModel, ValidationError
+
+from tangible_core.data import HapticSurface, Material, PartMap
+from tangible_core.errors import ConfigError
+from tangible_core.materials.assignment import find, load_library
+from tangible_core.parts import HeightChoice, Layering, PartChoice
+from tangible_core.pipeline import felt as on_grid
+from tangible_core.pipeline import parts_found
+from tangible_core.pipeline.config import PipelineConfig, wrong_of_parts
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.pipeline.rules import fitted, part_heights
+from tangible_core.scene.scaling import felt_factor
+from tangible_core.scene.scene import Scene
+
+from ..loop_input import parcel_of
+from ..state import Bench, Job
+from ..view.files import show
+from ..view.surface_view import Seen, at_hand, see_parts
+from .opening import config_heights, edited_of, opened_of
+
+S = TypeVar("S", bound=BaseModel)
+MOST_CELLS = 500_000
+"""Of a surface that is felt while it is changed."""
+
+
+@dataclass
+class Kept:
+    """What is made once for all heights."""
+
+    scene: Scene
+    config: PipelineConfig
+    """With nothing said of the parts but their names, by which rules may call them."""
+    pipeline: Pipeline
+    grid: on_grid.FeltScene
+    parts: PartMap
+    """On the grid that is felt."""
+    materials: tuple[Material, ...] | None
+    """By part, of those that say none themselves; None where the law uses none."""
+    layering: Layering
+    found_m: dict[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
+    """What recipes find, by part; those that were asked for."""
+    seen: Seen | None = None
+    """What was seen last, and the surface that is felt now, if it is another."""
+    surface: HapticSurface | None = None
+
+
+def parts_heights(
+    bench: Bench,
+    text: str,
+    path: Path,
+    sets: list[str],
+    heights_m: Sequence[float | None],
+    materials: Sequence[str | None] | None = None,
+    heights: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
+    """What the force loop needs of the document with these heights of its parts; the document stays as it is.
+
+    heights_m: by the number of a part; None for what the recipe finds, by guess or by depth. materials: the same; None
+    for those that the document says. heights: the recipe, widths of rims and the like, where they are not the
+    document's. Raises: ConfigError for a height above the workspace, a part that is not there, a depth that was not
+    made yet, a document without a law or a device; MaterialError; TangibleError as `Pipeline.make`.
+    """
+    pipeline = edited_of(bench, text, path, sets)
+    opened_of(bench, pipeline)
+    config = _coarse(_of_parts(pipeline.config, heights), pipeline.scene.shape)
+    if config.render is None:
+        raise config.missing("render")
+    if pipeline.scene.segments is None and not pipeline.config.by_parts:
+        raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
+    kept = _kept(bench, pipeline.changed(config))
+    said = {number: _checked(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
+    parts_found.check_found(replace(config, parts=said), kept.parts, kept.grid.scene.shape[1])
+    known = _known(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
+    relief = on_grid.layered(kept.layering, known, config.size, kept.grid.shown)
+    own = parts_found.own_materials(config) if materials is None else dict(enumerate(materials))
+    made = None if kept.materials is None else _materials(kept.materials, own, config)
+    names = parts_found.surface_with_names
+    kept.surface = names(config, HapticSurface(relief, kept.parts.labels, made, ("",) * kept.parts.count))
+    device = config.felt_device
+    surface = kept.surface if device is None else fitted(kept.surface, config, device)[0]
+    return parcel_of(config.render.method.touch(surface), surface, config)
+
+
+def parts_shown(bench: Bench) -> None:
+    """Pages draw what `parts_heights` made last."""
+    kept: Kept | None = bench.kept
+    if kept is None or kept.surface is None:
+        return
+    surface, kept.surface = kept.surface, None
+    kept.seen = see_parts(kept.pipeline, surface, kept.seen)
+    if kept.seen.digest != bench.shown:
+        bench.tell("scene", **show(kept.seen, bench.folder))
+        bench.shown = kept.seen.digest
+
+
+def _of_parts(config: PipelineConfig, heights: Mapping[str, Any] | None) -> PipelineConfig:
+    """The configuration with a relief of parts, as it is once all their heights are given."""
+    choice = config_heights(config)
+    told = {**choice.model_dump(), **(heights or {}), "by": "given"}
+    return replace(config, heights=_checked(HeightChoice, told), parts=config.parts or {})
+
+
+def _coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
+    """With a grid of at most about MOST_CELLS, in steps of half a pixel of the pictures as every felt grid."""
+    size, (rows, columns) = config.size, shape
+    factor = ceil(2 * sqrt(rows * columns / MOST_CELLS)) / 2
+    if factor <= felt_factor(columns, size.width_m, size.finest_m):
+        return config
+    finest_m = (factor + 0.01) * size.width_m / columns
+    return replace(config, workspace=config.workspace.model_copy(update={"finest_m": finest_m}))
+
+
+def _checked(section: type[S], said: Mapping[str, Any]) -> S:
+    """Raises: ConfigError for what it cannot say."""
+    try:
+        return section.model_validate(said)
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise ConfigError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from error
+
+
+def _known(kept: Kept, heights_m: Sequence[float | None], by: str) -> list[float]:
+    """With what the recipe finds where nothing is given. Raises: ConfigError for a depth that was not made yet."""
+    if None in heights_m and by not in kept.found_m:
+        assert kept.config.heights is not None
+        disparity = at_hand(kept.pipeline, "disparity") if by == "depth" else None
+        if by == "depth" and disparity is None:
+            raise ConfigError("the picture's depth is not made yet; make it, and heights by depth are felt")
+        recipe = replace(kept.config, heights=_checked(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
+        kept.found_m[by] = part_heights(recipe, kept.grid, kept.parts, disparity).heights_m
+    found_m = kept.found_m.get(by, ())
+    return [found_m[number] if each is None and number < len(found_m) else each or 0.0
+            for number, each in enumerate(heights_m)]  # fmt: skip
+
+
+def _kept(bench: Bench, pipeline: Pipeline) -> Kept:
+    """What was kept, or as much of it as still holds."""
+    config, before = pipeline.config, bench.kept
+    named = {number: PartChoice(name=each.name) for number, each in (config.parts or {}).items() if each.name}
+    bare = replace(config, parts=named, title="", language="en", source=None)
+    if before is not None and before.scene is pipeline.scene and before.config == bare:
+        return before
+    if wrong := list(wrong_of_parts(config)):
+        raise config.complained(*wrong)
+    made = pipeline.changed(bare)
+    grid = on_grid.FeltScene(made.scene, bare.size)
+    parts = on_grid.parts_on_grid(made.engine.felt(bare.felt_parts), grid.shape, bare.felt_parts)
+    uses = bare.render is None or bare.render.method.uses_materials
+    chosen = made.make("materials") if uses else None
+    layering = None if before is None else _same_layering(before, bare, parts, grid)
+    if layering is None:
+        assert bare.heights is not None
+        layering = Layering(parts, bare.size.width_m, bare.heights, grid.views.left if grid.views else None)
+    materials = None if chosen is None else chosen.materials
+    bench.kept = kept = Kept(made.scene, bare, made, grid, parts, materials, layering)
+    return kept
+
+
+def _same_layering(before: Kept, config: PipelineConfig, parts: PartMap, grid: on_grid.FeltScene) -> Layering | None:
+    """The one that is there, if it is of the same parts."""
+    same = before.config.heights == config.heights and before.config.size == config.size
+    return (
+        before.layering
+        if same and before.grid.scene is grid.scene and np.array_equal(before.parts.labels, parts.labels)
+        else None
+    )
+
+
+def _materials(
+    found: tuple[Material, ...], own: Mapping[int, str | None], config: PipelineConfig
+) -> tuple[Material, ...]:
+    """With those that parts say themselves. Raises: MaterialError for a name that is not in the library."""
+    library = load_library(config.materials.library)
+    named = {number: find(name, library) for number, name in own.items() if name is not None}
+    return tuple(named.get(number, each) for number, each in enumerate(found))
+
+
+JOBS = {"parts_heights": Job(parts_heights, quick=True), "parts_shown": Job(parts_shown, quick=True)}

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import psutil
 
-from tangible_core.batch.jobs import BatchOptions
-from tangible_core.batch.manifest import rows_of
-from tangible_core.batch.results import kept_rows, write_gallery, write_index
-from tangible_core.batch.running import Workforce, run_batch
+from tangible_batch.jobs import BatchOptions
+from tangible_batch.manifest import rows_of
+from tangible_batch.results import kept_rows, write_gallery, write_index
+from tangible_batch.running import Workforce, run_batch
 
 
 def main(config: Path, manifest: Path, out: Path, workers: int, first: int) -> None:

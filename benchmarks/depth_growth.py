@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from tangible_core.bench.memory import start_peak
+from tangible_bench.memory import start_peak
 from tangible_depth.matching.adaptive import PROBE_ROWS
 from tangible_depth.semi_global import SemiGlobal
 from tangible_depth.sgm import strips

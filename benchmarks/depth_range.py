@@ -4,8 +4,8 @@ from functools import partial
 
 import numpy as np
 
-from tangible_depth.search.asked import asked_span
-from tangible_depth.search.search_range import find_range
+from tangible_depth.search.disparity_range import asked_span
+from tangible_depth.search.range_in_bands import find_range
 from tangible_depth.semi_global import SemiGlobal
 
 from .depth_pairs import KnownScene, real, synthetic

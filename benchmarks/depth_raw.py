@@ -8,7 +8,7 @@ import numpy as np
 
 from tangible_core.data import Views
 from tangible_core.plugins.notes import collected
-from tangible_core.synthetic.stereo_scenes import synthetic_pair
+from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.rectify.homographies import camera_matrix, inverse, rotation, transform
 from tangible_depth.rectify.lenses import distorted, undistorted
 from tangible_depth.rectify.rectification import rectify, whole_picture_matches

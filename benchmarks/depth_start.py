@@ -16,7 +16,7 @@ from time import perf_counter
 import cv2, numba, numpy
 from skimage.data import stereo_motorcycle
 from tangible_core import Views
-import tangible_depth.matching.chain, tangible_depth.search.pairs, tangible_depth.matching.scaled
+import tangible_depth.matching.chain, tangible_depth.search.pairs, tangible_depth.matching.scaling
 from tangible_depth.semi_global import SemiGlobal
 left, right, _ = stereo_motorcycle()
 class Ear(logging.Handler):

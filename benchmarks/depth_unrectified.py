@@ -10,7 +10,7 @@ from tangible_core.data import Views
 from tangible_core.metrics import disparity_errors
 from tangible_depth.rectify.homographies import camera_matrix, rotation, transform
 from tangible_depth.rectify.rectification import rectify
-from tangible_depth.rectify.rectified import RectifiedPair, warped
+from tangible_depth.rectify.rectified_pair import RectifiedPair, warped
 from tangible_depth.semi_global import SemiGlobal
 
 from .depth_pairs import KnownScene, real, synthetic

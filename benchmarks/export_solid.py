@@ -13,8 +13,8 @@ from time import process_time
 import cv2
 import numpy as np
 
+from tangible_bench.memory import start_peak
 from tangible_core import Pipeline, Scene, Workspace
-from tangible_core.bench.memory import start_peak
 from tangible_core.data import Relief, Work
 from tangible_core.parts import HeightChoice, Layering
 from tangible_depth import Luminance, SemiGlobal

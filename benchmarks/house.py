@@ -15,7 +15,7 @@ import numpy as np
 
 from tangible_core import load_pipeline
 from tangible_core.data import SegmentMap, Views
-from tangible_core.pipeline.cache import Cache
+from tangible_core.pipeline.engine.cache import Cache
 
 from .figures import Figure, judged, table
 

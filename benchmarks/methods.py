@@ -1,6 +1,6 @@
 """Every method with its defaults, side by side on one scene a kind: what `tangible plugins show` says of its figures.
 
-The figures go into the program itself, tangible_core/bench/measured.json, with the machine that they are of.
+The figures go into the program itself, tangible_core/metrics/measured.json, with the machine that they are of.
 """
 
 import math
@@ -10,13 +10,13 @@ from datetime import date
 from pathlib import Path
 from time import perf_counter
 
-from tangible_core.bench import measured
-from tangible_core.bench.comparing import Step, compare
-from tangible_core.bench.config import parse_comparison
-from tangible_core.bench.machine import machine
-from tangible_core.bench.measured import Kinds, Measured
-from tangible_core.bench.summary import Line
-from tangible_core.bench.task import load_task
+from tangible_bench import measured
+from tangible_bench.comparing import Step, compare
+from tangible_bench.config import parse_comparison
+from tangible_bench.machine import machine
+from tangible_bench.summary import Line
+from tangible_bench.task import load_task
+from tangible_core.metrics.measured import Kinds, Measured
 from tangible_core.plugins.registry import default_registry
 from tangible_core.provenance.versions import versions
 

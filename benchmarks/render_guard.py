@@ -12,7 +12,7 @@ from tangible_core.data import DeviceSpec
 from tangible_core.servo.guard.coupling import couple
 from tangible_core.servo.guard.guard import guard
 from tangible_core.servo.guard.safety import Safety
-from tangible_core.synthetic.rough import rough_surfaces
+from tangible_core.testing.synthetic.rough import rough_surfaces
 from tangible_render.proxy import Proxy
 
 from .figures import Figure, table

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from tangible_core.bench.render import DELAYS, limits
+from tangible_bench.render import DELAYS, limits
 from tangible_core.metrics import HANDLE
 from tangible_core.plugins.interfaces import ForceRenderer
 from tangible_core.servo.guard.safety import stiffness_limit_n_per_m
-from tangible_core.synthetic.scenes import plane
+from tangible_core.testing.synthetic.scenes import plane
 from tangible_render.force_shading import ForceShading
 from tangible_render.penalty import Penalty
 from tangible_render.penalty_gradient import PenaltyGradient

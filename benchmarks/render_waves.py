@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tangible_core.data import HapticSurface
-from tangible_core.synthetic.rough import rough_surfaces
+from tangible_core.testing.synthetic.rough import rough_surfaces
 from tangible_render.proxy import Proxy
 
 from .figures import Figure

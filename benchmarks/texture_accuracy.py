@@ -12,7 +12,7 @@ from tangible_core.data import SegmentMap
 from tangible_core.metrics import segment_errors
 from tangible_core.plugins.notes import collected
 from tangible_core.plugins.registry import load_method
-from tangible_core.synthetic.texture_scenes import KnownSegments
+from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 
 from .figures import Figure, table
 from .texture_opencv import segmented

@@ -7,7 +7,7 @@ from jaxtyping import Float64, Int32, UInt8
 
 from tangible_core.data.pictures import BLUE, RED
 from tangible_core.metrics import segment_errors
-from tangible_core.synthetic.texture_scenes import KnownSegments
+from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 
 from .figures import Figure
 from .texture_accuracy import found

@@ -14,7 +14,7 @@ from skimage.segmentation import watershed
 from tangible_core.metrics import segment_errors
 from tangible_core.plugins.interfaces import Segmenter
 from tangible_core.plugins.registry import load_method
-from tangible_core.synthetic.texture_scenes import KnownSegments
+from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 
 from .figures import Figure
 from .texture_scenes import MANY_NOISE, many_smooth, smooth

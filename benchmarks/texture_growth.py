@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 
-from tangible_core.bench.memory import start_peak
+from tangible_bench.memory import start_peak
 
 from .figures import Figure, table
 from .texture_accuracy import found

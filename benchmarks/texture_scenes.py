@@ -4,8 +4,8 @@ import os
 from functools import cache
 from pathlib import Path
 
-from tangible_core.bench.texture_scenes import TextureScene
-from tangible_core.synthetic.texture_scenes import KnownSegments, smooth_scene
+from tangible_bench.texture_scenes import TextureScene
+from tangible_core.testing.synthetic.texture_scenes import KnownSegments, smooth_scene
 
 FOLDER = "TANGIBLE_TEXTURES"
 """Environment variable: a folder with pictures of one texture each, eight or more, that no method was tuned on."""

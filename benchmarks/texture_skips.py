@@ -10,7 +10,7 @@ import numpy as np
 from tangible_core.data import Views
 from tangible_core.metrics import segment_errors
 from tangible_core.scene.scaling import enlarged_segments, felt_factor, reduced
-from tangible_core.synthetic.texture_scenes import KnownSegments
+from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 
 from .figures import table
 from .texture_accuracy import found

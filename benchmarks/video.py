@@ -17,11 +17,11 @@ import numpy as np
 
 from tangible_core import HapticSurface, Pipeline, Scene
 from tangible_core.data import TICK_COLUMNS, HapticState, Relief, ServoReport, TickFlag
-from tangible_core.moving import Steady
 from tangible_core.runtime.threads import limited_threads
 from tangible_core.scene.geometry import smooth
 from tangible_core.servo import Safety, Servo
 from tangible_core.session import Turn, run_in_turn, run_simulated
+from tangible_core.session.film import Steady
 from tangible_core.testing.loop_devices import Circling
 from tangible_depth import SemiGlobal
 from tangible_devices import Mock

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from .data import Views as Views
     from .data import Work as Work
     from .errors import TangibleError as TangibleError
+    from .pipeline.output.runs import Run as Run
     from .pipeline.pipeline import Pipeline as Pipeline
     from .pipeline.pipeline import load_pipeline as load_pipeline
-    from .pipeline.runs import Run as Run
     from .plugins.hooks import hookimpl as hookimpl
     from .plugins.interfaces import DepthEstimator as DepthEstimator
     from .plugins.interfaces import Exporter as Exporter
@@ -57,7 +57,7 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
         ],
         "errors": ["TangibleError"],
         "pipeline.pipeline": ["Pipeline", "load_pipeline"],
-        "pipeline.runs": ["Run"],
+        "pipeline.output.runs": ["Run"],
         "plugins.hooks": ["hookimpl"],
         "plugins.interfaces": [
             "DepthEstimator", "Exporter", "ForceRenderer", "HapticDevice", "Link", "PlainTouch", "Segmenter",

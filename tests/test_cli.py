@@ -197,7 +197,7 @@ def test_schema_prints_json_and_a_page():
 
 
 def test_log_levels_can_be_set_by_name(folder: Path):
-    word = "tangible_core.observers.log"
+    word = "tangible_core.plugins.observers.log"
     quiet = tangible("plan", "p.yaml", cwd=folder).stderr
     told = tangible("plan", "p.yaml", "--log-level", f"{word}=info", cwd=folder).stderr
     assert word not in quiet
@@ -359,7 +359,7 @@ def test_ctrl_c_ends_with_130_and_nothing_half_written(folder: Path):
 
 
 def test_ctrl_c_while_a_run_feels_ends_with_130_and_says_what_is_kept(folder: Path, monkeypatch: pytest.MonkeyPatch):
-    from tangible_core.pipeline import runs
+    from tangible_core.pipeline.output import runs
     from tangible_core.session import INTERRUPTED, Recording, run_simulated
 
     def pressed(report: ServoReport) -> None:

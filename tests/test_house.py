@@ -212,7 +212,7 @@ def test_every_method_is_exported_by_its_family(kind):
 
 
 def test_the_schema_in_configs_is_current():
-    from tangible_core.pipeline.schema import json_schema
+    from tangible_core.pipeline.config.schema import json_schema
 
     assert ROOT.joinpath("configs/tangible.schema.json").read_text() == json.dumps(json_schema(), indent=2) + "\n", (
         "run: tangible schema > configs/tangible.schema.json"

@@ -22,7 +22,7 @@ def cache(context: typer.Context, as_json: Json = False) -> None:
         if as_json:
             raise ConfigError(f"cache: write --json after {context.invoked_subcommand!r}")
         return
-    from ..pipeline.cache import Cache
+    from ..pipeline.engine.cache import Cache
     from . import show
 
     kept = Cache()
@@ -43,7 +43,7 @@ def clear(
 
     On a terminal it asks first; without one, --yes is needed.
     """
-    from ..pipeline.cache import Cache
+    from ..pipeline.engine.cache import Cache
     from . import show
 
     kept = Cache()

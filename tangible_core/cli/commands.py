@@ -22,31 +22,38 @@ class Command(NamedTuple):
     """A command that is not imported yet."""
 
     place: str
-    """`module:name` of its function, or of its group of commands, in this room."""
+    """`package.module:name` of its function, or of its group of commands."""
     summary: str
     """The first line of its help."""
 
 
+ROOM = __package__
 COMMANDS = {
-    "demo": Command("run:demo", "Run the built-in example from picture to force."),
-    "new": Command("new:new", "Write a pipeline file for your pictures."),
-    "parts": Command("parts:parts", "Divide a picture into parts, to name and to give heights."),
-    "run": Command("run:run", "Run a pipeline file, or a picture, and write a report."),
-    "plan": Command("run:plan", "Say what `run` would do, and why; run nothing."),
-    "export": Command("export:export", "Write files for others: a printer, swell paper, pins, a reader."),
-    "preflight": Command("preflight:preflight", "Check, before a motor moves, what is safe."),
-    "legible": Command("legible:legible", "Check whether fingers can read it, on paper, print, pins or a device."),
-    "feel": Command("feel:feel", "Feel the surface on the configured device, in real time."),
-    "replay": Command("replay:replay", "Feel a recording again with another law."),
-    "batch": Command("batch:batch", "Run many pictures, or many settings, through one pipeline file."),
-    "compare": Command("compare:compare", "Compare methods by time, memory and error."),
-    "plugins": Command("plugins:app", "List the installed methods and devices; show one of them."),
-    "check": Command("check:check", "Test an installed method with the conformance kit."),
-    "materials": Command("materials:app", "List the materials; show or draw some."),
-    "devices": Command("devices:app", "List devices; examine, home or calibrate one."),
-    "cache": Command("cache:app", "Say how much is kept of earlier results; clear it."),
-    "schema": Command("schema:schema", "Print the JSON Schema of pipeline files."),
+    "demo": Command(f"{ROOM}.run:demo", "Run the built-in example from picture to force."),
+    "run": Command(f"{ROOM}.run:run", "Run a pipeline file, or a picture, and write a report."),
+    "plan": Command(f"{ROOM}.run:plan", "Say what `run` would do, and why; run nothing."),
+    "export": Command(f"{ROOM}.export:export", "Write files for others: a printer, swell paper, pins, a reader."),
+    "preflight": Command(f"{ROOM}.preflight:preflight", "Check, before a motor moves, what is safe."),
+    "legible": Command(
+        f"{ROOM}.legible:legible", "Check whether fingers can read it, on paper, print, pins or a device."
+    ),
+    "feel": Command(f"{ROOM}.feel:feel", "Feel the surface on the configured device, in real time."),
+    "replay": Command(f"{ROOM}.replay:replay", "Feel a recording again with another law."),
+    "plugins": Command(f"{ROOM}.plugins:app", "List the installed methods and devices; show one of them."),
+    "check": Command(f"{ROOM}.check:check", "Test an installed method with the conformance kit."),
+    "materials": Command(f"{ROOM}.materials:app", "List the materials; show or draw some."),
+    "devices": Command(f"{ROOM}.devices:app", "List devices; examine, home or calibrate one."),
+    "cache": Command(f"{ROOM}.cache:app", "Say how much is kept of earlier results; clear it."),
+    "schema": Command(f"{ROOM}.schema:schema", "Print the JSON Schema of pipeline files."),
 }
+
+
+def add(name: str, place: str, summary: str) -> None:
+    """Add a command that is imported when it is called; a name that is taken stays with its first owner.
+
+    place: `package.module:name` of its function, or of its group of commands. summary: the first line of its help.
+    """
+    COMMANDS.setdefault(name, Command(place, summary))
 
 
 class Lazy(TyperGroup):
@@ -94,7 +101,7 @@ class _Known(MutableMapping[str, Any]):
 def made(name: str) -> Any:
     """One of COMMANDS, imported."""
     module, _, attribute = COMMANDS[name].place.partition(":")
-    found = getattr(import_module(f".{module}", __package__), attribute)
+    found = getattr(import_module(module), attribute)
     app = found if isinstance(found, typer.Typer) else typer.Typer(rich_markup_mode=None, add_completion=False)
     if app is not found:
         app.command(name)(found)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 
 def methods(ctx: Any, incomplete: str) -> list[tuple[str, str]]:
@@ -44,18 +44,12 @@ def scenes(incomplete: str) -> list[str]:
     return _beginning(BUILTINS, incomplete) if incomplete else []
 
 
-def comparisons(incomplete: str) -> list[tuple[str, str]]:
-    """Standard sets, once a word looks like one: a shell completes names of files where nothing is offered."""
-    from ..datasets import SETS
-
-    return [(name, each.title) for name, each in SETS.items() if incomplete and name.startswith(incomplete)]
-
-
 def keys(ctx: Any, incomplete: str) -> list[str]:
     """Keys of a pipeline file, as `--set` takes them; after `use=`, the methods; of a standard set that
     was named before, its pairs."""
     from ..legibility.choice import SimplifyChoice
-    from ..pipeline.config import SECTIONS, STAGES
+    from ..pipeline.config.config import SECTIONS, STAGES
+    from ..pipeline.config.scene_readers import scene_reader_points
     from ..plugins.registry import default_registry
 
     if incomplete.startswith("export."):
@@ -63,30 +57,33 @@ def keys(ctx: Any, incomplete: str) -> list[str]:
     stage, use, _ = incomplete.partition(".use=")
     if use and stage in STAGES:
         return _beginning((f"{stage}.use={name}" for name in default_registry().names(stage)), incomplete)
-    if incomplete.startswith("scene.set="):
-        from ..datasets import SETS
-
-        return _beginning((f"scene.set={name}" for name in SETS), incomplete)
-    if incomplete.startswith("scene.name="):
-        return _beginning((f"scene.name={name}" for name in _pairs_of_set(ctx.params.get("sets") or ())), incomplete)
+    if incomplete.startswith("scene."):
+        return _of_scene(ctx.params.get("sets") or (), incomplete)
     found = [f"{name}.{option}=" for name, section in SECTIONS.items() for option in section.model_fields]
-    alone = ("scene", "scene.set", "scene.folder", "scene.name", "title", "language", "want", "heights", "export")
+    alone = ["scene", "title", "language", "want", "heights", "export"]
+    alone += [f"scene.{key}" for key in scene_reader_points()]
     found += [f"simplify.{option}=" for option in SimplifyChoice.model_fields]
     return _beginning((*(f"{key}=" for key in alone), *(f"{stage}.use=" for stage in STAGES), *found), incomplete)
 
 
-def _pairs_of_set(words: Sequence[str]) -> list[str]:
-    """Of the set that earlier words of `--set` name; none where they name none, or it does not lie there."""
-    from ..datasets.choosing import pairs, with_folder
+def _of_scene(words: Sequence[str], incomplete: str) -> list[str]:
+    """Keys of the scene readers; after `=`, the values that a reader suggests by the earlier words of `--set`."""
     from ..errors import TangibleError
     from ..files.source import parse_source, plain
+    from ..pipeline.config.scene_readers import scene_reader_of, scene_readers
 
+    key, equals, _ = incomplete.removeprefix("scene.").partition("=")
     try:
+        if not equals:
+            options = (option for reader in scene_readers() for option in reader.model_fields)
+            return _beginning((f"scene.{option}=" for option in options), incomplete)
         said = parse_source("{}", Path("here.yaml"), "", [each for each in words if each.startswith("scene")])
-        scene = with_folder(plain(said.tree.get("scene")))
-        chosen = {key: scene[key] for key in ("resolution", "split", "variant") if key in scene}
-        return [each.name for each in pairs(scene["set"], scene["folder"], **chosen)]
-    except (TangibleError, KeyError, TypeError):  # of what is not finished, nothing can be told
+        block = plain(said.tree.get("scene"))
+        block = cast("dict[str, Any]", block) if isinstance(block, dict) else {}
+        reader = scene_reader_of({key: "", **block})
+        values = reader.suggest(key, block) if reader else ()
+        return _beginning((f"scene.{key}={value}" for value in values), incomplete)
+    except TangibleError:  # the earlier words are not finished, or the reader is broken
         return []
 
 

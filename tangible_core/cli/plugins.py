@@ -12,7 +12,7 @@ from . import completing
 from .options import Json
 
 if TYPE_CHECKING:
-    from ..bench.measured import Measured
+    from ..metrics.measured import Measured
     from ..plugins.registry import Listing
 
 COLUMNS = ("kind", "name", "origin", "summary")
@@ -68,8 +68,8 @@ def show_one(
     """
     import inspect
 
-    from ..bench.measured import measured
-    from ..pipeline.schema import options_of
+    from ..metrics.measured import measured
+    from ..pipeline.config.schema import options_of
     from ..plugins.registry import default_registry
     from . import show
 
@@ -109,7 +109,7 @@ def _figures(found: Measured, name: str) -> dict[str, Any]:
 
 def _measured_in_words(listing: Listing, found: Measured | None) -> str:
     """How fast and how exact it was, and where."""
-    from ..bench.measured import in_words
+    from ..metrics.measured import in_words
 
     if listing.kind == "device":
         return f"`tangible devices stress {listing.name}` measures how fast it can be read and written."

@@ -14,9 +14,9 @@ from .options import Felt, Json, NoCache, Sets
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from ..pipeline.config import NamedMethod
+    from ..pipeline.config.config import NamedMethod
+    from ..pipeline.output.runs import Run
     from ..pipeline.pipeline import Pipeline
-    from ..pipeline.runs import Run
     from ..plugins.interfaces import HapticDevice
 
 Seconds = Annotated[float, typer.Option(help="Simulated time for which the surface is felt, s.")]
@@ -34,8 +34,8 @@ def demo(
     """
     from importlib.resources import files
 
-    from ..pipeline.cache import Cache
-    from ..pipeline.config import parse_config
+    from ..pipeline.config.config import parse_config
+    from ..pipeline.engine.cache import Cache
     from ..pipeline.pipeline import Pipeline
     from ..plugins.registry import default_registry
     from . import show
@@ -138,7 +138,7 @@ def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
 
 def default_place(source: Path) -> Path:
     """Where results go that nobody named a folder for."""
-    from ..pipeline.run_folder import default_folder, default_name
+    from ..pipeline.output.run_folder import default_folder, default_name
     from . import show
 
     folder = default_folder(source)

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from math import isfinite, nan
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ..bench.table import Results
     from ..data import Outcome
-    from ..pipeline.exporting import Export
-    from ..pipeline.runs import Run
+    from ..pipeline.output.exporting import Export
+    from ..pipeline.output.runs import Run
     from ..testing import CheckResult
 
 
@@ -112,33 +111,18 @@ def replayed(law: str, figures: Mapping[str, float]) -> str:
     )
 
 
-def compared(results: Results) -> str:
-    """Which method is the most exact and which the fastest."""
-    known = [line for line in results.means() if isfinite(line.seconds)]
-    if not known:
-        return _compared_untimed(results)
-    best, fastest = known[0], min(known, key=lambda line: line.seconds)
-    measure, clock = results.task.measures[results.judged], results.task.clock
-    scenes = _scenes(results)
-    fast = f"{fastest.method} is the fastest ({clock.per_second * fastest.seconds:.3g} {clock.unit})"
-    value = best.measures.get(results.judged, nan)
-    if not isfinite(value):
-        return f"On {scenes}, {fast}."
-    exact = f"{results.heading(results.judged)} {value:.{measure.digits}f}"
-    return f"On {scenes}, {best.method} is the most exact ({exact}), and {fast}."
+def approximately(seconds: float) -> str:
+    """Say a time that is a guess.
 
-
-def _compared_untimed(results: Results) -> str:
-    known = [line for line in results.means() if isfinite(line.measures.get(results.judged, nan))]
-    if not known:
-        return "No method has a result on every scene."
-    measure, best = results.task.measures[results.judged], known[0]
-    value = f"{measure.title} {best.measures[results.judged]:.{measure.digits}f}"
-    return f"On {_scenes(results)}, {best.method} is the most exact ({value}); times were not measured."
-
-
-def _scenes(results: Results) -> str:
-    return f"{len(results.scenes)} scenes" if len(results.scenes) > 1 else results.scenes[0]
+    >>> approximately(0.4), approximately(42), approximately(150), approximately(9000)
+    ('a few seconds', 'about 40 s', 'about 2 min', 'about 2 h 30 min')
+    """
+    if seconds < 7.5:
+        return "a few seconds"
+    if seconds < 90:
+        return f"about {5 * round(seconds / 5)} s"
+    minutes = round(seconds / 60)
+    return f"about {minutes} min" if minutes < 90 else f"about {minutes // 60} h {10 * round(minutes % 60 / 10)} min"
 
 
 def connected(rows: Sequence[Mapping[str, Any]]) -> str:

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from ..braille import CELL_PITCH_M, DOT_DIAMETER_M, DOT_HEIGHT_M, DOT_PITCH_M, LINE_PITCH_M
 from ..plugins.interfaces import Medium
 from ..preflight.verdict import Grade, Unit
 from ..preflight.wording import quantity
+from .braille import CELL_PITCH_M, DOT_DIAMETER_M, DOT_HEIGHT_M, DOT_PITCH_M, LINE_PITCH_M
 
 GRAPHICS = "tactilegraphics.org"
 ROUND_TABLE = "Round Table on Information Access for People with Print Disabilities"

@@ -1,1 +1,1 @@
-"""The pipeline: its configuration, the rules of its products, and the engine that makes them."""
+"""The pipeline as a program has it; its file, the engine that makes its products, and its output."""

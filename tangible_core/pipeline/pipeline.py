@@ -28,7 +28,6 @@ from ..files.paths import as_path
 from ..files.writing import write_text
 from ..legibility import Legibility, SimplifyChoice
 from ..mapping import WorkspaceMapping
-from ..moving import ByClock, Reliefs
 from ..parts import HeightChoice, PartChoice, PartHeights
 from ..plugins import hooks
 from ..plugins.interfaces import (
@@ -64,18 +63,19 @@ from ..session import (
     run_simulated,
     telling_parts,
 )
-from .cache import Cache
-from .config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config, wrong_of_parts
-from .engine import Engine, Progress
-from .exporting import Export, chosen_exporters, export
-from .filmed import film_of, reliefs_of
-from .following import felt_device, how_followed
-from .legible import legible, of_width
-from .parts_said import Inscription
-from .parts_text import part_heights, to_correct
-from .rehearsal import rehearsal
-from .rules import fitted
-from .runs import Run, Sheet, about, make_run
+from ..session.film import ByClock, Reliefs
+from .config.config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config, wrong_of_parts
+from .config.parts_said import Inscription
+from .engine.cache import Cache
+from .engine.engine import Engine, Progress
+from .engine.filmed import film_of, reliefs_of
+from .engine.rules import fitted
+from .engine.warm_up import rehearsal
+from .output.exporting import Export, chosen_exporters, export
+from .output.following import felt_device, how_followed
+from .output.legible import legible, of_width
+from .output.parts_text import part_heights, to_correct
+from .output.runs import Run, Sheet, about, make_run
 
 M = TypeVar("M", bound=Method)
 S = TypeVar("S", bound=BaseModel)

@@ -21,8 +21,8 @@ from ..scene.height_files import said_of
 from ..scene.picture_files import PICTURES as PICTURES
 from ..scene.picture_files import VIDEOS as VIDEOS
 from ..scene.scene import Scene
-from .cache import Cache
-from .config import parse_config
+from .config.config import parse_config
+from .engine.cache import Cache
 from .pipeline import Pipeline
 
 MAPS = frozenset({".npy", ".npz", ".pfm"})

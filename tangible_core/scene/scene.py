@@ -29,7 +29,7 @@ from .rig_files import read_rig
 from .scaling import felt_factor, reduced_map, reduced_shape
 from .scene_files import BUILTINS, SceneFiles, VideoLayout, unknown_scene
 from .truth_files import TruthScale, read_truth, truth_of
-from .video_files import FirstFrame, Video, parts_of, read_video, still
+from .video.files import FirstFrame, Video, parts_of, read_video, still
 
 log = logging.getLogger(__name__)
 

@@ -13,12 +13,12 @@ import numpy as np
 
 from ..data import TICK_COLUMNS, HapticSurface, ServoReport, TickFlag
 from ..errors import DeviceError, check_positive
-from ..moving import Player, Reliefs
 from ..plugins.interfaces import Film, HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import OVER, Beacon, Safety, Servo
 from ..servo.beacon import BUTTON
 from ..servo.reports import Counted, report, so_far
+from .film import Player, Reliefs
 from .live import LOOK_EVERY_S, attended, ignored
 from .parts_felt import with_part
 from .recording import INTERRUPTED, STOPPED

@@ -7,8 +7,8 @@ import numpy as np
 from ..data import DisparityMap, Views
 from ..errors import ModelAbsent, PictureError, TangibleError
 from ..plugins.interfaces import DepthEstimator
-from ..synthetic.scenes import wall
 from .checks import Check, demand, refuses
+from .synthetic.scenes import wall
 from .variants import TINY, coarse_variants, exact_variants
 
 WALL_PX = 6.0

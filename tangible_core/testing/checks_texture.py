@@ -5,8 +5,8 @@ import numpy as np
 from ..data import SegmentMap
 from ..errors import PictureError
 from ..plugins.interfaces import Segmenter
-from ..synthetic.scenes import two_textures
 from .checks import Check, demand, refuses
+from .synthetic.scenes import two_textures
 from .variants import TINY, coarse_variants, exact_variants
 
 

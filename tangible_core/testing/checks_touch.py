@@ -9,9 +9,9 @@ from jaxtyping import Float64
 from ..data import NO_FORCE, HapticState, HapticSurface, Material
 from ..plugins.interfaces import ForceRenderer
 from ..servo.guard.stiffness import slopes
-from ..synthetic.scenes import KnownSurface, plane, sphere_cap
 from .checks import Check, demand
 from .loop_devices import SPEC
+from .synthetic.scenes import KnownSurface, plane, sphere_cap
 
 PERIOD_S = 0.001
 ROUNDING_N_PER_M = 0.1

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from tangible_core.pipeline.cache import Cache
+from tangible_core.pipeline.engine.cache import Cache
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.state.session import Desk
 from tangible_ui.worker.handle import MakingStopped

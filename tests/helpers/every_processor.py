@@ -51,7 +51,7 @@ from tangible_core.scene.scaling import enlarged, enlarged_segments, reduced
 from tangible_core.scene.scene import Scene
 from tangible_depth.rectify.alignment import aligning_lenses
 from tangible_depth.rectify.rectification import rectify
-from tangible_depth.rectify.rectified import warped
+from tangible_depth.rectify.rectified_pair import warped
 from tangible_depth.sparse.harris import harris_response
 from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_matches
 

@@ -7,9 +7,9 @@ import numpy as np
 
 from tangible_core.data import DisparityMap, Relief, Views
 from tangible_core.errors import PictureError
-from tangible_core.moving import FrameMaker
 from tangible_core.scene.geometry import ValueRange, make_relief, nearness_range
-from tangible_core.scene.video_frames import VideoFrame, VideoFrames
+from tangible_core.scene.video.frames import VideoFrame, VideoFrames
+from tangible_core.session.film import FrameMaker
 
 
 @final

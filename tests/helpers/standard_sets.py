@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image
 
-from tangible_core.synthetic.stereo_scenes import KnownPair, synthetic_pair
+from tangible_core.testing.synthetic.stereo_scenes import KnownPair, synthetic_pair
 
 WIDTH, HEIGHT = 96, 64
 UNKNOWN_ROWS = 4

@@ -172,7 +172,7 @@ class TestCurrency:
             lambda web: (web / "src/main.ts").write_text("1;"),
             lambda web: (web / "package-lock.json").write_text("{}"),
             lambda web: (web / "src/deeper").mkdir() or (web / "src/deeper/new.ts").touch(),
-            lambda web: (web / "src/protocol.ts").unlink(),
+            lambda web: (web / "src/server/protocol.ts").unlink(),
             lambda web: (web / "index.html").rename(web / "other.html"),
             lambda web: (web.parent / "tangible_ui/static/built.json").write_text("{"),
         ],

@@ -13,7 +13,7 @@ import trimesh
 
 from desks import TEXT, SmallDesk, small_scene, striped_scene
 from tangible_core.errors import ConfigError, TangibleError
-from tangible_core.pipeline.export_folder import LISTED
+from tangible_core.pipeline.output.export_folder import LISTED
 from tangible_export.stl import Stl
 from tangible_ui.requests import ASKS
 from tangible_ui.worker.jobs.exporting import KEPT

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from page_files import WEB, node
-from tangible_core.pipeline.schema import json_schema
+from tangible_core.pipeline.config.schema import json_schema
 
 
 def test_every_option_of_every_method_has_a_control_that_says_its_default_and_its_bounds(tmp_path: Path, monkeypatch):

@@ -11,7 +11,7 @@ import pytest
 
 from desks import TEXT, SmallDesk, small_scene
 from tangible_core.errors import ConfigError, Stopped, TangibleError
-from tangible_core.pipeline.cache import Cache
+from tangible_core.pipeline.engine.cache import Cache
 from tangible_ui.requests import ASKS
 from tangible_ui.requests import making as asks_making
 from tangible_ui.worker.jobs import JOBS

@@ -11,7 +11,7 @@ from PIL import Image
 
 from tangible_core import load_pipeline
 from tangible_core.errors import ConfigError
-from tangible_core.pipeline.editing import said
+from tangible_core.pipeline.config.editing import said
 from tangible_core.session import Recording
 from tangible_core.session.tick_file import About
 from tangible_ui.state.uploads import MOST_FILES, Shelf

@@ -196,7 +196,7 @@ class TestText:
         "name", ["a: b", '"', "\\", "# no comment", "- x", "{}", "null", "007", "é ✂ 𝄞", "a\nb", "\x07", " a ", "&a *b"]
     )
     def test_every_name_comes_back(self, tmp_path: Path, name: str) -> None:
-        from tangible_core.pipeline.editing import said
+        from tangible_core.pipeline.config.editing import said
 
         path = tmp_path / "mine.yaml"
         found = self.said(TEXT, path, {0: {"name": name}, 1: {"name": name + "x", "height_m": 0.001}})
@@ -210,7 +210,7 @@ class TestText:
         assert "  599: piece 599\n" in self.said(first, path, renamed)
 
     def test_a_built_in_scene_becomes_its_files(self, tmp_path: Path) -> None:
-        from tangible_core.pipeline.editing import said
+        from tangible_core.pipeline.config.editing import said
 
         path = tmp_path / "mine.yaml"
         scene = said(self.said("scene: builtin/motorcycle\n", path, {}), path)["scene"]

@@ -21,7 +21,7 @@ VECTORS = tuple(k / 8 for k in range(15))
 SCRIPT = """
 import { readFileSync } from "node:fs";
 import { transformSync } from "esbuild";
-const { code } = transformSync(readFileSync("src/protocol.ts", "utf8"), { loader: "ts", format: "esm" });
+const { code } = transformSync(readFileSync("src/server/protocol.ts", "utf8"), { loader: "ts", format: "esm" });
 const page = await import("data:text/javascript," + encodeURIComponent(code));
 const hex = (buffer) => Buffer.from(buffer).toString("hex");
 const bytes = (text) => Uint8Array.from(Buffer.from(text, "hex")).buffer;
@@ -82,7 +82,7 @@ class TestFrames:
 
 
 def test_columns_of_a_recording_are_where_the_page_reads_them() -> None:
-    said = (WEB / "src/ticks.ts").read_text(encoding="utf-8")
+    said = (WEB / "src/panels/recordings/ticks.ts").read_text(encoding="utf-8")
     (count,), (places,) = re.findall(r"COLUMNS = (\d+);", said), re.findall(r"AT = \{(.*?)\}", said)
     assert int(count) == len(TICK_COLUMNS)
     read = {name: TICK_COLUMNS[int(place)] for name, place in re.findall(r"(\w+): (\d+)", places)}
@@ -108,13 +108,13 @@ class TestNames:
         assert ASKS.keys() - written <= NOT_ASKED
 
     def test_events_have_the_same_names(self) -> None:
-        here, there = sources(SOURCES, ".py"), (WEB / "src/messages.ts").read_text(encoding="utf-8")
+        here, there = sources(SOURCES, ".py"), (WEB / "src/server/messages.ts").read_text(encoding="utf-8")
         told = set(re.findall(r"(?:\btell|\bEvent)\(\s*\"(\w+)\"", here) + re.findall(r"\"event\": \"(\w+)\"", here))
         body = there[there.index("export interface Events") :]
         assert told - {"answer", "refused"} == set(re.findall(r"^  (\w+): Said\b", body, re.M)) - OF_THE_PAGE
 
     def test_a_wrong_key_has_the_same_code(self) -> None:
-        assert f"WRONG_KEY = {WRONG_KEY};" in (WEB / "src/net.ts").read_text(encoding="utf-8")
+        assert f"WRONG_KEY = {WRONG_KEY};" in (WEB / "src/server/connection.ts").read_text(encoding="utf-8")
 
 
 OF_THE_PAGE = {"gone", "refused"}

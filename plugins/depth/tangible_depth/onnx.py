@@ -14,9 +14,9 @@ from tangible_core.plugins.interfaces import DepthEstimator, Skippable
 from tangible_core.plugins.notes import note
 
 from .network.card import PRESETS, Card, check_file, read_card
+from .network.conversion import to_disparity
 from .network.fitting import Colours, Map, cut_back, fit_for, in_strips, tensor
-from .network.meaning import to_disparity
-from .network.running import Runtime, run
+from .network.runtimes import Runtime, run
 
 log = logging.getLogger(__name__)
 

@@ -72,7 +72,7 @@ class SemiGlobal(DepthEstimator, Following):
 
     def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
         """`estimate` for a film: rectified as these views need it, over the range of what was seen of late."""
-        from .matching.followed import FollowedPair
+        from .matching.film import FollowedPair
 
         return FollowedPair(views, "semi-global", *self._how())
 
@@ -80,7 +80,7 @@ class SemiGlobal(DepthEstimator, Following):
         """What the chain is told, and what matches."""
         from .matching.adaptive import MOST_ROW_OFFSET_PX
         from .matching.chain import Search
-        from .matching.scaled import Scaling, match_scaled
+        from .matching.scaling import Scaling, match_scaled
 
         search = Search(
             self.min_disparity_px,

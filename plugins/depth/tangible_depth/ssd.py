@@ -52,7 +52,7 @@ class Ssd(DepthEstimator, Following):
 
     def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
         """`estimate` for a film: rectified as these views need it, over the range of what was seen of late."""
-        from .matching.followed import FollowedPair
+        from .matching.film import FollowedPair
 
         return FollowedPair(views, "ssd", *self._how())
 

@@ -9,7 +9,6 @@ from typing import Annotated, ClassVar, final
 
 from pydantic import Field
 
-from tangible_core.braille import Cells, as_ascii, width_m, wrapped, written_by
 from tangible_core.data import Work
 from tangible_core.description import (
     Language,
@@ -22,6 +21,8 @@ from tangible_core.description import (
 from tangible_core.files.writing import write_text
 from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import note
+
+from .braille import Cells, as_ascii, width_m, wrapped, written_by
 
 log = logging.getLogger(__name__)
 

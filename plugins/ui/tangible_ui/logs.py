@@ -6,7 +6,7 @@ from typing import Protocol, final
 
 OWN = ("tangible_core", "tangible_depth", "tangible_texture", "tangible_render", "tangible_devices", "tangible_ui")
 """Packages of which pages hear what is logged as information, too; of others, warnings and errors."""
-KNOWN = "tangible_core.observers.log"
+KNOWN = "tangible_core.plugins.observers.log"
 """It says of the stages what pages are told anyway."""
 MOST_A_SECOND = 50
 

@@ -18,7 +18,7 @@ from standard_sets import LAYOUTS, known
 from tangible_core.cli import completing, loudness, sentences, show
 from tangible_core.cli.commands import COMMANDS, made
 from tangible_core.data import Outcome, Relief
-from tangible_core.pipeline.cache import Cache
+from tangible_core.pipeline.engine.cache import Cache
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 

@@ -8,13 +8,13 @@ from time import process_time
 import numpy as np
 import pytest
 
-from tangible_core.braille import DOT_HEIGHT_M
 from tangible_core.data import MaterialMap, PartMap, Relief, SegmentMap
 from tangible_core.legibility import PROFILES, apart, legibility, sizes
 from tangible_core.legibility.pins import PIN_PITCH_M
 from tangible_core.legibility.rules import table
 from tangible_core.materials.assignment import library as shipped
 from tangible_core.parts import find_parts
+from tangible_export.braille import DOT_HEIGHT_M
 
 DOCS = Path(__file__).parents[3] / "docs"
 PITCH_M = 1e-4

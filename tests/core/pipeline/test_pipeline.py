@@ -21,7 +21,7 @@ from tangible_core import (
 )
 from tangible_core.data import HapticSurface, Plan
 from tangible_core.errors import ConfigError, DeviceError, OutputError, PictureError, Stopped, UnknownMethod
-from tangible_core.pipeline.engine import Stage
+from tangible_core.pipeline.engine.engine import Stage
 from tangible_core.session import STOPPED, compared
 from tangible_depth import SemiGlobal, Zncc
 from tangible_devices import Mock

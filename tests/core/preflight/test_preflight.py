@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tangible_core.pipeline.editing import edited
+from tangible_core.pipeline.config.editing import edited
 from tangible_core.preflight import Preflight, Verdict, relation
 from tangible_core.preflight.verdict import Change, held
 

@@ -90,7 +90,7 @@ def test_of_tangible_images_that_is_read_what_is_used(write: Write):
     write(INSTALLED, **METHOD)
     modules = closure("acme.method").modules
     assert {"acme.kernel", "tangible_core", "tangible_core.data"} <= set(modules)
-    assert "tangible_core.pipeline.engine" not in modules
+    assert "tangible_core.pipeline.engine.engine" not in modules
 
 
 def test_tangible_images_is_read_where_it_is_installed(write: Write, monkeypatch: pytest.MonkeyPatch):

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from distributions import distribution
+from tangible_bench.config import parse_comparison
+from tangible_bench.plan import measurements
+from tangible_bench.run import look, run
 from tangible_core import HapticSurface, load_method
-from tangible_core.bench.config import parse_comparison
-from tangible_core.bench.plan import measurements
-from tangible_core.bench.run import look, run
 from tangible_core.errors import BrokenMethod
 from tangible_core.plugins.registry import Registry
 from tangible_core.runtime.child_process import command, dumps, python, search_path

@@ -59,7 +59,7 @@ class Guesses(DepthEstimator):
 def test_it_is_in_the_log_the_outcomes_and_the_title_of_the_sheet(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ):
-    from tangible_core.pipeline import runs
+    from tangible_core.pipeline.output import runs
 
     titles: list[str] = []
     monkeypatch.setattr(runs, "draw_sheet", lambda path, *, title, **_: titles.append(title) or "")

@@ -11,9 +11,9 @@ import onnx_models
 from tangible_core import Pipeline, Scene
 from tangible_core.data import Calibration, Views
 from tangible_core.errors import BrokenMethod, ConfigError, ModelAbsent, PictureError
-from tangible_core.pipeline.cache import Cache
-from tangible_core.synthetic.scenes import wall
+from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.testing import run_checks
+from tangible_core.testing.synthetic.scenes import wall
 from tangible_depth import Auto, Luminance, Onnx, SemiGlobal
 
 RUNTIMES = ("opencv", "onnxruntime")
@@ -233,9 +233,9 @@ class TestMistakes:
 
     def test_no_onnxruntime(self, networks: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setitem(__import__("sys").modules, "onnxruntime", None)
-        from tangible_depth.network import running
+        from tangible_depth.network import runtimes
 
-        running._loaded.cache_clear()
+        runtimes._loaded.cache_clear()
         with pytest.raises(BrokenMethod, match=r"pip install 'tangible-images\[onnx\]'"):
             Onnx(model=networks / "mono.onnx", runtime="onnxruntime").estimate(wall())
 

@@ -7,7 +7,7 @@ from pydantic import ValidationError
 from tangible_core import TangibleError, Views
 from tangible_core.plugins.interfaces import Skippable
 from tangible_core.scene.geometry import fill_rows
-from tangible_core.synthetic.scenes import wall
+from tangible_core.testing.synthetic.scenes import wall
 from tangible_depth.opencv_sgbm import MODES, OpenCVSGBM
 
 EVERY_MODE = pytest.mark.parametrize("mode", MODES)

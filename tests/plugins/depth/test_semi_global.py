@@ -12,9 +12,9 @@ from stereo_scenes import slanted, step
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import collected
-from tangible_core.synthetic.stereo_scenes import synthetic_pair
-from tangible_depth.dense import refinement
-from tangible_depth.dense.filling import fill
+from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
+from tangible_depth.dense.filling import gaps
+from tangible_depth.dense.filling.four_directions import fill_from_four_directions
 from tangible_depth.dense.speckles import Specks
 from tangible_depth.semi_global import SemiGlobal
 
@@ -212,7 +212,9 @@ def test_the_best_effort_pays():
 @pytest.mark.parametrize(("effort", "times"), [("balanced", 0), ("best", 1)])
 def test_the_best_effort_alone_fills_from_eight_sides(effort, times, monkeypatch):
     filled = []
-    monkeypatch.setattr(refinement, "fill_from_eight_sides", lambda *each: filled.append(each) or fill(*each))
+    monkeypatch.setattr(
+        gaps, "fill_from_eight_directions", lambda *each: filled.append(each) or fill_from_four_directions(*each)
+    )
     SemiGlobal(max_disparity_px=32, effort=effort).estimate(step()[0])
     assert len(filled) == times
 

@@ -18,8 +18,8 @@ from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import PictureError, TangibleError
 from tangible_core.plugins.interfaces import DepthEstimator
 from tangible_core.plugins.registry import default_registry
-from tangible_core.synthetic.stereo_scenes import KnownPair, synthetic_pair
-from tangible_core.synthetic.surfaces import (
+from tangible_core.testing.synthetic.stereo_scenes import KnownPair, synthetic_pair
+from tangible_core.testing.synthetic.surfaces import (
     Surface,
     everywhere,
     left_view,
@@ -352,7 +352,7 @@ def test_calls_at_once_do_not_disturb_each_other(name: str):
 def test_every_process_gives_the_same_maps():
     script = (
         "import json; from tangible_core.plugins.registry import default_registry as installed;"
-        "from tangible_core.synthetic.stereo_scenes import synthetic_pair;"
+        "from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair;"
         f"views = synthetic_pair('planes', {SHAPE[1]}, {SHAPE[0]}, 1).views;"
         f"maps = {{n: installed().load('depth', n)().estimate(views).digest() for n in {METHODS}}};"
         "print(json.dumps(maps))"
@@ -365,7 +365,7 @@ def test_every_process_gives_the_same_maps():
 def test_the_memory_that_is_stated_is_enough_for_five_megapixels(name: str):
     """40 bytes a pixel above the pictures, and 256 MiB for the volumes of the strips at work."""
     script = (
-        "import numpy as np; from tangible_core.bench.memory import start_peak; from tangible_core.data import Views;"
+        "import numpy as np; from tangible_bench.memory import start_peak; from tangible_core.data import Views;"
         "from tangible_core.plugins.registry import default_registry as installed;"
         "wide = np.random.default_rng(0).integers(0, 256, (1944, 2692), np.uint8);"
         "left, right = (np.ascontiguousarray(wide[:, a : a + 2592]) for a in (20, 60));"

@@ -10,9 +10,9 @@ import pytest
 from scipy import ndimage
 
 from exported_pictures import PICTURES, labels_work, pdf_pixels, pixels, work_of
-from tangible_core.braille import DOT_PITCH_M
 from tangible_core.errors import BrailleError, BrokenMethod, GeometryError, PictureError, TangibleError
 from tangible_core.plugins.notes import collected
+from tangible_export.braille import DOT_PITCH_M
 from tangible_export.paper import fills, page
 from tangible_export.swell import Swell
 

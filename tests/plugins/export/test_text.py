@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from tangible_core import Pipeline, Scene
-from tangible_core.braille import as_ascii, translate
 from tangible_core.data import HapticSurface, MaterialMap, PartMap, Work
 from tangible_core.errors import BrailleError
 from tangible_core.materials.assignment import library
@@ -15,6 +14,7 @@ from tangible_core.plugins.notes import collected
 from tangible_core.scene.workspace import Workspace
 from tangible_depth import Luminance
 from tangible_export import Text
+from tangible_export.braille import as_ascii, translate
 
 LABELS = np.repeat(np.arange(4, dtype=np.int32), 16).reshape(8, 8)
 MATERIALS = tuple(library()[name] for name in ("ice", "wood", "sand", "glass"))

@@ -5,8 +5,8 @@ import pytest
 
 from tangible_core.data import Force, HapticState, HapticSurface, Material
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.synthetic.reliefs import waves
-from tangible_core.synthetic.scenes import plane, ramp, sphere_cap
+from tangible_core.testing.synthetic.reliefs import waves
+from tangible_core.testing.synthetic.scenes import plane, ramp, sphere_cap
 from tangible_render.proxy import Proxy
 from tangible_render.surface import spline
 from tangible_render.surface.coefficients import spline_surface

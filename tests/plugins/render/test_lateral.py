@@ -5,8 +5,8 @@ import pytest
 
 from tangible_core.data import NO_FORCE, HapticState, HapticSurface, Material
 from tangible_core.scene.geometry import smooth
-from tangible_core.synthetic.reliefs import ridge, waves
-from tangible_core.synthetic.scenes import KnownSurface, ramp, sphere_cap
+from tangible_core.testing.synthetic.reliefs import ridge, waves
+from tangible_core.testing.synthetic.scenes import KnownSurface, ramp, sphere_cap
 from tangible_render.force_shading import ForceShading
 from tangible_render.lateral_gradient import LateralGradient
 from tangible_render.lateral_shape import LateralShape

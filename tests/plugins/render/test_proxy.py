@@ -9,8 +9,8 @@ import pytest
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, Force, HapticState, HapticSurface, Material, Relief
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.synthetic.reliefs import cliff, cone, waves
-from tangible_core.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
+from tangible_core.testing.synthetic.reliefs import cliff, cone, waves
+from tangible_core.testing.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
 from tangible_render.contact import closest, contact
 from tangible_render.contact import held as holding
 from tangible_render.proxy import Proxy

@@ -11,9 +11,9 @@ from tangible_core.data import HapticSurface
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.interfaces import ForceRenderer
 from tangible_core.plugins.registry import load_method
-from tangible_core.synthetic.rough import rough_surfaces
-from tangible_core.synthetic.scenes import sphere_cap
 from tangible_core.testing.fuzz import MARGIN_M, Worst, fuzz
+from tangible_core.testing.synthetic.rough import rough_surfaces
+from tangible_core.testing.synthetic.scenes import sphere_cap
 from tangible_render.contact.contact import LEAP_M, STRETCH_M
 from tangible_render.proxy import Proxy
 from tangible_render.surface.coefficients import spline_coefficients

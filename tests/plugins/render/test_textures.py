@@ -12,8 +12,8 @@ from tangible_core.haptic_textures import compile_textures
 from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.interfaces import ForceRenderer
-from tangible_core.synthetic.rough import rough_surfaces
-from tangible_core.synthetic.scenes import ramp
+from tangible_core.testing.synthetic.rough import rough_surfaces
+from tangible_core.testing.synthetic.scenes import ramp
 from tangible_render import proxy_kernels, proxy_spring_kernels, proxy_texture_kernels
 from tangible_render.proxy import Proxy
 from tangible_render.with_materials import WithMaterials

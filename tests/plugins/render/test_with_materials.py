@@ -17,9 +17,9 @@ from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.interfaces import ForceRenderer, PlainTouch, Touch
 from tangible_core.plugins.registry import load_method
-from tangible_core.synthetic.reliefs import waves
-from tangible_core.synthetic.rough import rough_surfaces
-from tangible_core.synthetic.scenes import ramp
+from tangible_core.testing.synthetic.reliefs import waves
+from tangible_core.testing.synthetic.rough import rough_surfaces
+from tangible_core.testing.synthetic.scenes import ramp
 from tangible_render.with_materials import WithMaterials
 
 PUSHING = ("penalty", "penalty-gradient", "force-shading", "grey-level")

@@ -18,7 +18,7 @@ from tangible_core.data.pictures import fill_non_finite
 from tangible_core.errors import PictureError
 from tangible_core.plugins.interfaces import Segmenter
 from tangible_core.plugins.registry import default_registry
-from tangible_core.synthetic.scenes import two_textures
+from tangible_core.testing.synthetic.scenes import two_textures
 from tangible_core.testing.variants import TINY, coarse_variants, exact_variants
 
 METHODS = [
@@ -253,7 +253,7 @@ def test_there_are_methods():
 def test_the_memory_that_is_stated_is_enough_for_four_megapixels(name: str, bytes_a_pixel: int):
     """Of grey, above the picture, and 16 MiB for what does not grow."""
     script = (
-        "import numpy as np; from tangible_core.bench.memory import start_peak;"
+        "import numpy as np; from tangible_bench.memory import start_peak;"
         "from tangible_core.plugins.registry import default_registry as installed;"
         "squares = (np.indices((2000, 2000)) // 250).sum(axis=0) % 2 * 90;"
         "picture = (squares + np.random.default_rng(0).integers(60, 80, squares.shape)).astype(np.uint8); del squares;"

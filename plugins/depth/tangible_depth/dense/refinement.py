@@ -18,9 +18,7 @@ from tangible_core.data import DisparityMap
 
 from .confidence import FILLED, FLAT_REACH, GAP_REACH, STEP_REACH, confidence, flat_pixels
 from .edges import MEDIAN_REACH, VOTERS, median, sharpen_edges
-from .eight_sides import fill_from_eight_sides
-from .filling import fill
-from .planes import laid_on_planes
+from .filling.gaps import Effort, fill_gaps
 from .span import UNKNOWN
 from .speckles import Specks, remove_specks
 
@@ -44,8 +42,8 @@ class Cleaning(NamedTuple):
     """Which islands are errors, in a picture of full size."""
     factor: int = 1
     """By how much the picture was made smaller."""
-    eight_sides: bool = False
-    """Gaps are filled from eight sides in place of four, and surfaces go on into them as they lie."""
+    effort: Effort = "balanced"
+    """How gaps are filled (`fill_gaps`)."""
 
 
 def _empty(shape: tuple[int, int]) -> DenseMatches:
@@ -65,10 +63,7 @@ def completed(
     """
     cleaning = cleaning or Cleaning()
     remove_specks(matched, cleaning.specks, cleaning.factor)
-    if cleaning.eight_sides:
-        filled = laid_on_planes(matched, fill_from_eight_sides(matched, grey), grey)
-    else:
-        filled = fill(matched, grey)
+    filled = fill_gaps(matched, grey, cleaning.effort)
     out = _empty(grey.shape)
 
     def block(y0: int, y1: int) -> None:

@@ -15,14 +15,14 @@ import numpy as np
 
 from tangible_core.plugins.notes import note
 
+from ..dense.filling.gaps import Effort
 from ..dense.span import UNKNOWN, Span
 from ..dense.speckles import ISLAND_PX, remove_speckles
+from ..row_alignment.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, realigned, row_offset
 from ..search.bands import match_bands
 from ..search.pairs import Pair
-from ..search.row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, realigned, row_offset
-from ..sgm.costs import HEAVY, LIGHT, SHARP, Cost
-from ..sgm.strips import StripMatches, blank, sweep
-from .efforts import Effort
+from ..sgm.costs import HEAVY, LEVELS, LIGHT, SHARP, Cost
+from ..sgm.strips import WARM_ROWS, StripMatches, blank, sweep
 
 log = logging.getLogger(__name__)
 NOISE = 0.20
@@ -39,6 +39,25 @@ PROBE_ROWS = 64
 Rows = Sequence[tuple[int, int]]
 
 
+class _Spending(NamedTuple):
+    """The cost that an effort tries first, what it takes for noise, and the rows that it spends on seams."""
+
+    first: Cost
+    """The cost that is tried first."""
+    speckle_threshold: float
+    """Loss from which `sharp` gives way to a cost for noise."""
+    differing_threshold: float
+    """Share of differing bits from which `sharp` gives way to a cost for noise."""
+    warm_rows: int
+    """Rows by which the paths of a strip begin early: the more, the less a seam is seen."""
+
+
+SPENDING: dict[Effort, _Spending] = {
+    "balanced": _Spending(SHARP, 0.06, 0.28, WARM_ROWS),
+    "best": _Spending(LEVELS, 0.11, 0.315, 48),
+}
+
+
 def match(
     pair: Pair,
     span: Span,
@@ -49,7 +68,7 @@ def match(
     effort: Effort,
 ) -> tuple[StripMatches, Cost]:
     """The strips `rows` matched, with the given cost or, if None, with the one that the pair calls for."""
-    trial = _Trial(pair, span, cost or effort.first, check_tolerance, effort)
+    trial = _Trial(pair, span, cost or SPENDING[effort].first, check_tolerance, effort)
     if cost and not realign_rows:
         trial.sweep(rows)
         return trial.out, cost
@@ -90,7 +109,8 @@ class _Health(NamedTuple):
 def _called_for(health: _Health, effort: Effort) -> Cost:
     if health.loss >= NOISE:
         return HEAVY
-    doubtful = health.loss >= effort.doubt or health.differing >= effort.least_differing
+    spending = SPENDING[effort]
+    doubtful = health.loss >= spending.speckle_threshold or health.differing >= spending.differing_threshold
     return LIGHT if doubtful else SHARP
 
 
@@ -108,7 +128,8 @@ class _Trial:
 
     def __init__(self, pair: Pair, span: Span, cost: Cost, check_tolerance: float, effort: Effort) -> None:
         self.pair, self.cost, self.out = pair, cost, blank(pair.left.shape)
-        self._span, self._check_tolerance, self._effort = span, check_tolerance, effort
+        self._span, self._check_tolerance = span, check_tolerance
+        self._effort: Effort = effort
         self._codes = cost.codes(pair.left), cost.codes(pair.right)
 
     def of(self, pair: Pair) -> "_Trial":
@@ -122,7 +143,7 @@ class _Trial:
     def sweep(self, rows: Rows) -> None:
         """Match these strips."""
         how = self._span, self.cost.penalties, self._check_tolerance
-        sweep(self._codes, self.pair.left, *how, rows, self.out, self._effort.warm_rows, self.cost.most_level)
+        sweep(self._codes, self.pair.left, *how, rows, self.out, SPENDING[self._effort].warm_rows, self.cost.most_level)
 
     def health(self, rows: Rows) -> _Health:
         """Match these rows and look at what was found, specks being errors; none is erased: it may reach beyond."""

@@ -13,11 +13,11 @@ from ..dense.confidence import flat_pixels
 from ..dense.refinement import DenseMatches, as_map
 from ..dense.span import Span
 from ..rectify.rectification import rectify, whole_picture_matches
-from ..rectify.turning import RectificationError
-from ..search.asked import Auto, asked_span
+from ..rectify.rectifying_rotation import RectificationError
+from ..row_alignment.common_rows import rows_correspond, with_common_rows
 from ..search.bands import match_bands
+from ..search.disparity_range import Auto, asked_span
 from ..search.pairs import Pair, grey_pair
-from ..search.raw_pairs import rows_correspond, with_common_rows
 
 log = logging.getLogger(__name__)
 

@@ -16,7 +16,7 @@ from tangible_core.errors import PictureError
 
 from ..rectify.fundamental import Fit
 from ..rectify.rectification import rectify
-from ..rectify.rectified import RectifiedPair
+from ..rectify.rectified_pair import RectifiedPair
 from ..sparse.assembling import assemble
 from ..sparse.corner_range import MOST_CORNERS, MaxDisparity, range_of_shifts, within
 from ..sparse.harris import corners, least_response, row_edges

@@ -16,13 +16,13 @@ from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import note
 
 from ..sparse.matches import Matches, flow_matches, sift_matches
-from ..sparse.standing_off import matches_off
+from ..sparse.off_plane_matches import matches_off
 from .epipolar import homogeneous, product
 from .fundamental import Fit, eight_point
 from .homographies import inverse, transform
 from .parallax import Plane, best_plane, only_turned
-from .rectified import RectifiedPair, as_it_is, warped
-from .turning import LEAST_TRUSTED, RectificationError, different, find_turn, seen_range, threshold_px
+from .rectified_pair import RectifiedPair, as_it_is, warped
+from .rectifying_rotation import LEAST_TRUSTED, RectificationError, different, find_turn, seen_range, threshold_px
 
 logger = logging.getLogger(__name__)
 

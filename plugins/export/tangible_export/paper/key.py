@@ -5,8 +5,7 @@ from typing import Any
 
 import shapely
 
-from tangible_core.braille import CELL_PITCH_M, Cells, height_m, translate, wrapped
-
+from ..braille import CELL_PITCH_M, Cells, height_m, translate, wrapped
 from .drawing import Area, Braille, Drawing
 from .fills import filled
 from .sheet import CLEAR_MM, LINE_MM, MARGIN_MM, Page, Sheet, empty_sheet

@@ -8,8 +8,7 @@ import numpy as np
 import shapely
 from jaxtyping import Float64
 
-from tangible_core.braille import DOT_DIAMETER_M, Cells, dots
-
+from ..braille import DOT_DIAMETER_M, Cells, dots
 from .sheet import CLEAR_MM, LINE_MM
 
 DOT_MM = 1000 * DOT_DIAMETER_M

@@ -11,13 +11,13 @@ import numpy as np
 import shapely
 from jaxtyping import Float64
 
-from tangible_core.braille import Cells, height_m, translate, written_by
 from tangible_core.data import PartMap, Work
 from tangible_core.errors import PictureError
 from tangible_core.errors import shown as shown_text
 from tangible_core.parts import shared_borders
 from tangible_core.plugins.notes import note
 
+from ..braille import Cells, height_m, translate, written_by
 from ..labels import some
 from .colouring import coloured
 from .drawing import NO_DOTS, Area, Braille, Drawing, svg

@@ -3,8 +3,9 @@
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from tangible_core.braille import height_m
 from tangible_core.errors import GeometryError
+
+from ..braille import height_m
 
 Page = Literal["a4", "letter", "a3"]
 SIZES_MM: dict[Page, tuple[float, float]] = {"a4": (210, 297), "letter": (215.9, 279.4), "a3": (297, 420)}

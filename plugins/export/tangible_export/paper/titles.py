@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from tangible_core.braille import DOT_DIAMETER_M, LINE_PITCH_M, Cells, dots, wrapped
-
+from ..braille import DOT_DIAMETER_M, LINE_PITCH_M, Cells, dots, wrapped
 from .drawing import Braille
 from .sheet import MARGIN_MM, Sheet
 

@@ -5,8 +5,7 @@ from functools import cache
 import numpy as np
 from jaxtyping import Float64
 
-from tangible_core.braille import DOT_DIAMETER_M, DOT_HEIGHT_M
-
+from ..braille import DOT_DIAMETER_M, DOT_HEIGHT_M
 from .patches import Patch, flat, joined, rectangle, strip
 
 SIDES, RINGS = 12, 3

@@ -3,11 +3,11 @@
 import logging
 from importlib.util import find_spec
 
-from tangible_core.braille import Cells, width_m, wrapped, written_by
 from tangible_core.data import Relief, Work
 from tangible_core.errors import GeometryError, OutputError, quoted
 from tangible_core.plugins.notes import note
 
+from ..braille import Cells, width_m, wrapped, written_by
 from .closed import Solid, closed
 from .options import SolidOptions
 from .plate import LEAST_RIM_M, Layout, plate

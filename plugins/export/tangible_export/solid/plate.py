@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float64
 
-from tangible_core.braille import DOT_DIAMETER_M, LINE_PITCH_M, Cells, dots
-from tangible_core.braille import height_m as braille_height_m
 from tangible_core.data import Relief
 
+from ..braille import DOT_DIAMETER_M, LINE_PITCH_M, Cells, dots
+from ..braille import height_m as braille_height_m
 from .block import Block, block
 from .braille_band import braille_band
 from .patches import Patch, flat, joined, rectangle, strip, wall

@@ -5,8 +5,8 @@ from typing import Any
 
 from tangible_core.data import HapticSurface
 from tangible_core.mapping import over
-from tangible_core.pipeline.config import PipelineConfig
-from tangible_core.pipeline.engine import Progress
+from tangible_core.pipeline.config.config import PipelineConfig
+from tangible_core.pipeline.engine.engine import Progress
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.runtime.child_process import dumps

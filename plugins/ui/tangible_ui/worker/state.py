@@ -8,9 +8,9 @@ from typing import Any, NamedTuple, Protocol, final
 from weakref import WeakKeyDictionary
 
 from tangible_core.errors import Stopped
-from tangible_core.pipeline.cache import Cache
-from tangible_core.pipeline.config import PipelineConfig, parse_config
-from tangible_core.pipeline.engine import Stage
+from tangible_core.pipeline.config.config import PipelineConfig, parse_config
+from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.pipeline.engine.engine import Stage
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.registry import Registry, default_registry
 from tangible_core.scene.scene_files import SceneFiles

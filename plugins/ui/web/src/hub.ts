@@ -1,5 +1,5 @@
 /** Who hears what: every part of the page subscribes here, and none knows another. */
-import type { Events } from "./messages";
+import type { Events } from "./server/messages";
 
 type Hear<K extends keyof Events> = (event: Events[K]) => void;
 

@@ -1,16 +1,16 @@
 /** What all parts of the page share. */
-import type { How } from "./announcer";
-import type { Hand } from "./hand";
+import type { How } from "./speech/announcer";
+import type { Hand } from "./hand/hand";
 import type { Hub } from "./hub";
-import type { Events } from "./messages";
-import type { Net } from "./net";
+import type { Events } from "./server/messages";
+import type { Net } from "./server/connection";
 import type { Overlay } from "./overlay/overlay";
-import type { State } from "./protocol";
-import type { Scene } from "./scene";
-import type { Sound } from "./sound";
-import type { Speech } from "./speech";
-import type { Themes } from "./themes";
-import type { View } from "./view";
+import type { State } from "./server/protocol";
+import type { Scene } from "./surface/scene";
+import type { Sound } from "./sound/sound";
+import type { Speech } from "./speech/speech";
+import type { Themes } from "./frame/themes";
+import type { View } from "./view/view";
 
 export interface Page {
   readonly hub: Hub;
@@ -30,9 +30,9 @@ export interface Page {
   readonly sound: Sound;
   readonly speech: Speech;
   readonly themes: Themes;
-  /** Kept when there is time to ask for what nobody waits for (leisure.ts). */
+  /** Kept when there is time to ask for what nobody waits for (server/idle.ts). */
   readonly leisure: Promise<void>;
-  /** Say something to who listens, when its turn comes (announcer.ts): in a live region, and aloud where asked for. */
+  /** Say something to who listens, when its turn comes (speech/announcer.ts): in a live region, and aloud where asked for. */
   say(text: string, how?: How): void;
   /** What a topic said no longer holds. */
   forget(topic: string): void;

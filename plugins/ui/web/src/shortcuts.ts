@@ -1,13 +1,13 @@
 /** All keys of the page, in one table: the help panel shows it, a test looks for conflicts.
  *
- * To add one: a line in SHORTCUTS, its text in words/keys.ts under the same name, and where it acts
+ * To add one: a line in SHORTCUTS, its text in panels/help/shortcut_words.ts under the same name, and where it acts
  * `on("its name", () => ...)`. Keys that a part hears itself, like the hand's arrows, have a line too, with `own`,
  * so that they are shown and collide with none; that part does not call `on`.
  *
  * `where`: "page", wherever the focus is (function keys and such alone, or with Ctrl or Alt); "surface", while the
  * surface has the focus; "letter", wherever no text is typed: a person can switch these off (settings panel), and then
  * they act on the surface alone, because speech input types letters. */
-import { recall, remember } from "./remembered";
+import { recall, remember } from "./preferences";
 
 interface Shortcut {
   /** As KeyboardEvent.key says it, letters small; with Shift+, Ctrl+, Alt+ before it. Shift is not said for signs. */

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { beforeEach, describe, test } from "node:test";
-import { AGAIN_MS, Announcer, PAUSE_MS, STALE_MS } from "../src/announcer";
+import { AGAIN_MS, Announcer, PAUSE_MS, STALE_MS } from "../src/speech/announcer";
 
 let now = 0;
 let due: { atMs: number; act: () => void }[] = [];

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Vector3 } from "three";
-import { Eye, key } from "../src/camera";
+import { Eye, key } from "../src/view/camera";
 
 const still = { matches: true } as MediaQueryList;
 globalThis.matchMedia ??= () => still;

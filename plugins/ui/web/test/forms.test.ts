@@ -7,7 +7,7 @@ import { bounded, type Kind, kindOf, type Option, step } from "../src/forms/kind
 import { alternatives, type FileSchema, type Plain, type Schema } from "../src/forms/schema";
 import { sections } from "../src/forms/sections";
 import { asText, edit, fits, put, typedNumber, typedText, typedYaml } from "../src/forms/values";
-import type { Document } from "../src/messages";
+import type { Document } from "../src/server/messages";
 
 const LENGTH = { type: "string", examples: ["6 mm"], pattern: "^[-+]?\\d+\\s*(m|cm|mm|um)$" };
 const DEFS = { Hand: { type: "object", title: "Hand", properties: { mass_kg: { type: "number", minimum: 0, default: 1 } } } };

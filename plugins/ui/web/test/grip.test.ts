@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { GripRule, type Held } from "../src/overlay/grip";
-import type { Vec } from "../src/protocol";
+import { GripRule, type Held } from "../src/contact/grip";
+import type { Vec } from "../src/server/protocol";
 
 const MU = 0.4;
 const PERIOD_MS = 1000 / 60;

@@ -1,17 +1,17 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { enlargement } from "../src/hand";
-import { HELD_MS, HeldKeys, PACES } from "../src/hands/keys";
-import { type Ground, HOVER_M, moved, SPEED, within } from "../src/hands/motion";
-import { level } from "../src/hands/mouse";
-import { Presses, REST, Shake, way } from "../src/hands/pad";
-import { parts } from "../src/hands/parts";
-import { Fingers, Pressure } from "../src/hands/touch";
+import { enlargement } from "../src/hand/hand";
+import { HELD_MS, HeldKeys, PACES } from "../src/hand/keyboard";
+import { type Ground, HOVER_M, moved, SPEED, within } from "../src/hand/motion";
+import { level } from "../src/hand/mouse";
+import { Presses, REST, Shake, way } from "../src/hand/game_pad";
+import { parts } from "../src/hand/part_centres";
+import { Fingers, Pressure } from "../src/hand/fingers";
 import { bits, limits } from "../src/panels/devices/doctor";
 import { there } from "../src/panels/devices/list";
-import { points } from "../src/panels/devices/spark";
-import { held } from "../src/panels/hand";
-import type { Vec } from "../src/protocol";
+import { points } from "../src/panels/devices/sparkline";
+import { held } from "../src/panels/hand/panel";
+import type { Vec } from "../src/server/protocol";
 
 const PRESS_M = 0.0015;
 const STEP_S = 0.016;

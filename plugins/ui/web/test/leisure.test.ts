@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Hub } from "../src/hub";
-import { leisure } from "../src/leisure";
-import type { Events } from "../src/messages";
+import { leisure } from "../src/server/idle";
+import type { Events } from "../src/server/messages";
 
 /** Whether there is time by now, of a page that heard this. */
 async function begun(...said: { [K in keyof Events]: [K, Partial<Events[K]>] }[keyof Events][]): Promise<boolean> {

@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { LIMITS, limited, perSecond } from "../src/overlay/limits";
+import { LIMITS, limited, perSecond } from "../src/contact/limits";
 import { round } from "../src/overlay/settings";
-import { fixed } from "../src/overlay/values";
-import { FLAGS } from "../src/protocol";
+import { fixed } from "../src/contact/values";
+import { FLAGS } from "../src/server/protocol";
 
 test("each flag that changes a force is a limit; touching, a swap and a beacon are none", () => {
   const bits = LIMITS.map(({ bit }) => bit as number);

@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { measure, type Surface } from "../src/overlay/measure";
-import { marks } from "../src/overlay/profile";
-import type { Vec } from "../src/protocol";
+import { measure, type Surface } from "../src/overlay/tools/measurement";
+import { marks } from "../src/overlay/tools/profile";
+import type { Vec } from "../src/server/protocol";
 
 const on = (surface: Surface, x: number, y: number): Vec => [x, y, surface.height(x, y)];
 const close = (found: number, wanted: number, share = 1e-9) =>

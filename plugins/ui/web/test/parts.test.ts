@@ -1,16 +1,16 @@
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
-import { stroke } from "../src/panels/parts/brush";
-import { Drawing, Full, type Part } from "../src/panels/parts/drawing";
-import { type Labels, labelAt, type Point, type Span } from "../src/panels/parts/labels";
-import { Mask, spansOf } from "../src/panels/parts/mask";
-import { fromFront, moved, spread } from "../src/panels/parts/order";
-import { neighboursOf, piecesOf, placesOf } from "../src/panels/parts/pieces";
-import { filled } from "../src/panels/parts/polygon";
-import { borders } from "../src/panels/parts/borders";
-import { KEYS, TOOL_KEYS } from "../src/panels/parts/keys";
-import { type Felt, Live } from "../src/panels/parts/live";
-import { Sight } from "../src/panels/parts/sight";
+import { stroke } from "../src/panels/parts/pixels/brush";
+import { Drawing, Full, type Part } from "../src/panels/parts/drawing/drawing";
+import { type Labels, labelAt, type Point, type Span } from "../src/panels/parts/pixels/labels";
+import { Mask, spansOf } from "../src/panels/parts/pixels/mask";
+import { fromFront, moved, spread } from "../src/panels/parts/drawing/order";
+import { neighboursOf, piecesOf, placesOf } from "../src/panels/parts/pixels/pieces";
+import { filled } from "../src/panels/parts/pixels/polygon";
+import { borders } from "../src/panels/parts/board/borders";
+import { KEYS, TOOL_KEYS } from "../src/panels/parts/editor/keys";
+import { type Felt, Live } from "../src/panels/parts/editor/live_update";
+import { Sight } from "../src/panels/parts/board/viewport";
 import { SHORTCUTS } from "../src/shortcuts";
 
 const part = (label: number, more: Partial<Part> = {}): Part => ({ label, name: "", height_m: 0, material: null, automatic: false, ...more });

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { corners, type Mapping, moved, placement, reach, toPicture, whole, zoomed } from "../src/overlay/placement";
-import type { Vec } from "../src/protocol";
+import { corners, type Mapping, moved, placement, reach, toPicture, whole, zoomed } from "../src/overlay/tools/placement";
+import type { Vec } from "../src/server/protocol";
 import { cases } from "./placement.json";
 
 const near = (found: readonly number[], wanted: readonly number[], by: number) =>

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Rest } from "../src/overlay/rest";
-import type { State } from "../src/protocol";
+import { Rest } from "../src/contact/rest";
+import type { State } from "../src/server/protocol";
 
 const STILL: State = {
   status: 3, flags: 1, seq: 0, tag: 0, overruns: 0, sampleMs: 0, hand: [0.01, 0.02, 0.003], proxy: [0.01, 0.02, NaN],

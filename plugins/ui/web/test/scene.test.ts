@@ -1,12 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { firstRoot, Grid } from "../src/grid";
-import type { Material, Meta } from "../src/messages";
-import { named } from "../src/narrator";
-import { place } from "../src/overlay/live";
-import { asJson, rows } from "../src/overlay/values";
-import type { Vec } from "../src/protocol";
-import { Scene, type Part } from "../src/scene";
+import { firstRoot, Grid } from "../src/surface/grid";
+import type { Material, Meta } from "../src/server/messages";
+import { named } from "../src/speech/narrator";
+import { place } from "../src/contact/reading";
+import { asJson, rows } from "../src/contact/values";
+import type { Vec } from "../src/server/protocol";
+import { Scene, type Part } from "../src/surface/scene";
 
 const W = 0.08;
 

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { pressed, SHORTCUTS } from "../src/shortcuts";
-import { t } from "../src/words/keys";
+import { t } from "../src/panels/help/shortcut_words";
 
 const press = (key: string, held: Partial<KeyboardEvent> = {}): string =>
   pressed({ key, shiftKey: false, ctrlKey: false, altKey: false, metaKey: false, ...held } as KeyboardEvent);

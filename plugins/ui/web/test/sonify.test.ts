@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
-import type { Material } from "../src/messages";
-import type { Vec } from "../src/protocol";
-import { force_level, grains_hz, makeup, MOST_LEVEL, pan, pitch_hz, stroke, tap } from "../src/sonify";
+import type { Material } from "../src/server/messages";
+import type { Vec } from "../src/server/protocol";
+import { force_level, grains_hz, makeup, MOST_LEVEL, pan, pitch_hz, stroke, tap } from "../src/sound/sonification";
 
 const CLOTH: Material = {
   name: "cloth",

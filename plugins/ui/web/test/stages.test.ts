@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Outcome, Plan } from "../src/messages";
-import { chosen } from "../src/panels/materials/choose";
+import type { Outcome, Plan } from "../src/server/messages";
+import { chosen } from "../src/panels/materials/edit";
 import { alone, share, StageTable } from "../src/panels/stages/table";
 
 const step = (product: string, outcome: Outcome["outcome"], method = ""): Outcome =>

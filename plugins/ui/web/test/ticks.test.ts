@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { COLUMNS, Ticks } from "../src/ticks";
+import { COLUMNS, Ticks } from "../src/panels/recordings/ticks";
 
 /** 100 ticks of a millisecond, the force rising to 1 N. */
 function rising(count = 100): Ticks {

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { STRIDE, Trail } from "../src/overlay/trail";
+import { STRIDE, Trail } from "../src/overlay/pieces/trace_samples";
 
 /** Lines that would be drawn, as pairs of the x of their ends. */
 function lines(trail: Trail, sinceS = -1): string[] {

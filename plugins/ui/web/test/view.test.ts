@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Meta } from "../src/messages";
+import type { Meta } from "../src/server/messages";
 import { heat, heatTexels, marked, PALETTE, PATTERNS, styleOf } from "../src/terrain/colours";
-import { checked, DEFAULTS } from "../src/terrain/settings";
+import { checked, DEFAULTS } from "../src/view/settings";
 import { picked, strideOf, triangles, MOST_MOVING } from "../src/terrain/triangles";
-import { holds, MOST_CELLS, windowOf } from "../src/terrain/window";
+import { holds, MOST_CELLS, windowOf } from "../src/surface/detail_window";
 
 function large(columns = 4300, rows = 4200): Meta {
   const levels = [1, 2, 4, 8].map((step) => ({ step, rows: Math.ceil(rows / step), columns: Math.ceil(columns / step) }));

@@ -21,8 +21,8 @@ from tangible_core.servo import Safety, Servo
 from tangible_core.servo.guard import stiffness
 from tangible_core.servo.guard.stiffness import DEPTHS_M, HALVINGS, LAYERS, PLACES, STEP_M, slopes, stiffness_of
 from tangible_core.session import run_simulated
-from tangible_core.synthetic.scenes import plane, ramp
 from tangible_core.testing.handle import wall
+from tangible_core.testing.synthetic.scenes import plane, ramp
 from tangible_devices.mock import Mock
 
 SPEC = DeviceSpec(8.0, 3000.0, 20.0, (0.08, 0.08, 0.08), 1e-6)

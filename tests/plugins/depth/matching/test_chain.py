@@ -12,19 +12,18 @@ from hypothesis.extra.numpy import arrays
 from stereo_scenes import slanted, step, texture
 from tangible_core.compiled import threads
 from tangible_core.data import Views
-from tangible_core.synthetic.stereo_scenes import synthetic_pair
-from tangible_depth.dense.candidates import ROUND, choose
+from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.dense.confidence import confidence, flat_pixels
 from tangible_depth.dense.edges import median, sharpen_edges
-from tangible_depth.dense.filling import fill
+from tangible_depth.dense.filling.four_directions import ROUND, choose_of_four, fill_from_four_directions
 from tangible_depth.dense.refinement import Cleaning, DenseMatches, as_map, completed, enlarged
 from tangible_depth.dense.span import UNKNOWN
 from tangible_depth.dense.speckles import Specks, remove_speckles, remove_specks
 from tangible_depth.dense.subpixel import equiangular, parabola
-from tangible_depth.search.asked import asked_span
+from tangible_depth.row_alignment.row_offset import realigned, row_offset
+from tangible_depth.search.disparity_range import asked_span
 from tangible_depth.search.pairs import Pair, grey_pair
-from tangible_depth.search.row_offset import realigned, row_offset
-from tangible_depth.search.search_range import find_range
+from tangible_depth.search.range_in_bands import find_range
 from tangible_depth.sgm.census import census
 
 MAPS = arrays(
@@ -113,7 +112,7 @@ def test_among_few_matches_small_islands_are_errors():
 @given(MAPS, st.integers(0, 255))
 def test_filling_keeps_what_is_known_and_leaves_nothing_unknown(disparity, seed):
     grey = np.random.default_rng(seed).integers(0, 255, disparity.shape, np.uint8)
-    filled = fill(disparity, grey)
+    filled = fill_from_four_directions(disparity, grey)
     known = disparity != UNKNOWN
     assert np.array_equal(filled[known], disparity[known])
     assert (filled != UNKNOWN).all() or not known.any()
@@ -128,7 +127,7 @@ def test_filling_does_not_depend_on_the_number_of_threads(monkeypatch):
     maps = []
     for count in (1, 2, 7):
         monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
-        maps.append(fill(disparity, grey))
+        maps.append(fill_from_four_directions(disparity, grey))
     assert np.array_equal(maps[0], maps[1])
     assert np.array_equal(maps[0], maps[2])
 
@@ -138,7 +137,7 @@ def test_what_both_views_contradict_is_not_filled_in():
     disparity = np.full((9, 60), 64, np.int16)
     disparity[:, 20:26] = disparity[:, 34:40] = 320
     disparity[3:6, 26:34] = UNKNOWN
-    filled = fill(disparity, np.full(disparity.shape, 100, np.uint8))
+    filled = fill_from_four_directions(disparity, np.full(disparity.shape, 100, np.uint8))
     assert (filled[3:6, 26:34] == 64).all()
 
 
@@ -159,7 +158,7 @@ def test_a_gap_takes_the_candidate_of_the_best_score():
         paths = random.integers(0, 150, 5).astype(np.int32) * random.integers(0, 2, 5).astype(np.int32)
         seen = random.choice([UNKNOWN, 16, 100, 200, 330, 32767], width + 2).astype(np.int16)
         seen[0] = seen[-1] = 32767
-        chosen = choose(values[:, None].repeat(width, 1), paths[:, None].repeat(width, 1), x, seen)
+        chosen = choose_of_four(values[:, None].repeat(width, 1), paths[:, None].repeat(width, 1), x, seen)
         known = values[values != UNKNOWN].astype(int)
         if known.size == 0:
             assert chosen == UNKNOWN
@@ -193,7 +192,7 @@ def test_a_short_gap_between_like_ends_is_closed_with_the_farther(gap, filled_in
     grey = np.full(disparity.shape, 100, np.uint8)
     grey[4, 20 + gap :] = 200  # the right end lies behind an edge
     grey[4, :20] = 0
-    assert (fill(disparity, grey)[4, 20 : 20 + gap] == filled_in).all()
+    assert (fill_from_four_directions(disparity, grey)[4, 20 : 20 + gap] == filled_in).all()
 
 
 @pytest.mark.parametrize(("left", "right", "levels", "near"), [(320, 64, 60, [0, 1, 2, 3]), (64, 320, 120, [11])])
@@ -206,7 +205,7 @@ def test_grey_steps_on_the_way_add_up(left, right, levels, near):
     disparity = np.full((1, 90), right, np.int16)
     disparity[:, :40], disparity[:, 40:52] = left, UNKNOWN
     grey = np.where(np.arange(90) % 2, 100, 100 + levels).astype(np.uint8)[None]
-    assert np.flatnonzero(fill(disparity, grey)[0, 40:52] == 320).tolist() == near
+    assert np.flatnonzero(fill_from_four_directions(disparity, grey)[0, 40:52] == 320).tolist() == near
 
 
 def test_a_surface_ends_where_the_picture_has_an_edge():

@@ -7,14 +7,14 @@ import pytest
 from tangible_core.data import Calibration, DisparityMap, Views
 from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import collected
-from tangible_depth.rectify import alignment, least_squares, rectification, turning
+from tangible_depth.rectify import alignment, least_squares, rectification, rectifying_rotation
 from tangible_depth.rectify.alignment import aligning_homographies, epipole_roll
 from tangible_depth.rectify.fundamental import eight_point
 from tangible_depth.rectify.homographies import camera_matrix, rotation, transform
 from tangible_depth.rectify.lenses import distorted, undistorted
 from tangible_depth.rectify.rectification import RectificationError, check_homographies, rectify, with_rectification
-from tangible_depth.rectify.rectified import warped
-from tangible_depth.rectify.turning import seen_range
+from tangible_depth.rectify.rectified_pair import warped
+from tangible_depth.rectify.rectifying_rotation import seen_range
 from tangible_depth.sparse.matches import Matches
 from two_cameras import HEIGHT, WIDTH, Scene, roll_and_tilt, seen_points, some_wrong
 
@@ -25,7 +25,7 @@ def shifted(before_px, after_px, monkeypatch):
     """A pair whose rows lie this far apart, and homographies that leave them so far apart."""
     left, right = seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0))
     pair = np.eye(3), np.array([[1, 0, 0], [0, 1, after_px - before_px], [0, 0, 1.0]])
-    monkeypatch.setattr(turning, "aligning_homographies", lambda matches, shape, roll: pair)
+    monkeypatch.setattr(rectifying_rotation, "aligning_homographies", lambda matches, shape, roll: pair)
     return Matches(left, right + np.array([0, before_px]))
 
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
 from tangible_core.data import HapticSurface, Relief
-from tangible_core.synthetic.scenes import ramp
+from tangible_core.testing.synthetic.scenes import ramp
 from tangible_render.surface import spline
 from tangible_render.surface.coefficients import spline_coefficients, spline_surface
 

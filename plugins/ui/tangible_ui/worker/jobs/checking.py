@@ -10,8 +10,8 @@ from ruamel.yaml.error import YAMLError
 from tangible_core.errors import Complaint, ConfigError, quoted
 from tangible_core.files.source import parse_value, plain
 from tangible_core.materials.assignment import load_library
-from tangible_core.pipeline.editing import REMOVE, edited, said, with_overrides
-from tangible_core.pipeline.schema import json_schema
+from tangible_core.pipeline.config.editing import REMOVE, edited, said, with_overrides
+from tangible_core.pipeline.config.schema import json_schema
 
 from ..state import Bench, Job
 

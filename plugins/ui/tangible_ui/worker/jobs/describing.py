@@ -4,7 +4,7 @@ from typing import Any
 
 from tangible_core.description import Language, describe_at_length, facts, page_of
 from tangible_core.description.at_length import tell
-from tangible_core.pipeline.exporting import title_of
+from tangible_core.pipeline.output.exporting import title_of
 from tangible_core.scene.workspace import kind_of
 
 from ..state import Bench, Job

@@ -12,8 +12,8 @@ from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile
 
 from tangible_core.errors import ConfigError
-from tangible_core.pipeline.export_folder import read_list
-from tangible_core.pipeline.exporting import Exported
+from tangible_core.pipeline.output.export_folder import read_list
+from tangible_core.pipeline.output.exporting import Exported
 
 from ..state import Bench, Job
 from .checking import digest_of

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from tangible_core.pipeline.config import parse_config
+from tangible_core.pipeline.config.config import parse_config
 
 from ..state import Bench, Job
 

@@ -6,8 +6,8 @@ from typing import Any
 from tangible_core.errors import ConfigError
 from tangible_core.files.source import read_text
 from tangible_core.files.writing import write_text
-from tangible_core.pipeline.config import parse_config
-from tangible_core.pipeline.editing import edited, moved, said
+from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.editing import edited, moved, said
 from tangible_core.pipeline.starter import MAPS, PICTURES, VIDEOS, are_pictures, starter
 from tangible_core.scene.scene_files import BUILTINS
 from tangible_core.session.recording_files import SUFFIXES

@@ -18,11 +18,11 @@ from tangible_core.data import HapticSurface, Material, PartMap
 from tangible_core.errors import ConfigError
 from tangible_core.materials.assignment import find, load_library
 from tangible_core.parts import HeightChoice, Layering, PartChoice
-from tangible_core.pipeline import felt as on_grid
-from tangible_core.pipeline import parts_found
-from tangible_core.pipeline.config import PipelineConfig, wrong_of_parts
+from tangible_core.pipeline.config.config import PipelineConfig, wrong_of_parts
+from tangible_core.pipeline.engine import felt as on_grid
+from tangible_core.pipeline.engine import parts_found
+from tangible_core.pipeline.engine.rules import fitted, part_heights
 from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.pipeline.rules import fitted, part_heights
 from tangible_core.scene.scaling import felt_factor
 from tangible_core.scene.scene import Scene
 

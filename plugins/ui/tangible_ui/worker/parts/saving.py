@@ -18,9 +18,9 @@ from tangible_core.files.editing import on_one_line
 from tangible_core.files.source import read_text
 from tangible_core.files.writing import atomic_write, write_text
 from tangible_core.parts import find_parts
-from tangible_core.pipeline.config import PipelineConfig, parse_config
-from tangible_core.pipeline.editing import REMOVE, edited, said
-from tangible_core.pipeline.parts_found import check_found
+from tangible_core.pipeline.config.config import PipelineConfig, parse_config
+from tangible_core.pipeline.config.editing import REMOVE, edited, said
+from tangible_core.pipeline.engine.parts_found import check_found
 from tangible_core.scene.scene import Scene, builtin_files
 from tangible_core.scene.scene_files import BUILTINS, SceneFiles
 

@@ -10,11 +10,11 @@ from jaxtyping import Float32, Int32
 from tangible_core.data import DisparityMap, HapticSurface, Material, PartMap, Relief, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.metrics import absolute_error
-from tangible_core.pipeline.config import PipelineConfig, Product
-from tangible_core.pipeline.felt import parts_on_grid
-from tangible_core.pipeline.parts_said import names_of
+from tangible_core.pipeline.config.config import PipelineConfig, Product
+from tangible_core.pipeline.config.parts_said import names_of
+from tangible_core.pipeline.engine.felt import parts_on_grid
+from tangible_core.pipeline.engine.rules import fitted
 from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.pipeline.rules import fitted
 from tangible_core.scene.geometry import RANGE_PERCENT, flat_relief
 from tangible_core.scene.scaling import reduced_map, reduced_segments, reduced_shape
 

@@ -1,7 +1,7 @@
 /** What the check of a document complains of: at its field where there is one, and as a list that leads there. */
 import { button } from "../elements";
-import type { Complaint } from "../messages";
-import { t } from "../words/methods";
+import type { Complaint } from "../server/messages";
+import { t } from "./words";
 import { FIELD } from "./rows";
 
 /** The field that a complaint belongs to: that of its key, or of what is around it. Null where no form has it. */

@@ -1,6 +1,6 @@
 /** Native controls for values of every kind. A control shows a value, and says when a person gives it another. */
 import { button } from "../elements";
-import { t } from "../words/methods";
+import { t } from "./words";
 import { type Kind, type Option, step } from "./kinds";
 import type { Plain } from "./schema";
 import { asText, fits, isMap, put, same, type Said, typedNumber, typedText, typedYaml } from "./values";

@@ -1,5 +1,5 @@
 /** The one way in which forms change the document: by key, applied at once where that is wished. */
-import type { Document } from "../messages";
+import type { Document } from "../server/messages";
 import type { Page } from "../page";
 import { isLabels } from "./section";
 import type { Plain } from "./schema";

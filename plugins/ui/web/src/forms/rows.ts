@@ -1,6 +1,6 @@
 /** A row of a form: name, control, unit, help, the way back to the default, and what the check complains of. */
 import { button } from "../elements";
-import { t } from "../words/methods";
+import { t } from "./words";
 import { type Row, tolerant } from "./controls";
 import { bounded, type Kind, type Option } from "./kinds";
 import type { Plain } from "./schema";

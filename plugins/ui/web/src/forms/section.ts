@@ -1,6 +1,6 @@
 /** The form of one part of the file: which method, and its options, the rarer ones folded. */
-import type { Document } from "../messages";
-import { t } from "../words/methods";
+import type { Document } from "../server/messages";
+import { t } from "./words";
 import { FIELD, rows } from "./rows";
 import { PLAIN, type Method, type Section } from "./sections";
 import type { Option as Choice } from "./kinds";

@@ -1,22 +1,22 @@
 /** All that is drawn over the surface and moves: its pieces, and the layer of words and handles over the canvas. */
 import "./overlay.css";
 import { DirectionalLight, HemisphereLight } from "three";
-import type { State, Vec } from "../protocol";
-import type { Scene } from "../scene";
-import type { View } from "../view";
-import { ForceArrow } from "./arrow";
-import { FrictionCone } from "./cone";
-import { DevicePoint } from "./device";
-import { Labels } from "./labels";
-import { NOBODY_M, Reading, type Live } from "./live";
+import type { State, Vec } from "../server/protocol";
+import type { Scene } from "../surface/scene";
+import type { View } from "../view/view";
+import { ForceArrow } from "./pieces/force_arrow";
+import { FrictionCone } from "./pieces/friction_cone";
+import { DevicePoint } from "./pieces/device_point";
+import { Labels } from "./pieces/contact_label";
+import { NOBODY_M, Reading, type Live } from "../contact/reading";
 import { Picking } from "./picking";
 import type { Piece, Sight } from "./piece";
-import { Proxy } from "./proxy";
-import { Rest } from "./rest";
-import { ContactRing } from "./ring";
-import { ScaleBar } from "./scalebar";
+import { Proxy } from "./pieces/proxy";
+import { Rest } from "../contact/rest";
+import { ContactRing } from "./pieces/contact_ring";
+import { ScaleBar } from "./pieces/scale_bar";
 import { round, settings } from "./settings";
-import { Trace } from "./trace";
+import { Trace } from "./pieces/trace";
 
 /** Of the picture's width: how long a newton is at first. */
 const NEWTON_SHARE = 1 / 12;

@@ -1,7 +1,7 @@
 /** A tool that takes the mouse from the hand: its main button then means places on the surface. */
-import type { Vec } from "../protocol";
-import type { Scene } from "../scene";
-import type { View } from "../view";
+import type { Vec } from "../server/protocol";
+import type { Scene } from "../surface/scene";
+import type { View } from "../view/view";
 
 export interface Picked {
   begin(at: Vec): void;

@@ -1,7 +1,7 @@
 /** A thing that is drawn over the surface, and what it is told in each frame. */
 import type { PerspectiveCamera } from "three";
-import type { Vec } from "../protocol";
-import type { Live } from "./live";
+import type { Vec } from "../server/protocol";
+import type { Live } from "../contact/reading";
 import type { Settings } from "./settings";
 
 /** From where the surface is seen, and how large the canvas is, in CSS pixels. */

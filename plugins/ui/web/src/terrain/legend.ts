@@ -1,6 +1,6 @@
 /** What colours and patterns mean. */
-import type { Scene } from "../scene";
-import { t } from "../words/view";
+import type { Scene } from "../surface/scene";
+import { t } from "../view/words";
 import { darker, heat, marked, styleOf, type Colour } from "./colours";
 
 const SWATCH_PX = 22;

@@ -1,6 +1,6 @@
 /** A part of the surface as it is drawn: a grid whose heights are a texture, and no vertex is stored. */
 import { BufferAttribute, BufferGeometry, GLSL3, Mesh, RawShaderMaterial, Vector4, type IUniform, type Texture } from "three";
-import type { Part } from "../scene";
+import type { Part } from "../surface/scene";
 import { FRAGMENT, VERTEX } from "./shader";
 import { gradientTexture, integers, numbers, pictureTexture } from "./textures";
 import { strideOf, triangles } from "./triangles";

@@ -1,9 +1,9 @@
 /** The surface as it is drawn: the whole of it, and something finer of where the camera looks. */
 import { Group, Vector2, Vector3, Vector4, type Texture } from "three";
-import { Grid } from "../grid";
-import type { Meta } from "../messages";
-import type { Part, Scene } from "../scene";
-import type { Layer } from "./fetching";
+import { Grid } from "../surface/grid";
+import type { Meta } from "../server/messages";
+import type { Part, Scene } from "../surface/scene";
+import type { Layer } from "../surface/loading";
 import { Needles } from "./needles";
 import { Sheet, type Uniforms } from "./sheet";
 import { LOOKS, STEEPS } from "./shader";

@@ -17,8 +17,8 @@ import {
   UnsignedIntType,
   UnsignedShortType,
 } from "three";
-import type { Grid } from "../grid";
-import type { Labels } from "../scene";
+import type { Grid } from "../surface/grid";
+import type { Labels } from "../surface/scene";
 import { heatTexels } from "./colours";
 
 const KINDS_WIDE = 1024;

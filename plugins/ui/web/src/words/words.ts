@@ -1,5 +1,5 @@
 /** The page's texts in the languages it speaks: tables of [English, German], one file each area, in this folder. */
-import { recall, remember } from "../remembered";
+import { recall, remember } from "../preferences";
 
 export type Table = Record<string, readonly [english: string, german: string]>;
 export const LANGUAGES = ["en", "de"] as const;

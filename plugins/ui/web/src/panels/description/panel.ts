@@ -2,7 +2,7 @@
 import { button, field, hint, paragraph } from "../../elements";
 import { copy, download } from "../../files";
 import type { Page } from "../../page";
-import { t } from "../../words/description";
+import { t } from "./words";
 import { language as ours } from "../../words/words";
 
 const LANGUAGES = ["en", "de", "fr"] as const;

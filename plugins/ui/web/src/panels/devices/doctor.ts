@@ -1,9 +1,9 @@
 /** How the force loop runs, four times a second while somebody looks. */
 import type { Page } from "../../page";
-import { LIMITS } from "../../overlay/limits";
-import { t } from "../../words/devices";
-import { t as named } from "../../words/overlay";
-import { Spark } from "./spark";
+import { LIMITS } from "../../contact/limits";
+import { t } from "./words";
+import { t as named } from "../../overlay/words";
+import { Spark } from "./sparkline";
 
 const LOOK_MS = 250;
 

@@ -1,7 +1,7 @@
 /** Every installed device: what it is, whether it is there, and why not. */
 import { button } from "../../elements";
 import type { Page } from "../../page";
-import { t } from "../../words/devices";
+import { t } from "./words";
 
 interface Unit {
   name: string;

@@ -4,7 +4,7 @@ import type { Option } from "../../forms/kinds";
 import { FIELD, rows } from "../../forms/rows";
 import type { Plain } from "../../forms/schema";
 import { put, type Said } from "../../forms/values";
-import { t } from "../../words/export";
+import { t } from "./words";
 import { blocksOf, entriesOf, type Entry } from "./entries";
 
 export interface Exporter {

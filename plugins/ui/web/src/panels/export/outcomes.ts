@@ -1,10 +1,10 @@
 /** What became of each exporter: its files, what was decided, and whether fingers can read it. */
 import { paragraph } from "../../elements";
-import { token } from "../../key";
-import type { Exported, Outcome } from "../../messages";
-import { t } from "../../words/export";
+import { token } from "../../server/token";
+import type { Exported, Outcome } from "../../server/messages";
+import { t } from "./words";
 import { decimal } from "../../words/words";
-import { type Cure, sentence, verdicts } from "../verdicts";
+import { type Cure, sentence, verdicts } from "../verdicts/verdicts";
 import { called } from "./choices";
 
 const SHAPES: Partial<Record<Outcome["outcome"], string>> = { ran: "✓", refused: "⊘", failed: "✕" };

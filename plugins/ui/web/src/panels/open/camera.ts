@@ -1,6 +1,6 @@
 /** A picture from the camera: shown only after it was asked for, and off again when it was taken. */
 import { button } from "../../elements";
-import { t } from "../../words/open";
+import { t } from "./words";
 
 export function camera(take: (files: File[]) => void, say: (text: string) => void): HTMLElement {
   const box = document.createElement("div");

@@ -1,5 +1,5 @@
 /** Files dropped anywhere on the page. */
-import { t } from "../../words/open";
+import { t } from "./words";
 
 export function onDrop(take: (files: File[]) => void): void {
   const shade = document.createElement("div");

@@ -1,7 +1,7 @@
 /** Folders of this computer: what can be opened lies in a list, of which one file or a pair is chosen. */
 import { button, field } from "../../elements";
-import type { Net } from "../../net";
-import { t } from "../../words/open";
+import type { Net } from "../../server/connection";
+import { t } from "./words";
 
 type Kind = "folder" | "picture" | "video" | "heights" | "recording" | "pipeline";
 

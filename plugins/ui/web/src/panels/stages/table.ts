@@ -1,5 +1,5 @@
 /** What becomes of each product, from what the program says: first the plan, then what runs, then what became of it. */
-import type { Note, Outcome, Plan } from "../../messages";
+import type { Note, Outcome, Plan } from "../../server/messages";
 
 export type StateOf = "waiting" | "running" | "ran" | "cached" | "given" | "skipped" | "refused" | "failed" | "stopped";
 

@@ -1,0 +1,19 @@
+"""The commands that prepare a pipeline file. Imported whenever `tangible` starts, so it imports next to nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangible_core import hookimpl
+
+if TYPE_CHECKING:
+    from typer import Typer
+
+
+@hookimpl
+def tangible_commands(app: Typer) -> None:
+    """Add `tangible new` and `tangible parts`."""
+    from tangible_core.cli.commands import add
+
+    add("new", "tangible_authoring.commands.new:new", "Write a pipeline file for your pictures.")
+    add("parts", "tangible_authoring.commands.parts:parts", "Divide a picture into parts, to name and to give heights.")

@@ -1,0 +1,39 @@
+"""`new`: a pipeline file to begin with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tangible_core.cli.loudness import is_quiet
+
+
+def new(
+    pictures: Annotated[
+        list[Path], typer.Argument(help="A picture, left and right, a map of heights, or a video.", show_default=False)
+    ],
+    out: Annotated[Path | None, typer.Option("--out", help="The file to write [default: NAME.yaml].")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Write over a file that is there.")] = False,
+) -> None:
+    """Write a pipeline file for your pictures.
+
+    Its values suit these pictures, and comments say what they mean.
+    """
+    from tangible_core.cli import show
+    from tangible_core.errors import ConfigError, OutputError
+    from tangible_core.files.writing import write_text
+    from tangible_core.pipeline.starter import are_pictures, starter
+
+    if not are_pictures(pictures):
+        raise ConfigError("new: name a picture (.png, .jpg, ...), left and right, a video, or a map of heights (.npy)")
+    file = out or Path(f"{pictures[0].stem}.yaml")
+    if file.exists() and not force:
+        raise OutputError(f"{file}: is there already; --out FILE writes another one, --force writes over it")
+    write_text(file, starter(pictures, file).text)
+    if is_quiet():
+        return
+    show.plain(f"written: {file}\n\nNext:")
+    show.plain(f"  tangible run {file}        makes what can be felt, and draws it")
+    show.plain(f"  tangible preflight {file}  says whether it is safe on its device")

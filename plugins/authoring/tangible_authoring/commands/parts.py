@@ -1,0 +1,165 @@
+"""`parts`: a picture divided into parts, to be named, corrected and painted over; those of a pipeline file, listed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tangible_core.cli import completing
+from tangible_core.cli.loudness import is_quiet
+from tangible_core.cli.options import Json, NoCache, Sets
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from tangible_core.report.numbered_parts import Before
+
+    from ..listed_parts import ListedPart
+
+
+def parts(
+    pictures: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="FILE...",
+            help="A picture, left and right, or a pipeline file whose parts are listed and drawn.",
+            show_default=False,
+            autocompletion=completing.scenes,
+        ),
+    ],
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for the files [default: the current one].")] = None,
+    method: Annotated[str, typer.Option("--method", help="Texture method [default: that of `tangible new`].")] = "",
+    count: Annotated[int, typer.Option("--count", help="As many parts, at most.")] = 12,
+    smallest: Annotated[
+        float, typer.Option("--smallest", help="Width of the smallest part, mm, on a surface of 80 mm.")
+    ] = 5.0,
+    sets: Sets = None,
+    renumber: Annotated[
+        bool,
+        typer.Option("--renumber", help="Let what the pipeline file says of parts follow them."),
+    ] = False,
+    force: Annotated[bool, typer.Option("--force", help="Write over files that are there.")] = False,
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Divide a picture into parts, to name and to give heights.
+
+    Writes a label picture to paint on, a picture with the parts' numbers, and a pipeline file that runs as it stands.
+    Of a pipeline file, it lists the parts and draws their numbers and names.
+    """
+    from tangible_core.pipeline.starter import are_pictures
+
+    if are_pictures(pictures):
+        _divide(pictures, out or Path(), method, count, smallest, sets or [], force, as_json, no_cache)
+    else:
+        _list(pictures, out, sets or [], renumber, force, as_json, no_cache)
+
+
+def _divide(
+    pictures: Sequence[Path],
+    folder: Path,
+    method: str,
+    count: int,
+    smallest: float,
+    sets: Sequence[str],
+    force: bool,
+    as_json: bool,
+    no_cache: bool,
+) -> None:
+    from tangible_core.cli import sentences, show
+    from tangible_core.pipeline.engine.cache import Cache
+
+    from ..first_parts import check_free, files_beside, first_parts
+
+    file = folder / f"{pictures[0].stem}.yaml"
+    check_free(files_beside(file), pictures, force)  # before it takes any time
+    found = first_parts(
+        pictures,
+        file,
+        method=method,
+        overrides=sets,
+        most=count,
+        smallest_mm=smallest,
+        cache=None if no_cache else Cache(),
+    )
+    files = found.write(force)
+    if as_json:
+        said = {"title": found.title, "method": found.method, "parts": [each._asdict() for each in found.listed]}
+        show.print_json({**said, "files": [str(path) for path in files]})
+        return
+    if is_quiet():
+        return
+    show.sentence(sentences.divided(" and ".join(each.name for each in pictures), len(found.listed)))
+    _print(found.listed)
+    for path in files:
+        show.plain(f"written: {path}")
+    show.plain(NEXT.format(labels=files[0], numbered=files[1], file=files[2]))
+
+
+NEXT = """
+Next:
+  look at {numbered}, and write names and heights into {file}
+  tangible run {file}       makes what can be felt, and draws it
+  tangible parts {file}     lists and numbers the parts again, when you have painted over {labels}"""
+
+
+def _list(
+    files: Sequence[Path],
+    out: Path | None,
+    sets: Sequence[str],
+    renumber: bool,
+    force: bool,
+    as_json: bool,
+    no_cache: bool,
+) -> None:
+    from tangible_core.cli import sentences, show
+    from tangible_core.errors import ConfigError
+
+    from ..first_parts import NUMBERED
+    from ..renumbering import draw_numbers
+
+    if len(files) > 1:
+        raise ConfigError(f"{', '.join(map(str, files))}: name one picture, left and right, or one pipeline file")
+    (file,) = files
+    path = (file.parent if out is None else out) / NUMBERED
+    done = draw_numbers(file, path, sets, renumber=renumber, force=force, cached=not no_cache)
+    found = done.listed.parts
+    if as_json:
+        rows = [{**each._asdict(), "was": was and was.number} for each, was in _beside(found, done.before)]
+        show.print_json({"title": done.title, "parts": rows, "files": [str(each) for each in done.written]})
+    elif not is_quiet():
+        show.sentence(sentences.divided(done.title, len(found)))
+        _print(found, done.before if done.moved else None)
+        for each in done.written:
+            show.plain(f"written: {each}")
+    if done.wrong is not None:
+        show.flush()
+        raise done.wrong
+
+
+def _beside(found: Sequence[ListedPart], before: Sequence[Before] | None) -> Iterable[tuple[ListedPart, Before | None]]:
+    return zip(found, before or [None] * len(found), strict=True)
+
+
+def _print(found: Sequence[ListedPart], before: Sequence[Before] | None = None) -> None:
+    from rich.markup import escape
+
+    from tangible_core.cli import show
+
+    rows = [
+        (
+            str(each.number),
+            *([] if was is None else ["new" if was.number is None else str(was.number)]),
+            escape(each.name),
+            each.place,
+            f"{100 * each.share:.1f}",
+            "" if each.height_m is None else f"{1000 * each.height_m:.1f}",
+            escape(each.material),
+        )
+        for each, was in _beside(found, before)
+    ]
+    numbers = ("part", "was") if before else ("part",)
+    show.table((*numbers, "name", "place", "% of the picture", "height mm", "material"), rows)
+    show.plain("")

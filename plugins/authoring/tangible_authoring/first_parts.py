@@ -1,0 +1,167 @@
+"""A picture's first parts, for a person to name, correct and paint over: a label picture, numbers, a pipeline file."""
+
+from collections.abc import Generator, Iterable, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from math import floor
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from tangible_core.data import Outcome, PartMap, SegmentMap
+from tangible_core.errors import ConfigError, OutputError, check_positive
+from tangible_core.files.writing import atomic_write
+from tangible_core.parts import HeightChoice, PartHeights
+from tangible_core.parts.label_picture import label_picture
+from tangible_core.parts.large import large_parts
+from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.pipeline.engine.layers import heights_of
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.pipeline.starter import MAPS, SIDE_MM, in_yaml, starter
+from tangible_core.plugins import hooks
+from tangible_core.plugins.registry import Registry, default_registry
+from tangible_core.report.numbered_parts import numbered_parts
+from tangible_core.scene.scene import Scene
+
+from .listed_parts import ListedPart, listed
+from .parts_starter import RELIEF_MM, parts_starter, title_of
+
+LABELS, NUMBERED = "parts.png", "parts-numbered.png"
+MOST_PARTS = 12
+"""As many as a person names in a few minutes, and as many as fingers tell from each other on one surface."""
+SMALLEST_MM = 5.0
+"""What holds no disc so wide is felt as an edge rather than as a thing."""
+ASKED_FOR = 2
+"""Times as many segments are asked of a method: those that are too small go to their neighbours."""
+STEPS_PER_M = 10_000
+"""Heights are rounded down to a tenth of a millimetre: nobody feels less, and it is easy to read."""
+
+
+@dataclass(frozen=True, eq=False)
+class FirstParts:
+    """The parts of a picture as they were found, and the files that say them."""
+
+    scene: Scene
+    parts: PartMap
+    listed: tuple[ListedPart, ...]
+    """What the pipeline file says of each."""
+    title: str
+    method: str
+    """Which texture method found the segments."""
+    contents: Mapping[Path, bytes]
+    """The files by their paths: label picture, numbers, pipeline file. That comes last: it names no file that is
+    missing."""
+
+    def write(self, force: bool = False) -> tuple[Path, ...]:
+        """Write the files, each whole or not at all. force: over files that are there.
+
+        Raises: OutputError if one is there, or the place cannot be written.
+        """
+        check_free(self.contents, force=force)
+        for path, content in self.contents.items():
+            with atomic_write(path) as file:
+                file.write(content)
+        return tuple(self.contents)
+
+
+def files_beside(file: Path) -> tuple[Path, Path, Path]:
+    """The label picture and the numbers that stand beside a pipeline file, and that itself."""
+    return file.parent / LABELS, file.parent / NUMBERED, file
+
+
+def check_free(paths: Iterable[Path], pictures: Sequence[Path] = (), force: bool = False) -> None:
+    """Raises: OutputError for the first of these that is there, and for one that is a picture, force or not."""
+    for path in paths:
+        if any(path.exists() and picture.exists() and path.samefile(picture) for picture in pictures):
+            raise OutputError(f"{path}: is the picture itself; --out FOLDER writes to another folder")
+        if path.exists() and not force:
+            raise OutputError(
+                f"{path}: is there already; --out FOLDER writes to another folder, --force writes over it"
+            )
+
+
+def first_parts(
+    pictures: Sequence[Path],
+    file: Path,
+    *,
+    method: str = "",
+    overrides: Sequence[str] = (),
+    most: int = MOST_PARTS,
+    smallest_mm: float = SMALLEST_MM,
+    registry: Registry | None = None,
+    cache: Cache | None = None,
+) -> FirstParts:
+    """Parts of a photo, or of a pair, whose heights are then by depth; nothing is written (see `FirstParts.write`).
+
+    file: where the pipeline file is to stand: its paths are relative to that. method: which texture method finds the
+    segments; that of `starter` by default. overrides: `texture.key=value` each, for its options. most: parts, at most.
+    smallest_mm: what holds no disc so wide, on a surface whose longer side is 80 mm, is joined to a neighbour.
+    Raises: ConfigError for what is no picture, and for options; PictureError for a picture that cannot be read.
+    """
+    if most < 1:
+        raise ConfigError(f"count: is {most}; there is at least one part")
+    check_positive("smallest", smallest_mm)
+    pipeline = _pipeline(pictures, file, method, overrides, most, registry or default_registry(), cache)
+    scene, segments = pipeline.scene, pipeline.make("segments")
+    assert scene.views is not None
+    if segments is None:
+        segments = SegmentMap(np.zeros(scene.shape, np.int32))
+    with _told(pipeline.engine.registry):
+        parts = large_parts(segments, scene.views.left, smallest_mm / SIDE_MM * max(scene.shape), most)
+    heights = _heights(pipeline, parts)
+    found, title = listed(parts, heights, {}), title_of(pictures[0])
+    text = parts_starter(pipeline, file, LABELS, NUMBERED, title, found)
+    labels, numbered, _ = files_beside(file)
+    shown = numbered_parts(scene.views.left, parts)
+    contents = {labels: label_picture(parts.labels), numbered: shown, file: text.encode()}
+    chosen = pipeline.config.texture
+    return FirstParts(scene, parts, found, title, chosen.name if chosen else "", contents)
+
+
+def _pipeline(
+    pictures: Sequence[Path],
+    file: Path,
+    method: str,
+    overrides: Sequence[str],
+    most: int,
+    registry: Registry,
+    cache: Cache | None,
+) -> Pipeline:
+    """That of the starter file, with another texture method, or with more segments of its own."""
+    if method:
+        registry.find("texture", method)
+    if other := next((each for each in overrides if not each.lstrip().startswith("texture.")), None):
+        raise ConfigError(f"--set {other}: sets options of the texture method, such as texture.segments=8; edit {file}")
+    if maps := [picture for picture in pictures if picture.suffix.lower() in MAPS]:
+        raise ConfigError(f"{maps[0]}: is a map of heights, which are felt as they are; parts are those of a picture")
+    made = starter(pictures, file)
+    chosen = f"texture={{use: {in_yaml(method)}}}" if method else f"texture.segments={ASKED_FOR * most}"
+    config = parse_config(made.text, file, registry, [chosen, *overrides])
+    return Pipeline.of(replace(config, scene=made.scene), registry, cache)
+
+
+def _heights(pipeline: Pipeline, parts: PartMap) -> PartHeights:
+    """By depth where the scene shows it, else guessed."""
+    scene = pipeline.scene
+    has_depth = scene.disparity is not None or (scene.views is not None and scene.views.right is not None)
+    disparity = pipeline.make("disparity") if has_depth else None
+    choice = HeightChoice(by="guess" if disparity is None else "depth")
+    top_m = RELIEF_MM / 1000 - choice.bulge_m - choice.detail_m
+    found = heights_of(parts, choice, top_m, {}, disparity, scene.shown)
+    rounded = (floor(height_m * STEPS_PER_M + 1e-6) / STEPS_PER_M for height_m in found.heights_m)
+    return PartHeights(tuple(rounded), found.reasons)
+
+
+@contextmanager
+def _told(registry: Registry) -> Generator[None]:
+    """Who watches hears that parts are made, which takes seconds of a large picture."""
+    hooks.tell(registry.plugins, "tangible_stage_started", product="parts", method="core")
+    start, became = perf_counter(), "failed"
+    try:
+        yield
+        became = "ran"
+    finally:
+        outcome = Outcome("parts", became, "asked for", "core", perf_counter() - start)
+        hooks.tell(registry.plugins, "tangible_stage_finished", outcome=outcome)

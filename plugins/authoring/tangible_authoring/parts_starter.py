@@ -1,0 +1,97 @@
+"""The pipeline file for a picture in parts: commented, with a line a part, where it lies and what its height is."""
+
+import os
+import re
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+
+from tangible_core.parts import HeightChoice
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.pipeline.starter import SIDE_MM, in_yaml
+from tangible_core.scene.scene import Scene, builtin_files
+from tangible_core.scene.scene_files import SceneFiles
+
+from .listed_parts import ListedPart
+
+RELIEF_MM = 6.0
+GUESSED = "it is a guess, as a picture does not tell what stands in front of what."
+MEASURED = "it is by depth, of which this is the median over the part."
+
+
+def parts_starter(
+    pipeline: Pipeline, file: Path, labels: str, numbered: str, title: str, found: Sequence[ListedPart]
+) -> str:
+    """The text of a pipeline file for these parts, which stands at `file`, the pictures of these names beside it."""
+    scene, heights = pipeline.scene, HeightChoice(by="given")
+    rows, columns = scene.shape
+    longer = max(rows, columns)
+    above_mm = 1000 * (heights.bulge_m + heights.detail_m)
+    guessed = all("guess" in each.why for each in found)
+    depth = pipeline.config.depth
+    said = {
+        "name": Path(scene.name).name, "file": file, "columns": columns, "rows": rows, "count": _counted(len(found)),
+        "labels": labels, "numbered": numbered, "scene": _scene_in_yaml(scene, file.parent, labels),
+        "title": in_yaml(title), "heights": GUESSED if guessed else MEASURED, "parts": _lines(found),
+        "round_mm": f"{1000 * heights.round_m:g}", "bulge_mm": f"{1000 * heights.bulge_m:g}",
+        "detail_mm": f"{1000 * heights.detail_m:g}", "relief_mm": f"{RELIEF_MM:g}",
+        "top_mm": f"{RELIEF_MM - above_mm:g}", "width_mm": f"{SIDE_MM * columns / longer:.3g}",
+        "length_mm": f"{SIDE_MM * rows / longer:.3g}", "side_mm": SIDE_MM,
+        "depth": f"depth: {{use: {depth.name}}}" if depth and not guessed else "",
+    }  # fmt: skip
+    text = files("tangible_core.pipeline").joinpath("starter_parts.yaml").read_text(encoding="utf-8")
+    return re.sub(r"\n{3,}", "\n\n", Template(text).substitute(said))
+
+
+def title_of(picture: Path) -> str:
+    """A title by the name of a file: words, the first letter large.
+
+    >>> title_of(Path("old/girl_with-a pearl.jpg")), title_of(Path("IMG_2041.JPG"))
+    ('Girl with a pearl', 'IMG 2041')
+    """
+    words = re.sub(r"[\s_-]+", " ", picture.stem).strip() or picture.stem
+    return words[:1].upper() + words[1:]
+
+
+def _counted(parts: int) -> str:
+    return f"{parts} part{'s' * (parts != 1)}"
+
+
+def _lines(found: Sequence[ListedPart]) -> str:
+    """A line a part, in columns."""
+    heads = [f'  {each.number}: {{name: "", height_m: {1000 * (each.height_m or 0):.1f} mm}}' for each in found]
+    wide = max(map(len, heads))
+    return "\n".join(
+        f"{head:<{wide}}   # {each.where}, {_briefly(each.why)}" for head, each in zip(heads, found, strict=True)
+    )
+
+
+def _briefly(why: str) -> str:
+    """What a height comes from, without the details."""
+    return re.split("[:;]", why)[0]
+
+
+def _scene_in_yaml(scene: Scene, folder: Path, labels: str) -> str:
+    """The scene's files with the label picture, as a file in this folder names them."""
+    installed = isinstance(scene.files, str)  # with this program, and never beside the file
+    found = builtin_files(scene.files) if isinstance(scene.files, str) else scene.files
+    assert found is not None
+    defaults = {name: field.default for name, field in SceneFiles.model_fields.items()}
+    named = {name: value for name, value in found if value != defaults[name]}
+    said = {
+        name: _relative(value, folder) if isinstance(value, Path) and not installed else f"{value}"
+        for name, value in named.items()
+    }
+    return f"{{{', '.join(f'{name}: {in_yaml(value)}' for name, value in {**said, 'segments': labels}.items())}}}"
+
+
+def _relative(path: Path, folder: Path) -> str:
+    """As a file in this folder names it: the same when both are moved together."""
+    here, there = path.absolute(), folder.absolute()
+    if here.is_relative_to(there):
+        return here.relative_to(there).as_posix()
+    try:
+        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
+    except ValueError:  # on another drive
+        return here.as_posix()

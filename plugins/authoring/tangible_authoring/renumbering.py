@@ -1,0 +1,189 @@
+"""The numbers of parts after their label picture was painted over: told, drawn again, and followed by the file."""
+
+import json
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, NamedTuple, cast
+
+from tangible_core.errors import ConfigError
+from tangible_core.files.source import parse_source, plain, read_text
+from tangible_core.files.writing import atomic_write
+from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.plugins.registry import default_registry
+from tangible_core.report.numbered_parts import Before, as_drawn
+
+from .first_parts import check_free
+from .listed_parts import ListedPart, ListedParts, list_parts
+
+BLOCK = re.compile(r"^parts:.*\n(?:(?:[ \t]*\n)*[ \t]+\S.*\n)*", re.MULTILINE)
+"""The key and the lines below it, up to the next one at the top."""
+LENGTH = re.compile(r"[0-9.]+ ?[a-z]+")
+MOST_TOLD = 6
+
+
+class Moved(NamedTuple):
+    """A part of which the file says something, and the number that it has now; None where it is no more."""
+
+    before: int
+    now: int | None
+    name: str
+
+
+class Numbers(NamedTuple):
+    """The parts of a pipeline file, what they were when they were last drawn, and what was done about it."""
+
+    listed: ListedParts
+    before: tuple[Before, ...] | None
+    """Of each part; None where nothing is known of before."""
+    moved: list[Moved]
+    title: str
+    written: tuple[Path, ...]
+    wrong: ConfigError | None
+    """What is left to be put right, with the cure."""
+
+
+def draw_numbers(
+    file: Path,
+    numbered: Path,
+    overrides: Sequence[str] = (),
+    *,
+    renumber: bool = False,
+    force: bool = False,
+    cached: bool = True,
+) -> Numbers:
+    """List the parts of a pipeline file, and draw their numbers and names at `numbered`.
+
+    Where parts have other numbers than those that were drawn there, and the file says something of these, nothing is
+    drawn: with `renumber` what the file says follows them first, with `force` the numbers alone are drawn.
+    Raises: OutputError for another file at that place, unless forced; ConfigError and others as `list_parts`.
+    """
+    drawn = as_drawn(numbered)
+    if drawn is None:
+        check_free([numbered], force=force)
+    text, cache = read_text(file), Cache() if cached else None
+    config = parse_config(text, file, default_registry(), overrides)
+    listed = list_parts(Pipeline.of(config, default_registry(), cache))
+    before = drawn.before(listed.found) if drawn else None
+    by_rules = {rule.part: "" for rule in config.materials.rules if isinstance(rule.part, int)}
+    moved = moves({**by_rules, **said_of_parts(text, file)}, before or ())
+    title = config.title or Path(listed.scene_name).name
+    if moved and not (renumber or force):
+        wrong = ConfigError(
+            f"{file}: {in_words(moved)}, since {numbered} was drawn; --renumber lets what the file says of them "
+            "follow, --force draws the numbers alone"
+        )
+        return Numbers(listed, before, moved, title, (), wrong)
+    contents = {numbered: listed.numbered}
+    if moved and renumber and before:
+        _check_rules(file, by_rules, moved)
+        text = renumbered(text, file, before, listed.parts)
+        config = parse_config(text, file, default_registry(), overrides)
+        listed = list_parts(Pipeline.of(config, default_registry(), cache))
+        contents = {numbered: listed.numbered, file: text.encode()}
+    _write_together(contents)
+    return Numbers(listed, before, moved, title, tuple(contents), listed.wrong)
+
+
+def _check_rules(file: Path, by_rules: Collection[int], moved: Iterable[Moved]) -> None:
+    """Raises: ConfigError for a rule that names by its number a part that has another one now."""
+    if each := next((each for each in moved if each.before in by_rules), None):
+        raise ConfigError(
+            f"{file}: a rule of materials.rules is for part {each.before} by its number, which has changed; give the "
+            "part a name, and write that into the rule"
+        )
+
+
+def _write_together(contents: Mapping[Path, bytes]) -> None:
+    """Write all or none: were one written alone, the numbers would be moved twice. Raises: OutputError."""
+    with ExitStack() as stack:
+        for path, content in contents.items():
+            file = stack.enter_context(atomic_write(path))
+            file.write(content)
+            file.flush()
+
+
+def moves(said: Mapping[int, Any], before: Sequence[Before]) -> list[Moved]:
+    """The parts that the file says something of and that have another number now, or none.
+
+    said: by the numbers of before, as the file has it. before: of each part that there is; none where that is unknown.
+    """
+    now = {each.number: number for number, each in enumerate(before) if each.number is not None}
+    found = (Moved(number, now.get(number), _name(choice)) for number, choice in said.items())
+    return [each for each in found if before and each.now != each.before]
+
+
+def in_words(moved: Sequence[Moved]) -> str:
+    """Which parts have other numbers than before.
+
+    >>> in_words([Moved(2, 3, "head"), Moved(3, None, "")])
+    'numbers of parts have changed: 2 (head) is now 3, 3 is no more'
+    """
+    said = (
+        f"{each.before}{each.name and f' ({each.name})'} is {'no more' if each.now is None else f'now {each.now}'}"
+        for each in moved[:MOST_TOLD]
+    )
+    more = [f"and {len(moved) - MOST_TOLD} more"] if len(moved) > MOST_TOLD else []
+    return f"numbers of parts have changed: {', '.join([*said, *more])}"
+
+
+def said_of_parts(text: str, path: Path) -> dict[int, Any]:
+    """What a pipeline file says of each part, as plain values. Raises: ConfigError if it is no YAML."""
+    block = _plain(text, path).get("parts")
+    return cast("dict[int, Any]", block) if isinstance(block, dict) else {}
+
+
+def renumbered(text: str, path: Path, before: Sequence[Before], found: Sequence[ListedPart]) -> str:
+    """The text with a line for each part that there is, which says what it said by the number of before.
+
+    A part that is new has the height of the one that it was cut from, and no name.
+    Raises: ConfigError where `parts:` does not stand in lines of its own.
+    """
+    text = text if text.endswith("\n") else f"{text}\n"
+    said = said_of_parts(text, path)
+    parts = {number: _of(said, each) for number, each in enumerate(before)}
+    lines = "".join(f"{line}\n" for line in _lines(parts, before, found))
+    changed, times = BLOCK.subn(lambda _: f"parts:\n{lines}", text, count=1)
+    if not times or _plain(changed, path) != {**_plain(text, path), "parts": parts}:
+        raise ConfigError(f"{path}: `parts:` is no block of lines, a part each; number them by hand, as the table says")
+    return changed
+
+
+def _plain(text: str, path: Path) -> dict[Any, Any]:
+    return dict(plain(parse_source(text, path, "a configuration is a mapping that starts with `scene:`").tree))
+
+
+def _of(said: Mapping[int, Any], before: Before) -> Any:
+    if before.number is not None:
+        return said.get(before.number, {"name": ""})
+    height = _block(said.get(before.cut_from)).get("height_m")
+    return {"name": ""} if height is None else {"name": "", "height_m": height}
+
+
+def _lines(parts: Mapping[int, Any], before: Sequence[Before], found: Sequence[ListedPart]) -> Iterator[str]:
+    heads = [f"  {number}: {_flow(choice)}" for number, choice in parts.items()]
+    wide = max(map(len, heads))
+    for head, was, part in zip(heads, before, found, strict=True):
+        new = f"new, cut from what was {was.cut_from}" if was.number is None else ""
+        yield f"{head:<{wide}}   # {', '.join(filter(None, [part.where, new]))}"
+
+
+def _flow(value: Any) -> str:
+    """As YAML on one line."""
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key}: {_flow(each)}' for key, each in _block(value).items())}}}"
+    if isinstance(value, str) and LENGTH.fullmatch(value):
+        return value
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _block(choice: Any) -> dict[str, Any]:
+    """What is said of a part, in full."""
+    return cast("dict[str, Any]", choice) if isinstance(choice, dict) else {"name": choice}
+
+
+def _name(choice: Any) -> str:
+    return str(_block(choice).get("name") or "")

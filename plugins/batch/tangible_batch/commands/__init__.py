@@ -1,0 +1,22 @@
+"""The command for many scenes. Imported whenever `tangible` starts, so this room imports next to nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangible_core import hookimpl
+
+if TYPE_CHECKING:
+    from typer import Typer
+
+
+@hookimpl
+def tangible_commands(app: Typer) -> None:
+    """Add `tangible batch`."""
+    from tangible_core.cli.commands import add
+
+    add(
+        "batch",
+        "tangible_batch.commands.batch:batch",
+        "Run many pictures, or many settings, through one pipeline file.",
+    )

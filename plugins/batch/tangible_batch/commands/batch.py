@@ -1,0 +1,135 @@
+"""`batch`: many scenes through one pipeline file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tangible_core.cli.loudness import is_quiet
+from tangible_core.cli.options import FAILED, Config, Json, Sets
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from ..job import Row
+    from ..manifest import SceneRow
+    from ..running import Tally
+
+
+def batch(
+    config: Config,
+    over: Annotated[
+        str,
+        typer.Option(
+            "--over",
+            metavar="GLOB | FOLDER | rows.csv | rows.parquet",
+            help="Pictures and pairs, or rows of settings.",
+            show_default=False,
+        ),
+    ],
+    sets: Sets = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/NAME-batch].")] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes [default: one a core].")] = None,
+    threads: Annotated[
+        int | None, typer.Option(min=1, help="Threads of each [default: the cores shared among them].")
+    ] = None,
+    scheduler: Annotated[
+        str, typer.Option(metavar="tcp://HOST:PORT", help="Work on the machines of this Dask scheduler.")
+    ] = "",
+    retry: Annotated[bool, typer.Option("--retry", help="Make again what failed before.")] = False,
+    sheets: Annotated[bool, typer.Option("--sheets", help="Draw a whole report of each, not a card alone.")] = False,
+    cache: Annotated[
+        Path | None, typer.Option("--cache", help="Keep results of stages here, for scenes that share them.")
+    ] = None,
+    timeout: Annotated[
+        float | None, typer.Option(help="A scene that takes longer, s, is ended and fails [default: 3600].")
+    ] = None,
+    chunk: Annotated[int, typer.Option(min=1, help="Scenes that are handed out together, at most.")] = 4,
+    as_json: Json = False,
+) -> None:
+    """Run many pictures, or many settings, through one pipeline file.
+
+    Each scene becomes a row, whatever goes wrong with it. What was interrupted goes on where it stopped. Exit 1 if a
+    scene failed.
+    """
+    from tangible_core.cli import show
+    from tangible_core.errors import check_positive
+    from tangible_core.files.source import read_text
+    from tangible_core.pipeline.config.editing import with_overrides
+    from tangible_core.pipeline.output.run_folder import default_name
+
+    from ..farm import LONGEST_S
+    from ..jobs import BatchOptions
+    from ..manifest import rows_of
+    from ..results import ROWS, write_gallery, write_index
+    from ..running import Tally, Workforce, run_batch
+
+    timeout_s = LONGEST_S if timeout is None else timeout
+    check_positive("--timeout", timeout_s)
+    name = default_name(config)
+    place = out or Path("out", f"{name}-batch")
+    text = with_overrides(read_text(config), config, sets or [])
+    tally, who = Tally(), Workforce(workers, threads, scheduler)
+    options = BatchOptions(retry, sheets, cache, chunk, timeout_s)
+    wanted: list[str] = []
+    scenes = _noted(rows_of(over, besides=place), wanted)
+    rows = run_batch(text, config.absolute(), scenes, place, who, options, tally)
+    try:
+        for row in _watched(rows, tally, name):
+            if row["outcome"] != "ok" and not (as_json or is_quiet()):
+                show.note(f"{row['id']}: {row['error']}")
+    except KeyboardInterrupt:
+        show.note(f"interrupted; what was made is kept in {place}, and the same command goes on from there")
+        raise
+    written = [place / ROWS, write_index(place, wanted), *write_gallery(place, wanted)]
+    _print(tally, [str(path) for path in written], as_json)
+    if tally.failed:
+        raise typer.Exit(FAILED)
+
+
+def _noted(scenes: Iterable[SceneRow], names: list[str]) -> Iterator[SceneRow]:
+    for scene in scenes:
+        names.append(scene.id)
+        yield scene
+
+
+def _watched(rows: Iterator[Row], tally: Tally, name: str) -> Iterator[Row]:
+    """The rows; meanwhile it is shown how far they are, and how long the rest will take."""
+    from tangible_core.cli.sentences import approximately
+    from tangible_core.data import Outcome
+    from tangible_core.plugins import hooks
+    from tangible_core.plugins.registry import default_registry
+
+    plugins, since_s = default_registry().plugins, monotonic()
+    try:
+        for row in rows:
+            if tally.made:
+                left_s = (monotonic() - since_s) / tally.made * (tally.wanted - tally.kept - tally.made)
+                far = f"{tally.kept + tally.made} of {tally.wanted} scenes"
+                done = f"{far} ({tally.failed} failed, {approximately(left_s)} left)"
+                hooks.tell(plugins, "tangible_stage_started", product=done, method=name)
+            yield row
+    finally:
+        hooks.tell(plugins, "tangible_stage_finished", outcome=Outcome("scenes", "ran", "", name))
+
+
+def _print(tally: Tally, files: Sequence[str], as_json: bool) -> None:
+    from dataclasses import asdict
+
+    from tangible_core.cli import show
+
+    if as_json:
+        show.print_json({**asdict(tally), "files": files})
+    elif not is_quiet():
+        good = tally.wanted - tally.failed
+        kept = f", {tally.kept} of them before" if tally.kept else ""
+        again = f"; {tally.failed} failed: --retry makes these again" if tally.failed else ""
+        show.sentence(f"{good} of {tally.wanted} scenes are made{kept}{again}.")
+        for path in files[:MOST_FILES]:
+            show.plain(f"written: {path}")
+
+
+MOST_FILES = 4

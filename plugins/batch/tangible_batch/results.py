@@ -1,0 +1,112 @@
+"""What a batch leaves: rows as they came, and of all of them a table and a gallery."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from html import escape
+from itertools import islice
+from pathlib import Path
+from typing import Any, cast
+
+from tangible_core.files.json_lines import read_rows
+from tangible_core.files.writing import atomic_write, write_text
+
+from .extra import need
+from .job import Row
+
+ROWS, INDEX, GALLERY = "rows.jsonl", "index.parquet", "gallery"
+PER_PAGE = 500
+PER_PART = 200
+
+
+def kept_rows(out: Path) -> dict[str, Row]:
+    """The last row of each scene that the folder holds. Raises: ResultsError for a damaged file."""
+    return {str(row.get("id")): row for _, row in read_rows(out / ROWS)}
+
+
+def rows_of_scenes(out: Path, names: Iterable[str]) -> Iterator[Row]:
+    """The last row of each of these scenes, in the order of the file; one at a time, for there may be many."""
+    wanted = set(names)
+    last = {str(row.get("id")): number for number, row in read_rows(out / ROWS)}
+    lines = {number for name, number in last.items() if name in wanted}
+    return (row for number, row in read_rows(out / ROWS) if number in lines)
+
+
+def write_index(out: Path, names: Iterable[str]) -> Path:
+    """Rows of these scenes as a table, a column for each figure. Raises: BatchError without the extra, OutputError."""
+    arrow, parquet = need("pyarrow"), need("pyarrow.parquet")
+    names = list(names)
+    types: dict[str, Any] = {}
+    for row in rows_of_scenes(out, names):
+        for name, value in _flat("", row):
+            is_text = isinstance(value, str) or types.get(name) == arrow.string()
+            types[name] = arrow.string() if is_text else arrow.float64()
+    schema = arrow.schema(list(types.items()))
+    rows = (dict(_flat("", row)) for row in rows_of_scenes(out, names))
+    with atomic_write(out / INDEX) as file, parquet.ParquetWriter(file, schema, compression="zstd") as writer:
+        while part := list(islice(rows, PER_PART)):
+            columns = {
+                name: [_as(row.get(name), kind == arrow.string()) for row in part] for name, kind in types.items()
+            }
+            writer.write_table(arrow.table(columns, schema=schema))
+    return out / INDEX
+
+
+def write_gallery(out: Path, names: Iterable[str]) -> tuple[Path, ...]:
+    """Pages of cards of these scenes; beside each that failed stands why. Raises: OutputError."""
+    names = list(names)
+    paths = tuple(out / f"{GALLERY}{number or ''}.html" for number in range(max(1, -(-len(names) // PER_PAGE))))
+    rows = rows_of_scenes(out, names)
+    for path in paths:
+        write_text(path, _page(out.name, islice(rows, PER_PAGE), paths, path))
+    return paths
+
+
+def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """One level of columns, `figures.disparity.bad2`; lists as text."""
+    if isinstance(value, Mapping):
+        for key, each in cast("Mapping[str, Any]", value).items():
+            yield from _flat(f"{name}.{key}" if name else key, each)
+    elif isinstance(value, list):
+        yield name, "; ".join(map(str, cast("list[Any]", value)))
+    elif isinstance(value, str):
+        yield name, printable(value)
+    else:
+        yield name, None if value is None else float(value)
+
+
+def _as(value: Any, text: bool) -> Any:
+    """A column is of one type: text, where some of it is."""
+    return str(value) if text and value is not None else value
+
+
+def printable(text: str) -> str:
+    """Text that a file in UTF-8 can hold: names of files may hold bytes that are no characters."""
+    return text.encode(errors="replace").decode()
+
+
+def _page(title: str, rows: Iterable[Row], pages: Iterable[Path], own: Path) -> str:
+    links = " ".join(
+        f"<strong>{number}</strong>" if path == own else f'<a href="{path.name}">{number}</a>'
+        for number, path in enumerate(pages, 1)
+    )
+    figures = "\n".join(map(_figure, rows))
+    return (
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+        f"<style>{STYLE}</style></head>\n<body><h1>{escape(title)}</h1><nav>{links}</nav>\n<main>{figures}</main>"
+        "</body></html>\n"
+    )
+
+
+def _figure(row: Row) -> str:
+    name, error = escape(printable(row["id"])), escape(printable(row.get("error") or ""))
+    image = (
+        f'<img loading="lazy" src="{escape(row["folder"])}/{escape(row["card"])}" alt="">' if row.get("card") else ""
+    )
+    said = f" <em>{error}</em>" if error else ""
+    return f'<figure class="{row["outcome"]}">{image}<figcaption>{name}{said}</figcaption></figure>'
+
+
+STYLE = (
+    ":root{color-scheme:light dark;font-family:system-ui,sans-serif}main{display:flex;flex-wrap:wrap;gap:12px}"
+    "figure{margin:0;width:320px}img{max-width:100%}figure.failed{border-left:6px solid #b00020;padding-left:6px}"
+    "nav{margin-bottom:1em}figcaption{overflow-wrap:anywhere}"
+)

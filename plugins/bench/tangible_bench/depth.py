@@ -1,0 +1,194 @@
+"""How depth methods are compared: disparity against the truth, over all pixels and over those that both views show."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from tangible_core.data import DisparityMap, Views
+from tangible_core.errors import PictureError
+from tangible_core.metrics import benchmark_errors, disparity_errors, sparsification_errors
+from tangible_core.metrics.sparsification import LEFT, LEFT_BY_ORACLE
+from tangible_core.plugins.interfaces import DepthEstimator
+from tangible_core.scene.geometry import fill_rows
+from tangible_core.testing.synthetic.stereo_scenes import KnownPair
+
+from . import damage
+from .datasets import MarkedPair
+from .depth_scenes import DepthScene, size_of
+from .task import Curve, Measure, Perturbation, Task
+
+NOC, FULL = "_noc", "_full"
+STEP_PX = 16
+UNTOLD_PX = 256
+"""Of a pair whose truth and range nobody tells: what KITTI's pictures can hold."""
+Pair = KnownPair | MarkedPair
+QUANTILES = (50, 90, 95, 99)
+IN_PIXELS = (
+    *(f"bad{bound:g}" for bound in (0.5, 1, 2, 4)), "average_px", "rms_px", *(f"a{share}_px" for share in QUANTILES),
+)  # fmt: skip
+"""Measures that depend on what a pixel is: a set that comes in several sizes counts those of the largest."""
+
+
+def estimate(method: DepthEstimator, pair: Pair) -> DisparityMap:
+    """What is timed."""
+    return method.estimate(pair.views)
+
+
+def measure(found: DisparityMap, pair: Pair) -> dict[str, float]:
+    """Errors over all pixels with truth, and (`_noc`) over those of them that the right view shows too.
+
+    And how well the confidence sorts wrong pixels from right ones.
+
+    Of a pair of a standard set, what its benchmark measures besides; nothing of one without truth.
+    Raises: PictureError if the disparity is relative: it has no unit to compare.
+    """
+    if found.unit != "px":
+        raise PictureError(f"the disparity is {found.unit}, not in px; it cannot be compared with the ground truth")
+    if isinstance(pair, MarkedPair):
+        return _as_benchmarks_do(found.disparity_px, pair)
+    everywhere = disparity_errors(found.disparity_px, pair.truth_px)
+    both = disparity_errors(found.disparity_px, np.where(pair.visible, pair.truth_px, np.float32(np.nan)))
+    sorted_out = sparsification_errors(found.disparity_px, found.confidence, pair.truth_px)
+    return everywhere | {f"{name}{NOC}": value for name, value in both.items()} | sorted_out
+
+
+def _as_benchmarks_do(disparity_px: np.ndarray, pair: MarkedPair) -> dict[str, float]:
+    """Within the range that a set tells, as Middlebury's kit has it; a set without a mask for them has no noc."""
+    if pair.truth_px is None:
+        return {}
+    if pair.most_px is not None:
+        disparity_px = np.clip(disparity_px, 0, pair.most_px)
+    found: dict[str, float] = {}
+    for end, part in (("", None), (NOC, pair.noc)):
+        if part is None and end:
+            continue
+        truth_px = pair.truth_px if part is None else np.where(part, pair.truth_px, np.float32(np.nan))
+        figures = disparity_errors(disparity_px, truth_px) | benchmark_errors(disparity_px, truth_px, pair.foreground)
+        if pair.full_px is not None:
+            by = np.float32(pair.full_px)
+            whole = disparity_errors(by * disparity_px, by * truth_px)
+            whole |= benchmark_errors(by * disparity_px, by * truth_px)
+            figures |= {f"{name}{FULL}": whole[name] for name in IN_PIXELS}
+        found |= {f"{name}{end}": value for name, value in figures.items()}
+    return found
+
+
+def range_px(pair: Pair) -> int:
+    """The smallest multiple of 16 above every disparity, as OpenCV and most matchers count their range.
+
+    Of a standard set, what it tells; else by the truth.
+    """
+    if isinstance(pair, MarkedPair) and pair.most_px is not None:
+        return STEP_PX * math.ceil(pair.most_px / STEP_PX)
+    if pair.truth_px is None or not np.isfinite(pair.truth_px).any():
+        return UNTOLD_PX
+    return STEP_PX * (int(np.nanmax(pair.truth_px)) // STEP_PX + 1)
+
+
+def fill(found: DisparityMap) -> DisparityMap:
+    """Holes filled from the background in their row (`geometry.fill_rows`); a map without any value stays as it is."""
+    if np.isnan(found.disparity_px).all():
+        return found
+    return replace(found, disparity_px=fill_rows(found.disparity_px))
+
+
+def _both(change: Callable[[np.ndarray, float, int], np.ndarray]) -> Callable[[Pair, float], Pair]:
+    """The same damage to both views, with another seed for each."""
+
+    def apply(pair: Pair, value: float) -> Pair:
+        left, right = (change(view, value, seed) for seed, view in enumerate(_views(pair)))
+        return replace(pair, views=Views(left, right, pair.views.calibration))
+
+    return apply
+
+
+def _right(change: Callable[[np.ndarray, float], np.ndarray]) -> Callable[[Pair, float], Pair]:
+    """A damage to the right view alone: the two cameras disagree."""
+
+    def apply(pair: Pair, value: float) -> Pair:
+        left, right = _views(pair)
+        return replace(pair, views=Views(left, change(right, value), pair.views.calibration))
+
+    return apply
+
+
+def _views(pair: Pair) -> tuple[np.ndarray, np.ndarray]:
+    assert pair.views.right is not None  # DepthScene opens pairs only
+    return pair.views.left, pair.views.right
+
+
+PERTURBATIONS: Mapping[str, Perturbation] = {
+    "noise": Perturbation(
+        "standard deviation in grey levels of 255, both views, above 0", lambda sd: 0 < sd <= 255, _both(damage.noise)
+    ),
+    "gain": Perturbation("factor on the right view, above 0", lambda factor: 0 < factor <= 10, _right(damage.gain)),
+    "gamma": Perturbation("exponent on the right view, above 0", lambda power: 0 < power <= 10, _right(damage.gamma)),
+    "jpeg": Perturbation(
+        "quality 1 to 100, both views",
+        lambda quality: 1 <= quality <= 100,
+        _both(lambda view, quality, seed: damage.jpeg(view, quality)),
+    ),
+    "blur": Perturbation(
+        "sigma in pixels, both views, above 0",
+        lambda sigma: 0 < sigma <= 100,
+        _both(lambda view, sigma, seed: damage.blur(view, sigma)),
+    ),
+    "shift": Perturbation("rows by which the right view is too low", math.isfinite, _right(damage.shift_down)),
+}
+
+
+def _measures() -> dict[str, Measure]:
+    errors = {
+        **{f"bad{bound:g}": Measure(f"bad{bound:g} %", at_size=True) for bound in (0.5, 1, 2, 4)},
+        "average_px": Measure("average px", 3, tolerance=0.0005),
+        "rms_px": Measure("rms px", 3, tolerance=0.0005),
+        "density": Measure("density %", 1, "high"),
+    }
+    sorted_out = {
+        "ausc": Measure("sparsification %", 3, tolerance=0.0005),
+        "ausc_by_oracle": Measure("sparsification / oracle"),
+    }
+    return _with_noc(errors) | sorted_out | _with_noc(_of_benchmarks() | _at_full_size(errors | _of_benchmarks()))
+
+
+def _of_benchmarks() -> dict[str, Measure]:
+    quantiles = {f"a{share}_px": Measure(f"A{share} px", 3, tolerance=0.0005, of_sets=True) for share in QUANTILES}
+    titles = {"invalid": "invalid", "bad3": "bad3", "d1": "D1-all", "d1_bg": "D1-bg", "d1_fg": "D1-fg"}
+    return quantiles | {name: Measure(f"{title} %", of_sets=True) for name, title in titles.items()}
+
+
+def _at_full_size(known: Mapping[str, Measure]) -> dict[str, Measure]:
+    found: dict[str, Measure] = {}
+    for name in IN_PIXELS:
+        what, _, unit = known[name].title.partition(" ")
+        found[f"{name}{FULL}"] = replace(known[name], title=f"{what}@F {unit}", at_size=False, of_sets=True)
+    return found
+
+
+def _with_noc(measures: Mapping[str, Measure]) -> dict[str, Measure]:
+    hidden = {f"{name}{NOC}": replace(each, title=each.title.replace(" ", " noc ")) for name, each in measures.items()}
+    return {**measures, **hidden}
+
+
+TASK = Task(
+    kind="depth",
+    version=3,
+    scene=DepthScene,
+    work=estimate,
+    measure=measure,
+    measures=_measures(),
+    columns=("bad2", "bad2_noc", "bad1", "average_px", "density"),
+    plotted=("bad2", "bad2_noc", "ausc"),
+    curve=Curve(
+        "wrong among those left (bad2), %",
+        "least confident pixels removed, %",
+        LEFT,
+        LEFT_BY_ORACLE,
+    ),
+    perturbations=PERTURBATIONS,
+    given={"max_disparity_px": range_px},
+    finishes={"fill": fill},
+    size_of=size_of,
+)

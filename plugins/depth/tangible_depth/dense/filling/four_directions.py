@@ -1,0 +1,234 @@
+"""Disparity where none was found: from the known pixels round a gap.
+
+The four nearest known neighbours (left, right, above, below) are the candidates for a pixel, each with the grey steps
+crossed on the way from it, and at the left border what a detour leads to; `candidates` judges them.
+"""
+
+# ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Int16, Int32, Int64, UInt8
+from numba import int32, njit
+
+from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.threads import in_blocks
+
+from ..span import UNKNOWN
+from .candidates import ALIKE, DETOUR, NEVER, or_never, score, seen_from_the_right
+from .geodesic import detours
+
+LEFT, RIGHT, ABOVE, BELOW, ROUND = range(5)
+SHORT = 2
+"""Columns of a gap that is closed without asking, where both ends are alike."""
+
+
+def fill_from_four_directions(
+    disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]
+) -> Int16[np.ndarray, "h w"]:
+    """The map with every UNKNOWN pixel filled; known pixels keep their value, a map without any stays as it is.
+
+    disparity is in sixteenths of a pixel.
+    """
+    filled, left_over = _fill_once(disparity, grey)
+    if 0 < left_over < filled.size:  # some saw nothing along their row and column
+        filled, _ = _fill_once(filled, grey)
+    return filled
+
+
+def _fill_once(disparity: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"]) -> tuple[np.ndarray, int]:
+    """The map filled, and how many pixels could not be."""
+    out = np.empty_like(disparity)
+    found = detours(disparity, grey)
+    left_over: list[int] = []
+
+    def block(y0: int, y1: int) -> None:
+        left_over.append(_fill_rows(disparity, grey, y0, y1, found, _scratch(y1 - y0, disparity.shape[1]), out))
+
+    in_blocks(disparity.shape[0], block)
+    return out, sum(left_over)
+
+
+class _Scratch(NamedTuple):
+    """What filling some rows writes on."""
+
+    sides: Int16[np.ndarray, "5 w"]
+    paths: Int32[np.ndarray, "5 w"]
+    below: Int16[np.ndarray, "rows w"]
+    below_path: Int32[np.ndarray, "rows w"]
+    seen: Int16[np.ndarray, "w+2"]
+    columns: Int32[np.ndarray, "w"]
+    edges: Int64[np.ndarray, "w+1"]
+    missing: Bool[np.ndarray, "w"]
+
+
+def _scratch(rows: int, w: int) -> _Scratch:
+    return _Scratch(
+        np.empty((ROUND + 1, w), np.int16),
+        np.empty((ROUND + 1, w), np.int32),
+        np.empty((rows, w), np.int16),
+        np.empty((rows, w), np.int32),
+        np.empty(w + 2, np.int16),
+        np.empty(w, np.int32),
+        np.empty(w + 1, np.int64),
+        np.empty(w, np.bool_),
+    )
+
+
+@njit(**KERNEL)
+def _fill_rows(disparity, grey, y0, y1, found, scratch, out):
+    """Rows y0..y1-1; how many of their pixels could not be filled."""
+    w = disparity.shape[1]
+    left_over = 0
+    sides, paths, below, below_path, seen, columns, edges, missing = scratch
+    _scan_up(disparity, grey, y0, y1, below, below_path, sides[ABOVE], paths[ABOVE], missing)
+    _start_above(disparity, grey, y0, sides[ABOVE], paths[ABOVE], missing)
+    for y in range(y0, y1):
+        if y > 0:
+            _carry(disparity[y - 1], grey[y - 1], grey[y], sides[ABOVE], paths[ABOVE])
+        _copy(below[y - y0], sides[BELOW])
+        _copy(below_path[y - y0], paths[BELOW])
+        _copy(disparity[y], out[y])
+        seen_from_the_right(disparity[y], columns, seen)
+        for gap in range(0, _edges_of_gaps(disparity[y], edges), 2):
+            start, stop = edges[gap], edges[gap + 1]
+            if stop - start <= SHORT and start > 0 and stop < w and _alike(disparity[y, start - 1], disparity[y, stop]):
+                for x in range(start, stop):  # one of the many gaps between whole disparities
+                    out[y, x] = min(disparity[y, start - 1], disparity[y, stop])
+            else:
+                _scan_gap(disparity[y], grey[y], start, stop, sides, paths)
+                _go_round(found, y, start, stop, sides, paths)
+                for x in range(start, stop):
+                    out[y, x] = choose_of_four(sides, paths, x, seen)
+                    left_over += out[y, x] == UNKNOWN
+    return left_over
+
+
+@inner()
+def _alike(a, b):
+    """Whether two known disparities may be of one surface."""
+    return abs(int32(a) - int32(b)) <= ALIKE
+
+
+@inner()
+def choose_of_four(sides, paths, x, seen):
+    """The candidate of the highest score; UNKNOWN if there is none."""
+    left, right, above, below = sides[LEFT, x], sides[RIGHT, x], sides[ABOVE, x], sides[BELOW, x]
+    detour = sides[ROUND, x]
+    row_farthest = min(or_never(left), or_never(right))
+    farthest = min(row_farthest, or_never(above), or_never(below), or_never(detour))
+    if farthest == NEVER:
+        return UNKNOWN
+    if max(left, right, above, below, detour) - farthest <= ALIKE:
+        return np.int16(farthest if row_farthest == NEVER else row_farthest)
+    best, best_score = UNKNOWN, np.float32(-1e9)
+    for side in range(ROUND + (detour != UNKNOWN)):
+        value = int32(sides[side, x])
+        rated = score(value, paths[side, x], farthest, row_farthest, x, seen)
+        rated += np.float32(DETOUR) * np.float32(side == ROUND)
+        best = np.int16(value) if rated > best_score else best
+        best_score = max(rated, best_score)
+    return best
+
+
+@inner()
+def _edges_of_gaps(row, edges):
+    """Each gap's first column and the one after its last; how many numbers that are. Without a branch to guess."""
+    count = 0
+    inside = False
+    for x in range(row.size):
+        edges[count] = x
+        count += (row[x] == UNKNOWN) != inside
+        inside = row[x] == UNKNOWN
+    edges[count] = row.size
+    return count + inside
+
+
+@inner()
+def _copy(row, out):
+    """As `out[:] = row`, which numba does column by column."""
+    for x in range(row.size):
+        out[x] = row[x]
+
+
+@inner()
+def _carry(row, grey, next_grey, carried, path):
+    """Step from one row to the next: what is known there starts afresh, the rest goes on with its path."""
+    for x in range(row.size):
+        known = row[x] != UNKNOWN
+        carried[x] = row[x] if known else carried[x]
+        path[x] = (int32(0) if known else path[x]) + abs(int32(grey[x]) - int32(next_grey[x]))
+
+
+@inner()
+def _start(carried, path):
+    """Nothing known so far."""
+    for x in range(carried.size):
+        carried[x] = UNKNOWN
+        path[x] = 0
+
+
+@inner()
+def _scan_up(disparity, grey, y0, y1, below, path, carried, steps, missing):
+    """The nearest known value below each pixel of rows y0..y1-1, and the grey steps on the way."""
+    h = disparity.shape[0]
+    _start(carried, steps)
+    last = min(_reach(disparity, y1, 1, missing), h - 1)
+    for i in range(last - y0 + 1):
+        y = last - i
+        if y + 1 < h:
+            _carry(disparity[y + 1], grey[y + 1], grey[y], carried, steps)
+        if y < y1:
+            _copy(carried, below[y - y0])
+            _copy(steps, path[y - y0])
+
+
+@inner()
+def _start_above(disparity, grey, y0, carried, path, missing):
+    """The state of a downward scan that has reached row y0 - 1."""
+    _start(carried, path)
+    for y in range(max(_reach(disparity, y0 - 1, -1, missing), 0), y0 - 1):
+        _carry(disparity[y], grey[y], grey[y + 1], carried, path)
+
+
+@inner()
+def _reach(disparity, y, step, missing):
+    """The row at which, from row y on, every column has shown a known value; past the picture if some show none."""
+    for x in range(missing.size):
+        missing[x] = True
+    while 0 <= y < disparity.shape[0]:
+        count = 0
+        for x in range(missing.size):
+            missing[x] &= disparity[y, x] == UNKNOWN
+            count += missing[x]
+        if count == 0:
+            break
+        y += step
+    return y
+
+
+@inner()
+def _scan_gap(row, grey, start, stop, sides, paths):
+    """What the known pixels at both ends of a gap offer to each pixel in it."""
+    w = row.size
+    left = row[start - 1] if start > 0 else UNKNOWN
+    path = int32(0)
+    for x in range(start, stop):
+        path += abs(int32(grey[x]) - int32(grey[max(x - 1, 0)]))
+        sides[LEFT, x], paths[LEFT, x] = left, path
+    right = row[stop] if stop < w else UNKNOWN
+    path = int32(0)
+    for i in range(stop - start):
+        x = stop - 1 - i
+        path += abs(int32(grey[x]) - int32(grey[min(x + 1, w - 1)]))
+        sides[RIGHT, x], paths[RIGHT, x] = right, path
+
+
+@inner()
+def _go_round(found, y, start, stop, sides, paths):
+    """What detours offer to each pixel of a gap: something at the left border only."""
+    for x in range(start, stop):
+        at_border = x < found.first[y]
+        sides[ROUND, x] = found.values[y, x] if at_border else UNKNOWN
+        paths[ROUND, x] = found.lengths[y, x] if at_border else int32(0)

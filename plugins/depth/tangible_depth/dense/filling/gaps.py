@@ -1,0 +1,36 @@
+"""Gaps of a disparity map, pixels without a match, filled from the surfaces next to them: the entry to this room.
+
+`dense.refinement` calls `fill_gaps` after the speckle filter and before the median. To change the filling, read
+
+1. this module: which filling an effort takes;
+2. `candidates`: how a neighbour's disparity is scored, by both views and by the picture;
+3. `geodesic`: the candidate at the left border, where no known pixel may lie straight ahead;
+4. `four_directions` for `effort: balanced`, or `eight_directions` and `planes` for `effort: best`.
+"""
+
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Int16, UInt8
+
+from .eight_directions import fill_from_eight_directions
+from .four_directions import fill_from_four_directions
+from .planes import fit_planes
+
+Effort = Literal["balanced", "best"]
+"""The option `effort` of `semi-global`; all other methods fill as `balanced`."""
+
+
+def fill_gaps(
+    matched: Int16[np.ndarray, "h w"], grey: UInt8[np.ndarray, "h w"], effort: Effort = "balanced"
+) -> Int16[np.ndarray, "h w"]:
+    """Fill every UNKNOWN pixel of a map in sixteenths of a pixel; known pixels keep their value.
+
+    balanced: the best of the nearest known values in four directions. best: of those in eight directions, put onto the
+    plane of its surface, so that a slope goes on through a gap.
+    matched: the map (h, w); it is not changed, and a map without any known pixel is returned as it is.
+    grey: the left view. Returns: a new map (h, w).
+    """
+    if effort == "best":
+        return fit_planes(matched, fill_from_eight_directions(matched, grey), grey)
+    return fill_from_four_directions(matched, grey)

@@ -1,0 +1,133 @@
+"""By how much the rows of a pair miss each other, and putting that right.
+
+Half a pixel of vertical offset already costs a matcher of rows a good part of its matches.
+"""
+
+# ruff: noqa: ANN001, ANN202 -- numba finds the types of what it compiles; the docstrings say them
+
+import numpy as np
+from jaxtyping import Float32, Int16, Int64
+from numba import njit
+
+from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.threads import in_blocks
+from tangible_core.runtime.opencv import plain_opencv
+
+from ..dense.span import UNKNOWN
+from ..dense.subpixel import parabola
+from ..search.pairs import Pair
+
+CELL_PX, NEAR_PX, MOST_POINTS, LEAST_VOTES = 12, 1, 250, 20
+LEAST_ROW_OFFSET_PX = 0.3
+"""Smaller offsets of rows are left alone."""
+LEAST_EDGE = 40
+"""Sobel response over rows from which a pixel says something about its row."""
+RADIUS, REACH = 3, 2
+LEAST_CORRELATION, LEAST_BEND = 0.7, 0.02
+
+
+def row_votes(
+    pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.ndarray, "n columns"], factor: int = 1
+) -> Float32[np.ndarray, "votes"]:
+    """Row in the right view - row in the left view, in pixels, of up to MOST_POINTS horizontal edges on or near `rows`.
+
+    NaN where the views do not agree on an offset of a good pixel at most.
+    disparity: of these rows, in sixteenths of `factor` pixels, UNKNOWN where there is none.
+    """
+    points = np.empty((len(rows) * (pair.width // CELL_PX), 3), np.int64)
+    points = points[: _edge_points(pair.left, rows, disparity, factor, points)]
+    points = np.ascontiguousarray(points[:: 1 + len(points) // MOST_POINTS])
+    votes = np.full(len(points), np.nan, np.float32)
+
+    def block(first: int, last: int) -> None:
+        _vote(*pair, points, factor, first, last, np.empty(2 * REACH + 1, np.float32), votes)
+
+    in_blocks(len(points), block)
+    return votes
+
+
+def row_offset(pair: Pair, rows: Int64[np.ndarray, "n"], disparity: Int16[np.ndarray, "n w"], factor: int = 1) -> float:
+    """Median of the `row_votes`; 0 if they are too few."""
+    votes = row_votes(pair, rows, disparity, factor)
+    agreed = votes[np.isfinite(votes)]
+    return float(np.median(agreed)) if agreed.size >= LEAST_VOTES else 0.0
+
+
+def realigned(pair: Pair, row_offset_px: float) -> Pair:
+    """The pair with its right view moved up by `row_offset_px`, so that rows correspond; cubic between rows."""
+    import cv2
+
+    nearest = round(row_offset_px)
+    moved_px = nearest if abs(row_offset_px - nearest) < 0.15 else row_offset_px
+    move = np.array([[1, 0, 0], [0, 1, -moved_px]], np.float32)
+    with plain_opencv():
+        moved = cv2.warpAffine(
+            pair.right, move, pair.right.shape[::-1], flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
+        )
+    return Pair(pair.left, moved)  # pyright: ignore[reportArgumentType]
+
+
+@njit(**KERNEL)
+def _edge_points(left, rows, disparity, factor, points):
+    """Row, column and disparity of the strongest horizontal edge in each cell round the rows; returns how many."""
+    h, w = left.shape
+    count = 0
+    for i in range(rows.size):
+        for first in range(1, w - CELL_PX, CELL_PX):
+            strongest = np.int64(LEAST_EDGE)
+            for y in range(max(rows[i] - NEAR_PX, 1), min(rows[i] + NEAR_PX + 1, h - 1)):
+                up, down = left[y - 1], left[y + 1]
+                for x in range(first, first + CELL_PX):
+                    edge = np.int64(down[x - 1]) + 2 * down[x] + down[x + 1]
+                    edge = abs(edge - np.int64(up[x - 1]) - 2 * up[x] - up[x + 1])
+                    here = disparity[i, x // factor]
+                    if edge > strongest and here != UNKNOWN:
+                        strongest = edge
+                        points[count, 0], points[count, 1] = y, x
+                        points[count, 2] = (np.int64(here) * factor + 8) >> 4
+            count += strongest > LEAST_EDGE
+    return count
+
+
+@njit(**KERNEL)
+def _vote(left, right, points, slack, first, last, scores, votes):
+    """Sub-pixel row offset of the best correlation near each point; NaN where the match is poor. scores: scratch."""
+    h, w = left.shape
+    reach = scores.size >> 1
+    edge = RADIUS + reach
+    for p in range(first, last):
+        y, x, column = points[p, 0], points[p, 1], points[p, 1] - points[p, 2]
+        if not (edge <= y < h - edge and RADIUS <= x < w - RADIUS):
+            continue
+        if not (RADIUS + slack <= column < w - RADIUS - slack):
+            continue
+        for dy in range(-reach, reach + 1):
+            scores[dy + reach] = -1
+            for dx in range(-slack, slack + 1):
+                scores[dy + reach] = max(scores[dy + reach], _correlation(left, y, x, right, y + dy, column + dx))
+        best = 0
+        for i in range(1, scores.size):
+            best = i if scores[i] > scores[best] else best
+        if 0 < best < 2 * reach and scores[best] >= LEAST_CORRELATION:
+            before, at, after = scores[best - 1], scores[best], scores[best + 1]
+            if 2 * at - before - after > LEAST_BEND:
+                votes[p] = best - reach + parabola(before, at, after)
+
+
+@inner()
+def _correlation(left, y, x, right, v, u):
+    """Zero-mean normalised cross-correlation of two windows; -1 if either is nearly flat."""
+    a_sum = b_sum = aa = bb = ab = np.int32(0)
+    for i in range(-RADIUS, RADIUS + 1):
+        for j in range(-RADIUS, RADIUS + 1):
+            a, b = np.int32(left[y + i, x + j]), np.int32(right[v + i, u + j])
+            a_sum += a
+            b_sum += b
+            aa += a * a
+            bb += b * b
+            ab += a * b
+    n = (2 * RADIUS + 1) ** 2
+    a_spread, b_spread = n * aa - a_sum * a_sum, n * bb - b_sum * b_sum
+    if min(a_spread, b_spread) <= 4 * n * n:
+        return np.float32(-1)
+    return np.float32((n * ab - a_sum * b_sum) / np.sqrt(float(a_spread) * float(b_spread)))

@@ -1,0 +1,40 @@
+/** How long a newton is, and how long a length of the picture, where the cursor is: a bar at the lower left. */
+import type { View } from "../../view/view";
+import { t } from "../words";
+import { metresPerPixel, type Piece, type Sight } from "../piece";
+import type { Live } from "../../contact/reading";
+import { round, type Settings } from "../settings";
+
+const MOST_PX = 130;
+const EVERY_MS = 100;
+
+export class ScaleBar implements Piece {
+  late = false;
+  private box = document.createElement("div");
+  private bar = document.createElement("span");
+  private words = document.createElement("span");
+  private readMs = 0;
+
+  constructor(
+    layer: HTMLElement,
+    private view: View,
+  ) {
+    this.box.className = "scale-bar";
+    this.box.append(this.bar, this.words);
+    layer.append(this.box);
+  }
+
+  put(live: Live | null, { show, metresPerNewton }: Settings, sight: Sight): void {
+    this.box.hidden = !show.arrow;
+    const now = performance.now();
+    this.late = !this.box.hidden && now - this.readMs < EVERY_MS;
+    if (this.box.hidden || this.late) return;
+    this.readMs = now;
+    const pixel = metresPerPixel(sight, live?.contact ?? this.view.eye.pose.target);
+    const newtons = round((MOST_PX * pixel) / metresPerNewton);
+    const metres = newtons * metresPerNewton;
+    this.bar.style.width = `${(metres / pixel).toFixed(1)}px`;
+    const text = t("scale", { newtons, mm: Number((1000 * metres).toPrecision(3)) });
+    if (this.words.textContent !== text) this.words.textContent = text;
+  }
+}

@@ -1,0 +1,40 @@
+/** Asks whether a device with a motor may be started, and says what will happen. */
+import { button } from "../../elements";
+import { t } from "./words";
+
+export interface About {
+  name: string;
+  simulated: boolean;
+  most_force_n: number;
+  relief_m: number;
+}
+
+/** Whether the person said yes; anything else is no, and the first thing that has the focus is no. */
+export function sure(about: About): Promise<boolean> {
+  const dialog = document.createElement("dialog");
+  dialog.className = "sure";
+  const heading = Object.assign(document.createElement("h2"), { id: "sure-title", textContent: t("sureTitle", { name: about.name }) });
+  dialog.setAttribute("aria-labelledby", heading.id);
+  const said = [
+    t("sure"),
+    t("sureForce", { force: about.most_force_n.toFixed(1) }),
+    t("sureRelief", { relief: (1000 * about.relief_m).toFixed(0) }),
+  ].join(" ");
+  const texts = [said, t("sureHands")].map((text) => Object.assign(document.createElement("p"), { textContent: text }));
+  const buttons = document.createElement("div");
+  buttons.className = "buttons";
+  const no = button(t("no"), () => dialog.close());
+  no.autofocus = true;
+  const yes = button(t("yes"), () => dialog.close("yes"));
+  yes.id = "sure-yes";
+  buttons.append(no, yes);
+  dialog.append(heading, ...texts, buttons);
+  document.body.append(dialog);
+  dialog.showModal();
+  return new Promise((done) => {
+    dialog.addEventListener("close", () => {
+      dialog.remove();
+      done(dialog.returnValue === "yes");
+    });
+  });
+}

@@ -1,0 +1,77 @@
+/** The hand of this page: whether it is felt, what moves it, and how deep it presses. */
+import { button, field, hint } from "../../elements";
+import { PRESS_M, type Hand } from "../../hand/hand";
+import type { Page } from "../../page";
+import type { Panel } from "../panel";
+import { t } from "../../hand/words";
+
+function build(page: Page, root: HTMLElement): void {
+  const told = Object.assign(document.createElement("p"), { id: "hand-held" });
+  const take = Object.assign(button(t("take"), () => page.hand?.take()), { hidden: true });
+  const moved = document.createElement("p");
+  const press = slider();
+  const value = document.createElement("output");
+  press.oninput = () => {
+    if (page.hand) page.hand.pressM = Number(press.value) / 1000;
+    show();
+  };
+  const ways = document.createElement("fieldset");
+  const legend = Object.assign(document.createElement("legend"), { textContent: t("moves") });
+  ways.append(legend, way("surface", false), way("space", true));
+  const depth = field(t("press"), press);
+  depth.append(value);
+  const hints = (["howMouse", "howFinger", "howKeys"] as const).map((each) => hint(t(each)));
+  const pad = hint(t("padThere"));
+  root.append(told, take, moved, ways, depth, ...hints, pad);
+
+  function way(name: "surface" | "space", free: boolean): HTMLLabelElement {
+    const label = document.createElement("label");
+    const input = Object.assign(document.createElement("input"), { type: "radio", name: "hand-way", value: name, checked: !free });
+    input.onchange = () => page.hand?.free(free);
+    label.append(input, t(name));
+    return label;
+  }
+
+  function show(): void {
+    value.textContent = t("millimetres", { value: Number(press.value).toFixed(1) });
+    press.setAttribute("aria-valuetext", value.textContent);
+  }
+
+  function hear(hand: Hand): void {
+    told.textContent = t(held(hand));
+    take.hidden = !hand.there || hand.holding || hand.rests;
+    moved.textContent = `${t("movedBy")}: ${t(hand.by ?? "nothing")}`;
+    pad.hidden = !hand.pads;
+    for (const each of ways.querySelectorAll("input")) each.checked = (each.value === "space") === hand.isFree;
+  }
+
+  page.hub.on("hand", hear);
+  page.hub.on("drawn", () => {
+    const mm = (1000 * (page.hand?.pressM ?? 0)).toFixed(1); // wheel, trigger and pen change it too
+    if (document.activeElement === press || Number(press.value).toFixed(1) === mm) return;
+    press.value = mm;
+    show();
+  });
+  if (page.hand) hear(page.hand);
+  show();
+}
+
+type Held = "gone" | "rests" | "holds" | "nobody" | "watches";
+
+/** Who holds the hand, as a word of the table. */
+export function held(hand: Pick<Hand, "there" | "holding" | "nobodyHolds" | "rests">): Held {
+  if (!hand.there) return "gone";
+  if (hand.rests) return "rests";
+  if (hand.holding) return "holds";
+  return hand.nobodyHolds ? "nobody" : "watches";
+}
+
+function slider(): HTMLInputElement {
+  const made = document.createElement("input");
+  const mm = (metres: number): string => (1000 * metres).toFixed(1);
+  return Object.assign(made, {
+    id: "press", type: "range", min: mm(PRESS_M.least), max: mm(PRESS_M.most), step: "0.1", value: mm(PRESS_M.first),
+  });
+}
+
+export const hand: Panel = { id: "hand", title: t("title"), place: "right", open: false, build };

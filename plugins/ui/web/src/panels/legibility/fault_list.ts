@@ -1,0 +1,55 @@
+/** The places at which a verdict fails, in words, each with a button that leads there. */
+import { button, paragraph } from "../../elements";
+import type { Verdict } from "../../server/messages";
+import type { Page } from "../../page";
+import { t } from "./words";
+import { ninth } from "../../words/place_words";
+import type { Fault, Marks } from "./fault_marks";
+
+/** Of one verdict; a picture with more than that has one fault all over. */
+const MOST = 9;
+
+/** The places of all verdicts that fail, numbered in their order. */
+export function faults(verdicts: Verdict[]): Map<Verdict, Fault[]> {
+  let number = 0;
+  const failing = verdicts.filter((each) => each.verdict !== "ok" && each.at?.length);
+  return new Map(failing.map((each) => [each, each.at!.slice(0, MOST).map((at) => ({ number: ++number, at }))]));
+}
+
+export function places(page: Page, said: Verdict, all: Fault[], marks: Marks): HTMLElement {
+  const box = document.createElement("div");
+  box.className = "places";
+  const list = document.createElement("ol");
+  list.setAttribute("aria-label", t("places"));
+  list.append(...all.map((each) => line(page, each, marks)));
+  box.append(list);
+  const rest = said.at!.length - all.length;
+  if (rest) box.append(paragraph(t("more", { count: rest }), "hint"));
+  return box;
+}
+
+function line(page: Page, fault: Fault, marks: Marks): HTMLElement {
+  const { number, at } = fault;
+  const where = ninth(...at);
+  const part = partAt(page, at);
+  const go = button(`${number}`, () => {
+    marks.look(at);
+    const [x, y] = at.map((share) => Math.round(100 * share));
+    page.say(t("placeSaid", { number, x, y, part: part || t("noPart") }), { topic: "place", asked: true });
+  });
+  const words = part ? t("placeIn", { number, where, part }) : t("place", { number, where });
+  go.className = "chip";
+  go.title = words;
+  go.setAttribute("aria-label", words);
+  for (const name of ["mouseenter", "focus"]) go.addEventListener(name, () => marks.point(number));
+  for (const name of ["mouseleave", "blur"]) go.addEventListener(name, () => marks.point(null));
+  const item = document.createElement("li");
+  item.append(go);
+  return item;
+}
+
+function partAt({ scene }: Page, [x, y]: [number, number]): string {
+  if (!scene) return "";
+  const [w, l] = scene.meta.extent_m;
+  return scene.part((x - 0.5) * w, (0.5 - y) * l);
+}

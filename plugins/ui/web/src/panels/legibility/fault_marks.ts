@@ -1,0 +1,58 @@
+/** Numbered places of the picture, drawn over the surface; in words they stand in the panel, so these are hidden there. */
+import type { Page } from "../../page";
+import type { Vec } from "../../server/protocol";
+
+/** A place of the picture: shares from the left and from the top. */
+export interface Fault {
+  number: number;
+  at: [number, number];
+}
+
+/** How much of the width is looked at when a place is. */
+const NEAR = 0.3;
+
+export class Marks {
+  private shown = true;
+  private away: (() => void)[] = [];
+  private elements = new Map<number, HTMLElement>();
+
+  constructor(private page: Page) {}
+
+  set visible(on: boolean) {
+    this.shown = on;
+    this.page.overlay.changed = true;
+  }
+
+  put(faults: Fault[]): void {
+    for (const each of this.away) each();
+    this.elements.clear();
+    this.away = faults.map(({ number, at }) => {
+      const element = document.createElement("div");
+      element.className = "fault";
+      element.setAttribute("aria-hidden", "true");
+      element.append(`${number}`);
+      this.elements.set(number, element);
+      return this.page.overlay.stay(element, () => (this.shown ? this.where(at) : null));
+    });
+    this.page.overlay.changed = true;
+  }
+
+  /** Which one is spoken of; none with null. */
+  point(number: number | null): void {
+    for (const [each, element] of this.elements) element.classList.toggle("pointed", each === number);
+  }
+
+  /** Bring the camera near a place. */
+  look(at: [number, number]): void {
+    const { scene, view } = this.page;
+    const there = this.where(at);
+    if (scene && there) view.focus(there, NEAR * scene.meta.extent_m[0]);
+  }
+
+  private where([x, y]: [number, number]): Vec | null {
+    const { scene } = this.page;
+    if (!scene) return null;
+    const [w, l] = scene.meta.extent_m;
+    return scene.on((x - 0.5) * w, (0.5 - y) * l);
+  }
+}

@@ -1,0 +1,41 @@
+/** How the picture lies under the hand: a frame to drag, and a part to feel enlarged. */
+import "../overlay/overlay.css";
+import { button } from "../../elements";
+import { MappingFrame } from "../../overlay/tools/mapping_frame";
+import type { Page } from "../../page";
+import type { Panel } from "../panel";
+import { t } from "../../overlay/words";
+
+function build(page: Page, root: HTMLElement): void {
+  const frame = new MappingFrame(page);
+  const show = document.createElement("input");
+  show.type = "checkbox";
+  show.onchange = () => frame.show(show.checked);
+  const label = document.createElement("label");
+  label.append(show, t("frameShow"));
+  const says = document.createElement("p");
+  const help = document.createElement("small");
+  help.textContent = t("frameHelp");
+  const buttons = document.createElement("div");
+  buttons.className = "buttons";
+  const region = button(t("zoomRegion"), () => frame.toggleRegion());
+  buttons.append(region, button(t("zoomHere"), () => frame.zoomHere()), button(t("whole"), () => frame.whole()));
+  root.append(label, says, help, buttons);
+  frame.changed = () => {
+    region.setAttribute("aria-pressed", `${frame.picking}`);
+    help.hidden = !frame.shown;
+    says.textContent = words(frame);
+  };
+  frame.changed();
+}
+
+function words(frame: MappingFrame): string {
+  const now = frame.reach;
+  if (!now) return "";
+  const [width, length] = now.size.map((side) => (1000 * side).toFixed(1));
+  return frame.bounded
+    ? t("reaches", { device: frame.device, width, length, degrees: now.turnDeg.toFixed(0) })
+    : t("reachesAll", { width, length });
+}
+
+export const mapping: Panel = { id: "mapping-panel", title: t("mapping"), place: "right", open: false, build };

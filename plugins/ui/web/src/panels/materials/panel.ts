@@ -1,0 +1,126 @@
+/** Which segment is which material, why, and how much of the surface; and the library with figures and sources. */
+import { headed } from "../../elements";
+import { Editor } from "../../forms/editor";
+import { LIBRARY } from "../../forms/rows";
+import type { Material, Segment } from "../../server/messages";
+import type { Page } from "../../page";
+import type { Panel } from "../panel";
+import { t } from "./words";
+import { chosen } from "./edit";
+import "./materials.css";
+
+type Listed = Material & { source: string };
+
+function build(page: Page, root: HTMLElement): void {
+  const editor = new Editor(page);
+  const none = document.createElement("p");
+  none.className = "hint";
+  none.textContent = t("none");
+  const refused = document.createElement("p");
+  refused.className = "bad";
+  refused.setAttribute("role", "status");
+  editor.onRefused = (why) => (refused.textContent = why);
+  const table = headed(t("segments"), [t("segment"), t("material"), t("share")], "materials");
+  const body = table.createTBody();
+  const library = document.createElement("details");
+  const heading = document.createElement("summary");
+  heading.textContent = t("libraryAlone");
+  library.append(heading);
+  const list = document.createElement("datalist");
+  list.id = LIBRARY;
+  root.append(none, refused, table, library, list);
+  let names: string[] = [];
+  let segments: Segment[] = [];
+  let of = "";
+
+  const show = (): void => {
+    none.hidden = segments.length > 0;
+    table.hidden = !segments.length;
+    while (body.rows.length > segments.length) body.deleteRow(-1);
+    segments.forEach((each, at) => fill(body.rows[at] ?? line(body.insertRow()), each, names));
+  };
+  const load = async (): Promise<void> => {
+    const file = JSON.stringify(page.document?.values?.materials ?? "");
+    if (!page.document?.values || of === file) return;
+    of = file;
+    const found = await page.net.ask<Listed[]>("library").catch(() => null);
+    if (!found) return void (of = "");
+    names = found.map(({ name }) => name);
+    list.replaceChildren(...names.map((each) => new Option(each, each)));
+    heading.textContent = t("library", { count: found.length });
+    library.replaceChildren(heading, figures(found));
+    show();
+  };
+  page.hub.on("materials", (said) => {
+    segments = said.segments;
+    refused.textContent = "";
+    void page.leisure.then(load);
+    show();
+  });
+  body.onchange = ({ target }) => {
+    const select = target as HTMLSelectElement;
+    const { label, why } = segments[Number(select.dataset.at)];
+    refused.textContent = "";
+    editor.change(chosen(page.document?.said, label, select.value, why));
+  };
+}
+
+function line(row: HTMLTableRowElement): HTMLTableRowElement {
+  const label = document.createElement("th");
+  label.scope = "row";
+  const select = document.createElement("select");
+  const why = document.createElement("p");
+  why.className = "hint";
+  why.lang = "en";
+  row.append(label);
+  row.insertCell().append(select, why);
+  row.insertCell().className = "number";
+  return row;
+}
+
+/** A row that is there stays, so that a select which has focus keeps it. */
+function fill(row: HTMLTableRowElement, { label, material, why, share }: Segment, names: string[]): void {
+  const [head, choice, area] = row.cells;
+  head.textContent = String(label);
+  const select = choice.querySelector("select")!;
+  select.dataset.at = String(row.sectionRowIndex);
+  select.setAttribute("aria-label", t("choose", { label }));
+  const all = names.includes(material) ? names : [material, ...names];
+  if (select.options.length !== all.length) select.replaceChildren(...all.map((each) => new Option(each, each)));
+  select.value = material;
+  const reason = choice.querySelector("p")!;
+  reason.id = `material-why-${label}`;
+  reason.textContent = why.replace(/^segment \d+: /, "").replace(/ -> .*$/, "");
+  select.setAttribute("aria-describedby", reason.id);
+  area.textContent = `${(100 * share).toPrecision(share < 0.1 ? 2 : 3)} %`;
+}
+
+function figures(library: Listed[]): HTMLElement {
+  const box = document.createElement("div");
+  box.className = "wide";
+  box.tabIndex = 0;
+  box.setAttribute("role", "region");
+  box.setAttribute("aria-label", t("libraryAlone"));
+  const columns = ["name", "stiffness", "damping", "friction", "roughness", "grain", "texture", "source"] as const;
+  const table = headed(t("libraryAlone"), columns.map((each) => t(each)), "materials");
+  const body = table.createTBody();
+  for (const each of library) {
+    const row = body.insertRow();
+    const name = document.createElement("th");
+    name.scope = "row";
+    name.textContent = each.name;
+    row.append(name);
+    for (const said of [
+      each.stiffness_n_per_m, each.damping_n_s_per_m, `${each.static_friction} / ${each.dynamic_friction}`,
+      round(1e6 * each.roughness_m), round(1e3 * each.grain_m), each.texture, each.source,
+    ]) row.insertCell().textContent = String(said);
+  }
+  box.append(table);
+  return box;
+}
+
+function round(value: number): number {
+  return Number(value.toPrecision(3));
+}
+
+export const materials: Panel = { id: "materials", title: t("title"), place: "left", open: false, build };

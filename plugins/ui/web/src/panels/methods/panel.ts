@@ -1,0 +1,71 @@
+/** The methods of the document, as forms; run and stop; one step back and forth. */
+import { button } from "../../elements";
+import { complain } from "../../forms/complaints";
+import { Editor } from "../../forms/editor";
+import { SectionForm } from "../../forms/section";
+import { sections } from "../../forms/sections";
+import type { FileSchema } from "../../forms/schema";
+import type { Page } from "../../page";
+import type { Panel } from "../panel";
+import { t } from "../../forms/words";
+import { running } from "./run_controls";
+import "./methods.css";
+
+function build(page: Page, root: HTMLElement): void {
+  const editor = new Editor(page);
+  const complaints = document.createElement("div");
+  complaints.className = "complaints";
+  complaints.tabIndex = -1;
+  complaints.hidden = true;
+  const forms = document.createElement("div");
+  forms.textContent = t("waiting");
+  let shown: SectionForm[] = [];
+  let loading = false;
+  const refused = document.createElement("p");
+  refused.className = "bad";
+  refused.setAttribute("role", "status");
+  editor.onRefused = (why) => (refused.textContent = why);
+
+  const show = (): void => {
+    if (!page.document) return;
+    refused.textContent = "";
+    if (page.document.said) for (const each of shown) each.show(page.document);
+    complain(root, complaints, page.document.complaints);
+  };
+  const load = async (): Promise<void> => {
+    if (shown.length || loading) return;
+    loading = true;
+    const schema = await page.net.ask<FileSchema>("schema").finally(() => (loading = false));
+    shown = sections(schema).map((each) => new SectionForm(each, (edit) => editor.change(edit)));
+    forms.replaceChildren(...shown.map((each) => each.root));
+    show();
+  };
+
+  const compare = document.createElement("p");
+  compare.className = "hint";
+  compare.textContent = t("compare");
+  root.append(running(page, editor), refused, complaints, steps(page, editor), forms, compare);
+  page.hub.on("document", () => {
+    show();
+    void page.leisure.then(load).catch(() => undefined); // all methods are loaded for their schema
+  });
+}
+
+function steps(page: Page, editor: Editor): HTMLElement {
+  const box = document.createElement("div");
+  box.className = "buttons";
+  const undo = button(t("undo"), () => editor.step("undo"));
+  const redo = button(t("redo"), () => editor.step("redo"));
+  undo.id = "undo";
+  redo.id = "redo";
+  box.append(undo, redo);
+  const able = (): void => {
+    undo.setAttribute("aria-disabled", String(!page.document?.can_undo));
+    redo.setAttribute("aria-disabled", String(!page.document?.can_redo));
+  };
+  able();
+  page.hub.on("document", able);
+  return box;
+}
+
+export const methods: Panel = { id: "methods", title: t("title"), place: "left", open: true, build };

@@ -1,0 +1,233 @@
+/** The list of the parts from front to back, and what is said of the selected one. */
+import { button, field, hint } from "../../../elements";
+import { t } from "../editor/words";
+import type { Drawing, Part } from "../drawing/drawing";
+import { fromFront } from "../drawing/order";
+import { called, heightOf } from "../editor/part_words";
+
+/** Of the keys in the list, in metres. */
+const STEPS_M = { usual: 0.0002, fine: 0.00005, coarse: 0.001 };
+const MM = 1000;
+
+export class Side {
+  readonly list = document.createElement("ul");
+  readonly said = document.createElement("fieldset");
+  readonly name = input("parts-name", "text");
+  /** What number a part will have in the file. */
+  numberOf: (label: number) => number = (label) => label;
+  /** Whether a part is felt as it is drawn; which parts touch the selected one; hears which one was selected, and moved. */
+  isFelt: (label: number) => boolean = () => true;
+  neighbours: Part[] = [];
+  chose: (label: number) => void = () => undefined;
+  ordered: () => void = () => undefined;
+  joined: (label: number) => void = () => undefined;
+  private rows = new Map<number, HTMLLIElement>();
+  private height = input("parts-height", "range");
+  private exact = input("parts-height-mm", "number");
+  private material = select("parts-material");
+  private other = select("parts-join");
+  private later = hint(t("feltLater"));
+  private join = button(t("join"), () => this.other.value && this.joined(Number(this.other.value)));
+  private complaints = new Map<HTMLElement, HTMLElement>();
+  private dragged = false;
+
+  constructor(
+    private drawing: Drawing,
+    materials: string[],
+  ) {
+    this.list.setAttribute("role", "listbox");
+    this.list.setAttribute("aria-label", t("list"));
+    this.list.id = "parts-list";
+    this.list.tabIndex = 0;
+    this.list.addEventListener("keydown", (event) => this.key(event));
+    this.list.addEventListener("click", ({ target }) => {
+      const label = (target as HTMLElement).closest("li")?.dataset.label;
+      if (label !== undefined) this.chose(Number(label));
+    });
+    this.material.add(new Option(t("byRules"), ""));
+    for (const each of materials) this.material.add(new Option(each, each));
+    this.build();
+  }
+
+  /** As the drawing is now. */
+  show(): void {
+    const { parts, selected } = this.drawing;
+    if (!this.dragged) this.showList();
+    else for (const part of parts) this.fill(this.rows.get(part.label)!, part);
+    this.list.setAttribute("aria-activedescendant", `parts-option-${selected}`);
+    const part = this.drawing.part(selected);
+    if (part) this.showPart(part);
+  }
+
+  private build(): void {
+    const legend = document.createElement("legend");
+    legend.textContent = t("selected");
+    const top = String(Math.round(1e5 * this.drawing.top_m) / 100);
+    for (const each of [this.height, this.exact]) Object.assign(each, { min: "0", max: top, step: "0.05" });
+    this.name.autocomplete = "off";
+    this.name.addEventListener("input", () => this.rename());
+    this.name.addEventListener("keydown", (event) => event.key === "Enter" && this.list.focus());
+    this.height.addEventListener("input", () => this.raise(this.height.valueAsNumber / MM, true));
+    this.exact.addEventListener("input", () => this.raise(this.exact.valueAsNumber / MM, true));
+    for (const each of [this.name, this.height, this.exact]) each.addEventListener("change", () => this.ended());
+    this.material.addEventListener("change", () => this.set({ material: this.material.value || null }));
+    const order = document.createElement("div");
+    order.className = "buttons";
+    order.append(button(t("forward"), () => this.order(1)), button(t("backward"), () => this.order(-1)));
+    const join = document.createElement("div");
+    join.className = "with-button";
+    join.append(field(t("joinWith"), this.other), this.join);
+    this.said.append(
+      legend, field(t("name"), this.name), this.complaint(this.name), field(t("height"), this.height),
+      field(t("heightMm"), this.exact), this.complaint(this.exact), this.later, field(t("material"), this.material), order, join,
+    );
+  }
+
+  private complaint(control: HTMLElement): HTMLElement {
+    const box = Object.assign(document.createElement("p"), { className: "bad", id: `${control.id}-complaint`, hidden: true });
+    box.setAttribute("role", "alert");
+    this.complaints.set(control, box);
+    return box;
+  }
+
+  /** At the field, or (empty) nothing any more. */
+  private complain(control: HTMLElement, text: string): boolean {
+    const box = this.complaints.get(control)!;
+    box.hidden = !text;
+    box.textContent = text;
+    if (text) {
+      control.setAttribute("aria-invalid", "true");
+      control.setAttribute("aria-describedby", box.id);
+    } else for (const each of ["aria-invalid", "aria-describedby"]) control.removeAttribute(each);
+    return !text;
+  }
+
+  private showList(): void {
+    const wanted = fromFront(this.drawing.parts);
+    for (const [label, row] of this.rows)
+      if (!this.drawing.part(label)) {
+        row.remove();
+        this.rows.delete(label);
+      }
+    wanted.forEach((part, i) => {
+      const row = this.rows.get(part.label) ?? this.row(part.label);
+      if (this.list.children[i] !== row) this.list.insertBefore(row, this.list.children[i] ?? null);
+      this.fill(row, part);
+    });
+  }
+
+  private row(label: number): HTMLLIElement {
+    const row = document.createElement("li");
+    row.setAttribute("role", "option");
+    row.id = `parts-option-${label}`;
+    row.dataset.label = String(label);
+    const bar = document.createElement("meter");
+    bar.max = this.drawing.top_m || 1;
+    bar.setAttribute("aria-hidden", "true");
+    row.append(...["number", "name", "height"].map((className) => Object.assign(document.createElement("span"), { className })), bar);
+    this.rows.set(label, row);
+    return row;
+  }
+
+  private fill(row: HTMLLIElement, part: Part): void {
+    const number = this.numberOf(part.label);
+    const texts = [String(number), called(part, number), heightOf(part)];
+    texts.forEach((text, i) => row.children[i]!.textContent !== text && (row.children[i]!.textContent = text));
+    (row.lastElementChild as HTMLMeterElement).value = part.height_m;
+    const chosen = part.label === this.drawing.selected;
+    if (row.ariaSelected === String(chosen)) return;
+    row.ariaSelected = String(chosen);
+    if (chosen) row.scrollIntoView({ block: "nearest" });
+  }
+
+  private showPart(part: Part): void {
+    if (document.activeElement !== this.name || this.name.dataset.label !== String(part.label)) {
+      this.name.value = part.name;
+      this.name.dataset.label = String(part.label);
+      this.complain(this.name, "");
+    }
+    const mm = (MM * part.height_m).toFixed(2);
+    this.height.value = mm;
+    this.height.setAttribute("aria-valuetext", heightOf(part));
+    if (document.activeElement !== this.exact) {
+      this.exact.value = mm;
+      this.complain(this.exact, "");
+    }
+    this.later.hidden = this.isFelt(part.label);
+    const named = part.material ?? "";
+    if (![...this.material.options].some((each) => each.value === named)) this.material.add(new Option(named, named));
+    this.material.value = named;
+    this.showNeighbours();
+  }
+
+  showNeighbours(): void {
+    const options = this.neighbours.map((each) => new Option(called(each, this.numberOf(each.label)), String(each.label)));
+    const said = options.map((each) => each.outerHTML).join("");
+    if (this.other.dataset.said === said) return;
+    this.other.dataset.said = said;
+    this.other.replaceChildren(...(options.length ? options : [new Option(t("noNeighbour"), "")]));
+    this.join.disabled = !options.length;
+  }
+
+  private set(change: Partial<Part>, gesture = ""): void {
+    this.drawing.set(new Map([[this.drawing.selected, change]]), gesture && `${gesture} ${this.drawing.selected}`);
+  }
+
+  private rename(): void {
+    const name = this.name.value.trim();
+    const { parts, selected } = this.drawing;
+    const twice = name !== "" && parts.some((each) => each.label !== selected && each.name === name);
+    if (this.complain(this.name, twice ? t("nameTwice") : "")) this.set({ name }, "name");
+  }
+
+  private raise(height_m: number, dragged: boolean): void {
+    const top_m = Number(this.exact.max) / MM;
+    const fits = height_m >= 0 && height_m <= top_m;
+    if (!this.complain(this.exact, fits ? "" : t("tooHigh", { top: this.exact.max }))) return;
+    this.dragged = dragged;
+    this.set({ height_m, automatic: false }, "height");
+  }
+
+  /** The drag is over: what moved to the front in it moves in the list. */
+  private ended(): void {
+    this.dragged = false;
+    this.drawing.endGesture();
+    this.show();
+  }
+
+  private order(by: number): void {
+    this.drawing.order(this.drawing.selected, by);
+    this.ordered();
+  }
+
+  private key(event: KeyboardEvent): void {
+    const { key, altKey, ctrlKey, shiftKey } = event;
+    const all = fromFront(this.drawing.parts).map((each) => each.label);
+    const at = all.indexOf(this.drawing.selected);
+    const walk: Record<string, number> = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: all.length - 1 };
+    if (altKey && (key === "ArrowUp" || key === "ArrowDown")) this.order(key === "ArrowUp" ? 1 : -1);
+    else if (key === "ArrowLeft" || key === "ArrowRight") {
+      const step = STEPS_M[ctrlKey ? "coarse" : shiftKey ? "fine" : "usual"];
+      this.nudge(key === "ArrowRight" ? step : -step);
+    } else if (key in walk) this.chose(all[Math.max(0, Math.min(all.length - 1, walk[key]!))]!);
+    else if (key === "Enter") this.name.select();
+    else return;
+    event.preventDefault();
+  }
+
+  private nudge(by: number): void {
+    const part = this.drawing.part(this.drawing.selected);
+    if (!part) return;
+    const height = Math.round(1e5 * (part.height_m + by)) / 1e5;
+    this.raise(Math.max(0, Math.min(Number(this.exact.max) / MM, height)), false);
+    this.ordered();
+  }
+}
+
+export function input(id: string, type: string): HTMLInputElement {
+  return Object.assign(document.createElement("input"), { id, type });
+}
+
+export function select(id: string): HTMLSelectElement {
+  return Object.assign(document.createElement("select"), { id });
+}

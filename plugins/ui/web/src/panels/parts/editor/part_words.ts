@@ -1,0 +1,20 @@
+/** Parts in words: their names, heights, sizes and places. */
+import { t } from "./words";
+import { ninth } from "../../../words/place_words";
+import { decimal } from "../../../words/words";
+import type { Part } from "../drawing/drawing";
+import type { Labels, Point } from "../pixels/labels";
+import type { Place } from "../pixels/pieces";
+
+export const called = (part: Part | undefined, number: number): string => part?.name || t("nameless", { number });
+
+export const heightOf = ({ height_m, automatic }: Part): string =>
+  automatic ? t("automatic") : t("mm", { height: decimal(1000 * height_m, 2) });
+
+export const shareOf = (share: number): string => t("percent", { share: decimal(100 * share, share < 0.01 ? 2 : share < 0.1 ? 1 : 0) });
+
+export const placeOf = ({ at: [x, y] }: Place, { columns, rows }: Labels): string => ninth(x / columns, y / rows);
+
+export function whereOf([x, y]: Point, { columns, rows }: Labels, name: string): string {
+  return t("where", { x: Math.round((100 * x) / columns), y: Math.round((100 * y) / rows), name });
+}

@@ -1,0 +1,74 @@
+/** The named parts of what is felt, and a device that guides a hand to one of them. */
+import { button } from "../../elements";
+import type { Events } from "../../server/messages";
+import type { Page } from "../../page";
+import { t } from "./words";
+
+interface Named {
+  number: number;
+  name: string;
+}
+
+export function named(page: Page): HTMLElement {
+  const box = document.createElement("section");
+  const heading = document.createElement("h3");
+  heading.textContent = t("named");
+  const list = document.createElement("ul");
+  list.className = "named";
+  const hint = document.createElement("p");
+  hint.className = "hint";
+  box.append(heading, hint, list);
+  let parts: Named[] = [];
+  let guided: number | null = null;
+  let feels = false;
+
+  const guide = async (number: number): Promise<void> => {
+    try {
+      await page.net.ask("beacon", { part: guided === number ? null : number });
+    } catch (error) {
+      page.say((error as Error).message, { topic: "beacon", asked: true });
+    }
+  };
+  const show = (): void => {
+    box.hidden = !parts.length;
+    hint.textContent = t(feels ? "guideHint" : "noDevice");
+    while (list.children.length > parts.length) list.lastElementChild!.remove();
+    parts.forEach((each, at) => {
+      const line = list.children[at] ?? list.appendChild(item());
+      const go = line.querySelector("button")!;
+      line.querySelector("span")!.textContent = each.name;
+      go.textContent = t(guided === each.number ? "release" : "guide");
+      go.setAttribute("aria-label", t(guided === each.number ? "releaseFrom" : "guideTo", { name: each.name }));
+      go.setAttribute("aria-pressed", String(guided === each.number));
+      go.hidden = !feels;
+      go.onclick = () => void guide(each.number);
+    });
+  };
+  page.hub.on("shown", ({ meta }) => {
+    parts = (meta.parts ?? []).map((name, number) => ({ number, name })).filter(({ name }) => name);
+    show();
+  });
+  page.hub.on("loop", ({ running, own_hand }) => {
+    feels = running && !own_hand;
+    if (!running) guided = null;
+    show();
+  });
+  page.hub.on("beacon", (said: Events["beacon"]) => {
+    if (said.part !== guided) page.say(inWords(said), { topic: "beacon", asked: true });
+    guided = said.part;
+    show();
+  });
+  show();
+  return box;
+}
+
+function inWords({ part, name, why }: Events["beacon"]): string {
+  if (part !== null) return t("guiding", { name });
+  return t(why === "button" ? "letGo" : "guideEnded");
+}
+
+function item(): HTMLLIElement {
+  const made = document.createElement("li");
+  made.append(document.createElement("span"), button("", () => undefined));
+  return made;
+}

@@ -1,0 +1,173 @@
+/** Recordings: keep what is felt, list what was kept, play it, feel it again with another law, compare two. */
+import { button, field } from "../../elements";
+import { bulk } from "../../server/connection";
+import type { Page } from "../../page";
+import type { Panel } from "../panel";
+import { Player } from "./player";
+import { COLUMNS, Ticks } from "./ticks";
+import { t } from "./words";
+import { outline } from "./force_plot";
+import { table } from "./table";
+import "./recordings.css";
+
+interface Listed {
+  name: string;
+  path: string;
+  trouble: string;
+  law?: string;
+  figures?: Record<string, number>;
+}
+
+interface Shown extends Listed {
+  digest: string;
+  rows: number;
+  columns: number;
+  every: number;
+  compared?: Record<string, number>;
+}
+
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
+const SPANS = 240;
+
+function build(page: Page, root: HTMLElement): void {
+  const { hub, net } = page;
+  const told = document.createElement("p");
+  const say = (text: string): void => {
+    told.textContent = text;
+    page.say(text);
+  };
+  const tried = async (work: () => Promise<void>): Promise<void> => {
+    try {
+      await work();
+    } catch (error) {
+      say(t("failed", { why: (error as Error).message }));
+    }
+  };
+
+  const list = document.createElement("select");
+  list.id = "records-list";
+  list.multiple = true;
+  list.size = 6;
+  const figures = document.createElement("div");
+  const view = playback(page);
+
+  async function look(): Promise<void> {
+    const found = await net.ask<Listed[]>("records");
+    list.replaceChildren(...found.map((each) => new Option(line(each), each.path)));
+    if (!found.length) say(t("none"));
+  }
+
+  async function show(path: string): Promise<void> {
+    put(await net.ask<Shown>("show_record", { path }));
+  }
+
+  async function put(shown: Shown): Promise<void> {
+    const rows = await (await bulk(`/scene/${shown.digest}/ticks.f32`)).arrayBuffer();
+    if (shown.columns !== COLUMNS) throw new Error(`${shown.columns} columns`);
+    view.load(new Ticks(new Float32Array(rows)), shown.name);
+    figures.replaceChildren(table({ ...shown.figures, ...shown.compared }));
+    if (shown.every > 1) say(t("every", { every: shown.every }));
+  }
+
+  function chosen(count: number): string[] {
+    const paths = [...list.selectedOptions].map((option) => option.value);
+    if (paths.length !== count) throw new Error(t(count === 1 ? "chooseOne" : "compareHelp"));
+    return paths;
+  }
+
+  const record = button(t("record"), () => tried(async () => void (await net.ask("record"))));
+  const stop = button(t("stop"), () => tried(async () => void (await net.ask("stop_recording"))));
+  stop.hidden = true;
+  hub.on("recorder", ({ recording, path, ticks, why }) => {
+    record.hidden = recording;
+    stop.hidden = !recording;
+    if (recording) say(t("recording", { path }));
+    else say(why && why !== BY_HAND ? t("endedEarly", { why }) : t("kept", { path, seconds: (ticks / 1000).toFixed(1) }));
+    if (!recording) void tried(look);
+  });
+  hub.on("recording", ({ path }) => void tried(() => show(path)));
+  list.ondblclick = () => void tried(() => show(chosen(1)[0]!));
+
+  root.append(
+    record,
+    stop,
+    field(t("list"), list),
+    button(t("refresh"), () => tried(look)),
+    button(t("open"), () => tried(() => show(chosen(1)[0]!))),
+    button(t("tryLaw"), () =>
+      tried(async () => {
+        await put(await net.ask<Shown>("try_law", { path: chosen(1)[0] }));
+        await look();
+      }),
+    ),
+    button(t("compare"), () =>
+      tried(async () => {
+        const [path, other] = chosen(2);
+        figures.replaceChildren(table(await net.ask<Record<string, number>>("compare_records", { path, other })));
+      }),
+    ),
+    view.box,
+    figures,
+    told,
+  );
+  let looked = false;
+  hub.on("maker", () => {
+    if (!looked) void tried(look);
+    looked = true;
+  });
+}
+
+/** What the server says of a recording that was ended on purpose. */
+const BY_HAND = "stopped by hand";
+
+function line({ name, trouble, law, figures }: Listed): string {
+  if (trouble) return t("broken", { name });
+  return t("line", { name, law: law || "?", seconds: (figures?.seconds ?? 0).toFixed(1) });
+}
+
+/** The player's controls, hidden while nothing is loaded. */
+function playback(page: Page): { box: HTMLElement; load: (ticks: Ticks, name: string) => void } {
+  const box = document.createElement("fieldset");
+  box.hidden = true;
+  const legend = document.createElement("legend");
+  const place = document.createElement("input");
+  place.type = "range";
+  place.id = "records-place";
+  place.min = "0";
+  place.step = "0.001";
+  const speed = document.createElement("select");
+  speed.id = "records-speed";
+  for (const times of SPEEDS) speed.add(new Option(t("times", { times }), String(times), times === 1, times === 1));
+  const says = document.createElement("output");
+  const plot = document.createElement("div");
+  let now: Ticks | null = null;
+
+  const player = new Player(page, () => {
+    box.hidden = !page.replayed;
+    play.textContent = player.playing ? t("pause") : t("play");
+    place.value = String(player.seconds);
+    if (!page.replayed || !now) return;
+    const force = Math.hypot(...page.replayed.force).toFixed(2);
+    const text = t("at", { time: player.seconds.toFixed(2), seconds: player.length.toFixed(2), force });
+    says.textContent = text;
+    place.setAttribute("aria-valuetext", text);
+  });
+  const play = button(t("play"), () => player.toggle());
+  place.oninput = () => player.seek(Number(place.value));
+  speed.onchange = () => (player.speed = Number(speed.value));
+  box.append(legend, plot, field(t("place"), place), play, field(t("speed"), speed), says);
+  box.append(button(t("close"), () => player.close()));
+
+  return {
+    box,
+    load(ticks, name) {
+      now = ticks;
+      legend.textContent = `${t("player")}: ${name}`;
+      place.max = String(ticks.seconds);
+      plot.replaceChildren(outline(ticks.outline(SPANS)));
+      player.load(ticks);
+    },
+  };
+}
+
+export const records: Panel = { id: "records", title: t("title"), place: "right", open: false, build };

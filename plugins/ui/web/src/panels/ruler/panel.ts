@@ -1,0 +1,77 @@
+/** The ruler and the markers: figures, a profile, and the keyboard's way to both. */
+import "../overlay/overlay.css";
+import { button } from "../../elements";
+import { Markers } from "../../overlay/tools/markers";
+import type { Measured } from "../../overlay/tools/measurement";
+import { profile } from "../../overlay/tools/profile";
+import { Ruler } from "../../overlay/tools/ruler";
+import { fixed } from "../../contact/values";
+import type { Page } from "../../page";
+import type { Panel } from "../panel";
+import { t } from "../../overlay/words";
+
+function build(page: Page, root: HTMLElement): void {
+  const ruler = new Ruler(page);
+  const mouse = button(t("rulerMouse"), () => ruler.toggle());
+  const here = button(t("rulerHere"), () => ruler.here());
+  const remove = button(t("rulerRemove"), () => ruler.remove());
+  const help = document.createElement("small");
+  help.textContent = t("rulerHelp");
+  const buttons = document.createElement("div");
+  buttons.className = "buttons";
+  buttons.append(mouse, here, remove);
+  const found = document.createElement("div");
+  root.append(buttons, help, found, markers(page));
+  ruler.changed = () => {
+    mouse.setAttribute("aria-pressed", `${ruler.picking}`);
+    remove.disabled = ruler.ends.length === 0;
+    found.replaceChildren(...(ruler.measured ? [figures(ruler.measured), profile(ruler.measured)] : []));
+  };
+  ruler.changed();
+}
+
+function figures(measured: Measured): HTMLElement {
+  const list = document.createElement("dl");
+  list.className = "ruler-figures";
+  const mm = (metres: number): string => `${fixed(1000 * metres, 2)} mm`;
+  const degrees = (measured.slope * 180) / Math.PI;
+  const steep = Math.abs(degrees) > 89.99 ? "" : ` (${fixed(100 * Math.tan(measured.slope), 0)} %)`;
+  const rows: [string, string][] = [
+    [t("straight"), mm(measured.straightM)],
+    [t("horizontal"), mm(measured.horizontalM)],
+    [t("surface"), mm(measured.surfaceM)],
+    [t("rise"), mm(measured.riseM)],
+    [t("slope"), `${fixed(degrees, 1)}°${steep}`],
+  ];
+  for (const [name, value] of rows) {
+    const [term, says] = [document.createElement("dt"), document.createElement("dd")];
+    term.textContent = name;
+    says.textContent = value;
+    list.append(term, says);
+  }
+  return list;
+}
+
+function markers(page: Page): HTMLElement {
+  const all = new Markers(page);
+  const box = document.createElement("section");
+  const heading = document.createElement("h3");
+  heading.textContent = t("markersTitle");
+  const list = document.createElement("ul");
+  list.className = "marker-list";
+  box.append(heading, button(t("markHere"), () => all.here()), list);
+  all.changed = () => {
+    const lines = all.list.map((marker) => {
+      const line = document.createElement("li");
+      const [x, y, z] = marker.at.map((part) => (1000 * part).toFixed(1));
+      const away = button("×", () => marker.remove());
+      away.setAttribute("aria-label", t("removeMarker", { number: marker.number }));
+      line.append(t("markerAt", { number: marker.number, x, y, z }), away);
+      return line;
+    });
+    list.replaceChildren(...lines);
+  };
+  return box;
+}
+
+export const ruler: Panel = { id: "ruler-panel", title: t("ruler"), place: "right", open: false, build };

@@ -1,0 +1,92 @@
+/** How a person wants the page: colours, language, sizes, keys. This browser remembers it; no pipeline file holds it. */
+import { button } from "../../elements";
+import type { Page } from "../../page";
+import type { Panel } from "../panel";
+import { recall, remember } from "../../preferences";
+import { letters } from "../../shortcuts";
+import { resetSizes, resize } from "../../frame/splitters";
+import { THEMES, type Theme } from "../../frame/themes";
+import { t } from "./words";
+import { LANGUAGES, language, speak, type Language } from "../../words/words";
+
+function build(page: Page, root: HTMLElement): void {
+  root.append(colours(page), languages(), sizes(), keys(), reading(page));
+}
+
+function colours(page: Page): HTMLElement {
+  const choice = choose(THEMES.map((each) => [each, t(each)]), page.themes.chosen);
+  choice.onchange = () => page.themes.choose(choice.value as Theme);
+  page.hub.on("theme", () => (choice.value = page.themes.chosen));
+  return labelled(t("colours"), choice);
+}
+
+function languages(): HTMLElement {
+  const named = LANGUAGES.map((each) => [each, new Intl.DisplayNames([each], { type: "language" }).of(each)!] as const);
+  const choice = choose(named, language);
+  for (const option of choice.options) option.lang = option.value;
+  choice.onchange = () => speak(choice.value as Language);
+  return labelled(t("language"), choice);
+}
+
+/** For who does not drag: the lines between the regions can be dragged, too. */
+function sizes(): HTMLElement {
+  const box = document.createElement("fieldset");
+  const legend = document.createElement("legend");
+  legend.textContent = t("sizes");
+  const buttons = document.createElement("div");
+  buttons.className = "buttons";
+  buttons.append(
+    button(t("wider"), () => resize(1)),
+    button(t("narrower"), () => resize(-1)),
+    button(t("reset"), () => resetSizes()),
+  );
+  box.append(legend, buttons);
+  return box;
+}
+
+function keys(): HTMLElement {
+  const input = document.createElement("input");
+  input.type = "checkbox";
+  input.checked = letters.everywhere;
+  input.onchange = () => (letters.everywhere = input.checked);
+  const label = document.createElement("label");
+  label.append(input, t("letters"));
+  const hint = document.createElement("p");
+  hint.className = "hint";
+  hint.id = "letters-hint";
+  hint.textContent = t("lettersHint");
+  input.setAttribute("aria-describedby", hint.id);
+  const box = document.createElement("div");
+  box.append(label, hint);
+  return box;
+}
+
+function reading(page: Page): HTMLElement {
+  const input = document.createElement("input");
+  input.type = "checkbox";
+  input.checked = recall("read", false);
+  const tell = (): void => page.hub.tell("read log", { on: input.checked });
+  input.onchange = () => {
+    remember("read", input.checked);
+    tell();
+  };
+  queueMicrotask(tell); // when all panels are there
+  const label = document.createElement("label");
+  label.append(input, t("read"));
+  return label;
+}
+
+function choose(options: (readonly [value: string, text: string])[], value: string): HTMLSelectElement {
+  const choice = document.createElement("select");
+  for (const [each, text] of options) choice.add(new Option(text, each));
+  choice.value = value;
+  return choice;
+}
+
+function labelled(text: string, control: HTMLElement): HTMLElement {
+  const label = document.createElement("label");
+  label.append(text, control);
+  return label;
+}
+
+export const settings: Panel = { id: "settings", title: t("title"), place: "right", open: false, build };

@@ -1,0 +1,118 @@
+/** What is to be heard: the surface as sound, and speech. */
+import { button } from "../../elements";
+import type { Page } from "../../page";
+import type { Panel } from "../panel";
+import { on } from "../../shortcuts";
+import { VOICES, type VoiceName } from "../../sound/sound";
+import { RATES } from "../../speech/speech";
+import { t } from "./words";
+import "./sound.css";
+
+function build(page: Page, root: HTMLElement): void {
+  const heading = (text: string): HTMLElement => Object.assign(document.createElement("h3"), { textContent: text });
+  root.append(switching(page), meter(page), volume(page), voices(page), heights(page));
+  root.append(heading(t("speech")), ...speaking(page));
+}
+
+function switching(page: Page): HTMLElement {
+  const toggle = (): void => void page.sound.toggle().catch((error: Error) => page.say(error.message, { urgent: true }));
+  const made = button(t("sound"), toggle);
+  made.id = "sound-on";
+  made.setAttribute("aria-pressed", "false");
+  made.setAttribute("aria-keyshortcuts", "S");
+  page.hub.on("sound", (told) => {
+    made.setAttribute("aria-pressed", String(told.on));
+    page.say(t(told.on ? "soundOn" : "soundOff"), { topic: "sound", asked: true });
+  });
+  on("sound", toggle);
+  return made;
+}
+
+/** What is heard, to see. */
+function meter(page: Page): HTMLElement {
+  const bar = document.createElement("meter");
+  Object.assign(bar, { min: 0, max: 0.3, value: 0, id: "sound-level" });
+  bar.setAttribute("aria-label", t("level"));
+  setInterval(() => {
+    if (bar.checkVisibility() && !document.hidden) bar.value = page.sound.level;
+  }, 100);
+  return bar;
+}
+
+function volume(page: Page): HTMLElement {
+  const input = range({ least: 0, most: 100, step: 5 }, 100 * page.sound.volume);
+  input.oninput = () => (page.sound.volume = input.valueAsNumber / 100);
+  return labelled(t("volume"), input);
+}
+
+function voices(page: Page): HTMLElement {
+  const box = document.createElement("fieldset");
+  const legend = document.createElement("legend");
+  legend.textContent = t("heard");
+  box.append(legend, ...(Object.keys(VOICES) as VoiceName[]).map(voice));
+  return box;
+
+  function voice(name: VoiceName): HTMLElement {
+    const input = document.createElement("input");
+    input.type = "checkbox";
+    input.checked = page.sound.has(name);
+    input.onchange = () => page.sound.let(name, input.checked);
+    const label = document.createElement("label");
+    label.append(input, t(name));
+    return label;
+  }
+}
+
+function heights(page: Page): HTMLElement {
+  const sweep = (): void => {
+    const { scene, net } = page;
+    if (!scene) return page.say(t("noSurface"), { asked: true });
+    const y = net.latest && net.latest.hand[2] < 0.5 ? net.latest.hand[1] : 0;
+    void page.sound.sweep(scene, y);
+  };
+  const made = button(t("sweep"), sweep);
+  made.setAttribute("aria-keyshortcuts", "H");
+  on("hear heights", sweep);
+  return made;
+}
+
+function speaking(page: Page): HTMLElement[] {
+  const { speech } = page;
+  const toggle = (): void => {
+    if (!speech.voice) return page.say(t("noVoice"), { asked: true });
+    speech.aloud = !speech.aloud;
+    page.say(t(speech.aloud ? "speechOn" : "speechOff"), { topic: "speech", asked: true });
+  };
+  const made = button(t("aloud"), toggle);
+  made.id = "speech-on";
+  made.setAttribute("aria-keyshortcuts", "A");
+  on("aloud", toggle);
+  const rate = range(RATES, speech.rate);
+  rate.onchange = () => (speech.rate = rate.valueAsNumber);
+  const rated = labelled(t("rate"), rate);
+  const hint = document.createElement("p");
+  hint.className = "hint";
+  const show = (): void => {
+    made.hidden = rated.hidden = !speech.voice;
+    made.setAttribute("aria-pressed", String(speech.aloud));
+    hint.textContent = speech.voice ? t("voice", { name: speech.voice.name }) : t("noVoice");
+  };
+  page.hub.on("aloud", show);
+  show();
+  return [made, rated, hint];
+}
+
+function range({ least, most, step }: { least: number; most: number; step: number }, value: number): HTMLInputElement {
+  const input = document.createElement("input");
+  input.type = "range";
+  Object.assign(input, { min: String(least), max: String(most), step: String(step), value: String(value) });
+  return input;
+}
+
+function labelled(text: string, control: HTMLElement): HTMLElement {
+  const label = document.createElement("label");
+  label.append(text, control);
+  return label;
+}
+
+export const sound: Panel = { id: "sound", title: t("title"), place: "right", open: false, build };

@@ -1,0 +1,27 @@
+import { words } from "../../words/words";
+
+export const t = words({
+  title: ["Sound and speech", "Ton und Sprache"],
+  sound: ["Sound", "Ton"],
+  soundOn: ["Sound is on.", "Der Ton ist eingeschaltet."],
+  soundOff: ["Sound is off.", "Der Ton ist ausgeschaltet."],
+  level: ["How loud it is now", "Wie laut es gerade ist"],
+  volume: ["Volume", "Lautstärke"],
+  heard: ["What is heard", "Was zu hören ist"],
+  texture: ["texture: the rougher and the faster, the louder", "Textur: je rauer und schneller, desto lauter"],
+  contact: ["a tap at each contact", "ein Klopfen bei jeder Berührung"],
+  force: ["the force: a low tone", "die Kraft: ein tiefer Ton"],
+  height: ["the height under the hand: the higher, the higher the tone",
+    "die Höhe unter der Hand: je höher, desto höher der Ton"],
+  sweep: ["Hear the heights of this row", "Die Höhen dieser Zeile hören"],
+  noSurface: ["There is no surface yet.", "Es gibt noch keine Oberfläche."],
+  speech: ["Speech", "Sprache"],
+  aloud: ["Speak aloud", "Laut sprechen"],
+  speechOn: ["Speech is on.", "Die Sprachausgabe ist eingeschaltet."],
+  speechOff: ["Speech is off.", "Die Sprachausgabe ist ausgeschaltet."],
+  rate: ["Speed", "Tempo"],
+  voice: ["Voice: {name}. What a screen reader is told is spoken.",
+    "Stimme: {name}. Gesprochen wird, was auch ein Screenreader sagt."],
+  noVoice: ["This browser has no English voice. A screen reader reads all the same.",
+    "Dieser Browser hat keine deutsche Stimme. Ein Screenreader liest trotzdem vor."],
+});

@@ -1,0 +1,188 @@
+/** How the surface is drawn, and from where one looks. */
+import "./view.css";
+import { CAMERA_KEYS } from "../../view/camera";
+import { Lens } from "../../view/magnifier";
+import type { Page } from "../../page";
+import type { Panel } from "../panel";
+import { legend } from "../../terrain/legend";
+import { COARSEST, DENSITIES } from "../../terrain/needles";
+import { Refiner } from "../../surface/refinement";
+import { STEEPS } from "../../terrain/shader";
+import { BOUNDS, type Settings } from "../../view/settings";
+import { looksOf, Showing } from "../../view/look";
+import { colour } from "../../frame/themes";
+import { t } from "../../view/words";
+
+type Word = Parameters<typeof t>[0];
+const LENSES_MM = [0, 5, 10, 20];
+
+function build(page: Page, root: HTMLElement): void {
+  const showing = new Showing(page);
+  const lens = new Lens(page, showing.settings);
+  new Refiner(page);
+  const set = (changes: Partial<Settings>): void => {
+    showing.set(changes);
+    lens.change();
+  };
+  const controls = controlsOf(showing.settings, set);
+  root.append(looks(page, showing, set, controls.slider), ...controls.boxes, camera(page));
+  page.hub.on("shown", () => showing.begin());
+  page.hub.on("look at", ({ look }) => page.scene && looksOf(page.scene.meta).includes(look) && set({ look }));
+  const grounded = (): void => void (page.view.ground = colour("--ground"));
+  page.hub.on("theme", grounded);
+  grounded();
+}
+
+/** What the surface shows, and what its colours mean. */
+function looks(page: Page, showing: Showing, set: (changes: Partial<Settings>) => void, slider: Slider): HTMLElement {
+  const box = fieldset("shows");
+  const choices = document.createElement("div");
+  const meaning = document.createElement("div");
+  const cover = slider("cover", "cover", 0.05, percent);
+  box.append(choices, meaning, cover);
+  box.hidden = true;
+  showing.changed = () => {
+    const { scene } = page;
+    if (!scene) return;
+    box.hidden = false;
+    const there = looksOf(scene.meta);
+    const stands = [...choices.querySelectorAll("input")].map(({ value }) => value);
+    if (stands.join() !== there.join())
+      choices.replaceChildren(...there.map((look) => radio("look", look, look as Word, () => set({ look }))));
+    for (const input of choices.querySelectorAll("input")) input.checked = input.value === showing.look;
+    const said = legend(scene, showing.look);
+    meaning.replaceChildren(...(said ? [said] : []));
+    cover.hidden = showing.look === "photo" || !scene.meta.photo;
+  };
+  return box;
+}
+
+type Slider = (name: keyof Settings, word: Word, step: number, say: (value: number) => string) => HTMLElement;
+const percent = (value: number): string => `${Math.round(100 * value)} %`;
+const degrees = (value: number): string => `${value}°`;
+
+function controlsOf(settings: Settings, set: (changes: Partial<Settings>) => void) {
+  const slider: Slider = (name, word, step, say) => {
+    const label = document.createElement("label");
+    label.className = "slider";
+    const input = document.createElement("input");
+    const value = document.createElement("output");
+    input.type = "range";
+    [input.min, input.max] = BOUNDS[name]!.map(String);
+    input.step = String(step);
+    input.value = String(settings[name]);
+    const said = (): void => {
+      value.textContent = say(input.valueAsNumber);
+      input.ariaValueText = value.textContent;
+    };
+    input.oninput = () => {
+      said();
+      set({ [name]: input.valueAsNumber });
+    };
+    said();
+    label.append(t(word), value, input);
+    return label;
+  };
+  const light = fieldset("light");
+  const hint = document.createElement("small");
+  hint.textContent = t("eyeDomeSays");
+  light.append(
+    slider("raking", "raking", 0.05, percent),
+    slider("azimuthDeg", "azimuth", 5, degrees),
+    slider("elevationDeg", "elevation", 5, degrees),
+    slider("eyeDome", "eyeDome", 0.05, percent),
+    hint,
+  );
+  const curtains = fieldset("curtains");
+  for (const steep of Object.keys(STEEPS) as (keyof typeof STEEPS)[])
+    curtains.append(radio("steep", steep, steep, () => set({ steep }), settings.steep === steep));
+  curtains.append(slider("steepDeg", "steeper", 1, degrees));
+  const normals = slider("normals", "normals", 1, density);
+  return { slider, boxes: [light, curtains, normals, magnifier(settings, set)] };
+}
+
+function density(value: number): string {
+  if (value === 0) return t("none");
+  return value >= DENSITIES ? t("everyCell") : t("across", { count: COARSEST * 2 ** value });
+}
+
+function magnifier(settings: Settings, set: (changes: Partial<Settings>) => void): HTMLElement {
+  const label = document.createElement("label");
+  const choice = document.createElement("select");
+  choice.id = "lens-choice";
+  for (const mm of LENSES_MM) choice.append(new Option(mm ? `${mm} mm` : t("off"), String(mm), false, mm === settings.lensMm));
+  choice.onchange = () => set({ lensMm: Number(choice.value) });
+  label.append(t("lens"), choice);
+  return label;
+}
+
+/** Where one looks from. */
+function camera(page: Page): HTMLElement {
+  const box = fieldset("camera");
+  const buttons = document.createElement("div");
+  buttons.className = "buttons";
+  const { eye } = page.view;
+  const does: [Word, () => void][] = [
+    ["home", () => eye.home()],
+    ["top", () => eye.top()],
+    ["nearer", () => eye.zoom(0.7)],
+    ["farther", () => eye.zoom(1 / 0.7)],
+  ];
+  for (const [word, act] of does) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = t(word);
+    button.onclick = act;
+    buttons.append(button);
+  }
+  box.append(buttons, keys());
+  return box;
+}
+
+function keys(): HTMLElement {
+  const box = document.createElement("details");
+  const heading = document.createElement("summary");
+  heading.textContent = t("keys");
+  const table = document.createElement("table");
+  const first = table.createTHead().insertRow();
+  for (const word of ["todo", "keyboard", "mouse"] as const) {
+    const cell = document.createElement("th");
+    cell.scope = "col";
+    cell.textContent = t(word);
+    first.append(cell);
+  }
+  const body = table.createTBody();
+  for (const { keys, does } of CAMERA_KEYS) {
+    const row = body.insertRow();
+    row.insertCell().textContent = t(does);
+    const cell = row.insertCell();
+    for (const each of keys) {
+      const key = document.createElement("kbd");
+      key.textContent = each;
+      cell.append(key, " ");
+    }
+    row.insertCell().textContent = t(`${does}Mouse`);
+  }
+  const hint = document.createElement("small");
+  hint.textContent = t("keysSay");
+  box.append(heading, table, hint);
+  return box;
+}
+
+function fieldset(word: Word): HTMLFieldSetElement {
+  const box = document.createElement("fieldset");
+  const legend = document.createElement("legend");
+  legend.textContent = t(word);
+  box.append(legend);
+  return box;
+}
+
+function radio(name: string, value: string, word: Word, chosen: () => void, checked = false): HTMLElement {
+  const label = document.createElement("label");
+  const input = document.createElement("input");
+  Object.assign(input, { type: "radio", name, value, checked, onchange: chosen });
+  label.append(input, t(word));
+  return label;
+}
+
+export const view: Panel = { id: "view", title: t("title"), place: "right", open: true, build };

@@ -1,0 +1,1 @@
+"""The pipeline file: its model, its schema, and changes of its text."""

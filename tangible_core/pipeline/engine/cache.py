@@ -1,0 +1,252 @@
+"""Records on disk, found by the key of what made them.
+
+One file an entry, `<key>.npz`: readable by numpy.load, checked by the archive's CRC when it is read. It holds what was
+noticed when the record was made, and when all that it is made from was. Files appear whole
+(written beside and renamed), so two processes can share a folder; a damaged entry is deleted and made again. Beside
+them lies a tally of their bytes, so that the folder is listed only where it may be full.
+"""
+
+import json
+import logging
+import os
+import re
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any, NamedTuple, cast, get_args
+
+import numpy as np
+
+from ... import data
+from ...data import Note, NoteKind, Record
+from ...errors import OutputError, quoted, shown
+from ...files.arrays import Archive, write_arrays
+from ...files.paths import as_path
+from ...files.reading import check_file
+from ...files.writing import atomic_write
+from .cache_size import Tally
+
+log = logging.getLogger(__name__)
+
+DEFAULT_BYTES = 2 << 30
+LEFT = 7 / 8
+"""Of what a cache may hold, so much is left once it was full: the next so many results fit without counting."""
+TALLY = ".tally"
+NOTES = "notes"
+_OURS = re.compile(r"[0-9a-f]{32,64}\.npz|\.[0-9a-f]{32,64}\.npz\..+")
+"""Names of entries, and of what is not whole yet: the folder may hold files of somebody else."""
+_unwritable: set[Path] = set()
+"""Folders that were complained of: each once, not for each result."""
+KEPT = frozenset(name for name, each in vars(data).items() if is_dataclass(each))
+"""What an entry may be made of."""
+
+
+Notes = Mapping[str, tuple[Note, ...]]
+"""By product."""
+
+
+class Entry(NamedTuple):
+    """A record, and what was noticed when it and all that it is made from were made."""
+
+    record: Record
+    notes: Notes
+
+
+class Cache:
+    """A folder of records, bounded in size: the entries used longest ago go first."""
+
+    def __init__(self, folder: Path | None = None, max_bytes: int = DEFAULT_BYTES) -> None:
+        self.folder = default_folder() if folder is None else folder
+        self.max_bytes = max_bytes
+        self._tally = Tally(self.folder / TALLY)
+
+    def __contains__(self, key: str) -> bool:
+        try:
+            return self._path(key).is_file()
+        except OSError:  # the folder may not be looked into
+            return False
+
+    def get(self, key: str) -> Record | None:
+        """The record of this key, or None if there is none or it is damaged (then it is deleted and said)."""
+        entry = self.entry(key)
+        return entry and entry.record
+
+    def entry(self, key: str) -> Entry | None:
+        """As `get`, with the notes."""
+        path = self._path(key)
+        try:
+            entry = read_entry(path)
+            os.utime(path)  # least recently used, not oldest, goes first
+        except FileNotFoundError:  # or dropped by another process while it was read
+            return None
+        except Exception as error:  # noqa: BLE001 - a damaged file can provoke any
+            if self._is_there():
+                log.warning("cache entry %s is damaged and is made again: %s", path, shown(str(error), 200))
+                _remove(path)
+            return None
+        return entry
+
+    def notes(self, key: str) -> Notes:
+        """The notes of this key alone, for a plan; none where there is no such entry, or it is damaged."""
+        try:
+            check_file(self._path(key))
+            with self._path(key).open("rb") as file:
+                return _notes(Archive(file).read([NOTES])[NOTES])
+        except Exception:  # noqa: BLE001 - a damaged file can provoke any; `get` says so
+            return {}
+
+    def put(self, key: str, record: Record, notes: Notes | None = None) -> None:
+        """Keep a record; a cache that cannot be written costs a warning, never the result."""
+        try:
+            write_record(self._path(key), record, notes or {})
+            held = self._tally.add(_used(self._path(key))[1])
+            if held is None or held > self.max_bytes:
+                self._prune()
+        except (OutputError, OSError) as error:
+            if self.folder not in _unwritable:
+                _unwritable.add(self.folder)
+                log.warning("results are not cached: %s; TANGIBLE_CACHE_DIR names another cache", error)
+
+    def _is_there(self) -> bool:
+        """Whether there is a folder to hold entries; of what stands in its place, `put` complains."""
+        try:
+            return self.folder.is_dir()
+        except OSError:
+            return False
+
+    def size(self) -> tuple[int, int]:
+        """How many results are kept, and how many bytes they take; what a killed writer left behind counts too."""
+        sizes = [_used(path)[1] for path in self._files()]
+        return len(sizes), sum(sizes)
+
+    def clear(self) -> tuple[int, int]:
+        """Delete every result, and nothing else; how many that were, and their bytes.
+
+        Raises: OutputError for one that cannot be deleted.
+        """
+        freed: list[int] = []
+        for path in self._files():
+            size = _used(path)[1]
+            try:
+                path.unlink(missing_ok=True)
+            except OSError as error:
+                raise OutputError(f"{path}: cannot be deleted: {error.strerror}") from error
+            freed.append(size)
+        self._tally.path.unlink(missing_ok=True)
+        return len(freed), sum(freed)
+
+    def _files(self) -> list[Path]:
+        return [path for path in self.folder.glob("*.npz*") if _OURS.fullmatch(path.name) and path.is_file()]
+
+    def _path(self, key: str) -> Path:
+        return self.folder / f"{key}.npz"
+
+    def _prune(self) -> None:
+        entries = [(*_used(path), path) for path in self.folder.glob("*.npz")]
+        held = sum(size for _, size, _ in entries)
+        if held > self.max_bytes:
+            for _, size, path in sorted(entries):
+                log.info("cache is over %d MiB: %s is dropped", self.max_bytes >> 20, path.name)
+                path.unlink(missing_ok=True)
+                held -= size
+                if held <= LEFT * self.max_bytes:
+                    break
+        self._tally.begin(held)
+
+
+def default_folder() -> Path:
+    """$TANGIBLE_CACHE_DIR, or the user's cache folder."""
+    if named := os.environ.get("TANGIBLE_CACHE_DIR"):
+        return as_path(named, "TANGIBLE_CACHE_DIR")
+    from platformdirs import user_cache_path
+
+    return user_cache_path("tangible-images")
+
+
+def write_record(path: Path, record: Record, notes: Notes | None = None) -> None:
+    """A record as an .npz: its arrays by name, and the rest in `record` and `notes` as JSON.
+
+    Raises: OutputError if the place cannot be written.
+    """
+    arrays: dict[str, np.ndarray] = {}
+    texts = {"record": _pack(record, "", arrays)}
+    if notes is not None:
+        texts[NOTES] = {product: [[each.text, each.kind] for each in notes[product]] for product in notes}
+    packed = {name: np.frombuffer(json.dumps(tree).encode(), np.uint8) for name, tree in texts.items()}
+    with atomic_write(path) as file:
+        write_arrays(file, packed | arrays)
+
+
+def read_record(path: Path) -> Record:
+    """The record that `write_record` wrote. Raises: FileNotFoundError, or ValueError and its like when damaged."""
+    return read_entry(path).record
+
+
+def read_entry(path: Path) -> Entry:
+    """What `write_record` wrote. Raises: as `read_record`."""
+    check_file(path)
+    with path.open("rb") as file:
+        archive = Archive(file)
+        arrays = archive.read(archive.names)
+    notes: Notes = _notes(arrays.pop(NOTES)) if NOTES in arrays else {}
+    record = _unpack(json.loads(arrays.pop("record").tobytes()), arrays)
+    if not isinstance(record, Record):
+        raise ValueError(f"holds no record, but {quoted(record)}")
+    return Entry(record, notes)
+
+
+def _notes(packed: np.ndarray) -> Notes:
+    return {
+        str(product): tuple(_note(*each) for each in found) for product, found in json.loads(packed.tobytes()).items()
+    }
+
+
+def _note(text: Any, kind: Any) -> Note:
+    if not isinstance(text, str) or kind not in get_args(NoteKind):
+        raise ValueError(f"holds no note, but {quoted([text, kind])}")
+    return Note(text, kind)
+
+
+def _pack(value: Any, name: str, arrays: dict[str, np.ndarray]) -> Any:
+    if isinstance(value, np.ndarray):
+        arrays[name] = value
+        return {"array": name}
+    if is_dataclass(value):
+        parts = {f.name: _pack(getattr(value, f.name), f"{name}.{f.name}".strip("."), arrays) for f in fields(value)}
+        return {"class": type(value).__name__, "fields": parts}
+    if isinstance(value, tuple):
+        items = cast("tuple[Any, ...]", value)
+        return {"tuple": [_pack(part, f"{name}.{i}", arrays) for i, part in enumerate(items)]}
+    return value
+
+
+def _unpack(tree: Any, arrays: Mapping[str, np.ndarray]) -> Any:
+    match tree:
+        case {"array": name}:
+            return arrays[name]
+        case {"class": str(name), "fields": parts} if name in KEPT:
+            return getattr(data, name)(**{key: _unpack(part, arrays) for key, part in parts.items()})
+        case {"tuple": items}:
+            return tuple(_unpack(part, arrays) for part in items)
+        case None | bool() | int() | float() | str():
+            return tree
+        case _:
+            raise ValueError(f"unknown entry {quoted(tree)}")
+
+
+def _remove(path: Path) -> None:
+    """A damaged entry. A folder that holds something is somebody's: it stays, and `put` complains of it."""
+    with suppress(OSError):
+        if path.is_dir() and not path.is_symlink():
+            path.rmdir()
+        else:
+            path.unlink()
+
+
+def _used(path: Path) -> tuple[float, int]:
+    try:
+        found = path.stat()
+    except FileNotFoundError:  # another process dropped it
+        return 0.0, 0
+    return found.st_mtime, found.st_size

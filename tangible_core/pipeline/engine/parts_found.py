@@ -1,0 +1,145 @@
+"""What a configuration says of parts, against the parts that a picture has."""
+
+import logging
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+
+from ...data import HapticSurface, MaterialMap, PartMap, SegmentMap
+from ...errors import PictureError
+from ...materials.rules import MaterialRule
+from ...parts import find_parts, part_sizes
+from ...plugins.notes import note
+from ..config.config import ROUNDING_M, PipelineConfig
+from ..config.parts_said import Said, called, names_of, numbers_of
+
+log = logging.getLogger(__name__)
+
+MOST_PARTS = 4096
+"""As many as a label picture may have labels: more, and they are the grain of a photograph."""
+FEW_PIXELS, FEW_SHARE = 9, 1e-5
+"""What is smaller, or a smaller share of the picture, is rather a slip of the brush than a part."""
+MOST_SLIPS = 3
+"""Small parts whose places are said."""
+
+
+@lru_cache(maxsize=1)
+def parts_of(segments: SegmentMap) -> PartMap:
+    """The parts of segments; the last ones are kept. Raises: PictureError if there are too many to be felt."""
+    found = find_parts(segments)
+    if found.count > MOST_PARTS:
+        raise PictureError(
+            f"the segments fall into {found.count} parts, and at most {MOST_PARTS} are felt; paint each part in one "
+            "flat colour and save the picture losslessly, as PNG, or have fewer and smoother segments made"
+        )
+    return found
+
+
+def tell_slips(parts: PartMap) -> None:
+    """Warn of parts of a few pixels. They stay parts, as the numbers of all others would change."""
+    sizes = part_sizes(parts)
+    small = np.flatnonzero(sizes < max(FEW_PIXELS, FEW_SHARE * parts.labels.size)).tolist()
+    if not small:
+        return
+    said = [f"part {each} at {place_of(parts, each)} ({_pixels(int(sizes[each]))})" for each in small[:MOST_SLIPS]]
+    more = f", and {len(small) - MOST_SLIPS} more" if len(small) > MOST_SLIPS else ""
+    few = "one part is hardly there" if len(small) == 1 else f"{len(small)} parts are hardly there"
+    cure = "paint over them, or have smoother segments made; the numbers of the parts behind them then change"
+    note(log, f"{few}: {', '.join(said)}{more}; {cure}", logging.WARNING)
+
+
+def _pixels(count: int) -> str:
+    return f"{count} pixel{'s' * (count != 1)}"
+
+
+def place_of(parts: PartMap, number: int, scale: float = 1.0) -> str:
+    """A pixel in a part, as far inside as its middle row lets it be: [x, y].
+
+    scale: pixels of the picture a pixel of the map.
+    """
+    rows, columns = np.nonzero(parts.labels == number)
+    if not rows.size:
+        return "no pixel"
+    row = rows[rows.size // 2]
+    there = columns[rows == row]
+    x, y = (int((each + 0.5) * scale) for each in (there[there.size // 2], row))
+    return f"[{x}, {y}]"
+
+
+def check_found(config: PipelineConfig, parts: PartMap, columns: int) -> None:
+    """What is said of parts must be of parts that are there, and fit the workspace.
+
+    columns: of the picture, in whose pixels places are said. Raises: ConfigError with every complaint.
+    """
+    if wrong := [*_wrong_numbers(config, parts.count), *_wrong_heights(config, parts, columns)]:
+        raise config.complained(*wrong)
+
+
+def check_numbers(config: PipelineConfig, count: int) -> None:
+    """Raises: ConfigError for what is said of parts beyond so many."""
+    if wrong := list(_wrong_numbers(config, count)):
+        raise config.complained(*wrong)
+
+
+def _wrong_numbers(config: PipelineConfig, count: int) -> Iterator[Said]:
+    there = f"the parts are 0 to {count - 1}" if count > 1 else "there is one alone, 0"
+    there = f"{there} (`tangible parts` draws them with their numbers)"
+    names = config.part_names
+    for number in config.parts or {}:
+        if number >= count:
+            yield ("parts", number), f"there is no {called(number, names.get(number, ''))}; {there}"
+    for index, rule in enumerate(config.materials.rules):
+        if isinstance(rule.part, int) and rule.part >= count:
+            yield ("materials", "rules", index, "part"), f"there is no {called(rule.part)}; {there}"
+
+
+def _wrong_heights(config: PipelineConfig, parts: PartMap, columns: int) -> Iterator[Said]:
+    if config.heights is None:
+        return
+    top_m, size, names = config.top_m, config.size, config.part_names
+    for number, height_m in config.given_heights_m.items():
+        if number < parts.count and height_m > top_m + ROUNDING_M:
+            above_m = config.heights.bulge_m + config.heights.detail_m
+            place = place_of(parts, number, columns / parts.labels.shape[1])
+            yield (
+                ("parts", number, "height_m"),
+                f"{called(number, names.get(number, ''))}, at {place} of the picture, is {_mm(height_m)} high, and "
+                f"the highest can be {_mm(top_m)}: workspace.relief_m, {_mm(size.relief_m)}, less bulge_m and "
+                f"detail_m, {_mm(above_m)}; make it lower, or workspace.relief_m {_mm(height_m + above_m)}",
+            )
+
+
+def _mm(length_m: float) -> str:
+    return f"{float(f'{1e3 * length_m:.6g}'):g} mm"
+
+
+def numbered(config: PipelineConfig) -> tuple[MaterialRule, ...]:
+    """The rules for materials, with the numbers of parts in place of their names."""
+    numbers = numbers_of(config.parts or {})
+    return tuple(
+        rule.model_copy(update={"part": numbers[rule.part.strip()]}) if isinstance(rule.part, str) else rule
+        for rule in config.materials.rules
+    )
+
+
+def own_materials(config: PipelineConfig) -> dict[int, str]:
+    """Of the parts that say theirs, by number."""
+    return {number: each.material for number, each in (config.parts or {}).items() if each.material is not None}
+
+
+def reasons_with_names(config: PipelineConfig, found: MaterialMap) -> MaterialMap:
+    """With the names of the parts in the reasons."""
+    reasons = list(found.reasons)
+    for number, name in config.part_names.items():
+        if number < len(reasons):
+            reasons[number] = called(number, name) + reasons[number].removeprefix(called(number))
+    return replace(found, reasons=tuple(reasons))
+
+
+def surface_with_names(config: PipelineConfig, found: HapticSurface) -> HapticSurface:
+    """With the names of its parts. Raises: ConfigError for parts that are not there."""
+    count = len(found.names or ())
+    check_numbers(config, count)
+    return replace(found, names=names_of(config.parts or {}, count))

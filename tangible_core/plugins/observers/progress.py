@@ -1,0 +1,58 @@
+"""Shows on a terminal what is being made now, and how long the hand has been feeling; `--quiet` leaves it out."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+from ...errors import shown
+from ..hooks import hookimpl
+
+if TYPE_CHECKING:
+    from ...data import Outcome, ServoReport
+
+EXPORT = "export: "
+"""How the outcome of an exporter is called, before its name."""
+_shown: list[Any] = []
+"""The one spinner on the screen, if any."""
+
+
+@hookimpl
+def tangible_stage_started(product: str, method: str) -> None:
+    """A spinner with the product's name, or what is written."""
+    _show(f"writing {method}" if product.startswith(EXPORT) else f"making {product} with {method}")
+
+
+@hookimpl
+def tangible_stage_finished(outcome: Outcome) -> None:
+    """The spinner goes."""
+    _clear()
+
+
+@hookimpl
+def tangible_servo_report(report: ServoReport) -> None:
+    """Time, force, and the part and material under the tip, rewritten in place; gone when the loop stops."""
+    if report.stopped:
+        _clear()
+    else:
+        under = ", ".join(shown(each) for each in (report.part, report.material) if each)
+        on = f", on {under}" if under else ""
+        _show(f"feeling: {report.time_s:5.1f} s, peak {report.peak_force_n:.2f} N{on}")
+
+
+def _show(text: str) -> None:
+    if not sys.stderr.isatty():
+        return
+    from rich.console import Console
+    from rich.text import Text
+
+    if _shown:
+        _shown[0].update(Text(text))  # the name of a part may have brackets
+    else:
+        _shown.append(Console(stderr=True).status(Text(text)))
+        _shown[0].start()
+
+
+def _clear() -> None:
+    while _shown:
+        _shown.pop().stop()

@@ -1,0 +1,46 @@
+"""One step of disparity over time; compiled.
+
+Imports numba: imported inside the verb.
+"""
+
+# ruff: noqa: ANN001, ANN201 -- numba finds the types of what it compiles; the docstrings say them
+# pyright: basic
+
+import numpy as np
+from numba import njit
+
+from ...compiled.compiling import KERNEL
+
+
+@njit(**KERNEL)
+def step(new, kept, waiting, doubts, out, averaged, gate, most_doubts, most_missing):
+    """A map taken into what is kept, which goes to `out`; how many known pixels are new, and how many there are.
+
+    new, kept, waiting, out: float32 (h, w), NaN where unknown; waiting: a change that was seen once. doubts: uint8, for
+    how many frames in a row the kept value was not seen. averaged: share of a new value that is within `gate`.
+    """
+    changed, known = 0, 0
+    for y in range(new.shape[0]):
+        for x in range(new.shape[1]):
+            value, held = new[y, x], kept[y, x]
+            if abs(value - held) <= gate:  # never for NaN; the usual case first
+                held += averaged * (value - held)
+                if doubts[y, x]:
+                    doubts[y, x] = 0
+                    waiting[y, x] = np.float32(np.nan)
+                known += 1
+            elif np.isnan(value):
+                waiting[y, x] = np.float32(np.nan)
+                doubts[y, x] += not np.isnan(held)
+                if doubts[y, x] > most_missing:
+                    held, doubts[y, x] = np.float32(np.nan), 0
+            else:
+                known += 1
+                changed += 1
+                doubts[y, x] += 1
+                if abs(value - waiting[y, x]) <= gate or doubts[y, x] > most_doubts:
+                    held, doubts[y, x] = value, 0
+                waiting[y, x] = np.float32(np.nan) if doubts[y, x] == 0 else value
+            kept[y, x] = held
+            out[y, x] = held
+    return changed, known

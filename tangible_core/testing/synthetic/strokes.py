@@ -1,0 +1,137 @@
+"""A hand's way over a surface, and the exact nearest points of analytic surfaces along it."""
+# scipy has no types.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float64
+
+from ...data import HapticSurface, Record, Relief
+from ...scene.geometry import smooth, workspace_to_picture
+from . import nearest
+from .reliefs import cliff, cone, ridge, waves
+from .scenes import KnownSurface, plane, ramp, sphere_cap
+
+Points = Float64[np.ndarray, "n 3"]
+Heights = Callable[[Float64[np.ndarray, "n"], Float64[np.ndarray, "n"]], Float64[np.ndarray, "n"]]
+"""(x, y) -> z, metres."""
+PERIOD_S = 0.001
+LOOPS, LOOP_TICKS = 4, 2000
+LIFTED = 0.2
+"""Share of a loop that each lift takes, up or down."""
+CLEAR_M = 0.001
+"""How far the hand is lifted over the highest point."""
+REACH = 0.375
+"""How far the hand goes to each side, as a share of the surface's width and length."""
+FINGER_M = 0.001
+"""Sigma of the Gaussian by which a hand passes over what is finer than it is."""
+
+
+@dataclass(frozen=True, eq=False)
+class KnownStroke(Record):
+    """A hand's way over a surface, and where a proxy without friction truly is at each tick."""
+
+    surface: HapticSurface
+    position_m: Float64[np.ndarray, "n 3"]
+    nearest_m: Float64[np.ndarray, "n 3"]
+    """The surface's nearest point; in free air the hand itself, so that a spring to it has no force; NaN if unknown."""
+    period_s: float = PERIOD_S
+
+
+@dataclass(frozen=True)
+class Analytic:
+    """A surface given by a formula, where the hand goes on it, and its nearest point to any hand inside it."""
+
+    known: Callable[[tuple[int, int]], KnownSurface]
+    """Of so many cells, 80 mm wide."""
+    nearest: Callable[[Points], Points]
+    across_m: tuple[float, float] = (-0.03, 0.03)
+    """How far the hand goes to the left and to the right."""
+    ride_m: Callable[[float, float], float] | None = None
+    """Height that the hand follows, if not the surface's own."""
+
+
+SURFACES: Mapping[str, Analytic] = {
+    "plane": Analytic(lambda shape: plane(0.01, shape), lambda hands: nearest.on_plane(hands, (0.0, 0.0), 0.01)),
+    "ramp": Analytic(
+        lambda shape: ramp((0.2, 0.1), 0.015, shape), lambda hands: nearest.on_plane(hands, (0.2, 0.1), 0.015)
+    ),
+    "sphere": Analytic(lambda shape: sphere_cap(0.1, 0.08, shape), lambda hands: nearest.on_sphere(hands, 0.1, 0.08)),
+    "sine": Analytic(lambda shape: waves(0.004, 0.02, shape), lambda hands: nearest.on_waves(hands, 0.004, 0.02)),
+    "cone": Analytic(lambda shape: cone(0.5, 0.04, shape), lambda hands: nearest.on_cone(hands, 0.5, 0.04)),
+    "ridge": Analytic(lambda shape: ridge(0.5, 0.03, shape), lambda hands: nearest.on_ridge(hands, 0.5, 0.03)),
+    # along the ground, against the wall and back, and once down over its edge: no hand goes through a wall
+    "step": Analytic(
+        lambda shape: cliff(0.004, shape),
+        lambda hands: nearest.on_step(hands, 0.004),
+        (-0.03, 0.0015),
+        lambda x, y: 0.0,
+    ),
+}
+"""By the name of what is felt."""
+
+
+def analytic_stroke(
+    name: str, cells: int = 256, depth_m: float = 0.001, path_m: Points | None = None, period_s: float = PERIOD_S
+) -> KnownStroke:
+    """A way over one of SURFACES, 80 mm wide, of cells x cells: `path_m`, or the scripted one this deep under it.
+
+    Beside the surface nothing is known.
+    Raises: KeyError if no surface has this name.
+    """
+    analytic = SURFACES[name]
+    known = analytic.known((cells, cells))
+    if path_m is None:
+        ride = _at_all(analytic.ride_m or known.height_m)
+        path_m = scripted_path(known.surface.relief, ride, depth_m, analytic.across_m)
+    border_m = np.divide(known.surface.extent_m, 2)
+    over = np.clip(path_m[:, :2], -border_m, border_m)
+    inside = path_m[:, 2] < _at_all(known.height_m)(over[:, 0], over[:, 1])
+    found = np.where(inside[:, None], analytic.nearest(path_m), path_m)
+    found[(over != path_m[:, :2]).any(axis=1)] = np.nan
+    return KnownStroke(known.surface, path_m, found, period_s)
+
+
+def relief_stroke(
+    surface: HapticSurface, depth_m: float = 0.001, path_m: Points | None = None, period_s: float = PERIOD_S
+) -> KnownStroke:
+    """A way over any surface, of which nothing is known between its cells: the nearest points are NaN."""
+    if path_m is None:
+        path_m = scripted_path(surface.relief, _felt_heights(surface.relief), depth_m)
+    return KnownStroke(surface, path_m, np.full_like(path_m, np.nan), period_s)
+
+
+def scripted_path(relief: Relief, ride: Heights, depth_m: float, across_m: tuple[float, float] | None = None) -> Points:
+    """A hand that wanders over a surface in four loops of 2 s, at 57 mm/s (on 80 x 80 mm; 84 at most).
+
+    x and y swing (Lissajous); each loop starts and ends in free air, over the highest point. (n, 3), 1 ms apart.
+    """
+    t = np.arange(LOOPS * LOOP_TICKS + 1) / (LOOPS * LOOP_TICKS)
+    width_m, length_m = relief.extent_m
+    left, right = across_m or (-REACH * width_m, REACH * width_m)
+    x = (left + right) / 2 + (right - left) / 2 * np.sin(2 * np.pi * 3 * t)
+    y = REACH * length_m * np.sin(2 * np.pi * 2 * t + 0.7)
+    phase = LOOPS * t % 1
+    to_border = np.minimum(phase, 1 - phase) / LIFTED
+    lift = 0.5 + 0.5 * np.cos(np.pi * np.minimum(to_border, 1))
+    z = (1 - lift) * (ride(x, y) - depth_m) + lift * (float(relief.height_m.max()) + CLEAR_M)
+    return np.column_stack([x, y, z])
+
+
+def _at_all(height_m: Callable[[float, float], float]) -> Heights:
+    return lambda x, y: np.array([height_m(*place) for place in zip(x.tolist(), y.tolist(), strict=True)], np.float64)
+
+
+def _felt_heights(relief: Relief) -> Heights:
+    """Heights as a finger follows them, linear between the cells."""
+    from scipy.ndimage import map_coordinates
+
+    heights = smooth(relief, FINGER_M).height_m.astype(np.float64)
+
+    def ride(x_m: Float64[np.ndarray, "n"], y_m: Float64[np.ndarray, "n"]) -> Float64[np.ndarray, "n"]:
+        columns, rows = workspace_to_picture(x_m, y_m, heights.shape, relief.extent_m)
+        return map_coordinates(heights, (rows, columns), order=1, mode="nearest")
+
+    return ride

@@ -1,0 +1,260 @@
+"""A pipeline file edited key by key: it says what was set, and all else of it stands as it stood."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tangible_core.errors import ConfigError, TangibleError
+from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.editing import REMOVE, edited, said
+from tangible_core.plugins.registry import default_registry
+
+PATH = Path("here/p.yaml")
+OF_MINE = """\
+# of mine
+scene: {photo: "my photo.png"}   # beside this file
+want: touch
+
+# how deep
+depth:
+  use: semi-global  # the best one
+  # none of it is needed:
+  confidence: 0.5   # half
+
+# how high
+workspace:
+  relief_m: 6 mm   # as high as it goes
+
+render: {use: proxy, stiffness_n_per_m: 800 N/m}   # hard
+device: mock
+"""
+
+
+@pytest.mark.parametrize(
+    ("changes", "before", "after"),
+    [
+        ({"workspace.relief_m": 0.004}, "relief_m: 6 mm ", "relief_m: 0.004 "),
+        ({"workspace.relief_m": "4 mm"}, "relief_m: 6 mm ", "relief_m: 4 mm "),
+        ({"workspace.relief_m": "6 mm"}, "", ""),
+        ({"workspace.width_m": 0.1}, "as high as it goes\n", "as high as it goes\n  width_m: 0.1\n"),
+        ({"workspace.relief_m": REMOVE}, "workspace:\n  relief_m: 6 mm   # as high as it goes\n", ""),
+        ({"workspace": REMOVE}, "workspace:\n  relief_m: 6 mm   # as high as it goes\n", ""),
+        ({"workspace.smooth_m": REMOVE}, "", ""),
+        ({"safety.ramp_s": REMOVE}, "", ""),
+        ({"workspace": {"relief_m": 0.1}}, ":\n  relief_m: 6 mm   # as high as it goes", ": {relief_m: 0.1}"),
+        ({"depth.confidence": REMOVE}, "  confidence: 0.5   # half\n", ""),
+        ({"depth.use": "zncc"}, "semi-global  # the best one", "zncc  # the best one"),
+        ({"depth": "zncc"}, "", None),
+        ({"depth": None}, "", None),
+        ({"depth": {"use": "zncc", "window_px": 9}}, "", None),
+        ({"render.stiffness_n_per_m": 500}, "800 N/m", "500"),
+        ({"render.stiffness_n_per_m": REMOVE}, ", stiffness_n_per_m: 800 N/m", ""),
+        ({"render.damping_n_s_per_m": 0}, "N/m}", "N/m, damping_n_s_per_m: 0}"),
+        ({"render.use": "penalty"}, "{use: proxy, stiffness_n_per_m: 800 N/m}", "{use: penalty}"),
+        ({"device.path": "circle"}, "device: mock", "device: {use: mock, path: circle}"),
+        ({"device.hand": None}, "device: mock", "device: {use: mock, hand: null}"),
+        ({"device.use": "falcon"}, "device: mock", "device: {use: falcon}"),
+        ({"device": None}, "device: mock\n", ""),
+        ({"device.use": REMOVE}, "device: mock\n", ""),
+        ({"scene": "builtin/brick"}, '{photo: "my photo.png"}', "builtin/brick"),
+        ({"scene.left": "a: b.png"}, '.png"}', ".png\", left: \"a: b.png\"}"),
+        ({"materials": {"by": {"0": "ice", "1": "sand"}}}, "", None),
+        ({"materials.by.0": "ice"}, "mock\n", "mock\nmaterials: {by: {0: ice}}\n"),
+        ({("materials", "by"): "rules"}, "mock\n", "mock\nmaterials: {by: rules}\n"),
+    ],
+)  # fmt: skip
+def test_one_change_changes_one_thing(changes: dict, before: str, after: str | None):
+    text = edited(OF_MINE, PATH, changes)
+    if after is not None:
+        options = "  confidence: 0.5   # half\n" if changes.get("depth.use") else ""
+        assert text == OF_MINE.replace(options, "").replace(before, after, 1)
+    for comment in ("# of mine", "# beside this file", "# how deep", "# how high", "# hard"):
+        assert comment in text
+    assert edited(OF_MINE.replace("\n", "\r\n"), PATH, changes) == text.replace("\n", "\r\n")
+    for key, value in changes.items():
+        assert value in (None, REMOVE) or _at(said(text, PATH), key) == value
+    left = [key for key in said(text, PATH) if key in said(OF_MINE, PATH)]
+    assert left == [key for key in said(OF_MINE, PATH) if key in left]
+
+
+def _at(tree: Any, key: Any) -> Any:
+    for part in key.split(".") if isinstance(key, str) else key:
+        tree = tree[part]
+    return tree
+
+
+def test_a_block_of_lines_becomes_a_line():
+    text = edited(OF_MINE, PATH, {"depth": {"use": "zncc", "window_px": 9}})
+    assert "# how deep\ndepth: {use: zncc, window_px: 9}\n\n# how high\n" in text
+
+
+def test_labels_are_whole_numbers():
+    text = edited("scene: builtin/brick\n", PATH, {"materials": {"0": "ice"}})
+    assert text == "scene: builtin/brick\nmaterials: {0: ice}\n"
+    assert parse_config(text, PATH, default_registry()).materials.by == {0: "ice"}
+
+
+def test_a_file_that_says_nothing_yet():
+    assert edited("", PATH, {"scene": "builtin/brick"}) == "scene: builtin/brick\n"
+    assert edited("# mine", PATH, {"scene.photo": "a.png"}) == "# mine\nscene: {photo: a.png}\n"
+    assert edited("scene: builtin/brick", PATH, {"depth": "zncc"}) == "scene: builtin/brick\ndepth: zncc\n"
+    assert edited("# mine\nscene: builtin/brick\n", PATH, {"scene": REMOVE}) == "# mine\n"
+
+
+LISTED = "scene: builtin/coins  # mine\nexport: [heights, {use: text, language: de}]  # for others\n"
+
+
+@pytest.mark.parametrize(
+    ("changes", "exporters"),
+    [
+        ({"export.heights.width_m": 0.1}, "[{use: heights, width_m: 0.1}, {use: text, language: de}]"),
+        ({"export.text.language": "fr"}, "[heights, {use: text, language: fr}]"),
+        ({"export.1.language": "fr"}, "[heights, {use: text, language: fr}]"),
+        ({"export.text.language": REMOVE}, "[heights, {use: text}]"),
+        ({("export", 1, "use"): "heights"}, "[heights, {use: heights}]"),
+        ({"export": ["text"]}, "[text]"),
+        ({"export.swell.page": "a3"}, "[heights, {use: text, language: de}, {use: swell, page: a3}]"),
+    ],
+)  # fmt: skip
+def test_an_exporter_is_changed_by_its_name(changes: dict, exporters: str):
+    text = edited(LISTED, PATH, {"scene": "builtin/brick", **changes})
+    assert text == f"scene: builtin/brick  # mine\nexport: {exporters}  # for others\n"
+
+
+def test_exporters_stay_where_something_else_changes():
+    assert edited(LISTED, PATH, {"workspace.width_m": 0.1}).startswith(LISTED)
+    assert edited("scene: builtin/coins\n", PATH, {"export.heights.width_m": 0.1}).endswith(
+        "export: [{use: heights, width_m: 0.1}]\n"
+    )
+
+
+def test_relative_files_of_an_exporter_lead_to_the_same_from_elsewhere(tmp_path: Path):
+    from tangible_core import Exporter
+    from tangible_core.pipeline.config.config import NamedMethod, PipelineConfig
+    from tangible_core.pipeline.config.editing import moved
+
+    class Framed(Exporter):
+        frame: Path = Path()
+
+        def write(self, work, stem):
+            raise NotImplementedError
+
+    text = "scene: builtin/coins\nexport: [heights, {use: framed, frame: frames/oak.svg}]\n"
+    exporters = (
+        NamedMethod("heights", "", Framed()),
+        NamedMethod("framed", "", Framed(frame=tmp_path / "frames/oak.svg")),
+    )
+    config = PipelineConfig("builtin/coins", export=exporters)
+    found = moved(text, tmp_path / "p.yaml", config, tmp_path / "sub" / "p.yaml")
+    assert found == text.replace("frames/", "../frames/")
+
+
+def test_what_an_alias_shares_changes_in_one_place():
+    text = "scene: builtin/brick  # mine\nmapping: &m {scale: 2}\nworkspace: {width_m: &w 0.1, relief_m: *w}\n"
+    assert said(edited(text, PATH, {"workspace.relief_m": 0.2}), PATH)["workspace"] == {"width_m": 0.1, "relief_m": 0.2}
+    assert said(edited(text, PATH, {"workspace.width_m": 0.2}), PATH)["workspace"] == {"width_m": 0.2, "relief_m": 0.1}
+    assert edited(text, PATH, {"mapping.scale": 3}) == text.replace("2", "3")
+    shared = "a: &b {c: 1}\nd: *b\n"
+    assert said(edited(shared, PATH, {"d.c": 2}), PATH) == {"a": {"c": 1}, "d": {"c": 2}}
+
+
+@pytest.mark.parametrize(
+    ("text", "changes", "says"),
+    [
+        ("scene: [\n", {"want": "touch"}, "p.yaml:2:1"),
+        ("- a\n", {"want": "touch"}, "p.yaml:1:1"),
+        ("materials: {rules: []}\n", {"materials.rules.0": "x"}, "rules is a list; set it as a whole"),
+        ("scene: a\n", {"": 1}, "is no key"),
+        ("scene: a\n", {"depth..use": 1}, "is no key"),
+        ("scene: a\n", {"x." * 30 + "x": 1}, "is no key"),
+        ("scene: a\n", {"workspace.width_m": 10**70}, "a number of more than 64 digits"),
+        ("scene: a\n", {"scene": "x" * 300_000}, "holds more than"),
+        ("scene: a\n", {"scene": json.loads("[" * 500 + "]" * 500)}, "more than 20 blocks are nested"),
+        ("scene: a\n", {"depth": {1, 2, PATH.open}}, "what JSON can say"),
+    ],
+)
+def test_what_cannot_be_changed_is_said(text: str, changes: dict, says: str):
+    with pytest.raises(TangibleError, match=says):
+        edited(text, PATH, changes)
+
+
+def test_numbers_that_JSON_cannot_say_are_words():
+    assert json.dumps(said("workspace: {width_m: .nan, 3: 2001-01-01}\n", PATH), allow_nan=False)
+    with pytest.raises(ConfigError):
+        said("scene: {", PATH)
+
+
+TEXTS = [
+    OF_MINE,
+    OF_MINE.rstrip("\n"),
+    "{scene: builtin/brick, depth: {use: zncc}}",
+    "",
+    "--- # one\nscene: |\n  of\n  lines\ndepth:\nworkspace:\n    holes: cut\n\n    # below\n...\n",
+]
+keys = st.sampled_from(
+    ["scene", "scene.photo", "want", "depth", "depth.use", "render.use", "workspace.width_m", "workspace.holes",
+     "workspace", "materials", "materials.by", "materials.by.0", "materials.1", "render.x.y", "device.path"]
+)  # fmt: skip
+scalars = st.none() | st.booleans() | st.integers() | st.floats() | st.text() | st.sampled_from(["zncc", "1e3", "no"])
+values = st.recursive(
+    scalars,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text() | st.sampled_from("0x"), inner, max_size=3),
+    max_leaves=5,
+)
+
+
+@given(st.sampled_from(TEXTS), st.lists(st.tuples(keys, values | st.just(REMOVE)), min_size=1, max_size=4))
+def test_an_edited_text_says_what_was_set_and_what_it_said(text: str, changes: list):
+    tree = said(text, PATH)
+    for key, value in changes:
+        try:
+            _set(tree, key.split("."), value)
+        except ConfigError:
+            with pytest.raises(ConfigError, match="is a list"):
+                edited(text, PATH, {key: value})
+            return
+        text = edited(text, PATH, {key: value})
+        assert _json(said(text, PATH)) == _json(tree)
+
+
+def _set(tree: dict, parts: list[str], value: Any) -> None:
+    """What a change means, said another way: blocks down, then the key, then empty blocks up."""
+    name, *rest = parts
+    if not rest:
+        if value is REMOVE or (value is None and name in ("depth", "texture", "render", "device")):
+            tree.pop(name, None)
+        elif name == "use" and tree.get("use") != value:
+            tree.clear()
+            tree[name] = value
+        else:
+            tree[name] = value
+        return
+    block = tree.get(name)
+    if isinstance(block, list):
+        raise ConfigError("a list")
+    if isinstance(block, str) and name in ("depth", "texture", "render", "device"):
+        block = {"use": block}
+    if not isinstance(block, dict):
+        block = {} if value is not REMOVE else block
+    if isinstance(block, dict):
+        held = bool(block)
+        _set(block, rest, value)
+        tree[name] = block
+        if held and not block:
+            del tree[name]
+
+
+def _json(tree: Any) -> Any:
+    return json.dumps(_worded(tree), sort_keys=True)
+
+
+def _worded(node: Any) -> Any:
+    if isinstance(node, dict):
+        return {str(key): _worded(value) for key, value in node.items()}
+    if isinstance(node, list):
+        return [_worded(value) for value in node]
+    return str(node) if isinstance(node, float) and not abs(node) < float("inf") else node

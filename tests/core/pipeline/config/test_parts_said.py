@@ -1,0 +1,160 @@
+"""What a pipeline file says of parts: what is right, and one line with its place for what is wrong."""
+
+from pathlib import Path
+
+import pytest
+
+from tangible_core.errors import Complaint, ConfigError
+from tangible_core.parts import HeightChoice, PartChoice
+from tangible_core.pipeline.config.config import PipelineConfig, parse_config
+from tangible_core.pipeline.config.editing import REMOVE, edited
+from tangible_core.plugins.registry import default_registry
+
+PATH = Path("here/p.yaml")
+SCENE = "scene: {photo: a.png, segments: parts.png}\n"
+
+
+def parse(text: str, *overrides: str) -> PipelineConfig:
+    return parse_config(text, PATH, default_registry(), overrides)
+
+
+def complaints(text: str, *overrides: str) -> tuple[list[str], list[Complaint]]:
+    with pytest.raises(ConfigError) as error:
+        parse(text, *overrides)
+    return str(error.value).splitlines(), list(error.value.complaints)
+
+
+FULL = f"""{SCENE}title: 1969
+language: pt-BR
+parts:
+  0: wall
+  6: {{name: ' helmet ', height_m: 4.2 mm, material: glass}}
+  7:
+  '8': {{}}
+heights: {{by: given, bulge_m: 1 mm}}
+materials: {{rules: [{{part: helmet, material: ice}}, {{part: 7, material: sand}}]}}
+"""
+
+
+def test_parts_by_number():
+    config = parse(FULL)
+    helmet = PartChoice(name=" helmet ", height_m=0.0042, material="glass")
+    assert config.parts == {0: PartChoice(name="wall"), 6: helmet, 7: PartChoice(), 8: PartChoice()}
+    assert config.heights == HeightChoice(by="given", bulge_m=0.001)
+    assert (config.title, config.language) == ("1969", "pt-BR")
+    assert (config.part_names, config.given_heights_m) == ({0: "wall", 6: "helmet"}, {6: 0.0042})
+    assert [rule.part for rule in config.materials.rules] == ["helmet", 7]
+    assert config.size[1:3] == (0.006, 0.0005)
+    assert config.top_m == pytest.approx(0.0047)
+
+
+def test_what_says_nothing_of_parts_is_as_it_was():
+    config = parse(SCENE)
+    assert (config.parts, config.heights, config.by_parts, config.title, config.language) == (
+        None,
+        None,
+        False,
+        "",
+        "en",
+    )
+    assert config.size[1:3] == (0.004, 0.0015)
+    assert parse(f"{SCENE}parts:\n").by_parts
+    assert parse(f"{SCENE}heights: guess\n").heights == HeightChoice(by="guess")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        FULL,
+        f"{SCENE}parts: {{0: {{height_m: 1 mm}}}}\nheights: null\n",
+        f"{SCENE}heights: depth\n",
+        f"{SCENE}parts: {{}}\n",
+    ],
+    ids=["all", "heights that are switched off", "heights alone", "parts of which nothing is said"],
+)
+def test_the_completed_configuration_means_the_same(text: str):
+    config = parse(text)
+    again = parse(config.as_yaml())
+    assert (again.part_names, again.given_heights_m) == (config.part_names, config.given_heights_m)
+    assert again.by_parts == config.by_parts
+    assert (again.heights, again.title, again.language) == (config.heights, config.title, config.language)
+    assert again.as_yaml() == config.as_yaml()
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "location", "says"),
+    [
+        ("parts: [wall]", "2:1", ("parts",), "takes a mapping from the number of a part to its name, such as {0: wall"),
+        ("parts: {one: wall}", "2:9", ("parts", "one"), "the number of a part is a whole number from 0, not 'one'"),
+        ("parts: {-1: wall}", "2:9", ("parts", -1), "a whole number from 0, not -1"),
+        ("parts: {true: wall}", "2:9", ("parts", "True"), "a whole number from 0, not True"),
+        ("parts: {6: wall, '6': floor}", "2:18", ("parts", "6"), "parts.6: is there twice"),
+        ("parts: {6: 3}", "2:9", ("parts", 6), "takes the name of a part, or {name: ..., height_m"),
+        ("parts: {6: {nam: wall}}", "2:13", ("parts", 6, "nam"), "did you mean 'name'?"),
+        ("parts:\n  0: wall\n  6: {name: Wall}", "4:7", ("parts", 6, "name"), "'Wall' is the name of part 0 as well"),
+        ("parts: {0: wall, 6: 'wall '}", "2:18", ("parts", 6, "name"), "is the name of part 0 as well; give each part"),
+        ("parts: {0: '12'}", "2:9", ("parts", 0, "name"), "would be taken for the number of a part"),
+        ('parts: {0: "a\\nb"}', "2:9", ("parts", 0, "name"), "is one line of plain text"),
+        (f"parts: {{0: {'x' * 81}}}", "2:9", ("parts", 0, "name"), "over 80 characters"),
+        ("parts: {0: {material: glas}}", "2:13", ("parts", 0, "material"), "did you mean 'glass'?"),
+        ("parts: {0: {height_m: .nan}}\nheights: given", "2:13", ("parts", 0, "height_m"), "finite number"),
+        ("parts: {0: {height_m: -1 mm}}\nheights: given", "2:13", ("parts", 0, "height_m"), "greater than or equal"),
+        ("parts: {0: {height_m: 1 px}}\nheights: given", "2:13", ("parts", 0, "height_m"), "one of the units m, cm"),
+        ("parts: {0: {height_m: 1 mm}}", "2:13", ("parts", 0, "height_m"), "write `heights: {by: given}`"),
+        ("heights: {by: gues}", "2:11", ("heights", "by"), "did you mean 'guess'?"),
+        ("heights: {round_m: 6 mm}", "2:1", ("heights", "by"), "Field required"),
+        ("heights: {by: given, round_m: .inf}", "2:22", ("heights", "round_m"), "finite number"),
+        ("heights: {by: given, bulge_m: 6 mm}", "2:1", ("heights",), "6.3 mm together, and the whole relief is 6 mm"),
+        ("title: [a]", "2:1", ("title",), "valid string"),
+        ("title: " + "x" * 201, "2:1", ("title",), "at most 200 characters"),
+        ("language: german?", "2:1", ("language",), "the tag of a language, such as en, de or pt-BR"),
+        ("parts: {0: wall}\nmaterials: {rules: [{part: wal, material: ice}]}", "3:22",
+         ("materials", "rules", 0, "part"), "no part is named 'wal' (did you mean 'wall'?); named are wall"),
+        ("parts: {0: }\nmaterials: {rules: [{part: wal, material: ice}]}", "3:22",
+         ("materials", "rules", 0, "part"), "`parts:` names none"),
+        ("materials: {rules: [{part: 0, material: ice}]}", "2:22",
+         ("materials", "rules", 0, "part"), "nothing is by parts; name them under `parts:`"),
+    ],
+)  # fmt: skip
+def test_one_mistake_one_line_with_its_place(text: str, place: str, location: tuple, says: str):
+    (sentence,), (complaint,) = complaints(f"{SCENE}{text}\n")
+    assert sentence == f"here/p.yaml:{place}: {complaint.text}"
+    assert complaint.location == location
+    assert says in sentence
+    assert ".".join(map(str, location)) in sentence
+
+
+def test_a_map_of_heights_needs_no_others():
+    (sentence,), (complaint,) = complaints("scene: {height: a.npy, segments: b.png}\nheights: {by: given}\n")
+    assert sentence.startswith("here/p.yaml:2:1: heights: the scene is a map of heights")
+    assert complaint.location == ("heights",)
+    assert parse("scene: {height: a.npy, segments: b.png}\nparts: {0: sea}\n").by_parts
+
+
+def test_all_mistakes_are_said_at_once():
+    parts = "{0: wall, 1: wall, 2: {material: glas}, x: 1}"
+    text = f"{SCENE}parts: {parts}\nwant: nothing\nheights: {{by: given, bulge_m: 1}}\n"
+    assert [each.location for each in complaints(text)[1]] == [
+        ("want",), ("parts", "x"), ("heights", "bulge_m"), ("parts", 1, "name"), ("parts", 2, "material"),
+    ]  # fmt: skip
+
+
+def test_an_override_leaves_the_name_of_a_part():
+    config = parse(f"{SCENE}parts: {{0: wall}}\nheights: given\n", "parts.0.height_m=2 mm", "parts.5.name=x")
+    assert config.parts == {0: PartChoice(name="wall", height_m=0.002), 5: PartChoice(name="x")}
+    config = parse(f"{SCENE}parts: {{0: wall}}\nheights: given\n", "heights.bulge_m=2 mm")
+    assert config.heights == HeightChoice(by="given", bulge_m=0.002)
+    config = parse("scene: builtin/brick\nrender: proxy\n", "render.stiffness_n_per_m=500")
+    assert config.render is not None and config.render.method.model_dump()["stiffness_n_per_m"] == 500
+    (sentence,), (complaint,) = complaints(f"{SCENE}parts: {{0: a}}\n", "parts.3.name=a")
+    assert sentence.startswith("--set parts.3.name=a: parts.3.name: 'a' is the name of part 0 as well")
+    assert complaint == Complaint(("parts", 3, "name"), complaint.text, None, None)
+
+
+def test_a_program_edits_a_part_of_which_only_the_name_is_said():
+    text = "scene: builtin/brick  # brick\nparts:\n  0: wall  # behind\n  6: helmet\nheights: given\n"
+    changed = edited(text, PATH, {"parts.6.height_m": 0.004, "heights.round_m": 0.003})
+    assert "  0: wall  # behind\n" in changed
+    assert parse(changed).parts == {0: PartChoice(name="wall"), 6: PartChoice(name="helmet", height_m=0.004)}
+    assert parse(changed).heights == HeightChoice(by="given", round_m=0.003)
+    assert edited(changed, PATH, {("parts", "6", "height_m"): REMOVE}).count("helmet") == 1

@@ -1,0 +1,217 @@
+import json
+from collections.abc import Iterator
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+from ruamel.yaml import YAML
+
+from tangible_core.errors import UnknownMethod
+from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.schema import (
+    json_schema,
+    markdown,
+    materials_schema,
+    method_schema,
+    stage_schema,
+)
+from tangible_core.plugins.registry import Registry, default_registry
+
+ROOT = Path(__file__).parents[4]
+
+
+@pytest.fixture(scope="module")
+def validator() -> Draft202012Validator:
+    schema = json_schema()
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
+
+
+@pytest.mark.parametrize(
+    "path",
+    sorted(set(ROOT.glob("configs/*.yaml")) - set(ROOT.glob("configs/compare-*.yaml"))),
+    ids=lambda path: path.name,
+)
+def test_it_accepts_the_sample_configurations(validator: Draft202012Validator, path: Path):
+    validator.validate(YAML(typ="safe").load(path))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {},
+        {"scene": "builtin/nothing"},
+        {"scene": "builtin/brick", "depht": "luminance"},
+        {"scene": "builtin/brick", "depth": {"use": "luminance", "no": 1}},
+        {"scene": "builtin/brick", "render": {"use": "penalty-gradient", "stiffness_n_per_m": -1}},
+        {"scene": "builtin/brick", "materials": {"one": "ice"}},
+        {"scene": "builtin/brick", "materials": {"rules": [{"colour": "bleu", "material": "ice"}]}},
+        {"scene": "builtin/brick", "workspace": {"width_m": 0}},
+        {"scene": "builtin/brick", "parts": ["wall"]},
+        {"scene": "builtin/brick", "parts": {"one": "wall"}},
+        {"scene": "builtin/brick", "parts": {"0": {"nam": "wall"}}},
+        {"scene": "builtin/brick", "parts": {"0": {"height_m": -1}}},
+        {"scene": "builtin/brick", "heights": {"round_m": 0.001}},
+        {"scene": "builtin/brick", "heights": "gess"},
+        {"scene": "builtin/brick", "title": ["a"]},
+        {"scene": "builtin/brick", "language": "?"},
+    ],
+)
+def test_it_refuses_what_the_program_refuses(validator: Draft202012Validator, wrong: dict):
+    assert not validator.is_valid(wrong)
+
+
+@pytest.mark.parametrize(
+    "right",
+    [
+        {"parts": {"0": "wall", "6": {"name": "helmet", "height_m": "4.2 mm", "material": "glass"}, "7": None}},
+        {"heights": {"by": "given", "round_m": "6 mm", "detail_m": 0}, "title": "Astronaut", "language": "pt-BR"},
+        {"heights": "guess", "parts": None},
+        {
+            "heights": None,
+            "materials": {"rules": [{"part": "helmet", "material": "ice"}, {"part": 3, "material": "ice"}]},
+        },
+    ],
+)
+def test_it_accepts_parts(validator: Draft202012Validator, right: dict):
+    validator.validate({"scene": {"photo": "a.png", "segments": "parts.png"}, **right})
+
+
+def test_parts_and_heights_are_on_the_page():
+    page = markdown(json_schema())
+    for key in ("| `name` | string |", "| `height_m` |", "| `bulge_m` |", "| `title` | string |", "| `rules.part` |"):
+        assert f"\n{key}" in page
+
+
+def test_every_shipped_method_is_in_it_and_on_the_page():
+    schema, page = json_schema(), markdown(json_schema())
+    for kind in ("depth", "texture", "render", "device"):
+        names = schema["properties"][kind]["anyOf"][0]["enum"]
+        shipped = metadata.distribution("tangible-images").entry_points.select(group=f"tangible.{kind}")
+        assert set(names) == {point.name for point in shipped}
+        assert all(f"### {name}\n" in page for name in names)
+
+
+def test_every_option_says_what_it_means():
+    schema = json_schema()
+    forms = [
+        form for kind in ("depth", "texture", "render", "device") for form in schema["properties"][kind]["anyOf"][1:]
+    ]
+    for form in forms:
+        for name, option in form["properties"].items():
+            assert name == "use" or option.get("description"), f"{form['title']}.{name}"
+
+
+def test_a_form_has_words_and_units():
+    schema = json_schema()
+    (proxy,) = (form for form in schema["properties"]["render"]["anyOf"] if form.get("title") == "proxy")
+    stiffness = proxy["properties"]["stiffness_n_per_m"]
+    assert (stiffness["title"], stiffness["unit"]) == ("Stiffness", "N/m")
+    workspace = schema["properties"]["workspace"]["properties"]
+    assert {name: option.get("unit") for name, option in workspace.items()} == {
+        "width_m": "m", "relief_m": "m", "smooth_m": "m", "finest_m": "m", "holes": None,
+    }  # fmt: skip
+    assert schema["properties"]["depth"]["anyOf"][1]["title"] == "auto"
+    assert schema["$defs"]["VirtualHand"]["title"] == "Virtual hand"
+    titles = [option["title"] for name, option in _options(schema) if name != "use"]
+    assert len(titles) > 150 and all(title.strip() and "_" not in title for title in titles)
+
+
+def _options(node: object) -> Iterator[tuple[str, dict]]:
+    if isinstance(node, dict):
+        options = node.get("properties", {}) if "properties" in node and "anyOf" not in node else {}
+        if "scene" not in options:
+            yield from options.items()
+        for each in node.values():
+            yield from _options(each)
+    elif isinstance(node, list):
+        for each in node:
+            yield from _options(each)
+
+
+@pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
+def test_a_stage_has_a_schema_of_its_own(kind: str):
+    whole, stage = json_schema(), stage_schema(kind)
+    Draft202012Validator.check_schema(stage)
+    assert whole["properties"][kind]["anyOf"] == stage["anyOf"]
+    assert stage["$defs"].items() <= whole["$defs"].items()
+
+
+def test_a_method_has_a_schema_of_its_own_and_no_other_is_imported():
+    mock = Draft202012Validator(method_schema("device", "mock"))
+    assert mock.is_valid({"use": "mock", "path": "circle", "hand": {"mass_kg": "90 g"}})
+    assert not mock.is_valid({"use": "mock", "path": "circle", "hand": {"mass_kg": "90 m"}})
+    loaded = list[str]()
+
+    class Watched(Registry):
+        def load(self, kind: str, name: str) -> Any:
+            loaded.append(name)
+            return super().load(kind, name)
+
+    assert method_schema("depth", "zncc", Watched())["title"] == "zncc"
+    assert loaded == ["zncc"]
+    with pytest.raises(UnknownMethod, match="did you mean 'depth'"):
+        stage_schema("depht")
+    with pytest.raises(UnknownMethod, match="did you mean 'zncc'"):
+        method_schema("depth", "znc")
+
+
+@pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
+def test_every_default_is_a_value_that_JSON_can_say(kind: str):
+    registry = default_registry()
+    for name in registry.names(kind):
+        config = parse_config(f"scene: builtin/brick\n{kind}: {name}\n", Path("p.yaml"), registry)
+        assert json.loads(json.dumps(config.completed(), allow_nan=False))[kind]["use"] == name
+
+
+def test_the_page_in_docs_is_current():
+    page = (ROOT / "docs" / "yaml.md").read_text(encoding="utf-8")
+    assert page == markdown(json_schema()), "run: tangible schema --markdown > docs/yaml.md"
+
+
+@pytest.fixture(scope="module")
+def materials() -> Draft202012Validator:
+    schema = materials_schema()
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
+
+
+def test_the_shipped_library_is_one(materials: Draft202012Validator):
+    materials.validate(YAML(typ="safe").load(ROOT / "tangible_core/materials/materials.yaml"))
+
+
+@pytest.mark.parametrize(
+    ("block", "right"),
+    [
+        ({"ice": {"grain_m": 0.002}}, True),
+        ({"ice": {"grain_m": 0}}, False),
+        ({"ice": {"texture": "rough"}}, False),
+        ({"ice": {"sorce": "guess"}}, False),
+        ({"felt": {"grain_m": 0.002}}, False),
+        (
+            {
+                "felt": dict.fromkeys(
+                    ("stiffness_n_per_m", "damping_n_s_per_m", "static_friction", "dynamic_friction"), 1
+                )
+            },
+            True,
+        ),
+    ],
+)
+def test_a_shipped_material_needs_what_changes_and_a_new_one_more(
+    materials: Draft202012Validator, block: dict, right: bool
+):
+    assert materials.is_valid(block) == right
+
+
+def test_the_schema_of_materials_in_configs_is_current():
+    text = (ROOT / "configs" / "materials.schema.json").read_text(encoding="utf-8")
+    said = "run: tangible schema --materials > configs/materials.schema.json"
+    assert text == json.dumps(materials_schema(), indent=2, ensure_ascii=False) + "\n", said
+
+
+def test_every_value_says_what_it_means():
+    for name, value in materials_schema()["$defs"]["material"]["properties"].items():
+        assert value.get("description"), name

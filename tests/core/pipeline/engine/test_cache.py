@@ -1,0 +1,334 @@
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hostile import npz_bomb
+from tangible_core.data import (
+    Calibration,
+    DisparityMap,
+    HapticSurface,
+    Material,
+    MaterialMap,
+    Note,
+    Record,
+    Relief,
+    SegmentMap,
+    Views,
+)
+from tangible_core.pipeline.engine import cache
+from tangible_core.pipeline.engine.cache import Cache, read_record, write_record
+
+ICE = Material("ice", 900.0, 1.0, 0.1, 0.03, source="a test")
+HEIGHTS = np.linspace(0, 0.01, 12, dtype=np.float32).reshape(3, 4)
+LABELS = np.zeros((3, 4), np.int32)
+
+RECORDS: list[Record] = [
+    Views(np.arange(12, dtype=np.uint16).reshape(3, 4), None, Calibration(900.0, 0.2, 31.0)),
+    DisparityMap(np.where(HEIGHTS > 0.005, HEIGHTS, np.float32(np.nan))),
+    SegmentMap(LABELS),
+    MaterialMap((ICE,), ("because",)),
+    HapticSurface(Relief(HEIGHTS, (0.08, 0.06)), LABELS, (ICE,)),
+    HapticSurface(Relief(HEIGHTS, (0.08, 0.06))),
+]
+
+
+@pytest.mark.parametrize("record", RECORDS, ids=lambda each: type(each).__name__)
+def test_a_record_comes_back_as_it_was(tmp_path: Path, record: Record):
+    write_record(tmp_path / "x.npz", record)
+    again = read_record(tmp_path / "x.npz")
+    assert type(again) is type(record)
+    assert again.digest() == record.digest()
+
+
+NOTES = {"disparity": (Note("views exchanged", "warning"), Note("at 1/2")), "relief": (Note("noise", "doubt"),)}
+
+
+def test_what_was_noticed_comes_back_with_the_record(tmp_path: Path):
+    kept = Cache(tmp_path)
+    kept.put("k", RECORDS[1], NOTES)
+    assert kept.entry("k") is not None and kept.entry("k").notes == kept.notes("k") == NOTES
+    kept.put("k", RECORDS[1])
+    assert kept.entry("k").notes == kept.notes("k") == kept.notes("nothing") == {}
+
+
+@pytest.mark.parametrize("tree", [["x"], {"relief": [["x", "shout"]]}, {"relief": [[1, "doubt"]]}, {"relief": ["x"]}])
+def test_notes_that_are_none_are_damage(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
+    record = {"class": "SegmentMap", "fields": {"labels": {"array": "a"}}}
+    packed = np.frombuffer(json.dumps(tree).encode(), np.uint8)
+    entry(tmp_path / "k.npz", record, notes=packed, a=np.zeros((2, 2), np.int32))
+    assert Cache(tmp_path).notes("k") == {}
+    assert Cache(tmp_path).get("k") is None
+    assert "damaged" in caplog.text
+
+
+def test_any_program_can_read_an_entry(tmp_path: Path):
+    write_record(tmp_path / "x.npz", RECORDS[4])
+    with np.load(tmp_path / "x.npz", allow_pickle=False) as archive:
+        assert np.array_equal(archive["relief.height_m"], HEIGHTS)
+
+
+def test_a_miss_is_none(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+    assert Cache(tmp_path).get("nothing") is None
+    assert "nothing" not in Cache(tmp_path / "no folder yet")
+    assert not caplog.text
+
+
+def test_the_folder_is_the_one_that_is_asked_for(cache_dir: Path):
+    Cache().put("k", RECORDS[1])
+    assert [each.name for each in cache_dir.glob("*.npz")] == ["k.npz"]
+
+
+@pytest.mark.parametrize("damage", [lambda b: b[: len(b) // 2], lambda b: b"", lambda b: b"PK" + bytes(len(b))])
+def test_a_damaged_entry_is_said_and_deleted(tmp_path: Path, caplog: pytest.LogCaptureFixture, damage):
+    kept = Cache(tmp_path)
+    kept.put("k", RECORDS[1])
+    path = tmp_path / "k.npz"
+    path.write_bytes(damage(path.read_bytes()))
+    assert kept.get("k") is None
+    assert "damaged" in caplog.text
+    assert not path.exists()
+
+
+def test_one_flipped_bit_is_found(tmp_path: Path):
+    kept = Cache(tmp_path)
+    kept.put("k", SegmentMap(np.zeros((64, 64), np.int32)))
+    path = tmp_path / "k.npz"
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+    assert kept.get("k") is None
+
+
+@pytest.mark.parametrize("tree", [b'{"class": "Path", "fields": {}}', b'["a", "list"]', b"{}"])
+def test_an_entry_of_another_program_is_not_trusted(tmp_path: Path, tree: bytes, caplog: pytest.LogCaptureFixture):
+    np.savez(tmp_path / "k.npz", record=np.frombuffer(tree, np.uint8))
+    assert Cache(tmp_path).get("k") is None
+    assert "damaged" in caplog.text
+    assert "k" not in Cache(tmp_path)
+
+
+def entry(path: Path, tree: object, **arrays: np.ndarray) -> None:
+    text = tree if isinstance(tree, str) else json.dumps(tree)
+    np.savez(path, record=np.frombuffer(text.encode(), np.uint8), **arrays)
+
+
+ODD = {
+    "lists in lists": "[" * 100_000 + "]" * 100_000,
+    "a number of 5000 digits": "9" * 5000,
+    "no record": 7,
+    "a tuple": {"tuple": []},
+    "another class": {"class": "Record", "fields": {}},
+    "a class that is a list": {"class": [], "fields": {}},
+    "a tuple of the servo": {"class": "Force", "fields": {"x": 1.0, "y": 1.0, "z": 1.0}},
+    "a missing array": {"class": "DisparityMap", "fields": {"disparity_px": {"array": "x"}}},
+    "an unknown field": {"class": "SegmentMap", "fields": {"labels": {"array": "a"}, "more": 1}},
+    "a picture that is none": {"class": "Views", "fields": {"left": {"array": "b"}}},
+    "fields that are none": {"class": "Views", "fields": [1]},
+    "a part that nobody knows": {"class": "Views", "fields": {"left": {"array": "a"}, "calibration": {"camera": 1}}},
+}
+
+
+@pytest.mark.usefixtures("unchecked_shapes")
+@pytest.mark.parametrize("tree", ODD.values(), ids=ODD)
+def test_whatever_an_entry_holds_it_is_made_again(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
+    entry(tmp_path / "k.npz", tree, a=np.zeros((2, 2), np.uint8), b=np.full((2, 2), np.nan))
+    assert Cache(tmp_path).get("k") is None
+    assert "damaged" in caplog.text
+    assert len(caplog.text) < 1000
+    assert not (tmp_path / "k.npz").exists()
+
+
+def test_an_entry_that_becomes_something_large_is_not_unpacked(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+    npz_bomb(tmp_path / "k.npz", record=(20_000, 20_000))
+    assert Cache(tmp_path).get("k") is None
+    assert "holds more than 1424 MB" in caplog.text
+
+
+@pytest.mark.timeout(20)
+def test_a_pipe_in_the_folder_is_not_waited_for(tmp_path: Path):
+    os.mkfifo(tmp_path / "k.npz")
+    assert Cache(tmp_path).get("k") is None
+
+
+def test_the_entries_used_longest_ago_go_first(tmp_path: Path):
+    kept = Cache(tmp_path)
+    for age, key in enumerate(("old", "older", "oldest")):
+        kept.put(key, RECORDS[1])
+        os.utime(tmp_path / f"{key}.npz", (1e9 - age, 1e9 - age))
+    assert kept.get("oldest") is not None  # used now, so it stays
+    size = (tmp_path / "old.npz").stat().st_size
+    Cache(tmp_path, max_bytes=int(2.9 * size)).put("new", RECORDS[1])
+    assert {path.stem for path in tmp_path.glob("*.npz")} == {"oldest", "new"}
+
+
+def test_of_many_entries_exactly_those_used_last_stay(tmp_path: Path):
+    """In whatever order the folder lists them."""
+    cache = Cache(tmp_path)
+    ages = [7, 2, 9, 4, 0, 11, 5, 1, 10, 3, 8, 6]
+    for age in ages:
+        cache.put(f"{age * 5 % 12:x}{age}", RECORDS[1])
+        os.utime(tmp_path / f"{age * 5 % 12:x}{age}.npz", (1e9 - age, 1e9 - age))
+    size = next(tmp_path.glob("*.npz")).stat().st_size
+    Cache(tmp_path, max_bytes=7 * size).put("new", RECORDS[1])
+    assert {path.stem for path in tmp_path.glob("*.npz")} == {"new", *(f"{age * 5 % 12:x}{age}" for age in range(5))}
+
+
+def test_a_cache_that_is_just_full_keeps_all(tmp_path: Path):
+    Cache(tmp_path).put("a", RECORDS[1])
+    size = (tmp_path / "a.npz").stat().st_size
+    Cache(tmp_path, max_bytes=2 * size).put("b", RECORDS[1])
+    assert len(list(tmp_path.glob("*.npz"))) == 2
+
+
+@pytest.mark.parametrize("counted", [False, True])
+def test_entries_that_another_process_drops_meanwhile(
+    tmp_path: Path, counted: bool, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+):
+    def used(path: Path) -> tuple[float, int]:
+        found = real(path) if counted else None
+        path.unlink()
+        return found or real(path)
+
+    real = cache._used
+    Cache(tmp_path).put("old", RECORDS[1])
+    monkeypatch.setattr(cache, "_used", used)
+    Cache(tmp_path, max_bytes=0).put("new", RECORDS[1])
+    assert not caplog.text
+    assert not list(tmp_path.glob("*.npz"))
+
+
+def test_entries_that_cannot_be_dropped_cost_a_warning(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+):
+    def denied(_: Path) -> tuple[float, int]:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(cache, "_used", denied)
+    Cache(tmp_path).put("k", RECORDS[1])
+    assert "Permission denied" in caplog.text
+
+
+@pytest.mark.parametrize("place", ["file", "file/below", "loop"])
+def test_a_folder_that_cannot_be_written_costs_one_warning(
+    tmp_path: Path, place: str, caplog: pytest.LogCaptureFixture
+):
+    """A process has many results, and several caches of one folder."""
+    (tmp_path / "file").write_text("")
+    (tmp_path / "loop").symlink_to("loop")
+    for key in "abc":
+        kept = Cache(tmp_path / place)
+        assert key not in kept
+        assert kept.get(key) is None
+        kept.put(key, RECORDS[1])
+    [message] = caplog.messages
+    assert message.startswith(f"results are not cached: {tmp_path / place}/a.npz: cannot be written: ")
+    assert message.endswith("TANGIBLE_CACHE_DIR names another cache")
+    assert (tmp_path / "file").read_text() == ""
+
+
+def test_an_entry_that_is_a_folder_is_made_again(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+    kept = Cache(tmp_path)
+    (tmp_path / "k.npz").mkdir()
+    assert "k" not in kept
+    assert kept.get("k") is None
+    assert "damaged" in caplog.text
+    kept.put("k", RECORDS[1])
+    assert kept.get("k") is not None
+
+
+def test_a_folder_that_holds_something_is_not_the_caches_to_remove(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+    kept, theirs = Cache(tmp_path), tmp_path / "k.npz" / "theirs"
+    theirs.parent.mkdir()
+    theirs.write_text("of somebody")
+    assert kept.get("k") is None
+    kept.put("k", RECORDS[1])
+    assert theirs.read_text() == "of somebody"
+    assert "not cached" in caplog.text
+
+
+def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog):
+    def full(*_: object, **__: object):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(np.lib.format, "write_array", full)
+    Cache(tmp_path).put("k", RECORDS[1])
+    assert "No space left" in caplog.text
+    assert list(tmp_path.iterdir()) == []
+
+
+def held(folder: Path) -> int:
+    return sum(path.stat().st_size for path in folder.glob("*.npz"))
+
+
+def test_the_folder_is_listed_only_where_it_may_be_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    looked_at: list[Path] = []
+    real = cache._used
+    monkeypatch.setattr(cache, "_used", lambda path: looked_at.append(path) or real(path))
+    kept = Cache(tmp_path)
+    for number in range(40):
+        kept.put(f"k{number}", RECORDS[1])
+    assert len(looked_at) <= 40 + 1  # each itself, and the first one once more, as nothing is known of a new folder
+    size = real(tmp_path / "k0.npz")[1]
+    full = Cache(tmp_path, max_bytes=32 * size)
+    for number in range(40, 80):
+        full.put(f"k{number}", RECORDS[1])
+        assert held(tmp_path) <= full.max_bytes
+    looked_at.clear()
+    for number in range(80, 120):
+        full.put(f"k{number}", RECORDS[1])
+    assert len(looked_at) < 40 * 32 / 3
+
+
+@pytest.mark.parametrize(
+    "tally", [None, b"", b"torn", b"\xff" * 8, bytes(8 * (1 << 17))], ids=["none", "empty", "torn", "negative", "long"]
+)
+def test_a_folder_whose_tally_tells_nothing_is_counted(tmp_path: Path, tally: bytes | None):
+    kept = Cache(tmp_path)
+    for number in range(4):
+        kept.put(f"k{number}", RECORDS[1])
+        os.utime(tmp_path / f"k{number}.npz", (1e9 + number, 1e9 + number))
+    size = (tmp_path / "k0.npz").stat().st_size
+    (tmp_path / ".tally").unlink()
+    if tally is not None:
+        (tmp_path / ".tally").write_bytes(tally)
+    Cache(tmp_path, max_bytes=3 * size).put("new", RECORDS[1])
+    assert {path.stem for path in tmp_path.glob("*.npz")} == {"k3", "new"}
+    assert held(tmp_path) == int.from_bytes((tmp_path / ".tally").read_bytes(), "little")
+
+
+USER = """
+import sys
+from pathlib import Path
+import numpy as np
+from tangible_core.pipeline.engine import cache
+from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.data import SegmentMap
+
+cache, record = Cache(Path(sys.argv[1]), max_bytes=int(sys.argv[3])), SegmentMap(np.zeros((20, 20), np.int32))
+for i in range(200):
+    key = f"k{(int(sys.argv[2]) + i) % 10}"
+    cache.put(key, record)
+    found = cache.get(key)
+    assert found is None or found.digest() == record.digest()
+"""
+
+
+@pytest.mark.parametrize("max_bytes", [20_000, 10_000_000], ids=["always full", "roomy"])
+def test_four_processes_share_a_folder(tmp_path: Path, max_bytes: int):
+    users = [
+        subprocess.Popen(
+            [sys.executable, "-c", USER, tmp_path, start, str(max_bytes)], stderr=subprocess.PIPE, text=True
+        )
+        for start in "0257"
+    ]
+    said = [user.communicate(timeout=60)[1] for user in users]
+    assert said == [""] * 4
+    assert [user.returncode for user in users] == [0] * 4
+    assert [path.name for path in tmp_path.iterdir() if path.suffix != ".npz"] == [".tally"]
+    assert held(tmp_path) <= max_bytes + 4 * 2_000  # what each may have written while another one counted
+    assert (tmp_path / ".tally").stat().st_size % 8 == 0

@@ -1,0 +1,286 @@
+"""What a kept result depends on: each thing by itself, on methods and packages that are made up or real."""
+
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangible_core import load_method
+from tangible_core.data import DisparityMap, SegmentMap, Views
+from tangible_core.materials.rules import MaterialRule
+from tangible_core.pipeline.config.config import PRODUCTS, MaterialChoice, NamedMethod, PipelineConfig
+from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.pipeline.engine.engine import Engine
+from tangible_core.plugins.interfaces import DepthEstimator, Segmenter
+from tangible_core.plugins.registry import default_registry
+from tangible_core.provenance import closure as closures
+from tangible_core.provenance import places, versions
+from tangible_core.scene.scene_files import SceneFiles
+from tangible_core.scene.workspace import Workspace
+
+KEPT = tuple(product for product in PRODUCTS if product != "touch")
+
+
+FELT = """
+felt:
+  {{stiffness_n_per_m: {}, damping_n_s_per_m: 1.5, static_friction: 0.5, dynamic_friction: 0.4, source: guess}}
+"""
+
+
+class Ramp(DepthEstimator):
+    """Disparity grows from left to right."""
+
+    most_px: float | None = None
+
+    def estimate(self, views: Views) -> DisparityMap:
+        return DisparityMap(np.tile(np.arange(views.shape[1], dtype=np.float32), (views.shape[0], 1)))
+
+
+class Halves(Segmenter):
+    """Left and right."""
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        labels = np.zeros(picture.shape[:2], np.int32)
+        labels[:, picture.shape[1] // 2 :] = 1
+        return SegmentMap(labels)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    picture = np.random.default_rng(0).random((20, 30)).astype(np.float32)
+    picture[3, 5] = picture[3, 6] = picture[2, 5] = picture[4, 5] = picture[3, 4]
+    np.save(tmp_path / "left.npy", picture)
+    np.save(tmp_path / "right.npy", picture[:, ::-1])
+    picture[3, 5] = np.nan
+    np.save(tmp_path / "torn.npy", picture)
+    return tmp_path
+
+
+def pipeline(folder: Path, **parts) -> Engine:
+    pair = SceneFiles(left=Path("left.npy"), right=Path("right.npy"))
+    made = {
+        "scene": pair,
+        "want": "surface",
+        "depth": NamedMethod("ramp", "tests 1.0", Ramp()),
+        "texture": NamedMethod("halves", "tests 1.0", Halves()),
+        "workspace": Workspace(width_m=0.03),
+    }
+    config = PipelineConfig(path=folder / "p.yaml", **(made | parts))
+    return Engine(config, default_registry(), Cache(folder / "cache"))
+
+
+def keys(folder: Path, **parts) -> dict[str, str]:
+    """Of what is made, each by itself: what it is made from is left out."""
+    return {product: rule.key for product, rule in pipeline(folder, **parts)._rules.items()}
+
+
+def forget() -> None:
+    for module in (closures, places, versions):
+        for each in vars(module).values():
+            if hasattr(each, "cache_clear"):
+                each.cache_clear()
+
+
+@pytest.fixture(autouse=True)
+def _forgotten():
+    yield
+    forget()
+
+
+class TestEachAnswerIsItsOwn:
+    """Two that differ in one thing, by what the engine says and by what it gives."""
+
+    def differ(self, product: str, one: Engine, other: Engine) -> bool:
+        one.make(product)
+        assert outcome(one, product) == "ran"
+        other.make(product)
+        return outcome(other, product) == "ran"
+
+    def test_or_else_it_is_the_one_of_before(self, folder: Path):
+        for product in KEPT:
+            assert not self.differ(product, pipeline(folder), pipeline(folder))
+            for path in (folder / "cache").iterdir():
+                path.unlink()
+
+    @pytest.mark.parametrize("product", ["disparity", "segments"])
+    def test_by_how_much_pictures_are_reduced(self, folder: Path, product: str):
+        coarse, fine = (pipeline(folder, workspace=Workspace(width_m=0.03, finest_m=each)) for each in (0.01, 0))
+        assert self.differ(product, coarse, fine)
+        if product == "disparity":
+            assert fine.make(product).disparity_px[0].tolist() == list(range(30))
+
+    @pytest.mark.parametrize("product", ["disparity", "segments"])
+    def test_where_the_picture_is_known(self, folder: Path, product: str):
+        """The pictures are the same once they are filled."""
+        whole, torn = (
+            pipeline(folder, scene=SceneFiles(photo=Path(f"{each}.npy"), non_finite="mask"))
+            for each in ("left", "torn")
+        )
+        np.testing.assert_array_equal(whole.scene.views.left, torn.scene.views.left)
+        assert self.differ(product, whole, torn)
+        assert torn.make(product).confidence[3, 5] == 0
+
+    @pytest.mark.parametrize(("product", "method"), [("disparity", Ramp), ("segments", Halves)])
+    def test_the_version_of_a_method_s_class(
+        self, folder: Path, monkeypatch: pytest.MonkeyPatch, product: str, method: type
+    ):
+        one, other = pipeline(folder), pipeline(folder)
+        one.make(product)
+        monkeypatch.setattr(method, "version", method.version + 1)
+        other.make(product)
+        assert outcome(other, product) == "ran"
+
+    def test_an_option_without_bound_and_one_that_is_not_given(self, folder: Path):
+        one, other = (pipeline(folder, depth=NamedMethod("ramp", "t 1", Ramp(most_px=each))) for each in (None, np.inf))
+        assert self.differ("disparity", one, other)
+
+    @pytest.mark.parametrize(
+        "size",
+        [{"width_m": 0.06}, {"relief_m": 0.011}, {"smooth_m": 0.001}, {"holes": "cut"}],
+        ids=lambda each: next(iter(each)),
+    )
+    def test_the_size_and_shape_of_a_relief(self, folder: Path, size: dict):
+        one, other = (pipeline(folder, workspace=Workspace(**{"width_m": 0.03, **more})) for more in ({}, size))
+        assert self.differ("relief", one, other)
+
+    @pytest.mark.parametrize("brings", [{}, {"disparity": Path("disparity.npy")}], ids=["found", "brought"])
+    def test_the_cameras(self, folder: Path, brings: dict):
+        np.save(folder / "disparity.npy", np.full((20, 30), 4.0, np.float32))
+        pair = {"left": Path("left.npy"), "right": Path("right.npy"), "baseline_m": 0.1, **brings}
+        one, other = (pipeline(folder, scene=SceneFiles(**pair, focal_px=each)) for each in (500.0, 600.0))
+        assert self.differ("relief", one, other)
+
+    @pytest.mark.parametrize(
+        "choice",
+        [
+            {"by": {0: "sand"}},
+            {"by": "rules"},
+            {"rules": (MaterialRule.model_validate({"segment": 0, "material": "ice"}),)},
+            {"by": "rules", "default": "sand"},
+        ],
+        ids=["by", "by rules", "rules", "default"],
+    )
+    def test_which_materials_are_chosen(self, folder: Path, choice: dict):
+        one = pipeline(folder, materials=MaterialChoice(by="rules" if "default" in choice else "roughness"))
+        assert self.differ("materials", one, pipeline(folder, materials=MaterialChoice(**choice)))
+
+    def test_what_a_library_says(self, folder: Path):
+        def mine(stiffness: int) -> Engine:
+            (folder / "mine.yaml").write_text(FELT.format(stiffness))
+            return pipeline(folder, materials=MaterialChoice(by={0: "felt", 1: "felt"}, library=folder / "mine.yaml"))
+
+        one = mine(200)
+        one.make("materials")
+        other = mine(300)
+        assert self.differ("materials", one, other)
+        assert other.make("materials").materials[0].stiffness_n_per_m == 300
+
+
+def outcome(pipe: Engine, product: str) -> str:
+    return {each.product: each.outcome for each in pipe.outcomes}[product]
+
+
+def edited(monkeypatch: pytest.MonkeyPatch, module: str) -> None:
+    """As if this module said something else."""
+    read = closures._text.__wrapped__
+
+    def text(here: places.Place):
+        found = read(here)
+        return found._replace(content=b"edited") if here.name == module else found
+
+    forget()
+    monkeypatch.setattr(closures, "_text", text)
+
+
+def other_version(monkeypatch: pytest.MonkeyPatch, distribution: str) -> None:
+    read = versions._version.__wrapped__
+    forget()
+    monkeypatch.setattr(versions, "_version", lambda name: "0.1" if name == distribution else read(name))
+
+
+def real(depth: str = "semi-global", texture: str = "gabor") -> dict[str, NamedMethod]:
+    return {
+        "depth": NamedMethod(depth, "tests 1.0", load_method("depth", depth)()),
+        "texture": NamedMethod(texture, "tests 1.0", load_method("texture", texture)()),
+    }
+
+
+class TestCode:
+    @pytest.mark.parametrize(
+        ("module", "products"),
+        [
+            ("tangible_core.scene.scaling", {"disparity", "segments", "simplified"}),
+            ("tangible_core.scene.geometry", {"relief", "simplified"}),
+            ("tangible_core.materials.rules", {"materials"}),
+            ("tangible_core.data.surface", set(KEPT) - {"parts"}),
+            ("tangible_core.pipeline.engine.rules", set(KEPT)),
+            ("tangible_core.pipeline.engine.cache", set(KEPT)),
+            ("tangible_core.pipeline.engine.engine", set()),
+            ("tangible_depth.semi_global", {"disparity"}),
+            ("tangible_depth.sgm.aggregation", {"disparity"}),
+            ("tangible_core.compiled.threads", {"disparity", "segments"}),
+            ("tangible_texture.energies.energy_kernels", {"segments"}),
+        ],
+    )
+    def test_a_result_depends_on_what_makes_it_and_on_no_more(
+        self, folder: Path, monkeypatch: pytest.MonkeyPatch, module: str, products: set[str]
+    ):
+        before = keys(folder, **real())
+        edited(monkeypatch, module)
+        after = keys(folder, **real())
+        assert {product for product in KEPT if before[product] != after[product]} == products
+
+    @pytest.mark.parametrize(
+        ("distribution", "depth", "products"),
+        [
+            ("numpy", "semi-global", set(KEPT)),
+            ("numba", "semi-global", {"disparity", "segments"}),
+            ("llvmlite", "semi-global", {"disparity", "segments"}),
+            ("torch", "semi-global", set()),
+            ("torch", "kornia-zncc", {"disparity"}),
+            ("kornia", "kornia-report", {"disparity"}),
+            ("scipy", "semi-global", set(KEPT)),
+            ("matplotlib", "semi-global", set()),
+        ],
+    )
+    def test_it_depends_on_the_versions_of_the_libraries_that_it_uses(
+        self, folder: Path, monkeypatch: pytest.MonkeyPatch, distribution: str, depth: str, products: set[str]
+    ):
+        before = keys(folder, **real(depth))
+        other_version(monkeypatch, distribution)
+        after = keys(folder, **real(depth))
+        assert {product for product in KEPT if before[product] != after[product]} == products
+
+    def test_opencv_counts_by_whichever_name_it_is_installed(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
+        before = keys(folder, **real())
+        other_version(monkeypatch, next(name for name in versions.LIBRARIES["cv2"] if versions._version(name)))
+        assert before["disparity"] != keys(folder, **real())["disparity"]
+
+    def test_a_helper_of_somebody_s_own(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
+        (folder / "acme_depth.py").write_text(
+            "from acme_helper import SLOPE\n"
+            "from tangible_core import DepthEstimator\n"
+            "class Mine(DepthEstimator):\n"
+            "    def estimate(self, views): ...\n"
+        )
+        (folder / "acme_helper.py").write_text("SLOPE = 1")
+        monkeypatch.syspath_prepend(folder)
+        chosen = NamedMethod("mine", "acme 1.0", import_module("acme_depth").Mine())
+        before = keys(folder, depth=chosen)
+        (folder / "acme_helper.py").write_text("SLOPE = 2")
+        forget()
+        assert before["disparity"] != keys(folder, depth=chosen)["disparity"]
+
+    def test_a_method_written_at_a_prompt_is_never_answered_by_one_of_before(self, folder: Path):
+        made = {"__name__": "__prompt__"}
+        exec(PROMPT, made)
+        chosen = NamedMethod("mine", "prompt", made["Mine"]())
+        assert keys(folder, depth=chosen)["disparity"] != keys(folder, depth=chosen)["disparity"]
+
+
+PROMPT = """
+from tangible_core.plugins.interfaces import DepthEstimator
+class Mine(DepthEstimator):
+    def estimate(self, views): ...
+"""

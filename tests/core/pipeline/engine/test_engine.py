@@ -1,0 +1,524 @@
+"""The engine, on methods of its own that count how often they run."""
+
+import logging
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+import pluggy
+import pytest
+
+from pictures import write_png
+from tangible_core.data import DisparityMap, Force, HapticState, HapticSurface, Note, SegmentMap, Views
+from tangible_core.errors import BrokenMethod, ConfigError, GeometryError, PictureError, UnknownMethod
+from tangible_core.pipeline.config.config import MaterialChoice, NamedMethod, PipelineConfig
+from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.pipeline.engine.engine import Engine
+from tangible_core.plugins import hooks
+from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, PlainTouch, Segmenter, Skippable, Touch
+from tangible_core.plugins.notes import doubt, note
+from tangible_core.plugins.registry import Registry
+from tangible_core.scene.scene import Scene
+from tangible_core.scene.scene_files import SceneFiles
+from tangible_core.scene.workspace import Workspace
+
+ran: list[str] = []
+
+
+class Ramp(DepthEstimator):
+    """Disparity grows from left to right."""
+
+    slope: float = 1.0
+
+    def estimate(self, views: Views) -> DisparityMap:
+        ran.append("disparity")
+        return DisparityMap(np.tile(np.arange(views.shape[1], dtype=np.float32) * self.slope, (views.shape[0], 1)))
+
+
+class Never(DepthEstimator, Skippable):
+    """Not needed by any scene."""
+
+    def skip(self, views: Views) -> str | None:
+        return "nothing to see"
+
+    def estimate(self, views: Views) -> DisparityMap:
+        raise AssertionError("it was to be skipped")
+
+
+class Halves(Segmenter):
+    """Left and right."""
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        ran.append("segments")
+        labels = np.zeros(picture.shape[:2], np.int32)
+        labels[:, picture.shape[1] // 2 :] = 1
+        return SegmentMap(labels)
+
+
+class Says(Segmenter):
+    """Leaves something out, and says so."""
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        note(logging.getLogger("tests"), "skipped: everything")
+        return SegmentMap(np.zeros(picture.shape[:2], np.int32))
+
+
+class Shrinks(Segmenter):
+    """Labels a part of the picture."""
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        return SegmentMap(np.zeros((picture.shape[0] // 2, picture.shape[1]), np.int32))
+
+
+class Grows(DepthEstimator):
+    """A disparity for a larger picture."""
+
+    def estimate(self, views: Views) -> DisparityMap:
+        return DisparityMap(np.zeros((views.shape[0], views.shape[1] + 3), np.float32))
+
+
+class Fails(Segmenter):
+    """Raises what a plugin may raise."""
+
+    def segment(self, picture: np.ndarray) -> SegmentMap:
+        raise ZeroDivisionError("a bug of its own")
+
+
+class Knowing(PlainTouch):
+    """A touch that feels nothing, and knows its surface."""
+
+    def __init__(self, surface: HapticSurface) -> None:
+        self.surface = surface
+
+    def force(self, state: HapticState) -> Force:
+        return Force(0.0, 0.0, 0.0)
+
+
+class Feel(ForceRenderer):
+    """A law with materials."""
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        ran.append("touch")
+        return Knowing(surface)
+
+
+class FeelHeights(ForceRenderer):
+    """A law without materials."""
+
+    uses_materials: ClassVar[bool] = False
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        return Knowing(surface)
+
+
+@pytest.fixture(autouse=True)
+def forget():
+    ran.clear()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    picture = np.random.default_rng(0).integers(0, 255, (20, 30), dtype=np.uint8)
+    write_png(tmp_path / "left.png", picture)
+    write_png(tmp_path / "right.png", picture[:, ::-1])
+    np.save(tmp_path / "heights.npy", np.tile(np.arange(30.0), (20, 1)))
+    return tmp_path
+
+
+def chosen(method, name: str = ""):
+    return NamedMethod(name or type(method).__name__.lower(), "tests 1.0", method)
+
+
+def pipeline(folder: Path, cached: bool = True, plugins: pluggy.PluginManager | None = None, **parts) -> Engine:
+    parts = {
+        "scene": SceneFiles(left=Path("left.png"), right=Path("right.png")),
+        "want": "touch",
+        "depth": chosen(Ramp()),
+        "texture": chosen(Halves()),
+        "materials": MaterialChoice(by={0: "ice", 1: "sand"}),
+        "render": chosen(Feel()),
+    } | parts
+    plugins = plugins or hooks.manager()
+    config = PipelineConfig(path=folder / "p.yaml", **parts)
+    return Engine(config, Registry(plugins), Cache(folder / "cache") if cached else None)
+
+
+def said(pipe: Engine) -> dict[str, str]:
+    return {each.product: each.outcome for each in pipe.outcomes}
+
+
+def test_everything_that_is_needed_is_made_once(folder: Path):
+    pipe = pipeline(folder)
+    surface = pipe.make().surface
+    assert ran == ["disparity", "segments", "touch"]
+    assert [material.name for material in surface.materials] == ["ice", "sand"]
+    made = ("disparity", "relief", "segments", "materials", "surface", "touch")
+    assert said(pipe) == {"views": "given", **dict.fromkeys(made, "ran")}
+    pipe.make("relief")
+    assert ran == ["disparity", "segments", "touch"]
+
+
+@pytest.mark.parametrize(
+    ("parts", "says"),
+    [
+        ({"texture": chosen(Shrinks(), "halved")}, "texture method halved (tests 1.0) made labels of 30 x 10"),
+        ({"depth": chosen(Grows(), "more")}, "depth method more (tests 1.0) made disparity of 33 x 20"),
+    ],
+)
+def test_a_result_of_another_size_than_the_picture_is_not_stretched_over_it(folder: Path, parts: dict, says: str):
+    with pytest.raises(BrokenMethod) as error:
+        pipeline(folder, **parts).make("surface")
+    assert str(error.value).startswith(f"{says} for a picture of 30 x 20; ")
+    coarse = Workspace(width_m=0.03, finest_m=0.002)
+    with pytest.raises(BrokenMethod, match="for a picture of 15 x 10; `tangible check "):
+        pipeline(folder, workspace=coarse, **parts).make("surface")
+
+
+def test_what_nothing_asks_for_is_not_made(folder: Path):
+    pipe = pipeline(folder)
+    pipe.make("relief")
+    assert ran == ["disparity"]
+    left = {each.product: each.why for each in pipe.outcomes if each.outcome == "skipped"}
+    assert left == dict.fromkeys(("segments", "materials", "surface", "touch"), "nothing that was asked for needs it")
+
+
+def test_what_a_method_notes_is_in_its_outcome(folder: Path):
+    pipe = pipeline(folder, texture=chosen(Says()))
+    pipe.make("segments")
+    [outcome] = [each for each in pipe.outcomes if each.product == "segments"]
+    assert outcome.why == "asked for; skipped: everything"
+
+
+class Warns(Ramp):
+    """Is not sure."""
+
+    def estimate(self, views: Views) -> DisparityMap:
+        note(logging.getLogger("tests"), "every row is strange", logging.WARNING)
+        doubt(logging.getLogger("tests"), "hardly worth it")
+        return super().estimate(views)
+
+
+def test_what_a_method_noticed_is_told_again_with_what_comes_from_the_cache(
+    folder: Path, caplog: pytest.LogCaptureFixture
+):
+    parts = {"depth": chosen(Warns()), "texture": chosen(Says()), "materials": MaterialChoice(by={0: "ice"})}
+    noticed = [Note("every row is strange", "warning"), Note("hardly worth it", "doubt")]
+    first = pipeline(folder, **parts)
+    first.make("disparity")
+    first.make("surface")
+    for want in ("disparity", "surface"):  # of the second, only the surface is read, and holds what it is made from
+        caplog.clear()
+        again = pipeline(folder, **parts)
+        assert again.plan(want).steps[-1].notes == tuple(noticed)
+        again.make(want)
+        told = {each.product: each for each in again.outcomes}
+        assert said(again)["disparity"] == ("cached" if want == "disparity" else "skipped")
+        assert list(told["disparity"].notes) == noticed
+        assert told["disparity"].why.endswith("; every row is strange; hardly worth it")
+        assert [each.message for each in caplog.records] == ["every row is strange", "hardly worth it"]
+    assert told["segments"].why == "within what comes from the cache; skipped: everything"
+    again.make("disparity")
+    assert len(caplog.records) == 2  # and not told twice
+
+
+def test_what_was_noticed_in_reading_the_scene_is_told_with_the_views(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    def read(*_: object) -> Scene:
+        note(logging.getLogger("tests"), "the first of 3 frames is taken", logging.WARNING)
+        return Scene.of(photo=np.zeros((4, 4)))
+
+    monkeypatch.setattr(Scene, "read", read)
+    pipe = pipeline(folder)
+    pipe.make("segments")
+    assert pipe.outcomes[0].notes == (Note("the first of 3 frames is taken", "warning"),)
+    assert pipe.outcomes[0].why.endswith(" brings it; the first of 3 frames is taken")
+
+
+def test_left_and_right_that_are_named_in_order_are_not_exchanged(folder: Path):
+    paths = {"left": Path("left.png"), "right": Path("right.png")}
+    found = pipeline(folder, scene=SceneFiles(**paths), depth=chosen(Ramp(slope=-3.0))).make("disparity")
+    assert np.nanmax(found.disparity_px) == 87
+    found = pipeline(folder, scene=SceneFiles(**paths, order="as-named"), depth=chosen(Ramp(slope=-3.0)))
+    assert np.nanmax(found.make("disparity").disparity_px) == 0
+
+
+def test_a_second_run_takes_the_surface_from_the_cache_and_runs_no_stage(folder: Path):
+    pipeline(folder).make()
+    ran.clear()
+    again = pipeline(folder)
+    again.make()
+    assert ran == ["touch"]
+    assert said(again)["surface"] == "cached"
+    assert said(again)["disparity"] == "skipped"
+    assert again.make("disparity") is not None
+    assert said(again)["disparity"] == "cached"
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"depth": chosen(Ramp(slope=2.0))},
+        {"depth": NamedMethod("ramp", "tests 1.1", Ramp())},
+        {"scene": SceneFiles(left=Path("right.png"), right=Path("left.png"))},
+    ],
+    ids=["an option", "another version of its distribution", "another scene"],
+)
+def test_a_change_is_never_answered_from_the_cache(folder: Path, change: dict):
+    pipeline(folder).make("disparity")
+    ran.clear()
+    pipe = pipeline(folder, **change)
+    pipe.make("disparity")
+    assert ran == ["disparity"]
+
+
+def test_options_downstream_leave_what_is_upstream_cached(folder: Path):
+    pipeline(folder).make()
+    ran.clear()
+    pipe = pipeline(folder, materials=MaterialChoice(by={0: "sand", 1: "ice"}))
+    pipe.make()
+    assert ran == ["touch"]
+    assert said(pipe)["relief"] == "cached"
+    assert said(pipe)["surface"] == "ran"
+
+
+def test_without_a_cache_everything_runs(folder: Path):
+    for _ in range(2):
+        pipeline(folder, cached=False).make("disparity")
+    assert ran == ["disparity"] * 2
+
+
+def test_a_scene_with_a_disparity_runs_no_stereo(folder: Path):
+    np.save(folder / "d.npy", np.full((20, 30), 3.0, np.float32))
+    files = SceneFiles(left=Path("left.png"), right=Path("right.png"), disparity=Path("d.npy"))
+    pipe = pipeline(folder, scene=files)
+    pipe.make("relief")
+    assert ran == []
+    assert said(pipe)["disparity"] == "given"
+
+
+def test_a_scene_with_heights_runs_no_depth_and_no_texture(folder: Path):
+    pipe = pipeline(folder, scene=SceneFiles(height=Path("heights.npy")))
+    surface = pipe.make("surface")
+    assert ran == []
+    assert surface.height_m.max() == pytest.approx(0.02)
+    assert said(pipe)["relief"] == "given"
+    assert said(pipe)["segments"] == "skipped"
+
+
+def test_a_method_that_says_it_is_not_needed_is_skipped_and_the_relief_is_flat(folder: Path):
+    pipe = pipeline(folder, depth=chosen(Never()))
+    relief = pipe.make("relief")
+    assert np.ptp(relief.height_m) == 0
+    why = {each.product: each.why for each in pipe.outcomes}
+    assert why["disparity"] == "nothing to see"
+
+
+def test_a_renderer_without_materials_costs_no_segmentation(folder: Path):
+    pipe = pipeline(folder, render=chosen(FeelHeights()))
+    assert pipe.make().surface.materials is None
+    assert "segments" not in ran
+
+
+@pytest.mark.parametrize(
+    "parts", [{}, {"depth": chosen(Never())}, {"texture": None}, {"render": chosen(FeelHeights())}]
+)
+def test_the_plan_is_what_then_happens(folder: Path, parts: dict):
+    foreseen = {each.product: each.outcome for each in pipeline(folder, **parts).plan().steps}
+    assert ran == []
+    pipe = pipeline(folder, **parts)
+    pipe.make()
+    happened = {each.product: each.outcome for each in pipe.outcomes if "nothing that was asked" not in each.why}
+    assert {name: foreseen.get(name, "skipped") for name in happened} == happened
+    assert {each.product: each.outcome for each in pipeline(folder, **parts).plan().steps}["surface"] == "cached"
+
+
+def test_a_failure_is_noted_and_raised_and_nothing_of_it_is_kept(folder: Path):
+    pipe = pipeline(folder, texture=chosen(Fails()))
+    with pytest.raises(ZeroDivisionError):
+        pipe.make()
+    assert {each.product: each.why for each in pipe.outcomes}["segments"] == "ZeroDivisionError: a bug of its own"
+    assert said(pipe)["segments"] == "failed"
+    assert pipe.key("segments") not in pipe.cache
+
+
+def test_a_missing_method_is_a_clear_error(folder: Path):
+    with pytest.raises(ConfigError, match=r"p\.yaml: `render:` is missing"):
+        pipeline(folder, render=None).make()
+
+
+class Pairs(Ramp):
+    """Finds nothing in one picture."""
+
+    needs_pair: ClassVar[bool] = True
+
+
+@pytest.mark.parametrize(
+    ("parts", "product", "error", "says"),
+    [
+        (
+            {"scene": SceneFiles(photo=Path("left.png")), "depth": chosen(Pairs(), "pairs")},
+            "disparity",
+            PictureError,
+            "depth method pairs needs two views, and the scene left.png has one",
+        ),
+        ({"depth": None}, "disparity", ConfigError, "`depth:` is missing"),
+        ({"render": None}, "touch", ConfigError, "`render:` is missing"),
+        (
+            {"scene": SceneFiles(height=Path("heights.npy")), "want": "disparity"},
+            "disparity",
+            ConfigError,
+            "no picture",
+        ),
+    ],
+)
+def test_a_plan_ends_with_what_is_refused_and_nothing_is_begun(folder: Path, parts: dict, product, error, says: str):
+    plan = pipeline(folder, **parts).plan()
+    assert (plan.steps[-1].product, plan.steps[-1].outcome) == (product, "refused")
+    assert says in plan.refusal
+    pipe = pipeline(folder, **parts)
+    with pytest.raises(error) as raised:
+        pipe.make()
+    assert str(raised.value) == plan.refusal
+    assert ran == []
+    assert said(pipe)[product] == "refused"
+    assert not pipeline(folder).plan().refusal
+
+
+def test_a_pair_is_no_need_where_the_scene_brings_what_is_asked_for(folder: Path):
+    np.save(folder / "d.npy", np.full((20, 30), 3.0, np.float32))
+    files = SceneFiles(photo=Path("left.png"), disparity=Path("d.npy"))
+    assert not pipeline(folder, scene=files, depth=chosen(Pairs())).plan("relief").refusal
+    assert not pipeline(folder, scene=SceneFiles(photo=Path("left.png")), depth=None).plan("segments").refusal
+
+
+def test_an_unknown_product_is_named(folder: Path):
+    with pytest.raises(UnknownMethod, match="did you mean 'surface'"):
+        pipeline(folder).make("surfaces")
+
+
+def test_a_wrong_geometry_is_the_users_to_put_right(folder: Path):
+    np.save(folder / "heights.npy", np.full((4, 4), np.nan))
+    with pytest.raises(GeometryError):
+        pipeline(folder, scene=SceneFiles(height=Path("heights.npy"))).make("relief")
+
+
+def test_observers_hear_every_moment_and_one_that_fails_harms_nobody(folder: Path, caplog: pytest.LogCaptureFixture):
+    heard: list[tuple[str, str]] = []
+
+    class Good:
+        @hooks.hookimpl
+        def tangible_plan_made(self, plan):
+            heard.append(("plan", plan.want))
+
+        @hooks.hookimpl
+        def tangible_stage_started(self, product, method):
+            heard.append(("started", product))
+
+        @hooks.hookimpl
+        def tangible_stage_finished(self, outcome):
+            heard.append((outcome.outcome, outcome.product))
+
+    class Bad:
+        @hooks.hookimpl
+        def tangible_stage_finished(self, outcome):
+            raise RuntimeError("always")
+
+    plugins = hooks.manager()
+    plugins.register(Good())
+    plugins.register(Bad())
+    pipe = pipeline(folder, plugins=plugins)
+    pipe.plan("disparity")
+    pipe.make("disparity")
+    assert heard == [("given", "views"), ("plan", "disparity"), ("started", "disparity"), ("ran", "disparity")]
+    assert "tangible_stage_finished" in caplog.text
+
+
+def test_pictures_finer_than_can_be_felt_are_matched_smaller_and_it_is_said(folder: Path):
+    pipe = pipeline(folder, workspace=Workspace(width_m=0.03, finest_m=0.002))  # 30 columns of 1 mm
+    disparity = pipe.make("disparity")
+    assert disparity.disparity_px.shape == (20, 30)
+    assert disparity.disparity_px[0, 15] == pytest.approx(15, abs=1)
+    (why,) = [each.why for each in pipe.outcomes if each.product == "disparity"]
+    reason = "at 1/2 of the size, as finer than 2 mm is not felt (`workspace: {finest_m: 0}` keeps everything)"
+    assert why == f"asked for; {reason}"
+    whole = pipeline(folder, workspace=Workspace(width_m=0.03, finest_m=0))
+    whole.make("disparity")
+    assert "of the size" not in "".join(each.why for each in whole.outcomes)
+
+
+def test_a_photo_finer_than_can_be_felt_is_segmented_smaller_and_it_is_said(folder: Path):
+    parts = {"scene": SceneFiles(photo=Path("left.png")), "depth": None}
+    pipe = pipeline(folder, **parts, workspace=Workspace(width_m=0.03, finest_m=0.002))  # 30 columns of 1 mm
+    segments = pipe.make("segments")
+    assert segments.labels.tolist() == [[0] * 14 + [1] * 16] * 20  # half of 15 columns is 7
+    (why,) = [each.why for each in pipe.outcomes if each.product == "segments"]
+    assert "at 1/2 of the size, as finer than 2 mm is not felt (`workspace: {finest_m: 0}` keeps everything)" in why
+    whole = pipeline(folder, **parts, workspace=Workspace(width_m=0.03, finest_m=0))
+    assert whole.make("segments").labels.tolist() == [[0] * 15 + [1] * 15] * 20
+    assert "of the size" not in "".join(each.why for each in whole.outcomes)
+
+
+class TestFelt:
+    """Thirty columns of 1 mm, of which 2 mm are felt."""
+
+    COARSE = Workspace(width_m=0.03, relief_m=0.01, smooth_m=0, finest_m=0.002)
+
+    def test_what_is_felt_is_as_coarse_and_as_large_in_metres(self, folder: Path):
+        surface = pipeline(folder, workspace=self.COARSE).make("surface")
+        assert surface.height_m.shape == surface.labels.shape == (10, 15)
+        assert surface.extent_m == (0.03, 0.02)
+        assert surface.labels.tolist() == [[0] * 7 + [1] * 8] * 10
+        finest = Workspace(width_m=0.03, relief_m=0.01, smooth_m=0, finest_m=0)
+        whole = pipeline(folder, workspace=finest).make("surface")
+        assert whole.height_m.shape == whole.labels.shape == (20, 30)
+        pairs = whole.height_m.reshape(10, 2, 15, 2).mean(axis=(1, 3))
+        np.testing.assert_allclose(surface.height_m, pairs, atol=0.01 / 15)
+
+    def test_disparity_on_the_coarse_grid_is_in_pixels_of_the_picture(self, folder: Path):
+        found = pipeline(folder, workspace=self.COARSE).felt("disparity")
+        assert found.disparity_px.tolist() == [[2.0 * column for column in range(15)]] * 10
+
+    def test_what_a_scene_brings_at_full_size_is_felt_as_coarsely(self, folder: Path):
+        labels = np.zeros((20, 30), np.uint8)
+        labels[:, 20:], labels[3, 4] = 2, 1  # one is smaller than can be felt, and keeps its material
+        write_png(folder / "labels.png", labels)
+        files = {"segments": Path("labels.png"), "disparity": Path("heights.npy")}
+        pipe = pipeline(
+            folder,
+            scene=SceneFiles(photo=Path("left.png"), **files),
+            workspace=self.COARSE,
+            materials=MaterialChoice(rules=[{"at": [4, 3], "material": "sand"}], by={0: "ice", 2: "wood"}),
+        )
+        surface = pipe.make("surface")
+        assert [each.name for each in surface.materials] == ["ice", "sand", "wood"]
+        assert surface.labels.tolist() == [[0] * 2 + [int(row == 1)] + [0] * 7 + [2] * 5 for row in range(10)]
+        np.testing.assert_allclose(surface.height_m[0], np.linspace(0, 0.01, 15), atol=1e-8)
+        assert pipe.make("segments").labels.shape == (20, 30)
+
+    def test_heights_are_felt_as_coarsely_and_holes_stay_holes(self, folder: Path):
+        heights = np.tile(np.arange(30.0), (20, 1))
+        heights[4:6, 10:12], heights[8, 20] = np.nan, np.nan
+        np.save(folder / "torn.npy", heights)
+        parts = {"scene": SceneFiles(height=Path("torn.npy")), "texture": None}
+        surface = pipeline(folder, **parts, workspace=self.COARSE.model_copy(update={"holes": "cut"})).make("surface")
+        wanted = np.tile(np.linspace(0, 0.01, 15), (10, 1))
+        wanted[2, 5] = 0
+        np.testing.assert_allclose(surface.height_m, wanted, atol=0.0002)
+
+
+def test_what_is_not_finite_is_an_error_or_a_mask_as_asked_for(folder: Path):
+    picture = np.random.default_rng(0).random((20, 30))
+    np.save(folder / "whole.npy", picture)
+    picture[3, 5] = np.nan
+    np.save(folder / "torn.npy", picture)
+
+    def scene(photo: str, non_finite: str = "mask") -> Engine:
+        return pipeline(folder, scene=SceneFiles(photo=Path(photo), non_finite=non_finite))
+
+    with pytest.raises(PictureError, match=r"torn\.npy.*the first at row 3, column 5"):
+        scene("torn.npy", "error").make("segments")
+    torn = scene("torn.npy")
+    segments, disparity = torn.make("segments"), torn.make("disparity")
+    assert np.argwhere(segments.confidence == 0).tolist() == [[3, 5]]
+    assert np.argwhere(np.isnan(disparity.disparity_px)).tolist() == [[3, 5]]
+    assert np.argwhere(disparity.confidence == 0).tolist() == [[3, 5]]
+    assert scene("whole.npy").make("segments").confidence.min() == 1

@@ -1,0 +1,152 @@
+"""What is rehearsed beside a pipeline: all that it compiles after its depth, and nothing that it has begun."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangible_core import DepthEstimator, Pipeline, Scene, Workspace
+from tangible_core.compiled.beside import kernels_are_compiled
+from tangible_core.pipeline.engine import warm_up as rehearsal
+from tangible_core.pipeline.engine.warm_up import FELT, _work, rehearse
+from tangible_depth import Luminance
+from tangible_devices import Mock
+from tangible_render import GreyLevel, Penalty
+from tangible_texture import Gradient
+
+ROOT = Path(__file__).parents[4]
+PICTURE = np.kron(np.arange(16).reshape(4, 4) * 15 % 97, np.ones((12, 12))).astype(np.uint8)
+COMPILED = """
+import json, sys
+from pathlib import Path
+import numpy as np
+from numba.core.dispatcher import Dispatcher
+from tangible_core.data import DisparityMap
+from tangible_core import Scene
+from tangible_core.pipeline.config.config import load_config
+from tangible_core.pipeline.engine.engine import Engine
+from tangible_core.pipeline.engine.warm_up import rehearsal, _work
+from tangible_core.plugins.registry import default_registry
+from tangible_core.session import run_simulated
+from dataclasses import replace
+
+config = load_config(Path(sys.argv[1]), default_registry(), ())
+engine = Engine(config, default_registry())
+work = _work(engine, "touch")
+said = list(work.function(*work.arguments))
+added = []
+add = Dispatcher.add_overload
+def told(self, result):
+    added.append(f"{self.py_func.__module__}.{self.py_func.__qualname__}")
+    add(self, result)
+Dispatcher.add_overload = told
+views = engine.scene.views
+rows, columns = np.indices(views.shape, np.float32)
+scene = replace(engine.scene, disparity=DisparityMap(6 + 40 * (rows / rows.max()) * (columns / columns.max())))
+real = Engine(replace(config, scene=scene), default_registry())
+touch = real.make("touch")
+recording = run_simulated(touch, config.felt_device, 1.0, limits=config.safety)
+print(json.dumps([said, added, bool(np.any(recording.force_n))]))
+"""
+
+
+def test_the_rehearsal_of_the_demo_compiles_all_that_comes_after_its_depth():
+    words = [sys.executable, "-c", COMPILED, str(ROOT / "configs" / "demo.yaml")]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    said, added, felt = json.loads(done.stdout)
+    assert said == ["segments", "touch", FELT]
+    assert added == []
+    assert felt
+
+
+def pipeline(**methods) -> Pipeline:
+    given = {"depth": Luminance(), "texture": Gradient(segments=4), "render": Penalty(), "device": Mock()} | methods
+    return Pipeline(Scene.of(photo=PICTURE), workspace=Workspace(width_m=0.04), cached=False, **given)
+
+
+class TestWork:
+    def test_all_that_can_be_rehearsed(self):
+        work = _work(pipeline().engine, "touch")
+        assert work is not None
+        assert list(rehearse(*work.arguments)) == ["segments", "touch", FELT]
+        assert work.names == {"segments", "touch", FELT}
+
+    def test_what_was_begun_is_not(self):
+        made = pipeline()
+        assert made.segments is not None
+        work = _work(made.engine, "touch")
+        assert work is not None
+        assert work.names == {"touch", FELT}
+        assert made.touch is not None
+        assert _work(made.engine, "touch") is None
+
+    def test_what_is_not_wanted_is_not(self):
+        work = _work(pipeline().engine, "segments")
+        assert work is not None
+        assert list(rehearse(*work.arguments)) == ["segments"]
+        assert _work(pipeline(texture=None).engine, "surface") is None
+
+    def test_what_the_scene_brings_is_not(self):
+        scene = Scene.of(photo=PICTURE, segments=(PICTURE > 40).astype(np.uint8))
+        work = _work(Pipeline(scene, depth=Luminance(), texture=Gradient(), cached=False).engine, "segments")
+        assert work is None
+
+    def test_a_scene_without_a_picture_is_not(self):
+        scene = Scene.of(height=np.eye(8))
+        assert _work(Pipeline(scene, render=Penalty(), cached=False).engine, "touch") is None
+
+    def test_one_processor_has_no_room_beside(self, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 1)
+        assert _work(pipeline().engine, "touch") is None
+
+    def test_the_middle_of_a_large_picture_is_enough(self, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setattr(rehearsal, "MOST_PX", 20)
+        work = _work(pipeline().engine, "touch")
+        assert work is not None
+        assert np.array_equal(work.arguments[1].left, PICTURE[14:34, 14:34])
+
+    def test_a_law_without_materials_and_a_device_that_is_real(self):
+        work = _work(pipeline(render=GreyLevel(), device=None, texture=None).engine, "touch")
+        assert work is not None
+        assert list(rehearse(*work.arguments)) == ["touch", FELT]
+
+
+class Loud(DepthEstimator):
+    """Says that kernels are compiled, as if they were, and finds what `luminance` does."""
+
+    def estimate(self, views):
+        kernels_are_compiled()
+        return Luminance().estimate(views)
+
+
+def test_a_run_is_the_same_with_a_process_beside_it_and_without(tmp_path: Path):
+    alone = pipeline().run(tmp_path / "alone", seconds=0.5)
+    made = pipeline(depth=Loud())
+    beside = made.run(tmp_path / "beside", seconds=0.5)
+    assert made.engine.beside is not None
+    child = made.engine.beside._child
+    assert child is not None
+    assert child.returncode is not None
+    for product in ("disparity", "segments", "surface"):
+        assert beside.products[product].digest() == alone.products[product].digest()
+    assert alone.recording is not None
+    assert beside.recording is not None
+    assert np.array_equal(beside.recording.rows, alone.recording.rows, equal_nan=True)
+
+
+def test_a_run_that_compiles_nothing_starts_no_process(tmp_path: Path):
+    pipeline().run(tmp_path / "first", seconds=0.1)
+    made = pipeline()
+    made.run(tmp_path / "second", seconds=0.1)
+    assert made.engine.beside is not None
+    assert made.engine.beside._child is None
+
+
+def test_what_is_made_without_a_run_has_a_process_beside_it_too(monkeypatch: pytest.MonkeyPatch):
+    asked: list[str] = []
+    monkeypatch.setattr(rehearsal, "_work", lambda _, want: asked.append(want))
+    assert pipeline(depth=Loud()).touch is not None
+    assert asked == ["touch"]

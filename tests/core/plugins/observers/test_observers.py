@@ -1,0 +1,58 @@
+import logging
+
+import pytest
+
+from tangible_core.data import NO_FORCE, HapticState, Outcome, Plan, ServoReport
+from tangible_core.pipeline.output.exporting import PREFIX
+from tangible_core.plugins.observers import log, progress
+
+
+def report(stopped: str = "", part: str = "", material: str = "") -> ServoReport:
+    state = HapticState((0.0, 0.0, 0.0))
+    return ServoReport(100, 0.1, state, NO_FORCE, 1.5, 0.0, stopped, part=part, material=material)
+
+
+def test_the_log_has_one_line_a_moment(caplog: pytest.LogCaptureFixture):
+    caplog.set_level(logging.DEBUG, "tangible_core.plugins.observers.log")
+    ran = Outcome("relief", "ran", "asked for", "core", 0.25)
+    log.tangible_plan_made(Plan("relief", (ran,)))
+    log.tangible_stage_started("relief", "core")
+    log.tangible_stage_finished(ran)
+    log.tangible_stage_finished(Outcome("segments", "failed", "a bug"))
+    log.tangible_servo_report(report())
+    log.tangible_servo_report(report(part="helmet", material="glass"))
+    said = [(record.levelname, record.getMessage()) for record in caplog.records]
+    assert said == [
+        ("INFO", "plan for relief: relief ran"),
+        ("DEBUG", "making relief with core"),
+        ("INFO", "relief: ran, asked for (0.250 s)"),
+        ("INFO", "segments: failed, a bug (0.000 s)"),
+        ("DEBUG", "servo: 100 ticks, 0.1 s, force 1.50 N"),
+        ("DEBUG", "servo: 100 ticks, 0.1 s, force 1.50 N, on helmet, glass"),
+    ]
+
+
+def test_progress_writes_to_a_terminal_alone(capsys: pytest.CaptureFixture[str]):
+    progress.tangible_stage_started("relief", "core")
+    progress.tangible_stage_finished(Outcome("relief", "ran", "asked for"))
+    assert capsys.readouterr() == ("", "")
+
+
+def test_progress_says_what_is_written(monkeypatch: pytest.MonkeyPatch):
+    heard = list[str]()
+    monkeypatch.setattr(progress, "_show", heard.append)
+    progress.tangible_stage_started(product=f"{PREFIX}swell", method="swell")
+    progress.tangible_stage_started(product="relief", method="core")
+    assert heard == ["writing swell", "making relief with core"]
+
+
+def test_progress_shows_one_spinner_and_takes_it_away(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    progress.tangible_stage_started("relief", "core")
+    progress.tangible_servo_report(report())
+    (spinner,) = progress._shown
+    assert "0.1 s" in str(spinner.status)
+    progress.tangible_servo_report(report(part="[bold] sign\n", material="moss"))
+    assert str(spinner.status).endswith(r"peak 1.50 N, on [bold] sign\n, moss"), "its breaks are no commands"
+    progress.tangible_servo_report(report("the time is over"))
+    assert progress._shown == []

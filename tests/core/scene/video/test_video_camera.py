@@ -1,0 +1,181 @@
+"""Cameras, played by captures that tests make: the newest picture alone, unplugged and back, ended in time."""
+
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from threading import Event
+from time import monotonic, sleep
+
+import pytest
+
+from ctrl_c import hearing
+from tangible_core import Scene
+from tangible_core.errors import PictureError
+from tangible_core.scene.video import camera as video_camera
+from tangible_core.scene.video import capture as video_capture
+from tangible_core.scene.video.camera import CameraFrames
+from videos import Played, grey, shown
+
+LONG_S = 10.0
+"""More than anything here takes."""
+
+
+class Noise(Played):
+    """A camera that gives pictures without end, none of which is whole."""
+
+    def grab(self) -> bool:
+        return True
+
+    def retrieve(self) -> tuple[bool, None]:
+        return False, None
+
+
+def frames_of(*captures: Played) -> CameraFrames:
+    """A camera that is these, each time that it is opened; afterwards there is none."""
+    return CameraFrames(0, None, lambda picture: picture, opening(*captures))
+
+
+def opening(*captures: Played) -> Callable[[int, float | None], Played]:
+    left = iter(captures)
+    return lambda number, fps: next(left, Played([], opened=False))
+
+
+def until(there: Callable[[], object]) -> None:
+    """Wait for another thread."""
+    end_s = monotonic() + LONG_S
+    while not there():
+        assert monotonic() < end_s, "it never came"
+        sleep(0.002)
+
+
+@pytest.fixture(autouse=True)
+def soon(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Lost cameras are looked for at once; no thread outlives a test."""
+    monkeypatch.setattr(video_camera, "AGAIN_S", 0.01)
+    yield
+    until(lambda: not any(each.name.startswith("camera ") for each in threading.enumerate()))
+
+
+class Stepped(Played):
+    """A camera that takes a picture when a test says so."""
+
+    def __init__(self, count: int, first: int = 0) -> None:
+        super().__init__([grey(number) for number in range(first, first + count)], fps=25)
+        self.may = threading.Semaphore(0)
+
+    def grab(self) -> bool:
+        self.may.acquire(timeout=LONG_S)
+        return super().grab()
+
+
+def test_the_newest_picture_alone_is_kept():
+    camera = Stepped(9)
+    camera.may.release()
+    with frames_of(camera) as frames:
+        first = frames.next()
+        assert (first.number, first.time_s, frames.fps) == (0, 0.0, 25)
+        assert frames.at(0) is None, "it was had"
+        for _ in range(5):
+            camera.may.release()
+        until(lambda: frames._taken == 6)
+        newest = frames.at(0)
+        assert (newest.number, frames.skipped) == (5, 4) and newest.time_s > 0
+        camera.may.release()
+        assert frames.next().number == 6
+        camera.may.release(9)
+    assert frames.ended and frames.next() is None and frames.at(0) is None
+
+
+def test_a_scene_of_a_camera_is_its_picture(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(video_capture, "open_camera", opening(Played([grey(4)] * 99), Played([grey(7)] * 99)))
+    scene = Scene.of(video=1)
+    assert scene.name == "camera 1" and shown(scene.views) == 4
+    assert scene.notes == ("camera 1 is a video, of which this is one picture; `tangible feel` plays it",)
+    with scene.video.open() as frames:
+        assert shown(frames.next().views) == 7
+
+
+def test_one_of_another_size_than_the_still_is_said(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(video_capture, "open_camera", opening(Played([grey(4)]), Played([grey(7, (9, 9))])))
+    with Scene.of(video=1).video.open() as frames, pytest.raises(PictureError, match=r"camera 1: is 9 x 9 and the fir"):
+        frames.next()
+
+
+def test_none_of_this_number_is_said_with_those_that_are(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(video_camera, "_cameras", lambda: [0, 2])
+    with pytest.raises(PictureError, match=r"camera 1: there is none of this number.*name one of those that are: 0, 2"):
+        CameraFrames(1, None, lambda picture: picture, opening())
+
+
+def test_one_that_gives_no_picture_is_said(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(video_camera, "FIRST_S", 0.05)
+    stuck = Event()
+    with pytest.raises(PictureError, match="camera 0: gives no picture; check its cable"):
+        frames_of(Played([grey(0)], before=stuck))
+    stuck.set()
+
+
+def test_unplugged_is_said_once_and_one_that_is_back_goes_on():
+    back = Stepped(3, first=5)
+    with frames_of(Played([grey(0)]), Played([], opened=False), Noise([]), back) as frames:
+        assert frames.next().number == 0
+        with pytest.raises(PictureError, match="camera 0: was unplugged, or another program took it; plug it in again"):
+            until(lambda: frames.at(9) and False)
+        assert [frames.at(9) for _ in range(20)] == [None] * 20, "said once"
+        back.may.release()
+        again = frames.next()
+        assert (again.number, shown_number(again.views)) == (1, 5)
+        back.may.release(9)
+        with pytest.raises(PictureError, match="was unplugged"):
+            until(lambda: frames.at(9) and False)
+
+
+def shown_number(picture) -> int:
+    return round(float(picture.mean()) / 8)
+
+
+@pytest.mark.parametrize("error", [RuntimeError("driver\nbroke"), PictureError("camera 0: too large; smaller")])
+def test_what_a_driver_provokes_is_one_line(error: Exception):
+    def broken(number: int, fps: float | None) -> Played:
+        raise error
+
+    with pytest.raises(PictureError, match=r"camera 0: ") as said:
+        CameraFrames(0, None, lambda picture: picture, broken)
+    assert "\n" not in str(said.value)
+
+
+def test_it_ends_within_a_second_while_its_driver_hangs():
+    camera = Stepped(1)
+    camera.may.release()
+    frames = frames_of(camera)
+    began_s = monotonic()
+    frames.close()
+    assert monotonic() - began_s < 1.5
+    frames.close()
+    assert not camera.released.is_set(), "not while the driver has it"
+    camera.may.release(9)
+    until(camera.released.is_set)
+
+
+def test_ctrl_c_is_heard_while_a_camera_blocks():
+    stuck = Event()
+    timer = threading.Timer(0.1, signal.raise_signal, (signal.SIGINT,))
+    began_s = monotonic()
+    with hearing():
+        timer.start()
+        with pytest.raises(KeyboardInterrupt):
+            frames_of(Played([grey(0)], before=stuck))
+        timer.join()
+    stuck.set()
+    assert monotonic() - began_s < LONG_S
+
+
+def test_the_numbers_of_cameras_are_the_systems(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+    for name in ("video10", "video2", "video", "videofast", "null"):
+        (tmp_path / name).touch()
+    monkeypatch.setattr(video_camera, "Path", lambda _: tmp_path)
+    monkeypatch.setattr(video_camera.sys, "platform", "linux")
+    assert video_camera._cameras() == [2, 10]
+    monkeypatch.setattr(video_camera.sys, "platform", "win32")
+    assert video_camera._cameras() == []

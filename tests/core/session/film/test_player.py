@@ -1,0 +1,184 @@
+import threading
+import time
+from collections import defaultdict
+
+import numpy as np
+import pytest
+
+from films import GivenFrames, NearnessOfGrey, Seen, greys
+from tangible_core.data import NO_FORCE, HapticState, ServoReport
+from tangible_core.errors import BrokenMethod, PictureError
+from tangible_core.session.film import ByClock, FrameMaker, Player, Reliefs
+from tangible_core.session.film.player import STOPPING_S
+
+BOX = np.full((8, 12), 20.0)
+BOX[2:5, 3:7] = 80
+SOON_S = 20.0
+"""What a loaded machine does in a blink."""
+
+
+def until(true):
+    """Wait for something that a thread does soon."""
+    ends_s = time.monotonic() + SOON_S
+    while not true():
+        assert time.monotonic() < ends_s, "it did not come"
+        time.sleep(0.002)
+
+
+class Slow:
+    """A film each of whose showings takes a while."""
+
+    def __init__(self, wait_s=0.0):
+        self.seen, self._wait_s = Seen(), wait_s
+        self.arrived, self.dropped = True, 0
+
+    def show(self, relief, frame):
+        time.sleep(self._wait_s)
+        self.seen.show(relief, frame)
+
+
+@pytest.fixture
+def play():
+    """Plays frames to a film, and stops in the end."""
+    players = []
+
+    def play(given, film, fps=200.0, maker=None):
+        frames = GivenFrames(given, fps)
+        players.append(Player(Reliefs(lambda: frames, maker or NearnessOfGrey()), film))
+        players[-1].start()
+        return players[-1]
+
+    yield play
+    for each in players:
+        each.stop()
+
+
+def test_frames_are_shown_in_order_and_the_surface_stands_where_the_source_ends(play):
+    film = Seen()
+    player = play(greys(*[BOX] * 5), film)
+    until(lambda: film.frames[-1:] == [4])
+    assert film.frames == sorted(set(film.frames))
+    assert player.felt.shown + player.felt.skipped == 5
+    player.check()
+
+
+def test_the_latest_frame_wins_and_those_between_are_counted(play):
+    film = Slow(0.03)
+    player = play(greys(*[BOX] * 60), film, fps=200)
+    until(lambda: film.seen.frames[-1:] == [59])
+    felt = player.felt
+    assert felt.skipped > 20 and felt.shown + felt.skipped == 60
+    assert 0 < felt.per_s < 40
+    assert felt.age_ms >= 30
+
+
+def test_a_relief_is_shown_again_until_the_surface_is_there(play):
+    film = Seen(arrives=3)
+    play(greys(BOX, BOX), film)
+    until(lambda: film.frames[-4:] == [1] * 4 and film.arrived)
+    count = len(film.frames)
+    time.sleep(0.05)
+    assert len(film.frames) == count, "and not once more"
+
+
+def test_damaged_frames_are_said_once_and_the_film_goes_on(play, caplog):
+    film, given = Seen(), greys(*[BOX] * 6)
+    given[1] = given[3] = PictureError("frame is damaged")
+    player = play(given, film, fps=20)
+    until(lambda: film.frames[-1:] == [5])
+    assert player.felt.damaged >= 1
+    assert [each.message for each in caplog.records].count(
+        "the surface stands still until a frame can be felt again: frame is damaged"
+    ) == 1
+    player.check()
+
+
+def test_a_source_that_is_not_there_is_looked_for_again(caplog, monkeypatch):
+    monkeypatch.setattr("tangible_core.session.film.player.OPEN_AGAIN_S", 0.01)
+    tries, film = defaultdict(int), Seen()
+
+    def opened():
+        tries["all"] += 1
+        if tries["all"] < 3:
+            raise PictureError("camera 0 is not there")
+        return GivenFrames(greys(BOX), 30)
+
+    player = Player(Reliefs(opened, NearnessOfGrey()), film)
+    player.start()
+    until(lambda: film.frames == [0])
+    player.stop()
+    assert sum("camera 0 is not there" in each.message for each in caplog.records) == 1
+
+
+class Faulty(FrameMaker):
+    """Makes nothing of any frame."""
+
+    def __init__(self, error):
+        self._error = error
+
+    def begin(self, views):
+        raise self._error
+
+    disparity = nearness = relief = begin
+
+
+@pytest.mark.parametrize("error", [ZeroDivisionError("a plugin's fault"), BrokenMethod("made a map of 3 x 4")])
+def test_a_plugins_fault_ends_it_and_is_raised_once_for_whoever_watches(play, error):
+    player = play(greys(BOX), Seen(), maker=Faulty(error))
+
+    def raised():
+        try:
+            player.check()
+        except type(error) as fault:
+            return fault is error
+        return False
+
+    until(raised)
+    player.check()
+
+
+def test_it_ends_soon_though_a_method_takes_long_and_keeps_no_process_alive(play):
+    begun, release = threading.Event(), threading.Event()
+
+    class Long:
+        arrived, dropped = True, 0
+
+        def show(self, relief, frame):
+            begun.set()
+            release.wait(SOON_S)
+
+    player = play(greys(BOX), Long())
+    until(begun.is_set)
+    at_s = time.monotonic()
+    player.stop()
+    assert time.monotonic() - at_s < STOPPING_S + 1
+    assert all(each.daemon for each in threading.enumerate() if each.name == "film")
+    release.set()
+    player.check()
+
+
+def test_by_a_clock_nothing_is_left_out_and_frames_come_when_they_are_due():
+    film = Seen()
+    with Reliefs(lambda: GivenFrames(greys(*[BOX] * 5), fps=10), NearnessOfGrey()) as reliefs:
+        show, shown = ByClock(reliefs, film), []
+        for tick in range(700):
+            show(tick / 1000)
+            shown.append(film.frames[-1])
+        felt = show.felt
+        heard = []
+        show.told(heard.append)(ServoReport(1, 0.0, HapticState((0.0, 0.0, 0.0)), NO_FORCE, 0.0, 0.0))
+    assert [shown.index(number) for number in range(5)] == [0, 100, 200, 300, 400]
+    assert (felt.shown, felt.skipped, felt.damaged, felt.age_ms) == (5, 0, 0, None)
+    assert felt.per_s == pytest.approx(10)
+    assert heard[0].film == felt
+
+
+def test_by_a_clock_a_relief_is_shown_again_and_damaged_frames_are_passed_over(caplog):
+    film, given = Seen(arrives=2), greys(*[BOX] * 4)
+    given[1] = given[2] = PictureError("frame is damaged")
+    with Reliefs(lambda: GivenFrames(given, fps=10), NearnessOfGrey()) as reliefs:
+        show = ByClock(reliefs, film)
+        for tick in range(700):
+            show(tick / 1000)
+    assert film.frames == [0, 0, 0, 3, 3, 3] and show.felt.damaged == 2
+    assert sum("frame is damaged" in each.message for each in caplog.records) == 1

@@ -1,0 +1,127 @@
+from contextlib import suppress
+
+import numpy as np
+import pytest
+
+from films import GivenFrames, NearnessOfGrey, greys
+from tangible_core.data import DisparityMap
+from tangible_core.errors import ConfigError, GeometryError
+from tangible_core.scene.geometry import ValueRange
+from tangible_core.session.film import FrameMaker, Reliefs
+from tangible_core.session.film.scale import ADAPTS_S, Scale
+
+GROUND = np.full((8, 12), 20.0)
+BOX = GROUND.copy()
+BOX[2:5, 3:7] = 80
+NEARER = BOX.copy()
+NEARER[4:8, 8:11] = 120
+
+
+def heights(*pictures):
+    """Of the frames of a film."""
+    with Reliefs(lambda: GivenFrames(greys(*pictures)), NearnessOfGrey()) as reliefs:
+        return [each.relief.height_m for each in reliefs]
+
+
+def test_the_scale_of_the_first_frame_is_kept():
+    film = heights(BOX, *[NEARER] * 5)
+    assert film[-1][6, 9] == film[-1][2, 3] == pytest.approx(0.01), "what is nearer is clipped, and pushes nothing down"
+    assert film[-1][0, 0] == 0
+
+
+def test_it_follows_slowly():
+    film = heights(BOX, *[NEARER] * 400)
+    box = np.array([each[2, 3] for each in film])
+    assert box[-1] < 0.008, "the box goes down as something nearer stays"
+    assert np.abs(np.diff(box)).max() < 0.001
+
+
+def test_the_range_follows_with_its_time_constant_whatever_the_rate():
+    for step_s in (0.1, 1.0):
+        scale = Scale(ValueRange(0, 10))
+        for number in range(1, round(ADAPTS_S / step_s) + 1):
+            scale.look(ValueRange(0, 20), number * step_s)
+        assert scale.spans.high == pytest.approx(20 - 10 / np.e)
+
+
+def test_a_film_that_begins_in_the_dark_finds_its_range_when_there_is_light():
+    film = heights(*[GROUND] * 2, *[BOX] * 30)
+    assert not film[0].any()
+    assert film[-1][2, 3] == pytest.approx(0.01)
+
+
+def test_at_a_cut_range_and_cameras_are_found_anew():
+    maker = NearnessOfGrey()
+    other = 200 - BOX / 2
+    with Reliefs(lambda: GivenFrames(greys(BOX, BOX, other, other)), maker) as reliefs:
+        film = [each.relief.height_m for each in reliefs]
+    assert maker.begun == 2
+    assert np.array_equal(film[2], film[1]), "one frame late"
+    assert film[3][0, 0] == pytest.approx(0.01) and film[3][2, 3] == 0
+
+
+def test_numbers_and_times_are_those_of_the_frames():
+    with Reliefs(lambda: GivenFrames(greys(BOX, BOX, BOX), fps=10), NearnessOfGrey()) as reliefs:
+        assert [(each.number, each.time_s) for each in reliefs] == [(0, 0.0), (1, 0.1), (2, 0.2)]
+
+
+def test_it_begins_anew_when_it_is_opened_again_and_closes_what_it_opened():
+    opened = []
+
+    def frames():
+        opened.append(GivenFrames(greys(BOX, NEARER)))
+        return opened[-1]
+
+    maker = NearnessOfGrey()
+    reliefs = Reliefs(frames, maker)
+    with pytest.raises(ConfigError, match="not open"):
+        _ = reliefs.frames
+    for _ in range(2):
+        with reliefs:
+            assert len(list(reliefs)) == 2
+    assert maker.begun == 2
+    assert [each.closed for each in opened] == [True, True]
+
+
+def test_a_frame_without_depth_is_refused_and_the_next_goes_on():
+    dark = np.full((8, 12), 255.0)
+    with Reliefs(lambda: GivenFrames(greys(dark, BOX)), NearnessOfGrey()) as reliefs:
+        with pytest.raises(GeometryError, match="no depth is known"):
+            reliefs.made(reliefs.frames.next())
+        assert reliefs.made(reliefs.frames.next()).relief.height_m.any()
+
+
+def test_after_a_dark_pause_a_scene_begins_by_what_is_seen_then():
+    maker, dark, other = NearnessOfGrey(), np.full((8, 12), 255.0), 200 - BOX / 2
+    film = []
+    with Reliefs(lambda: GivenFrames(greys(BOX, *[dark] * 12, *[other] * 3)), maker) as reliefs:
+        while (frame := reliefs.frames.next()) is not None:
+            with suppress(GeometryError):
+                film.append(reliefs.made(frame).relief.height_m)
+    assert maker.begun == 2
+    assert film[-1][0, 0] == pytest.approx(0.01) and film[-1][2, 3] == 0, "the range is the new one"
+
+
+def test_a_scene_that_begins_with_a_frame_that_shows_nothing_begins_with_the_next():
+    class Blind(FrameMaker):
+        """Knows nothing of a picture that is dark, of which it would keep that."""
+
+        def __init__(self):
+            self.maker, self.kept = NearnessOfGrey(), ""
+
+        def begin(self, views):
+            self.kept = "dark" if views.left.max() == 0 else "light"
+            return self.disparity(views)
+
+        def disparity(self, views):
+            found = self.maker.disparity(views)
+            return DisparityMap(np.full_like(found.disparity_px, np.nan)) if self.kept == "dark" else found
+
+        nearness = staticmethod(NearnessOfGrey().nearness)
+        relief = staticmethod(NearnessOfGrey().relief)
+
+    maker = Blind()
+    with Reliefs(lambda: GivenFrames(greys(np.zeros((8, 12)), BOX)), maker) as reliefs:
+        with pytest.raises(GeometryError):
+            reliefs.made(reliefs.frames.next())
+        assert reliefs.made(reliefs.frames.next()).relief.height_m[2, 3] > 0

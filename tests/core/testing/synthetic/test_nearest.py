@@ -1,0 +1,113 @@
+"""Nearest points on analytic surfaces: on the surface, along its normal, and no other point is nearer."""
+
+import numpy as np
+import pytest
+
+from tangible_core.testing.synthetic import nearest
+from tangible_core.testing.synthetic.strokes import LOOP_TICKS, LOOPS, SURFACES, analytic_stroke, relief_stroke
+
+SMOOTH = ("plane", "ramp", "sphere", "sine", "cone")
+
+
+def hands(name: str, count: int = 40) -> np.ndarray:
+    """Up to 1.5 mm under the surface, on either side of its edges."""
+    random, known = np.random.default_rng(5), SURFACES[name].known((16, 16))
+    places = random.uniform(-0.03, 0.03, (count, 2)).tolist()
+    return np.array(
+        [known.at(x, y, depth) for (x, y), depth in zip(places, random.uniform(0, 0.0015, count), strict=True)]
+    )
+
+
+@pytest.mark.parametrize("name", [*SMOOTH, "ridge"])
+def test_no_point_of_the_surface_is_nearer(name: str):
+    """Against all points of a fine grid around each hand, each hand on its own."""
+    known = SURFACES[name].known((16, 16))
+    offsets = np.linspace(-0.004, 0.004, 81)
+    for hand in hands(name):
+        (found,) = SURFACES[name].nearest(hand[None])
+        assert found[2] == pytest.approx(known.height_m(*found[:2]), abs=1e-12)
+        others = [(hand[0] + dx, hand[1] + dy) for dx in offsets for dy in offsets]
+        squares = [(x - hand[0]) ** 2 + (y - hand[1]) ** 2 + (known.height_m(x, y) - hand[2]) ** 2 for x, y in others]
+        assert np.sum((found - hand) ** 2) <= min(squares) + 1e-15
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+def test_the_way_to_it_is_along_the_normal(name: str):
+    known = SURFACES[name].known((16, 16))
+    for hand, found in zip(hands(name), SURFACES[name].nearest(hands(name)), strict=True):
+        assert np.linalg.norm(np.cross(known.normal(*found[:2]), found - hand)) <= 1e-12
+
+
+def test_on_a_ridge_it_stays_on_its_face_until_its_foot_leaves_that():
+    """Slope 1, 1 mm under the top: the foot on the left is at x / 2 - 0.5 mm, and leaves its face at x = 1 mm."""
+    across = np.linspace(-0.004, 0.004, 801)
+    way = np.column_stack([across, np.zeros(801), np.full(801, 0.029)])
+    way = way[np.abs(way[:, 0]) > 1e-9]
+    found = nearest.on_ridge(way, 1.0, 0.03)
+    inside = np.abs(way[:, 0]) < 0.001 - 1e-9
+    np.testing.assert_allclose(found[inside, 0], way[inside, 0] / 2 - 0.0005, atol=1e-12)
+    back = nearest.on_ridge(way[::-1], 1.0, 0.03)
+    np.testing.assert_allclose(back[inside[::-1], 0], way[::-1][inside[::-1], 0] / 2 + 0.0005, atol=1e-12)
+    lower = nearest.on_ridge(way - (0, 0, 0.001), 1.0, 0.03)
+    right = lower[:, 0] > 0
+    assert way[right, 0].min() == pytest.approx(0.002, abs=1.1e-5)
+    assert right[np.argmax(right) :].all()
+
+
+@pytest.mark.parametrize(
+    ("hand", "point"),
+    [
+        ((-0.01, 0.0, -0.001), (-0.01, 0.0, 0.0)),  # under the ground
+        ((0.001, 0.002, 0.003), (0.0, 0.002, 0.003)),  # in the wall
+        ((0.001, 0.0, -0.001), (0.0, 0.0, 0.0)),  # in the corner
+    ],
+)
+def test_on_a_step_that_is_come_upon_from_below(hand: tuple[float, ...], point: tuple[float, ...]):
+    way = np.array([(-0.01, 0.0, 0.001), (-0.001, 0.0, 0.001), hand])
+    np.testing.assert_allclose(nearest.on_step(way, 0.004)[2], point, atol=1e-15)
+
+
+def test_on_a_step_that_is_come_upon_from_above():
+    way = np.array([(0.01, 0.0, 0.005), (0.01, 0.0, 0.003), (0.001, 0.0, 0.001), (-0.001, 0.0, -0.001)])
+    expected = [(0.01, 0, 0.004), (0.001, 0, 0.004), (-0.001, 0, 0)]
+    np.testing.assert_allclose(nearest.on_step(way, 0.004)[1:], expected, atol=1e-15)
+
+
+def test_so_deep_under_a_crest_that_nothing_near_is_nearest():
+    """Beyond the centre of curvature, 1 / (A k^2) = 2.53 mm under the crest, the point above is no minimum."""
+    crest = np.array([0.005, 0.005, 0.008])
+    above, beyond = nearest.on_waves(np.array([crest - (0, 0, 0.0025), crest - (0, 0, 0.0026)]), 0.004, 0.02)
+    np.testing.assert_allclose(above, crest, atol=1e-12)
+    assert np.isnan(beyond).all()
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_a_scripted_way(name: str):
+    stroke = analytic_stroke(name, 32)
+    assert len(stroke.position_m) == LOOPS * LOOP_TICKS + 1
+    assert (stroke.position_m[::LOOP_TICKS, 2] > stroke.surface.height_m.max()).all()
+    assert np.isfinite(stroke.nearest_m).all()
+    away = np.linalg.norm(stroke.nearest_m - stroke.position_m, axis=1)
+    assert not away[::LOOP_TICKS].any()
+    assert 0.0008 < away.max() < 0.002
+    assert (away > 0).mean() > 0.6
+    speeds = np.linalg.norm(np.diff(stroke.position_m[:, :2], axis=0), axis=1) / stroke.period_s
+    assert speeds.max() < 0.084
+    assert speeds.mean() < 0.058
+
+
+def test_a_way_of_ones_own_and_what_lies_beside_the_surface():
+    way = np.array([(0.0, 0.0, 0.019), (0.0, 0.0, 0.021), (0.05, 0.0, 0.0), (1.0, 1.0, 0.0)])
+    stroke = analytic_stroke("sphere", 16, path_m=way)
+    np.testing.assert_allclose(stroke.nearest_m[:2], [(0, 0, 0.02), (0, 0, 0.021)], atol=1e-15)
+    assert np.isnan(stroke.nearest_m[2:]).all()
+
+
+@pytest.mark.slow
+def test_over_the_relief_of_a_picture_nothing_is_known():
+    surface = SURFACES["sine"].known((64, 32)).surface
+    stroke = relief_stroke(surface)
+    assert np.isnan(stroke.nearest_m).all()
+    depths = [SURFACES["sine"].known((16, 16)).height_m(x, y) - z for x, y, z in stroke.position_m]
+    assert 0.0005 < np.percentile(depths, 90) < 0.0015
+    assert np.abs(stroke.position_m[:, :2]).max(axis=0) == pytest.approx([0.03, 0.06], rel=1e-3)

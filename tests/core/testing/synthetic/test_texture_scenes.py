@@ -1,0 +1,165 @@
+"""Synthetic segments: what is said of them must hold of their pixels."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tangible_core.errors import PictureError
+from tangible_core.testing.synthetic.texture_scenes import (
+    builtin_textures,
+    curvy_regions,
+    folder_textures,
+    scattered,
+    smooth_scene,
+    texture_mosaic,
+)
+from tangible_core.testing.synthetic.textures import CONTRAST, FAMILIES, GREY, smooth_noise, without_grey
+
+SHAPE = (70, 101)
+
+
+def random(seed: int = 0) -> np.random.Generator:
+    return np.random.default_rng(seed)
+
+
+@pytest.mark.parametrize("name", builtin_textures())
+def test_a_texture_follows_from_its_seed(name: str):
+    family = builtin_textures()[name]
+    made = family(SHAPE, random(3))
+    np.testing.assert_array_equal(made, family(SHAPE, random(3)))
+    assert (made != family(SHAPE, random(4))).any()
+    assert made.shape == SHAPE
+    assert np.isfinite(made).all()
+    assert made.std() > 0
+
+
+def test_grey_tells_nothing():
+    """Every texture holds exactly the same values, and no part of it is brighter than another."""
+    made = [without_grey(family((256, 256), random())) for family in builtin_textures().values()]
+    for each in made[1:]:
+        np.testing.assert_array_equal(np.sort(each, axis=None), np.sort(made[0], axis=None))
+    assert made[0].mean() == pytest.approx(GREY, abs=0.05)
+    assert made[0].std() == pytest.approx(CONTRAST, rel=0.01)
+    for each in made:
+        blocks = each.reshape(4, 64, 4, 64)
+        assert blocks.mean(axis=(1, 3)).std() < 0.2 * CONTRAST
+        assert blocks.std(axis=(1, 3)).std() < 0.2 * CONTRAST
+
+
+def test_a_slope_of_light_is_removed():
+    texture = FAMILIES["grain"]((128, 128), random())
+    lit = texture * np.linspace(0.5, 2, 128) + np.linspace(0, 50 * texture.std(), 128)[:, None]
+    inside = np.s_[32:-32, 32:-32]
+    assert np.corrcoef(without_grey(lit)[inside].ravel(), without_grey(texture)[inside].ravel())[0, 1] > 0.95
+
+
+@pytest.mark.parametrize(
+    ("name", "across", "down"),
+    [
+        ("fibres", 1 / 6, 0),
+        ("ripples", 0.03, 1 / 12),
+        ("stripes", np.sin(0.6) / 8, np.cos(0.6) / 8),
+        ("zigzag", 1 / 7, 1 / 7),
+        ("bricks", 0, 1 / 10),
+    ],
+)
+def test_a_pattern_has_the_frequency_that_it_states(name: str, across: float, down: float):
+    """The strongest wave is within a twentieth of a cycle a pixel of it; one of both signs counts."""
+    made = FAMILIES[name]((512, 512), random())
+    power = np.abs(np.fft.rfft2(made - made.mean())) ** 2
+    columns, rows = np.meshgrid(np.fft.rfftfreq(512), np.fft.fftfreq(512))
+    apart = np.minimum(np.hypot(columns - across, rows - down), np.hypot(columns - across, rows + down))
+    assert apart.flat[power.argmax()] < 0.05
+
+
+@pytest.mark.parametrize("shape", [(512, 512), (100, 333), (17, 9)])
+def test_smooth_noise_has_no_mean_and_a_deviation_of_one(shape: tuple[int, int]):
+    noise = smooth_noise(shape, random(), 6)
+    assert noise.mean() == pytest.approx(0, abs=1e-9)
+    assert noise.std() == pytest.approx(1)
+    assert np.abs(np.diff(noise, axis=0)).max() < 1
+
+
+def test_scattered_points_keep_apart():
+    points = scattered((100, 200), 12, random())
+    assert points.shape == (12, 2)
+    assert (points >= 0).all() and (points < (100, 200)).all()
+    gaps = np.linalg.norm(points[:, None] - points, axis=2)[~np.eye(12, dtype=bool)]
+    assert gaps.min() > 0.4 * np.sqrt(100 * 200 / 12)
+
+
+def test_regions_are_large_and_their_borders_are_not_straight():
+    labels = curvy_regions((256, 256), 6, random())
+    areas = np.bincount(labels.ravel())
+    assert len(areas) == 6
+    assert areas.min() > 256 * 256 / 40
+    assert (np.diff(labels, axis=1) != 0).sum() + (np.diff(labels, axis=0) != 0).sum() < 10 * 256
+
+
+@pytest.mark.parametrize("shape", [(64, 64), SHAPE, (128, 40)])
+@pytest.mark.parametrize("segments", [1, 2, 5])
+def test_a_mosaic_has_its_size_and_its_segments(segments: int, shape: tuple[int, int]):
+    scene = texture_mosaic(segments, shape, seed=2)
+    assert scene.picture.shape == scene.labels.shape == shape
+    assert (scene.picture.dtype, scene.labels.dtype) == (np.uint8, np.int32)
+    assert np.unique(scene.labels).tolist() == list(range(segments))
+    assert scene.count == segments
+    assert scene.digest() == texture_mosaic(segments, shape, seed=2).digest()
+    assert scene.digest() != texture_mosaic(segments, shape, seed=3).digest()
+
+
+def test_each_segment_of_a_mosaic_is_one_texture():
+    flat = {f"grey{level}": lambda shape, _, level=level: np.indices(shape).sum(axis=0) % level for level in (3, 4, 5)}
+    scene = texture_mosaic(3, SHAPE, seed=1, textures=flat)
+    made = [np.rint(without_grey(each(SHAPE, random()))).astype(np.uint8) for each in flat.values()]
+    fits = [[(scene.picture == each)[scene.labels == label].mean() for each in made] for label in range(3)]
+    assert sorted(np.argmax(fits, axis=1)) == [0, 1, 2]
+    assert np.max(fits, axis=1).tolist() == [1, 1, 1]
+
+
+def test_a_picture_too_small_for_all_regions_has_fewer():
+    for shape in ((1, 1), (1, 7), (3, 2)):
+        scene = texture_mosaic(8, shape)
+        assert scene.picture.shape == shape
+        assert np.unique(scene.labels).tolist() == list(range(scene.count))
+    assert texture_mosaic(8, (1, 1)).count == 1
+
+
+def test_more_segments_than_textures():
+    with pytest.raises(PictureError, match="a mosaic of 13 needs as many textures, but there are 12; add some"):
+        texture_mosaic(13, SHAPE, textures=FAMILIES)
+
+
+def test_a_smooth_scene_is_grey_with_noise():
+    scene = smooth_scene(7, (200, 150), seed=4)
+    assert scene.picture.dtype == np.uint8
+    assert scene.count == 7
+    plain = smooth_scene(7, (200, 150), seed=4, noise=0)
+    difference = scene.picture.astype(float) - plain.picture
+    assert difference[(plain.picture > 30) & (plain.picture < 225)].std() == pytest.approx(6, rel=0.1)
+    inside = [plain.picture[plain.labels == label] for label in range(7)]
+    assert max(np.median(np.abs(each - np.median(each))) for each in inside) <= 12
+
+
+def test_a_folder_of_textures(tmp_path: Path):
+    Image.fromarray(np.arange(30 * 20, dtype=np.uint8).reshape(30, 20)).save(tmp_path / "ramp.png")
+    Image.fromarray(random().integers(0, 255, (50, 60, 3), dtype=np.uint8)).save(tmp_path / "noise.png")
+    tmp_path.joinpath("readme.txt").write_text("no picture")
+    found = folder_textures(tmp_path)
+    assert list(found) == ["noise", "ramp"]
+    assert texture_mosaic(2, (80, 90), textures=found).count == 2
+    small = found["ramp"]((90, 20), random())
+    np.testing.assert_array_equal(small[:30], small[59:29:-1])
+    large = found["noise"]((10, 10), random())
+    assert large.shape == (10, 10)
+    assert large.max() <= 1
+
+
+def test_a_folder_without_textures(tmp_path: Path):
+    with pytest.raises(PictureError, match="holds no texture pictures"):
+        folder_textures(tmp_path)
+    Image.fromarray(np.full((8, 8), 7, np.uint8)).save(tmp_path / "flat.png")
+    with pytest.raises(PictureError, match=r"flat\.png: is one flat colour, not a texture"):
+        folder_textures(tmp_path)

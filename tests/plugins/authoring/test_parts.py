@@ -1,0 +1,338 @@
+"""`tangible parts`: from a picture to files that run, painted over, corrected and run again."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image, ImageDraw
+from PIL.PngImagePlugin import PngInfo
+
+from command_line import Done, tangible
+from full_disk import files_up_to
+from pictures import write_png
+from tangible_authoring.first_parts import first_parts
+from tangible_authoring.renumbering import draw_numbers
+from tangible_core.errors import OutputError
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.scene.picture_files import read_labels
+from tangible_core.session import Recording, names_of
+
+WALL, FLOOR, VASE = (90, 120, 200), (120, 80, 40), (200, 200, 60)
+HERE = "parts.png", "parts-numbered.png", "still.yaml"
+
+
+def still_life() -> np.ndarray:
+    """120 x 160: a wall above a floor, a vase on the floor before the wall, and noise that no eye sees."""
+    image = Image.new("RGB", (160, 120), WALL)
+    draw = ImageDraw.Draw(image)
+    draw.rectangle((0, 80, 160, 120), FLOOR)
+    draw.ellipse((60, 40, 100, 105), VASE)
+    noise = np.random.default_rng(2).integers(-3, 4, (120, 160, 1))
+    return np.clip(np.asarray(image) + noise, 0, 255).astype(np.uint8)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    write_png(tmp_path / "still.png", still_life())
+    return tmp_path
+
+
+def paint(labels: Path, box: tuple[int, int, int, int], colour: int) -> None:
+    """As a paint program does that keeps the palette."""
+    with Image.open(labels) as image:
+        ImageDraw.Draw(image).rectangle(box, fill=colour)
+        image.save(labels)
+
+
+def well(done: Done) -> Done:
+    assert done.returncode == 0, done.stderr
+    return done
+
+
+@pytest.mark.slow
+def test_a_picture_becomes_files_that_run_as_they_stand(folder: Path):
+    done = well(tangible("parts", "still.png", cwd=folder))
+    assert "still.png is divided into 3 parts" in done.stdout
+    assert all(f"written: {name}" in done.stdout for name in HERE)
+    assert sorted(each.name for each in folder.iterdir()) == sorted([*HERE, "still.png"])
+    text = (folder / "still.yaml").read_text()
+    assert "scene: {photo: still.png, segments: parts.png}" in text, "it can be moved with its pictures"
+    assert "title: Still" in text
+    labels = read_labels(folder / "parts.png")
+    assert (labels[10, 80], labels[110, 10], labels[70, 80]) == (0, 2, 1), "wall, floor, vase: by their first pixels"
+    made = Pipeline.from_yaml(folder / "still.yaml").surface
+    assert made.labels is not None and made.names == ("", "", "")
+    wall, vase, _ = (np.median(made.height_m[made.labels == part]) for part in range(3))
+    assert wall < vase, "the vase stands before the wall"
+
+
+def test_each_part_has_a_line_that_says_where_it_lies(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    wall, vase, floor = [line for line in (folder / "still.yaml").read_text().splitlines() if line.startswith("  ")][:3]
+    assert wall.startswith('  0: {name: "", height_m: 0.0 mm}   # ')
+    assert wall.endswith("60 % of the picture, guessed, 1 of 3 from the back")
+    assert "# in the middle, " in vase and "# along the bottom, " in floor
+
+
+def test_nothing_is_written_over_that_is_there(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    before = {name: (folder / name).read_bytes() for name in HERE}
+    again = tangible("parts", "still.png", "--count", 2, cwd=folder)
+    assert (again.returncode, again.stdout) == (2, "")
+    assert again.stderr == (
+        "parts.png: is there already; --out FOLDER writes to another folder, --force writes over it\n"
+    )
+    assert {name: (folder / name).read_bytes() for name in HERE} == before
+    well(tangible("parts", "still.png", "--count", 2, "--force", "-q", cwd=folder))
+    assert read_labels(folder / "parts.png").max() == 1
+    (folder / "parts.png").rename(folder / "elsewhere.png")
+    kept = tangible("parts", "still.png", cwd=folder)
+    assert "parts-numbered.png: is there already" in kept.stderr and not (folder / "parts.png").exists()
+
+
+def test_the_picture_itself_is_never_written_over(folder: Path):
+    (folder / "still.png").rename(folder / "parts.png")
+    before = (folder / "parts.png").read_bytes()
+    done = tangible("parts", "parts.png", "--force", cwd=folder)
+    assert (done.returncode, (folder / "parts.png").read_bytes()) == (2, before)
+    assert "is the picture itself; --out FOLDER" in done.stderr
+
+
+def test_in_another_folder_the_file_finds_its_picture(folder: Path):
+    done = well(tangible("parts", "still.png", "--out", "my parts/of it", "--json", cwd=folder))
+    said = json.loads(done.stdout)
+    assert [Path(each).name for each in said["files"]] == list(HERE) and said["title"] == "Still"
+    assert [each["number"] for each in said["parts"]] == [0, 1, 2] and said["parts"][2]["place"] == "along the bottom"
+    file = folder / "my parts" / "of it" / "still.yaml"
+    assert "photo: ../../still.png" in file.read_text()
+    well(tangible("plan", file, cwd=folder))
+    assert not done.stderr and not (folder / "parts.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("nothing.png",), "nothing.png: there is no such file"),
+        (("nothing.yaml",), "nothing.yaml: there is no such file"),
+        (("map.npy",), "is a map of heights, which are felt as they are; parts are those of a picture"),
+        (("still.png", "--method", "gradent"), "no texture method is named 'gradent' (did you mean 'gradient'?)"),
+        (("still.png", "--count", 0), "count: is 0; there is at least one part"),
+        (("still.png", "--smallest", "nan"), "smallest: is nan; it must be positive and finite"),
+        (("still.png", "--set", "render.use=proxy"), "--set render.use=proxy: sets options of the texture method"),
+        (("still.png", "--set", "texture.sigma_px=-1"), "texture.sigma_px"),
+        (("still.png", "small.png"), "all parts of a scene must be of one size"),
+        (("still.png", "still.png", "still.png"), "name one, or left and right"),
+        (("bare.yaml",), "bare.yaml: the scene has no parts; give it a picture with `segments: parts.png`"),
+        (("bare.yaml", "bare.yaml"), "name one picture, left and right, or one pipeline file"),
+    ],
+)
+def test_a_mistake_is_one_line_with_the_cure(folder: Path, words: tuple[object, ...], said: str):
+    np.save(folder / "map.npy", np.eye(9))
+    write_png(folder / "small.png", still_life()[::2, ::2])
+    (folder / "bare.yaml").write_text("scene: {photo: still.png}\nwant: segments\n")
+    done = tangible("parts", *words, "--out", "new", cwd=folder)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), done.stderr
+    assert said in done.stderr and not (folder / "new").exists()
+
+
+def test_methods_and_how_many(folder: Path):
+    rng = np.random.default_rng(0)
+    grain = np.kron(rng.integers(0, 255, (4, 5)), np.ones((30, 30))).astype(np.uint8)
+    write_png(folder / "grain.png", grain)
+    for words, most in (((), 12), (("--method", "histogram", "--count", 4), 4)):
+        done = well(tangible("parts", "grain.png", *words, "--force", "--json", cwd=folder))
+        assert 1 < len(json.loads(done.stdout)["parts"]) <= most
+    coarse = well(tangible("parts", "grain.png", "--smallest", 50, "--force", "--json", cwd=folder))
+    assert len(json.loads(coarse.stdout)["parts"]) <= 2, "two discs of 50 mm lie on no surface of 80"
+
+
+@pytest.mark.parametrize("picture", [np.full((1, 1), 9), np.full((30, 40), 200)])
+def test_what_has_nothing_to_divide_is_one_part(folder: Path, picture: np.ndarray):
+    write_png(folder / "flat.png", picture.astype(np.uint8))
+    done = well(tangible("parts", "flat.png", cwd=folder))
+    assert "flat.png is one part" in done.stdout
+    assert Pipeline.from_yaml(folder / "flat.yaml").surface.names == ("",)
+
+
+@pytest.mark.slow
+def test_a_pair_has_heights_by_depth(folder: Path):
+    wall = np.random.default_rng(5).integers(0, 255, (120, 170), dtype=np.uint8)
+    left, right = wall[:, :160].copy(), wall[:, 4:164].copy()
+    left[30:90, 60:110] = 255 - wall[30:90, 60:110] // 4
+    right[30:90, 44:94] = 255 - wall[30:90, 60:110] // 4
+    write_png(folder / "left.png", left)
+    write_png(folder / "right.png", right)
+    done = well(tangible("parts", "left.png", "right.png", "--method", "histogram", "--json", cwd=folder))
+    parts = json.loads(done.stdout)["parts"]
+    assert "disparity" in parts[0]["why"] and parts[0]["height_m"] == 0
+    assert max(each["height_m"] for each in parts) == pytest.approx(0.0042)
+    text = (folder / "left.yaml").read_text()
+    assert "scene: {left: left.png, right: right.png, segments: parts.png}" in text and "depth: {use: " in text
+    well(tangible("plan", "left.yaml", "--set", "heights.by=depth", cwd=folder))
+
+
+def test_a_builtin_scene(folder: Path):
+    well(tangible("parts", "builtin/coins", "--out", "c", cwd=folder))
+    well(tangible("plan", "c/coins.yaml", cwd=folder))
+
+
+@pytest.mark.slow
+def test_painted_run_corrected_run(folder: Path):
+    """Somebody gives names, splits the wall, is told that numbers changed, lets the file follow, and goes on."""
+    well(tangible("parts", "still.png", cwd=folder))
+    file = folder / "still.yaml"
+    named = file.read_text().replace('0: {name: ""', "0: {name: wall").replace('1: {name: ""', "1: {name: vase")
+    file.write_text(named.replace('2: {name: ""', '2: {name: "floor [old]"'))
+    shown = well(tangible("parts", "still.yaml", cwd=folder))
+    assert "vase" in shown.stdout and "floor [old]" in shown.stdout and "written: parts-numbered.png" in shown.stdout
+    drawn = (folder / "parts-numbered.png").read_bytes()
+
+    paint(folder / "parts.png", (110, 0, 160, 40), 20)  # a window, whose first pixel comes before the vase's
+    told = tangible("parts", "still.yaml", cwd=folder)
+    assert told.returncode == 2 and "new" in told.stdout, told.stderr
+    assert told.stderr == (
+        "still.yaml: numbers of parts have changed: 1 (vase) is now 2, 2 (floor [old]) is now 3, since "
+        "parts-numbered.png was drawn; --renumber lets what the file says of them follow, --force draws the numbers "
+        "alone\n"
+    )
+    assert (folder / "parts-numbered.png").read_bytes() == drawn, "what the numbers were is still known"
+
+    well(tangible("parts", "still.yaml", "--renumber", cwd=folder))
+    said = Pipeline.from_yaml(file)
+    assert said.config.part_names == {0: "wall", 2: "vase", 3: "floor [old]"}
+    heights = said.config.given_heights_m
+    assert heights[1] == heights[0], "the window is as high as the wall that it was cut from"
+    after = file.read_text()
+    assert after.partition("parts:")[0] == named.partition("parts:")[0], "the rest stays, with its comments"
+    assert "new, cut from what was 0" in after
+    assert said.surface.names == ("wall", "", "vase", "floor [old]")
+    well(tangible("parts", "still.yaml", "--renumber", cwd=folder))
+    assert file.read_text() == after, "once is enough"
+
+
+def test_painted_parts_that_are_no_more(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    file = folder / "still.yaml"
+    file.write_text(file.read_text().replace('2: {name: ""', "2: {name: floor"))
+    paint(folder / "parts.png", (0, 0, 160, 79), 20)
+    paint(folder / "parts.png", (0, 79, 160, 120), 21)
+    ran = tangible("run", "still.yaml", cwd=folder)
+    assert ran.returncode == 2 and "there is no part 2 (floor); the parts are 0 to 1" in ran.stderr
+    assert "`tangible parts` draws them with their numbers" in ran.stderr
+    alone = tangible("parts", "still.yaml", "--force", cwd=folder)
+    assert alone.returncode == 2 and "there is no part 2" in alone.stderr, "drawn, and still to be corrected"
+    assert "written: parts-numbered.png" in alone.stdout
+
+
+def test_a_rule_by_number_is_not_left_behind(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    file = folder / "still.yaml"
+    rules = "materials: {rules: [{part: 1, material: glass}]}"
+    file.write_text(file.read_text().replace("materials: {by: roughness}", rules))
+    paint(folder / "parts.png", (110, 0, 160, 40), 20)
+    before = file.read_text()
+    done = tangible("parts", "still.yaml", "--renumber", cwd=folder)
+    assert done.returncode == 2 and "a rule of materials.rules is for part 1 by its number" in done.stderr
+    assert file.read_text() == before
+
+
+def test_parts_in_one_line_are_left_to_the_user(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    file = folder / "still.yaml"
+    head, _, rest = file.read_text().partition("parts:\n")
+    rest = "\n".join(line for line in rest.splitlines() if not line.startswith(("  0", "  1", "  2")))
+    file.write_text(f"{head}parts: {{0: wall,\n1: vase,\n2: floor}}\n{rest}\n")
+    paint(folder / "parts.png", (110, 0, 160, 40), 20)
+    before, drawn = file.read_text(), (folder / "parts-numbered.png").read_bytes()
+    done = tangible("parts", "still.yaml", "--renumber", cwd=folder)
+    assert done.returncode == 2 and "`parts:` is no block of lines" in done.stderr, done.stderr
+    assert (file.read_text(), (folder / "parts-numbered.png").read_bytes()) == (before, drawn)
+
+
+def test_a_picture_of_numbers_that_somebody_painted_on_is_theirs(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    numbered = folder / "parts-numbered.png"
+    with Image.open(numbered) as image:
+        said = PngInfo()
+        for key, text in image.info.items():
+            said.add_text(key, text)
+        ImageDraw.Draw(image).line((0, 0, 300, 300), fill=(255, 0, 0), width=9)
+        image.save(numbered, pnginfo=said)
+    before = numbered.read_bytes()
+    done = tangible("parts", "still.yaml", cwd=folder)
+    assert (done.returncode, numbered.read_bytes()) == (2, before)
+    assert "parts-numbered.png: is there already" in done.stderr
+    well(tangible("parts", "still.yaml", "--force", cwd=folder))
+
+
+def test_on_a_full_disk_files_are_whole_or_not_there(folder: Path):
+    found = first_parts([folder / "still.png"], folder / "still.yaml")
+    sizes = [len(content) for content in found.contents.values()]
+    assert [*found.contents] == [folder / name for name in HERE] and sizes[0] < sizes[1]
+    with files_up_to(sizes[0] + 100), pytest.raises(OutputError, match=r"parts-numbered.png: cannot be written"):
+        found.write()
+    assert sorted(each.name for each in folder.iterdir()) == ["parts.png", "still.png"], "no file names a missing one"
+
+    found.write(force=True)
+    file = folder / "still.yaml"
+    file.write_text(file.read_text().replace('1: {name: ""', "1: {name: vase"))
+    paint(folder / "parts.png", (110, 0, 160, 40), 20)
+    before = {name: (folder / name).read_bytes() for name in HERE}
+    room = file.stat().st_size + 4096
+    with files_up_to(room), pytest.raises(OutputError, match=r"parts-numbered.png: cannot be written"):
+        draw_numbers(file, folder / "parts-numbered.png", renumber=True)
+    assert {name: (folder / name).read_bytes() for name in HERE} == before, "numbers are not moved twice"
+
+
+@pytest.mark.slow
+def test_names_go_from_the_file_through_a_session_to_its_replay(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    file = folder / "still.yaml"
+    file.write_text(
+        file.read_text()
+        .replace('0: {name: ""', "0: {material: glass, name: '[wall]'")
+        .replace("path: raster", "path: press")
+    )
+    felt = well(tangible("feel", "still.yaml", "--seconds", 0.8, "--record", "hand.nc", "--json", cwd=folder))
+    said = json.loads(felt.stdout)
+    assert said["part"] in ("[wall]", "part 1", "part 2")
+    assert sum(each["share"] for each in said["parts"]) == pytest.approx(1)
+    about = Recording.load(folder / "hand.nc").about
+    (materials,) = names_of(about.materials)
+    assert names_of(about.parts) == [{0: "[wall]"}] and materials[0] == "glass"
+    assert said["material"] in materials.values()
+    assert [each["material"] for each in said["parts"]] == [materials[each["number"]] for each in said["parts"]]
+    again = json.loads(well(tangible("replay", "hand.nc", "still.yaml", "--json", cwd=folder)).stdout)
+    assert again["recorded"]["parts"] == [{"0": "[wall]"}] and again["recorded"]["materials"][0]["0"] == "glass"
+    assert [each["number"] for each in again["parts"]] == [each["number"] for each in said["parts"]]
+    table = well(tangible("replay", "hand.nc", "still.yaml", cwd=folder)).stdout
+    assert "% of the contact" in table and "material" in table
+
+
+@pytest.mark.slow
+def test_a_beacon_is_asked_for_by_name_and_said_by_the_recording_and_its_replay(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    file = folder / "still.yaml"
+    file.write_text(file.read_text().replace('1: {name: ""', "1: {name: vase").replace("path: raster", "path: press"))
+    words = ("feel", "still.yaml", "--seconds", 0.8, "--record", "hand.nc", "--json", "--beacon")
+    said = json.loads(well(tangible(*words, "vase", cwd=folder)).stdout)
+    assert said["beacon"] == 1 and said["figures"]["beacon"] > 700
+    ((number, name, share),) = (each.values() for each in said["beacons"])
+    assert (number, name) == (1, "vase") and share > 0.9
+    assert np.isin(Recording.load(folder / "hand.nc").beacon, (1, -1)).all()
+    again = tangible("replay", "hand.nc", "still.yaml", cwd=folder)
+    assert "A beacon pulled to vase for " in well(again).stdout and "the law alone is replayed" in again.stdout
+    alone = Pipeline.from_yaml(file).feel(seconds=0.2, in_real_time=False, beacon=1)
+    assert (alone.beacon == 1).all()
+    wrong = tangible("feel", "still.yaml", "--beacon", "vas", cwd=folder)
+    assert (wrong.returncode, wrong.stdout) == (2, "")
+    assert "no part is called 'vas' (did you mean 'vase'?); the parts are 1: 'vase'" in wrong.stderr
+
+
+def test_a_run_says_what_its_parts_are(folder: Path):
+    well(tangible("parts", "still.png", cwd=folder))
+    file = folder / "still.yaml"
+    file.write_text(file.read_text().replace('0: {name: ""', "0: {material: glass, name: '[wall]'"))
+    ran = well(tangible("run", "still.yaml", "--set", "want=surface", cwd=folder))
+    assert "\nparts\n  0: [wall], 0 mm high, glass (given)\n  1: " in ran.stdout

@@ -1,0 +1,427 @@
+"""Many scenes through one pipeline; each failure is a row, and nothing that was made is made twice."""
+
+import csv
+import json
+import os
+from pathlib import Path
+from threading import Event
+
+import numpy as np
+import pytest
+
+from command_line import tangible
+from full_disk import files_up_to
+from pictures import write_png
+from tangible_batch import batch, running
+from tangible_batch.farm import Done
+from tangible_batch.job import Job, make_scene
+from tangible_batch.manifest import rows_of
+from tangible_core import Pipeline, Scene
+from tangible_core.errors import ArgumentError, BatchError, OutputError, Stopped
+from videos import greys
+
+CONFIG = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
+
+
+class Here:
+    """A farm without processes: for what does not depend on them."""
+
+    def __init__(self, *_: object) -> None:
+        self.workers = 1
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def map(self, work, jobs, chunk=1, timeout_s=1.0):
+        for job in jobs:
+            yield Done(job, work(job))
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(running, "Farm", Here)
+
+
+@pytest.fixture
+def archive(tmp_path: Path) -> Path:
+    folder = tmp_path / "archive"
+    folder.mkdir()
+    for number in range(4):
+        write_png(folder / f"p{number}.png", picture(number))
+    (tmp_path / "mine.yaml").write_text(CONFIG)
+    return folder
+
+
+def picture(seed: int, shape: tuple[int, ...] = (24, 32)) -> np.ndarray:
+    return np.random.default_rng(seed).integers(0, 256, shape, np.uint8)
+
+
+def rows_in(out: Path) -> list[dict]:
+    return [json.loads(line) for line in (out / "rows.jsonl").read_text().splitlines()]
+
+
+def by_id(rows) -> dict[str, dict]:
+    return {row["id"]: row for row in rows}
+
+
+class TestScenes:
+    @pytest.fixture(autouse=True)
+    def one_process(self, here):
+        pass
+
+    def run(self, cwd: Path, *words: object):
+        return tangible("batch", "mine.yaml", "--over", "archive", *words, cwd=cwd)
+
+    def test_a_folder_becomes_rows_files_a_table_and_a_gallery(self, archive: Path):
+        import pyarrow.parquet as pq
+
+        done = self.run(archive.parent)
+        assert done.returncode == 0, done.stderr
+        assert "4 of 4 scenes are made." in done.stdout
+        out = archive.parent / "out/mine-batch"
+        rows = by_id(rows_in(out))
+        assert sorted(rows) == ["p0", "p1", "p2", "p3"]
+        assert all(row["outcome"] == "ok" and row["seconds"] > 0 and "relief" in row["stages"] for row in rows.values())
+        for row in rows.values():
+            assert sorted(path.name for path in (out / row["folder"]).iterdir()) == sorted(row["files"])
+        table = pq.read_table(out / "index.parquet").to_pydict()
+        assert sorted(table["id"]) == sorted(rows)
+        assert set(table["outcome"]) == {"ok"}
+        page = (out / "gallery.html").read_text()
+        assert all(f'src="scenes/p{number}/card.jpg"' in page for number in range(4))
+
+    def test_each_scene_is_what_a_run_makes_of_it(self, archive: Path, tmp_path: Path):
+        from tangible_core.pipeline.engine.cache import read_record
+
+        self.run(archive.parent, "--set", "workspace.width_m=0.06")
+        found = read_record(tmp_path / "out/mine-batch/scenes/p2/relief.npz")
+        scene = Scene.of(photo=archive / "p2.png")
+        from tangible_depth import Luminance
+
+        same = Pipeline(scene, depth=Luminance(), workspace={"width_m": 0.06}, cached=False).relief
+        assert found.digest() == same.digest()
+
+    def test_five_kinds_of_bad_picture_are_rows_with_the_usual_words(self, tmp_path: Path):
+        folder = tmp_path / "archive"
+        folder.mkdir()
+        (tmp_path / "mine.yaml").write_text(CONFIG.replace("luminance", "semi-global"))
+        pair = picture(1, (48, 90))
+        for name in ("good", "cut", "empty", "sizes", "none", "alone"):
+            write_png(folder / f"{name}_left.png", pair)
+            write_png(folder / f"{name}_right.png", np.roll(pair, -3, axis=1))
+        whole = (folder / "cut_left.png").read_bytes()
+        (folder / "cut_left.png").write_bytes(whole[: len(whole) // 2])
+        (folder / "empty_left.png").write_bytes(b"")
+        write_png(folder / "sizes_right.png", pair[:20])
+        (folder / "none_right.png").write_text("not a picture")
+        (folder / "alone_right.png").unlink()
+        done = self.run(tmp_path)
+        assert done.returncode == 1
+        rows = by_id(rows_in(tmp_path / "out/mine-batch"))
+        errors = {name: row["error"] for name, row in rows.items()}
+        assert errors["good"] is None
+        assert set(rows) == {"good", "cut", "empty", "sizes", "none", "alone_left"}
+        for name, said in {
+            "cut": "cut_left.png",
+            "empty": "empty_left.png",
+            "sizes": "must be of one size",
+            "none": "none_right.png",
+            "alone_left": "two views",
+        }.items():
+            assert said in errors[name]
+            assert f"{name}: " in done.stderr
+        assert "5 failed: --retry makes these again" in done.stdout
+
+    def test_rows_of_a_manifest_set_keys_and_name_files_beside_it(self, archive: Path):
+        with (archive / "rows.csv").open("w", newline="") as file:
+            table = csv.writer(file)
+            table.writerow(["id", "scene.photo", "workspace.width_m", "depth.smoothing_px"])
+            table.writerows([["wide", "p0.png", "0.1", ""], ["rough", "p0.png", "", 0], ["own", "", "0.03", ""]])
+        done = tangible("batch", "mine.yaml", "--over", archive / "rows.csv", "--json", cwd=archive.parent)
+        assert done.returncode == 0, done.stderr
+        assert json.loads(done.stdout)["made"] == 3
+        rows = by_id(rows_in(archive.parent / "out/mine-batch"))
+        assert rows["own"]["scene"] == "builtin/brick"
+        assert rows["wide"]["scene"] == rows["rough"]["scene"] == str(archive / "p0.png")
+        assert rows["wide"]["key"] != rows["rough"]["key"]
+
+    def test_a_row_may_name_a_video(self, here: None, archive: Path):
+        greys(archive / "walk.avi", 2)
+        rows = [{"id": "film", "scene.video": archive / "walk.avi"}, {"id": "frames", "scene.video": archive}]
+        done = list(batch(Pipeline.from_yaml(archive.parent / "mine.yaml"), rows, archive.parent / "out"))
+        assert [(row["outcome"], row["scene"]) for row in done] == [
+            ("ok", f"{archive / 'walk.avi'}"),
+            ("ok", f"{archive}"),
+        ]
+
+    def test_videos_are_scenes_where_there_is_no_picture(self, archive: Path):
+        """A phone lays a film of the same name beside each photo."""
+        greys(archive / "p0.avi", 2)
+        assert all("scene.photo=" in row.sets[0] for row in rows_of(str(archive)))
+        films = archive / "films"
+        films.mkdir()
+        greys(films / "walk.avi", 2)
+        greys(films / "run.MP4", 2)
+        (films / "notes.txt").touch()
+        rows = {row.id: row.sets for row in rows_of(str(films))}
+        assert rows == {
+            name: (f'scene.video="{films / file}"',) for name, file in (("run", "run.MP4"), ("walk", "walk.avi"))
+        }
+
+    def test_a_table_in_parquet_is_a_manifest(self, archive: Path):
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        table = {"id": ["a", "b"], "scene.photo": ["p1.png", "p2.png"], "workspace.width_m": [0.05, None]}
+        pq.write_table(pa.table(table), archive / "rows.parquet")
+        done = tangible("batch", "mine.yaml", "--over", archive / "rows.parquet", cwd=archive.parent)
+        assert done.returncode == 0, done.stderr
+        assert sorted(by_id(rows_in(archive.parent / "out/mine-batch"))) == ["a", "b"]
+
+    def test_what_is_made_is_kept_what_changed_is_made_again(self, archive: Path):
+        tally = [json.loads(self.run(archive.parent, "--json").stdout) for _ in range(2)]
+        assert [(each["made"], each["kept"]) for each in tally] == [(4, 0), (0, 4)]
+        write_png(archive / "p1.png", picture(9, (30, 30)))
+        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 1
+        assert json.loads(self.run(archive.parent, "--json", "--set", "want=surface").stdout)["made"] == 4
+
+    def test_failures_are_made_again_when_asked_for(self, archive: Path):
+        whole = (archive / "p1.png").read_bytes()
+        (archive / "p1.png").write_bytes(b"no")
+        stamp = (archive / "p1.png").stat()
+        self.run(archive.parent)
+        assert json.loads(self.run(archive.parent, "--json").stdout)["failed"] == 1
+        (archive / "p1.png").write_bytes(whole)
+        os.utime(archive / "p1.png", ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
+        done = json.loads(self.run(archive.parent, "--json", "--retry").stdout)
+        assert (done["made"], done["failed"]) == (1, 0)
+
+    def test_a_torn_last_line_is_cut_off_and_its_scene_made_again(self, archive: Path):
+        out = archive.parent / "out/mine-batch"
+        self.run(archive.parent)
+        text = (out / "rows.jsonl").read_text()
+        (out / "rows.jsonl").write_text(text[:-20])
+        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 1
+        assert sorted(by_id(rows_in(out))) == ["p0", "p1", "p2", "p3"]
+
+    def test_a_full_disk_ends_the_batch_which_then_goes_on(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+        from tangible_batch import job
+
+        def full(*_: object) -> None:
+            raise OutputError("relief.npz: cannot be written") from OSError(28, "No space left on device")
+
+        with monkeypatch.context() as patch:
+            patch.setattr(job, "write_record", full)
+            done = self.run(archive.parent)
+        assert done.returncode == 2
+        assert "the batch ends here, and the same command goes on from there" in done.stderr
+        out = archive.parent / "out/mine-batch"
+        assert rows_in(out) == []
+        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 4
+
+    def test_rows_that_find_no_room_end_it_too(self, archive: Path, tmp_path: Path):
+        from tangible_core.files.json_lines import JsonLines
+
+        with JsonLines(tmp_path / "rows.jsonl") as file:
+            file.add({"id": "a"})
+            with files_up_to(20), pytest.raises(OutputError, match=r"rows\.jsonl: cannot be written"):
+                file.add({"id": "b" * 100})
+            file.add({"id": "c"})
+        assert (tmp_path / "rows.jsonl").read_text() == '{"id": "a"}\n{"id": "c"}\n'
+
+    @pytest.mark.parametrize(
+        ("over", "said"),
+        [
+            ("nowhere/*.png", "holds no picture and no row"),
+            ("rows.csv", "cannot be read: No such file"),
+            ("twice.csv", "two rows are called 'a'"),
+            ("broken.parquet", "is no Parquet file"),
+            ("cells.csv", "more cells than there are columns"),
+        ],
+    )
+    def test_mistakes_are_one_line(self, archive: Path, over: str, said: str):
+        folder = archive.parent
+        (folder / "twice.csv").write_text("id,scene.photo\na,archive/p0.png\na,archive/p1.png\n")
+        (folder / "broken.parquet").write_text("PAR?")
+        (folder / "cells.csv").write_text("id,scene.photo\na,archive/p0.png,more\n")
+        done = tangible("batch", "mine.yaml", "--over", over, cwd=folder)
+        assert done.returncode == 2
+        [line] = done.stderr.splitlines()
+        assert said in line
+
+    def test_from_python_rows_come_as_they_are_made_and_it_can_be_stopped(self, archive: Path, tmp_path: Path):
+        from tangible_depth import Luminance
+
+        pipeline = Pipeline.from_yaml(tmp_path / "mine.yaml")
+        assert pipeline.config.depth is not None
+        assert isinstance(pipeline.config.depth.method, Luminance)
+        rows = [{"id": each.stem, "scene.photo": str(each)} for each in sorted(archive.glob("*.png"))]
+        stop = Event()
+        seen = []
+        with pytest.raises(Stopped):
+            for row in batch(pipeline, rows, tmp_path / "out", stop=stop):
+                seen.append(row["id"])
+                stop.set()
+        assert seen == ["p0"]
+        assert [row["id"] for row in batch(pipeline, rows, tmp_path / "out")] == ["p0", "p1", "p2", "p3"]
+
+    def test_from_python_mistakes_are_one_line(self, archive: Path, tmp_path: Path):
+        pipeline, out = Pipeline.from_yaml(tmp_path / "mine.yaml"), tmp_path / "out"
+        photo = {"scene.photo": str(archive / "p0.png")}
+        with pytest.raises(BatchError, match="two rows are called 'a'; give each an `id` of its own"):
+            list(batch(pipeline, [{"id": "a", **photo}, {"id": "a", **photo}], out))
+        with pytest.raises(ArgumentError, match="workers: is the int 0"):
+            list(batch(pipeline, [photo], out, workers=0))
+        assert list(batch(pipeline, [], out)) == []
+
+    def test_a_mistake_in_the_file_itself_ends_it_before_the_first_scene(self, archive: Path):
+        (archive.parent / "mine.yaml").write_text(CONFIG + "textur: gabor\n")
+        done = self.run(archive.parent)
+        assert done.returncode == 2
+        [line] = done.stderr.splitlines()
+        assert "mine.yaml" in line
+        assert "textur" in line
+        assert rows_in(archive.parent / "out/mine-batch") == []
+
+    def test_a_mistake_in_a_row_is_that_row_s(self, archive: Path):
+        (archive / "rows.csv").write_text("id,scene.photo,workspace.width_m\na,p0.png,-1\nb,p1.png,0.1\n")
+        done = tangible("batch", "mine.yaml", "--over", archive / "rows.csv", cwd=archive.parent)
+        assert done.returncode == 1
+        rows = by_id(rows_in(archive.parent / "out/mine-batch"))
+        assert "workspace.width_m" in rows["a"]["error"]
+        assert rows["b"]["outcome"] == "ok"
+
+    def test_a_sweep_sees_that_the_file_s_own_picture_changed(self, archive: Path):
+        (archive.parent / "mine.yaml").write_text(CONFIG.replace("builtin/brick", "{photo: archive/p0.png}"))
+        (archive / "rows.csv").write_text("workspace.width_m\n0.05\n0.1\n")
+        words = ("batch", "mine.yaml", "--over", archive / "rows.csv", "--json")
+        made = []
+        for seed in (None, None, 5):
+            if seed:
+                write_png(archive / "p0.png", picture(seed, (20, 20)))
+            made.append(json.loads(tangible(*words, cwd=archive.parent).stdout)["made"])
+        assert made == [2, 0, 2]
+
+    @pytest.mark.parametrize("name", ["Krug ä", "\N{AMPHORA}", 'a "quoted" one', "two\nlines", "b\udcff"])
+    def test_a_picture_may_have_any_name(self, archive: Path, name: str):
+        for each in archive.iterdir():
+            each.unlink()
+        write_png(archive / f"{name}.png", picture(0))
+        tally = []
+        for seed in (0, 0, 3):
+            if seed:
+                write_png(archive / f"{name}.png", picture(seed, (16, 16)))
+            tally.append(json.loads(self.run(archive.parent, "--json").stdout))
+        assert [each["made"] for each in tally] == [1, 0, 1]
+        [row] = rows_in(archive.parent / "out/mine-batch")[1:]
+        assert row["id"] == name
+        if name != "b\udcff":  # no YAML holds half a character
+            assert row["outcome"] == "ok", row["error"]
+
+    def test_pictures_that_it_wrote_itself_are_no_scenes(self, archive: Path):
+        words = ("batch", "mine.yaml", "--over", ".", "--json")
+        tally = [json.loads(tangible(*words, cwd=archive.parent).stdout) for _ in range(2)]
+        assert [each["wanted"] for each in tally] == [4, 4]
+
+    def test_what_is_no_longer_wanted_is_in_no_table(self, archive: Path):
+        import pyarrow.parquet as pq
+
+        out = archive.parent / "out/mine-batch"
+        self.run(archive.parent)
+        (archive / "p0.png").unlink()
+        self.run(archive.parent)
+        assert sorted(by_id(rows_in(out))) == ["p0", "p1", "p2", "p3"]
+        assert pq.read_table(out / "index.parquet")["id"].to_pylist() == ["p1", "p2", "p3"]
+        assert "p0" not in (out / "gallery.html").read_text()
+
+    def test_a_scene_whose_files_were_deleted_is_made_again(self, archive: Path):
+        import shutil
+
+        self.run(archive.parent)
+        shutil.rmtree(archive.parent / "out/mine-batch/scenes/p2")
+        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 1
+
+    @pytest.mark.parametrize("want", ["segments", "disparity", "materials", "surface"])
+    def test_whatever_is_wanted_has_a_card(self, archive: Path, want: str):
+        from PIL import Image
+
+        (archive.parent / "mine.yaml").write_text(
+            f"scene: builtin/brick\nwant: {want}\ntexture: {{use: histogram, segments: 2}}\n"
+            + ("" if want in ("segments", "materials") else "depth: luminance\n")
+        )
+        done = self.run(archive.parent)
+        assert done.returncode == 0, done.stderr
+        with Image.open(archive.parent / "out/mine-batch/scenes/p1/card.jpg") as card:
+            assert card.width == 2 * 160
+
+    def test_what_the_file_exports_is_beside_each_scene_s_files(self, archive: Path):
+        (archive.parent / "mine.yaml").write_text(CONFIG + "texture: {use: histogram, segments: 2}\nexport: [text]\n")
+        (archive / "p3.png").write_bytes(b"no")
+        assert self.run(archive.parent).returncode == 1
+        out = archive.parent / "out/mine-batch"
+        for row in rows_in(out):
+            if row["outcome"] == "ok":
+                exported = {Path(name).suffix for name in row["files"]}
+                assert {".txt", ".html"} <= exported, row
+                assert all((out / row["folder"] / name).is_file() for name in row["files"])
+        (archive / "p2.png").touch()
+        os.utime(archive / "p2.png", (1, 1))
+        write_png(archive / "p3.png", picture(3))
+        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 2
+
+    def test_an_exporter_that_fails_is_the_scene_s_failure(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+        from tangible_export import Text
+
+        def fails(*_: object) -> None:
+            raise OutputError("the ink is dry")
+
+        monkeypatch.setattr(Text, "write", fails)
+        (archive.parent / "mine.yaml").write_text(CONFIG + "texture: {use: histogram, segments: 2}\nexport: [text]\n")
+        done = self.run(archive.parent)
+        assert done.returncode == 1
+        assert "the ink is dry" in rows_in(archive.parent / "out/mine-batch")[0]["error"]
+
+    def test_a_second_one_in_the_same_folder_is_told(self, archive: Path):
+        from tangible_core.files.json_lines import JsonLines
+
+        with JsonLines(archive.parent / "out/mine-batch/rows.jsonl", alone=True) as file:
+            file.add({"id": "other"})
+            done = self.run(archive.parent)
+        assert done.returncode == 2
+        assert "another program is writing to it; wait for that one or choose another folder" in done.stderr
+        assert len(rows_in(archive.parent / "out/mine-batch")) == 1
+
+    def test_without_the_extra_it_says_so_before_the_work(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+        from tangible_batch import extra
+
+        monkeypatch.setattr(extra, "find_spec", lambda name: None)
+        done = self.run(archive.parent)
+        assert done.returncode == 2
+        assert "pip install 'tangible-images[batch]'" in done.stderr
+
+    def test_a_name_is_a_folder_s_on_any_system(self, archive: Path, tmp_path: Path):
+        rows = [
+            {"id": name, "scene.photo": str(archive / "p0.png")} for name in ("a/b", "a_b", "..", "ä:*?", "x" * 300)
+        ]
+        made = list(batch(Pipeline.from_yaml(tmp_path / "mine.yaml"), rows, tmp_path / "out"))
+        folders = {row["folder"] for row in made}
+        assert len(folders) == len(rows)
+        assert all(Path(tmp_path / "out", each).resolve().parent == tmp_path / "out/scenes" for each in folders)
+
+
+def test_workers_times_threads_are_the_cores_unless_both_are_said(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(running, "processors", lambda: 8)
+    shares = {(None, None): (8, 1), (2, None): (2, 4), (None, 4): (2, 4), (16, None): (16, 1), (3, 9): (3, 9)}
+    who = {said: running.Workforce(*said) for said in shares}
+    assert {said: (each.workers_here, each.threads_each) for said, each in who.items()} == shares
+    elsewhere = running.Workforce(scheduler="tcp://host:8786")
+    assert elsewhere.threads_each is None  # of cores that are not here
+
+
+def test_a_plugin_that_raises_anything_is_a_row(tmp_path: Path):
+    row = make_scene(Job("a", "k", "scene: {photo: no.png}\ndepth: luminance\n", str(tmp_path / "m.yaml"), (), "f"))
+    assert row["outcome"] == "failed"
+    assert "no.png" in row["error"]

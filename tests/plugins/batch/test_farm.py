@@ -1,0 +1,216 @@
+"""Workers that die, a program that is killed, other machines: nothing is lost, and nobody is left."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+
+import dask_imported  # noqa: F401
+import farm_work
+from ctrl_c import HEARING
+from distributions import distribution
+from pictures import write_png
+from tangible_batch import batch, farm
+from tangible_batch.farm import Farm
+from tangible_core import Pipeline
+from tangible_core.errors import BatchError
+
+pytestmark = pytest.mark.slow
+CONFIG = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
+DEADLY = """
+import os, signal
+from tangible_depth import Luminance
+
+class Deadly(Luminance):
+    '''Dies of a white picture.'''
+
+    def estimate(self, views):
+        if views.left.min() == views.left.max():
+            os.kill(os.getpid(), signal.SIGKILL)
+        return super().estimate(views)
+"""
+
+
+@pytest.fixture(autouse=True)
+def importable(monkeypatch: pytest.MonkeyPatch):
+    helpers = str(Path(__file__).parents[2] / "helpers")
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, [helpers, os.environ.get("PYTHONPATH")])))
+
+
+def archive(folder: Path, count: int) -> Path:
+    folder.joinpath("archive").mkdir()
+    for number in range(count):
+        pixels = np.random.default_rng(number).integers(0, 256, (24, 32), np.uint8)
+        write_png(folder / f"archive/p{number}.png", pixels)
+    folder.joinpath("mine.yaml").write_text(CONFIG)
+    return folder / "archive"
+
+
+def command(*words: str) -> list[str]:
+    program = [sys.executable, "-c", "from tangible_core.cli import main; main()"]
+    return [*HEARING, *program, "batch", "mine.yaml", "--over", "archive", "--workers", "2", *words]
+
+
+def rows_in(out: Path) -> list[dict]:
+    return [json.loads(line) for line in (out / "rows.jsonl").read_text().splitlines()]
+
+
+def test_workers_that_die_take_no_job_along_and_begin_anew_in_time(monkeypatch: pytest.MonkeyPatch):
+    with Farm(2) as two:
+        assert {port.laddr.ip for each in family() for port in each.net_connections() if port.status == "LISTEN"} == {
+            "127.0.0.1"
+        }
+        done = list(two.map(farm_work.square, range(24), chunk=4))
+        assert sorted(each.job for each in done) == list(range(24))
+        assert [each.job for each in done if each.death] == [7]
+        assert "its worker died of it, twice" in next(each.death for each in done if each.death)
+        assert all(each.result == each.job**2 for each in done if not each.death)
+
+        [raised] = two.map(farm_work.square, ["seven"])  # its worker lives: the words are those of the error
+        assert raised.death.startswith("TypeError: ")
+
+        workers = {each.result for each in two.map(farm_work.slow, range(12))}
+        assert len(workers) == 2
+        flow = two.map(farm_work.slow, range(40))
+        seen = [next(flow) for _ in range(3)]
+        for worker in workers:  # every worker at once
+            os.kill(worker, signal.SIGKILL)
+        seen += flow
+        assert sorted(each.job for each in seen) == list(range(40))
+        assert not any(each.death for each in seen)
+
+        with monkeypatch.context() as soon:
+            soon.setattr(farm, "FRESH_AFTER", 10)
+            anew = list(two.map(farm_work.slow, range(40)))
+        assert sorted(each.job for each in anew) == list(range(40))
+        assert len({each.result for each in anew}) == 4
+
+        held = {each.job: each.death for each in two.map(farm_work.stuck, range(6), chunk=2, timeout_s=1.5)}
+        assert held == {0: "", 1: "", 2: "took longer than 1.5 s, twice, and was ended", 3: "", 4: "", 5: ""}
+
+
+def test_a_scheduler_that_is_not_there(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(farm, "CONNECT_S", 1)
+    with pytest.raises(BatchError, match=r"--scheduler tcp://127\.0\.0\.1:9: nobody answers there"):
+        Farm(1, scheduler="tcp://127.0.0.1:9")
+
+
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGINT])
+def test_after_an_end_in_the_middle_nobody_is_left_and_the_rest_is_made(tmp_path: Path, end: signal.Signals):
+    """The program that hands out the scenes is killed, and its workers end by themselves; or Ctrl-C, which all hear."""
+    archive(tmp_path, 60)
+    rows = tmp_path / "out/mine-batch/rows.jsonl"
+    with (tmp_path / "noise").open("w") as noise:
+        first = subprocess.Popen(command(), cwd=tmp_path, stdout=noise, stderr=noise, start_new_session=True)
+    waited(lambda: rows.exists() and rows.read_text().count("\n") >= 3, 60)
+    family = [each.pid for each in psutil.Process(first.pid).children(recursive=True)]
+    assert len(family) >= 2
+    if end == signal.SIGKILL:
+        first.kill()
+    else:
+        os.killpg(first.pid, end)
+    code = first.wait(60)
+    waited(lambda: not any(map(is_alive, family)), 20)
+    if end == signal.SIGINT:
+        said = (tmp_path / "noise").read_text()
+        assert code == 130, said
+        assert "the same command goes on from there" in " ".join(said.split())
+        assert "Traceback" not in said
+    kept = rows.read_text().count("\n")
+    assert 3 <= kept < 60
+    with rows.open("a") as file:
+        file.write('{"id": "torn')
+    second = subprocess.run(command("--json"), cwd=tmp_path, capture_output=True, text=True, timeout=200)
+    assert second.returncode == 0, second.stderr
+    found = rows_in(rows.parent)
+    assert len(found) == len({row["id"] for row in found}) == 60
+    assert json.loads(second.stdout)["made"] == 60 - kept
+
+
+def test_a_scene_that_kills_its_worker_is_the_only_one_that_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    site = distribution(tmp_path / "site", "deadly", {"tangible.depth": {"deadly": "deadly:Deadly"}}, deadly=DEADLY)
+    monkeypatch.setenv("PYTHONPATH", str(site), prepend=os.pathsep)
+    folder = archive(tmp_path, 24)
+    write_png(folder / "p5.png", np.full((24, 32), 255, np.uint8))
+    (tmp_path / "mine.yaml").write_text(CONFIG.replace("luminance", "deadly"))
+    done = subprocess.run(command(), cwd=tmp_path, capture_output=True, text=True, timeout=200)
+    assert done.returncode == 1, done.stderr
+    rows = rows_in(tmp_path / "out/mine-batch")
+    assert len(rows) == 24
+    assert [row["id"] for row in rows if row["outcome"] != "ok"] == ["p5"]
+    assert "p5: its worker died of it, twice" in " ".join(done.stderr.split())
+
+
+def test_the_workers_of_a_scheduler_make_the_scenes_and_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    folder = archive(tmp_path, 6)
+    pipeline = Pipeline.from_yaml(tmp_path / "mine.yaml")
+    rows = [{"id": each.stem, "scene.photo": str(each)} for each in sorted(folder.iterdir())]
+    with running("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", tmp_path / "at.json"):
+        waited(lambda: (tmp_path / "at.json").exists() and (tmp_path / "at.json").read_text().endswith("}"))
+        address = json.loads((tmp_path / "at.json").read_text())["address"]
+        with pytest.raises(BatchError, match="has no workers; start some: dask worker tcp://"):
+            list(batch(pipeline, rows, tmp_path / "out", scheduler=address))
+        worker = ("worker", address, "--no-dashboard", "--local-directory", tmp_path, "--nthreads")
+        with running(*worker, "1") as own:
+            monkeypatch.setattr(farm, "installed", lambda: "0.0.1")
+            waited(lambda: not without_workers(address))
+            with pytest.raises(BatchError, match=r"has tangible-images .*, and this is 0\.0\.1; install the same"):
+                Farm(1, scheduler=address)
+            monkeypatch.undo()
+            made = list(batch(pipeline, rows, tmp_path / "out", scheduler=address))
+            assert sorted(row["id"] for row in made if row["outcome"] == "ok") == [f"p{number}" for number in range(6)]
+            assert own.poll() is None
+            with running(*worker, "2"):
+                waited(lambda: "works on 2 scenes at once" in complaint(address))
+
+
+def family() -> list[psutil.Process]:
+    return [psutil.Process(), *psutil.Process().children(recursive=True)]
+
+
+def without_workers(address: str) -> bool:
+    return "has no workers" in complaint(address)
+
+
+def complaint(address: str) -> str:
+    try:
+        Farm(1, scheduler=address).close()
+    except BatchError as error:
+        return str(error)
+    return ""
+
+
+@contextmanager
+def running(what: str, *words: object) -> Iterator[subprocess.Popen[bytes]]:
+    program = [sys.executable, "-m", f"distributed.cli.dask_{what}", *map(str, words)]
+    process = subprocess.Popen(program, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        yield process
+    finally:
+        for each in (*psutil.Process(process.pid).children(recursive=True), process):
+            with suppress(psutil.NoSuchProcess):
+                each.kill()
+        process.wait()
+
+
+def waited(what, seconds: float = 90.0) -> None:
+    end = time.monotonic() + seconds
+    while not what():
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
+def is_alive(process: int) -> bool:
+    """One that ended, and whose parent has not looked yet, is none."""
+    with suppress(psutil.NoSuchProcess):
+        return psutil.Process(process).status() != psutil.STATUS_ZOMBIE
+    return False

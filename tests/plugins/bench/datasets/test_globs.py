@@ -1,0 +1,69 @@
+"""Files matched by what stars match."""
+
+from pathlib import Path
+
+import pytest
+
+from tangible_bench.datasets import matched
+from tangible_core.errors import ConfigError, PictureError
+
+NEEDED = ("left", "right")
+
+
+def touch(folder: Path, *names: str) -> None:
+    for name in names:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).touch()
+
+
+@pytest.mark.parametrize(
+    ("files", "patterns", "names"),
+    [
+        (["a_left.png", "a_right.png", "b_left.png", "b_right.png"], ("*_left.png", "*_right.png"), ["a", "b"]),
+        (["l/1.png", "r/1.png", "l/x.txt"], ("l/*.png", "r/*.png"), ["1"]),
+        (["a/1/L.png", "a/1/R.png", "a/2/L.png", "a/2/R.png"], ("a/*/L.png", "a/*/R.png"), ["1", "2"]),
+        (["x/y/z/L1.png", "x/y/z/R1.png", "L2.png", "R2.png"], ("**/L*.png", "**/R*.png"), ["2", "x/y/z/1"]),
+        (["s1/L01.png", "s1/R01.png", "s1/L011.png"], ("s?/L[0-9]1.png", "s?/R[0-9]1.png"), ["1/0"]),
+        (["[x]/1.png", "[y]/1.png"], ("[[]x]/*.png", "[[]y]/*.png"), ["[/1"]),
+        (["a+b/1.png", "a+c/1.png"], ("a+b/*.png", "a+c/*.png"), ["1"]),
+    ],
+)
+def test_what_the_stars_match_belongs_together(files, patterns, names, tmp_path: Path):
+    touch(tmp_path, *files)
+    found = matched(tmp_path, dict(zip(NEEDED, patterns, strict=True)), NEEDED)
+    assert list(found) == names
+    for parts in found.values():
+        assert parts["left"] != parts["right"] and all(path.is_file() for path in parts.values())
+
+
+def test_a_part_that_is_not_needed_may_be_missing(tmp_path: Path):
+    touch(tmp_path, "L1.png", "R1.png", "D1.pfm", "L2.png", "R2.png")
+    found = matched(tmp_path, {"left": "L*.png", "right": "R*.png", "truth": "D*.pfm"}, NEEDED)
+    assert found["1"]["truth"] == tmp_path / "D1.pfm" and "truth" not in found["2"]
+
+
+def test_patterns_may_be_absolute(tmp_path: Path):
+    touch(tmp_path, "L1.png", "R1.png")
+    patterns = {"left": f"{tmp_path}/L*.png", "right": f"{tmp_path}/R*.png"}
+    assert list(matched(Path("elsewhere"), patterns, NEEDED)) == ["1"]
+
+
+@pytest.mark.parametrize(
+    ("patterns", "error", "why"),
+    [
+        ({"left": "L*.png", "right": "R.png"}, ConfigError, "right: 'R.png' has 0 stars and left: 'L*.png' has 1"),
+        ({"left": "L1.png", "right": "R1.png"}, ConfigError, "each pattern has as many, at least one"),
+        (
+            {"left": "Q*.png", "right": "R*.png"},
+            PictureError,
+            "no file in it matches left: 'Q*.png'; check the pattern",
+        ),
+        ({"left": "L*.png", "right": "R*.png"}, PictureError, "L2.png: no file matches right: 'R*.png' with the same"),
+        ({"left": "no/L*.png", "right": "R*.png"}, PictureError, "no: there is no such folder, in which"),
+    ],
+)
+def test_what_is_wrong_is_one_line(patterns, error, why, tmp_path: Path):
+    touch(tmp_path, "L1.png", "R1.png", "L2.png")
+    with pytest.raises(error) as said:
+        matched(tmp_path, patterns, NEEDED)
+    assert why in str(said.value) and "\n" not in str(said.value)

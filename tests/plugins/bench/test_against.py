@@ -1,0 +1,101 @@
+"""Two files of results: what is worse, what is noise, what cannot be compared."""
+
+from dataclasses import replace
+
+import pytest
+
+from tangible_bench.against import compare
+from tangible_bench.rows import Row
+from tangible_core.errors import ResultsError
+
+ROW = Row("k", "depth", "m", "m", {}, "d 1", "s", "digest", "none", (), 0, {}, {"processor": "p"})
+
+
+def rows(seconds: list[float], method: str = "m", bad2: float | None = 5.0, memory: int = 10**8, **more) -> list[Row]:
+    return [
+        replace(
+            ROW, method=method, repeat=repeat, seconds=each, peak_memory_bytes=memory, measures={"bad2": bad2}, **more
+        )
+        for repeat, each in enumerate(seconds)
+    ]
+
+
+def worse(before: list[Row], after: list[Row]) -> list[str]:
+    return [each.what for each in compare(before, after).worse]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "expected"),
+    [
+        ([1.0, 1.0, 1.0], [1.09, 1.09, 1.09], []),
+        ([1.0, 1.0, 1.0], [1.11, 1.11, 1.11], ["time s"]),
+        ([1.0, 1.0, 1.0], [0.1, 0.1, 0.1], []),
+        ([0.9, 1.0, 1.1], [1.3, 1.4, 1.5], []),
+        ([0.9, 1.0, 1.1], [1.6, 1.7, 1.8], ["time s"]),
+        ([1.0], [1.05], []),
+    ],
+    ids=["within a tenth", "over a tenth", "faster", "within the noise", "over the noise", "one repeat"],
+)
+def test_time(before: list[float], after: list[float], expected: list[str]):
+    assert worse(rows(before), rows(after)) == expected
+
+
+def test_the_rule_of_time_is_three_standard_deviations():
+    verdict = compare(rows([0.9, 1.0, 1.1]), rows([1.6, 1.7, 1.8]))
+    assert verdict.worse[0].allowed == pytest.approx(3 * 2**0.5 * 1.4826 * 0.1)
+    assert (verdict.worse[0].before, verdict.worse[0].after) == (1.0, 1.7)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "expected"),
+    [(5.0, 5.004, []), (5.0, 5.006, ["bad2 %"]), (5.0, 1.0, []), (5.0, None, ["bad2 %"]), (None, 5.0, [])],
+)
+def test_errors_are_exact(before: float | None, after: float | None, expected: list[str]):
+    assert worse(rows([1.0], bad2=before), rows([1.0], bad2=after)) == expected
+
+
+def test_a_measure_that_is_better_when_high():
+    high, low = ([replace(ROW, seconds=1.0, measures={"density": value})] for value in (90.0, 80.0))
+    assert worse(high, low) == ["density %"]
+    assert worse(low, high) == []
+
+
+def test_memory():
+    assert worse(rows([1.0], memory=10**8), rows([1.0], memory=104 * 10**6)) == []
+    assert worse(rows([1.0], memory=10**8), rows([1.0], memory=106 * 10**6)) == ["memory bytes"]
+    assert worse(rows([1.0], memory=0), rows([1.0], memory=10**6)) == []
+
+
+def test_a_method_that_fails_now():
+    (found,) = compare(rows([1.0]), [replace(ROW, error="gone")]).worse
+    assert (found.what, found.why) == ("fails", "gone")
+    assert worse([replace(ROW, error="gone")], rows([1.0])) == []
+    assert worse([replace(ROW, error="gone")], [replace(ROW, error="still")]) == []
+
+
+def test_with_a_common_baseline_times_are_ratios_and_machines_may_differ():
+    before = rows([1.0], baseline="base") + rows([2.0], "base", baseline="base")
+    other = {"baseline": "base", "machine": {"processor": "q"}}
+    assert worse(before, rows([10.0], **other) + rows([20.0], "base", **other)) == []
+    assert worse(before, rows([12.0], **other) + rows([20.0], "base", **other)) == ["time / baseline"]
+
+
+def test_what_is_in_one_file_only_is_said():
+    verdict = compare(rows([1.0]) + rows([1.0], "gone"), rows([1.0]) + rows([1.0], "new"))
+    assert verdict.compared == 1
+    assert verdict.missing == ("gone | s | none", "new | s | none")
+
+
+@pytest.mark.parametrize(
+    ("after", "why"),
+    [
+        ([], "a file without rows"),
+        (rows([1.0], compare="texture"), "compares depth, the other texture"),
+        (rows([1.0], machine={"processor": "q"}), "seconds on p and on q"),
+        (rows([1.0], "other"), "in common"),
+        (rows([1.0], scene_digest="other"), "in common"),
+    ],
+)
+def test_files_that_cannot_be_compared(after: list[Row], why: str):
+    with pytest.raises(ResultsError, match=why):
+        compare(rows([1.0]), after)

@@ -1,0 +1,204 @@
+"""Comparison files: what they may say, and what is said of a wrong one."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tangible_bench.config import Comparison, load_comparison, parse_comparison
+from tangible_core.errors import ConfigError
+from tangible_core.plugins.registry import Registry
+
+PATH = Path("here/c.yaml")
+GOOD = "compare: depth\nmethods: [constant]\nscenes: [synthetic/steps]\n"
+
+
+def parse(text: str, registry: Registry, *overrides: str) -> Comparison:
+    return parse_comparison(text, PATH, registry, overrides)
+
+
+def complaints(text: str, registry: Registry) -> list[str]:
+    with pytest.raises(ConfigError) as error:
+        parse(text, registry)
+    return str(error.value).splitlines()
+
+
+def test_the_least_that_a_file_must_say(registry: Registry):
+    found = parse(GOOD, registry)
+    assert [each.label for each in found.methods] == ["constant"]
+    assert list(found.scenes) == ["steps 480x360"]
+    assert [each.name for each in found.damages] == ["none"]
+    assert (found.protocol.repeats, found.protocol.warmups, found.baseline) == (5, 1, None)
+    assert found.out == Path("out/c")
+
+
+def test_everything_that_a_file_may_say(registry: Registry):
+    text = """\
+compare: depth
+methods:
+  - constant
+  - {use: constant, label: other, value_px: 2}
+scenes: [{synthetic: planes, width_px: 64, height_px: 48, seed: 3}, builtin/motorcycle]
+perturb: [none, {noise: [2, 5]}, {shift: -0.5, gain: 0.8}]
+repeats: 2
+warmups: 0
+calls: 1
+timeout_s: 10
+fill: [other]
+baseline: constant
+out: ../results
+"""
+    found = parse(text, registry)
+    assert [each.label for each in found.methods] == ["constant", "other"]
+    assert list(found.scenes) == ["planes 64x48 seed 3", "builtin/motorcycle"]
+    assert [each.name for each in found.damages] == ["none", "noise 2", "noise 5", "shift -0.5", "gain 0.8"]
+    assert found.finishes == {"fill": {"other"}}
+    assert found.baseline == "constant"
+    assert found.out == Path("results")
+
+
+def test_a_sweep_spans_a_grid(registry: Registry):
+    text = GOOD.replace("[constant]", "[{use: constant, label: c, sweep: {value_px: [1, 2], seconds: [0, 0.5]}}]")
+    found = parse(text, registry)
+    assert [each.label for each in found.methods] == [
+        "c value_px=1 seconds=0",
+        "c value_px=1 seconds=0.5",
+        "c value_px=2 seconds=0",
+        "c value_px=2 seconds=0.5",
+    ]
+    assert [each.chosen.method.model_dump() for each in found.methods][3] == {"value_px": 2.0, "seconds": 0.5}
+
+
+def test_every_complaint_at_once_each_with_its_place(registry: Registry):
+    text = """\
+compare: depth
+methods:
+  - constnt
+  - use: constant
+    valu_px: 3
+  - use: constant
+    sweep:
+      value_px: [1, wide]
+  - constant
+  - constant
+scenes:
+  - synthetic/stairs
+  - {synthetic: steps, width_px: 1}
+perturb:
+  - {noise: [2, -1]}
+  - {blurr: 1}
+repeats: 0
+filll: [constant]
+fill: [constat]
+baseline: constat
+"""
+    found = complaints(text, registry)
+    assert {line.split(": ")[0]: line for line in found}.keys() == {
+        f"here/c.yaml:{place}"
+        for place in ("3:5", "5:5", "8:7", "10:5", "12:5", "13:24", "15:6", "16:6", "17:1", "18:1", "19:8", "20:1")
+    }
+    text = "\n".join(found)
+    assert "did you mean 'constant'?" in text
+    assert "unknown option (did you mean 'value_px'?)" in text
+    assert "two methods are called 'constant'" in text
+    assert "did you mean 'blur'?" in text
+    assert "did you mean 'fill'?" in text
+    assert "noise: standard deviation in grey levels of 255, both views, above 0, not -1" in text
+    assert "no method here is called 'constat' (did you mean 'constant'?)" in text
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "what"),
+    [
+        ("", "1:1", "starts with `compare:`"),
+        ("methods: [constant]\n", "1:1", "`compare:` names what kind"),
+        ("compare: dept\n", "1:1", "did you mean 'depth'?"),
+        ("compare: export\n", "1:1", "exporters are not compared"),
+        ("compare: device\n", "1:1", "`tangible devices stress NAME`"),
+        ("compare: depth\nscenes: [synthetic/bars]\n", "1:1", "`methods:` is missing"),
+        ("compare: depth\nmethods: constant\nscenes: [synthetic/bars]\n", "2:1", "is a list"),
+        ("compare: depth\nmethods: []\nscenes: [synthetic/bars]\n", "2:1", "is a list"),
+        ("compare: depth\nmethods: [{use: constant, sweep: [1]}]\nscenes: [synthetic/bars]\n", "2:27", "`sweep:` maps"),
+        ("compare: depth\nmethods: [{use: constant, sweep: {seconds: 1}}]\nscenes: [synthetic/bars]\n", "2:27", "maps"),
+        (
+            "compare: depth\nmethods: [{use: constant, label: [1]}]\nscenes: [synthetic/bars]\n",
+            "2:27",
+            "a label is a word",
+        ),
+        (
+            "compare: depth\nmethods: [{use: ranged, given: [seed]}]\nscenes: [synthetic/bars]\n",
+            "2:25",
+            "'seed' to this",
+        ),
+        ("compare: depth\nmethods: [{use: ranged, given: 3}]\nscenes: [synthetic/bars]\n", "2:25", "max_disparity_px"),
+        ("compare: depth\nmethods: [{use: half, given: [value_px]}]\nscenes: [synthetic/bars]\n", "2:23", "nothing"),
+        (GOOD + "perturb: [loud]\n", "4:11", "write none, or such as"),
+        (GOOD + "perturb: [{noise: loud}]\n", "4:12", "not 'loud'"),
+        (GOOD + "out: [1]\n", "4:1", "a folder is wanted"),
+        (GOOD.replace("synthetic/steps", "motorcycle"), "3:10", "no scene is named 'motorcycle'"),
+        (GOOD.replace("synthetic/steps", "{folder: nowhere}"), "3:10", "neither it nor a folder in it holds left.png"),
+        (GOOD.replace("synthetic/steps", "synthetic/steps, synthetic/steps"), "3:27", "two scenes are called"),
+        (
+            GOOD.replace("synthetic/steps", "{builtin: a, folder: b}"),
+            "3:10",
+            "one of builtin, synthetic, folder, set",
+        ),
+    ],
+)
+def test_one_mistake_one_line(registry: Registry, text: str, place: str, what: str):
+    found = complaints(text, registry)
+    assert found[0].startswith(f"here/c.yaml:{place}: "), found
+    assert what in found[0]
+
+
+def test_an_override(registry: Registry):
+    assert parse(GOOD, registry, "repeats=2").protocol.repeats == 2
+    assert list(parse(GOOD, registry, "scenes=[synthetic/bars]").scenes) == ["bars 480x360"]
+    with pytest.raises(ConfigError, match=r"methods is a list; set it as a whole: methods=\[...\]"):
+        parse(GOOD, registry, "methods.0.value_px=3")
+
+
+@pytest.mark.parametrize("kind", ["npz", "npy", "pfm", "png"])
+def test_a_folder_of_pairs(registry: Registry, tmp_path: Path, kind: str):
+    truth = np.full((20, 30), 3, np.float32)
+    truth[0, :5] = 0 if kind == "png" else np.nan
+    for name in ("b", "a"):
+        write_pair(tmp_path / "pairs" / name, truth, kind)
+    (tmp_path / "pairs" / "empty").mkdir()
+    (tmp_path / "c.yaml").write_text(GOOD.replace("synthetic/steps", "{folder: pairs}, {folder: pairs/a/../b}"))
+    with pytest.raises(ConfigError, match="two scenes are called 'b'"):
+        load_comparison(tmp_path / "c.yaml", registry)
+    (tmp_path / "c.yaml").write_text(GOOD.replace("synthetic/steps", "{folder: pairs}"))
+    found = load_comparison(tmp_path / "c.yaml", registry)
+    assert list(found.scenes) == ["a", "b"]
+    pair = found.scenes["a"].open()
+    expected = truth.copy()
+    expected[0, :5] = np.nan
+    np.testing.assert_array_equal(pair.truth_px, expected)
+    np.testing.assert_array_equal(pair.visible[1:], np.arange(30) >= 3 + np.zeros((19, 1)))
+
+
+def test_a_folder_without_truth(registry: Registry, tmp_path: Path):
+    write_pair(tmp_path / "a", np.ones((8, 9), np.float32), "npy")
+    (tmp_path / "a" / "disparity.npy").unlink()
+    (tmp_path / "c.yaml").write_text(GOOD.replace("synthetic/steps", "{folder: a}"))
+    from tangible_bench.plan import measurements
+
+    with pytest.raises(ConfigError, match=r"a: has no true disparity; put disparity\.npz"):
+        measurements(load_comparison(tmp_path / "c.yaml", registry))
+
+
+def write_pair(folder: Path, truth: np.ndarray, kind: str) -> None:
+    folder.mkdir(parents=True)
+    for name in ("left.png", "right.png"):
+        Image.fromarray(np.zeros(truth.shape, np.uint8)).save(folder / name)
+    path = folder / f"disparity.{kind}"
+    if kind == "npz":
+        np.savez(path, disparity_px=truth)
+    elif kind == "npy":
+        np.save(path, truth)
+    elif kind == "pfm":
+        path.write_bytes(b"Pf\n%d %d\n-1\n" % truth.shape[::-1] + truth[::-1].tobytes())
+    else:
+        Image.fromarray(truth.astype(np.uint8)).save(path)

@@ -1,0 +1,75 @@
+"""Errors without times, from workers that stay warm: the same to the last digit as those of a timed comparison."""
+
+from pathlib import Path
+
+import pytest
+
+import dask_imported  # noqa: F401
+from command_line import tangible
+from tangible_bench.comparing import ComparisonOutcome, Step, compare
+from tangible_bench.config import parse_comparison
+from tangible_bench.errors_only import errors_only
+from tangible_bench.rows import read_rows
+from tangible_core.plugins.registry import Registry
+
+FILE = """
+compare: depth
+methods: [half, raises, fails, dies, {use: semi-global, given: [max_disparity_px]}]
+scenes: [{synthetic: steps, width_px: 48, height_px: 32}]
+perturb: [{noise: 5}]
+fill: [half]
+repeats: 1
+warmups: 0
+calls: 1
+baseline: half
+"""
+
+
+def compared(registry: Registry, folder: Path, without_times: bool, **how) -> ComparisonOutcome:
+    comparison = parse_comparison(f"{FILE}out: {folder}/out\n", Path("c.yaml"), registry)
+    return compare(errors_only(comparison) if without_times else comparison, **how)
+
+
+@pytest.mark.slow
+def test_errors_are_those_of_timed_measurements_and_times_are_empty(registry: Registry, tmp_path: Path):
+    timed = compared(registry, tmp_path, False)
+    heard: list[Step] = []
+    found = compared(registry, tmp_path, True, workers=1, progress=heard.append)
+    assert found.results.cells.keys() == timed.results.cells.keys()
+    assert len(heard) == 5
+    for key, cell in found.results.cells.items():
+        before = timed.results.cells[key]
+        assert not cell.seconds
+        assert not cell.memory_bytes
+        assert repr(cell.measures) == repr(before.measures)
+        if "dies" in key:
+            assert before.error
+            assert "its worker died of it" in (cell.error or "")
+        else:
+            assert (cell.error or "").partition("; ")[0] == (before.error or "").partition("; ")[0]
+    assert found.results.failed == timed.results.failed == ["raises", "fails", "dies"]
+    rows = read_rows(tmp_path / "out-errors/results.jsonl")
+    assert not rows.keys() & read_rows(tmp_path / "out/results.jsonl").keys()
+    assert {row.seconds for row in rows.values()} == {None}
+
+    compared(registry, tmp_path, True, progress=lambda step: pytest.fail("nothing is left to measure"))
+
+
+@pytest.mark.slow
+def test_the_command_says_that_there_are_no_times(registry: Registry, tmp_path: Path):
+    words = f"methods: [ssd]\nscenes: [synthetic/steps]\nout: {tmp_path}/out\n"
+    (tmp_path / "c.yaml").write_text(f"compare: depth\n{words}")
+    done = tangible("compare", "c.yaml", "--errors-only", "--workers", 1, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    said = " ".join(done.stdout.split())
+    assert "ssd is the most exact" in said
+    assert "times were not measured" in said
+    assert "errors alone were measured: times and memory are left empty" in said
+    assert not (tmp_path / "out").exists()
+
+
+def test_workers_are_for_errors_alone(tmp_path: Path):
+    (tmp_path / "c.yaml").write_text("compare: depth\nmethods: [luminance]\nscenes: [synthetic/steps]\n")
+    done = tangible("compare", "c.yaml", "--workers", 2, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "--workers: goes with --errors-only" in done.stderr

@@ -1,0 +1,93 @@
+"""The plot: drawn, legible, and without overlaps."""
+
+from dataclasses import replace
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from PIL import Image
+
+from tangible_bench.labels import place_labels
+from tangible_bench.plot import draw_plot
+from tangible_bench.summary import Cell
+from tangible_bench.table import Results
+from tangible_bench.task import load_task
+from tangible_core.data import DisparityMap
+from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
+
+
+def results(points: dict[str, tuple[float, float]]) -> Results:
+    found = [
+        Cell(name, "s", "none", seconds=[seconds], measures={"bad2": bad2, "bad2_noc": bad2 / 2})
+        for name, (seconds, bad2) in points.items()
+    ]
+    return Results(load_task("depth"), {cell.key: cell for cell in found}, None)
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        {"one": (0.1, 5.0)},
+        {"same": (0.1, 5.0), "place": (0.1, 5.0)},
+        {f"method {index}": (0.01 * 2**index, 20.0 - index) for index in range(15)},
+        {"perfect": (1e-6, 0.0), "endless": (1e4, 100.0), "unknown": (1.0, float("nan"))},
+    ],
+    ids=["one", "the same", "many", "extremes"],
+)
+def test_a_plot_is_drawn(tmp_path: Path, points: dict[str, tuple[float, float]]):
+    assert draw_plot(tmp_path / "plot.png", results(points))
+    with Image.open(tmp_path / "plot.png") as image:
+        assert image.size == (1920, 720)
+
+
+def test_a_curve_has_a_panel_of_its_own(tmp_path: Path):
+    curve = load_task("depth").curve
+    assert curve is not None
+    known = {**dict.fromkeys(curve.points.values(), 5.0), **dict.fromkeys(curve.ideal.values(), 1.0)}
+    found = results({"with": (0.1, 5.0), "without": (0.2, 4.0)})
+    cell = next(each for each in found.cells.values() if each.method == "with")
+    found.cells[cell.key] = replace(cell, measures={**cell.measures, **known})
+    assert draw_plot(tmp_path / "plot.png", found)
+    with Image.open(tmp_path / "plot.png") as image:
+        assert image.size == (2880, 720)
+
+
+def test_every_point_of_a_curve_is_measured():
+    task = load_task("depth")
+    assert task.curve is not None
+    pair = synthetic_pair("planes", 64, 48)
+    found = DisparityMap(pair.truth_px + 3 * (np.arange(64) > 40).astype(np.float32))
+    figures = task.measure(found, pair)
+    names = {*task.curve.points.values(), *task.curve.ideal.values()}
+    assert {name for name, value in figures.items() if np.isfinite(value)} >= names
+    assert not names & task.measures.keys()
+
+
+def test_nothing_to_draw_draws_nothing(tmp_path: Path):
+    failed = Cell("m", "s", "none", error="no")
+    assert not draw_plot(tmp_path / "plot.png", Results(load_task("depth"), {failed.key: failed}, None))
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_names_cover_neither_each_other_nor_points(seed: int):
+    points = np.random.default_rng(seed).normal(0.5, 0.2, (9, 2)).clip(0, 1)
+    figure = Figure(figsize=(6.4, 4.8), dpi=100)
+    canvas = FigureCanvasAgg(figure)
+    axes = figure.subplots()
+    axes.set(xlim=(-0.2, 1.2), ylim=(-0.2, 1.2))
+    canvas.draw()
+    place_labels(axes, [(f"method {index}", x, y) for index, (x, y) in enumerate(points)])
+    canvas.draw()
+    boxes = [Text.get_window_extent(text) for text in axes.texts]  # without the line to the point
+    assert len(boxes) == 9
+    for one, other in combinations(boxes, 2):
+        assert not (one.padded(-1).overlaps(other.padded(-1)))
+    for box in boxes:
+        assert axes.bbox.padded(1).containsx(box.x0) and axes.bbox.padded(1).containsx(box.x1)
+        inside = [box.padded(-1).contains(*axes.transData.transform(point)) for point in points]
+        assert not np.any(inside)

@@ -1,0 +1,269 @@
+"""Force laws as a kind to compare: scenes by name, measures with exact answers, and a comparison from end to end."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tangible_bench.config import Comparison, parse_comparison
+from tangible_bench.plan import measurements
+from tangible_bench.plot import draw_plot
+from tangible_bench.render import PERTURBATIONS, TASK, feel, limits, measure, prepare
+from tangible_bench.render_scenes import RenderScene
+from tangible_bench.run import look, run
+from tangible_bench.summary import cells
+from tangible_bench.table import Results, tables
+from tangible_core.errors import ConfigError, OutputError
+from tangible_core.metrics import HANDLE
+from tangible_core.plugins.registry import Registry, load_method
+from tangible_core.servo.guard.safety import stiffness_limit_n_per_m
+from tangible_core.session import Recording
+from tangible_core.testing.synthetic.scenes import ramp
+from tangible_core.testing.synthetic.strokes import SURFACES, KnownStroke, analytic_stroke
+
+CELLS = 64
+RISE = math.hypot(0.2, 0.1)
+"""Slope of the ramp."""
+
+
+@pytest.fixture(scope="module")
+def strokes() -> dict[str, KnownStroke]:
+    return {name: analytic_stroke(name, CELLS) for name in SURFACES}
+
+
+def measured(name: str, stroke: KnownStroke, **options) -> dict[str, float]:
+    method = load_method("render", name)(**options)
+    return measure(feel(prepare(method, stroke), stroke), stroke)
+
+
+def parse(text: str, registry: Registry) -> Comparison:
+    return parse_comparison(text, Path("c.yaml"), registry)
+
+
+@pytest.mark.slow
+def test_a_vertical_spring_on_a_slope(strokes):
+    """Off by tan(t), 1 / cos(t) too strong, and t aside; in at one height and out at another, k d dh given away."""
+    found = measured("penalty", strokes["ramp"])
+    assert found["error_percent"] == pytest.approx(100 * RISE, rel=1e-3)
+    assert found["direction_deg"] == pytest.approx(math.degrees(math.atan(RISE)), rel=1e-3)
+    assert found["jnd"] == pytest.approx(math.degrees(math.atan(RISE)) / 18, rel=1e-3)
+    assert found["loop_work_j"] > 1e-3
+
+
+@pytest.mark.slow
+def test_the_work_of_one_loop_of_a_vertical_spring():
+    """1 mm deep along a ramp of 0.2, 40 mm up: 800 N/m x 1 mm x 8 mm = 6.4 mJ; back down it is taken again."""
+    known = ramp((0.2, 0.0), shape=(CELLS, CELLS))
+    across = np.linspace(-0.02, 0.02, 4001)
+    along = np.array([known.at(x, 0.0, 0.001) for x in across])
+    down, up = (np.linspace(*ends, 4001) for ends in (((-0.02, 0, 0.03), along[0]), (along[-1], (0.02, 0, 0.03))))
+    way = np.vstack([down, along[1:-1], up])
+    for path, work_j in ((way, 6.4e-3), (way[::-1], -6.4e-3)):
+        stroke = KnownStroke(known.surface, path, np.full_like(path, np.nan))
+        assert measured("penalty", stroke)["loop_work_j"] == pytest.approx(work_j, rel=2e-3)
+        assert measured("penalty-gradient", stroke)["loop_work_j"] == pytest.approx(0, abs=1e-5)
+        assert math.isnan(measured("penalty", stroke)["error_n"])
+
+
+@pytest.mark.parametrize("name", ["plane", "ramp", "sphere", "sine", "cone", "ridge"])
+@pytest.mark.slow
+def test_a_law_with_a_potential_gives_nothing_away(strokes, name: str):
+    assert measured("penalty-gradient", strokes[name])["loop_work_j"] == pytest.approx(0, abs=5e-5)
+
+
+@pytest.mark.parametrize(("name", "percent"), [("plane", 1e-3), ("ramp", 1e-3), ("sphere", 1e-2), ("sine", 0.1)])
+@pytest.mark.slow
+def test_the_proxy_is_the_spring_to_the_nearest_point(strokes, name: str, percent: float):
+    found = measured("proxy", strokes[name])
+    assert found["error_percent"] < percent
+    assert found["jnd"] < 0.01
+    assert found["noticed_percent"] < 0.5
+    assert found["lag_mm"] < 1e-3
+    assert found["loop_work_j"] < 1e-5
+
+
+@pytest.mark.slow
+def test_a_gradient_spring_is_too_stiff_on_a_slope(strokes):
+    """By sqrt(1 + s^2) along the gradient's force and by as much again along the normal."""
+    found = measured("penalty-gradient", strokes["ramp"])
+    assert found["error_percent"] == pytest.approx(100 * RISE**2, rel=1e-3)
+    assert found["direction_deg"] == pytest.approx(0, abs=0.01)
+    assert found["jnd"] == pytest.approx(RISE**2 / 0.07, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_the_step_of_the_grey_level(strokes):
+    """All of its force at once where the surface is met; a spring of 800 N/m at 20 mm/s steps by 0.016 N."""
+    assert measured("grey-level", strokes["plane"], force_at_white_n=2.0)["step_n"] == pytest.approx(2)
+    fastest = np.linalg.norm(np.diff(strokes["plane"].position_m, axis=0), axis=1).max()
+    assert measured("penalty", strokes["plane"])["step_n"] <= 800 * fastest
+
+
+@pytest.mark.slow
+def test_friction_lags(strokes):
+    """Sliding over a plane a depth d under it, the proxy is mu d behind."""
+    circle = np.linspace(0, 2 * np.pi, 8001)
+    way = np.column_stack([0.02 * np.cos(circle), 0.02 * np.sin(circle), np.full(8001, 0.009)])
+    stroke = analytic_stroke("plane", CELLS, path_m=way)
+    found = measured("proxy", stroke, static_friction=0.3, dynamic_friction=0.3)
+    assert found["lag_mm"] == pytest.approx(0.3, rel=0.02)
+    assert found["direction_deg"] == pytest.approx(math.degrees(math.atan(0.3)), rel=0.02)
+    assert found["error_percent"] == pytest.approx(30, rel=0.02)
+    assert math.isnan(found["loop_work_j"])
+
+
+@pytest.mark.parametrize("name", ["penalty", "penalty-gradient", "force-shading", "proxy"])
+def test_stiffness_limits_of_springs(strokes, name: str):
+    method = load_method("render", name)()
+    found = limits(method, strokes["plane"].surface)
+    for delay in (0, 1, 2):
+        bound = stiffness_limit_n_per_m(HANDLE.damping_n_s_per_m, HANDLE.period_s, delay)
+        assert found[f"limit{delay}"] == pytest.approx(bound, rel=0.05)
+
+
+@pytest.mark.parametrize(("name", "scene"), [("grey-level", "plane"), ("lateral-shape", "plane"), ("penalty", "ramp")])
+def test_no_stiffness_limit(strokes, name: str, scene: str):
+    found = limits(load_method("render", name)(), strokes[scene].surface)
+    assert list(found) == ["limit0", "limit1", "limit2"]
+    assert all(map(math.isnan, found.values()))
+
+
+def test_the_true_spring_is_as_stiff_as_the_law(strokes):
+    assert measured("proxy", strokes["sphere"], stiffness_n_per_m=200.0)["error_percent"] < 1e-2
+
+
+def test_every_measure_is_there(strokes):
+    assert set(measured("lateral-gradient", strokes["step"])) == set(TASK.measures)
+
+
+def test_speed_is_the_same_way_in_fewer_ticks(strokes):
+    fast = PERTURBATIONS["speed"].apply(strokes["sine"], 9.0)
+    assert len(fast.position_m) == 889
+    np.testing.assert_array_equal(fast.position_m[5], strokes["sine"].position_m[45])
+    np.testing.assert_array_equal(fast.nearest_m[5], strokes["sine"].nearest_m[45])
+    assert fast.period_s == strokes["sine"].period_s
+
+
+@pytest.mark.parametrize("bits", [1, 8, 16])
+def test_heights_of_so_many_bits(strokes, bits: int):
+    changed = PERTURBATIONS["bits"].apply(strokes["sine"], float(bits))
+    heights, before = changed.surface.height_m, strokes["sine"].surface.height_m
+    assert np.unique(heights).size <= 2**bits
+    assert np.abs(heights - before).max() <= before.max() / (2**bits - 1) / 2 * 1.001
+    assert heights.max() == pytest.approx(before.max())
+    np.testing.assert_array_equal(changed.nearest_m, strokes["sine"].nearest_m)
+
+
+def test_ground_at_height_0_has_nothing_to_round():
+    flat = KnownStroke(ramp((0.0, 0.0), 0.0).surface, np.zeros((2, 3)), np.zeros((2, 3)))
+    assert not PERTURBATIONS["bits"].apply(flat, 8.0).surface.height_m.any()
+
+
+@pytest.mark.parametrize(("kind", "value"), [("speed", 1.0), ("speed", 2.5), ("bits", 0.0), ("bits", 17.0)])
+def test_what_is_no_perturbation(kind: str, value: float):
+    assert not PERTURBATIONS[kind].allowed(value)
+
+
+def test_scenes_by_name(registry: Registry, tmp_path: Path):
+    picture = tmp_path / "map.png"
+    Image.fromarray(np.arange(64 * 48, dtype=np.uint8).reshape(48, 64)).save(picture)
+    scenes = parse(
+        "compare: render\nmethods: [proxy]\nscenes: [analytic/sphere, {analytic: step, cells: 64, depth_m: 0.0005}, "
+        f"builtin/coins, {{height: {picture}, relief_m: 0.005}}]\n",
+        registry,
+    ).scenes
+    assert list(scenes) == [
+        "sphere 256x256, 1 mm deep",
+        "step 64x64, 0.5 mm deep",
+        "builtin/coins 80 mm wide, 10 mm high, 1 mm deep",
+        "map.png 80 mm wide, 5 mm high, 1 mm deep",
+    ]
+    relief = scenes["map.png 80 mm wide, 5 mm high, 1 mm deep"].open().surface.relief
+    assert (relief.height_m.max(), relief.extent_m) == (np.float32(0.005), (0.08, 0.06))
+
+
+def test_the_truth_of_a_builtin_pair_is_its_relief():
+    """Near things stand out: the motorcycle before the wall."""
+    heights = RenderScene(builtin="motorcycle").open().surface.height_m
+    assert heights.shape == (500, 741)
+    assert heights[250, 370] > heights[30, 30]
+
+
+@pytest.mark.parametrize(
+    ("scene", "what"),
+    [
+        ("sphere", "no scene is named 'sphere'; write analytic/sphere"),
+        ("analytic/cube", "Input should be 'plane', 'ramp'"),
+        ("{analytic: cone, builtin: coins}", "one of analytic, builtin and height; this one is analytic and builtin"),
+        ("{analytic: cone, relief_m: 0.02}", "relief_m has no effect here; leave it out"),
+        ("{builtin: coins, cells: 64}", "cells has no effect here; leave it out"),
+    ],
+)
+def test_what_is_no_scene(registry: Registry, scene: str, what: str):
+    with pytest.raises(ConfigError, match=what):
+        parse(f"compare: render\nmethods: [proxy]\nscenes: [{scene}]\n", registry)
+
+
+def recording(count: int = 50) -> Recording:
+    way = np.column_stack([np.linspace(-0.01, 0.01, count), np.zeros(count), np.full(count, 0.009)])
+    rest = np.zeros((count, 3))
+    return Recording.of(time_s=np.arange(count) * 0.002, position_m=way, velocity_m_per_s=rest, force_n=rest)
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+@pytest.mark.slow
+def test_a_way_that_was_recorded(tmp_path: Path, registry: Registry, suffix: str):
+    recording().save(tmp_path / f"hand{suffix}")
+    text = f"compare: render\nmethods: [proxy]\nscenes: [{{analytic: plane, recording: hand{suffix}}}]\n"
+    ((name, scene),) = parse_comparison(text, tmp_path / "c.yaml", registry).scenes.items()
+    assert name == f"plane 256x256, hand{suffix}"
+    stroke = scene.open()
+    np.testing.assert_array_equal(stroke.position_m, recording().position_m)
+    assert stroke.period_s == pytest.approx(0.002)
+    assert measured("penalty", stroke)["error_percent"] == pytest.approx(0, abs=1e-3)
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_a_recording_that_is_no_way(tmp_path: Path, count: int):
+    recording(count).save(tmp_path / "hand.npz")
+    with pytest.raises(OutputError, match="two finite positions or more"):
+        RenderScene(analytic="plane", recording=tmp_path / "hand.npz").open()
+
+
+@pytest.fixture(scope="module")
+def compared(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    text = """\
+compare: render
+methods: [penalty, grey-level]
+scenes: [{analytic: ramp, cells: 64}, builtin/coins]
+perturb: [{speed: 9}]
+repeats: 1
+warmups: 0
+calls: 1
+"""
+    wanted = measurements(parse(text, Registry()))
+    path = tmp_path_factory.mktemp("compared") / "r.jsonl"
+    rows = run(look(wanted, path), path, 120, lambda *_: None, lambda *_: None).values()
+    assert {row.error for row in rows} == {None}
+    return Results(TASK, cells(rows, None), None)
+
+
+@pytest.mark.slow
+def test_a_comparison_from_end_to_end(compared: Results):
+    """On the coins nobody knows the truth, so that the error is that of the ramp alone."""
+    (means,) = tables(compared)
+    assert means.headings[:6] == ("method", "*", "ns a tick", "peak MB", "error %", "error N")
+    assert [row[0] for row in means.rows] == ["penalty", "grey-level"]
+    assert float(means.rows[0][4]) == pytest.approx(100 * RISE, abs=0.01)
+    assert 0 < float(means.rows[0][2]) < 100_000
+
+
+def test_plots_of_what_is_known(compared: Results, tmp_path: Path):
+    """Without a truth there is only the panel of steps."""
+    assert draw_plot(tmp_path / "all.png", compared)
+    coins = {key: cell for key, cell in compared.cells.items() if "coins" in cell.scene}
+    assert draw_plot(tmp_path / "coins.png", Results(TASK, coins, None))
+    with Image.open(tmp_path / "all.png") as everything, Image.open(tmp_path / "coins.png") as steps:
+        assert everything.width == 3 * steps.width

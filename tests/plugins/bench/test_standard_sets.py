@@ -1,0 +1,86 @@
+"""`scene: {set: ..., folder: ..., name: ...}`: a pair of a standard set in a pipeline file."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from standard_sets import LAYOUTS, known
+from tangible_core.errors import ConfigError
+from tangible_core.pipeline.config.config import PipelineConfig, parse_config
+from tangible_core.pipeline.config.editing import moved
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.plugins.registry import default_registry
+from tangible_core.scene.scene_files import SceneFiles
+
+
+def parsed(folder: Path, scene: str, *sets: str, rest: str = "") -> PipelineConfig:
+    return parse_config(f"scene: {scene}\n{rest}", folder / "p.yaml", default_registry(), sets)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    LAYOUTS["kitti-2015"].make(tmp_path / "kitti-2015", known())
+    LAYOUTS["sintel"].make(tmp_path / "films", known())
+    return tmp_path
+
+
+def test_a_pair_stands_for_left_right_truth_and_cameras(folder: Path):
+    """Beside the file, in a folder of the set's name."""
+    scene = parsed(folder, "{set: kitti-2015, name: 000000_10}").scene
+    assert isinstance(scene, SceneFiles)
+    assert scene.left == folder / "kitti-2015/training/image_2/000000_10.png"
+    assert (scene.truth_scale, scene.focal_px, scene.order) == (256, 700, "as-named")
+    assert scene.baseline_m == pytest.approx(0.545)
+
+
+def test_what_a_run_writes_down_is_the_same_scene(folder: Path):
+    first = parsed(folder, "{set: sintel, folder: films, name: alley_1/frame_0001, crop: [8, 4, 40, 30]}")
+    again = parse_config(first.as_yaml(), folder / "again.yaml", default_registry())
+    assert again.scene == first.scene and again.scene.crop == (8, 4, 40, 30)
+
+
+def test_the_errors_of_a_run_are_those_of_the_truth(folder: Path):
+    config = parsed(
+        folder, "{set: sintel, folder: films, name: alley_1/frame_0001}", rest="depth: {use: semi-global}\n"
+    )
+    pipeline = Pipeline.of(config, default_registry(), None)
+    truth = known().pair.truth_px
+    assert np.nanmax(np.abs(pipeline.scene.truth - truth)) < 1e-4
+    found = pipeline.make("disparity").disparity_px
+    assert np.nanmedian(np.abs(found - truth)) < 0.5
+
+
+def test_the_command_line_sets_it(folder: Path):
+    config = parsed(
+        folder, "builtin/brick", "scene={set: sintel, folder: films, name: alley_1/frame_0001}", "scene.variant=clean"
+    )
+    assert isinstance(config.scene, SceneFiles) and "clean_left" in str(config.scene.left)
+
+
+@pytest.mark.parametrize("said", ["set: sintel, folder: films", "set: kitti-2015"])
+def test_a_file_that_is_saved_elsewhere_leads_to_the_same_pair(said: str, folder: Path):
+    name = "alley_1/frame_0001" if "sintel" in said else "000000_10"
+    text, here, there = f"scene: {{{said}, name: {name}}}\n", folder / "p.yaml", folder / "other" / "q.yaml"
+    config = parse_config(text, here, default_registry())
+    there.parent.mkdir()
+    again = moved(text, here, config, there)
+    assert parse_config(again, there, default_registry()).scene.left.resolve() == config.scene.left.resolve()
+
+
+@pytest.mark.parametrize(
+    ("scene", "place", "why"),
+    [
+        ("{set: kitti, name: x}", "p.yaml:1:9", "(did you mean"),
+        ("{set: kitti-2015}", "p.yaml:1:1", "scene.name: Field required"),
+        ("{set: kitti-2015, name: 000000_11}", "p.yaml:1:1", "no pair in it is named '11'; there are: 000000_10"),
+        ("{set: eth3d, name: x}", "p.yaml:1:1", "eth3d: there is no such folder; fetch two_view_training.7z"),
+        ("{set: eth3d, folder: kitti-2015, name: x}", "p.yaml:1:1", "holds no pair of ETH3D two-view; fetch"),
+        ("{set: kitti-2015, name: x, left: a.png}", "p.yaml:1:35", "scene.left: unknown option; known: set, folder"),
+        ("{set: kitti-2015, name: 000000_10, resolution: Q}", "p.yaml:1:1", "it is left out, for it has one size"),
+    ],
+)
+def test_mistakes_are_said_with_their_place(scene: str, place: str, why: str, folder: Path):
+    with pytest.raises(ConfigError) as error:
+        parsed(folder, scene)
+    assert place in str(error.value) and why in str(error.value) and "\n" not in str(error.value)

@@ -1,0 +1,229 @@
+"""Text in braille: by liblouis and by our own tables, which agree; and what neither can write."""
+
+import ctypes
+import os
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from itertools import product
+from threading import Barrier
+from typing import Any
+
+import pytest
+
+from tangible_core.errors import BrailleError
+from tangible_core.plugins.notes import collected
+from tangible_export.braille import as_ascii, as_unicode, translate, translation, written_by
+from tangible_export.braille.latin import CODES, LETTERS, translated
+from tangible_export.braille.louis import NAMES, TABLES, Louis, louis
+
+ORDINARY = {
+    "en": (
+        "Astronaut", "The space shuttle (1990), 160 by 90 mm.", "part 3", "Is it high? Yes!", "5 % of A4; 2.5 mm",
+        "3a 12k 4J", "NASA", "HMS Victory", "MacDonald", "ABCdef", "THE BIG RED CAR", "the THE BIG RED CAR is",
+        "1 000 000", "it's", '"Hi", he said', "Café, Łódź, ærø, Málaga, Besançon, São, Åbo, Straße, naïve",
+        "a/b + c = d & e", "well-known: yes", "At 45°",
+    ),
+    "de": (
+        "Überfluß, Äpfel, Öl", "Teil 3", "Der Raumanzug (1990), 160 mal 90 mm.", "5 % von A4; 2,5 mm",
+        "Ist es hoch? Ja!", "3a 12k 4J 5B", "NASA-Foto", "z. B. um 5:", '"Hallo", sagte er', "„Hallo“", "»5«",
+        "Café, Besançon, Ærø, Łódź", "a/b + c = d", "(5)", "45°",
+    ),
+    "fr": (
+        "Nature morte aux pommes", "partie 3", "Le casque (1990), 160 sur 90 mm.", "5 % de A4 ; 2,5 mm : oui",
+        "Où ? Là !", "3e 12 B", "« L\u2019été à Besançon »", "Œuvre, cœur, Noël, île, août, maïs, Curaçao, ex æquo",
+        "NASA", "ABCdef", "(15 %)", "12-15, 3/4", '"oui"', "peut-être", "Düsseldorf & Köln", "45°",
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def installed() -> Louis:
+    """Liblouis, which is there on the machine of CI."""
+    found = louis()
+    if isinstance(found, str):
+        pytest.fail(found) if os.environ.get("CI") else pytest.skip(found)
+    return found
+
+
+@pytest.fixture
+def without(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[object], None]]:
+    """Has something else in place of liblouis, or an error where it is looked for."""
+
+    def replaced(library: object) -> None:
+        def loaded(name: str) -> object:
+            if isinstance(library, Exception):
+                raise library
+            return library
+
+        louis.cache_clear()
+        monkeypatch.setattr(ctypes, "CDLL", loaded)
+
+    yield replaced
+    louis.cache_clear()
+
+
+@pytest.mark.parametrize(("language", "text"), [(each, text) for each in ORDINARY for text in ORDINARY[each]])
+def test_liblouis_and_our_tables_agree(installed: Louis, language: str, text: str):
+    plain = translation._plain(text, language)
+    assert as_unicode(translate(text, language)) == as_unicode(translated(plain, language))
+
+
+@pytest.mark.parametrize("language", CODES)
+def test_they_agree_on_every_letter_and_digit(installed: Louis, language: str):
+    """Small and capital, within words; accents of all languages where theirs stand before the letter."""
+    letters = [*LETTERS, *filter(str.isalpha, CODES[language].signs), *("éèêñčōŭïåç" if CODES[language].marks else "")]
+    for word in (word for each in letters for word in (f"a{each}a", f"{each.upper()}a", f"m{each}")):
+        if language == "en" and word[0] in "ÆŒ":  # liblouis repeats the sign of capitals within the ligature
+            continue
+        assert as_unicode(translate(word, language)) == as_unicode(translated(word, language)), word
+    for number in range(1100):
+        assert translate(str(number), language) == translated(str(number), language), number
+
+
+@pytest.mark.parametrize(("language", "text", "braille"), [
+    ("en", "Part 3", "⠠⠏⠁⠗⠞⠀⠼⠉"),
+    ("en", "NASA 3b", "⠠⠠⠝⠁⠎⠁⠀⠼⠉⠰⠃"),
+    ("de", "Süß 20,5", "⠎⠳⠮⠀⠼⠃⠚⠂⠑"),
+    ("de", "3b", "⠼⠉⠠⠃"),
+    ("fr", "Été 1990", "⠨⠿⠞⠿⠀⠠⠡⠪⠪⠼"),
+    ("fr", "Où ?", "⠨⠕⠾⠢"),
+    ("pt", "a", "⠁"),
+])  # fmt: skip
+def test_what_books_of_the_codes_say(without: Callable[[object], None], language: str, text: str, braille: str):
+    """With and without liblouis: digits of French are Antoine's, German marks no capitals."""
+    assert as_unicode(translate(text, language)) == braille
+    without(OSError("not found"))
+    assert as_unicode(translate(text, language)) == braille
+
+
+def test_who_wrote_it_is_known(installed: Louis, without: Callable[[object], None]):
+    assert written_by("de-AT") == f"liblouis {installed.version}, de-g0.utb"
+    assert written_by("pt") == f"liblouis {installed.version}, en-ueb-g1.ctb, for want of one for 'pt'"
+    without(OSError("not found"))
+    assert written_by("de-AT") == "our own table of the German Basisschrift (liblouis is not installed)"
+
+
+def odd(size: int = 4, cells: tuple[int, ...] = (1, 3, 9), works: int = 10**9) -> object:
+    """A library with liblouis's names that writes these cells whatever it is given, so many times."""
+
+    class Library:
+        def __init__(self) -> None:
+            def version() -> bytes:
+                return b"0.0"
+
+            self.lou_version, self.left = version, works
+
+        def lou_setLogLevel(self, level: int) -> None: ...
+
+        def lou_charSize(self) -> int:
+            return size
+
+        def lou_translateString(self, table, source, read, target, written, form, spacing, mode) -> int:
+            self.left -= 1
+            target[: len(cells)] = cells
+            written._obj.value = len(cells)
+            return self.left >= 0
+
+    return Library()
+
+
+@pytest.mark.parametrize(
+    ("library", "why"),
+    [
+        (ctypes.CDLL(None), "lou_version"),
+        (odd(size=3), "its characters have 3 bytes"),
+        (odd(cells=(7, 7)), "it writes abc as (7, 7)"),
+        (odd(works=0), "cannot use its table en-ueb-g1.ctb"),
+    ],
+)
+def test_a_broken_liblouis_is_not_used(without: Callable[[object], None], library: object, why: str):
+    without(library)
+    assert translate("abcd", "en") == translated("abcd", "en")
+    assert why in written_by("en")
+
+
+def test_a_liblouis_that_breaks_later_is_replaced_with_a_note(without: Callable[[object], None]):
+    without(odd(works=len(TABLES)))
+    with collected() as notes:
+        assert translate("abcd", "en") == translated("abcd", "en")
+    assert notes == ["braille by a table of our own: liblouis 0.0 cannot use its table en-ueb-g1.ctb"]
+
+
+@pytest.mark.parametrize("there", [True, False])
+@pytest.mark.parametrize(
+    ("text", "language", "says"),
+    [
+        ("Tokyo 日本", "en", "'Tokyo 日本': character 7, '日' (U+65E5), is not in "),
+        ("ok 🙂", "de", "'ok 🙂': character 4, '🙂' (U+1F642), is not in "),
+        ("ale ł", "fr", "'ale ł': character 5, 'ł' (U+0142), is not in "),
+        ("a\x07", "en", r"'a\x07': character 2, '\x07' (U+0007), is not in "),
+        ("a\ud800", "en", r"'a\ud800': character 2, '\ud800' (U+D800), is not in "),
+    ],
+)
+def test_a_character_without_braille_is_named(
+    installed: Louis, without: Callable[[object], None], there: bool, text: str, language: str, says: str
+):
+    if not there:
+        without(OSError("not found"))
+    with pytest.raises(BrailleError) as raised:
+        translate(text, language)
+    assert str(raised.value).startswith(says)
+    assert "; spell it with other letters" in str(raised.value)
+
+
+def test_spaces_and_composed_letters_are_alike_to_a_finger():
+    assert translate("u\u0308\u00a0a\u00adb\tc", "de") == translate("ü ab c", "de")
+    assert translate("", "en") == ()
+    assert translate(" ", "fr") == (0,)
+
+
+def test_threads_do_not_disturb_one_another(installed: Louis):
+    jobs = [
+        (f"{text} {number}", each) for number, (each, texts) in product(range(6), ORDINARY.items()) for text in texts
+    ]
+    alone = [translate(*job) for job in jobs]
+    start = Barrier(8)
+
+    def all_of_them(_: int) -> list[tuple[int, ...]]:
+        start.wait()
+        return [translate(*job) for job in jobs]
+
+    with ThreadPoolExecutor(8) as pool:
+        assert all(each == alone for each in pool.map(all_of_them, range(8)))
+
+
+def test_one_thread_at_a_time_is_with_the_library(without: Callable[[object], None]):
+    """Seen from within a library, as liblouis itself ends the process where it is disturbed."""
+    library, inside, most = odd(), list[None](), list[int]()
+    write: Any = library.lou_translateString  # pyright: ignore[reportAttributeAccessIssue]
+
+    def watched(*given: Any) -> int:
+        inside.append(None)
+        time.sleep(1e-3)
+        most.append(len(inside))
+        inside.pop()
+        return write(*given)
+
+    library.lou_translateString = watched  # pyright: ignore[reportAttributeAccessIssue]
+    without(library)
+    with ThreadPoolExecutor(4) as pool:
+        assert set(pool.map(translate, ["abc"] * 40)) == {(1, 3, 9)}
+    assert set(most) == {1}
+
+
+def test_nothing_is_printed(installed: Louis, capfd: pytest.CaptureFixture[str]):
+    with pytest.raises(OSError, match=r"cannot use its table nowhere\.ctb"):
+        installed._call("abc", "nowhere.ctb", 0)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_every_cell_has_its_character_for_embossers():
+    cells = tuple(range(64))
+    assert len(set(as_ascii(cells))) == 64
+    assert as_ascii(translate("Hello, 12.", "en")) == ",HELLO1 #AB4"
+
+
+def test_each_system_has_a_name_for_it():
+    assert {"linux", "darwin", "win32"} == NAMES.keys()
+    assert CODES.keys() == TABLES.keys()

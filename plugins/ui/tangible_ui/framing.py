@@ -1,4 +1,4 @@
-"""The binary frames of the websocket, little-endian. The page's twin is web/src/server/protocol.ts; a test compares both."""
+"""The binary frames of the websocket, little-endian; a test compares them with the page, web/src/server/protocol.ts."""
 
 import struct
 

@@ -15,8 +15,7 @@ from websockets.sync.client import ClientConnection, connect
 from tangible_ui.address import HOST, Address
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.serving.routes import application
-from tangible_ui.serving.serve import Server, settings
-from tangible_ui.serving.watching import watch
+from tangible_ui.serving.serve import Server, settings, watch
 from tangible_ui.state.session import Desk
 
 KEY = "key-of-a-test-0123456789"

@@ -22,7 +22,7 @@ from tangible_ui.framing import STATE_FRAME
 from tangible_ui.requests import ASKS
 from tangible_ui.requests.document import take
 from tangible_ui.requests.making import make
-from tangible_ui.serving.watching import watch
+from tangible_ui.serving.serve import watch
 from tangible_ui.state.texts import Text
 
 IN_TIME_S = 20.0

@@ -16,7 +16,7 @@ from tangible_core.errors import ConfigError, TangibleError
 from tangible_core.pipeline.output.export_folder import LISTED
 from tangible_export.stl import Stl
 from tangible_ui.requests import ASKS
-from tangible_ui.worker.jobs.exporting import KEPT
+from tangible_ui.worker.jobs.export import KEPT
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]
 STL = {"use": "stl", "longer_side_m": 0.06}

@@ -20,7 +20,7 @@ from tangible_core.testing.loop_devices import Circling, Failing
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.feeling.hand import high_without_client
 from tangible_ui.requests import ASKS
-from tangible_ui.serving.watching import watch
+from tangible_ui.serving.serve import watch
 from tangible_ui.state import session as desk_module
 from tangible_ui.state.session import Desk
 

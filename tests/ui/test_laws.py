@@ -17,7 +17,7 @@ from tangible_ui.feeling.choice import Choice, NotAgreed
 from tangible_ui.feeling.comparison import NOTHING
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.framing import STATE_FRAME
-from tangible_ui.requests import laws as asks
+from tangible_ui.requests import feeling as asks
 from tangible_ui.state.session import Desk
 
 TEXT = """\

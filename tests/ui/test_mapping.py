@@ -10,8 +10,8 @@ import pytest
 
 from tangible_core.data import Vector
 from tangible_core.mapping import WorkspaceMapping
-from tangible_ui.requests.mapping import limits
-from tangible_ui.worker.jobs import mapping
+from tangible_ui.requests.devices import limits
+from tangible_ui.worker.jobs import devices as mapping
 from tangible_ui.worker.state import Bench
 
 CASES = Path(__file__).parents[2] / "plugins/ui/web/test/placement.json"

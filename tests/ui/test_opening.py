@@ -15,7 +15,7 @@ from tangible_core.pipeline.config.editing import said
 from tangible_core.session import Recording
 from tangible_core.session.tick_file import About
 from tangible_ui.state.uploads import MOST_FILES, Shelf
-from tangible_ui.worker.jobs import opening
+from tangible_ui.worker.jobs import document as opening
 from tangible_ui.worker.state import Bench
 from videos import greys
 

@@ -20,7 +20,7 @@ from tangible_core.errors import ConfigError, OutputError, TangibleError
 from tangible_core.parts import find_parts
 from tangible_core.scene.picture_files import read_labels
 from tangible_ui.requests import ASKS
-from tangible_ui.state.latest_wins import Newest
+from tangible_ui.state.scheduling import Newest
 from tangible_ui.state.session import Desk
 from tangible_ui.worker.jobs import JOBS, making
 from tangible_ui.worker.parts.label_files import as_png, is_ours, unpacked

@@ -15,8 +15,9 @@ from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.metrics import absolute_error
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
-from tangible_ui.serving.windows import read_window
-from tangible_ui.worker.jobs import making, textures
+from tangible_ui.serving.routes import read_window
+from tangible_ui.worker.jobs import making
+from tangible_ui.worker.jobs import surface as textures
 from tangible_ui.worker.state import Bench
 from tangible_ui.worker.view import levels
 from tangible_ui.worker.view.files import ABOUT, KEPT, _put, show

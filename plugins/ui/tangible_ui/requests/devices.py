@@ -1,4 +1,4 @@
-"""Devices: which there are, which one is felt, and how its loop is."""
+"""Requests about devices: which there are, which one is used, what it reaches, how its loop runs."""
 
 import asyncio
 from typing import Any
@@ -82,6 +82,20 @@ async def _wait(desk: Desk) -> None:
             pause_s = min(2 * pause_s, LONGEST_PAUSE_S)
 
 
+async def reach(desk: Desk, tab: Tab) -> dict[str, Any]:
+    """What the document's device reaches: its name, and its workspace in metres, or none."""
+    return await desk.maker.quick("reach", text=desk.text, path=desk.path, sets=desk.sets)
+
+
+async def limits(desk: Desk, tab: Tab) -> dict[str, Any] | None:
+    """Ticks since the loop began, and those in which each limit acted; none before there is a loop."""
+    servo = desk.feeling.servo
+    if servo is None:
+        return None
+    report = await asyncio.to_thread(servo.report)
+    return {"ticks": report.ticks, "overruns": report.overruns, "flagged": dict(report.flagged)}
+
+
 ASKS = {
     "devices": devices,
     "examine": examine,
@@ -89,4 +103,6 @@ ASKS = {
     "choose_device": choose_device,
     "wait_for_device": wait_for_device,
     "doctor": doctor,
+    "reach": reach,
+    "limits": limits,
 }

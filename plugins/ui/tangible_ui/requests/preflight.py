@@ -4,6 +4,7 @@ import json
 from typing import Any
 
 from tangible_core.data import TICK_COLUMNS
+from tangible_core.plugins.interfaces import Medium
 from tangible_core.servo.ring import PERIOD_NS, SPINS
 
 from ..state.session import Desk, Tab
@@ -31,6 +32,14 @@ async def fix(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any
     return found
 
 
+async def legible(desk: Desk, tab: Tab | None, medium: Medium, width_m: float | None = None) -> dict[str, Any] | None:
+    """Judge the document by the rules of one medium; None if it was stopped.
+
+    width_m: of the whole picture there; that of the workspace without one.
+    """
+    return await long_job(desk, "legible", "parts", sets=desk.sets, medium=medium, width_m=width_m)
+
+
 def _loop(desk: Desk) -> dict[str, Any]:
     """The page's own hand, and how late the loop's ticks begin, where enough of them were."""
     own = f"device={json.dumps(desk.feeling.own_device)}"
@@ -43,4 +52,4 @@ def _loop(desk: Desk) -> dict[str, Any]:
     return {"own": own, "late": late if len(rows) >= LEAST_TICKS else None}
 
 
-ASKS = {"preflight": preflight, "fix": fix}
+ASKS = {"preflight": preflight, "fix": fix, "legible": legible}

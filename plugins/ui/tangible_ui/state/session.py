@@ -17,9 +17,8 @@ from ..feeling.recorder import Recorder
 from ..worker import Maker
 from ..worker.messages import Event
 from .drafts import Drafts
-from .latest_wins import Newest
 from .laws import Laws
-from .long_jobs import Makes
+from .scheduling import Makes, Newest
 from .texts import Texts
 from .uploads import Shelf, user_folder
 

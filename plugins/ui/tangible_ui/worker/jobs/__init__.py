@@ -1,44 +1,15 @@
-"""Everything the maker can be asked, by name."""
+"""Jobs of the worker, by name: one module per topic, each with its table."""
 
-from ..parts import heights as felt_parts
-from ..parts import opening as parts
-from ..parts import outlines as snapping
-from ..parts import proposals
-from ..parts import saving as saved_parts
-from . import (
-    beacons,
-    checking,
-    describing,
-    devices,
-    exporting,
-    laws,
-    legible,
-    making,
-    mapping,
-    opening,
-    preflight,
-    records,
-    textures,
-)
+from . import devices, document, export, feeling, making, parts, preflight, records, surface
 
 JOBS = {
-    **making.JOBS,
-    **checking.JOBS,
-    **mapping.JOBS,
-    **opening.JOBS,
-    **describing.JOBS,
-    **preflight.JOBS,
-    **exporting.JOBS,
-    **legible.JOBS,
-    **records.JOBS,
     **devices.JOBS,
-    **textures.JOBS,
-    **laws.JOBS,
-    **mapping.JOBS,
+    **document.JOBS,
+    **export.JOBS,
+    **feeling.JOBS,
+    **making.JOBS,
     **parts.JOBS,
-    **saved_parts.JOBS,
-    **proposals.JOBS,
-    **snapping.JOBS,
-    **felt_parts.JOBS,
-    **beacons.JOBS,
+    **preflight.JOBS,
+    **records.JOBS,
+    **surface.JOBS,
 }

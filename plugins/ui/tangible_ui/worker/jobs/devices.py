@@ -1,4 +1,4 @@
-"""Jobs about devices; none opens one."""
+"""Jobs about devices; none opens a device."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -34,8 +34,17 @@ def about_device(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[s
     }
 
 
+def reach(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
+    """The device that the document names, and its workspace; none where it names none. Raises: ConfigError."""
+    device = parse_config(text, path, bench.registry, sets).device
+    if device is None:
+        return {"device": "", "workspace_m": None}
+    return {"device": device.name, "workspace_m": list(device.method.spec().workspace_m)}
+
+
 JOBS = {
     "devices": Job(devices, quick=True),
     "examine": Job(examine, quick=True),
     "about_device": Job(about_device, quick=True),
+    "reach": Job(reach, quick=True),
 }

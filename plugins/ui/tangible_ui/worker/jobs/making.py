@@ -15,10 +15,10 @@ from tangible_core.pipeline.pipeline import Pipeline
 
 from ..loop_input import felt
 from ..state import Bench, Job, Work
-from ..view.description import described
 from ..view.files import show
 from ..view.surface_view import Seen, see
-from .checking import digest_of
+from .document import digest_of
+from .surface import described
 
 SLOW = ("disparity", "segments")
 """Products that take seconds: who edits says when they are made."""

@@ -1,4 +1,4 @@
-"""Jobs that judge a document before a hand meets it, and put right what can be."""
+"""Jobs that judge a document before a hand meets it, and correct what they can."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -7,13 +7,14 @@ from typing import Any
 
 from tangible_core.pipeline.fixing import AT_ONCE, cured
 from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.plugins.interfaces import Medium
 from tangible_core.preflight import Hand, Loop, Preflight, judge
 from tangible_core.preflight.timing import Lateness
 from tangible_core.runtime.stopping import stoppable
 
 from ..messages import Late
 from ..state import Bench, Job
-from .checking import digest_of
+from .document import digest_of
 from .making import telling
 
 
@@ -81,4 +82,29 @@ def _told(verdicts: Preflight, text: str, pipeline: Pipeline, is_own: bool, late
     }
 
 
-JOBS = {"preflight": Job(preflight), "fix": Job(fix)}
+def legible(
+    bench: Bench, number: int, text: str, path: Path, sets: list[str], medium: Medium, width_m: float | None
+) -> dict[str, Any]:
+    """Verdicts by the rules of one medium. width_m: of the whole picture there; that of the workspace without one.
+
+    Raises: TangibleError as `Pipeline.legible`.
+    """
+    begun_s, digest = perf_counter(), digest_of(text)
+    pipeline = bench.pipeline_of(text, path, sets)
+    with bench.work(pipeline, number) as work:
+        bench.tell("making", want="legible", digest=digest)
+        pipeline.make("parts", telling(bench, work), work.stop)
+        with stoppable(work.stop):
+            judged = pipeline.legible(medium, width_m)
+    width_m = pipeline.config.size.width_m if width_m is None else width_m
+    found = {"digest": digest, "medium": medium, "width_m": width_m, **judged.as_data()}
+    bench.tell("legible", **found)
+    bench.tell("made", want="legible", digest=digest, outcome="made", why="", seconds=perf_counter() - begun_s)
+    return found
+
+
+JOBS = {
+    "preflight": Job(preflight),
+    "fix": Job(fix),
+    "legible": Job(legible),
+}

@@ -8,7 +8,6 @@ than MOST_CELLS it is felt on a coarser grid until it is saved: a hand that drag
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import ceil, sqrt
-from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -20,17 +19,14 @@ from tangible_core.materials.assignment import find, load_library
 from tangible_core.parts import HeightChoice, Layering, PartChoice
 from tangible_core.pipeline.config.config import PipelineConfig, wrong_of_parts
 from tangible_core.pipeline.engine import felt as on_grid
-from tangible_core.pipeline.engine import parts_found
-from tangible_core.pipeline.engine.rules import fitted, part_heights
+from tangible_core.pipeline.engine.rules import part_heights
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scaling import felt_factor
 from tangible_core.scene.scene import Scene
 
-from ..loop_input import parcel_of
-from ..state import Bench, Job
-from ..view.files import show
-from ..view.surface_view import Seen, at_hand, see_parts
-from .opening import config_heights, edited_of, opened_of
+from ..state import Bench
+from ..view.surface_view import Seen, at_hand
+from .opening import config_heights
 
 S = TypeVar("S", bound=BaseModel)
 MOST_CELLS = 500_000
@@ -58,63 +54,14 @@ class Kept:
     surface: HapticSurface | None = None
 
 
-def parts_heights(
-    bench: Bench,
-    text: str,
-    path: Path,
-    sets: list[str],
-    heights_m: Sequence[float | None],
-    materials: Sequence[str | None] | None = None,
-    heights: Mapping[str, Any] | None = None,
-) -> dict[str, Any]:
-    """What the force loop needs of the document with these heights of its parts; the document stays as it is.
-
-    heights_m: by the number of a part; None for what the recipe finds, by guess or by depth. materials: the same; None
-    for those that the document says. heights: the recipe, widths of rims and the like, where they are not the
-    document's. Raises: ConfigError for a height above the workspace, a part that is not there, a depth that was not
-    made yet, a document without a law or a device; MaterialError; TangibleError as `Pipeline.make`.
-    """
-    pipeline = edited_of(bench, text, path, sets)
-    opened_of(bench, pipeline)
-    config = _coarse(_of_parts(pipeline.config, heights), pipeline.scene.shape)
-    if config.render is None:
-        raise config.missing("render")
-    if pipeline.scene.segments is None and not pipeline.config.by_parts:
-        raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
-    kept = _kept(bench, pipeline.changed(config))
-    said = {number: _checked(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
-    parts_found.check_found(replace(config, parts=said), kept.parts, kept.grid.scene.shape[1])
-    known = _known(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
-    relief = on_grid.layered(kept.layering, known, config.size, kept.grid.shown)
-    own = parts_found.own_materials(config) if materials is None else dict(enumerate(materials))
-    made = None if kept.materials is None else _materials(kept.materials, own, config)
-    names = parts_found.surface_with_names
-    kept.surface = names(config, HapticSurface(relief, kept.parts.labels, made, ("",) * kept.parts.count))
-    device = config.felt_device
-    surface = kept.surface if device is None else fitted(kept.surface, config, device)[0]
-    return parcel_of(config.render.method.touch(surface), surface, config)
-
-
-def parts_shown(bench: Bench) -> None:
-    """Pages draw what `parts_heights` made last."""
-    kept: Kept | None = bench.kept
-    if kept is None or kept.surface is None:
-        return
-    surface, kept.surface = kept.surface, None
-    kept.seen = see_parts(kept.pipeline, surface, kept.seen)
-    if kept.seen.digest != bench.shown:
-        bench.tell("scene", **show(kept.seen, bench.folder))
-        bench.shown = kept.seen.digest
-
-
-def _of_parts(config: PipelineConfig, heights: Mapping[str, Any] | None) -> PipelineConfig:
+def of_parts(config: PipelineConfig, heights: Mapping[str, Any] | None) -> PipelineConfig:
     """The configuration with a relief of parts, as it is once all their heights are given."""
     choice = config_heights(config)
     told = {**choice.model_dump(), **(heights or {}), "by": "given"}
-    return replace(config, heights=_checked(HeightChoice, told), parts=config.parts or {})
+    return replace(config, heights=checked(HeightChoice, told), parts=config.parts or {})
 
 
-def _coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
+def coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
     """With a grid of at most about MOST_CELLS, in steps of half a pixel of the pictures as every felt grid."""
     size, (rows, columns) = config.size, shape
     factor = ceil(2 * sqrt(rows * columns / MOST_CELLS)) / 2
@@ -124,7 +71,7 @@ def _coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
     return replace(config, workspace=config.workspace.model_copy(update={"finest_m": finest_m}))
 
 
-def _checked(section: type[S], said: Mapping[str, Any]) -> S:
+def checked(section: type[S], said: Mapping[str, Any]) -> S:
     """Raises: ConfigError for what it cannot say."""
     try:
         return section.model_validate(said)
@@ -133,21 +80,21 @@ def _checked(section: type[S], said: Mapping[str, Any]) -> S:
         raise ConfigError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from error
 
 
-def _known(kept: Kept, heights_m: Sequence[float | None], by: str) -> list[float]:
+def known_heights(kept: Kept, heights_m: Sequence[float | None], by: str) -> list[float]:
     """With what the recipe finds where nothing is given. Raises: ConfigError for a depth that was not made yet."""
     if None in heights_m and by not in kept.found_m:
         assert kept.config.heights is not None
         disparity = at_hand(kept.pipeline, "disparity") if by == "depth" else None
         if by == "depth" and disparity is None:
             raise ConfigError("the picture's depth is not made yet; make it, and heights by depth are felt")
-        recipe = replace(kept.config, heights=_checked(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
+        recipe = replace(kept.config, heights=checked(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
         kept.found_m[by] = part_heights(recipe, kept.grid, kept.parts, disparity).heights_m
     found_m = kept.found_m.get(by, ())
     return [found_m[number] if each is None and number < len(found_m) else each or 0.0
             for number, each in enumerate(heights_m)]  # fmt: skip
 
 
-def _kept(bench: Bench, pipeline: Pipeline) -> Kept:
+def kept_of(bench: Bench, pipeline: Pipeline) -> Kept:
     """What was kept, or as much of it as still holds."""
     config, before = pipeline.config, bench.kept
     named = {number: PartChoice(name=each.name) for number, each in (config.parts or {}).items() if each.name}
@@ -180,13 +127,10 @@ def _same_layering(before: Kept, config: PipelineConfig, parts: PartMap, grid: o
     )
 
 
-def _materials(
+def materials_of(
     found: tuple[Material, ...], own: Mapping[int, str | None], config: PipelineConfig
 ) -> tuple[Material, ...]:
     """With those that parts say themselves. Raises: MaterialError for a name that is not in the library."""
     library = load_library(config.materials.library)
     named = {number: find(name, library) for number, name in own.items() if name is not None}
     return tuple(named.get(number, each) for number, each in enumerate(found))
-
-
-JOBS = {"parts_heights": Job(parts_heights, quick=True), "parts_shown": Job(parts_shown, quick=True)}

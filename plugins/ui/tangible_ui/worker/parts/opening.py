@@ -2,7 +2,6 @@
 
 import shutil
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,7 +18,7 @@ from tangible_core.pipeline.engine.parts_found import parts_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
 
-from ..state import Bench, Job
+from ..state import Bench
 from ..view.files import leave, write_whole
 from ..view.surface_view import is_there
 
@@ -38,33 +37,6 @@ class Opened(NamedTuple):
     scene: Scene
     picture: UInt8[np.ndarray, "h w 3"]
     parts: PartMap
-
-
-def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
-    """What an editor begins with; the picture, and the number of each pixel's part, are left in files.
-
-    Raises: ConfigError for a document that is wrong; PictureError for a scene that cannot be read, or has too many
-    parts; OutputError if there is no room for the files.
-    """
-    pipeline = edited_of(bench, text, path, sets)
-    opened, config = opened_of(bench, pipeline), pipeline.config
-    at = f"{FOLDER}{digest_of((opened.picture, opened.parts))}"
-    _leave(opened, bench.folder / at)
-    by_parts = replace(config, heights=config_heights(config))
-    rows, columns = opened.parts.labels.shape
-    return {
-        "columns": columns,
-        "rows": rows,
-        "picture": f"{at}/picture.jpg",
-        "labels": f"{at}/labels.u16",
-        "digest": digest(opened.parts, config),
-        "parts": listed(opened.parts, config_parts(config)),
-        "heights": config_heights(config).model_dump(mode="json"),
-        "top_m": max(0.0, by_parts.top_m),
-        "widthM": by_parts.size.width_m,
-        "title": config.title,
-        "language": config.language,
-    }
 
 
 def edited_of(bench: Bench, text: str, path: Path, sets: list[str]) -> Pipeline:
@@ -157,7 +129,7 @@ def _places(parts: PartMap) -> list[tuple[int, int]]:
     return found
 
 
-def _leave(opened: Opened, at: Path) -> None:
+def leave_files(opened: Opened, at: Path) -> None:
     """Write what an editor fetches, whole or not at all."""
 
     def write(part: Path) -> None:
@@ -169,6 +141,3 @@ def _leave(opened: Opened, at: Path) -> None:
     left = sorted(at.parent.glob(f"{FOLDER}*/labels.u16"), key=lambda each: each.stat().st_mtime_ns)
     for each in left[:-KEPT]:
         shutil.rmtree(each.parent, ignore_errors=True)
-
-
-JOBS = {"parts_open": Job(parts_open, quick=True)}

@@ -1,15 +1,7 @@
 """The job that moves an outline to the picture's edges."""
 
-from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
-
 import numpy as np
 from jaxtyping import Float32, Float64, Int, UInt8
-
-from ..state import Bench, Job
-from .opening import edited_of, opened_of
-from .proposals import as_points
 
 MOST_PLACES = 1500
 """Along an outline."""
@@ -22,15 +14,6 @@ BEND = 0.12
 """What it costs to move one step farther than the place before."""
 TURN = 2
 """Steps by which neighbours may differ."""
-
-
-def parts_snap(
-    bench: Bench, text: str, path: Path, sets: list[str], points: Sequence[Sequence[float]], reach_px: float
-) -> dict[str, Any]:
-    """A closed outline, moved to the strongest edges that are no farther than this. Raises: as `parts_propose`."""
-    picture = opened_of(bench, edited_of(bench, text, path, sets)).picture
-    outline = as_points(points, picture.shape)
-    return {"points": np.round(snapped(picture, outline, reach_px), 2).tolist()}
 
 
 def snapped(
@@ -107,6 +90,3 @@ def _cheapest(cost: Float32[np.ndarray, "m k"]) -> Int[np.ndarray, " m"]:
         path[row - 1] = path[row] + turns[came[row, path[row]]]
     half = rows // 2  # neither end of the path knows its other side
     return np.roll(path[half : half + rows], half)
-
-
-JOBS = {"parts_snap": Job(parts_snap, quick=True)}

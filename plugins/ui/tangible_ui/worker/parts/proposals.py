@@ -1,16 +1,12 @@
 """The job that proposes a part from a stroke: what looks like what the stroke lies on, up to the picture's edges."""
 
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float64, UInt8
 
 from tangible_core.errors import ConfigError
-
-from ..state import Bench, Job
-from .opening import edited_of, opened_of
 
 Kind = Literal["grabcut", "watershed"]
 MOST_POINTS = 2000
@@ -40,25 +36,6 @@ class Window(NamedTuple):
     def of(self, picture: np.ndarray) -> np.ndarray:
         """The picture there."""
         return picture[self.y : self.y + self.rows, self.x : self.x + self.columns]
-
-
-def parts_propose(
-    bench: Bench,
-    text: str,
-    path: Path,
-    sets: list[str],
-    points: Sequence[Sequence[float]],
-    width_px: float,
-    kind: Kind,
-    within: Sequence[float] | None,
-) -> dict[str, Any]:
-    """The part on which a stroke lies: its box, and runs of pixels outside and inside in turn, row by row.
-
-    Raises: ConfigError for what is no stroke in the picture; otherwise as `parts_open`.
-    """
-    picture = opened_of(bench, edited_of(bench, text, path, sets)).picture
-    box, mask = proposed(picture, as_points(points, picture.shape), width_px, kind, within)
-    return {"box": list(box), "runs": runs(mask)}
 
 
 def proposed(
@@ -228,6 +205,3 @@ def _refine(
 def _boxed(mask: Bool[np.ndarray, "r c"], window: Window) -> tuple[Window, Bool[np.ndarray, "R C"]]:
     (y0, y1), (x0, x1) = (np.flatnonzero(mask.any(axis))[[0, -1]].tolist() for axis in (1, 0))
     return Window(window.x + x0, window.y + y0, x1 + 1 - x0, y1 + 1 - y0), mask[y0 : y1 + 1, x0 : x1 + 1]
-
-
-JOBS = {"parts_propose": Job(parts_propose, quick=True)}

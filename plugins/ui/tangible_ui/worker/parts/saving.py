@@ -12,21 +12,18 @@ from typing import Any, cast
 import numpy as np
 from jaxtyping import Int32, Shaped, UInt16
 
-from tangible_core.data import PartMap, SegmentMap
+from tangible_core.data import PartMap
 from tangible_core.errors import ConfigError, quoted
 from tangible_core.files.editing import on_one_line
 from tangible_core.files.source import read_text
 from tangible_core.files.writing import atomic_write, write_text
-from tangible_core.parts import find_parts
-from tangible_core.pipeline.config.config import PipelineConfig, parse_config
+from tangible_core.pipeline.config.config import PipelineConfig
 from tangible_core.pipeline.config.editing import REMOVE, edited, said
-from tangible_core.pipeline.engine.parts_found import check_found
 from tangible_core.scene.scene import Scene, builtin_files
 from tangible_core.scene.scene_files import BUILTINS, SceneFiles
 
-from ..state import Bench, Job
-from .label_files import NAME, as_png, is_ours, unpacked
-from .opening import Opened, digest, edited_of, opened_of
+from .label_files import NAME, is_ours
+from .opening import Opened
 
 log = logging.getLogger(__name__)
 MOST_EDITED = 200
@@ -34,50 +31,7 @@ MOST_EDITED = 200
 SAID = ("name", "height_m", "material")
 
 
-def parts_save(
-    bench: Bench,
-    text: str,
-    path: Path,
-    sets: list[str],
-    sent: Path,
-    parts: Sequence[Mapping[str, Any]],
-    heights: Mapping[str, Any] | None,
-    words: Mapping[str, str | None],
-    of: str,
-    opened: str,
-    shelf: Path,
-    earlier: Sequence[str] = (),
-) -> dict[str, Any]:
-    """Keep labels that a page has sent, and what is said of each; a document that stands in its file is saved there.
-
-    of: digest of the parts that were edited, or nothing. opened: what the document's file said when it was opened or
-    saved; a file that says something else is left alone. shelf: where the labels of a document go without a file, and
-    those that others take the place of. earlier: texts that the document had.
-    Returns: with `moved`, what earlier texts, and this one, say from now on if they named labels that are elsewhere.
-    Raises: ConfigError for labels that are none, parts that were changed elsewhere meanwhile, and what the document
-    must not say; OutputError, and then nothing is changed.
-    """
-    pipeline = edited_of(bench, text, path, sets)
-    if of and of != digest(opened_of(bench, pipeline).parts, pipeline.config):
-        raise ConfigError("the parts were changed elsewhere meanwhile, as in another tab; open the editor again")
-    labels = unpacked(sent, pipeline.scene.shape)
-    known, segments = _compact(labels)
-    found = find_parts(SegmentMap(segments))
-    choices, numbers = numbered(parts, [int(known[each]) for each in found.segments], found.labels)
-    picture = as_png(_unframed(found.labels, pipeline.config), path.name)
-    in_file = _stands(path, opened)
-    place = _beside(path) if in_file else _on(shelf, picture)
-    changed = said_of_parts(text, path, place, choices, heights, words)
-    config = parse_config(changed, path, bench.registry, sets)
-    check_found(config, found, labels.shape[1])
-    moved = _kept_before(place, picture, shelf, [*earlier, text], path)
-    _write(place, picture, path if in_file else None, changed)
-    _warn_of_numbers(config, opened_of(bench, pipeline), found)
-    of = digest(found, config)
-    return {"text": changed, "path": str(place), "numbers": numbers, "saved": in_file, "digest": of, "moved": moved}
-
-
-def _warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> None:
+def warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> None:
     """Say whose materials are others now: those that are for a segment or a part by a number that lies elsewhere."""
     rules, by = config.materials.rules, config.materials.by
     segments = {each.segment for each in rules if each.segment is not None} | set(by if isinstance(by, dict) else ())
@@ -180,7 +134,7 @@ def _another(name: str, taken: set[str]) -> str:
     return found
 
 
-def _compact(labels: UInt16[np.ndarray, "h w"]) -> tuple[np.ndarray, Int32[np.ndarray, "h w"]]:
+def compact(labels: UInt16[np.ndarray, "h w"]) -> tuple[np.ndarray, Int32[np.ndarray, "h w"]]:
     """The labels that there are, and which of them each pixel has."""
     known = np.flatnonzero(np.bincount(labels.ravel(), minlength=1))
     places = np.zeros(int(known[-1]) + 1, np.int32)
@@ -200,7 +154,7 @@ def _scene(now: Mapping[str, Any], path: Path, place: Path) -> dict[tuple[str, .
     return {("scene",): {**files, "segments": named}}
 
 
-def _unframed(labels: Int32[np.ndarray, "h w"], config: PipelineConfig) -> Shaped[np.ndarray, "H W"]:
+def unframed(labels: Int32[np.ndarray, "h w"], config: PipelineConfig) -> Shaped[np.ndarray, "H W"]:
     """Labels as the scene's files have them: turned back, and what was cut off gets the label that is nearest."""
     files = config.scene
     if not isinstance(files, SceneFiles) or (files.crop is None and not files.rotate):
@@ -214,7 +168,7 @@ def _unframed(labels: Int32[np.ndarray, "h w"], config: PipelineConfig) -> Shape
     return np.pad(labels, ((y, rows - y - height), (x, columns - x - width)), mode="edge")
 
 
-def _stands(path: Path, opened: str) -> bool:
+def stands(path: Path, opened: str) -> bool:
     """Whether the document's file is there, and says what was read from it or written to it last."""
     try:
         return path.is_file() and read_text(path) == opened
@@ -222,24 +176,24 @@ def _stands(path: Path, opened: str) -> bool:
         return False
 
 
-def _beside(path: Path) -> Path:
+def beside(path: Path) -> Path:
     """Where the labels go beside a pipeline file: where there is nothing, or what was written for that very file."""
     names = itertools.chain([NAME], (f"{Path(NAME).stem}-{number}.png" for number in itertools.count(2)))
     places = (path.parent / name for name in names)
     return next(each for each in places if not os.path.lexists(each) or is_ours(each, path.name))
 
 
-def _on(shelf: Path, picture: bytes) -> Path:
+def on_shelf(shelf: Path, picture: bytes) -> Path:
     """Where a label picture lies on the shelf: by its content."""
     return shelf / hashlib.sha256(picture).hexdigest()[:16] / NAME
 
 
-def _kept_before(place: Path, picture: bytes, shelf: Path, texts: Sequence[str], path: Path) -> dict[str, str]:
+def kept_before(place: Path, picture: bytes, shelf: Path, texts: Sequence[str], path: Path) -> dict[str, str]:
     """Keep what another picture is to take the place of, for the texts that name it: a step back finds it there."""
     before = place.read_bytes() if place.is_file() else picture
     if before == picture:
         return {}
-    kept = _on(shelf, before)
+    kept = on_shelf(shelf, before)
     moved: dict[str, str] = {}
     for text in dict.fromkeys(texts):
         scene = said(text, path).get("scene") if place.name in text else None
@@ -251,13 +205,10 @@ def _kept_before(place: Path, picture: bytes, shelf: Path, texts: Sequence[str],
     return moved
 
 
-def _write(place: Path, picture: bytes, document: Path | None, text: str) -> None:
+def write(place: Path, picture: bytes, document: Path | None, text: str) -> None:
     """The labels and the document; neither without the other. Raises: OutputError."""
     with atomic_write(place) as file:
         file.write(picture)
         file.flush()  # what there is no room for shows before the document is touched
         if document is not None:
             write_text(document, text)
-
-
-JOBS = {"parts_save": Job(parts_save, quick=True)}

@@ -1,4 +1,4 @@
-"""The job that makes a fine texture visible: its heights at a place, the numbers that a law feels there."""
+"""Jobs that describe the surface on the screen: in words, and a fine texture as heights."""
 
 import json
 import re
@@ -10,11 +10,18 @@ from jaxtyping import Float32, Float64, Shaped
 
 from tangible_core.data import Material
 from tangible_core.data.records import digest_of
+from tangible_core.description import LANGUAGES, Language, describe, describe_at_length, facts, page_of
+from tangible_core.description.at_length import tell
+from tangible_core.description.languages import TABLES
 from tangible_core.errors import GeometryError
 from tangible_core.haptic_textures.waves import waves
+from tangible_core.pipeline.output.exporting import title_of
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.scene.workspace import kind_of
 
 from ..state import Bench, Job
 from ..view.files import ABOUT
+from ..view.surface_view import Seen
 
 KEPT = 8
 MOST_PIXELS = 512
@@ -79,4 +86,41 @@ def _heights(
     return found
 
 
-JOBS = {"texture_patch": Job(texture_patch, quick=True)}
+def description(bench: Bench, language: Language) -> dict[str, Any] | None:
+    """What there is to say, as text too and as a page of its own; nothing while there is no surface."""
+    if bench.described is None:
+        return None
+    pipeline, seen = bench.described
+    config, kind = pipeline.config, kind_of(pipeline.scene)
+    title, parts = title_of(config, pipeline.scene), facts(seen.surface)
+    told = tell(seen.surface, title, language, parts, kind)
+    return {
+        "digest": seen.digest,
+        "title": told.title,
+        "overview": " ".join(told.overview),
+        "heading": told.heading,
+        "parts": [{"label": each.label, "says": " ".join(each.sentences)} for each in told.parts],
+        "left_out": told.left_out,
+        "text": "\n".join(describe_at_length(seen.surface, title, language, parts, kind)),
+        "html": page_of(seen.surface, title, language, parts, kind, named_in=config.language),
+    }
+
+
+def described(pipeline: Pipeline, seen: Seen) -> dict[str, Any]:
+    """What is said of what is seen, by language; a material that has no name in a language keeps its own."""
+    scene = pipeline.scene
+    kind = kind_of(scene)
+    names = {each.name for each in seen.materials}
+    return {
+        "digest": seen.digest,
+        "says": {each: describe(seen.surface, scene.name, each, kind) for each in LANGUAGES},
+        "names": {
+            each: {name: said for name, said in TABLES[each].materials.items() if name in names} for each in LANGUAGES
+        },
+    }
+
+
+JOBS = {
+    "texture_patch": Job(texture_patch, quick=True),
+    "description": Job(description, quick=True),
+}

@@ -1,14 +1,26 @@
-"""Jobs that put several laws on one surface, and say nothing of it: who compares blindly shall not know."""
+"""Jobs that prepare what the force loop takes: a beacon, and several force laws on one surface."""
 
 import json
 from pathlib import Path
 from typing import Any, cast
 
+from tangible_core.data import HapticSurface
 from tangible_core.errors import ConfigError, quoted
 from tangible_core.files.source import parse_value, plain
+from tangible_core.servo import beacon_to, parcel
 
 from ..loop_input import felt
 from ..state import Bench, Job
+from ..view.surface_view import at_hand
+
+
+def beacon(bench: Bench, text: str, path: Path, sets: list[str], part: int) -> dict[str, Any]:
+    """A beacon to a part of the document's surface, by its number, in a parcel. Raises: ConfigError without one."""
+    surface: HapticSurface | None = at_hand(bench.pipeline_of(text, path, sets), "surface")
+    if surface is None:
+        raise ConfigError("the surface of this document is not made yet; make it, and a beacon leads to its parts")
+    made = beacon_to(surface, part)
+    return {"part": made.part, "name": made.name, "parcel": str(parcel.pack(made))}
 
 
 def law_names(bench: Bench) -> list[str]:
@@ -40,6 +52,7 @@ def laws(bench: Bench, text: str, path: Path, sets: list[str], others: list[dict
 
 
 JOBS = {
+    "beacon": Job(beacon, quick=True),
     "law_names": Job(law_names, quick=True),
     "law_block": Job(law_block, quick=True),
     "laws": Job(laws),

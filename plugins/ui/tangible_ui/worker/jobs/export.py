@@ -1,4 +1,4 @@
-"""Jobs that write files for others, where pages fetch them, and pack them into one."""
+"""Jobs that write files for others into a folder that pages fetch from, and pack them."""
 
 import json
 import re
@@ -16,7 +16,7 @@ from tangible_core.pipeline.output.export_folder import read_list
 from tangible_core.pipeline.output.exporting import Exported
 
 from ..state import Bench, Job
-from .checking import digest_of
+from .document import digest_of
 from .making import telling
 
 FOLDER = "export-"
@@ -88,4 +88,7 @@ def _sweep(folder: Path) -> None:
         shutil.rmtree(each, ignore_errors=True)
 
 
-JOBS = {"export": Job(export), "export_zip": Job(export_zip, quick=True)}
+JOBS = {
+    "export": Job(export),
+    "export_zip": Job(export_zip, quick=True),
+}

@@ -1,9 +1,35 @@
-"""Asks that come faster than they are answered: what began is finished, and of those that wait the newest alone is."""
+"""Scheduling of jobs: long ones are numbered and give way to newer ones; of frequent ones the latest wins."""
 
 import asyncio
 import time
 from collections.abc import Awaitable, Callable
 from typing import TypeVar, final
+
+
+@final
+class Makes:
+    """Long jobs are numbered: a newer one takes the place of those before it."""
+
+    def __init__(self) -> None:
+        self.newest = 0
+        self.running: set[int] = set()
+        """Numbers of those that somebody waits for."""
+        self.apply_after = False
+        """Whether to look, after the one at work, if what was edited meanwhile can be applied at once."""
+        self.killed = False
+        """Whether the maker was killed for an earlier one: if the newest met the one that died, it is asked again."""
+
+    def begin(self) -> int:
+        """The number of another one."""
+        self.newest += 1
+        self.running.add(self.newest)
+        return self.newest
+
+    def stop(self) -> None:
+        """None of those at work is wanted any more."""
+        self.newest += 1
+        self.killed, self.apply_after = True, False
+
 
 T = TypeVar("T")
 

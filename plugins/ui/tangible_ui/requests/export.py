@@ -1,8 +1,6 @@
-"""Hand the document on: files for others, and whether fingers can read it."""
+"""Requests to export files for others."""
 
 from typing import Any
-
-from tangible_core.plugins.interfaces import Medium
 
 from ..state.session import Desk, Tab
 from .making import long_job
@@ -21,12 +19,7 @@ async def export_zip(desk: Desk, tab: Tab | None, folder: str) -> str:
     return await desk.maker.quick("export_zip", folder=folder)
 
 
-async def legible(desk: Desk, tab: Tab | None, medium: Medium, width_m: float | None = None) -> dict[str, Any] | None:
-    """Judge the document by the rules of one medium; None if it was stopped.
-
-    width_m: of the whole picture there; that of the workspace without one.
-    """
-    return await long_job(desk, "legible", "parts", sets=desk.sets, medium=medium, width_m=width_m)
-
-
-ASKS = {"export": export, "export_zip": export_zip, "legible": legible}
+ASKS = {
+    "export": export,
+    "export_zip": export_zip,
+}

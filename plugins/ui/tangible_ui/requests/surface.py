@@ -1,4 +1,4 @@
-"""What a tab looks at or reads: a fine texture at a place, the surface in words."""
+"""Requests about the surface on the screen: a fine texture at a place, a description in words."""
 
 from typing import Any, Literal
 
@@ -17,4 +17,7 @@ async def description(desk: Desk, tab: Tab | None, language: Literal["en", "de",
     return await desk.maker.quick("description", language=language)
 
 
-ASKS = {"texture_patch": texture_patch, "description": description}
+ASKS = {
+    "texture_patch": texture_patch,
+    "description": description,
+}

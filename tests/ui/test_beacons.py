@@ -19,7 +19,7 @@ from tangible_core.servo import Beacon, Safety, beacon_to, packed
 from tangible_core.servo.ring import shared_folder
 from tangible_ui.feeling.feeling import Feeling, Felt
 from tangible_ui.framing import STATE_FRAME
-from tangible_ui.requests import ASKS
+from tangible_ui.requests import REQUESTS
 from tangible_ui.requests.document import take
 from tangible_ui.requests.making import make
 from tangible_ui.serving.serve import watch
@@ -45,7 +45,7 @@ def test_a_tab_asks_for_a_part_and_all_tabs_hear_of_it(tmp_path: Path, monkeypat
 
     async def asked() -> None:
         desk = SmallDesk(tmp_path, monkeypatch)
-        ask = ASKS["beacon"]
+        ask = REQUESTS["beacon"]
         with pytest.raises(DeviceError, match="nothing is felt"):
             await ask(desk.desk, desk.tab, part=0)
         runs[0] = True

@@ -148,7 +148,7 @@ class TestMaker:
             raise OSError(number, os.strerror(number), "/tmp/height.f32")
 
         from tangible_ui.worker import jobs
-        from tangible_ui.worker.state import Job
+        from tangible_ui.worker.jobs import Job
 
         monkeypatch.setitem(jobs.JOBS, "fails", Job(fails))
         said = process.answer(Bench(tmp_path), Ask(7, "fails", {}))

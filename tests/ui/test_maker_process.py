@@ -13,7 +13,7 @@ from desks import Heard
 from tangible_core.runtime.child_process import command
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.prestart import _started, maker_beforehand, maker_process
-from tangible_ui.requests import ASKS
+from tangible_ui.requests import REQUESTS
 from tangible_ui.state.session import Desk
 from tangible_ui.worker import Maker
 from tangible_ui.worker.handle import MakerAbsent, MakingStopped
@@ -33,7 +33,7 @@ def test_what_is_made_ends_at_once_and_the_loop_feels_on(tmp_path: Path):
         desk.enter(tab)
 
         async def ask(name: str, **told: Any) -> Any:
-            return await ASKS[name](desk, tab, **told)
+            return await REQUESTS[name](desk, tab, **told)
 
         try:
             await asyncio.to_thread(desk.feeling.start)

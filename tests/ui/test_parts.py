@@ -19,7 +19,7 @@ from tangible_core.data import SegmentMap
 from tangible_core.errors import ConfigError, OutputError, TangibleError
 from tangible_core.parts import find_parts
 from tangible_core.scene.picture_files import read_labels
-from tangible_ui.requests import ASKS
+from tangible_ui.requests import REQUESTS
 from tangible_ui.state.scheduling import Newest
 from tangible_ui.state.session import Desk
 from tangible_ui.worker.jobs import JOBS, making
@@ -239,9 +239,9 @@ def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Check], 
             small = SmallDesk(tmp_path, monkeypatch)
 
             async def ask(name: str, **told: Any) -> Any:
-                return await ASKS[name](small.desk, small.tab, **told)
+                return await REQUESTS[name](small.desk, small.tab, **told)
 
-            await ASKS["begin"](small.desk, small.tab, files=[str(scene)], make_it=False)
+            await REQUESTS["begin"](small.desk, small.tab, files=[str(scene)], make_it=False)
             await check(small, ask)
 
         asyncio.run(all_of_it())

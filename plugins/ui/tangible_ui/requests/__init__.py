@@ -1,21 +1,11 @@
-"""Requests that a tab may send, by name: one module per topic, each with its table."""
+"""Requests that a tab may send, one module per topic: every module in this folder is loaded, no list names them."""
 
-from collections.abc import Awaitable, Callable, Mapping
-from typing import Any
+from importlib import import_module
+from pkgutil import iter_modules
 
-from . import devices, document, export, feeling, making, parts, preflight, records, surface
+from .table import REQUESTS, Request
 
-Ask = Callable[..., Awaitable[Any]]
-"""Called with the desk, the tab, and what the tab says by name; the tab is answered with what it returns, as JSON."""
+__all__ = ["REQUESTS", "Request"]
 
-ASKS: Mapping[str, Ask] = {
-    **devices.ASKS,
-    **document.ASKS,
-    **export.ASKS,
-    **feeling.ASKS,
-    **making.ASKS,
-    **parts.ASKS,
-    **preflight.ASKS,
-    **records.ASKS,
-    **surface.ASKS,
-}
+for _each in iter_modules(__path__):
+    import_module(f"{__name__}.{_each.name}")

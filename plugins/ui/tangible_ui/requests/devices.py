@@ -9,27 +9,32 @@ from ..feeling.choice import Choice
 from ..feeling.doctor import figures
 from ..state.session import Desk, Tab
 from .making import make
+from .table import request
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
 """Before a device is looked for again; twice as long each time: to look for one starts a process."""
 KINDS = ("hand", "document", "other")
 
 
+@request()
 async def devices(desk: Desk, tab: Tab | None) -> dict[str, Any]:
     """Every installed device, and which one is chosen; none is opened."""
     return {"devices": await desk.maker.ask("devices"), "kind": desk.choice.kind, "name": desk.choice.name}
 
 
+@request()
 async def examine(desk: Desk, tab: Tab | None, name: str) -> list[dict[str, Any]]:
     """What keeps a device from working, and the cure."""
     return await desk.maker.ask("examine", name=name)
 
 
+@request()
 async def about_device(desk: Desk, tab: Tab | None, kind: str, name: str = "") -> dict[str, Any]:
     """What it means to feel with this device: whether it has a motor, and how strong that may be."""
     return await _about(desk, _choice(kind, name, sure=False))
 
 
+@request()
 async def choose_device(desk: Desk, tab: Tab | None, kind: str, name: str = "", sure: bool = False) -> None:
     """Feel with the page's own hand ("hand"), the document's device ("document"), or another one by its name ("other");
     also after a stop.
@@ -47,11 +52,13 @@ async def choose_device(desk: Desk, tab: Tab | None, kind: str, name: str = "", 
     await make(desk, tab)
 
 
+@request()
 async def wait_for_device(desk: Desk, tab: Tab | None) -> None:
     """Look for the chosen device again and again, until it is felt, or another one is chosen, or stop is pressed."""
     desk.begin(_wait(desk))
 
 
+@request()
 async def doctor(desk: Desk, tab: Tab | None) -> dict[str, Any] | None:
     """How the loop is; None where none runs."""
     servo = desk.feeling.servo
@@ -82,11 +89,13 @@ async def _wait(desk: Desk) -> None:
             pause_s = min(2 * pause_s, LONGEST_PAUSE_S)
 
 
+@request()
 async def reach(desk: Desk, tab: Tab) -> dict[str, Any]:
     """What the document's device reaches: its name, and its workspace in metres, or none."""
     return await desk.maker.quick("reach", text=desk.text, path=desk.path, sets=desk.sets)
 
 
+@request()
 async def limits(desk: Desk, tab: Tab) -> dict[str, Any] | None:
     """Ticks since the loop began, and those in which each limit acted; none before there is a loop."""
     servo = desk.feeling.servo
@@ -94,15 +103,3 @@ async def limits(desk: Desk, tab: Tab) -> dict[str, Any] | None:
         return None
     report = await asyncio.to_thread(servo.report)
     return {"ticks": report.ticks, "overruns": report.overruns, "flagged": dict(report.flagged)}
-
-
-ASKS = {
-    "devices": devices,
-    "examine": examine,
-    "about_device": about_device,
-    "choose_device": choose_device,
-    "wait_for_device": wait_for_device,
-    "doctor": doctor,
-    "reach": reach,
-    "limits": limits,
-}

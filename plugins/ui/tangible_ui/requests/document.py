@@ -10,8 +10,10 @@ from tangible_core.files.paths import as_path
 from ..state.session import Desk, Tab
 from ..state.texts import Text
 from .making import foresee, make
+from .table import request
 
 
+@request()
 async def begin(desk: Desk, tab: Tab | None, files: list[str], make_it: bool = True) -> dict[str, Any]:
     """Open a pipeline file, pictures or a recording; what can be felt is made and felt.
 
@@ -31,6 +33,7 @@ async def begin(desk: Desk, tab: Tab | None, files: list[str], make_it: bool = T
     return {}
 
 
+@request()
 async def edit(desk: Desk, tab: Tab | None, text: str, of: str = "", apply: bool = False) -> dict[str, Any]:
     """Take another text for the document; all tabs hear what it says, or what is wrong with it.
 
@@ -43,6 +46,7 @@ async def edit(desk: Desk, tab: Tab | None, text: str, of: str = "", apply: bool
         return _then(desk, await take(desk, Text(text, desk.path)), apply)
 
 
+@request("set")
 async def change(
     desk: Desk,
     tab: Tab | None,
@@ -61,21 +65,25 @@ async def change(
         return _then(desk, _put(desk, Text(found["text"], desk.path), found), apply)
 
 
+@request()
 async def undo(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
     """The document as it was one step before."""
     return await _step(desk, back=True, apply=apply)
 
 
+@request()
 async def redo(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
     """What was undone last."""
     return await _step(desk, back=False, apply=apply)
 
 
+@request()
 async def schema(desk: Desk, tab: Tab | None) -> dict[str, Any]:
     """What forms are made of."""
     return await desk.maker.quick("schema")
 
 
+@request()
 async def library(desk: Desk, tab: Tab | None) -> list[dict[str, Any]]:
     """The materials that the document can name."""
     return await desk.maker.quick("library", text=desk.text, path=desk.path, sets=desk.sets)
@@ -123,27 +131,32 @@ def _then(desk: Desk, found: dict[str, Any], apply: bool) -> dict[str, Any]:
     return found
 
 
+@request()
 async def folder(desk: Desk, tab: Tab | None, path: str = "") -> dict[str, Any]:
     """What lies in a folder of this machine that can be opened; of the current one, without a name."""
     return await desk.maker.quick("folder", path=as_path(path) if path else Path.cwd())
 
 
+@request()
 async def batch(desk: Desk, tab: Tab | None) -> str:
     """The name under which a page may send files."""
     return await asyncio.to_thread(desk.shelf.batch)
 
 
+@request()
 async def open_batch(desk: Desk, tab: Tab | None, batch: str) -> dict[str, Any]:
     """Open the files that a page has sent, together."""
     files = await asyncio.to_thread(desk.shelf.keep, batch)
     return await begin(desk, tab, [str(each) for each in files])
 
 
+@request()
 async def examples(desk: Desk, tab: Tab | None) -> list[str]:
     """Scenes that are built in."""
     return await desk.maker.quick("examples")
 
 
+@request()
 async def save(desk: Desk, tab: Tab | None, path: str, replace: bool = False) -> dict[str, Any]:
     """Write the document to a file of this machine, its relative paths leading to the same files from there.
 
@@ -160,6 +173,7 @@ async def save(desk: Desk, tab: Tab | None, path: str, replace: bool = False) ->
     return await begin(desk, tab, [str(place)], make_it=False)
 
 
+@request()
 async def exchange(desk: Desk, tab: Tab | None) -> None:
     """Left and right of the pair change places, in the document and under the hand."""
     await edit(desk, tab, await desk.maker.quick("exchange", text=desk.text, path=desk.path))
@@ -172,6 +186,7 @@ async def offer(desk: Desk) -> None:
         desk.tell("restored", path=str(draft.text.path), edited_s=draft.at_s)
 
 
+@request()
 async def restore(desk: Desk, tab: Tab | None) -> None:
     """What was left is the document from now on, a step after that of before. Raises: ConfigError if there is none."""
     draft = desk.drafts.left
@@ -184,26 +199,8 @@ async def restore(desk: Desk, tab: Tab | None) -> None:
         desk.begin(make(desk, tab))
 
 
+@request("forget_draft")
 async def forget(desk: Desk, tab: Tab | None) -> None:
     """What was left is not offered again."""
     await asyncio.to_thread(desk.drafts.drop)
     desk.tell("restored", path="", edited_s=0.0)
-
-
-ASKS = {
-    "begin": begin,
-    "edit": edit,
-    "set": change,
-    "undo": undo,
-    "redo": redo,
-    "schema": schema,
-    "library": library,
-    "folder": folder,
-    "batch": batch,
-    "open_batch": open_batch,
-    "examples": examples,
-    "save": save,
-    "exchange": exchange,
-    "restore": restore,
-    "forget_draft": forget,
-}

@@ -16,13 +16,16 @@ from ..state.laws import Choice, Tally
 from ..state.session import Desk, Tab
 from ..state.uploads import user_folder
 from .making import make
+from .table import request
 
 
+@request()
 async def hold(desk: Desk, tab: Tab) -> None:
     """This tab's hand is felt from now on."""
     desk.hold(tab)
 
 
+@request()
 async def stop(desk: Desk, tab: Tab | None) -> None:
     """No force, at once, and none until `feel`, whatever else is made meanwhile."""
     ended = desk.feeling.cut()  # before anything is waited for
@@ -30,12 +33,14 @@ async def stop(desk: Desk, tab: Tab | None) -> None:
     desk.begin(asyncio.to_thread(ended))
 
 
+@request()
 async def feel(desk: Desk, tab: Tab) -> None:
     """Feel the document, also after a stop. Raises: DeviceError if its device cannot be opened."""
     desk.feeling.allow()
     await make(desk, tab)
 
 
+@request()
 async def beacon(desk: Desk, tab: Tab | None, part: int | None) -> dict[str, Any]:
     """Pull the hand to the part of this number from now on; to none without a number. Pages hear of every change.
 
@@ -62,11 +67,13 @@ NAMES = ("a", "b")
 MOST_QUESTION = 200
 
 
+@request()
 async def law_names(desk: Desk, tab: Tab | None) -> list[str]:
     """The laws that there are to compare with."""
     return await desk.maker.quick("law_names")
 
 
+@request()
 async def compare_laws(desk: Desk, tab: Tab | None, use: str, options: str = "") -> None:
     """Hold another law against the document's, on the same surface and hand; the document's is felt first.
 
@@ -76,6 +83,7 @@ async def compare_laws(desk: Desk, tab: Tab | None, use: str, options: str = "")
     await _feel(desk, 0, other)
 
 
+@request()
 async def switch_law(desk: Desk, tab: Tab | None, to: str) -> None:
     """Feel `a`, the document's law, or `b`; the other one's force is shown."""
     if desk.laws.other is None or to not in NAMES:
@@ -83,6 +91,7 @@ async def switch_law(desk: Desk, tab: Tab | None, to: str) -> None:
     await _feel(desk, NAMES.index(to))
 
 
+@request()
 async def end_laws(desk: Desk, tab: Tab | None) -> None:
     """One law again: the document's."""
     if desk.laws.other is not None and desk.laws.felt != 0:
@@ -92,6 +101,7 @@ async def end_laws(desk: Desk, tab: Tab | None) -> None:
     desk.tell("laws", **desk.laws.told())
 
 
+@request()
 async def begin_blind(desk: Desk, tab: Tab | None, question: str = "") -> None:
     """Compare both without knowing which is which. Raises: ConfigError if there is no other law."""
     if desk.laws.other is None:
@@ -101,6 +111,7 @@ async def begin_blind(desk: Desk, tab: Tab | None, question: str = "") -> None:
     await feel_blind(desk, tab, 1)
 
 
+@request()
 async def feel_blind(desk: Desk, tab: Tab | None, called: int) -> None:
     """Feel the law that is called 1, or 2, in this trial."""
     tally = _tally(desk)
@@ -108,6 +119,7 @@ async def feel_blind(desk: Desk, tab: Tab | None, called: int) -> None:
     await _feel(desk, tally.law(desk.laws.called))
 
 
+@request()
 async def choose_blind(desk: Desk, tab: Tab | None, choice: Choice) -> None:
     """Count a choice, 0 for neither, and begin the next trial."""
     tally = _tally(desk)
@@ -115,6 +127,7 @@ async def choose_blind(desk: Desk, tab: Tab | None, choice: Choice) -> None:
     await feel_blind(desk, tab, 1)
 
 
+@request()
 async def end_blind(desk: Desk, tab: Tab | None) -> dict[str, Any]:
     """Say which was chosen how often, and keep that in a file of the user's."""
     tally = _tally(desk)
@@ -163,19 +176,3 @@ async def _feel(desk: Desk, which: int, other: dict[str, Any] | None = None) -> 
 def _told_apart(one: str, two: str) -> tuple[str, str]:
     """Names of both, also where one law is compared with itself under other options."""
     return (one, two) if one != two else (f"{one} (a)", f"{two} (b)")
-
-
-ASKS = {
-    "hold": hold,
-    "stop": stop,
-    "feel": feel,
-    "beacon": beacon,
-    "law_names": law_names,
-    "compare_laws": compare_laws,
-    "switch_law": switch_law,
-    "end_laws": end_laws,
-    "begin_blind": begin_blind,
-    "feel_blind": feel_blind,
-    "choose_blind": choose_blind,
-    "end_blind": end_blind,
-}

@@ -7,11 +7,13 @@ from tangible_core.errors import Stopped
 
 from ..state.session import Desk, Tab
 from ..worker.handle import MakingStopped
+from .table import request
 
 PATIENCE_S = 1.5
 """So long what is outdated may take to end by itself."""
 
 
+@request()
 async def make(desk: Desk, tab: Tab | None, want: str = "touch") -> None:
     """Make a product of the document, and feel it if it is a touch. What was being made before gives way."""
     made = await long_job(desk, "make", want, sets=desk.felt_sets(), want=want)
@@ -19,6 +21,7 @@ async def make(desk: Desk, tab: Tab | None, want: str = "touch") -> None:
         await desk.feel(made)
 
 
+@request()
 async def stop_making(desk: Desk, tab: Tab | None) -> None:
     """End what is being made at once; what is felt goes on."""
     if desk.makes.running:
@@ -26,6 +29,7 @@ async def stop_making(desk: Desk, tab: Tab | None) -> None:
         desk.maker.kill()
 
 
+@request()
 async def try_again(desk: Desk, tab: Tab | None) -> None:
     """Start the maker again, which did not start."""
     desk.maker.try_again()
@@ -90,6 +94,3 @@ async def _insist(desk: Desk, numbers: set[int]) -> None:
     if numbers & desk.makes.running:
         desk.makes.killed = True
         desk.maker.kill()
-
-
-ASKS = {"make": make, "stop_making": stop_making, "try_again": try_again}

@@ -8,13 +8,16 @@ from ..state.texts import Text
 from ..state.uploads import user_folder
 from .document import take
 from .making import foresee
+from .table import request
 
 
+@request()
 async def parts_open(desk: Desk, tab: Tab | None) -> dict[str, Any]:
     """What an editor begins with: the document's picture and parts."""
     return await desk.maker.quick("parts_open", **_document(desk))
 
 
+@request()
 async def parts_save(
     desk: Desk,
     tab: Tab | None,
@@ -50,6 +53,7 @@ async def parts_save(
     return found
 
 
+@request()
 async def parts_propose(
     desk: Desk,
     tab: Tab | None,
@@ -66,11 +70,13 @@ async def parts_propose(
     return await desk.strokes.do(lambda: desk.maker.quick("parts_propose", **_document(desk), **told))
 
 
+@request()
 async def parts_snap(desk: Desk, tab: Tab | None, points: list[list[float]], reach_px: float) -> dict[str, Any]:
     """A closed outline on the picture's edges that are no farther away than this. Raises: ConfigError."""
     return await desk.maker.quick("parts_snap", **_document(desk), points=points, reach_px=reach_px)
 
 
+@request()
 async def parts_heights(
     desk: Desk,
     tab: Tab | None,
@@ -98,12 +104,3 @@ async def parts_heights(
 
 def _document(desk: Desk) -> dict[str, Any]:
     return {"text": desk.text, "path": desk.path, "sets": desk.sets}
-
-
-ASKS = {
-    "parts_open": parts_open,
-    "parts_save": parts_save,
-    "parts_propose": parts_propose,
-    "parts_snap": parts_snap,
-    "parts_heights": parts_heights,
-}

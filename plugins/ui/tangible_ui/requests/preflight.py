@@ -11,16 +11,19 @@ from ..state.session import Desk, Tab
 from ..worker.messages import Late
 from .document import change
 from .making import long_job
+from .table import request
 
 LEAST_TICKS = 1000
 """Of a loop whose lateness counts."""
 
 
+@request()
 async def preflight(desk: Desk, tab: Tab | None) -> dict[str, Any] | None:
     """Judge the document on its device, or on the page's own hand where it names none; None if it was stopped."""
     return await long_job(desk, "preflight", "touch", sets=desk.sets, **_loop(desk))
 
 
+@request()
 async def fix(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
     """Change what preflight would have changed, and judge again; None if it was stopped."""
     found = await long_job(desk, "fix", "touch", sets=desk.sets, **_loop(desk))
@@ -32,6 +35,7 @@ async def fix(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any
     return found
 
 
+@request()
 async def legible(desk: Desk, tab: Tab | None, medium: Medium, width_m: float | None = None) -> dict[str, Any] | None:
     """Judge the document by the rules of one medium; None if it was stopped.
 
@@ -50,6 +54,3 @@ def _loop(desk: Desk) -> dict[str, Any]:
     header = servo.ring.header
     late = Late(rows[:, TICK_COLUMNS.index("late_s")], float(header[PERIOD_NS]) / 1e9, bool(header[SPINS]))
     return {"own": own, "late": late if len(rows) >= LEAST_TICKS else None}
-
-
-ASKS = {"preflight": preflight, "fix": fix, "legible": legible}

@@ -11,10 +11,12 @@ from tangible_core.session import About, names_in
 from ..feeling.recorder import Recorder
 from ..state.session import Desk, Tab
 from ..state.uploads import user_folder
+from .table import request
 
 FOLDER = "recordings"
 
 
+@request()
 async def record(desk: Desk, tab: Tab | None) -> str:
     """Keep what is felt from now on, in a new file of the user's. Raises: DeviceError if nothing is felt."""
     servo, felt = desk.feeling.servo, desk.feeling.felt
@@ -38,27 +40,32 @@ async def record(desk: Desk, tab: Tab | None) -> str:
     return str(path)
 
 
+@request()
 async def stop_recording(desk: Desk, tab: Tab | None) -> None:
     """Close the file."""
     if desk.recorder is not None:
         await asyncio.to_thread(desk.recorder.stop)
 
 
+@request()
 async def records(desk: Desk, tab: Tab | None) -> list[dict[str, Any]]:
     """The user's recordings, the newest first: name, path, seconds, law, device, why it ended."""
     return await desk.maker.quick("records", folder=user_folder(FOLDER))
 
 
+@request()
 async def show_record(desk: Desk, tab: Tab | None, path: str) -> dict[str, Any]:
     """Lay out a recording's ticks for pages to fetch; what it is of, and its figures."""
     return await desk.maker.quick("show_record", path=Path(path))
 
 
+@request()
 async def compare_records(desk: Desk, tab: Tab | None, path: str, other: str) -> dict[str, Any]:
     """Two recordings in figures, and how far they are from each other."""
     return await desk.maker.quick("compare_records", path=Path(path), other=Path(other))
 
 
+@request()
 async def try_law(desk: Desk, tab: Tab | None, path: str) -> dict[str, Any]:
     """What the document's law gives for each recorded state: laid out as a recording, and compared with it."""
     return await desk.maker.ask(
@@ -69,13 +76,3 @@ async def try_law(desk: Desk, tab: Tab | None, path: str) -> dict[str, Any]:
         sets=desk.felt_sets(),
         folder=user_folder(FOLDER),
     )
-
-
-ASKS = {
-    "record": record,
-    "stop_recording": stop_recording,
-    "records": records,
-    "show_record": show_record,
-    "compare_records": compare_records,
-    "try_law": try_law,
-}

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 
 from tangible_core.errors import TangibleError, did_you_mean, quoted, shown
 
-from ..requests import ASKS, Ask
+from ..requests import REQUESTS, Request
 
 MOST_SHOWN = 200
 
@@ -28,7 +28,7 @@ class Asked(NamedTuple):
 
     number: int
     name: str
-    ask: Ask
+    ask: Request
     told: dict[str, Any]
 
 
@@ -42,13 +42,13 @@ def parse(text: str) -> Asked:
     if type(number) is not int:
         raise NotUnderstood(None, 'a message is no JSON object with a "number"')
     name = said.pop("ask", None)
-    if not isinstance(name, str) or (ask := ASKS.get(name)) is None:
-        hint = did_you_mean(name, ASKS) if isinstance(name, str) else ""
+    if not isinstance(name, str) or (ask := REQUESTS.get(name)) is None:
+        hint = did_you_mean(name, REQUESTS) if isinstance(name, str) else ""
         raise NotUnderstood(number, f"there is no {quoted(name)} to ask for{hint}")
     return Asked(number, name, ask, _fitting(number, name, ask, said))
 
 
-def _fitting(number: int, name: str, ask: Ask, said: dict[str, Any]) -> dict[str, Any]:
+def _fitting(number: int, name: str, ask: Request, said: dict[str, Any]) -> dict[str, Any]:
     """The arguments that were said, of the types that they must have."""
     try:
         found = _arguments(ask).model_validate_json(json.dumps(said))
@@ -62,7 +62,7 @@ def _fitting(number: int, name: str, ask: Ask, said: dict[str, Any]) -> dict[str
 
 
 @cache
-def _arguments(ask: Ask) -> type[BaseModel]:
+def _arguments(ask: Request) -> type[BaseModel]:
     """All that may be told, with its types; nothing else may."""
     types = get_type_hints(ask)
     _, _, *rest = inspect.signature(ask).parameters.values()  # the desk and the tab come first

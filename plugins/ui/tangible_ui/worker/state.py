@@ -1,10 +1,10 @@
 """What lies on the maker's bench, and what a job is."""
 
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Event, Lock
-from typing import Any, NamedTuple, Protocol, final
+from typing import Any, Protocol, final
 from weakref import WeakKeyDictionary
 
 from tangible_core.errors import Stopped
@@ -144,11 +144,3 @@ class Bench:
         with self._lock:
             self._newest, work = number, self._work
         return work is not None and work.give_way(to, want)
-
-
-class Job(NamedTuple):
-    """One thing the maker does: called with the bench, and with what was asked by name."""
-
-    do: Callable[..., Any]
-    quick: bool = False
-    """Done beside a long job, not after it; it must leave `Bench.pipeline` alone."""

@@ -1,15 +1,11 @@
-"""Jobs of the worker, by name: one module per topic, each with its table."""
+"""Jobs of the worker, one module per topic: every module in this folder is loaded, no list names them."""
 
-from . import devices, document, export, feeling, making, parts, preflight, records, surface
+from importlib import import_module
+from pkgutil import iter_modules
 
-JOBS = {
-    **devices.JOBS,
-    **document.JOBS,
-    **export.JOBS,
-    **feeling.JOBS,
-    **making.JOBS,
-    **parts.JOBS,
-    **preflight.JOBS,
-    **records.JOBS,
-    **surface.JOBS,
-}
+from .table import JOBS, Job
+
+__all__ = ["JOBS", "Job"]
+
+for _each in iter_modules(__path__):
+    import_module(f"{__name__}.{_each.name}")

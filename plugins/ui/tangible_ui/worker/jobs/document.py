@@ -18,9 +18,11 @@ from tangible_core.pipeline.starter import MAPS, PICTURES, VIDEOS, are_pictures,
 from tangible_core.scene.scene_files import BUILTINS
 from tangible_core.session.recording_files import SUFFIXES
 
-from ..state import Bench, Job
+from ..state import Bench
+from .table import job
 
 
+@job(quick=True)
 def check(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
     """What a pipeline file says, alone and with every default filled in, or what is wrong with it."""
     values, complaints = None, list[Complaint]()
@@ -38,6 +40,7 @@ def check(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any
     }
 
 
+@job(quick=True)
 def change(
     bench: Bench,
     text: str,
@@ -57,16 +60,19 @@ def change(
     return check(bench, edited(text, path, {**gone, **changes, **loaded}), path, sets)
 
 
+@job(quick=True)
 def overridden(bench: Bench, text: str, path: Path, sets: list[str]) -> str:
     """The text with `key.key=value`, each as `--set` takes it. Raises: ConfigError."""
     return with_overrides(text, path, sets)
 
 
+@job(quick=True)
 def schema(bench: Bench) -> dict[str, Any]:
     """The JSON Schema of all methods that are installed."""
     return json_schema(bench.registry, None)
 
 
+@job(quick=True)
 def library(bench: Bench, text: str, path: Path, sets: list[str]) -> list[dict[str, Any]]:
     """The materials that a document can name: figures, and where they come from. Raises: ConfigError."""
     return [asdict(each) for each in load_library(bench.config_of(text, path, sets).materials.library).values()]
@@ -107,6 +113,7 @@ MOST = 2000
 """Entries that are shown of a folder."""
 
 
+@job(quick=True)
 def folder(bench: Bench, path: Path) -> dict[str, Any]:
     """Folders, and files that can be opened, by name. Raises: ConfigError if it is no folder."""
     try:
@@ -123,6 +130,7 @@ def folder(bench: Bench, path: Path) -> dict[str, Any]:
     }
 
 
+@job(quick=True)
 def begin(bench: Bench, files: list[Path]) -> dict[str, Any]:
     """A pipeline file's text, or that of a new one for pictures, and where it stands; or the path of a recording.
 
@@ -159,11 +167,13 @@ def _is_recording(path: Path) -> bool:
         return False
 
 
+@job(quick=True)
 def examples(bench: Bench) -> list[str]:
     """Scenes that are built in."""
     return list(BUILTINS)
 
 
+@job(quick=True)
 def save(bench: Bench, text: str, path: Path, out: Path) -> None:
     """Write a document that stood at `path` to another place; its relative paths lead to the same files from there.
 
@@ -173,23 +183,10 @@ def save(bench: Bench, text: str, path: Path, out: Path) -> None:
     write_text(out, moved(text, path, config, out))
 
 
+@job(quick=True)
 def exchange(bench: Bench, text: str, path: Path) -> str:
     """The text with left and right in each other's place. Raises: ConfigError if they are no pair."""
     scene = said(text, path).get("scene")
     if not (isinstance(scene, dict) and {"left", "right"} <= scene.keys()):
         raise ConfigError("the scene is no pair of pictures, left and right")
     return edited(text, path, {"scene.left": scene["right"], "scene.right": scene["left"]})
-
-
-JOBS = {
-    "check": Job(check, quick=True),
-    "change": Job(change, quick=True),
-    "overridden": Job(overridden, quick=True),
-    "schema": Job(schema, quick=True),
-    "library": Job(library, quick=True),
-    "folder": Job(folder, quick=True),
-    "begin": Job(begin, quick=True),
-    "examples": Job(examples, quick=True),
-    "save": Job(save, quick=True),
-    "exchange": Job(exchange, quick=True),
-}

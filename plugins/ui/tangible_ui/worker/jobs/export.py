@@ -15,9 +15,10 @@ from tangible_core.errors import ConfigError
 from tangible_core.pipeline.output.export_folder import read_list
 from tangible_core.pipeline.output.exporting import Exported
 
-from ..state import Bench, Job
+from ..state import Bench
 from .document import digest_of
 from .making import telling
+from .table import job
 
 FOLDER = "export-"
 NAMED = re.compile(rf"{FOLDER}[0-9a-f]{{16}}")
@@ -25,6 +26,7 @@ KEPT = 2
 """Folders that stay: tabs may still fetch from the one before."""
 
 
+@job()
 def export(bench: Bench, number: int, text: str, path: Path, sets: list[str], exports: list[Any]) -> dict[str, Any]:
     """Have exporters write their files, into a folder that pages fetch from; what became of each.
 
@@ -48,6 +50,7 @@ def export(bench: Bench, number: int, text: str, path: Path, sets: list[str], ex
     return found
 
 
+@job(quick=True)
 def export_zip(bench: Bench, folder: str) -> str:
     """Pack what was exported into that folder into one file beside it; its name. Raises: ConfigError if it is gone."""
     at = bench.folder / folder
@@ -86,9 +89,3 @@ def _sweep(folder: Path) -> None:
             found.append((each.stat().st_mtime_ns, each))
     for _, each in sorted(found)[: -KEPT + 1]:
         shutil.rmtree(each, ignore_errors=True)
-
-
-JOBS = {
-    "export": Job(export),
-    "export_zip": Job(export_zip, quick=True),
-}

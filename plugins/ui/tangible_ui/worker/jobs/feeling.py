@@ -10,10 +10,12 @@ from tangible_core.files.source import parse_value, plain
 from tangible_core.servo import beacon_to, parcel
 
 from ..loop_input import felt
-from ..state import Bench, Job
+from ..state import Bench
 from ..view.surface_view import at_hand
+from .table import job
 
 
+@job(quick=True)
 def beacon(bench: Bench, text: str, path: Path, sets: list[str], part: int) -> dict[str, Any]:
     """A beacon to a part of the document's surface, by its number, in a parcel. Raises: ConfigError without one."""
     surface: HapticSurface | None = at_hand(bench.pipeline_of(text, path, sets), "surface")
@@ -23,11 +25,13 @@ def beacon(bench: Bench, text: str, path: Path, sets: list[str], part: int) -> d
     return {"part": made.part, "name": made.name, "parcel": str(parcel.pack(made))}
 
 
+@job(quick=True)
 def law_names(bench: Bench) -> list[str]:
     """The force laws that are installed."""
     return sorted(bench.registry.names("render"))
 
 
+@job(quick=True)
 def law_block(bench: Bench, use: str, options: str) -> dict[str, Any]:
     """A law as `render:` has it, its options written in YAML, such as {stiffness_n_per_m: 500}. Raises: ConfigError."""
     try:
@@ -39,6 +43,7 @@ def law_block(bench: Bench, use: str, options: str) -> dict[str, Any]:
     return {"use": use, **cast("dict[str, Any]", said)}
 
 
+@job()
 def laws(bench: Bench, text: str, path: Path, sets: list[str], others: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """What the force loop needs of the document's law, and then of others, blocks as `render:` has them.
 
@@ -49,11 +54,3 @@ def laws(bench: Bench, text: str, path: Path, sets: list[str], others: list[dict
         raise first.config.missing("render")
     with_others = [bench.config_of(text, path, [*sets, f"render={json.dumps(each)}"]) for each in others]
     return [felt(first), *(felt(first.changed(config)) for config in with_others)]
-
-
-JOBS = {
-    "beacon": Job(beacon, quick=True),
-    "law_names": Job(law_names, quick=True),
-    "law_block": Job(law_block, quick=True),
-    "laws": Job(laws),
-}

@@ -14,16 +14,18 @@ from tangible_core.pipeline.engine.engine import Progress, Stage
 from tangible_core.pipeline.pipeline import Pipeline
 
 from ..loop_input import felt
-from ..state import Bench, Job, Work
+from ..state import Bench, Work
 from ..view.files import show
 from ..view.surface_view import Seen, see
 from .document import digest_of
 from .surface import described
+from .table import job
 
 SLOW = ("disparity", "segments")
 """Products that take seconds: who edits says when they are made."""
 
 
+@job(quick=True)
 def plan(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
     """What making a product would do, and why; what stands in the way where it cannot."""
     try:
@@ -52,6 +54,7 @@ def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
     return sorted(steps.values(), key=lambda each: order.index(each.product))
 
 
+@job()
 def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:
     """Make a product; pages hear of every stage, and of the surface as soon as it can be drawn.
 
@@ -83,6 +86,7 @@ def telling(bench: Bench, work: Work) -> Progress:
     return heard
 
 
+@job(quick=True)
 def give_way(bench: Bench, number: int, text: str, path: Path, sets: list[str], want: str) -> bool:
     """What is being made ends for this newer document; whether at once, as it needs nothing of what is at work.
 
@@ -118,6 +122,3 @@ def _segments(pipeline: Pipeline, seen: Seen) -> list[dict[str, Any]]:
         {"label": label, "material": material.name, "why": why, "share": share, "name": names[label]}
         for label, (material, why, share) in named
     ]
-
-
-JOBS = {"make": Job(make), "plan": Job(plan, quick=True), "give_way": Job(give_way, quick=True)}

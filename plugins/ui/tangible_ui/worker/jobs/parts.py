@@ -35,11 +35,13 @@ from ..parts.saving import (
     warn_of_numbers,
     write,
 )
-from ..state import Bench, Job
+from ..state import Bench
 from ..view.files import show
 from ..view.surface_view import see_parts
+from .table import job
 
 
+@job(quick=True)
 def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
     """What an editor begins with; the picture, and the number of each pixel's part, are left in files.
 
@@ -67,6 +69,7 @@ def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str
     }
 
 
+@job(quick=True)
 def parts_propose(
     bench: Bench,
     text: str,
@@ -86,6 +89,7 @@ def parts_propose(
     return {"box": list(box), "runs": runs(mask)}
 
 
+@job(quick=True)
 def parts_snap(
     bench: Bench, text: str, path: Path, sets: list[str], points: Sequence[Sequence[float]], reach_px: float
 ) -> dict[str, Any]:
@@ -95,6 +99,7 @@ def parts_snap(
     return {"points": np.round(snapped(picture, outline, reach_px), 2).tolist()}
 
 
+@job(quick=True)
 def parts_save(
     bench: Bench,
     text: str,
@@ -138,6 +143,7 @@ def parts_save(
     return {"text": changed, "path": str(place), "numbers": numbers, "saved": in_file, "digest": of, "moved": moved}
 
 
+@job(quick=True)
 def parts_heights(
     bench: Bench,
     text: str,
@@ -175,6 +181,7 @@ def parts_heights(
     return parcel_of(config.render.method.touch(surface), surface, config)
 
 
+@job(quick=True)
 def parts_shown(bench: Bench) -> None:
     """Pages draw what `parts_heights` made last."""
     kept: Kept | None = bench.kept
@@ -185,13 +192,3 @@ def parts_shown(bench: Bench) -> None:
     if kept.seen.digest != bench.shown:
         bench.tell("scene", **show(kept.seen, bench.folder))
         bench.shown = kept.seen.digest
-
-
-JOBS = {
-    "parts_open": Job(parts_open, quick=True),
-    "parts_propose": Job(parts_propose, quick=True),
-    "parts_snap": Job(parts_snap, quick=True),
-    "parts_heights": Job(parts_heights, quick=True),
-    "parts_shown": Job(parts_shown, quick=True),
-    "parts_save": Job(parts_save, quick=True),
-}

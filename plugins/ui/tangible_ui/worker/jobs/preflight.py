@@ -13,11 +13,13 @@ from tangible_core.preflight.timing import Lateness
 from tangible_core.runtime.stopping import stoppable
 
 from ..messages import Late
-from ..state import Bench, Job
+from ..state import Bench
 from .document import digest_of
 from .making import telling
+from .table import job
 
 
+@job()
 def preflight(
     bench: Bench, number: int, text: str, path: Path, sets: list[str], own: str, late: Late | None
 ) -> dict[str, Any]:
@@ -43,6 +45,7 @@ def preflight(
     return found
 
 
+@job()
 def fix(
     bench: Bench, number: int, text: str, path: Path, sets: list[str], own: str, late: Late | None
 ) -> dict[str, Any]:
@@ -82,6 +85,7 @@ def _told(verdicts: Preflight, text: str, pipeline: Pipeline, is_own: bool, late
     }
 
 
+@job()
 def legible(
     bench: Bench, number: int, text: str, path: Path, sets: list[str], medium: Medium, width_m: float | None
 ) -> dict[str, Any]:
@@ -101,10 +105,3 @@ def legible(
     bench.tell("legible", **found)
     bench.tell("made", want="legible", digest=digest, outcome="made", why="", seconds=perf_counter() - begun_s)
     return found
-
-
-JOBS = {
-    "preflight": Job(preflight),
-    "fix": Job(fix),
-    "legible": Job(legible),
-}

@@ -12,7 +12,8 @@ from tangible_core.session import Recording, beside, compared
 from tangible_core.session.recording_files import SUFFIXES
 
 from ...framing import FLAG_BITS
-from ..state import Bench, Job
+from ..state import Bench
+from .table import job
 
 MOST_ROWS = 120_000
 """Of a recording as pages have it, 8 MB; of a longer one, every second tick, or third..."""
@@ -20,6 +21,7 @@ MOST_LISTED = 500
 AT_FLAGS = TICK_COLUMNS.index("flags")
 
 
+@job(quick=True)
 def records(bench: Bench, folder: Path) -> list[dict[str, Any]]:
     """Recordings of a folder, the newest first; of one that cannot be read, why."""
     try:
@@ -54,6 +56,7 @@ def _about(found: Recording) -> dict[str, Any]:
     }
 
 
+@job(quick=True)
 def show_record(bench: Bench, path: Path) -> dict[str, Any]:
     """Write the ticks where pages fetch them. Raises: OutputError for a file that is no recording."""
     return _shown(bench, Recording.load(path), str(path))
@@ -73,11 +76,13 @@ def _shown(bench: Bench, found: Recording, path: str) -> dict[str, Any]:
     return {"digest": digest, "path": path, "name": Path(path).name, **shape, **_about(found)}
 
 
+@job(quick=True)
 def compare_records(bench: Bench, path: Path, other: Path) -> dict[str, Any]:
     """Two recordings, place by place along their paths. Raises: OutputError for a file that is no recording."""
     return beside(Recording.load(path), Recording.load(other))
 
 
+@job()
 def try_law(bench: Bench, path: Path, text: str, document: Path, sets: list[str], folder: Path) -> dict[str, Any]:
     """Feel a recording's states with the document's law, keep that as a recording beside it, and compare."""
     before = Recording.load(path)
@@ -91,11 +96,3 @@ def _free(folder: Path, name: str) -> Path:
     """A file that is not there yet."""
     numbered = (folder / f"{name}{f' {number}' if number else ''}.nc" for number in range(10_000))
     return next(path for path in numbered if not path.exists())
-
-
-JOBS = {
-    "records": Job(records, quick=True),
-    "show_record": Job(show_record, quick=True),
-    "compare_records": Job(compare_records, quick=True),
-    "try_law": Job(try_law),
-}

@@ -19,15 +19,17 @@ from tangible_core.pipeline.output.exporting import title_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.workspace import kind_of
 
-from ..state import Bench, Job
+from ..state import Bench
 from ..view.files import ABOUT
 from ..view.surface_view import Seen
+from .table import job
 
 KEPT = 8
 MOST_PIXELS = 512
 LARGEST_M = 0.1
 
 
+@job(quick=True)
 def texture_patch(
     bench: Bench, digest: str, x_m: float, y_m: float, side_m: float, pixels: int = 192
 ) -> dict[str, Any]:
@@ -86,6 +88,7 @@ def _heights(
     return found
 
 
+@job(quick=True)
 def description(bench: Bench, language: Language) -> dict[str, Any] | None:
     """What there is to say, as text too and as a page of its own; nothing while there is no surface."""
     if bench.described is None:
@@ -118,9 +121,3 @@ def described(pipeline: Pipeline, seen: Seen) -> dict[str, Any]:
             each: {name: said for name, said in TABLES[each].materials.items() if name in names} for each in LANGUAGES
         },
     }
-
-
-JOBS = {
-    "texture_patch": Job(texture_patch, quick=True),
-    "description": Job(description, quick=True),
-}

@@ -76,7 +76,7 @@ def test_the_plugin_page_names_every_moment(moment):
 
 
 def test_the_page_on_materials_shows_what_the_program_takes(tmp_path: Path):
-    from tangible_core.pipeline.config.config import parse_config
+    from tangible_core.pipeline.config.parsing import parse_config
     from tangible_core.plugins.registry import default_registry
 
     blocks = re.findall(r"```yaml\n(.*?)```", ROOT.joinpath("docs/materials.md").read_text(encoding="utf-8"), re.DOTALL)
@@ -88,7 +88,7 @@ def test_the_page_on_materials_shows_what_the_program_takes(tmp_path: Path):
 
 
 def test_the_page_on_handing_on_shows_what_the_program_takes(tmp_path: Path):
-    from tangible_core.pipeline.config.config import parse_config
+    from tangible_core.pipeline.config.parsing import parse_config
     from tangible_core.plugins.registry import default_registry
 
     blocks = re.findall(r"```yaml\n(.*?)```", ROOT.joinpath("docs/export.md").read_text(encoding="utf-8"), re.DOTALL)
@@ -127,7 +127,7 @@ def test_the_page_on_the_force_loop_feels(capsys: pytest.CaptureFixture[str]):
 
 
 def test_the_page_on_devices_shows_what_the_program_takes():
-    from tangible_core.pipeline.config.config import parse_config
+    from tangible_core.pipeline.config.parsing import parse_config
     from tangible_core.plugins.registry import default_registry
 
     page = ROOT.joinpath("docs/devices.md").read_text(encoding="utf-8")

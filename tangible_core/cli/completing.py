@@ -47,9 +47,7 @@ def scenes(incomplete: str) -> list[str]:
 def keys(ctx: Any, incomplete: str) -> list[str]:
     """Keys of a pipeline file, as `--set` takes them; after `use=`, the methods; of a standard set that
     was named before, its pairs."""
-    from ..legibility.choice import SimplifyChoice
-    from ..pipeline.config.config import SECTIONS, STAGES
-    from ..pipeline.config.scene_readers import scene_reader_points
+    from ..pipeline.config.model import KEYS, STAGES
     from ..plugins.registry import default_registry
 
     if incomplete.startswith("export."):
@@ -59,11 +57,7 @@ def keys(ctx: Any, incomplete: str) -> list[str]:
         return _beginning((f"{stage}.use={name}" for name in default_registry().names(stage)), incomplete)
     if incomplete.startswith("scene."):
         return _of_scene(ctx.params.get("sets") or (), incomplete)
-    found = [f"{name}.{option}=" for name, section in SECTIONS.items() for option in section.model_fields]
-    alone = ["scene", "title", "language", "want", "heights", "export"]
-    alone += [f"scene.{key}" for key in scene_reader_points()]
-    found += [f"simplify.{option}=" for option in SimplifyChoice.model_fields]
-    return _beginning((*(f"{key}=" for key in alone), *(f"{stage}.use=" for stage in STAGES), *found), incomplete)
+    return _beginning((setting for key in KEYS.values() for setting in key.settings()), incomplete)
 
 
 def _of_scene(words: Sequence[str], incomplete: str) -> list[str]:

@@ -69,7 +69,7 @@ def show_one(
     import inspect
 
     from ..metrics.measured import measured
-    from ..pipeline.config.schema import options_of
+    from ..pipeline.config.markdown import options_of
     from ..plugins.registry import default_registry
     from . import show
 

@@ -14,7 +14,7 @@ from .options import Felt, Json, NoCache, Sets
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from ..pipeline.config.config import NamedMethod
+    from ..pipeline.config.methods import NamedMethod
     from ..pipeline.output.runs import Run
     from ..pipeline.pipeline import Pipeline
     from ..plugins.interfaces import HapticDevice
@@ -34,7 +34,7 @@ def demo(
     """
     from importlib.resources import files
 
-    from ..pipeline.config.config import parse_config
+    from ..pipeline.config.parsing import parse_config
     from ..pipeline.engine.cache import Cache
     from ..pipeline.pipeline import Pipeline
     from ..plugins.registry import default_registry

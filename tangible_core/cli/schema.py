@@ -14,8 +14,8 @@ def schema(
 
     Editors complete and check files by it.
     """
+    from ..pipeline.config.markdown import markdown as as_markdown
     from ..pipeline.config.schema import json_schema, materials_schema
-    from ..pipeline.config.schema import markdown as as_markdown
     from ..runtime.standard_output import stream
     from .show import print_json
 

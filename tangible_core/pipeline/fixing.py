@@ -9,8 +9,8 @@ from ..files.source import read_text
 from ..preflight import Flight, Hand, Loop, Preflight, judge
 from ..preflight.timing import Lateness
 from ..preflight.verdict import Change
-from .config.config import parse_config
 from .config.editing import edited, moved, with_overrides
+from .config.parsing import parse_config
 from .pipeline import Pipeline
 
 ROUNDS = 24

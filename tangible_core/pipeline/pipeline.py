@@ -8,7 +8,6 @@ from threading import Event
 from typing import Any, Literal, Self, TypeVar, cast, final, get_args, overload
 
 import numpy as np
-from pydantic import BaseModel, ValidationError
 
 from ..data import (
     TICK_COLUMNS,
@@ -23,7 +22,7 @@ from ..data import (
     ServoReport,
     Views,
 )
-from ..errors import Complaint, ConfigError, did_you_mean, quoted, wrong_argument
+from ..errors import ConfigError, did_you_mean, quoted, wrong_argument
 from ..files.paths import as_path
 from ..files.writing import write_text
 from ..legibility import Legibility, SimplifyChoice
@@ -31,14 +30,12 @@ from ..mapping import WorkspaceMapping
 from ..parts import HeightChoice, PartChoice, PartHeights
 from ..plugins import hooks
 from ..plugins.interfaces import (
-    KINDS,
     DepthEstimator,
     Exporter,
     Film,
     ForceRenderer,
     HapticDevice,
     Medium,
-    Method,
     Reshaping,
     Segmenter,
     Touch,
@@ -64,8 +61,10 @@ from ..session import (
     telling_parts,
 )
 from ..session.film import ByClock, Reliefs
-from .config.config import MaterialChoice, NamedMethod, PipelineConfig, Product, load_config, wrong_of_parts
-from .config.parts_said import Inscription
+from .config.material_choice import MaterialChoice
+from .config.methods import check_kind, named_method
+from .config.model import PipelineConfig, Product
+from .config.parsing import config_of, load_config
 from .engine.cache import Cache
 from .engine.engine import Engine, Progress
 from .engine.filmed import film_of, reliefs_of
@@ -77,12 +76,8 @@ from .output.legible import legible, of_width
 from .output.parts_text import part_heights, to_correct
 from .output.runs import Run, Sheet, about, make_run
 
-M = TypeVar("M", bound=Method)
-S = TypeVar("S", bound=BaseModel)
 T = TypeVar("T")
 NO_ROWS = np.empty((0, len(TICK_COLUMNS)))
-Place = tuple[str | int, ...]
-"""Keys and indices from the top of a configuration."""
 Materials = MaterialChoice | Mapping[Any, Any] | str
 """As in YAML: a rule's name, a map from label to material, or a block of options."""
 Parts = Mapping[int, PartChoice | Mapping[str, Any] | str]
@@ -124,6 +119,7 @@ class Pipeline:
         language: str = "en",
         cached: bool = True,
         threads: int | None = None,
+        **others: Any,
     ) -> None:
         """Methods are objects, of installed plugins or of classes of one's own; blocks may be mappings, as in YAML.
 
@@ -131,31 +127,32 @@ class Pipeline:
         heights: makes the relief of these parts. simplify: makes the parts legible first; `{}` by the usual rules.
         export: what `export` writes. title, language: of the whole. cached: False neither reads nor writes the user's
         cache. threads: the most that work at once; see the property.
-        Raises: ConfigError for a block that says nonsense.
+        others: other keys of the pipeline file.
+        Raises: ConfigError with every complaint about these; ArgumentError for what is not a key.
         """
         if not isinstance(scene, cast(Any, Scene)):
             raise wrong_argument("scene", scene, "a Scene, such as Scene.of(photo=...) makes")
         registry = default_registry()
-        config = PipelineConfig(
-            scene=scene,
-            measured=scene.measured,
+        config = config_of(
+            scene,
+            registry,
             want="surface" if render is None else "touch",
-            depth=_chosen("depth", depth, registry),
-            texture=_chosen("texture", texture, registry),
-            materials=_block("materials", MaterialChoice, _as_in_yaml(materials)),
-            workspace=_block("workspace", Workspace, workspace),
-            mapping=_block("mapping", WorkspaceMapping, mapping),
-            render=_chosen("render", render, registry),
-            device=_chosen("device", device, registry),
-            safety=_block("safety", Safety, safety),
-            parts=None if parts is None else _parts(parts),
-            heights=None if heights is None else _block("heights", HeightChoice, _by(heights)),
-            simplify=None if simplify is None else _block("simplify", SimplifyChoice, simplify),
-            export=tuple(_chosen("export", each, registry) for each in export),
-            **_block((), Inscription, {"title": title, "language": language}).model_dump(),
+            depth=depth,
+            texture=texture,
+            materials=materials,
+            workspace=workspace,
+            mapping=mapping,
+            render=render,
+            device=device,
+            safety=safety,
+            parts=parts,
+            heights=heights,
+            simplify=simplify,
+            export=export,
+            title=title,
+            language=language,
+            **others,
         )
-        if wrong := list(wrong_of_parts(config)):
-            raise config.complained(*wrong)
         self.engine = Engine(config, registry, Cache() if cached else None)
         self.threads = threads
 
@@ -540,7 +537,7 @@ class Pipeline:
     def _device(self, device: HapticDevice | None) -> HapticDevice:
         """The device as the picture sees it, by the mapping. Raises: ConfigError if there is none."""
         if device is not None:
-            _check_kind("device", device)
+            check_kind("device", device)
         felt = felt_device(self.engine, device)
         if felt is None:
             raise self.config.missing("device")
@@ -582,7 +579,9 @@ class Pipeline:
 
     def _about(self, device: HapticDevice | None) -> About:
         said = about(self.engine)
-        return said if device is None else replace(said, device=_chosen("device", device, self.engine.registry).name)
+        if device is None:
+            return said
+        return replace(said, device=named_method("device", device, self.engine.registry).name)
 
     def _tell(self, report: ServoReport) -> None:
         hooks.tell(self.engine.registry.plugins, "tangible_servo_report", report=report)
@@ -599,92 +598,6 @@ def load_pipeline(
     Raises: ConfigError with every complaint, each with file:line:column.
     """
     return Pipeline.from_yaml(path, overrides, registry, cache)
-
-
-@overload
-def _chosen(kind: str, method: None, registry: Registry) -> None: ...
-@overload
-def _chosen(kind: str, method: M, registry: Registry) -> NamedMethod[M]: ...
-def _chosen(kind: str, method: M | None, registry: Registry) -> NamedMethod[M] | None:
-    """A method with the name that a file gives it; one of no installed plugin has its class's, and no origin.
-
-    Raises: ConfigError if it is no method of this kind.
-    """
-    if method is None:
-        return None
-    _check_kind(kind, method)
-    cls = type(method)
-    target = f"{cls.__module__}:{cls.__qualname__}"
-    for each in registry.listings:
-        if (each.kind, each.target) == (kind, target):
-            alone = each.name in registry.names(kind)
-            return NamedMethod(each.name if alone else f"{each.distribution}/{each.name}", each.origin, method)
-    return NamedMethod(cls.__qualname__, "", method)
-
-
-def _check_kind(kind: str, method: object) -> None:
-    """Raises: ConfigError if it is no method of this kind."""
-    wanted = KINDS[cast(Any, kind)]
-    if not isinstance(method, wanted):
-        raise ConfigError(f"{kind}: takes a {wanted.__name__}, such as an object of one, not {quoted(method)}")
-
-
-def _block(place: str | Place, model: type[S], value: S | Mapping[str, Any] | None) -> S:
-    """A block of the configuration. Raises: ConfigError with every complaint."""
-    place = (place,) if isinstance(place, str) else place
-    if isinstance(value, model):
-        return value
-    try:
-        return model.model_validate(dict(cast("Mapping[str, Any]", value)) if value else {})
-    except (ValidationError, TypeError, ValueError) as error:
-        if not isinstance(error, ValidationError):
-            name = ".".join(map(str, place))
-            raise ConfigError(
-                f"{name}: takes a {model.__name__} or a mapping of its options, not {quoted(value)}"
-            ) from error
-        parts = [(_place_of(place, each["loc"]), each["msg"].removeprefix("Value error, ")) for each in error.errors()]
-        said = [Complaint(where, f"{'.'.join(map(str, where))}: {what}") for where, what in parts]
-        raise ConfigError(*(each.text for each in said), complaints=said) from error
-
-
-def _place_of(place: Place, parts: Iterable[str | int]) -> Place:
-    """Of an option, without the names that pydantic gives its forms."""
-    return (*place, *(part for part in parts if part != "[key]" and not str(part).startswith(":")))
-
-
-def _parts(parts: Parts) -> dict[int, PartChoice]:
-    """What is said of each part. Raises: ConfigError with every complaint."""
-    if not isinstance(parts, cast(Any, Mapping)):
-        raise wrong_argument("parts", parts, "a mapping from the number of a part to its name or what is said of it")
-    found, wrong = dict[int, PartChoice](), list[ConfigError]()
-    for number, said in parts.items():
-        try:
-            if not isinstance(number, cast(Any, int)) or isinstance(number, bool) or number < 0:
-                raise ConfigError(f"parts: the number of a part is a whole number from 0, not {quoted(number)}")
-            said = {"name": said} if isinstance(said, str) else said
-            found[int(number)] = _block(("parts", int(number)), PartChoice, said)
-        except ConfigError as error:
-            wrong.append(error)
-    if wrong:
-        raise ConfigError(
-            *(sentence for each in wrong for sentence in each.args),
-            complaints=[complaint for each in wrong for complaint in each.complaints],
-        )
-    return found
-
-
-def _by(heights: Heights) -> HeightChoice | Mapping[str, Any]:
-    """A word alone says where the heights come from."""
-    return {"by": heights} if isinstance(heights, str) else heights
-
-
-def _as_in_yaml(materials: Materials | None) -> MaterialChoice | Mapping[str, Any] | None:
-    """A word or a map of labels stands for `by`."""
-    if isinstance(materials, str) or (
-        isinstance(materials, Mapping) and any(isinstance(key, int) for key in materials)
-    ):
-        return {"by": materials}
-    return materials
 
 
 def _in_turn(said: About, each: Sequence[About]) -> About:

@@ -3,7 +3,6 @@
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from importlib.resources import files
 from math import floor
 from pathlib import Path
@@ -21,7 +20,7 @@ from ..scene.height_files import said_of
 from ..scene.picture_files import PICTURES as PICTURES
 from ..scene.picture_files import VIDEOS as VIDEOS
 from ..scene.scene import Scene
-from .config.config import parse_config
+from .config.parsing import parse_config
 from .engine.cache import Cache
 from .pipeline import Pipeline
 
@@ -84,7 +83,7 @@ def pipeline_of(pictures: Sequence[Path], overrides: Sequence[str] = ()) -> Pipe
     made = starter(pictures, path)
     config = parse_config(made.text, path, registry, overrides)
     if not any(each.lstrip().startswith("scene") for each in overrides):
-        config = replace(config, scene=made.scene)  # it need not be read again
+        config = config.changed(scene=made.scene)  # it need not be read again
     return Pipeline.of(config, registry, Cache())
 
 

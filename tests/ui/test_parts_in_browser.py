@@ -12,7 +12,7 @@ from PIL import Image
 from browser_tabs import OpenPage
 from page_files import built_page
 from tangible_core.parts import PartChoice, find_parts
-from tangible_core.pipeline.config.config import load_config
+from tangible_core.pipeline.config.parsing import load_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import SceneFiles

@@ -2,7 +2,7 @@
 
 from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import floor
 from pathlib import Path
 from time import perf_counter
@@ -15,7 +15,7 @@ from tangible_core.files.writing import atomic_write
 from tangible_core.parts import HeightChoice, PartHeights
 from tangible_core.parts.label_picture import label_picture
 from tangible_core.parts.large import large_parts
-from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.layers import heights_of
 from tangible_core.pipeline.pipeline import Pipeline
@@ -139,7 +139,7 @@ def _pipeline(
     made = starter(pictures, file)
     chosen = f"texture={{use: {in_yaml(method)}}}" if method else f"texture.segments={ASKED_FOR * most}"
     config = parse_config(made.text, file, registry, [chosen, *overrides])
-    return Pipeline.of(replace(config, scene=made.scene), registry, cache)
+    return Pipeline.of(config.changed(scene=made.scene), registry, cache)
 
 
 def _heights(pipeline: Pipeline, parts: PartMap) -> PartHeights:

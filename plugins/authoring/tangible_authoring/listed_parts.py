@@ -1,14 +1,14 @@
 """The parts of a picture, as a list that a person reads beside the picture with their numbers."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import NamedTuple
 
 from tangible_core.data import PartMap
 from tangible_core.description import place_in_words
 from tangible_core.errors import ConfigError
 from tangible_core.parts import PartChoice, PartHeights, part_sizes
-from tangible_core.pipeline.config.config import MaterialChoice, PipelineConfig
+from tangible_core.pipeline.config.material_choice import MaterialChoice
+from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.engine.layers import heights_of
 from tangible_core.pipeline.engine.parts_found import check_found, parts_of
 from tangible_core.pipeline.pipeline import Pipeline
@@ -81,7 +81,7 @@ def list_parts(pipeline: Pipeline) -> ListedParts:
     `Pipeline.make`.
     """
     config, scene = pipeline.config, pipeline.scene
-    alone = pipeline.changed(replace(config, parts=None, heights=None, materials=MaterialChoice()))
+    alone = pipeline.changed(config.changed(parts=None, heights=None, materials=MaterialChoice()))
     segments = alone.make("segments")
     if segments is None or scene.views is None:
         where = f"{config.path}: " if config.path else ""

@@ -7,6 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 from string import Template
 
+from tangible_core.files.parts_block import part_lines
 from tangible_core.parts import HeightChoice
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.starter import SIDE_MM, in_yaml
@@ -59,12 +60,10 @@ def _counted(parts: int) -> str:
 
 
 def _lines(found: Sequence[ListedPart]) -> str:
-    """A line a part, in columns."""
-    heads = [f'  {each.number}: {{name: "", height_m: {1000 * (each.height_m or 0):.1f} mm}}' for each in found]
-    wide = max(map(len, heads))
-    return "\n".join(
-        f"{head:<{wide}}   # {each.where}, {_briefly(each.why)}" for head, each in zip(heads, found, strict=True)
-    )
+    """Write a line for each part, with its place and the reason of its height."""
+    parts = {each.number: {"name": "", "height_m": f"{1000 * (each.height_m or 0):.1f} mm"} for each in found}
+    comments = {each.number: f"{each.where}, {_briefly(each.why)}" for each in found}
+    return part_lines(parts, comments).removesuffix("\n")
 
 
 def _briefly(why: str) -> str:

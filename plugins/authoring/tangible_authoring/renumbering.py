@@ -1,16 +1,15 @@
 """The numbers of parts after their label picture was painted over: told, drawn again, and followed by the file."""
 
-import json
-import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 from tangible_core.errors import ConfigError
+from tangible_core.files.parts_block import with_parts
 from tangible_core.files.source import parse_source, plain, read_text
 from tangible_core.files.writing import atomic_write
-from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.registry import default_registry
@@ -19,9 +18,6 @@ from tangible_core.report.numbered_parts import Before, as_drawn
 from .first_parts import check_free
 from .listed_parts import ListedPart, ListedParts, list_parts
 
-BLOCK = re.compile(r"^parts:.*\n(?:(?:[ \t]*\n)*[ \t]+\S.*\n)*", re.MULTILINE)
-"""The key and the lines below it, up to the next one at the top."""
-LENGTH = re.compile(r"[0-9.]+ ?[a-z]+")
 MOST_TOLD = 6
 
 
@@ -132,7 +128,7 @@ def in_words(moved: Sequence[Moved]) -> str:
 
 def said_of_parts(text: str, path: Path) -> dict[int, Any]:
     """What a pipeline file says of each part, as plain values. Raises: ConfigError if it is no YAML."""
-    block = _plain(text, path).get("parts")
+    block = plain(parse_source(text, path, "a configuration is a mapping that starts with `scene:`").tree).get("parts")
     return cast("dict[int, Any]", block) if isinstance(block, dict) else {}
 
 
@@ -142,18 +138,13 @@ def renumbered(text: str, path: Path, before: Sequence[Before], found: Sequence[
     A part that is new has the height of the one that it was cut from, and no name.
     Raises: ConfigError where `parts:` does not stand in lines of its own.
     """
-    text = text if text.endswith("\n") else f"{text}\n"
     said = said_of_parts(text, path)
     parts = {number: _of(said, each) for number, each in enumerate(before)}
-    lines = "".join(f"{line}\n" for line in _lines(parts, before, found))
-    changed, times = BLOCK.subn(lambda _: f"parts:\n{lines}", text, count=1)
-    if not times or _plain(changed, path) != {**_plain(text, path), "parts": parts}:
-        raise ConfigError(f"{path}: `parts:` is no block of lines, a part each; number them by hand, as the table says")
-    return changed
-
-
-def _plain(text: str, path: Path) -> dict[Any, Any]:
-    return dict(plain(parse_source(text, path, "a configuration is a mapping that starts with `scene:`").tree))
+    comments = {part.number: _comment(was, part) for was, part in zip(before, found, strict=True)}
+    try:
+        return with_parts(text, path, parts, comments)
+    except ConfigError as error:
+        raise ConfigError(f"{error}; number them by hand, as the table says") from error
 
 
 def _of(said: Mapping[int, Any], before: Before) -> Any:
@@ -163,21 +154,9 @@ def _of(said: Mapping[int, Any], before: Before) -> Any:
     return {"name": ""} if height is None else {"name": "", "height_m": height}
 
 
-def _lines(parts: Mapping[int, Any], before: Sequence[Before], found: Sequence[ListedPart]) -> Iterator[str]:
-    heads = [f"  {number}: {_flow(choice)}" for number, choice in parts.items()]
-    wide = max(map(len, heads))
-    for head, was, part in zip(heads, before, found, strict=True):
-        new = f"new, cut from what was {was.cut_from}" if was.number is None else ""
-        yield f"{head:<{wide}}   # {', '.join(filter(None, [part.where, new]))}"
-
-
-def _flow(value: Any) -> str:
-    """As YAML on one line."""
-    if isinstance(value, dict):
-        return f"{{{', '.join(f'{key}: {_flow(each)}' for key, each in _block(value).items())}}}"
-    if isinstance(value, str) and LENGTH.fullmatch(value):
-        return value
-    return json.dumps(value, ensure_ascii=False)
+def _comment(before: Before, part: ListedPart) -> str:
+    new = f", new, cut from what was {before.cut_from}" if before.number is None else ""
+    return f"{part.where}{new}"
 
 
 def _block(choice: Any) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from typing import Any, cast
 from tangible_core.data import Outcome, Record
 from tangible_core.errors import OutputError, TangibleError, shown
 from tangible_core.metrics import disparity_errors
-from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache, write_record
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.registry import default_registry

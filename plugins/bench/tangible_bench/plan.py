@@ -6,7 +6,7 @@ from typing import Any
 
 from tangible_core.data import digest_of
 from tangible_core.errors import ConfigError, TangibleError
-from tangible_core.pipeline.config.config import NamedMethod
+from tangible_core.pipeline.config.methods import NamedMethod
 from tangible_core.plugins.interfaces import Method
 from tangible_core.provenance.closure import closure
 from tangible_core.provenance.versions import versions

@@ -1,4 +1,4 @@
-"""A pipeline file that is edited key by key, with its own comments and in its own order."""
+"""Changes to a pipeline file, key by key, that keep its comments and its order."""
 
 import os
 from collections.abc import Iterable, Mapping
@@ -12,25 +12,29 @@ from ...errors import ConfigError, quoted
 from ...files.editing import REMOVE, Changes, change_text
 from ...files.paths import as_path
 from ...files.source import Location, parse_override, parse_source, plain
-from .config import STAGES, PipelineConfig, exporter_at, shorthand
+from .keys import MethodBlock, MethodList
+from .keys.method import index_of
+from .model import KEYS, PipelineConfig
+from .parsing import EXPECTED, shorthand
 from .scene_readers import scene_reader_of
 
 __all__ = ["REMOVE", "Changes", "edited", "moved", "said", "with_overrides"]
 
 
 def edited(text: str, path: Path, changes: Changes) -> str:
-    """A pipeline file's text in which these keys say that; comments elsewhere, and the order, stay.
+    """Return a pipeline file's text with other values of these keys; comments elsewhere, and the order, stay.
 
-    Another `depth.use` clears the options of the method before. A stage that is None goes, as with `REMOVE`. The key
-    `export.NAME.key` is of the exporter of that name, which is listed if it is not yet.
-    path: what complaints name. Nothing is checked but that it is YAML: see `parse_config`.
-    Raises: ConfigError if the text is no YAML, or a key leads into a list; ArgumentError for what JSON cannot say.
+    Another `depth.use` clears the options of the method before. A stage that is None is removed, as with `REMOVE`. The
+    key `export.NAME.key` is an option of the exporter of that name, which is listed if it is not yet.
+    path: the name in complaints. Nothing is checked but that it is YAML: see `parse_config`.
+    Raises: ConfigError if the text is not YAML, or a key leads into a list; ArgumentError for values that JSON has not.
     """
     changes = {key: REMOVE if value is None and _is_stage(key) else value for key, value in changes.items()}
-    within = {key: value for key, value in changes.items() if _is_within_exporter(key)}
+    within = {key: value for key, value in changes.items() if _is_within_list(key)}
     text = change_text(text, path, {key: value for key, value in changes.items() if key not in within}, shorthand)
     for key, value in within.items():
-        text = change_text(text, path, {("export",): _exporters_with(text, path, _parts_of(key), value)})
+        parts = _parts_of(key)
+        text = change_text(text, path, {parts[:1]: _list_with(text, path, parts, value)})
     return text
 
 
@@ -38,19 +42,20 @@ def _parts_of(key: str | Location) -> Location:
     return tuple(key.split(".")) if isinstance(key, str) else tuple(key)
 
 
-def _is_within_exporter(key: str | Location) -> bool:
+def _is_within_list(key: str | Location) -> bool:
+    """Whether the key is an option of a method in a list, such as `export.swell.page`."""
     parts = _parts_of(key)
-    return len(parts) > 2 and parts[0] == "export"
+    return len(parts) > 2 and isinstance(KEYS.get(parts[0]), MethodList)
 
 
-def _exporters_with(text: str, path: Path, parts: Location, value: Any) -> list[Any]:
-    """The whole list of exporters in which an option of one says that."""
-    listed = plain(parse_source(text, path, "it is a mapping", empty=True).tree.get("export") or [])
+def _list_with(text: str, path: Path, parts: Location, value: Any) -> list[Any]:
+    """Return the whole list of methods with another value of one option."""
+    listed = plain(parse_source(text, path, "it is a mapping", empty=True).tree.get(parts[0]) or [])
     if not isinstance(listed, list):
-        raise ConfigError(f"{path}: export: takes a list of exporters, not {quoted(listed)}")
-    found = cast("list[Any]", listed)
-    index, keys = exporter_at(found, str(parts[1])), parts[2:]
-    block = found[index] = {"use": found[index]} if isinstance(found[index], str) else dict(found[index])
+        raise ConfigError(f"{path}: {parts[0]}: takes a list of methods, not {quoted(listed)}")
+    methods = cast("list[Any]", listed)
+    index, keys = index_of(methods, str(parts[1])), parts[2:]
+    block = methods[index] = {"use": methods[index]} if isinstance(methods[index], str) else dict(methods[index])
     if keys == ("use",) and block.get("use") != value:
         block.clear()
     for key in keys[:-1]:
@@ -59,15 +64,15 @@ def _exporters_with(text: str, path: Path, parts: Location, value: Any) -> list[
         block.pop(keys[-1], None)
     else:
         block[keys[-1]] = value
-    return found
+    return methods
 
 
 def _is_stage(key: Any) -> bool:
-    return ".".join(map(str, _parts_of(key))) in STAGES
+    return isinstance(KEYS.get(".".join(map(str, _parts_of(key)))), MethodBlock)
 
 
 def with_overrides(text: str, path: Path, overrides: Iterable[str]) -> str:
-    """The text with what `key.key=value` says, each as `--set` takes it. Raises: ConfigError as `edited`."""
+    """Return the text with these overrides, `key.key=value` as `--set` takes them. Raises: ConfigError as `edited`."""
     for each in overrides:
         parts, value = parse_override(each)
         text = edited(text, path, {parts: plain(value)})
@@ -75,16 +80,16 @@ def with_overrides(text: str, path: Path, overrides: Iterable[str]) -> str:
 
 
 def said(text: str, path: Path) -> dict[str, Any]:
-    """What a pipeline file says, as plain values that JSON can say, whether it is right or wrong.
+    """Read a pipeline file as plain values that JSON has, whether they are right or wrong.
 
-    Raises: ConfigError if it is no YAML, or no mapping.
+    Raises: ConfigError if it is not YAML, or not a mapping.
     """
-    source = parse_source(text, path, "a configuration is a mapping that starts with `scene:`", empty=True)
+    source = parse_source(text, path, EXPECTED, empty=True)
     return _as_json(plain(source.tree))
 
 
 def _as_json(node: Any) -> Any:
-    """Keys are words there, and what is no number is a word."""
+    """Return a value for JSON, whose keys are words; NaN and infinity become words."""
     if isinstance(node, dict):
         return {str(key): _as_json(value) for key, value in cast("dict[Any, Any]", node).items()}
     if isinstance(node, list):
@@ -95,15 +100,13 @@ def _as_json(node: Any) -> Any:
 
 
 def moved(text: str, path: Path, config: PipelineConfig, out: Path) -> str:
-    """A pipeline file's text as it reads where it is to stand: its relative paths lead to the same files from there.
+    """Return a pipeline file's text for another place, from which its relative paths lead to the same files.
 
-    config: what the text says at `path`.
+    config: the configuration of the text at `path`.
     """
     if out.parent.absolute() == path.parent.absolute():
         return text
-    methods = {(kind,): chosen.method for kind in STAGES if (chosen := getattr(config, kind))}
-    exporters = {("export", index): each.method for index, each in enumerate(config.export)}
-    blocks = {("scene",): config.scene, ("materials",): config.materials, **methods, **exporters}
+    blocks = {place: each for name, key in KEYS.items() for place, each in key.models(getattr(config, name)).items()}
     tree, folder = said(text, path), out.parent.resolve()
     return edited(text, path, {**dict(_lead_elsewhere(tree, blocks, folder)), **_scene_elsewhere(tree, path, folder)})
 
@@ -122,7 +125,7 @@ def _scene_elsewhere(tree: Mapping[str, Any], path: Path, folder: Path) -> Mappi
 def _lead_elsewhere(
     tree: Mapping[str, Any], blocks: Mapping[Location, Any], folder: Path
 ) -> Iterable[tuple[Location, str]]:
-    """Keys of relative paths, and what they are from this folder."""
+    """Find the keys of relative paths, and these paths from another folder."""
     for key, model in blocks.items():
         block: Any = tree
         for part in key:

@@ -4,7 +4,6 @@ import logging
 from collections.abc import Callable, Generator, Iterable, Mapping
 from contextlib import contextmanager
 from copy import copy
-from dataclasses import replace
 from functools import cached_property
 from threading import Event
 from time import perf_counter
@@ -20,7 +19,8 @@ from ...plugins.registry import Registry
 from ...runtime.stopping import check_stopped, stoppable
 from ...runtime.threads import limited_threads
 from ...scene.scene import Scene
-from ..config.config import PRODUCTS, NamedMethod, PipelineConfig
+from ..config.methods import NamedMethod
+from ..config.model import PRODUCTS, PipelineConfig
 from .cache import Cache, Notes
 from .rules import Rule, given_key, made_key, rules
 
@@ -149,7 +149,7 @@ class Engine:
     def touch_on(self, device: HapticDevice) -> Any:
         """A touch for a device that the configuration does not name; all else is shared. Raises: as `make`."""
         other = copy(self)
-        other.config = replace(self.config, device=NamedMethod("", "", device))
+        other.config = self.config.changed(device=NamedMethod("", "", device))
         other.__dict__.pop("_rules", None)
         other._made = {product: made for product, made in self._made.items() if product != "touch"}
         touch = other.make("touch")

@@ -16,7 +16,8 @@ from ...scene.geometry import ValueRange
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
 from ...session.film import FrameMaker, Reliefs
-from ..config.config import NamedMethod, PipelineConfig
+from ..config.methods import NamedMethod
+from ..config.model import PipelineConfig
 from .engine import Engine
 from .felt import FeltScene
 from .rules import estimated, fitted, in_pictures_pixels, relief_of

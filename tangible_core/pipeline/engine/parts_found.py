@@ -12,8 +12,9 @@ from ...errors import PictureError
 from ...materials.rules import MaterialRule
 from ...parts import find_parts, part_sizes
 from ...plugins.notes import note
-from ..config.config import ROUNDING_M, PipelineConfig
-from ..config.parts_said import Said, called, names_of, numbers_of
+from ..config.model import PipelineConfig
+from ..config.part_checks import ROUNDING_M
+from ..config.part_names import Wrong, names_of, numbers_of, part_in_words
 
 log = logging.getLogger(__name__)
 
@@ -83,19 +84,19 @@ def check_numbers(config: PipelineConfig, count: int) -> None:
         raise config.complained(*wrong)
 
 
-def _wrong_numbers(config: PipelineConfig, count: int) -> Iterator[Said]:
+def _wrong_numbers(config: PipelineConfig, count: int) -> Iterator[Wrong]:
     there = f"the parts are 0 to {count - 1}" if count > 1 else "there is one alone, 0"
     there = f"{there} (`tangible parts` draws them with their numbers)"
     names = config.part_names
     for number in config.parts or {}:
         if number >= count:
-            yield ("parts", number), f"there is no {called(number, names.get(number, ''))}; {there}"
+            yield ("parts", number), f"there is no {part_in_words(number, names.get(number, ''))}; {there}"
     for index, rule in enumerate(config.materials.rules):
         if isinstance(rule.part, int) and rule.part >= count:
-            yield ("materials", "rules", index, "part"), f"there is no {called(rule.part)}; {there}"
+            yield ("materials", "rules", index, "part"), f"there is no {part_in_words(rule.part)}; {there}"
 
 
-def _wrong_heights(config: PipelineConfig, parts: PartMap, columns: int) -> Iterator[Said]:
+def _wrong_heights(config: PipelineConfig, parts: PartMap, columns: int) -> Iterator[Wrong]:
     if config.heights is None:
         return
     top_m, size, names = config.top_m, config.size, config.part_names
@@ -105,8 +106,8 @@ def _wrong_heights(config: PipelineConfig, parts: PartMap, columns: int) -> Iter
             place = place_of(parts, number, columns / parts.labels.shape[1])
             yield (
                 ("parts", number, "height_m"),
-                f"{called(number, names.get(number, ''))}, at {place} of the picture, is {_mm(height_m)} high, and "
-                f"the highest can be {_mm(top_m)}: workspace.relief_m, {_mm(size.relief_m)}, less bulge_m and "
+                f"{part_in_words(number, names.get(number, ''))}, at {place} of the picture, is {_mm(height_m)} high, "
+                f"and the highest can be {_mm(top_m)}: workspace.relief_m, {_mm(size.relief_m)}, less bulge_m and "
                 f"detail_m, {_mm(above_m)}; make it lower, or workspace.relief_m {_mm(height_m + above_m)}",
             )
 
@@ -134,7 +135,7 @@ def reasons_with_names(config: PipelineConfig, found: MaterialMap) -> MaterialMa
     reasons = list(found.reasons)
     for number, name in config.part_names.items():
         if number < len(reasons):
-            reasons[number] = called(number, name) + reasons[number].removeprefix(called(number))
+            reasons[number] = part_in_words(number, name) + reasons[number].removeprefix(part_in_words(number))
     return replace(found, reasons=tuple(reasons))
 
 

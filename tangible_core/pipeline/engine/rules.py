@@ -37,8 +37,9 @@ from ...scene import geometry, scaling, unmatched, view_order
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
 from ...scene.workspace import FeltSize
-from ..config import parts_said
-from ..config.config import NamedMethod, PipelineConfig
+from ..config.methods import NamedMethod
+from ..config.model import PipelineConfig
+from ..config.part_names import names_of
 from . import felt, layers, parts_found
 from .cache import Cache
 from .felt import FeltScene
@@ -241,8 +242,8 @@ def _simplified(config: PipelineConfig, grid: FeltScene, unsegmented: str | None
 
     def make(inputs: Inputs) -> PartMap:
         parts: PartMap = inputs["parts"]
-        called = parts_said.names_of(config.parts or {}, parts.count)
-        return simplify(parts, width_m, choice, called, grid.views.left if grid.views else None)
+        named = names_of(config.parts or {}, parts.count)
+        return simplify(parts, width_m, choice, named, grid.views.left if grid.views else None)
 
     skip = f"there are no segments: {unsegmented}" if unsegmented and not config.by_parts else None
     key = f"{_core(simplify.__module__)} {width_m} {choice!r} {sorted(names.items())} {grid.key}"

@@ -24,7 +24,8 @@ from ...plugins.registry import Registry
 from ...runtime.stopping import check_stopped, stoppable
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
-from ..config.config import NamedMethod, PipelineConfig
+from ..config.methods import NamedMethod
+from ..config.model import PipelineConfig
 from ..engine.engine import Engine, Progress, Stage
 from .export_folder import check_writable, check_written, move, scratch
 from .legible import judged, names, of_width

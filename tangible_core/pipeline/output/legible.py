@@ -1,7 +1,6 @@
 """Whether fingers can read what a pipeline makes, of the width that it has or is to have."""
 
 from collections.abc import Collection, Mapping
-from dataclasses import replace
 from typing import Any
 
 from ...data import PartMap, Record
@@ -9,8 +8,8 @@ from ...errors import ConfigError, quoted
 from ...legibility import Legibility, legibility
 from ...plugins.interfaces import Medium
 from ...scene.workspace import Workspace
-from ..config.config import PipelineConfig
-from ..config.parts_said import names_of
+from ..config.model import PipelineConfig
+from ..config.part_names import names_of
 from ..engine.engine import Engine
 from ..engine.felt import FeltScene
 
@@ -48,7 +47,7 @@ def of_width(engine: Engine, width_m: float | None) -> Engine:
         workspace = Workspace.model_validate({**dict(config.workspace), "width_m": width_m, "finest_m": finest_m})
     except ValueError as error:
         raise ConfigError(f"width_m: is {quoted(width_m)}; a width is from 1e-6 to 10 m") from error
-    return engine.changed(replace(config, workspace=workspace))
+    return engine.changed(config.changed(workspace=workspace))
 
 
 def names(config: PipelineConfig, products: Mapping[str, Record | None]) -> tuple[str, ...]:

@@ -1,12 +1,14 @@
 """The parts and their heights as they were found, as a pipeline file to correct."""
 
-import json
-from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 from ...data import DisparityMap, PartMap
 from ...errors import ConfigError, shown
+from ...files.editing import on_one_line
+from ...files.parts_block import with_parts
 from ...parts import PartChoice, PartHeights
-from ..config.config import PipelineConfig
+from ..config.model import PipelineConfig
 from ..engine import rules
 from ..engine.engine import Engine
 from ..engine.felt import FeltScene
@@ -39,26 +41,28 @@ def to_correct(engine: Engine) -> str:
     Where no file can say the rest, as of a scene of arrays, only the parts and `heights:`.
     Raises: ConfigError where the relief is not made of parts; TangibleError as `Engine.make`.
     """
-    config, found = engine.config, part_heights(engine)
-    if config.heights is None or found is None:
+    config, heights = engine.config, part_heights(engine)
+    if config.heights is None or heights is None:
         raise ConfigError("no part has a height: the relief is not made of parts; say how it is: heights={'by': ...}")
-    block = "\n".join(_lines(config, found))
     try:
         rest = config.as_yaml(leave_out=("parts", "heights"))
     except ConfigError:
         rest = ""
     head = f"# {SOURCES[config.heights.by]} Correct what is wrong, and give names.\n"
-    return f"{head}{rest}{block}\n"
-
-
-def _lines(config: PipelineConfig, found: PartHeights) -> Iterator[str]:
-    assert config.heights is not None
-    yield "parts:"
-    for number, (height_m, why) in enumerate(zip(found.heights_m, found.reasons, strict=True)):
-        choice = (config.parts or {}).get(number, PartChoice())
-        said = {"name": choice.name.strip(), "height_m": height_m, "material": choice.material}
-        told = ((key, json.dumps(value, ensure_ascii=False)) for key, value in said.items() if value is not None)
-        words = ", ".join(f"{key}: {value}" for key, value in told)
-        yield f"  {number}: {{{words}}}  # {shown(why, MOST_REASON)}"
     given = config.heights.model_copy(update={"by": "given"}).model_dump(mode="json")
-    yield f"heights: {{{', '.join(f'{key}: {value}' for key, value in given.items())}}}"
+    reasons = {number: shown(why, MOST_REASON) for number, why in enumerate(heights.reasons)}
+    parts = with_parts(rest, Path(), _corrected(config, heights), reasons)
+    return f"{head}{parts}heights: {on_one_line(given)}\n"
+
+
+def _corrected(config: PipelineConfig, heights: PartHeights) -> dict[int, dict[str, Any]]:
+    """Return the block of each part, with the height that it has now."""
+    choices = {number: (config.parts or {}).get(number, PartChoice()) for number in range(len(heights.heights_m))}
+    return {
+        number: {
+            "name": choice.name.strip(),
+            "height_m": heights.heights_m[number],
+            **({} if choice.material is None else {"material": choice.material}),
+        }
+        for number, choice in choices.items()
+    }

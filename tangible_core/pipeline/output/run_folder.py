@@ -19,7 +19,7 @@ from ...errors import OutputError
 from ...files.content import content_digest
 from ...files.reading import MOST_TEXT_BYTES, read_bytes
 from ...files.writing import write_text
-from ..config.config import PRODUCTS
+from ..config.model import PRODUCTS
 
 MANIFEST = "manifest.json"
 CONFIG, NO_CONFIG, OUTCOMES = "config.yaml", "config.txt", "outcomes.json"

@@ -10,8 +10,9 @@ from tangible_core import Workspace, load_method
 from tangible_core.errors import ConfigError
 from tangible_core.mapping import WorkspaceMapping
 from tangible_core.materials.files import parse_materials
-from tangible_core.pipeline.config.config import parse_config
-from tangible_core.pipeline.config.schema import json_schema, markdown
+from tangible_core.pipeline.config.markdown import markdown
+from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.pipeline.config.schema import json_schema
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles
 from tangible_core.servo import Safety

@@ -1,7 +1,6 @@
 """Parts in a pipeline: heights, names and materials of the pieces of a small picture that anybody can check."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -235,7 +234,7 @@ class TestCached:
         first = load_pipeline(written(folder, f"{SAID}heights: given\n"))
         first.cache = None
         first.make("surface")
-        config = replace(first.config, parts={**(first.config.parts or {}), 0: PartChoice(name="sky")})
+        config = first.config.changed(parts={**(first.config.parts or {}), 0: PartChoice(name="sky")})
         again = first.changed(config)
         assert again.surface.names is not None and again.surface.names[0] == "sky"
         assert again.materials is not None and "part 0 (sky)" in again.materials.reasons[0]
@@ -446,9 +445,9 @@ class TestComplaints:
     @pytest.mark.parametrize(
         ("parts", "says"),
         [
-            (["wall"], "parts: is the list ['wall']; it must be a mapping from the number of a part"),
-            ({"0": "wall"}, "parts: the number of a part is a whole number from 0, not '0'"),
-            ({0: 3}, "parts.0: takes a PartChoice or a mapping of its options, not 3"),
+            (["wall"], "parts: takes a mapping from the number of a part to its name"),
+            ({"0": "wall"}, "parts.0: the number of a part is a whole number from 0, not '0'"),
+            ({0: 3}, "parts.0: takes the name of a part, or {name: ..., height_m"),
             ({0: {"heigth_m": 1}}, "parts.0.heigth_m: "),
             ({0: {"height_m": np.nan}}, "parts.0.height_m: Input should be a finite number"),
             ({0: "a", 1: "A"}, "parts.1.name: 'A' is the name of part 0 as well"),
@@ -573,7 +572,7 @@ class TestWritten:
         assert again.surface.digest() == first.surface.digest()
         np.testing.assert_array_equal(again.surface.height_m, first.surface.height_m)
         line = next(each for each in file.read_text(encoding="utf-8").splitlines() if each.startswith("  3: "))
-        assert line.startswith('  3: {name: "Truhe", height_m: 0.00') and 'material: "glass"}  # guessed, ' in line
+        assert line.startswith("  3: {name: Truhe, height_m: 0.00") and "material: glass}   # guessed, " in line
         rerun = again.run(folder / "out")
         assert not file.exists() and file not in rerun.files
 

@@ -8,7 +8,7 @@ import pytest
 from command_line import tangible
 from pictures import write_png
 from tangible_core.errors import ConfigError
-from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.starter import are_pictures, starter
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles

@@ -246,7 +246,7 @@ def test_parts_in_one_line_are_left_to_the_user(folder: Path):
     paint(folder / "parts.png", (110, 0, 160, 40), 20)
     before, drawn = file.read_text(), (folder / "parts-numbered.png").read_bytes()
     done = tangible("parts", "still.yaml", "--renumber", cwd=folder)
-    assert done.returncode == 2 and "`parts:` is no block of lines" in done.stderr, done.stderr
+    assert done.returncode == 2 and "`parts:` is not a block of lines" in done.stderr, done.stderr
     assert (file.read_text(), (folder / "parts-numbered.png").read_bytes()) == (before, drawn)
 
 

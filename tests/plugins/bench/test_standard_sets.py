@@ -7,8 +7,9 @@ import pytest
 
 from standard_sets import LAYOUTS, known
 from tangible_core.errors import ConfigError
-from tangible_core.pipeline.config.config import PipelineConfig, parse_config
 from tangible_core.pipeline.config.editing import moved
+from tangible_core.pipeline.config.model import PipelineConfig
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles

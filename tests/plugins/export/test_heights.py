@@ -10,7 +10,7 @@ from PIL import Image
 
 from tangible_core import Pipeline, Relief, Scene, Work, Workspace
 from tangible_core.errors import ConfigError, PictureError
-from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_export import Heights
 

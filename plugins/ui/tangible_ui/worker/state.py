@@ -8,7 +8,8 @@ from typing import Any, Protocol, final
 from weakref import WeakKeyDictionary
 
 from tangible_core.errors import Stopped
-from tangible_core.pipeline.config.config import PipelineConfig, parse_config
+from tangible_core.pipeline.config.model import PipelineConfig
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.engine import Stage
 from tangible_core.pipeline.pipeline import Pipeline

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.errors import Complaint, ConfigError
-from tangible_core.pipeline.config.config import load_config, parse_config
+from tangible_core.pipeline.config.parsing import load_config, parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles
 

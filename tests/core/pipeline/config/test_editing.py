@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.errors import ConfigError, TangibleError
-from tangible_core.pipeline.config.config import parse_config
 from tangible_core.pipeline.config.editing import REMOVE, edited, said
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 
 PATH = Path("here/p.yaml")
@@ -134,8 +134,9 @@ def test_exporters_stay_where_something_else_changes():
 
 def test_relative_files_of_an_exporter_lead_to_the_same_from_elsewhere(tmp_path: Path):
     from tangible_core import Exporter
-    from tangible_core.pipeline.config.config import NamedMethod, PipelineConfig
     from tangible_core.pipeline.config.editing import moved
+    from tangible_core.pipeline.config.methods import NamedMethod
+    from tangible_core.pipeline.config.model import PipelineConfig
 
     class Framed(Exporter):
         frame: Path = Path()
@@ -148,7 +149,7 @@ def test_relative_files_of_an_exporter_lead_to_the_same_from_elsewhere(tmp_path:
         NamedMethod("heights", "", Framed()),
         NamedMethod("framed", "", Framed(frame=tmp_path / "frames/oak.svg")),
     )
-    config = PipelineConfig("builtin/coins", export=exporters)
+    config = PipelineConfig(scene="builtin/coins", export=exporters)
     found = moved(text, tmp_path / "p.yaml", config, tmp_path / "sub" / "p.yaml")
     assert found == text.replace("frames/", "../frames/")
 

@@ -6,8 +6,9 @@ import pytest
 
 from tangible_core.errors import Complaint, ConfigError
 from tangible_core.parts import HeightChoice, PartChoice
-from tangible_core.pipeline.config.config import PipelineConfig, parse_config
 from tangible_core.pipeline.config.editing import REMOVE, edited
+from tangible_core.pipeline.config.model import PipelineConfig
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 
 PATH = Path("here/p.yaml")

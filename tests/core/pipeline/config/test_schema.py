@@ -9,14 +9,9 @@ from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
 from tangible_core.errors import UnknownMethod
-from tangible_core.pipeline.config.config import parse_config
-from tangible_core.pipeline.config.schema import (
-    json_schema,
-    markdown,
-    materials_schema,
-    method_schema,
-    stage_schema,
-)
+from tangible_core.pipeline.config.markdown import markdown
+from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.pipeline.config.schema import json_schema, materials_schema, method_schema, stage_schema
 from tangible_core.plugins.registry import Registry, default_registry
 
 ROOT = Path(__file__).parents[4]

@@ -9,7 +9,9 @@ import pytest
 from tangible_core import load_method
 from tangible_core.data import DisparityMap, SegmentMap, Views
 from tangible_core.materials.rules import MaterialRule
-from tangible_core.pipeline.config.config import PRODUCTS, MaterialChoice, NamedMethod, PipelineConfig
+from tangible_core.pipeline.config.material_choice import MaterialChoice
+from tangible_core.pipeline.config.methods import NamedMethod
+from tangible_core.pipeline.config.model import PRODUCTS, PipelineConfig
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.engine import Engine
 from tangible_core.plugins.interfaces import DepthEstimator, Segmenter

@@ -11,7 +11,9 @@ import pytest
 from pictures import write_png
 from tangible_core.data import DisparityMap, Force, HapticState, HapticSurface, Note, SegmentMap, Views
 from tangible_core.errors import BrokenMethod, ConfigError, GeometryError, PictureError, UnknownMethod
-from tangible_core.pipeline.config.config import MaterialChoice, NamedMethod, PipelineConfig
+from tangible_core.pipeline.config.material_choice import MaterialChoice
+from tangible_core.pipeline.config.methods import NamedMethod
+from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.engine import Engine
 from tangible_core.plugins import hooks

@@ -26,7 +26,7 @@ import numpy as np
 from numba.core.dispatcher import Dispatcher
 from tangible_core.data import DisparityMap
 from tangible_core import Scene
-from tangible_core.pipeline.config.config import load_config
+from tangible_core.pipeline.config.parsing import load_config
 from tangible_core.pipeline.engine.engine import Engine
 from tangible_core.pipeline.engine.warm_up import rehearsal, _work
 from tangible_core.plugins.registry import default_registry
@@ -46,7 +46,7 @@ Dispatcher.add_overload = told
 views = engine.scene.views
 rows, columns = np.indices(views.shape, np.float32)
 scene = replace(engine.scene, disparity=DisparityMap(6 + 40 * (rows / rows.max()) * (columns / columns.max())))
-real = Engine(replace(config, scene=scene), default_registry())
+real = Engine(config.changed(scene=scene), default_registry())
 touch = real.make("touch")
 recording = run_simulated(touch, config.felt_device, 1.0, limits=config.safety)
 print(json.dumps([said, added, bool(np.any(recording.force_n))]))

@@ -27,7 +27,8 @@ from tangible_core import (
 from tangible_core.data import TICK_COLUMNS, PartMap
 from tangible_core.errors import ConfigError, OutputError, PictureError, Stopped, UnknownMethod
 from tangible_core.parts import reduced_parts
-from tangible_core.pipeline.config.config import PRODUCTS, parse_config
+from tangible_core.pipeline.config.model import PRODUCTS
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.felt import parts_on_grid
 from tangible_core.pipeline.output.export_folder import move, read_list

@@ -14,7 +14,7 @@ from pictures import write_png
 from tangible_core import Pipeline, Scene
 from tangible_core.errors import ConfigError, PictureError
 from tangible_core.files import reading
-from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.rig import Camera, StereoRig
 from tangible_core.scene.scene_files import SceneFiles

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from tangible_core.data import DeviceSpec, TickFlag
 from tangible_core.errors import ConfigError
-from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.servo.guard import guard, layout
 from tangible_core.servo.guard.safety import (

@@ -10,7 +10,7 @@ import pytest
 
 from tangible_core import HapticSurface, load_method
 from tangible_core.errors import DeviceError
-from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.session import run_simulated
 from tangible_devices.falcon.falcon_simulated import FalconSimulated

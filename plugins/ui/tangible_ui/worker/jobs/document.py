@@ -11,8 +11,8 @@ from tangible_core.errors import Complaint, ConfigError, quoted
 from tangible_core.files.source import parse_value, plain, read_text
 from tangible_core.files.writing import write_text
 from tangible_core.materials.assignment import load_library
-from tangible_core.pipeline.config.config import parse_config
 from tangible_core.pipeline.config.editing import REMOVE, edited, moved, said, with_overrides
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.config.schema import json_schema
 from tangible_core.pipeline.starter import MAPS, PICTURES, VIDEOS, are_pictures, starter
 from tangible_core.scene.scene_files import BUILTINS

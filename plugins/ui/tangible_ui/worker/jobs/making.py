@@ -9,7 +9,7 @@ import numpy as np
 
 from tangible_core.data import Outcome, Plan
 from tangible_core.errors import TangibleError
-from tangible_core.pipeline.config.config import PRODUCTS
+from tangible_core.pipeline.config.model import PRODUCTS
 from tangible_core.pipeline.engine.engine import Progress, Stage
 from tangible_core.pipeline.pipeline import Pipeline
 

@@ -1,7 +1,6 @@
 """Jobs of the parts editor: open it, propose a part, follow edges, feel heights, save what was drawn."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ from tangible_core.data import HapticSurface, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.errors import ConfigError
 from tangible_core.parts import PartChoice, find_parts
-from tangible_core.pipeline.config.config import parse_config
+from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine import felt as on_grid
 from tangible_core.pipeline.engine import parts_found
 from tangible_core.pipeline.engine.parts_found import check_found
@@ -52,7 +51,7 @@ def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str
     opened, config = opened_of(bench, pipeline), pipeline.config
     at = f"{FOLDER}{digest_of((opened.picture, opened.parts))}"
     leave_files(opened, bench.folder / at)
-    by_parts = replace(config, heights=config_heights(config))
+    by_parts = config.changed(heights=config_heights(config))
     rows, columns = opened.parts.labels.shape
     return {
         "columns": columns,
@@ -169,7 +168,7 @@ def parts_heights(
         raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
     kept = kept_of(bench, pipeline.changed(config))
     said = {number: checked(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
-    parts_found.check_found(replace(config, parts=said), kept.parts, kept.grid.scene.shape[1])
+    parts_found.check_found(config.changed(parts=said), kept.parts, kept.grid.scene.shape[1])
     known = known_heights(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
     relief = on_grid.layered(kept.layering, known, config.size, kept.grid.shown)
     own = parts_found.own_materials(config) if materials is None else dict(enumerate(materials))

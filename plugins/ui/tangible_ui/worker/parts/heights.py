@@ -6,7 +6,7 @@ than MOST_CELLS it is felt on a coarser grid until it is saved: a hand that drag
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import ceil, sqrt
 from typing import Any, TypeVar
 
@@ -17,7 +17,8 @@ from tangible_core.data import HapticSurface, Material, PartMap
 from tangible_core.errors import ConfigError
 from tangible_core.materials.assignment import find, load_library
 from tangible_core.parts import HeightChoice, Layering, PartChoice
-from tangible_core.pipeline.config.config import PipelineConfig, wrong_of_parts
+from tangible_core.pipeline.config.model import PipelineConfig
+from tangible_core.pipeline.config.part_checks import wrong_of_parts
 from tangible_core.pipeline.engine import felt as on_grid
 from tangible_core.pipeline.engine.rules import part_heights
 from tangible_core.pipeline.pipeline import Pipeline
@@ -58,7 +59,7 @@ def of_parts(config: PipelineConfig, heights: Mapping[str, Any] | None) -> Pipel
     """The configuration with a relief of parts, as it is once all their heights are given."""
     choice = config_heights(config)
     told = {**choice.model_dump(), **(heights or {}), "by": "given"}
-    return replace(config, heights=checked(HeightChoice, told), parts=config.parts or {})
+    return config.changed(heights=checked(HeightChoice, told), parts=config.parts or {})
 
 
 def coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
@@ -68,7 +69,7 @@ def coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
     if factor <= felt_factor(columns, size.width_m, size.finest_m):
         return config
     finest_m = (factor + 0.01) * size.width_m / columns
-    return replace(config, workspace=config.workspace.model_copy(update={"finest_m": finest_m}))
+    return config.changed(workspace=config.workspace.model_copy(update={"finest_m": finest_m}))
 
 
 def checked(section: type[S], said: Mapping[str, Any]) -> S:
@@ -87,7 +88,7 @@ def known_heights(kept: Kept, heights_m: Sequence[float | None], by: str) -> lis
         disparity = at_hand(kept.pipeline, "disparity") if by == "depth" else None
         if by == "depth" and disparity is None:
             raise ConfigError("the picture's depth is not made yet; make it, and heights by depth are felt")
-        recipe = replace(kept.config, heights=checked(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
+        recipe = kept.config.changed(heights=checked(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
         kept.found_m[by] = part_heights(recipe, kept.grid, kept.parts, disparity).heights_m
     found_m = kept.found_m.get(by, ())
     return [found_m[number] if each is None and number < len(found_m) else each or 0.0
@@ -98,7 +99,7 @@ def kept_of(bench: Bench, pipeline: Pipeline) -> Kept:
     """What was kept, or as much of it as still holds."""
     config, before = pipeline.config, bench.kept
     named = {number: PartChoice(name=each.name) for number, each in (config.parts or {}).items() if each.name}
-    bare = replace(config, parts=named, title="", language="en", source=None)
+    bare = config.changed(parts=named, title="", language="en", source=None)
     if before is not None and before.scene is pipeline.scene and before.config == bare:
         return before
     if wrong := list(wrong_of_parts(config)):

@@ -5,7 +5,6 @@ import itertools
 import logging
 import os
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any, cast
 
@@ -14,11 +13,11 @@ from jaxtyping import Int32, Shaped, UInt16
 
 from tangible_core.data import PartMap
 from tangible_core.errors import ConfigError, quoted
-from tangible_core.files.editing import on_one_line
+from tangible_core.files.parts_block import with_parts
 from tangible_core.files.source import read_text
 from tangible_core.files.writing import atomic_write, write_text
-from tangible_core.pipeline.config.config import PipelineConfig
 from tangible_core.pipeline.config.editing import REMOVE, edited, said
+from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.scene.scene import Scene, builtin_files
 from tangible_core.scene.scene_files import BUILTINS, SceneFiles
 
@@ -99,9 +98,7 @@ def said_of_parts(
     short = {number: _short(each) for number, each in sorted(choices.items()) if each}
     before = now.get("parts")
     before = before if isinstance(before, dict) else {}
-    if "parts" in now and len(short.keys() | before.keys()) > MOST_EDITED:
-        text, before = edited(text, path, {("parts",): REMOVE}), {}
-    if not before:
+    if not before or len(short.keys() | before.keys()) > MOST_EDITED:
         return _with_block(edited(text, path, changes), path, short)
     changes |= {("parts", key): REMOVE for key in before if key not in map(str, short)}
     changes |= {("parts", str(key)): value for key, value in short.items() if before.get(str(key)) != value}
@@ -109,16 +106,14 @@ def said_of_parts(
 
 
 def _with_block(text: str, path: Path, parts: Mapping[int, Any]) -> str:
-    """With a block of parts at the end, a line each; on one line, in a document that is written so."""
+    """Return the text with a line for each part; on one line, in a document that is written so."""
     if not parts:
         return edited(text, path, {("parts",): REMOVE})
-    block = "".join(["parts:\n", *(f"  {number}: {on_one_line(value)}\n" for number, value in parts.items())])
-    bare = edited(text, path, {("parts",): REMOVE})
-    found = f"{bare}{'' if not bare or bare.endswith(chr(10)) else chr(10)}{block}"
-    with suppress(ConfigError):
-        if said(found, path) == {**said(bare, path), "parts": said(block, path)["parts"]}:
-            return found
-    return edited(bare, path, {("parts", str(number)): value for number, value in parts.items()})
+    try:
+        return with_parts(text, path, parts)
+    except ConfigError:
+        bare = edited(text, path, {("parts",): REMOVE})
+        return edited(bare, path, {("parts", str(number)): value for number, value in parts.items()})
 
 
 def _short(each: Mapping[str, Any]) -> Any:

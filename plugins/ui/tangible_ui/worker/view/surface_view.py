@@ -10,8 +10,8 @@ from jaxtyping import Float32, Int32
 from tangible_core.data import DisparityMap, HapticSurface, Material, PartMap, Relief, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.metrics import absolute_error
-from tangible_core.pipeline.config.config import PipelineConfig, Product
-from tangible_core.pipeline.config.parts_said import names_of
+from tangible_core.pipeline.config.model import PipelineConfig, Product
+from tangible_core.pipeline.config.part_names import names_of
 from tangible_core.pipeline.engine.felt import parts_on_grid
 from tangible_core.pipeline.engine.rules import fitted
 from tangible_core.pipeline.pipeline import Pipeline

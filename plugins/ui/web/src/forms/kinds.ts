@@ -134,7 +134,7 @@ function number(value: number): string {
   return String(value);
 }
 
-function sentence(name: string): string {
+export function sentence(name: string): string {
   const words = name.replaceAll("_", " ");
   return words[0].toUpperCase() + words.slice(1);
 }

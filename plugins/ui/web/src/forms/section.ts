@@ -24,7 +24,7 @@ export class SectionForm {
   constructor(private section: Section, private change: Change) {
     const heading = document.createElement("summary");
     const name = document.createElement("h3");
-    name.textContent = t(section.name);
+    name.textContent = t.has(section.name) ? t(section.name) : section.title;
     this.chosen.className = "chosen";
     heading.append(name, this.chosen);
     this.root.className = "section";
@@ -49,7 +49,7 @@ export class SectionForm {
   private block({ said }: Document): Plain | undefined {
     const block = at(said, [this.section.name]);
     if (this.section.name === "materials" && isLabels(block)) return { by: block! };
-    if (this.section.name === "heights" && typeof block === "string") return { by: block };
+    if (this.section.word && typeof block === "string") return { [this.section.word]: block };
     return typeof block === "string" && this.section.methods.length ? { use: block } : block;
   }
 

@@ -1,10 +1,11 @@
 /** The parts of a pipeline file that have a form: stages with a choice of method, and blocks. */
-import { type Option, options } from "./kinds";
+import { type Option, options, sentence } from "./kinds";
 import { alternatives, type FileSchema, type Schema } from "./schema";
 
-export const STAGES = ["depth", "texture", "render", "device"] as const;
-export const ORDER = ["depth", "texture", "heights", "simplify", "materials", "workspace", "mapping", "render", "device", "safety"] as const;
-export type SectionName = (typeof ORDER)[number];
+/** The order of the forms; a key that is not in it stands behind the others. */
+const ORDER = ["depth", "texture", "heights", "simplify", "materials", "workspace", "mapping", "render", "device", "safety"];
+/** Keys with a panel of their own. */
+const ELSEWHERE = ["scene", "parts", "export"];
 
 /** So many options are seen at once; the others are folded. */
 export const PLAIN = 4;
@@ -16,24 +17,44 @@ export interface Method {
 }
 
 export interface Section {
-  name: SectionName;
+  name: string;
+  /** The name in words, for a section that the page has no words for. */
+  title: string;
   /** Empty where nothing is to be chosen. */
   methods: Method[];
   /** Of a section without methods. */
   options: Option[];
+  /** The option that a word alone stands for. */
+  word?: string;
 }
 
+/** A section for each key of the schema that is a block of options. */
 export function sections(schema: FileSchema): Section[] {
-  return ORDER.filter((name) => schema.properties[name]).map((name) => section(name, schema));
+  const place = (name: string): number => (ORDER.includes(name) ? ORDER.indexOf(name) : ORDER.length);
+  return Object.keys(schema.properties)
+    .filter((name) => !ELSEWHERE.includes(name))
+    .map((name) => section(name, schema))
+    .filter((each) => each !== null)
+    .sort((one, other) => place(one.name) - place(other.name));
 }
 
-function section(name: SectionName, schema: FileSchema): Section {
+function section(name: string, schema: FileSchema): Section | null {
   const forms = alternatives(schema.properties[name], schema.$defs);
   const blocks = forms.filter((each) => each.properties);
-  if (!(STAGES as readonly string[]).includes(name)) {
-    return { name, methods: [], options: blocks[0] ? options(blocks[0], schema.$defs) : [] };
+  if (!blocks.length) return null;
+  const title = sentence(name);
+  if (blocks[0].properties!.use) {
+    return { name, title, options: [], methods: blocks.map((each) => method(each, schema)) };
   }
-  return { name, options: [], methods: blocks.map((each) => method(each, schema)) };
+  return { name, title, methods: [], options: options(blocks[0], schema.$defs), word: wordOf(forms, blocks[0]) };
+}
+
+/** The option that takes the same words as stand for the whole block. */
+function wordOf(forms: Schema[], block: Schema): string | undefined {
+  const words = forms.find((each) => each.enum)?.enum;
+  if (!words) return undefined;
+  const same = (option: Schema): boolean => JSON.stringify(option.enum) === JSON.stringify(words);
+  return Object.entries(block.properties!).find(([, option]) => same(option))?.[0];
 }
 
 function method(form: Schema, schema: FileSchema): Method {

@@ -1,0 +1,12 @@
+"""The kinds of keys that a pipeline file may have: how each is read, written and described."""
+
+from .block import Block as Block
+from .key import Key as Key
+from .key import Reading as Reading
+from .key import Unchecked as Unchecked
+from .method import MethodBlock as MethodBlock
+from .method import MethodList as MethodList
+from .parts import PartsBlock as PartsBlock
+from .scene import SceneBlock as SceneBlock
+from .word import NULL_IS_DEFAULT as NULL_IS_DEFAULT
+from .word import Word as Word

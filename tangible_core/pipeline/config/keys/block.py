@@ -1,0 +1,91 @@
+"""A key with a block of options, a pydantic model."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, cast, get_args
+
+from pydantic import BaseModel
+
+from ....files.source import Location, Source
+from .key import Forms, Key, Reading
+
+
+@dataclass(frozen=True)
+class Block(Key):
+    """A key with a block of options; the type of its field is the model, or the model or None."""
+
+    word: str = ""
+    """The option that a word alone stands for."""
+    labels: str = ""
+    """The option that a map whose keys are numbers stands for; in Python, a word stands for it, too."""
+    check: Callable[[Source, Location, Any], None] | None = None
+    """A check of the whole block in a file, which notes its complaints in the source."""
+
+    @property
+    def model(self) -> type[BaseModel]:
+        """The model of the options."""
+        forms = get_args(self.field.annotation) or (self.field.annotation,)
+        return next(each for each in forms if isinstance(each, type) and issubclass(each, BaseModel))
+
+    @property
+    def nullable(self) -> bool:
+        """Whether `null` switches off what the block describes."""
+        return type(None) in get_args(self.field.annotation)
+
+    def read(self, reading: Reading, block: Any) -> Any:
+        """Check the block of a file."""
+        found = self._checked(reading, block)
+        if found is not None and self.check is not None:
+            self.check(reading.source, (self.name,), found)
+        return found
+
+    def take(self, reading: Reading, value: Any) -> Any:
+        """Check a model, a mapping, or the word of an option."""
+        if isinstance(value, self.model):
+            return value
+        value = {self.labels: value} if self.labels and isinstance(value, str) else value
+        return self._checked(reading, dict(cast("Mapping[Any, Any]", value)) if isinstance(value, Mapping) else value)
+
+    def _checked(self, reading: Reading, block: Any) -> Any:
+        if block is None and self.nullable:
+            return None
+        if self.word and isinstance(block, str):
+            block = {self.word: block}
+        has_numbers = isinstance(block, dict) and any(isinstance(key, int) for key in cast("dict[Any, Any]", block))
+        if self.labels and has_numbers:
+            block = cast(Any, {self.labels: block})
+        return reading.source.model((self.name,), self.model, block)
+
+    def write(self, value: Any) -> Any:
+        """Write the options, without those that are null."""
+        return value and value.model_dump(mode="json", exclude_none=True)
+
+    def word_option(self, depth: int) -> str:
+        """Return `word` for this key."""
+        return self.word if depth == 1 else ""
+
+    def settings(self) -> Iterable[str]:
+        """Return the key of each option."""
+        alone = [f"{self.name}="] if self.word else []
+        return (*alone, *(f"{self.name}.{option}=" for option in self.model.model_fields))
+
+    def models(self, value: Any) -> Mapping[Location, BaseModel]:
+        """Return the block."""
+        return {} if value is None else {(self.name,): value}
+
+    def schema(self, forms: Forms) -> dict[str, Any]:
+        """Describe the block, and what may stand for it."""
+        block = forms.of(self.model)
+        others = list[dict[str, Any]]()
+        if self.word:
+            others.append({"enum": block["properties"][self.word]["enum"]})
+        if self.labels:
+            others.append(by_number({"type": "string"}))
+        if self.nullable:
+            others.append({"type": "null"})
+        return {"anyOf": [block, *others]} if others else block
+
+
+def by_number(value: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the JSON Schema of a map from whole numbers to such values."""
+    return {"type": "object", "patternProperties": {"^[0-9]+$": dict(value)}, "additionalProperties": False}

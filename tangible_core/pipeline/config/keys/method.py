@@ -1,0 +1,118 @@
+"""Keys that name methods: one of a kind, or a list of them."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, cast
+
+from pydantic import BaseModel
+from ruamel.yaml.comments import CommentedMap
+
+from ....errors import ConfigError, quoted
+from ....files.source import Location
+from ....plugins.interfaces import KINDS
+from ..methods import NamedMethod, choose, named_method
+from .key import Forms, Key, Reading, Unchecked
+
+
+@dataclass(frozen=True)
+class MethodBlock(Key, Unchecked):
+    """A key with one method of the kind that it is named after."""
+
+    stands_last = True
+
+    def read(self, reading: Reading, block: Any) -> Any:
+        """Make the method that the file names."""
+        return choose(reading.source, (self.name,), self.name, block, reading.registry)
+
+    def take(self, reading: Reading, value: Any) -> Any:
+        """Check the kind of a method that was made in Python."""
+        return _taken(self.name, reading, value)
+
+    def write(self, value: NamedMethod[Any]) -> Any:
+        """Write the name and all options."""
+        return value.as_written(self.name)
+
+    def word_option(self, depth: int) -> str:
+        """Return `use` for this key."""
+        return "use" if depth == 1 else ""
+
+    def settings(self) -> Iterable[str]:
+        """Return the key of the name."""
+        return (f"{self.name}.use=",)
+
+    def models(self, value: NamedMethod[Any] | None) -> Mapping[Location, BaseModel]:
+        """Return the method."""
+        return {} if value is None else {(self.name,): value.method}
+
+    def schema(self, forms: Forms) -> dict[str, Any]:
+        """Describe all methods of this kind."""
+        return forms.of_kind(self.name)
+
+
+@dataclass(frozen=True)
+class MethodList(Key, Unchecked):
+    """A key with a list of methods of the kind that it is named after."""
+
+    stands_last = True
+
+    def read(self, reading: Reading, block: Any) -> Any:
+        """Make all methods that the file lists."""
+        if block is None:
+            return ()
+        if not isinstance(block, list):
+            known = ", ".join(reading.registry.names(self.name))
+            return reading.source.complain(
+                (self.name,),
+                f"{self.name}: takes a list of {_plural(self.name)}, such as [{{use: ...}}], not {quoted(block)}; "
+                f"installed: {known}",
+            )
+        listed = enumerate(cast("list[Any]", block))
+        found = [choose(reading.source, (self.name, at), self.name, each, reading.registry) for at, each in listed]
+        return tuple(each for each in found if each is not None)
+
+    def take(self, reading: Reading, value: Any) -> Any:
+        """Check the kinds of methods that were made in Python."""
+        return tuple(_taken(self.name, reading, each) for each in value)
+
+    def write(self, value: Iterable[NamedMethod[Any]]) -> Any:
+        """Write the name and all options of each."""
+        return [each.as_written(self.name) for each in value]
+
+    def word_option(self, depth: int) -> str:
+        """Return `use` for an entry of the list."""
+        return "use" if depth == 2 else ""
+
+    def models(self, value: Iterable[NamedMethod[Any]]) -> Mapping[Location, BaseModel]:
+        """Return the methods by their places in the list."""
+        return {(self.name, index): each.method for index, each in enumerate(value)}
+
+    def schema(self, forms: Forms) -> dict[str, Any]:
+        """Describe the list."""
+        return {"anyOf": [{"type": "array", "items": forms.of_kind(self.name)}, {"type": "null"}]}
+
+
+def _taken(kind: str, reading: Reading, method: Any) -> NamedMethod[Any] | None:
+    """Return a method that was made in Python with its name; None after a complaint."""
+    try:
+        return named_method(kind, method, reading.registry)
+    except ConfigError as error:
+        return reading.source.complain((kind,), str(error))
+
+
+def _plural(kind: str) -> str:
+    return f"{KINDS[cast(Any, kind)].__name__.lower()}s"
+
+
+def index_of(listed: list[Any], name: str) -> int:
+    """Find a method in a list of a file by its name, or its number from 0; a method that is not there is added.
+
+    >>> index_of(["stl", {"use": "swell"}], "swell")
+    1
+    """
+    if name.isdecimal() and int(name) < len(listed):
+        return int(name)
+    for index, each in enumerate(listed):
+        if name == (cast("dict[Any, Any]", each).get("use") if isinstance(each, dict) else each):
+            return index
+    listed.append(CommentedMap(use=name))
+    return len(listed) - 1

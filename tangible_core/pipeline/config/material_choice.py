@@ -1,0 +1,51 @@
+"""The block `materials:`."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Tag
+
+from ...errors import ConfigError, MaterialError
+from ...files.source import Location, Source
+from ...materials.assignment import NEUTRAL, find, load_library
+from ...materials.rules import MaterialRule
+from ...scene.workspace import Section
+
+
+class MaterialChoice(Section):
+    """Which material each segment gets; each part, where `parts:` or `heights:` is."""
+
+    rules: tuple[MaterialRule, ...] = ()
+    """Rules, which decide first; of several that fit a segment or a part, the first one wins. Before them goes what
+    `parts:` says of a part itself."""
+    by: Annotated[
+        Annotated[Literal["roughness", "rules"], Tag(":word")] | Annotated[dict[int, str], Tag(":labels")],
+        Discriminator(lambda value: ":labels" if isinstance(value, dict) else ":word"),
+    ] = "roughness"
+    """How segments without a rule get a material. `roughness`: by rank, the roughest segment of the picture gets the
+    roughest material. A map: from label to material, for all parts of that segment. `rules`: not at all, they get
+    `default`."""
+    default: str = NEUTRAL
+    """Material of the segments that are left."""
+    library: Path | None = None
+    """A YAML file with materials of your own, in addition to the built-in ones."""
+    fit: Literal["device", "never"] = "device"
+    """`device`: what the device cannot hold of a material's stiffness, texture or damping is taken off that material,
+    and the outcome of the touch says so. `never`: materials stay as they are, and the guard softens the whole law."""
+
+
+def check_material_names(source: Source, location: Location, choice: MaterialChoice) -> None:
+    """Complain of materials that are not in the library; a library that cannot be read is its reader's complaint."""
+    try:
+        library = load_library(choice.library)
+    except ConfigError:
+        return
+    named: list[tuple[Location, str]] = [(("default",), choice.default)]
+    named += [(("rules", number, "material"), rule.material) for number, rule in enumerate(choice.rules)]
+    labels = ("by",) if "by" in source.tree[location[0]] else ()
+    named += [((*labels, label), name) for label, name in (choice.by.items() if isinstance(choice.by, dict) else ())]
+    for place, name in named:
+        try:
+            find(name, library)
+        except MaterialError as error:
+            source.complain((*location, *place), str(error))

@@ -1,0 +1,218 @@
+"""The pipeline file: every key that it may have, with its type, bounds, default and description.
+
+A key stands here and nowhere else: reading, completion, the completed file, JSON Schema, the reference page and the
+page's form are derived from the fields of `PipelineConfig`.
+"""
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+from re import match
+from typing import Annotated, Any, Literal, Self, get_args
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from ruamel.yaml import YAML
+
+from ...errors import ConfigError
+from ...files.source import Source
+from ...legibility.choice import SimplifyChoice
+from ...mapping import WorkspaceMapping, mapped
+from ...parts import HeightChoice, PartChoice
+from ...plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter
+from ...scene.height_files import Measured
+from ...scene.scene import Scene
+from ...scene.scene_files import SceneFiles
+from ...scene.workspace import FeltSize, Workspace, kind_of
+from ...servo.guard.safety import Safety
+from .keys import (
+    NULL_IS_DEFAULT,
+    Block,
+    MethodBlock,
+    MethodList,
+    PartsBlock,
+    SceneBlock,
+    Unchecked,
+    Word,
+)
+from .keys.key import keys_of
+from .material_choice import MaterialChoice, check_material_names
+from .methods import NamedMethod
+from .part_names import Wrong
+
+Product = Literal["disparity", "relief", "segments", "parts", "simplified", "materials", "surface", "touch"]
+PRODUCTS: tuple[Product, ...] = get_args(Product)
+
+MOST_TITLE = 200
+"""The most characters of a title: what a person reads at a glance, and what fits a line of braille or two."""
+LANGUAGE_TAG = "^[A-Za-z]{2,8}(-[A-Za-z0-9]{1,8})*$"
+"""The form of a language's tag, as BCP 47 has it."""
+
+
+def _check_tag(language: str) -> str:
+    if not match(LANGUAGE_TAG, language):
+        raise ValueError("Input should be the tag of a language, such as en, de or pt-BR")
+    return language
+
+
+class PipelineConfig(BaseModel):
+    """A checked configuration. Its fields with a marker are the keys of the pipeline file, in their order there."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    scene: Annotated[str | SceneFiles | Scene, SceneBlock()]
+    """The pictures, or the heights, that the surface is made of."""
+    title: Annotated[str, Field(max_length=MOST_TITLE, coerce_numbers_to_str=True), NULL_IS_DEFAULT, Word()] = (
+        ""  # a title may be a year
+    )
+    """What the picture is called, in words of your own; empty for the name of its file."""
+    language: Annotated[
+        str, Field(json_schema_extra={"pattern": LANGUAGE_TAG}), AfterValidator(_check_tag), NULL_IS_DEFAULT, Word()
+    ] = "en"
+    """The language of the title and of the names of parts, as a tag: `en`, `de`, `pt-BR`."""
+    want: Annotated[Product, Word()] = "surface"
+    """The product to make."""
+    parts: Annotated[
+        Mapping[int, PartChoice] | None,
+        PartsBlock("A word alone is a name (`{0: wall, 6: helmet}`), or ([more](parts.md)):"),
+    ] = None
+    """What is said of the connected parts of the segments, by number: parts are numbered from 0 in the order of their
+    first pixels, row by row. With it, materials are one a part."""
+    heights: Annotated[HeightChoice | None, Block("A word alone is `by` (`heights: given`), or:", word="by")] = None
+    """The relief is made of parts, each of one height, with rounded rims and a little of the picture's light, in place
+    of depth or brightness; `null` switches it off."""
+    simplify: Annotated[
+        SimplifyChoice | None, Block("`simplify: {}` takes the usual rules ([more](legibility.md)):")
+    ] = None
+    """Parts that are too narrow or too small for fingers go to those beside them, before relief, materials and labels
+    are made of the parts; each keeps its number."""
+    workspace: Annotated[Workspace, Block()] = Workspace()
+    """The size of the surface under the hand."""
+    mapping: Annotated[WorkspaceMapping, Block()] = WorkspaceMapping()
+    """Where the surface lies in the device's workspace, and how the hand moves over it."""
+    materials: Annotated[
+        MaterialChoice,
+        Block("A map from label to material (`{0: ice, 1: sand}`), or:", labels="by", check=check_material_names),
+    ] = MaterialChoice()
+    """The material of each segment; of each part, with `parts:` or `heights:`."""
+    depth: Annotated[NamedMethod[DepthEstimator] | None, MethodBlock()] = None
+    """The method that finds depth in a pair of views or in one picture."""
+    texture: Annotated[NamedMethod[Segmenter] | None, MethodBlock()] = None
+    """The method that finds segments of one texture each."""
+    render: Annotated[NamedMethod[ForceRenderer] | None, MethodBlock()] = None
+    """The force law."""
+    device: Annotated[NamedMethod[HapticDevice] | None, MethodBlock()] = None
+    """The device that the surface is felt with."""
+    export: Annotated[tuple[NamedMethod[Exporter], ...], MethodList("[More](export.md).")] = ()
+    """What `tangible export` writes: a list of names of exporters, `[stl, swell]`, or of blocks with options,
+    `[{use: pins, display: monarch}]`."""
+    safety: Annotated[Safety, Block("[Why](safety.md).")] = Safety()
+    """The guard between every force law and every device."""
+
+    path: Annotated[Path | None, Unchecked()] = None
+    """The file that the configuration stands in; None for a configuration that was made in Python."""
+    measured: Annotated[Measured | None, Unchecked()] = None
+    """The size that the scene's heights have by their own account."""
+    source: Annotated[Source | None, Unchecked()] = Field(default=None, repr=False)
+    """The file with the places of its keys."""
+
+    def changed(self, **values: Any) -> Self:
+        """Return the same configuration with other values, which are not checked."""
+        return self.model_copy(update=values)
+
+    @property
+    def by_parts(self) -> bool:
+        """Whether materials are one a part, and labels of the surface the numbers of parts."""
+        return self.parts is not None or self.heights is not None or self.simplify is not None
+
+    @property
+    def felt_parts(self) -> Literal["parts", "simplified"]:
+        """The product whose parts relief, materials and labels are made of, where anything is by parts."""
+        return "parts" if self.simplify is None else "simplified"
+
+    @property
+    def part_names(self) -> dict[int, str]:
+        """The names of parts by number; parts without a name are left out."""
+        return {number: name for number, each in (self.parts or {}).items() if (name := each.name.strip())}
+
+    @property
+    def given_heights_m(self) -> dict[int, float]:
+        """The heights of parts by number, metres; parts without a height are left out."""
+        return {number: each.height_m for number, each in (self.parts or {}).items() if each.height_m is not None}
+
+    @property
+    def top_m(self) -> float:
+        """The greatest height that a part may have: that of the relief, less the bulge and the detail on top of it."""
+        return self.size.relief_m - (self.heights.bulge_m + self.heights.detail_m if self.heights else 0)
+
+    @property
+    def folder(self) -> Path:
+        """The folder that relative files are relative to."""
+        return Path() if self.path is None else self.path.parent
+
+    @property
+    def size(self) -> FeltSize:
+        """The workspace, with what suits the scene, or its parts, where the file leaves it open."""
+        size = self.workspace.size("parts" if self.heights else kind_of(self.scene))
+        if self.measured is None:
+            return size
+        width_m = size.width_m if "width_m" in self.workspace.model_fields_set else self.measured.width_m
+        relief_m = self.workspace.relief_m or self.measured.high_m or size.relief_m
+        return size._replace(width_m=width_m, relief_m=relief_m)
+
+    @property
+    def felt_device(self) -> HapticDevice | None:
+        """The device as the picture sees it, by the mapping; None where none is configured."""
+        return None if self.device is None else mapped(self.device.method, self.mapping)
+
+    def missing(self, kind: str) -> ConfigError:
+        """Return the complaint for a method that is needed and not named."""
+        if self.path is None:
+            return ConfigError(f"the pipeline has no {kind}; give it one: Pipeline(scene, {kind}=...)")
+        return ConfigError(
+            f"{self.path}: `{kind}:` is missing; name a method, such as `{kind}: {{use: ...}}` "
+            "(`tangible plugins` lists them)"
+        )
+
+    def complained(self, *wrong: Wrong) -> ConfigError:
+        """Return the complaints about these keys, each at its place in the file."""
+        source = replace(self.source or Source(Path(), {}), complaints=[])
+        for location, text in wrong:
+            source.complain(location, f"{'.'.join(map(str, location))}: {text}")
+        return source.error if self.source is not None else without_places(source)
+
+    def completed(self) -> dict[str, Any]:
+        """Return the configuration with every default filled in, as plain values.
+
+        Raises: ConfigError for what no file can have: a scene of arrays, a method that is not installed.
+        """
+        size = self.workspace.model_copy(update=self.size._asdict())
+        values = {name: getattr(self, name) for name in KEYS} | {"workspace": size}
+        shown = [name for name, value in values.items() if value not in (None, "", ()) or self._is_off(name)]
+        shown.sort(key=lambda name: KEYS[name].stands_last)
+        return {name: KEYS[name].write(values[name]) for name in shown}
+
+    def _is_off(self, name: str) -> bool:
+        """Whether `null` must stand in the file, because without the key the heights of parts would be a mistake."""
+        return name == "heights" and self.heights is None and bool(self.given_heights_m)
+
+    def as_yaml(self, leave_out: Collection[str] = ()) -> str:
+        """Return the completed configuration as a pipeline file, without these keys. Raises: as `completed`."""
+        yaml, text = YAML(typ="safe"), StringIO()
+        yaml.default_flow_style = False
+        yaml.sort_base_mapping_type_on_output = False  # pyright: ignore[reportAttributeAccessIssue]
+        plain = {key: value for key, value in self.completed().items() if key not in leave_out}
+        yaml.dump(plain, text)  # pyright: ignore[reportUnknownMemberType]
+        return text.getvalue()
+
+
+def without_places(source: Source) -> ConfigError:
+    """Return the complaints about a configuration that was made in Python, where nothing has a line."""
+    complaints = [each._replace(line=None, column=None) for _, each in source.complaints]
+    return ConfigError(*(each.text for each in complaints), complaints=complaints)
+
+
+KEYS = keys_of(PipelineConfig)
+"""The keys of a pipeline file by name, in the order of the fields."""
+STAGES = tuple(name for name, key in KEYS.items() if isinstance(key, MethodBlock))
+"""The keys that name one method each."""

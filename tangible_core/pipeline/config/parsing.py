@@ -1,0 +1,99 @@
+"""Pipeline files and arguments in Python, read and checked into a configuration."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, cast
+
+from ruamel.yaml.comments import CommentedSeq
+
+from ...errors import ArgumentError, PictureError, did_you_mean
+from ...files.source import Location, Source, parse_override, parse_source, read_text
+from ...plugins.registry import Registry
+from ...scene.framing import measured
+from ...scene.scene import Scene
+from ...scene.scene_files import SceneFiles
+from .keys import MethodList, Reading
+from .keys.method import index_of
+from .model import KEYS, PipelineConfig, without_places
+from .part_checks import wrong_of_parts
+
+EXPECTED = "a configuration is a mapping that starts with `scene:`"
+"""The complaint about a file that is not a mapping."""
+
+
+def load_config(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:
+    """Read and check a pipeline file.
+
+    overrides: `key.key=value` each, the value in YAML, as `--set` takes them; another method (`depth.use=...`)
+    starts with its own defaults. `export.NAME.key=value` is of the exporter of that name, which is listed if it is not
+    yet.
+    Raises: ConfigError with every complaint, one a line.
+    """
+    return parse_config(read_text(path), path, registry, overrides)
+
+
+def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[str] = ()) -> PipelineConfig:
+    """Read and check a text as `load_config` does; complaints name `path`, and relative files are relative to it."""
+    source = parse_source(text, path, EXPECTED)
+    for override in overrides:
+        _override(source, override)
+    source.check_keys(KEYS)
+    reading, values = Reading(source, registry), dict[str, Any]()
+    for name, key in KEYS.items():
+        if name in source.tree:
+            values[name] = key.read(reading, source.tree[name])
+        elif key.missing:
+            source.complain((), key.missing)
+    values["measured"] = _measured(source, values.get("scene"))
+    values = {name: value for name, value in values.items() if value is not None}
+    if "scene" in values:
+        for location, wrong in wrong_of_parts(PipelineConfig(path=path, source=source, **values)):
+            source.complain(location, f"{'.'.join(map(str, location))}: {wrong}")
+    source.settle()
+    return PipelineConfig(path=path, source=source, **values)
+
+
+def config_of(scene: Scene, registry: Registry, **arguments: Any) -> PipelineConfig:
+    """Check arguments in Python, by the names of keys: objects, or what a file may have; None for the default.
+
+    Raises: ConfigError with every complaint; ArgumentError for what is not a key.
+    """
+    source = Source(Path(), {})
+    reading = Reading(source, registry)
+    if unknown := next((name for name in arguments if name not in KEYS), None):
+        raise ArgumentError(f"{unknown}: is not a key of the pipeline file{did_you_mean(unknown, KEYS)}")
+    taken = {name: KEYS[name].take(reading, each) for name, each in arguments.items() if each is not None}
+    if source.complaints:
+        raise without_places(source)
+    config = PipelineConfig(scene=scene, measured=scene.measured, **taken)
+    if wrong := list(wrong_of_parts(config)):
+        raise config.complained(*wrong)
+    return config
+
+
+def shorthand(place: Location) -> str:
+    """Return the option that a word alone stands for at this place of a file: a method's name, or a part's."""
+    key = KEYS.get(place[0]) if place else None
+    return key.word_option(len(place)) if key else ""
+
+
+def _override(source: Source, text: str) -> None:
+    """Apply `key.key=value`, in which the name of a listed method stands for its place in the list."""
+    parts, _ = parse_override(text)
+    place: Location = ()
+    if isinstance(KEYS.get(parts[0]), MethodList) and len(parts) > 1:
+        listed = source.tree.setdefault(parts[0], CommentedSeq())
+        if isinstance(listed, list) and len(parts) > 2:
+            before = len(cast("list[Any]", listed))
+            index = index_of(cast("list[Any]", listed), parts[1])
+            place = (parts[0], index, *parts[2:])
+            if index == before:  # the override names a method that the file does not list
+                source.overridden[parts[0], str(index)] = text
+    source.override(text, shorthand, place)
+
+
+def _measured(source: Source, scene: Any) -> Any:
+    try:
+        return measured(scene) if isinstance(scene, SceneFiles) else None
+    except PictureError as error:
+        return source.complain(("scene", "height"), str(error))

@@ -1,0 +1,93 @@
+"""Checks of what a configuration says of parts, as far as they need no picture."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+
+from ...data import Material
+from ...errors import MOST_QUOTED, ConfigError, MaterialError, did_you_mean, quoted
+from ...materials.assignment import find, load_library
+from ...parts import PartChoice
+from ...scene.workspace import kind_of
+from .model import PipelineConfig
+from .part_names import Wrong, numbers_of
+
+ROUNDING_M = 1e-9
+"""Metres that a sum of lengths may be off by: far less than anybody feels, far more than a rounding error."""
+
+
+def wrong_of_parts(config: PipelineConfig) -> Iterator[Wrong]:
+    """Find what contradicts itself among `parts:`, `heights:` and the rules for materials."""
+    parts = config.parts or {}
+    yield from _wrong_names(parts)
+    with suppress(ConfigError):  # a library that cannot be read is its reader's complaint
+        yield from _wrong_materials(parts, load_library(config.materials.library))
+    yield from _wrong_rules((rule.part for rule in config.materials.rules), parts if config.by_parts else None)
+    yield from _wrong_heights(config)
+
+
+def _wrong_heights(config: PipelineConfig) -> Iterator[Wrong]:
+    heights = config.heights
+    if heights is None:
+        switched_off = config.source is not None and "heights" in config.source.tree
+        if not switched_off and (idle := next(iter(config.given_heights_m), None)) is not None:
+            yield (
+                ("parts", idle, "height_m"),
+                "without `heights:` no part has a height; write `heights: {by: given}`, or `heights: null` to leave "
+                "the heights of parts aside",
+            )
+    elif kind_of(config.scene) == "heights":
+        yield ("heights",), "the scene is a map of heights, which are felt as they are; leave `heights:` out"
+    elif config.top_m < -ROUNDING_M:
+        least_mm, relief_mm = (1e3 * each for each in (heights.bulge_m + heights.detail_m, config.size.relief_m))
+        yield (
+            ("heights",),
+            f"bulge_m and detail_m are {least_mm:g} mm together, and the whole relief is {relief_mm:g} mm high; make "
+            f"them smaller, or workspace.relief_m larger",
+        )
+
+
+def _wrong_names(parts: Mapping[int, PartChoice]) -> Iterator[Wrong]:
+    """Find names that nobody can pronounce, and names of two parts."""
+    first: dict[str, int] = {}
+    for number, choice in parts.items():
+        wrong = _wrong_name(choice.name)
+        other = first.setdefault(choice.name.strip().casefold(), number) if choice.name.strip() else number
+        if other != number:
+            wrong = f"{quoted(choice.name)} is the name of part {other} as well; give each part a name of its own"
+        if wrong:
+            yield ("parts", number, "name"), wrong
+
+
+def _wrong_name(name: str) -> str:
+    if name.strip().isdecimal():
+        return f"{quoted(name)} would be taken for the number of a part; put a word before it"
+    if not name.isprintable():
+        return f"{quoted(name)} contains a control character; a name is one line of plain text"
+    return f"{quoted(name)} is over {MOST_QUOTED} characters; use fewer" if len(name) > MOST_QUOTED else ""
+
+
+def _wrong_materials(parts: Mapping[int, PartChoice], library: Mapping[str, Material]) -> Iterator[Wrong]:
+    """Find materials of parts that are not in the library."""
+    for number, choice in parts.items():
+        try:
+            if choice.material is not None:
+                find(choice.material, library)
+        except MaterialError as error:
+            yield ("parts", number, "material"), str(error)
+
+
+def _wrong_rules(rules: Iterable[int | str | None], parts: Mapping[int, PartChoice] | None) -> Iterator[Wrong]:
+    """Find rules for parts that have no such name.
+
+    rules: the part of each rule. parts: None where nothing is by parts.
+    """
+    names = numbers_of(parts or {})
+    for number, part in enumerate(rules):
+        place = ("materials", "rules", number, "part")
+        if part is None:
+            continue
+        if parts is None:
+            yield place, "nothing is by parts; name them under `parts:`, or write `segment:` for a whole segment"
+        elif isinstance(part, str) and part.strip() not in names:
+            there = f"named are {', '.join(names)}" if names else "`parts:` names none"
+            yield place, f"no part is named {quoted(part)}{did_you_mean(part, names)}; {there}"

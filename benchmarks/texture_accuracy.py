@@ -144,7 +144,7 @@ def _guess(picture: np.ndarray) -> tuple[int, float]:
     """How many segments are found, and what the guess is worth; 1 where nothing was guessed."""
     with collected() as notes:
         count = load_method("texture", "gabor")().segment(picture).count
-    worth = [float(found[1]) for each in notes if (found := re.search(r"a guess worth ([\d.]+):", each))]
+    worth = [float(found[1]) for each in notes if (found := re.search(r"estimated with confidence ([\d.]+):", each))]
     return count, worth[0] if worth else 1.0
 
 

@@ -7,9 +7,9 @@ import numpy as np
 from tangible_core.data.pictures import to_grey
 from tangible_core.metrics import segment_errors
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments
-from tangible_texture.clusters.labelling import labelled
 from tangible_texture.energies.gabor_bank import bank, octaves
 from tangible_texture.energies.local_energy import energy_planes, padding, spectrum_of
+from tangible_texture.kmeans.labelling import segment_by_kmeans
 from tangible_texture.kornia_gabor import KorniaGabor
 
 from .figures import Figure
@@ -56,4 +56,6 @@ def _our_bank(scene: KnownSegments) -> np.ndarray:
     planes = energy_planes(spectrum, filters, grey.shape, options.step_px, options.window_px)
     roots = np.sqrt(np.moveaxis(planes, 0, 2))
     features = (roots - roots.mean(axis=(0, 1))) / roots.std(axis=(0, 1))
-    return labelled(features, options.step_px, grey.shape, scene.count, options.seed, restarts=options.restarts).labels
+    return segment_by_kmeans(
+        features, options.step_px, grey.shape, scene.count, options.seed, restarts=options.restarts
+    ).labels

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .data import Work as Work
     from .errors import TangibleError as TangibleError
     from .pipeline.output.runs import Run as Run
+    from .pipeline.output.showing import show as show
     from .pipeline.pipeline import Pipeline as Pipeline
     from .pipeline.pipeline import load_pipeline as load_pipeline
     from .plugins.hooks import hookimpl as hookimpl
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
     from .plugins.interfaces import Skippable as Skippable
     from .plugins.interfaces import Touch as Touch
     from .plugins.registry import load_method as load_method
-    from .report.showing import show as show
     from .scene.rig import Camera as Camera
     from .scene.rig import StereoRig as StereoRig
     from .scene.scene import Scene as Scene
@@ -58,13 +58,13 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
         "errors": ["TangibleError"],
         "pipeline.pipeline": ["Pipeline", "load_pipeline"],
         "pipeline.output.runs": ["Run"],
+        "pipeline.output.showing": ["show"],
         "plugins.hooks": ["hookimpl"],
         "plugins.interfaces": [
             "DepthEstimator", "Exporter", "ForceRenderer", "HapticDevice", "Link", "PlainTouch", "Segmenter",
             "Skippable", "Touch",
         ],
         "plugins.registry": ["load_method"],
-        "report.showing": ["show"],
         "scene.rig": ["Camera", "StereoRig"],
         "scene.scene": ["Scene"],
         "scene.workspace": ["Workspace"],

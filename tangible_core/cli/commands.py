@@ -41,7 +41,6 @@ COMMANDS = {
     "replay": Command(f"{ROOM}.replay:replay", "Feel a recording again with another law."),
     "plugins": Command(f"{ROOM}.plugins:app", "List the installed methods and devices; show one of them."),
     "check": Command(f"{ROOM}.check:check", "Test an installed method with the conformance kit."),
-    "materials": Command(f"{ROOM}.materials:app", "List the materials; show or draw some."),
     "devices": Command(f"{ROOM}.devices:app", "List devices; examine, home or calibrate one."),
     "cache": Command(f"{ROOM}.cache:app", "Say how much is kept of earlier results; clear it."),
     "schema": Command(f"{ROOM}.schema:schema", "Print the JSON Schema of pipeline files."),

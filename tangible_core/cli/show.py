@@ -25,7 +25,7 @@ COLOURS = {"given": "blue", "ran": "green", "cached": "cyan", "skipped": "dim", 
 
 def print_json(value: Any) -> None:
     """JSON on standard output; NaN becomes null."""
-    from ..report.figures import as_json
+    from ..files.json_text import as_json
 
     print(as_json(value), file=stream())
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -32,6 +32,9 @@ class Work:
     """The left view, as in `Views`; None for a scene of heights alone."""
     names: tuple[str, ...] = ()
     """Of parts, by number; empty for one that has none. Empty where nothing is said of parts."""
+    extras: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    """What a sheet shows next to products: `views`, the `truth` of the disparity (h, w) in px, and the `recording` of a
+    run; without those that there are not."""
 
     @property
     def relief(self) -> Relief:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..description import place_in_words
+from ..parts.words.places import place_in_words
 
 MOST_NAMED = 4
 PLACES = 9

@@ -67,7 +67,7 @@ from .config.model import PipelineConfig, Product
 from .config.parsing import config_of, load_config
 from .engine.cache import Cache
 from .engine.engine import Engine, Progress
-from .engine.filmed import film_of, reliefs_of
+from .engine.film import film_of, reliefs_of
 from .engine.rules import fitted
 from .engine.warm_up import rehearsal
 from .output.exporting import Export, chosen_exporters, export

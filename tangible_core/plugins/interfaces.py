@@ -19,6 +19,7 @@ from ..data import (
     Finding,
     HapticSurface,
     Kind,
+    Record,
     SegmentMap,
     Unit,
     Views,
@@ -144,6 +145,21 @@ class Exporter(Method):
 
         It writes into a folder of its own; the files are moved to their place once all are there.
         Raises: TangibleError for what cannot be written of this work.
+        """
+
+
+class Drawing(ABC):
+    """The capability of an exporter that draws: the sheet of a run, and single products."""
+
+    @abstractmethod
+    def draw(self, work: Work, path: Path) -> str:
+        """Draw all products of a work into a file, and return a description of the drawing. Raises: OutputError."""
+
+    @abstractmethod
+    def show(self, product: Record, axes: Any = None, **others: Any) -> Any:
+        """Draw one product into matplotlib's axes, new ones for None, and return these.
+
+        Raises: OutputError for a product without a picture.
         """
 
 

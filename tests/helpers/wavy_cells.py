@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tangible_texture.regions.merging import in_reading_order
+from tangible_texture.regions.merging import number_in_reading_order
 from tangible_texture.signal.smoothing import gaussian
 
 
@@ -14,7 +14,7 @@ def cells(seed: int, count: int = 10, size: int = 256) -> np.ndarray:
     points = np.array([(row + 0.5, column + 0.5) for row in range(4) for column in range(4)]) / 4
     points = (points + rng.uniform(-0.08, 0.08, points.shape))[rng.permutation(16)[:count]]
     far = (rows + waves[0])[..., None] - points[:, 0], (columns + waves[1])[..., None] - points[:, 1]
-    return in_reading_order(np.hypot(*far).argmin(axis=2).astype(np.int32))
+    return number_in_reading_order(np.hypot(*far).argmin(axis=2).astype(np.int32))
 
 
 def smooth_scene(seed: int, noise: float) -> tuple[np.ndarray, np.ndarray]:

@@ -17,13 +17,13 @@ from tangible_core.parts.label_picture import label_picture
 from tangible_core.parts.large import large_parts
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
-from tangible_core.pipeline.engine.layers import heights_of
+from tangible_core.pipeline.engine.part_heights import heights_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.starter import MAPS, SIDE_MM, in_yaml, starter
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import Registry, default_registry
-from tangible_core.report.numbered_parts import numbered_parts
 from tangible_core.scene.scene import Scene
+from tangible_report.numbered_parts import numbered_parts
 
 from .listed_parts import ListedPart, listed
 from .parts_starter import RELIEF_MM, parts_starter, title_of

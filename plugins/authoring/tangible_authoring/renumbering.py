@@ -13,7 +13,7 @@ from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.registry import default_registry
-from tangible_core.report.numbered_parts import Before, as_drawn
+from tangible_report.numbered_parts import Before, as_drawn
 
 from .first_parts import check_free
 from .listed_parts import ListedPart, ListedParts, list_parts

@@ -35,7 +35,7 @@ def place_labels(
     """
     from matplotlib import patheffects
 
-    from tangible_core.report.style import INK
+    from tangible_report.style import INK
 
     per_point = axes.figure.dpi / 72
     left, bottom, right, top = axes.bbox.extents

@@ -38,7 +38,7 @@ def draw_plot(path: Path, results: Results) -> bool:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    from tangible_core.report.style import STYLE
+    from tangible_report.style import STYLE
 
     found = [line for line in results.means() if math.isfinite(line.seconds)]
     measures = [measure for measure in results.task.plotted if results.on_front(found, measure)]
@@ -72,7 +72,7 @@ def draw_plot(path: Path, results: Results) -> bool:
 def _panel(axes: Axes, results: Results, found: list[Line], measure: str) -> None:
     from matplotlib.ticker import LogLocator, NullFormatter
 
-    from tangible_core.report.style import INK
+    from tangible_report.style import INK
 
     for index, line in _in_order(found):
         x, y = _point(results, line, measure)
@@ -125,7 +125,7 @@ def _point(results: Results, line: Line, measure: str) -> tuple[float, float]:
 
 
 def _colour(index: int) -> str:
-    from tangible_core.report.style import OKABE_ITO
+    from tangible_report.style import OKABE_ITO
 
     return OKABE_ITO[index % len(OKABE_ITO)]
 

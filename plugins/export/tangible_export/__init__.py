@@ -1,4 +1,4 @@
-"""Exporters: what was made of a picture, as files for printers, swell paper, pin displays and readers.
+"""Exporters: what was made of a picture, as files for printers, swell paper and pin displays.
 
 Each is imported when it is first used.
 """
@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from .pins import Pins as Pins
     from .stl import Stl as Stl
     from .swell import Swell as Swell
-    from .text import Text as Text
     from .three_mf import ThreeMF as ThreeMF
 
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
@@ -24,7 +23,6 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
         "pins": ["Pins"],
         "stl": ["Stl"],
         "swell": ["Swell"],
-        "text": ["Text"],
         "three_mf": ["ThreeMF"],
     },
 )

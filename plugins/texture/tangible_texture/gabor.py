@@ -9,18 +9,18 @@ from tangible_core.data import SegmentMap, Views
 from tangible_core.data.pictures import check_picture
 from tangible_core.plugins.interfaces import Segmenter, Skippable
 
-from .signal.skipping import nothing_to_divide, one_segment
+from .signal.skipping import one_segment, reason_to_skip
 
 
 class Gabor(Segmenter, Skippable):
     """Clusters of Gabor energies: one texture per segment, whatever its brightness, in one place or several.
 
-    Local energy in a bank of Gabor filters, and how often local binary patterns occur, in cells of 4 x 4 pixels. Cells
-    are divided finely and joined again, the two clusters first whose features differ least and of which one is small;
-    towards the end the features that tell clusters apart are found anew at each step, and cells take their neighbours'
-    part. No step is left to chance, and none depends on where the picture begins. Labels are in the order
-    of their first pixels, row by row. Confidence is 1 - q / p, p and q being the memberships of a pixel's class and of
-    the next one: 0 on borders.
+    The features are local energies in a bank of Gabor filters and frequencies of local binary patterns, in cells of
+    4 x 4 pixels. Cells are first divided into many clusters, which are then joined pair by pair: the pair with the
+    smallest difference in features goes first, weighed by size. In the last joinings the discriminating features are
+    computed again at each step, and neighbouring cells are drawn to the same class. The result is deterministic and
+    does not depend on the picture's origin. Labels are in the order of their first pixels, row by row. Confidence is
+    1 - q / p, where p and q are the memberships of a pixel's class and of the second best class: 0 on borders.
     Sources: Jain & Farrokhnia, Pattern Recognition 24, 1991 (the energies); Ojala et al., IEEE TPAMI 24, 2002
     (patterns); Su & Dy, ICTAI 2004 (division); Ward, J. Am. Stat. Ass. 58, 1963 (joining).
     """
@@ -30,7 +30,7 @@ class Gabor(Segmenter, Skippable):
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Largest number of textures; `auto`: an estimate, at most 8, reported with its reason and reliability."""
     effort: Literal["fast", "balanced"] = "balanced"
-    """`fast` divides cells less finely, and looks anew at what tells clusters apart in the last joinings only."""
+    """`fast` starts from fewer clusters, and recomputes the discriminating features in the last joinings only."""
     colour: bool | Literal["auto"] = "auto"
     """Add two colour channels to the texture features; `auto`: where windows of the picture differ in colour."""
     lambda_max_px: Annotated[float, Field(ge=2.8, le=512)] = 24.0
@@ -39,31 +39,34 @@ class Gabor(Segmenter, Skippable):
     """Filters with less than this fraction of the total energy are dropped; 0 keeps all of them."""
 
     def skip(self, views: Views) -> str | None:
-        """One flat colour is one segment, and so is any picture when no more is asked for."""
-        return nothing_to_divide(views.left, self.segments)
+        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
+        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Regions of the picture; one where its texture is the same everywhere, but for single pixels.
+        """Divide the picture by texture; one segment if the texture is the same everywhere but for single pixels.
 
+        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
         Memory: 60 bytes a pixel and 16 MiB, measured up to 17 megapixels.
         Raises: PictureError as `check_picture`.
         """
         from .clusters.classes import classes
         from .clusters.full_size import fine_memberships, pixel_labels
-        from .clusters.planes import mixed
+        from .clusters.planes import combine_planes
         from .features.cells import CELL_PX
         from .features.features import Window, features
-        from .regions.merging import in_reading_order
+        from .regions.merging import number_in_reading_order
 
         if self.segments == 1:
             return one_segment(check_picture(picture).shape[:2])
-        found = features(picture, self.lambda_max_px, self.least_energy, self.colour)
-        if found is None:
+        windows = features(picture, self.lambda_max_px, self.least_energy, self.colour)
+        if windows is None:
             return one_segment(picture.shape[:2])
-        labels, axes = classes(found, self.segments, self.effort)
+        labels, axes = classes(windows, self.segments, self.effort)
         if not labels.any():
             return one_segment(picture.shape[:2])
-        narrow, middle = (Window(mixed(axes, each.planes), each.shape) for each in (found.narrow, found.middle))
+        narrow, middle = (
+            Window(combine_planes(axes, each.planes), each.shape) for each in (windows.narrow, windows.middle)
+        )
         memberships = fine_memberships(middle, labels, narrow)
         pixels, confidence = pixel_labels(memberships, CELL_PX, picture.shape[:2])
-        return SegmentMap(in_reading_order(pixels), confidence)
+        return SegmentMap(number_in_reading_order(pixels), confidence)

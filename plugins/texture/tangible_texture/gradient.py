@@ -11,7 +11,7 @@ from tangible_core.data import SegmentMap, Views
 from tangible_core.plugins.interfaces import Segmenter, Skippable
 from tangible_core.plugins.notes import note
 
-from .signal.skipping import nothing_to_divide, one_segment
+from .signal.skipping import one_segment, reason_to_skip
 
 if TYPE_CHECKING:
     from .regions.landscape import Landscape
@@ -19,19 +19,20 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 NOTHING = 1e-6
-"""A slope, per pixel, that rounding can make of one colour when white is 1."""
+"""The largest slope per pixel that rounding can produce in a picture of one colour, when white is 1."""
 
 
 class Gradient(Segmenter, Skippable):
     """Regions between edges: a watershed of the gradient and Canny edges; for smooth things rather than textures.
 
-    Smooth the picture; take the slope of its steepest channel, in units of the noise hereabouts. Connected flat parts
-    are the first segments. They grow uphill until they meet (a watershed), and two of them stay apart if three fifths
-    or more of the border between them lie on edges: on Canny's, or where the picture rises from one to the other with
-    two thirds of the slope that an edge begins with. All of this at 1.75 sigma_px, which weak edges need, on a grid as
+    The picture is smoothed; the slope is that of its steepest channel, in units of the local noise. Connected flat
+    areas are the first segments. They grow uphill until they meet (a watershed), and two of them stay separate if three
+    fifths or more of their border lie on edges: on Canny's, or where the picture rises from one to the other with two
+    thirds of the slope that starts an edge. All of this happens at 1.75 sigma_px, which weak edges need, on a grid as
     coarse as that allows; then the boundaries are flooded once more, at sigma_px and to the pixel. Labels are in the
-    order of their first pixels, row by row. Confidence is 1 - (s - flat) / (top - flat) within 0..1, s being the slope
-    in units of noise and top its maximum, or canny_high if that is more: 1 in a flat basin, 0 on the strongest edge.
+    order of their first pixels, row by row. Confidence is 1 - (s - flat) / (top - flat) within 0..1, where s is the
+    slope in units of noise and top the larger of its maximum and canny_high: 1 in a flat basin, 0 on the strongest
+    edge.
     Memory: 40 bytes a pixel beyond the picture for grey, 75 for colour.
     Sources: Canny, A computational approach to edge detection, 1986; Meyer, Un algorithme optimal pour la ligne de
     partage des eaux, 1991.
@@ -40,8 +41,8 @@ class Gradient(Segmenter, Skippable):
     version: ClassVar[int] = 2
 
     segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """Largest number of segments: the least separated ones are merged; `auto`: as many as edges hold apart, at most 64,
-    reported with the share of the weakest border that is an edge."""
+    """Largest number of segments: the least separated ones are merged; `auto`: as many as edges separate, at most 64,
+    reported with the share of edges in the weakest border."""
     sigma_px: Annotated[float, Field(gt=0, le=100)] = 2.0
     """Standard deviation of the smoothing Gaussian, limited to 1/16 of the square root of the picture's area. A region
     narrower than about 8 of these can be lost: less for small things, more for weak edges in noise."""
@@ -64,42 +65,43 @@ class Gradient(Segmenter, Skippable):
         if not self.flat < self.canny_low <= self.canny_high:
             raise ValueError(
                 f"flat {self.flat:g} < canny_low {self.canny_low:g} <= canny_high {self.canny_high:g} must hold: "
-                "flat parts are no edges, and the lower threshold is not above the upper one"
+                "a flat area is not an edge, and the lower threshold is not above the upper one"
             )
         return self
 
     def skip(self, views: Views) -> str | None:
-        """One segment is asked for, or there is one flat colour."""
-        return nothing_to_divide(views.left, self.segments)
+        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
+        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Regions of the picture; one where nothing but noise is found in it.
+        """Divide the picture at its edges; one segment if it holds nothing but noise.
 
+        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
         Raises: PictureError as `check_picture`.
         """
         from .features.channels import channels
         from .regions.landscape import landscape
-        from .regions.merging import in_reading_order
-        from .regions.refining import refined
+        from .regions.merging import number_in_reading_order
+        from .regions.refining import refine_labels
         from .signal.slopes import slopes
-        from .signal.smoothing import two_scales, without_specks
+        from .signal.smoothing import remove_specks, smooth_at_two_scales
 
-        near, wide, step = two_scales(without_specks(channels(picture, self.colour)), self.sigma_px)
+        near, wide, step = smooth_at_two_scales(remove_specks(channels(picture, self.colour)), self.sigma_px)
         magnitude, _, _, noise = slopes(near)
         strongest = float(magnitude.max())
-        labels = self._regions(landscape(wide, self._most, noise), step) if strongest > NOTHING else None
+        labels = self._regions(landscape(wide, self._max_steepness, noise), step) if strongest > NOTHING else None
         if labels is None:
             return one_segment(magnitude.shape)
-        steep = magnitude / np.maximum(noise, np.float32(strongest / self._most))
-        return SegmentMap(in_reading_order(refined(labels, step, steep)), self._confidence(steep))
+        steep = magnitude / np.maximum(noise, np.float32(strongest / self._max_steepness))
+        return SegmentMap(number_in_reading_order(refine_labels(labels, step, steep)), self._confidence(steep))
 
     @property
-    def _most(self) -> float:
-        """The steepest slope in units of the noise, at most: `contrast` of it begins an edge."""
+    def _max_steepness(self) -> float:
+        """The upper bound of slopes in units of the noise: `contrast` times this bound starts an edge."""
         return self.canny_high / self.contrast
 
     def _regions(self, land: "Landscape", step: int) -> Int32[np.ndarray, "h w"] | None:
-        """Labels of every step-th pixel; None where there is one region."""
+        """Return labels of every step-th pixel; None where there is only one region."""
         from .regions.basins import MOST_SEGMENTS, STEEPER, basins
         from .regions.borders import borders
         from .regions.landscape import canny_edges
@@ -111,14 +113,14 @@ class Gradient(Segmenter, Skippable):
         if count < 2:
             return None
         labels = watershed(land.steep, markers)
-        edges = canny_edges(land, self.canny_low, self.canny_high, self._most)
+        edges = canny_edges(land, self.canny_low, self.canny_high, self._max_steepness)
         most = MOST_SEGMENTS if self.segments == "auto" else self.segments
         areas = np.bincount(labels.ravel(), minlength=count).tolist()
         between = borders(labels, land, edges, self.canny_high)
         parts = merge(areas, between, most)
         if self.segments == "auto":
-            worth, why = weakest_border(between, parts), "the share of edges in the weakest border between two of them"
-            note(log, f"segments: {np.unique(parts).size}, a guess worth {worth:.2f}: {why}")
+            worth, why = weakest_border(between, parts), "the share of edges in the weakest border between two segments"
+            note(log, f"segments: {np.unique(parts).size}, estimated with confidence {worth:.2f}: {why}")
         return parts[labels]
 
     def _confidence(self, steep: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:

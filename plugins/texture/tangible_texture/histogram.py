@@ -11,22 +11,22 @@ from tangible_core.data import SegmentMap, Views
 from tangible_core.plugins.interfaces import Segmenter, Skippable
 from tangible_core.plugins.notes import note
 
-from .signal.skipping import nothing_to_divide, one_segment
+from .signal.skipping import one_segment, reason_to_skip
 
 if TYPE_CHECKING:
-    from .clusters.levels import Levels
+    from .clusters.otsu import OtsuClasses
 
 BINS = 256
-"""How many grey levels are told apart between the darkest and the brightest."""
+"""The number of grey levels between the darkest and the brightest: that of 8 bits."""
 
 MOST_LEVELS = 16
-"""What `segments: auto` stops at: more thresholds than any picture has humps between."""
+"""The largest number of segments under `auto`: more than the modes of any histogram seen."""
 
 FLAT_SHARE = 0.8
-"""The flattest pixels, of which the histogram is made."""
+"""The share of the pixels, the flattest ones, that make up the histogram: edges have levels of their own."""
 
 NOTHING = 1e-6
-"""A difference of grey that rounding can make of one colour when white is 1."""
+"""The largest difference of grey that rounding can produce in a picture of one colour, when white is 1."""
 
 log = logging.getLogger(__name__)
 
@@ -34,15 +34,15 @@ log = logging.getLogger(__name__)
 class Histogram(Segmenter, Skippable):
     """Grey levels, divided by the optimal thresholds of the histogram; a segment may lie in many places.
 
-    Smooth the grey picture; divide the 256 grey levels of its flattest four fifths so that the variance within the
-    classes is least (Otsu's criterion for several thresholds, its exact optimum). Edges make levels of their own, which
-    are no segments: they and the parts that are too small go to what lies beside them.
-    Never more segments than the picture has grey levels. Labels are in the order of their first pixels, row by row.
-    Confidence is the distance from the nearest threshold, in twice the standard deviation of the pixel's class, 1 at
-    most; 0 where the pixel went to another class.
+    The picture is reduced to grey and smoothed; the 256 grey levels of its flattest four fifths are divided so that the
+    variance within the classes is least (Otsu's criterion for several thresholds, its exact optimum). Edges have levels
+    of their own, which are not segments: edges and parts that are too small go to the adjacent segments.
+    There are never more segments than grey levels in the picture. Labels are in the order of their first pixels, row by
+    row. Confidence is the distance from the nearest threshold, in units of twice the standard deviation of the pixel's
+    class, 1 at most; 0 where the pixel went to another class.
     `auto` takes the number of segments k with the least k^2 W(k), W being the variance within, if that is at most three
-    quarters of W(1); evenly spread levels are one segment, as are those of one Gaussian. How clear it was,
-    1 - k^2 W(k) / W(1), is said.
+    quarters of W(1); evenly spread levels are one segment, as are those of one Gaussian. The confidence of that choice,
+    1 - k^2 W(k) / W(1), is reported.
     Memory: 50 bytes a pixel beyond the picture.
     Sources: Otsu, A threshold selection method from gray-level histograms, 1979; Marriott, Practical problems in a
     method of cluster analysis, 1971.
@@ -58,21 +58,22 @@ class Histogram(Segmenter, Skippable):
     area. 1 leaves every pixel in the class of its own grey level."""
 
     def skip(self, views: Views) -> str | None:
-        """One segment is asked for, or there is one flat colour."""
-        return nothing_to_divide(views.left, self.segments)
+        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
+        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Classes of grey; one where all of it is the same.
+        """Divide the picture by grey level; one segment where all of it has the same grey.
 
+        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
         Raises: PictureError as `check_picture`.
         """
         from .features.channels import channels
-        from .regions.merging import in_reading_order
-        from .regions.parts import without_small_parts
+        from .regions.merging import number_in_reading_order
+        from .regions.small_parts import remove_small_parts
         from .signal.slopes import slopes
-        from .signal.smoothing import gaussian, without_specks
+        from .signal.smoothing import gaussian, remove_specks
 
-        values = without_specks(channels(picture, colour=False))
+        values = remove_specks(channels(picture, colour=False))
         sigma_px = min(self.sigma_px, values.size**0.5 / 16)
         grey = gaussian(values, sigma_px)[..., 0] if sigma_px else values[..., 0]
         if float(np.ptp(grey)) <= NOTHING:
@@ -81,32 +82,34 @@ class Histogram(Segmenter, Skippable):
         flat = 1.001 * float(np.quantile(steep, FLAT_SHARE)) + NOTHING  # slopes that are equal differ by rounding
         classes, confidence = self._classes(grey, steep <= flat, np.unique(_bins(values)).size)
         smallest_px = min(self.smallest_px, classes.size // 16)
-        labels = without_small_parts(classes, steep, flat, smallest_px) if smallest_px > 1 else classes
+        labels = remove_small_parts(classes, steep, flat, smallest_px) if smallest_px > 1 else classes
         confidence[labels != classes] = 0
-        return SegmentMap(in_reading_order(labels), confidence)
+        return SegmentMap(number_in_reading_order(labels), confidence)
 
     def _classes(
         self, grey: Float32[np.ndarray, "h w"], flat: Bool[np.ndarray, "h w"], most: int
     ) -> tuple[Int32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
-        """Each pixel's class, dark to bright, and how sure it is; `most` is how many levels the picture has."""
-        from .clusters.levels import Levels
+        """Return each pixel's class, from dark to bright, and its confidence; `most` bounds the number of classes."""
+        from .clusters.otsu import OtsuClasses
 
         bins = _bins(grey)
         pixels = np.bincount(bins[flat], minlength=BINS)
         used = np.flatnonzero(pixels)
         levels = np.bincount(bins[flat], grey[flat])[used] / pixels[used]
-        divisions = Levels(levels, pixels[used], min(most, MOST_LEVELS if self.segments == "auto" else self.segments))
+        divisions = OtsuClasses(
+            levels, pixels[used], min(most, MOST_LEVELS if self.segments == "auto" else self.segments)
+        )
         starts = divisions.starts(self._number(divisions))[1:]
         thresholds = (levels[starts] + levels[starts - 1]) / 2
         classes = np.searchsorted(thresholds, grey).astype(np.int32)
         return classes, _confidence(grey, classes, thresholds)
 
-    def _number(self, divisions: "Levels") -> int:
+    def _number(self, divisions: "OtsuClasses") -> int:
         if self.segments != "auto":
             return len(divisions.spreads)
         number, ratio = divisions.clearest()
-        why = "no other number leaves so little of the grey levels' spread"
-        note(log, f"segments: {number}, a guess worth {1 - ratio:.2f}: {why}")
+        why = "it leaves the least spread of grey levels for its size"
+        note(log, f"segments: {number}, estimated with confidence {1 - ratio:.2f}: {why}")
         return number
 
 
@@ -118,7 +121,7 @@ def _bins(grey: Float32[np.ndarray, "..."]) -> Int32[np.ndarray, "..."]:
 def _confidence(
     grey: Float32[np.ndarray, "h w"], classes: Int32[np.ndarray, "h w"], thresholds: np.ndarray
 ) -> Float32[np.ndarray, "h w"]:
-    """How far from the nearest threshold, in twice the spread of the class; half a bin is the least spread there is."""
+    """Return the distance from the nearest threshold over twice the class's spread, which is at least half a bin."""
     edges = np.concatenate([[-np.inf], thresholds, [np.inf]])
     sizes = np.bincount(classes.ravel())
     mean, square = (np.bincount(classes.ravel(), (grey**power).ravel()) / sizes for power in (1, 2))

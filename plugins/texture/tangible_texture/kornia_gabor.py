@@ -11,7 +11,7 @@ from tangible_core.data.pictures import to_grey
 from tangible_core.plugins.interfaces import Segmenter, Skippable
 from tangible_core.runtime.torch_extra import TorchDevice, need, pick_device
 
-from .signal.skipping import nothing_to_divide, one_segment
+from .signal.skipping import one_segment, reason_to_skip
 
 if TYPE_CHECKING:
     from torch import Tensor
@@ -19,16 +19,17 @@ if TYPE_CHECKING:
     from .energies.gabor_bank import Gabor
 
 MORE = 3
-"""So many clusters more are tried as long as seams are among those that were asked for."""
+"""The number of extra clusters to try while some of the requested ones turn out to be seams."""
 
 
 class KorniaGabor(Segmenter, Skippable):
     """Amplitudes in a bank of Gabor filters, one octave and 30 degrees apart, clustered by k-means; all of it in torch.
 
     Amplitudes are the roots of the energy in Gaussian windows, standardised over the picture. kornia's `fft_conv`
-    applies the filters, at full resolution. Along a boundary a window sees two textures, which can look like a third:
-    what no disc as wide as the window fits into goes to the segments beside it. Colour is reduced to grey.
-    Confidence is 1 - a / b, a and b being the distances from the nearest centre and from the next one; 0 in a seam.
+    applies the filters, at full resolution. Along a boundary a window sees two textures, which can look like a third
+    (a seam): an area too narrow for a disc as wide as the window goes to the adjacent segments. Colour is reduced to
+    grey. Confidence is 1 - a / b, where a and b are the distances from the nearest centre and the second nearest; 0 in
+    a seam.
     Source: Jain & Farrokhnia 1991; Riba et al., Kornia, WACV 2020; Arthur & Vassilvitskii, k-means++, SODA 2007.
     """
 
@@ -57,12 +58,13 @@ class KorniaGabor(Segmenter, Skippable):
     """Device to compute on; `auto` uses a GPU if there is one."""
 
     def skip(self, views: Views) -> str | None:
-        """One flat colour is one segment, and so is any picture when no more is asked for."""
-        return nothing_to_divide(views.left, self.segments)
+        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
+        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Labels in the order of their first pixels.
+        """Divide the picture by texture, labels in the order of their first pixels.
 
+        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
         Raises: PictureError as `check_picture`, BrokenMethod without torch or kornia.
         """
         need("torch")
@@ -79,34 +81,34 @@ class KorniaGabor(Segmenter, Skippable):
         return self._segments(grey, needed_filters(grey, wanted, self.skip_weak, self.skip_octaves), most_px)
 
     def _segments(self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", most_px: float) -> SegmentMap:
-        from .clusters.labelling import enlarged, segments_of
         from .energies.noise_floor import is_one_texture
-        from .kornia_gabor_kernels import energies, standardised_roots
+        from .kmeans.labelling import choose_segments, label_map_of_cells
+        from .kornia_gabor_kernels import energies, standardise_roots
 
         window_px = min(self.window_px, most_px)
         planes = energies(grey, filters, self.step_px, window_px, pick_device(self.torch_device))
         if is_one_texture(planes.sqrt().cpu().numpy(), window_px / self.step_px, grey):
             return one_segment(grey.shape)
-        rows = standardised_roots(planes)
-        count = segments_of(rows.cpu().numpy(), self.segments, self.seed)
+        rows = standardise_roots(planes)
+        count = choose_segments(rows.cpu().numpy(), self.segments, self.seed)
         radius = round(2 * window_px / self.step_px) if self.drop_seams else 0
-        labels, trust = self._clustered(rows, tuple(planes.shape[1:]), count, radius)
-        return enlarged(labels, trust, self.step_px, grey.shape)
+        labels, trust = self._cluster(rows, tuple(planes.shape[1:]), count, radius)
+        return label_map_of_cells(labels, trust, self.step_px, grey.shape)
 
-    def _clustered(
+    def _cluster(
         self, rows: "Tensor", shape: tuple[int, ...], count: int, radius: int
     ) -> tuple[Int32[np.ndarray, "rows columns"], Float32[np.ndarray, "n"]]:
-        """Labels and confidence of the cells; a few clusters more where seams were among those that were asked for."""
-        from .clusters.labelling import margins
-        from .features.seams import without_seams
+        """Return labels and confidence of the cells; seams are replaced by up to MORE extra clusters."""
+        from .features.seams import remove_seams
+        from .kmeans.labelling import margins
         from .kornia_gabor_kernels import kmeans
 
         features, clusters = rows.cpu().numpy(), count
         most = count if self.segments == "auto" else count + MORE
         while True:
-            found = kmeans(rows, clusters, self.restarts, self.seed)
-            each = found.labels.cpu().numpy().astype(np.int32).reshape(shape)
-            labels, same = without_seams(each, radius)
+            clustering = kmeans(rows, clusters, self.restarts, self.seed)
+            each = clustering.labels.cpu().numpy().astype(np.int32).reshape(shape)
+            labels, same = remove_seams(each, radius)
             if labels.max() + 1 >= count or clusters == most:
-                return labels, np.where(same.ravel(), margins(features, found.centres.cpu().numpy()), 0)
+                return labels, np.where(same.ravel(), margins(features, clustering.centres.cpu().numpy()), 0)
             clusters += 1

@@ -12,20 +12,21 @@ from jaxtyping import Float32
 from kornia.filters import fft_conv
 from torch import Tensor
 
-from .clusters.kmeans import SAME
 from .energies.gabor_bank import Gabor, kernel
-from .energies.local_energy import fft, padding, smoothing_px, smoothing_table, standardised
+from .energies.local_energy import fft, padding, smoothing_px, smoothing_table, standardise
+from .kmeans.lloyd import SAME
 
 
 def energies(
     grey: Float32[np.ndarray, "h w"], filters: Sequence[Gabor], step_px: int, sigma_px: float, device: torch.device
 ) -> Tensor:
-    """As `local_energy.energy_planes`, from every pixel of every response: (filters, rows, columns).
+    """Compute the planes of `local_energy.energy_planes` from every pixel of every response.
 
+    Returns: (filters, rows, columns).
     Memory: about 60 bytes a pixel of the mirrored picture.
     """
     pad_px = padding(filters, sigma_px)
-    picture = standardised(grey)
+    picture = standardise(grey)
     cells = [-(-side // step_px) for side in grey.shape]
     planes = []
     for gabor in filters:
@@ -37,23 +38,23 @@ def energies(
         response = fft_conv(mirrored.expand(2, 1, -1, -1), parts, padding="valid")
         energy = response.square().sum(dim=(0, 1))
         down, along = (
-            _dense(count, step_px, smoothing_px(gabor, sigma_px), side, pad_px).to(device)
+            _dense_smoothing_table(count, step_px, smoothing_px(gabor, sigma_px), side, pad_px).to(device)
             for count, side in zip(cells, energy.shape, strict=True)
         )
         planes.append(down @ energy @ along.T)
     return torch.stack(planes)
 
 
-def _dense(cells: int, step_px: int, wide_px: float, samples: int, pad_px: int) -> Tensor:
-    """`smoothing_table` as a matrix (cells, samples)."""
+def _dense_smoothing_table(cells: int, step_px: int, wide_px: float, samples: int, pad_px: int) -> Tensor:
+    """Return `smoothing_table` as a matrix (cells, samples)."""
     first, weights = smoothing_table(cells, step_px, wide_px, samples, 1.0, pad_px)
     matrix = np.zeros((cells, samples), np.float32)
     np.put_along_axis(matrix, first[:, None] + np.arange(weights.shape[1]), weights, axis=1)
     return torch.from_numpy(matrix)
 
 
-def standardised_roots(planes: Tensor) -> Tensor:
-    """One row a cell (n, filters): amplitudes, each filter's of mean 0 and deviation 1, or 0 where all are one."""
+def standardise_roots(planes: Tensor) -> Tensor:
+    """Return amplitudes, one row a cell (n, filters): mean 0 and deviation 1 for each filter, or 0 if constant."""
     rows = planes.flatten(1).T.sqrt()
     rows = rows - rows.mean(dim=0)
     deviation = rows.square().mean(dim=0).sqrt()
@@ -61,7 +62,7 @@ def standardised_roots(planes: Tensor) -> Tensor:
 
 
 class TorchClusters(NamedTuple):
-    """As `kmeans.Clusters`; labels are int64."""
+    """The tensors of `lloyd.Clusters`; labels are int64."""
 
     labels: Tensor
     centres: Tensor
@@ -69,7 +70,7 @@ class TorchClusters(NamedTuple):
 
 
 def kmeans(rows: Tensor, clusters: int, restarts: int = 1, seed: int = 0, rounds: int = 1000) -> TorchClusters:
-    """As `kmeans.kmeans`, from a k-means++ start; chance is drawn on the CPU, so that every device has the same."""
+    """Run `lloyd.kmeans` in torch from a k-means++ start; the CPU draws, so that every device starts alike."""
     uniform = np.random.default_rng(seed).random((restarts, clusters))
     return min((_settle(rows, _start(rows, each.tolist()), rounds) for each in uniform), key=lambda run: run.cost)
 

@@ -12,20 +12,20 @@ from tangible_core.data.pictures import to_grey
 from tangible_core.plugins.interfaces import Segmenter, Skippable
 from tangible_core.runtime.torch_extra import TorchDevice, need, pick_device
 
-from .signal.skipping import nothing_to_divide, one_segment
+from .signal.skipping import one_segment, reason_to_skip
 
 QUIET = 0.25
-"""This share of the slopes is taken to be noise, and their largest to be that quantile of a Rayleigh distribution."""
+"""The share of the slopes taken as noise; the largest of these is that quantile of a Rayleigh distribution."""
 SOBEL = 8
-"""kornia's Canny does not divide its Sobel sums by this, as a slope per pixel would be."""
+"""The factor between the sums of kornia's Canny, which leaves Sobel's unnormalised, and slopes per pixel."""
 
 
 class KorniaGradient(Segmenter, Skippable):
     """Regions between edges, by kornia: for smooth things rather than textures.
 
-    Grey, smoothed; Canny edges in units of the noise; the slope in the same units, raised where there is an edge. What
-    lies connected under canny_low begins a segment, and these grow uphill until they meet (a watershed).
-    Confidence is 1 - s / top, s being the slope in units of noise and top the greatest, or canny_high if that is more.
+    The picture is reduced to grey and smoothed; Canny edges and slopes are in units of the noise, and the slope is
+    raised on edges. Connected areas under canny_low start segments, which grow uphill until they meet (a watershed).
+    Confidence is 1 - s / top, where s is the slope in units of noise and top the larger of its maximum and canny_high.
     Sources: Canny 1986; Meyer 1991; Riba et al., Kornia, WACV 2020.
     """
 
@@ -51,18 +51,19 @@ class KorniaGradient(Segmenter, Skippable):
         return self
 
     def skip(self, views: Views) -> str | None:
-        """One flat colour is one segment, and so is any picture when no more is asked for."""
-        return nothing_to_divide(views.left, self.segments)
+        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
+        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Regions of the picture, in the order of their first pixels.
+        """Divide the picture at its edges, labels in the order of their first pixels.
 
+        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
         Raises: PictureError as `check_picture`, BrokenMethod without torch or kornia.
         """
         need("torch")
         need("kornia")
         from .energies.noise_floor import is_flat
-        from .regions.merging import in_reading_order
+        from .regions.merging import number_in_reading_order
         from .regions.watershed import watershed
 
         grey = to_grey(picture)
@@ -73,10 +74,10 @@ class KorniaGradient(Segmenter, Skippable):
         if count < 2:
             return one_segment(grey.shape)
         top = max(float(steep.max()), self.canny_high)
-        return SegmentMap(in_reading_order(watershed(steep, markers)), 1 - steep / np.float32(top))
+        return SegmentMap(number_in_reading_order(watershed(steep, markers)), 1 - steep / np.float32(top))
 
     def _landscape(self, grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
-        """The slope in units of the noise, canny_high at least on edges."""
+        """Compute the slope in units of the noise, at least canny_high on edges."""
         import torch
         from kornia.filters import canny, gaussian_blur2d, spatial_gradient
 
@@ -94,13 +95,16 @@ class KorniaGradient(Segmenter, Skippable):
         return torch.where(edges[inner] > 0, steep.clamp(min=self.canny_high), steep)[0, 0].cpu().numpy()
 
     def _markers(self, steep: Float32[np.ndarray, "h w"]) -> tuple[Int32[np.ndarray, "h w"], int]:
-        """The basins under canny_low, or more where nothing is so flat; the largest, if too many; -1 elsewhere."""
+        """Return the basins under canny_low, or under its multiples if none is so flat, and their number.
+
+        If there are too many, the largest are kept; labels are -1 elsewhere.
+        """
         from .regions.basins import MOST_SEGMENTS, STEEPER, basins
 
         levels = [self.canny_low * times for times in STEEPER]
-        found, count = basins(steep, levels, max(4, min(self.smallest_px, steep.size // 16)))
+        basin_labels, count = basins(steep, levels, max(4, min(self.smallest_px, steep.size // 16)))
         most = min(count, MOST_SEGMENTS if self.segments == "auto" else self.segments)
-        largest = np.argsort(-np.bincount(found[found >= 0], minlength=count), kind="stable")[:most]
-        names = np.full(count + 1, -1, np.int32)  # the last is what -1 finds
+        largest = np.argsort(-np.bincount(basin_labels[basin_labels >= 0], minlength=count), kind="stable")[:most]
+        names = np.full(count + 1, -1, np.int32)  # the last one is indexed by -1
         names[largest] = np.arange(most)
-        return names[found], most
+        return names[basin_labels], most

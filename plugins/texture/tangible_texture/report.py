@@ -1,4 +1,4 @@
-"""Method `report`: the documented baseline, the chain of the report "Tangible Images" as it is written there."""
+"""Method `report`: the documented baseline, the chain of the report "Tangible Images" as printed there."""
 
 import logging
 from math import ceil
@@ -13,7 +13,7 @@ from tangible_core.data.pictures import to_grey
 from tangible_core.plugins.interfaces import Segmenter, Skippable
 from tangible_core.plugins.notes import note
 
-from .signal.skipping import nothing_to_divide, one_segment
+from .signal.skipping import one_segment, reason_to_skip
 
 if TYPE_CHECKING:
     from .energies.gabor_bank import Gabor
@@ -22,13 +22,13 @@ log = logging.getLogger(__name__)
 
 
 class Report(Segmenter, Skippable):
-    """Even Gabor filters, a bounded non-linearity, mean magnitude in Gaussian windows, and k-means from a random start.
+    """Gabor filters, a bounded non-linearity, mean magnitude in Gaussian windows, and k-means from a random start.
 
-    Responses are those to grey levels of 0..255, with filters that leave a wave of their own frequency as high as it
-    is. As printed, x' is divided by gamma instead of the wavelength, and pi is missing from the formula for the
-    bandwidth of a given sigma; both are put right. Everything is done at the picture's full resolution, unless that
-    would take more than memory_mb. Where features hardly differ, there is one segment. Colour is reduced to grey.
-    Confidence is 1 - a / b, a and b being a pixel's distances from the nearest centre and from the next one.
+    Even filters respond to grey levels of 0..255 and keep the amplitude of a wave of their own frequency. The printed
+    formulas divide x' by gamma instead of the wavelength, and lack pi in the bandwidth of a given sigma; both are
+    corrected. Everything is computed at the picture's full resolution, unless that would take more than memory_mb.
+    Where features hardly differ, there is one segment. Colour is reduced to grey.
+    Confidence is 1 - a / b, where a and b are a pixel's distances from the nearest centre and the second nearest.
     Source: Jain & Farrokhnia, Unsupervised texture segmentation using Gabor filters, Pattern Recognition 24 (1991).
     """
 
@@ -61,14 +61,17 @@ class Report(Segmenter, Skippable):
     """Memory for the features; where all pixels would exceed it, every second or third is used."""
 
     def skip(self, views: Views) -> str | None:
-        """One flat colour is one segment, and so is any picture when no more is asked for."""
-        return nothing_to_divide(views.left, self.segments)
+        """Return a reason to make one segment: one flat colour, or one segment requested; None otherwise."""
+        return reason_to_skip(views.left, self.segments)
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Labels in the order of their first pixels. Raises: PictureError as `check_picture`."""
-        from .clusters.labelling import labelled
+        """Divide the picture by texture, labels in the order of their first pixels.
+
+        Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1. Raises: PictureError as `check_picture`.
+        """
         from .energies.filter_choice import needed_filters
         from .energies.noise_floor import is_flat, is_one_texture
+        from .kmeans.labelling import segment_by_kmeans
 
         grey = to_grey(picture)
         if is_flat(grey):
@@ -78,24 +81,24 @@ class Report(Segmenter, Skippable):
         features = self._features(grey, filters, step_px)
         if is_one_texture(features.transpose(2, 0, 1), self.widest_px / step_px, grey):
             return one_segment(grey.shape)
-        return labelled(features, step_px, grey.shape, self.segments, self.seed, start="random")
+        return segment_by_kmeans(features, step_px, grey.shape, self.segments, self.seed, start="random")
 
     def _filters(self, width_px: int) -> "list[Gabor]":
-        from .energies.gabor_bank import bank, octaves, printed
+        from .energies.gabor_bank import bank, octaves, printed_wavelengths
 
-        wavelengths = printed(width_px) if self.frequencies == "printed" else octaves(self.longest_px)
+        wavelengths = printed_wavelengths(width_px) if self.frequencies == "printed" else octaves(self.longest_px)
         return bank(wavelengths, 6, self.bandwidth, self.gamma)
 
     def _step_px(self, pixels: int, filters: int) -> int:
         step_px = ceil((4 * pixels * filters / (self.memory_mb << 20)) ** 0.5)
         if step_px > 1:
-            note(log, f"skipped: features between every {step_px} pixels, as they would not fit {self.memory_mb} MB")
+            note(log, f"features every {step_px} pixels only: at every pixel they would exceed {self.memory_mb} MB")
         return step_px
 
     def _features(
         self, grey: Float32[np.ndarray, "h w"], filters: "list[Gabor]", step_px: int
     ) -> Float32[np.ndarray, "rows columns filters"]:
-        """Mean |tanh(alpha r)| every step_px pixels, as a share of the greatest: k-means does not mind the scale."""
+        """Compute mean |tanh(alpha r)| every step_px pixels, over its maximum: k-means ignores a common scale."""
         from tangible_core.compiled.elementary import hyperbolic_tangents
 
         from .energies.responses import even_responses

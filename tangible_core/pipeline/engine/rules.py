@@ -40,9 +40,10 @@ from ...scene.workspace import FeltSize
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from ..config.part_names import names_of
-from . import felt, layers, parts_found
+from . import part_heights as heights_of_parts
+from . import part_validation, working_grid
 from .cache import Cache
-from .felt import FeltScene
+from .working_grid import WorkingGrid
 
 log = logging.getLogger(__name__)
 Inputs = Mapping[str, Any]
@@ -82,12 +83,12 @@ def rules(config: PipelineConfig, scene: Scene, brought: Mapping[str, Record]) -
     brought: products that the scene brings, which have no rule.
     Raises: ConfigError for a material library that cannot be read, or for parts that the scene's own segments have not.
     """
-    grid = FeltScene(scene, config.size)
+    grid = WorkingGrid(scene, config.size)
     segments = _segments(config, grid)
     known = brought.get("segments")
     unsegmented = None if known is not None else segments.skip
     if config.by_parts and isinstance(known, SegmentMap):
-        parts_found.check_found(config, parts_found.parts_of(known), scene.shape[1])
+        part_validation.check_found(config, part_validation.parts_of(known), scene.shape[1])
     table = (
         _disparity(config, grid),
         _relief_of_parts(config, grid) if config.heights else _relief(config, grid),
@@ -101,7 +102,7 @@ def rules(config: PipelineConfig, scene: Scene, brought: Mapping[str, Record]) -
     return {rule.product: rule for rule in table if rule.product not in brought}
 
 
-def _disparity(config: PipelineConfig, grid: FeltScene) -> Rule:
+def _disparity(config: PipelineConfig, grid: WorkingGrid) -> Rule:
     files, original = grid.scene.files, grid.scene.views
     as_named = isinstance(files, SceneFiles) and files.order == "as-named"
     offset_px = original.calibration.offset_px if original and original.calibration else 0.0
@@ -125,7 +126,7 @@ def _disparity(config: PipelineConfig, grid: FeltScene) -> Rule:
     return Rule("disparity", name, key, ("views",), make, grid.whole_disparity, skip, grid.note, refusal=refusal)
 
 
-def _relief(config: PipelineConfig, grid: FeltScene) -> Rule:
+def _relief(config: PipelineConfig, grid: WorkingGrid) -> Rule:
     size = config.size
 
     def make(inputs: Inputs) -> Relief:
@@ -147,32 +148,32 @@ def estimated(
     return made
 
 
-def in_pictures_pixels(made: DisparityMap, grid: FeltScene) -> DisparityMap:
+def in_pictures_pixels(made: DisparityMap, grid: WorkingGrid) -> DisparityMap:
     """The disparity of what is felt, on its grid, in pixels of the pictures, unknown where they are."""
-    return felt.known_disparity(scaling.in_pixels_of(made, grid.scene.shape[1]), grid.known)
+    return working_grid.known_disparity(scaling.in_pixels_of(made, grid.scene.shape[1]), grid.known)
 
 
 def relief_of(
-    disparity: DisparityMap, grid: FeltScene, size: FeltSize, spans: geometry.ValueRange | None = None
+    disparity: DisparityMap, grid: WorkingGrid, size: FeltSize, spans: geometry.ValueRange | None = None
 ) -> Relief:
     """The relief of a disparity on the grid that is felt. spans: as `geometry.make_relief`."""
     calibration = grid.scene.views.calibration if grid.scene.views else None
     relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes, spans)
-    return felt.grounded(geometry.smooth(relief, size.smooth_m), grid.shown)
+    return working_grid.grounded(geometry.smooth(relief, size.smooth_m), grid.shown)
 
 
-def _relief_of_parts(config: PipelineConfig, grid: FeltScene) -> Rule:
+def _relief_of_parts(config: PipelineConfig, grid: WorkingGrid) -> Rule:
     heights, size, given_m = config.heights, config.size, config.given_heights_m
     assert heights is not None
 
     def make(inputs: Inputs) -> Relief:
         views, parts = _views(grid), _on_grid(config, inputs[config.felt_parts], grid)
         found = part_heights(config, grid, inputs[config.felt_parts], inputs.get("disparity"))
-        layers.tell(found, heights, given_m)
+        heights_of_parts.warn_missing_heights(found, heights, given_m)
         layering = Layering(parts, size.width_m, heights, views.left)
-        return felt.layered(layering, found.heights_m, size, grid.shown)
+        return working_grid.layered(layering, found.heights_m, size, grid.shown)
 
-    code = " ".join(_core(each) for each in (layers.__name__, Layering.__module__, geometry.__name__))
+    code = " ".join(_core(each) for each in (heights_of_parts.__name__, Layering.__module__, geometry.__name__))
     key = f"{code} {size!r} {heights!r} {sorted(given_m.items())}{_reduction(grid)}"
     if heights.by == "depth":
         return Rule("relief", "core", key, ("views", config.felt_parts, "disparity"), make)
@@ -183,22 +184,24 @@ def _relief_of_parts(config: PipelineConfig, grid: FeltScene) -> Rule:
 
 
 def part_heights(
-    config: PipelineConfig, grid: FeltScene, parts: PartMap, disparity: DisparityMap | None
+    config: PipelineConfig, grid: WorkingGrid, parts: PartMap, disparity: DisparityMap | None
 ) -> PartHeights:
     """The height of each part, and why. parts, disparity: of any size; both are taken as they are felt."""
     assert config.heights is not None
     if disparity is not None:
         disparity = scaling.reduced_disparity(disparity, grid.shape)
     on_grid = _on_grid(config, parts, grid)
-    return layers.heights_of(on_grid, config.heights, config.top_m, config.given_heights_m, disparity, grid.shown)
+    return heights_of_parts.heights_of(
+        on_grid, config.heights, config.top_m, config.given_heights_m, disparity, grid.shown
+    )
 
 
-def _segments(config: PipelineConfig, grid: FeltScene) -> Rule:
+def _segments(config: PipelineConfig, grid: WorkingGrid) -> Rule:
     def make(inputs: Inputs) -> SegmentMap:
         views, chosen = _views(grid), _configured(config, "texture")
         made = chosen.method.segment(views.left)
         _check_shape("texture", chosen, "labels", made.labels.shape, views.shape)
-        return felt.with_ground(felt.known_segments(made, grid.known), grid.shown)
+        return working_grid.with_ground(working_grid.known_segments(made, grid.known), grid.shown)
 
     skip = _skip(config.texture, grid.scene)
     if config.texture is None:
@@ -210,10 +213,10 @@ def _segments(config: PipelineConfig, grid: FeltScene) -> Rule:
     return Rule("segments", name, key, ("views",), make, grid.whole_segments, skip, grid.note)
 
 
-def _parts(config: PipelineConfig, grid: FeltScene, unsegmented: str | None) -> Rule:
+def _parts(config: PipelineConfig, grid: WorkingGrid, unsegmented: str | None) -> Rule:
     def make(inputs: Inputs) -> PartMap:
-        found = parts_found.parts_of(inputs["segments"])
-        parts_found.tell_slips(found)
+        found = part_validation.parts_of(inputs["segments"])
+        part_validation.tell_slips(found)
         return found
 
     by_parts = config.by_parts
@@ -226,17 +229,17 @@ def _parts(config: PipelineConfig, grid: FeltScene, unsegmented: str | None) -> 
     )  # fmt: skip
 
 
-def _check(config: PipelineConfig, grid: FeltScene) -> Callable[[PartMap], PartMap] | None:
+def _check(config: PipelineConfig, grid: WorkingGrid) -> Callable[[PartMap], PartMap] | None:
     """What is said of parts is held against those that are there, whenever they are handed on."""
 
     def checked(found: PartMap) -> PartMap:
-        parts_found.check_found(config, found, grid.scene.shape[1])
+        part_validation.check_found(config, found, grid.scene.shape[1])
         return found
 
     return checked if config.by_parts else None
 
 
-def _simplified(config: PipelineConfig, grid: FeltScene, unsegmented: str | None) -> Rule:
+def _simplified(config: PipelineConfig, grid: WorkingGrid, unsegmented: str | None) -> Rule:
     """On a grid of its own, and with the numbers of the parts."""
     choice, width_m, names = config.simplify or SimplifyChoice(), config.size.width_m, config.part_names
 
@@ -254,8 +257,8 @@ def _simplified(config: PipelineConfig, grid: FeltScene, unsegmented: str | None
     )  # fmt: skip
 
 
-def _on_grid(config: PipelineConfig, parts: PartMap, grid: FeltScene) -> PartMap:
-    return felt.parts_on_grid(parts, grid.shape, config.felt_parts)
+def _on_grid(config: PipelineConfig, parts: PartMap, grid: WorkingGrid) -> PartMap:
+    return working_grid.parts_on_grid(parts, grid.shape, config.felt_parts)
 
 
 def _no_parts(config: PipelineConfig) -> ConfigError:
@@ -265,17 +268,21 @@ def _no_parts(config: PipelineConfig) -> ConfigError:
     return config.complained(((key,), f"parts are pieces of segments, and the scene has none; {cure}"))
 
 
-def _materials(config: PipelineConfig, grid: FeltScene, unsegmented: str | None, found: bool) -> Rule:
+def _materials(config: PipelineConfig, grid: WorkingGrid, unsegmented: str | None, found: bool) -> Rule:
     choice = config.materials
     library = assignment.load_library(choice.library)
 
-    by_parts, rules_by_number, own = config.by_parts, parts_found.numbered(config), parts_found.own_materials(config)
+    by_parts, rules_by_number, own = (
+        config.by_parts,
+        part_validation.numbered(config),
+        part_validation.own_materials(config),
+    )
 
     def make(inputs: Inputs) -> MaterialMap:
         picture = grid.views.left if grid.views else None
         if by_parts:
             segments = _on_grid(config, inputs[config.felt_parts], grid)
-            ground = layers.hidden(segments, grid.shown)
+            ground = heights_of_parts.hidden(segments, grid.shown)
         else:
             segments = scaling.reduced_segments(inputs["segments"], grid.shape)
             ground = [segments.count - 1] if found and grid.shown is not None else []
@@ -289,13 +296,13 @@ def _materials(config: PipelineConfig, grid: FeltScene, unsegmented: str | None,
         key = f"{key} {sorted(own.items())} {_core(part_finding.__name__)}"
         return Rule(
             "materials", "core", key, ("views", config.felt_parts), make,
-            finish=lambda made: parts_found.reasons_with_names(config, made),
+            finish=lambda made: part_validation.reasons_with_names(config, made),
         )  # fmt: skip
     skip = f"there are no segments: {unsegmented}" if unsegmented else None
     return Rule("materials", "core", key, ("views", "segments"), make, skip=skip)
 
 
-def _surface(config: PipelineConfig, grid: FeltScene) -> Rule:
+def _surface(config: PipelineConfig, grid: WorkingGrid) -> Rule:
     with_materials = config.render is None or config.render.method.uses_materials
     key = f"{_core(HapticSurface.__module__)}{_reduction(grid)}"
     if config.by_parts:
@@ -313,7 +320,7 @@ def _surface(config: PipelineConfig, grid: FeltScene) -> Rule:
     return Rule("surface", "core", key, needs, make)
 
 
-def _surface_of_parts(config: PipelineConfig, grid: FeltScene, key: str, with_materials: bool) -> Rule:
+def _surface_of_parts(config: PipelineConfig, grid: WorkingGrid, key: str, with_materials: bool) -> Rule:
     """Its labels are the numbers of parts, and there for their names alone where the law uses no materials."""
 
     def make(inputs: Inputs) -> HapticSurface:
@@ -323,7 +330,9 @@ def _surface_of_parts(config: PipelineConfig, grid: FeltScene, key: str, with_ma
     parts = config.felt_parts
     first = ("relief", parts) if config.heights else (parts, "relief")  # what is wrong of parts, before a depth
     needs = (*first, "materials") if with_materials else first
-    return Rule("surface", "core", key, needs, make, finish=lambda made: parts_found.surface_with_names(config, made))
+    return Rule(
+        "surface", "core", key, needs, make, finish=lambda made: part_validation.surface_with_names(config, made)
+    )
 
 
 def _touch(config: PipelineConfig) -> Rule:
@@ -382,10 +391,10 @@ def _library_digest(materials: tuple[Material, ...]) -> str:
 
 def _core(module: str) -> str:
     """The code of the core's part: a module, this table, and what keeps a result."""
-    return closure(module, alone=(__name__, felt.__name__, Cache.__module__)).digest
+    return closure(module, alone=(__name__, working_grid.__name__, Cache.__module__)).digest
 
 
-def _reduction(grid: FeltScene) -> str:
+def _reduction(grid: WorkingGrid) -> str:
     """What else a product depends on that is made of products of the pictures' size, where that is not felt."""
     plain = grid.factor == 1 and grid.scene.shown is None
     return "" if plain else f" {_core(scaling.__name__)} {grid.key}"
@@ -448,7 +457,7 @@ def _configured(config: PipelineConfig, kind: str) -> NamedMethod[Any]:
     return chosen
 
 
-def _views(grid: FeltScene) -> Views:
+def _views(grid: WorkingGrid) -> Views:
     if grid.views is None:
         raise _pictureless(grid.scene)
     return grid.views

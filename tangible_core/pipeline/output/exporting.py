@@ -244,6 +244,7 @@ def work_for(engine: Engine, exporter: Exporter) -> Work:
         products,
         None if views is None else views.left,
         names(engine.config, products),
+        {"views": views, "truth": engine.scene.truth},
     )
 
 

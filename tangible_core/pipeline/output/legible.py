@@ -11,7 +11,7 @@ from ...scene.workspace import Workspace
 from ..config.model import PipelineConfig
 from ..config.part_names import names_of
 from ..engine.engine import Engine
-from ..engine.felt import FeltScene
+from ..engine.working_grid import WorkingGrid
 
 ROUNDING = 1e-9
 """A share by which a product of floating-point numbers may be off, and more."""
@@ -41,7 +41,7 @@ def of_width(engine: Engine, width_m: float | None) -> Engine:
     config = engine.config
     if width_m is None or width_m == config.size.width_m:
         return engine
-    columns, factor = engine.scene.shape[1], FeltScene(engine.scene, config.size).factor
+    columns, factor = engine.scene.shape[1], WorkingGrid(engine.scene, config.size).factor
     finest_m = 0.0 if factor == 1 else factor * width_m / columns * (1 + ROUNDING)
     try:
         workspace = Workspace.model_validate({**dict(config.workspace), "width_m": width_m, "finest_m": finest_m})

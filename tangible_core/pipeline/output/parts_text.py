@@ -11,7 +11,7 @@ from ...parts import PartChoice, PartHeights
 from ..config.model import PipelineConfig
 from ..engine import rules
 from ..engine.engine import Engine
-from ..engine.felt import FeltScene
+from ..engine.working_grid import WorkingGrid
 
 MOST_REASON = 300
 """Characters of what is said behind a part."""
@@ -32,7 +32,7 @@ def part_heights(engine: Engine) -> PartHeights | None:
         return None
     found: PartMap = engine.felt(config.felt_parts)
     disparity: DisparityMap | None = engine.felt("disparity") if config.heights.by == "depth" else None
-    return rules.part_heights(config, FeltScene(engine.scene, config.size), found, disparity)
+    return rules.part_heights(config, WorkingGrid(engine.scene, config.size), found, disparity)
 
 
 def to_correct(engine: Engine) -> str:

@@ -8,19 +8,21 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
-from ...data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Record, ServoReport
+from ...data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Record, ServoReport, Work
 from ...errors import ConfigError
+from ...files.json_text import write_figures
 from ...files.writing import write_text
+from ...metrics import disparity_errors
 from ...plugins.interfaces import Touch
-from ...report import disparity_errors, draw_sheet, write_figures
-from ...report.html import png_html
 from ...session import EVERY, About, Recording, materials_text, names_text, run_simulated, telling_parts
 from ..engine.cache import write_record
 from ..engine.engine import Engine
 from ..engine.warm_up import FELT, rehearsal
 from .following import felt_device, how_followed
+from .notebook import png_html
 from .parts_text import part_heights, to_correct
 from .run_folder import CONFIG, GUESSED, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
+from .showing import drawing
 
 SHOWN = ("disparity", "segments", "parts", "materials", "surface")
 """Products that the report draws, beside what is wanted."""
@@ -163,8 +165,8 @@ def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | No
     title = engine.config.title or (Path(scene.name).name if Path(scene.name).is_absolute() else scene.name)
     if doubts := [each.text.partition(":")[0] for each in engine.outcomes.doubts]:
         title = f"{title} (doubtful: {'; '.join(doubts)})"
-    shown |= {"views": scene.views, "truth": scene.truth, "recording": recording}
-    return draw_sheet(path, title=title, language=language, **shown)
+    extras = {"views": scene.views, "truth": scene.truth, "recording": recording}
+    return drawing().draw(Work(title, language, shown, extras=extras), path)
 
 
 def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording | None) -> dict[str, Any]:

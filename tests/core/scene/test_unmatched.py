@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -62,7 +63,8 @@ def test_it_is_in_the_log_the_outcomes_and_the_title_of_the_sheet(
     from tangible_core.pipeline.output import runs
 
     titles: list[str] = []
-    monkeypatch.setattr(runs, "draw_sheet", lambda path, *, title, **_: titles.append(title) or "")
+    sheet = SimpleNamespace(draw=lambda work, path: titles.append(work.title) or "")
+    monkeypatch.setattr(runs, "drawing", lambda: sheet)
     picture = np.random.default_rng(0).random((8, 8))
     Pipeline(Scene.of(left=picture, right=picture[::-1]), depth=Guesses(), cached=False).run(tmp_path, "relief")
     [message] = [each.message for each in caplog.records]

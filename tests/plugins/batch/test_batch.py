@@ -373,7 +373,7 @@ class TestScenes:
         assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 2
 
     def test_an_exporter_that_fails_is_the_scene_s_failure(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
-        from tangible_export import Text
+        from tangible_report import Text
 
         def fails(*_: object) -> None:
             raise OutputError("the ink is dry")

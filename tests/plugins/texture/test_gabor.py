@@ -17,7 +17,7 @@ EFFORTS = ["fast", "balanced"]
 
 
 def waves(shape: tuple[int, int], wavelength_px: float, degrees: float, seed: int) -> np.ndarray:
-    """Noise of about one wavelength and direction, of mean 0.5 and standard deviation 0.15."""
+    """Return noise of about one wavelength and direction, of mean 0.5 and standard deviation 0.15."""
     filtered = cv2.filter2D(
         np.random.default_rng(seed).standard_normal(shape),
         -1,
@@ -27,7 +27,7 @@ def waves(shape: tuple[int, int], wavelength_px: float, degrees: float, seed: in
 
 
 def mosaic(rows: int = 192, columns: int = 256) -> tuple[np.ndarray, np.ndarray]:
-    """Three textures of one brightness and contrast, with a curved border and a straight one; and which is where."""
+    """Return three textures of one brightness and contrast, with a curved and a straight border, and their labels."""
     row, column = np.indices((rows, columns))
     truth = np.where(column < columns * 0.45 + 12 * np.sin(row / 20), 0, np.where(row < rows * 0.55, 1, 2))
     textures = [waves((rows, columns), *each) for each in ((6, 20, 1), (6, 110, 2), (13, 65, 3))]
@@ -38,7 +38,7 @@ PICTURE, TRUTH = mosaic()
 
 
 @pytest.mark.parametrize("effort", EFFORTS)
-def test_textures_of_one_brightness_are_told_apart(effort: str):
+def test_textures_of_one_brightness_are_separated(effort: str):
     found = Gabor(segments=3, effort=effort).segment(PICTURE)
     assert found.count == 3
     assert rand_index(TRUTH, found.labels) > 0.93
@@ -63,21 +63,21 @@ def test_labels_are_in_the_order_of_their_first_pixels():
     ],
     ids=["x 1e20", "x 1e-20", "RGB", "RGBA"],
 )
-def test_neither_scale_nor_kind_of_picture_changes_a_label(change, effort: str):
+def test_labels_of_any_scale_and_kind_of_picture_are_the_same(change, effort: str):
     method = Gabor(segments=3, effort=effort)
     np.testing.assert_array_equal(method.segment(change(PICTURE)).labels, method.segment(PICTURE).labels)
 
 
 @pytest.mark.parametrize("effort", EFFORTS)
 @pytest.mark.parametrize(("gain", "offset"), [(0.3, 0.5), (0.31, 0.25), (0.37, 0.4)])
-def test_gain_and_offset_change_no_label_but_where_rounding_decides(gain: float, offset: float, effort: str):
+def test_labels_under_gain_and_offset_change_by_rounding_only(gain: float, offset: float, effort: str):
     # Both are rounded: of half a million comparisons with neighbours one or two come out the other way.
     method = Gabor(segments=3, effort=effort)
     changed = method.segment((PICTURE * gain + offset).astype(np.float32)).labels
     assert np.mean(changed != method.segment(PICTURE).labels) <= 1e-3
 
 
-def test_eight_and_sixteen_bits_are_one_picture():
+def test_labels_of_eight_and_sixteen_bits_are_the_same():
     eight = np.rint(PICTURE * 255).astype(np.uint8)
     one, other = (Gabor(segments=3).segment(each).labels for each in (eight, eight.astype(np.uint16) * 257))
     np.testing.assert_array_equal(one, other)
@@ -89,13 +89,13 @@ def test_eight_and_sixteen_bits_are_one_picture():
     [(np.fliplr, np.fliplr), (np.flipud, np.flipud), (np.rot90, lambda each: np.rot90(each, -1)), (np.transpose,) * 2],
     ids=["left and right", "up and down", "quarter turn", "transposed"],
 )
-def test_flips_and_quarter_turns_flip_and_turn_the_labels(there, back, effort: str):
+def test_labels_of_a_flipped_or_turned_picture_move_along(there, back, effort: str):
     method = Gabor(segments=3, effort=effort)
     turned = back(method.segment(np.ascontiguousarray(there(PICTURE))).labels)
     assert rand_index(method.segment(PICTURE).labels, turned) >= 0.995
 
 
-def test_noise_changes_little():
+def test_labels_in_noise_change_little():
     noisy = PICTURE + 8 / 255 * np.random.default_rng(5).standard_normal(PICTURE.shape)
     assert rand_index(Gabor(segments=3).segment(PICTURE).labels, Gabor(segments=3).segment(noisy).labels) >= 0.95
 
@@ -117,11 +117,11 @@ def one_pixel_brighter() -> np.ndarray:
     [np.full((128, 160), 0.3), one_pixel_brighter(), checkerboard(1), checkerboard(4), checkerboard(7)],
     ids=["constant", "one pixel + 1", "squares of 1 px", "of 4 px", "of 7 px"],
 )
-def test_one_texture_is_one_segment_whatever_is_asked_for(picture: np.ndarray, segments: int | str):
+def test_one_texture_is_one_segment_for_any_request(picture: np.ndarray, segments: int | str):
     assert Gabor(segments=segments).segment(picture).count == 1
 
 
-def test_no_more_segments_than_features_differ():
+def test_segments_are_not_more_than_distinct_features():
     halves = np.hstack([checkerboard(2), checkerboard(8)])
     assert 2 <= Gabor(segments=3).segment(halves).count <= 3
 
@@ -130,7 +130,7 @@ def test_no_more_segments_than_features_differ():
     "shape", [(1, 1), (1, 2), (2, 1), (1, 17), (9, 1), (3, 3), (5, 7), (17, 9), (40, 3), (33, 131)]
 )
 @pytest.mark.parametrize("segments", [2, 64, "auto"])
-def test_any_size_has_sound_labels(shape: tuple[int, int], segments: int | str):
+def test_labels_of_any_size_are_sound(shape: tuple[int, int], segments: int | str):
     picture = np.random.default_rng(3).random(shape)
     found = Gabor(segments=segments).segment(picture)
     assert found.labels.shape == found.confidence.shape == shape
@@ -139,8 +139,8 @@ def test_any_size_has_sound_labels(shape: tuple[int, int], segments: int | str):
     assert 0 <= found.confidence.min() <= found.confidence.max() <= 1
 
 
-def test_the_frame_of_the_picture_is_no_segment_of_its_own():
-    """Waves that went round from one border to the other would make a strip of another texture along it."""
+def test_frame_of_the_picture_is_not_a_segment():
+    """Waves that wrapped around the frame would make a strip of another texture along it."""
     picture, _ = mosaic()
     picture[:, 128:] = waves((192, 128), 13, 65, 4)
     picture[:, :128] = waves((192, 128), 6, 20, 5)
@@ -148,15 +148,15 @@ def test_the_frame_of_the_picture_is_no_segment_of_its_own():
     assert np.all(labels[:, :110] == 0) and np.all(labels[:, 146:] == 1)
 
 
-def tinted(picture: np.ndarray) -> np.ndarray:
-    """The same grey all over, red on the left and blue on the right."""
+def two_tints(picture: np.ndarray) -> np.ndarray:
+    """Return the same grey everywhere, tinted red on the left and blue on the right."""
     red = np.where(np.arange(picture.shape[1]) < picture.shape[1] // 2, 0.3, -0.3)
     return np.stack([picture + red, picture, picture - red * 0.299 / 0.114], axis=2) / 2 + 0.25
 
 
-def test_colour_is_used_where_windows_differ_in_it():
+def test_colour_differing_between_windows_is_used():
     grain = waves((128, 160), 6, 20, 1)
-    picture = np.clip(tinted(0.5 + (grain - 0.5) * 0.2), 0, 1)
+    picture = np.clip(two_tints(0.5 + (grain - 0.5) * 0.2), 0, 1)
     with collected() as notes:
         found = Gabor(segments=2).segment(picture)
     assert any(each.startswith("colour used") for each in notes)
@@ -165,7 +165,7 @@ def test_colour_is_used_where_windows_differ_in_it():
 
 
 def under_slanting_light(picture: np.ndarray) -> np.ndarray:
-    """Redder from left to right, and bluer from top to bottom."""
+    """Return a picture redder from left to right, and bluer from top to bottom."""
     rows, columns = (np.linspace(-0.15, 0.15, side) for side in picture.shape)
     return np.stack([picture + columns, picture, picture + rows[:, None]], axis=2) / 1.5 + 0.15
 
@@ -173,18 +173,18 @@ def under_slanting_light(picture: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize(
     ("picture", "colour", "why"),
     [
-        (PICTURE, "auto", "there is none"),
+        (PICTURE, "auto", "the picture has none"),
         (under_slanting_light(PICTURE), "auto", "of white, under 0.02"),
         (np.stack([PICTURE, PICTURE, PICTURE * 0.999], axis=2), "auto", "of white, under 0.02"),
     ],
 )
-def test_colour_that_says_nothing_is_left_out_and_that_is_said(picture: np.ndarray, colour: str, why: str):
+def test_colour_without_information_is_left_out_and_reported(picture: np.ndarray, colour: str, why: str):
     with collected() as notes:
         Gabor(segments=3, colour=colour).segment(picture)
     assert any(each.startswith("colour left out") and why in each for each in notes)
 
 
-def test_filters_above_the_bandwidth_are_left_out_and_change_little():
+def test_filters_above_the_bandwidth_are_left_out():
     enlarged = cv2.GaussianBlur(cv2.resize(PICTURE, None, fx=3, fy=3, interpolation=cv2.INTER_CUBIC), (0, 0), 2)
     with collected() as notes:
         some = Gabor(segments=3).segment(enlarged)
@@ -195,20 +195,20 @@ def test_filters_above_the_bandwidth_are_left_out_and_change_little():
     assert rand_index(some.labels, every.labels) > 0.95
 
 
-def test_auto_finds_three_and_says_what_the_guess_is_worth():
+def test_auto_finds_three_and_reports_its_confidence():
     with collected() as notes:
         found = Gabor().segment(PICTURE)
     assert found.count == 3
-    assert any(each.startswith("segments: 3, a guess worth 0.") for each in notes)
+    assert any(each.startswith("segments: 3, estimated with confidence 0.") for each in notes)
 
 
-def test_what_is_flat_or_asks_for_one_segment_is_skipped():
-    assert str(Gabor(segments=1).skip(Views(PICTURE))).startswith("one segment is asked for")
+def test_flat_picture_or_one_segment_is_skipped():
+    assert str(Gabor(segments=1).skip(Views(PICTURE))).startswith("one segment is requested")
     assert Gabor().skip(Views(np.full((4, 4), 0.5))) == "the picture is one flat colour"
     assert Gabor().skip(Views(PICTURE)) is None
 
 
-def test_what_is_no_number_is_named_with_its_place():
+def test_non_finite_value_is_named_with_its_place():
     picture = PICTURE.copy()
     picture[7, 9] = np.nan
     with pytest.raises(PictureError, match="row 7, column 9"):
@@ -221,7 +221,7 @@ def test_options_out_of_range_are_refused(options: dict):
         Gabor(**options)
 
 
-def test_threads_do_not_change_a_label(monkeypatch: pytest.MonkeyPatch):
+def test_labels_with_one_thread_are_the_same(monkeypatch: pytest.MonkeyPatch):
     whole = Gabor(segments=3).segment(PICTURE)
     monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 1)
     alone = Gabor(segments=3).segment(PICTURE)

@@ -1,6 +1,6 @@
-"""Pictures that break segmenters, over every texture method that is installed: one table of cases, each with a demand.
+"""Pictures that break segmenters, over every installed texture method: one table of cases, each with a demand.
 
-Method by method exactness is tested beside the method; here every cell of cases x methods gets the same questions.
+Exactness is tested in each method's own module; here every pair of case and method gets the same questions.
 """
 
 import subprocess
@@ -27,7 +27,7 @@ METHODS = [
     if (each.kind, each.distribution) == ("texture", "tangible-images")
 ]
 OF_GREY = {"gradient", "histogram", "kornia-gradient"}
-"""They tell things apart by brightness. The others do so by texture, to which the squares of a board are one thing."""
+"""The methods that separate by brightness. The others separate by texture, for which a checkerboard is one thing."""
 SHAPE = 64, 88
 HALF = SHAPE[1] // 2
 NUMBERS = ("auto", 1, 2, 7, 1000)
@@ -38,7 +38,7 @@ def method(name: str, **options: Any) -> Segmenter:
 
 
 def takes(name: str, options: Mapping[str, Any]) -> bool:
-    """Whether a method has these options: not each can say `auto`."""
+    """Return True if a method has these options: not every method has `auto`."""
     try:
         method(name, **options)
     except ValidationError:
@@ -74,13 +74,13 @@ def two(shape: tuple[int, int] = (96, 128)) -> np.ndarray:
     return two_textures(shape)[0]
 
 
-# What is demanded
+# Demands
 
 Demand = Callable[[SegmentMap, np.ndarray], None]
 
 
 def well_formed(found: SegmentMap, picture: np.ndarray) -> None:
-    """Labels 0..n-1 without a gap, int32 in one piece of memory, of the picture's size; confidence in 0..1."""
+    """Demand labels 0..n-1 without a gap, int32, contiguous, of the picture's size; confidence in 0..1."""
     labels, confidence = found.labels, found.confidence
     assert labels.shape == confidence.shape == picture.shape[:2]
     assert (labels.dtype, confidence.dtype) == (np.int32, np.float32)
@@ -99,11 +99,11 @@ def at_most(count: int) -> Demand:
 
 
 def anything(found: SegmentMap, picture: np.ndarray) -> None:
-    """It is well formed, and that is all."""
+    """Demand nothing beyond `well_formed`."""
 
 
 class Case(NamedTuple):
-    """A picture, and what is demanded of the methods by grey and of those by texture; of every one: `well_formed`."""
+    """A picture, and the demands on methods by grey and by texture; every method must give `well_formed`."""
 
     picture: Callable[[], np.ndarray]
     of_grey: Demand
@@ -129,8 +129,8 @@ CASES: dict[str, Case] = {
     "two textures": Case(two, anything, anything),
 }
 
-NOT_KEPT: dict[tuple[str, str], str] = {}
-"""By case and method: why not. The cell must then fail."""
+KNOWN_FAILURES: dict[tuple[str, str], str] = {}
+"""The reasons of known failures by case and method; the test must then fail."""
 
 
 def cells() -> list[Any]:
@@ -140,7 +140,9 @@ def cells() -> list[Any]:
             name,
             number,
             id=f"{case}-{name}-{number}",
-            marks=[pytest.mark.xfail(reason=NOT_KEPT[case, name], strict=True)] if (case, name) in NOT_KEPT else [],
+            marks=[pytest.mark.xfail(reason=KNOWN_FAILURES[case, name], strict=True)]
+            if (case, name) in KNOWN_FAILURES
+            else [],
         )
         for case in CASES
         for name in METHODS
@@ -150,7 +152,7 @@ def cells() -> list[Any]:
 
 
 @pytest.mark.parametrize(("case", "name", "number"), cells())
-def test_a_cell(case: str, name: str, number: int | str):
+def test_case_meets_its_demand(case: str, name: str, number: int | str):
     picture = CASES[case].picture()
     found = method(name, segments=number).segment(picture)
     well_formed(found, picture)
@@ -158,14 +160,14 @@ def test_a_cell(case: str, name: str, number: int | str):
     (CASES[case].of_grey if name in OF_GREY else CASES[case].of_texture)(found, picture)
 
 
-# What a table of pictures does not hold
+# Demands beyond the table of pictures
 
 by_method = pytest.mark.parametrize("name", METHODS)
 SIZES = (*TINY, (3, 1), (5, 4), (8, 8), (9, 17), (16, 9), (31, 33), (61, 97), (100, 63))
 
 
 def agreement(one: np.ndarray, other: np.ndarray) -> float:
-    """Share of the pixels on which two label maps agree when each label stands for the one that it covers most."""
+    """Return the share of pixels on which two label maps agree, each label matched to the one it covers most."""
     table = np.zeros((one.max() + 1, other.max() + 1), np.int64)
     np.add.at(table, (one.ravel(), other.ravel()), 1)
     return min(table.max(axis=0).sum(), table.max(axis=1).sum()) / one.size
@@ -173,7 +175,7 @@ def agreement(one: np.ndarray, other: np.ndarray) -> float:
 
 @by_method
 @pytest.mark.parametrize("shape", SIZES, ids=str)
-def test_every_size_is_segmented(name: str, shape: tuple[int, int]):
+def test_picture_of_every_size_is_segmented(name: str, shape: tuple[int, int]):
     picture = two(shape)
     for number in NUMBERS:
         if takes(name, {"segments": number}):
@@ -183,7 +185,7 @@ def test_every_size_is_segmented(name: str, shape: tuple[int, int]):
 
 
 @by_method
-def test_the_kind_of_array_hardly_matters(name: str):
+def test_labels_of_any_kind_of_array_agree(name: str):
     expected = method(name).segment(two()).labels
     for kind, variant in exact_variants(two()):
         assert agreement(method(name).segment(variant).labels, expected) >= 0.99, kind
@@ -194,7 +196,7 @@ def test_the_kind_of_array_hardly_matters(name: str):
 @by_method
 @pytest.mark.parametrize("scale", [1e20, 1e-20, 0.5, -1.0])
 @pytest.mark.parametrize("offset", [0.0, 0.25])
-def test_gain_and_offset_hardly_matter(name: str, scale: float, offset: float):
+def test_labels_under_gain_and_offset_agree(name: str, scale: float, offset: float):
     if name == "report" and 0 < scale < 1:
         pytest.xfail("its bounded non-linearity is one of grey levels")
     picture = two() / 255
@@ -205,7 +207,7 @@ def test_gain_and_offset_hardly_matter(name: str, scale: float, offset: float):
 @by_method
 @pytest.mark.parametrize("upright", [True, False])
 def test_borders_do_not_wrap_around(name: str, upright: bool):
-    """What is at one border is told as what lies beside it, not as what is at the other border."""
+    """Pixels at one border get the label of their neighbours, not that of the other border."""
     picture, truth = two_textures((120, 200))
     labels = method(name, segments=2).segment(picture if upright else picture.transpose(1, 0, 2)).labels
     labels = labels if upright else labels.T
@@ -216,7 +218,7 @@ def test_borders_do_not_wrap_around(name: str, upright: bool):
 
 @by_method
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-def test_what_is_not_finite_is_told_with_its_place_or_filled(name: str, value: float):
+def test_non_finite_value_is_named_with_its_place_or_filled(name: str, value: float):
     whole = two() / 255
     torn = whole.copy()
     torn[31, 64], torn[40, 7, 1] = value, value
@@ -229,7 +231,7 @@ def test_what_is_not_finite_is_told_with_its_place_or_filled(name: str, value: f
 
 
 @by_method
-def test_a_picture_stays_as_it_is(name: str):
+def test_picture_given_stays_as_it_is(name: str):
     for picture in (two(), two() / 255, two()[..., 0]):
         before = picture.copy()
         picture.flags.writeable = False
@@ -238,20 +240,20 @@ def test_a_picture_stays_as_it_is(name: str):
 
 
 @by_method
-def test_calls_at_once_do_not_disturb_each_other(name: str):
+def test_calls_in_parallel_do_not_disturb_each_other(name: str):
     pictures = [two(), two()[::-1].copy(), board(4)] * 2
     alone = [method(name).segment(each).digest() for each in pictures[:3]] * 2
     with ThreadPoolExecutor(3) as pool:
         assert [each.digest() for each in pool.map(method(name).segment, pictures)] == alone
 
 
-def test_there_are_methods():
+def test_installed_methods_are_listed():
     assert {"gradient", "histogram"} <= set(METHODS)
 
 
 @pytest.mark.parametrize(("name", "bytes_a_pixel"), [("gabor", 60), ("gradient", 40), ("histogram", 50)])
-def test_the_memory_that_is_stated_is_enough_for_four_megapixels(name: str, bytes_a_pixel: int):
-    """Of grey, above the picture, and 16 MiB for what does not grow."""
+def test_memory_stated_is_enough_for_four_megapixels(name: str, bytes_a_pixel: int):
+    """The bound holds for grey, above the picture, with 16 MiB for constant parts."""
     script = (
         "import numpy as np; from tangible_bench.memory import start_peak;"
         "from tangible_core.plugins.registry import default_registry as installed;"
@@ -261,6 +263,6 @@ def test_the_memory_that_is_stated_is_enough_for_four_megapixels(name: str, byte
         "method.segment(picture[:300, :400].copy()); peak = start_peak(); found = method.segment(picture);"
         "print(peak(), found.count)"
     )
-    said = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout.split()
-    assert int(said[0]) <= bytes_a_pixel * 4_000_000 + (16 << 20)
-    assert int(said[1]) > 1
+    printed = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout.split()
+    assert int(printed[0]) <= bytes_a_pixel * 4_000_000 + (16 << 20)
+    assert int(printed[1]) > 1

@@ -1,4 +1,4 @@
-"""The report's chain and the torch variants, as methods, on pictures whose answer is known."""
+"""The report's chain and the torch variants, as methods, on pictures of a known answer."""
 
 import sys
 
@@ -9,10 +9,10 @@ from label_maps import rand_index
 from tangible_core.data import Views
 from tangible_core.errors import TangibleError
 from tangible_core.plugins.notes import collected
-from tangible_texture.clusters.kmeans import kmeans
 from tangible_texture.energies.gabor_bank import bank, octaves
 from tangible_texture.energies.local_energy import energy_planes, padding, spectrum_of
 from tangible_texture.energies.responses import even_responses
+from tangible_texture.kmeans.lloyd import kmeans
 from tangible_texture.kornia_gabor import KorniaGabor
 from tangible_texture.kornia_gradient import KorniaGradient
 from tangible_texture.report import Report
@@ -22,7 +22,7 @@ NAMES = ["report", "kornia-gabor", "kornia-gradient"]
 
 
 def quarters(size=160):
-    """Four textures of one mean and one contrast, and where each of them is."""
+    """Return four textures of one mean and one contrast, and their labels."""
     rows, columns = np.indices((size, size))
     truth = 2 * (rows >= size // 2) + (columns >= size // 2)
     waves = [(1 / 4, 0), (0, 1 / 4), (1 / 8, 0), (0.1, 0.1)]
@@ -35,17 +35,17 @@ def quarters(size=160):
 
 class TestReport:
     @pytest.mark.parametrize("frequencies", ["printed", "octaves"])
-    def test_four_textures(self, frequencies):
+    def test_four_textures_are_found(self, frequencies):
         grey, truth = quarters()
         found = Report(segments=4, frequencies=frequencies, seed=1).segment(grey)
         assert found.count == 4
         assert rand_index(found.labels, truth) > 0.9
         assert found.confidence[40, 40] > 2 * found.confidence[80, 40]
 
-    def test_the_number_of_segments_is_a_guess_that_is_said(self):
+    def test_auto_reports_its_estimate(self):
         with collected() as notes:
             found = Report().segment(quarters()[0])
-        assert f"segments: {found.count}, a guess worth" in " ".join(notes)
+        assert f"segments: {found.count}, estimated with confidence" in " ".join(notes)
 
     def test_responses_are_convolutions_with_the_even_kernel(self):
         wave = np.cos(np.arange(100) * np.pi / 2).astype(np.float32)[None].repeat(90, axis=0)
@@ -54,36 +54,36 @@ class TestReport:
         assert own[inner] == pytest.approx(wave[inner], abs=0.01)
         assert np.abs(other[inner]).max() < 0.01
 
-    def test_seeds_repeat(self):
+    def test_labels_of_one_seed_repeat(self):
         grey = quarters()[0]
         one, two = (Report(segments=4, seed=5).segment(grey) for _ in range(2))
         assert one.digest() == two.digest()
 
-    def test_gain_is_what_the_non_linearity_sees(self):
+    def test_faint_picture_is_segmented_too(self):
         grey = quarters()[0]
         faint = Report(segments=4, seed=1).segment(grey.astype(np.float32) / 255 * 1e-20)
         assert rand_index(faint.labels, quarters()[1]) > 0.9
 
-    def test_features_that_do_not_fit_are_thinned_and_said(self):
+    def test_features_exceeding_memory_are_thinned_and_reported(self):
         grey, truth = quarters(400)
         with collected() as notes:
             found = Report(segments=4, seed=1, memory_mb=16).segment(grey)
-        assert any("skipped: features between every 2 pixels" in each for each in notes)
+        assert any("features every 2 pixels only" in each for each in notes)
         assert found.labels.shape == (400, 400)
         assert rand_index(found.labels, truth) > 0.9
 
-    def test_skips_are_switches(self):
+    def test_skip_weak_leaves_filters_out(self):
         grey, truth = quarters()
         with collected() as notes:
             found = Report(segments=4, frequencies="octaves", skip_weak=True, seed=1).segment(grey)
-        assert any(each.startswith("skipped:") for each in notes)
+        assert any("filters left out" in each for each in notes)
         assert rand_index(found.labels, truth) > 0.9
 
 
 class TestKorniaGabor:
     @pytest.mark.parametrize("step_px", [3, 4])
     @pytest.mark.slow
-    def test_energies_are_those_of_the_fast_bank(self, step_px):
+    def test_energies_match_the_fast_bank(self, step_px):
         import torch
 
         from tangible_texture.kornia_gabor_kernels import energies
@@ -94,7 +94,7 @@ class TestKorniaGabor:
         ours = energy_planes(spectrum_of(grey, padding(filters, 6.0)), filters, grey.shape, step_px, 6.0)
         assert (np.abs(found - ours).max(axis=(1, 2)) < 0.01 * ours.mean(axis=(1, 2))).all()
 
-    def test_clusters_are_those_of_our_k_means(self):
+    def test_clusters_match_our_k_means(self):
         import torch
 
         from tangible_texture import kornia_gabor_kernels
@@ -106,7 +106,7 @@ class TestKorniaGabor:
         assert theirs.cost == pytest.approx(ours.cost, rel=1e-4)
         assert rand_index(theirs.labels.numpy(), ours.labels) == 1
 
-    def test_never_more_clusters_than_distinct_rows(self):
+    def test_clusters_are_not_more_than_distinct_rows(self):
         import torch
 
         from tangible_texture.kornia_gabor_kernels import kmeans
@@ -115,10 +115,10 @@ class TestKorniaGabor:
         assert len(kmeans(torch.eye(3).repeat(5, 1), 7, restarts=2).centres) == 3
 
     @pytest.mark.slow
-    def test_labels_are_those_of_the_fast_bank_with_the_same_clustering(self):
+    def test_labels_match_the_fast_bank_with_the_same_clustering(self):
         import torch
 
-        from tangible_texture.kornia_gabor_kernels import standardised_roots
+        from tangible_texture.kornia_gabor_kernels import standardise_roots
 
         grey, _ = quarters(256)
         found = KorniaGabor(segments=4, drop_seams=False, skip_octaves=False).segment(grey)
@@ -126,12 +126,12 @@ class TestKorniaGabor:
         planes = energy_planes(
             spectrum_of(grey.astype(np.float32), padding(filters, 12.0)), filters, grey.shape, 4, 12.0
         )
-        rows = standardised_roots(torch.from_numpy(planes)).numpy()
+        rows = standardise_roots(torch.from_numpy(planes)).numpy()
         ours = kmeans(rows, 4, restarts=10).labels.reshape(64, 64).repeat(4, 0).repeat(4, 1)
         assert rand_index(found.labels, ours) > 0.95
 
     @pytest.mark.slow
-    def test_four_textures_without_their_seams(self):
+    def test_four_textures_have_no_seams(self):
         grey, truth = quarters(256)
         found = KorniaGabor(segments=4).segment(grey)
         assert found.count == 4
@@ -139,7 +139,7 @@ class TestKorniaGabor:
 
 
 class TestKorniaGradient:
-    def test_areas_of_one_grey_each(self):
+    def test_areas_of_one_grey_are_found(self):
         rows, columns = np.indices((120, 140))
         truth = np.where(np.hypot(rows - 60, columns - 70) < 35, 1, 2 * (columns >= 110)).astype(np.int32)
         grey = np.array([60, 140, 220])[truth] + np.random.default_rng(0).normal(0, 4, truth.shape)
@@ -153,20 +153,20 @@ class TestKorniaGradient:
         noise = np.random.default_rng(0).normal(128, 10, (100, 100))
         assert KorniaGradient().segment(np.clip(noise, 0, 255).astype(np.uint8)).count == 1
 
-    def test_thresholds_are_in_order(self):
+    def test_thresholds_out_of_order_are_refused(self):
         with pytest.raises(ValueError, match="canny_low 5 is above canny_high 4"):
             KorniaGradient(canny_low=5)
 
 
 @pytest.mark.parametrize("method", METHODS, ids=NAMES)
-def test_one_flat_colour_needs_no_method(method):
+def test_flat_colour_is_skipped(method):
     assert method.skip(Views(np.full((9, 9), 7, np.uint8))) == "the picture is one flat colour"
     assert method.skip(Views(quarters(20)[0])) is None
 
 
 @pytest.mark.parametrize("method", METHODS[:2], ids=NAMES[:2])
 @pytest.mark.parametrize("shape", [(1, 1), (17, 9), (2, 50)])
-def test_never_more_segments_than_distinct_pixels(method, shape):
+def test_segments_are_not_more_than_distinct_pixels(method, shape):
     picture = (np.indices(shape).sum(axis=0) % 2 * 200).astype(np.uint8)
     found = type(method)(segments=9).segment(picture)
     assert found.labels.shape == shape
@@ -175,7 +175,7 @@ def test_never_more_segments_than_distinct_pixels(method, shape):
 
 
 @pytest.mark.parametrize(("method", "missing"), [(METHODS[1], "torch"), (METHODS[1], "kornia"), (METHODS[2], "kornia")])
-def test_without_the_extra_the_error_says_how_to_get_it(method, missing, monkeypatch):
+def test_method_without_its_extra_names_the_installation(method, missing, monkeypatch):
     monkeypatch.setitem(sys.modules, missing, None)
     with pytest.raises(TangibleError, match=rf"{missing}.*pip install 'tangible-images\[torch\]'"):
         method.segment(np.zeros((20, 20)))

@@ -14,7 +14,7 @@ from tangible_core.cli.options import Json, NoCache, Sets
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from tangible_core.report.numbered_parts import Before
+    from tangible_report.numbered_parts import Before
 
     from ..listed_parts import ListedPart
 

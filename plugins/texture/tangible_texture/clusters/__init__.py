@@ -1,1 +1,1 @@
-"""Classes of features or of grey levels, and the labels that come of them."""
+"""Clusters of features without chance, classes of grey levels, and the labels of pixels."""

@@ -1,4 +1,4 @@
-"""Linear discriminants: which features tell classes apart, and for which class a cell speaks.
+"""Linear discriminants: the features that separate classes, and the evidence of a cell for each class.
 
 Source: Fisher's discriminant for several classes (Rao, J. Royal Stat. Soc. B 10, 1948); the scatter within classes is
 shrunk towards a multiple of the identity and a share of the total scatter.
@@ -10,9 +10,9 @@ import numpy as np
 from jaxtyping import Float32, Float64
 
 SHRUNK = 0.05
-"""Of the mean variance within classes, and of the total scatter: added to the scatter within classes."""
+"""The share of the mean variance within classes and of the total scatter added to the scatter within classes."""
 CELLS = 200
-"""So many cells, as a share of those there are, if that is more: of few cells the scatter is not known well."""
+"""The number of cells whose share of all cells is the least shrinkage: few cells estimate the scatter poorly."""
 
 
 class Scatters(NamedTuple):
@@ -24,14 +24,14 @@ class Scatters(NamedTuple):
 
 
 def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k n"]) -> Scatters:
-    """Of classes with these weights a cell, whose sum is what a cell counts."""
-    from .planes import products, scatter
+    """Compute the scatters of classes from each cell's weights; their sum is the cell's total weight."""
+    from .planes import inner_products, scatter_matrix
 
     counts = weights.sum(axis=1, dtype=np.float64) + 1e-3
     shares = counts / counts.sum()
-    means = products(weights, planes) / counts[:, None]
+    means = inner_products(weights, planes) / counts[:, None]
     centre = np.einsum("k,kd->d", shares, means)
-    total = scatter(planes, weights.sum(axis=0)) / counts.sum() - np.outer(centre, centre)
+    total = scatter_matrix(planes, weights.sum(axis=0)) / counts.sum() - np.outer(centre, centre)
     between = np.einsum("kd,ke->de", shares[:, None] * (means - centre), means - centre)
     within = total - between
     shrunk = min(1.0, max(SHRUNK, CELLS / planes.shape[1]))
@@ -39,35 +39,35 @@ def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k
     return Scatters(means, shares, within + shrunk * total + ridge * np.eye(len(within)))
 
 
-def evidence(planes: Float32[np.ndarray, "d n"], found: Scatters) -> Float32[np.ndarray, "k n"]:
-    """How much each cell speaks for each class: log likelihoods of one Gaussian's width, but for what all share."""
+def evidence(planes: Float32[np.ndarray, "d n"], fit: Scatters) -> Float32[np.ndarray, "k n"]:
+    """Compute each cell's log likelihood of each class, Gaussians of one width, up to a common term."""
     from tangible_core.compiled.small_matrices import solved
 
-    from .planes import mixed
+    from .planes import combine_planes
 
-    towards = solved(found.within, found.means)
-    heights = 0.5 * (found.means * towards).sum(axis=1)
-    return mixed(towards, planes) - heights.astype(np.float32)[:, None]
+    towards = solved(fit.within, fit.means)
+    heights = 0.5 * (fit.means * towards).sum(axis=1)
+    return combine_planes(towards, planes) - heights.astype(np.float32)[:, None]
 
 
-def discriminant_axes(found: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
-    """The directions in which classes differ most, `most` or as many as there are, scaled to unit scatter within."""
+def discriminant_axes(fit: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
+    """Return the directions in which classes differ most, at most `most`, scaled to unit scatter within classes."""
     from tangible_core.compiled.small_matrices import eigen, solved
 
-    centre = np.einsum("k,kd->d", found.shares, found.means)
-    apart = np.sqrt(found.shares)[:, None] * (found.means - centre)
-    towards = solved(found.within, apart)
+    centre = np.einsum("k,kd->d", fit.shares, fit.means)
+    apart = np.sqrt(fit.shares)[:, None] * (fit.means - centre)
+    towards = solved(fit.within, apart)
     strengths, vectors = eigen(np.einsum("kd,jd->kj", apart, towards))
     kept = np.flatnonzero(strengths > 1e-9)[:most]
     return np.einsum("ak,kd->ad", vectors[kept] / np.sqrt(strengths[kept])[:, None], towards)
 
 
 def principal_axes(planes: Float32[np.ndarray, "d n"], most: int, power: float = 0.0) -> Float64[np.ndarray, "m d"]:
-    """Leading principal axes of centred planes, each divided by its variance to this power; none for still planes."""
+    """Return leading principal axes of centred planes, divided by variance ** power; none for constant planes."""
     from tangible_core.compiled.small_matrices import eigen
 
-    from .planes import scatter
+    from .planes import scatter_matrix
 
-    values, vectors = eigen(scatter(planes, np.ones(planes.shape[1], np.float32)) / planes.shape[1])
+    values, vectors = eigen(scatter_matrix(planes, np.ones(planes.shape[1], np.float32)) / planes.shape[1])
     kept = np.flatnonzero(values > 1e-6 * max(values[0], 1e-6))[:most]
     return vectors[kept] * np.array([value**-power for value in values[kept].tolist()])[:, None]

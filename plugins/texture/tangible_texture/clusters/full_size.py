@@ -1,4 +1,4 @@
-"""From classes of cells to labels of pixels: evidence in wide and narrow windows, neighbours, then interpolation."""
+"""Labels of pixels from classes of cells: evidence in wide and narrow windows, neighbours, then interpolation."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -12,32 +12,32 @@ from tangible_core.runtime.opencv import plain_opencv
 
 from ..features.features import Window
 from .discriminants import evidence, scatters
-from .dividing import members
-from .neighbourhood import EVIDENCE, settled
+from .dividing import one_hot
+from .neighbourhood import EVIDENCE, mean_field
 
 NARROW = 0.6
-"""The share of the evidence in narrow windows; the rest is that of the wide ones."""
+"""The weight of the evidence in narrow windows; that of the wide ones is the rest."""
 SURE = 1e-6
-"""The least membership: what is nearer to 0 is certain enough."""
+"""The least membership, so that its logarithm stays finite."""
 
 
 def fine_memberships(
     wide: Window, labels: Int32[np.ndarray, "m"], narrow: Window
 ) -> Float32[np.ndarray, "k rows columns"]:
-    """How much each narrow cell belongs to each class, from its neighbours and from windows of both widths.
+    """Compute the membership of each narrow cell in each class, from its neighbours and from windows of both widths.
 
-    labels: of the wide cells. Both windows have the same features.
+    Parameters: labels of the wide cells. Both windows have the same features.
     """
-    own = members(labels, int(labels.max()) + 1)
-    towards = enlarged(evidence(wide.planes, scatters(wide.planes, own)), wide.shape, narrow.shape)
-    soft = enlarged(own, wide.shape, narrow.shape)
-    near = evidence(narrow.planes, scatters(narrow.planes, members(soft.argmax(axis=0), len(own))))
+    own = one_hot(labels, int(labels.max()) + 1)
+    towards = resize_planes(evidence(wide.planes, scatters(wide.planes, own)), wide.shape, narrow.shape)
+    soft = resize_planes(own, wide.shape, narrow.shape)
+    near = evidence(narrow.planes, scatters(narrow.planes, one_hot(soft.argmax(axis=0), len(own))))
     both = np.float32(EVIDENCE * NARROW) * near + np.float32(EVIDENCE * (1 - NARROW)) * towards
-    return settled(both, soft, narrow.shape, 2.0, 4).reshape(-1, *narrow.shape)
+    return mean_field(both, soft, narrow.shape, 2.0, 4).reshape(-1, *narrow.shape)
 
 
-def enlarged(planes: Float32[np.ndarray, "k m"], shape: tuple[int, int], to: tuple[int, int]) -> np.ndarray:
-    """Planes of cells, interpolated between the centres of a coarse grid: (k, n)."""
+def resize_planes(planes: Float32[np.ndarray, "k m"], shape: tuple[int, int], to: tuple[int, int]) -> np.ndarray:
+    """Interpolate planes of cells between the centres of a coarse grid: (k, n)."""
     import cv2
 
     with plain_opencv():
@@ -49,8 +49,9 @@ def enlarged(planes: Float32[np.ndarray, "k m"], shape: tuple[int, int], to: tup
 def pixel_labels(
     memberships: Float32[np.ndarray, "k rows columns"], cell_px: int, shape: tuple[int, int]
 ) -> tuple[Int32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
-    """The strongest class of each pixel, and 1 - q / p: p and q are its membership and that of the next one.
+    """Return the strongest class of each pixel, and its confidence 1 - q / p.
 
+    p and q are the memberships of that class and of the second strongest.
     Logarithms of memberships are interpolated between the centres of cells.
     """
     labels, confidence = np.empty(shape, np.int32), np.empty(shape, np.float32)
@@ -90,7 +91,7 @@ def _fill(logs, cell_px, start, stop, labels, confidence):
 
 @njit(cache=True, nogil=True)
 def _place(pixel, cell_px, cells):
-    """The cell whose centre is at or before a pixel, and how far from there to the next one the pixel is."""
+    """Return the cell whose centre is at or before a pixel, and the pixel's offset from it, 0..1 of a cell."""
     at = min(max((pixel + np.float32(0.5)) / cell_px - np.float32(0.5), np.float32(0)), np.float32(cells - 1))
     before = int(at)
     return before, at - np.float32(before)

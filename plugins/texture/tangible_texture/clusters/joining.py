@@ -1,4 +1,4 @@
-"""Joining the clusters of one texture: the least different pair first, refitted as it goes."""
+"""Joining of clusters of one texture: the least different pair first, refitting in between."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -12,43 +12,43 @@ from numba import njit
 from tangible_core.compiled.small_matrices import factored, whitened
 
 from .discriminants import discriminant_axes
-from .dividing import members
-from .neighbourhood import INSIDE_CELLS, fitted, refitted, smoothed
-from .planes import mixed, products, scatter_alone
+from .dividing import one_hot
+from .neighbourhood import INSIDE_CELLS, interior_scatters, refit_labels, smooth_memberships
+from .planes import combine_planes, inner_products, scatter_matrix_in_kernel
 
 AXES = 20
-"""Discriminants that are kept."""
+"""The largest number of discriminants."""
 SIZE_POWER = 0.4
-"""How much the sizes of two clusters speak against joining them; 1 in Ward's method."""
+"""The exponent of the sizes of two clusters in the cost of joining them; 1 in Ward's method."""
 RIDGE = 0.05
-"""Added to each pair's scatter, as a share of the mean variance within clusters."""
+"""The ridge added to each pair's scatter, as a share of the mean variance within clusters."""
 
 
 class Step(NamedTuple):
-    """A division into clusters, and what joining the next two costs."""
+    """A division into clusters, and the cost of the next joining."""
 
     labels: Int32[np.ndarray, "n"]
     clusters: int
     cost: float
-    """See `joining_costs`; infinite where there is one cluster only."""
+    """The cost by `joining_costs`; infinite where there is one cluster only."""
 
 
-def joining(
+def join_clusters(
     planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int], renewed: int
 ) -> Iterator[Step]:
-    """Divisions into ever fewer clusters, one less at least in each, the last of one: at once if nothing differs.
+    """Yield divisions into ever fewer clusters, down to one: one less at least in each, one at once if none differ.
 
-    renewed: from so many clusters on, the discriminants are found anew before each joining, and cells settle with their
-    neighbours after it. Before that, those of the first division do.
+    renewed: from this number of clusters down, discriminants are recomputed before each joining, and cells settle with
+    their neighbours after it. Before that, the discriminants of the first division are used.
     """
-    told = mixed(axes_between(planes, labels, shape), planes)
-    labels = refitted(told, labels, shape, 2, 1) if len(told) else labels
+    projected = combine_planes(axes_between(planes, labels, shape), planes)
+    labels = refit_labels(projected, labels, shape, 2, 1) if len(projected) else labels
     while (count := int(labels.max()) + 1) > 1:
         if count <= renewed:
-            told = mixed(axes_between(planes, labels, shape), planes)
-        if not len(told):
+            projected = combine_planes(axes_between(planes, labels, shape), planes)
+        if not len(projected):
             break
-        costs = joining_costs(told, labels, shape)
+        costs = joining_costs(projected, labels, shape)
         other, one = np.unravel_index(costs.argmin(), costs.shape)
         yield Step(labels, count, float(costs[other, one]))
         names = np.arange(count, dtype=np.int32)
@@ -56,28 +56,28 @@ def joining(
         names[other] = one
         labels = names[labels]
         if count <= renewed:
-            labels = refitted(told, labels, shape, 1, 1)
+            labels = refit_labels(projected, labels, shape, 1, 1)
     yield Step(np.zeros_like(labels), 1, np.inf)
 
 
 def axes_between(
     planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int]
 ) -> Float64[np.ndarray, "a d"]:
-    """The axes along which clusters differ most, AXES at most."""
-    return discriminant_axes(fitted(planes, members(labels, int(labels.max()) + 1), shape), AXES)
+    """Return the axes along which clusters differ most, at most AXES."""
+    return discriminant_axes(interior_scatters(planes, one_hot(labels, int(labels.max()) + 1), shape), AXES)
 
 
 def joining_costs(
     planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int]
 ) -> Float64[np.ndarray, "k k"]:
-    """D (m k / n)^SIZE_POWER, for each pair once, the higher label first; elsewhere infinite.
+    """Compute D (m k / n)^SIZE_POWER for each pair once, the higher label first; infinite elsewhere.
 
-    D is the squared Mahalanobis distance of the two means in the mean of the two scatters; m = a b / (a + b) joins
+    D is the squared Mahalanobis distance of the two means in the mean of the two scatters; m = a b / (a + b) combines
     their sizes, of k clusters and n cells.
     """
     count = int(labels.max()) + 1
-    own = members(labels, count)
-    weights = smoothed(own, shape, INSIDE_CELLS)[labels, np.arange(labels.size)] ** 2 + np.float32(1e-3)
+    own = one_hot(labels, count)
+    weights = smooth_memberships(own, shape, INSIDE_CELLS)[labels, np.arange(labels.size)] ** 2 + np.float32(1e-3)
     order = np.argsort(labels, kind="stable")
     sizes = np.bincount(labels, minlength=count)
     means, scatter = _moments(np.ascontiguousarray(planes[:, order]), weights[order], np.cumsum(sizes) - sizes, sizes)
@@ -89,31 +89,31 @@ def joining_costs(
 
 
 def _powers(sizes: Float64[np.ndarray, "k k"]) -> Float64[np.ndarray, "k k"]:
-    """One value after another: NumPy's powers of an array have other last bits where AVX-512 is."""
+    """Raise one value after another: NumPy's powers of an array have other last bits where AVX-512 is."""
     return np.array([[size**SIZE_POWER for size in row] for row in sizes.tolist()])
 
 
 @njit(cache=True, nogil=True)
 def _moments(planes, weights, starts, sizes):
-    """Weighted mean and scatter of every cluster, whose cells lie side by side."""
+    """Compute weighted mean and scatter of every cluster, whose cells are contiguous."""
     size = planes.shape[0]
     means, scatters = np.zeros((sizes.size, size)), np.zeros((sizes.size, size, size))
     for k in range(sizes.size):
         inside = slice(starts[k], starts[k] + sizes[k])
         own, heavy = np.ascontiguousarray(planes[:, inside]), weights[inside]
-        means[k] = products(heavy.reshape(1, -1), own)[0] / heavy.sum()
-        scatters[k] = scatter_alone(own, heavy) / heavy.sum() - np.outer(means[k], means[k])
+        means[k] = inner_products(heavy.reshape(1, -1), own)[0] / heavy.sum()
+        scatters[k] = scatter_matrix_in_kernel(own, heavy) / heavy.sum() - np.outer(means[k], means[k])
     return means, scatters
 
 
 @njit(cache=True, nogil=True)
 def _distances(means, scatters, ridge):
-    """d' S^-1 d of every two, as |L^-1 d|^2 with Cholesky's factor L of S."""
+    """Compute d' S^-1 d of every two clusters, as |L^-1 d|^2 with Cholesky's factor L of S."""
     count, size = means.shape
-    found = np.zeros((count, count))
+    distances = np.zeros((count, count))
     for one in range(count):
         for other in range(one):
             factor = factored((scatters[one] + scatters[other]) / 2 + ridge * np.eye(size))
-            found[one, other] = np.square(whitened(factor, means[one : one + 1] - means[other : other + 1])).sum()
-            found[other, one] = found[one, other]
-    return found
+            distances[one, other] = np.square(whitened(factor, means[one : one + 1] - means[other : other + 1])).sum()
+            distances[other, one] = distances[one, other]
+    return distances

@@ -1,4 +1,4 @@
-"""Cells and their neighbours: memberships that follow the evidence and what is round about."""
+"""Memberships of cells from their own evidence and from their neighbours."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -10,65 +10,66 @@ from tangible_core.compiled.elementary import exponential
 from tangible_core.runtime.opencv import plain_opencv
 
 from .discriminants import Scatters, evidence, scatters
-from .dividing import members
+from .dividing import one_hot
 
 PULL = 4.0
-"""What the neighbours' mean membership weighs against evidence."""
+"""The weight of the neighbours' mean membership against evidence."""
 EVIDENCE = 0.5
-"""What evidence weighs: windows overlap, so that cells are not as many witnesses as they seem."""
+"""The weight of evidence, under 1: windows overlap, so that cells are not independent."""
 BLOCK = 1024
-"""Cells that are worked on while they are in the cache."""
+"""The number of cells processed while they are in the cache."""
 INSIDE_CELLS = 2.0
-"""Standard deviation of the window in which a cell's class must prevail for the cell to count in full."""
+"""The standard deviation, in cells, of the window in which a cell's class must prevail for its full weight."""
 
 
-def smoothed(memberships: Float32[np.ndarray, "k n"], shape: tuple[int, int], sigma: float) -> np.ndarray:
-    """Gaussian means of each class's memberships over the grid of cells."""
+def smooth_memberships(memberships: Float32[np.ndarray, "k n"], shape: tuple[int, int], sigma: float) -> np.ndarray:
+    """Compute Gaussian means of each class's memberships over the grid of cells."""
     import cv2
 
-    found = np.empty(memberships.shape, np.float32)
-    taps = cv2.getGaussianKernel(2 * round(4 * sigma) + 1, sigma, cv2.CV_32F)  # once: grids are small, and classes many
+    result = np.empty(memberships.shape, np.float32)
+    # computed once: grids are small, and classes many
+    taps = cv2.getGaussianKernel(2 * round(4 * sigma) + 1, sigma, cv2.CV_32F)
     with plain_opencv():
-        for each, out in zip(memberships, found, strict=True):
+        for each, out in zip(memberships, result, strict=True):
             cv2.sepFilter2D(each.reshape(shape), -1, taps, taps, dst=out.reshape(shape), borderType=cv2.BORDER_REFLECT)
-    return found
+    return result
 
 
-def settled(
+def mean_field(
     evidence: Float32[np.ndarray, "k n"],
     memberships: Float32[np.ndarray, "k n"],
     shape: tuple[int, int],
     sigma: float,
     rounds: int,
 ) -> Float32[np.ndarray, "k n"]:
-    """Mean field: each cell's memberships follow its evidence and PULL times the mean of those around, in rounds.
+    """Update each cell's memberships by its evidence and PULL times the mean of those around it, in rounds.
 
     Source: the mean-field approximation of a Potts model with Gaussian neighbourhoods (Krahenbuhl & Koltun,
     Efficient inference in fully connected CRFs, NIPS 2011).
     """
     for _ in range(rounds):
-        memberships = _softmax(evidence, smoothed(memberships, shape, sigma), np.float32(PULL))
+        memberships = _softmax(evidence, smooth_memberships(memberships, shape, sigma), np.float32(PULL))
     return memberships
 
 
-def fitted(
+def interior_scatters(
     planes: Float32[np.ndarray, "d n"], memberships: Float32[np.ndarray, "k n"], shape: tuple[int, int]
 ) -> Scatters:
-    """Of cells well inside their classes: those on borders are mixtures."""
-    return scatters(planes, memberships * smoothed(memberships, shape, INSIDE_CELLS) ** 2)
+    """Compute the scatters of cells well inside their classes: cells on borders are mixtures."""
+    return scatters(planes, memberships * smooth_memberships(memberships, shape, INSIDE_CELLS) ** 2)
 
 
-def refitted(
+def refit_labels(
     planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int], rounds: int, votes: int
 ) -> Int32[np.ndarray, "n"]:
-    """Labels after rounds of fitting discriminants to cells well inside their classes, and settling with neighbours.
+    """Refine labels in rounds: fit discriminants to cells well inside their classes, then settle with neighbours.
 
     Classes may vanish; labels stay 0..k-1.
     """
-    memberships = members(labels, int(labels.max()) + 1)
+    memberships = one_hot(labels, int(labels.max()) + 1)
     for _ in range(rounds):
-        towards = evidence(planes, fitted(planes, memberships, shape))
-        memberships = settled(EVIDENCE * towards, memberships, shape, 1.5, votes)
+        towards = evidence(planes, interior_scatters(planes, memberships, shape))
+        memberships = mean_field(EVIDENCE * towards, memberships, shape, 1.5, votes)
         before, labels = labels, memberships.argmax(axis=0)
         if np.mean(before != labels) < 1e-3:
             break
@@ -77,31 +78,31 @@ def refitted(
 
 @njit(cache=True, nogil=True)
 def _softmax(evidence, around, pull):
-    found = np.empty_like(evidence)
+    result = np.empty_like(evidence)
     classes, cells = evidence.shape
     for start in range(0, cells, BLOCK):
         stop = min(start + BLOCK, cells)
         highest, total = np.full(stop - start, np.float32(-1e30)), np.zeros(stop - start, np.float32)
         for k in range(classes):
-            _towards(evidence[k, start:stop], around[k, start:stop], pull, found[k, start:stop], highest)
+            _towards(evidence[k, start:stop], around[k, start:stop], pull, result[k, start:stop], highest)
         for k in range(classes):
-            _raise(found[k, start:stop], highest, total)
+            _raise(result[k, start:stop], highest, total)
         for k in range(classes):
-            part = found[k, start:stop]
+            part = result[k, start:stop]
             for i in range(part.size):
                 part[i] /= total[i]
-    return found
+    return result
 
 
 @njit(cache=True, nogil=True)
-def _towards(evidence, around, pull, found, highest):
-    for i in range(found.size):
-        found[i] = evidence[i] + pull * around[i]
-        highest[i] = found[i] if found[i] > highest[i] else highest[i]
+def _towards(evidence, around, pull, result, highest):
+    for i in range(result.size):
+        result[i] = evidence[i] + pull * around[i]
+        highest[i] = result[i] if result[i] > highest[i] else highest[i]
 
 
 @njit(cache=True, nogil=True)
-def _raise(found, highest, total):
-    for i in range(found.size):
-        found[i] = exponential(found[i] - highest[i])
-        total[i] += found[i]
+def _raise(result, highest, total):
+    for i in range(result.size):
+        result[i] = exponential(result[i] - highest[i])
+        total[i] += result[i]

@@ -1,6 +1,6 @@
 """Products of planes: features and memberships as (d, n), one row a plane, one column a cell. Compiled by numba.
 
-They are small, and asked for between threads of our own: a BLAS that wakes threads for them costs more than it saves.
+They are small and interleaved with our own threads: a BLAS that wakes threads for them costs more than it saves.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- numba takes the types from the call
@@ -14,25 +14,27 @@ from numba import njit
 from tangible_core.compiled.threads import in_turns, thread_count
 
 BLOCK = 1024
-"""Columns that are worked on while they are in the cache."""
+"""The number of columns processed while they are in the cache."""
 SHARED = 4_000_000
-"""Products from which threads are worth their waking."""
-SUMMED, LANES = 4096, 64
-"""Columns that are summed in single precision, in so many lanes side by side; their sums are added up in double."""
+"""The number of multiplications from which threads pay."""
+SUMMED = 4096
+"""The number of columns summed in single precision; their sums are added in double precision."""
+LANES = 64
+"""The number of parallel partial sums: a constant, so that the order of sums is the same on every processor."""
 
 
 @njit(cache=True, nogil=True)
-def mixed(weights, planes):
-    """weights (k, d) times planes (d, n): k planes, float32."""
+def combine_planes(weights, planes):
+    """Multiply weights (k, d) by planes (d, n): k planes, float32."""
     (count, size), columns = weights.shape, planes.shape[1]
-    found = np.zeros((count, columns), np.float32)
+    result = np.zeros((count, columns), np.float32)
     for start in range(0, columns, BLOCK):
         stop = min(start + BLOCK, columns)
         for k in range(count):
-            out = found[k, start:stop]
-            for d in range(0, size - 3, 4):  # four at a time: sums are written a fourth as often
+            out = result[k, start:stop]
+            for d in range(0, size - 3, 4):  # four at a time: a quarter of the writes
                 one, two, three, four = (
-                    planes[d, start:stop],  # rows apart: a block of a matrix is not known to be contiguous
+                    planes[d, start:stop],  # row by row: numba does not know a block of a matrix to be contiguous
                     planes[d + 1, start:stop],
                     planes[d + 2, start:stop],
                     planes[d + 3, start:stop],
@@ -42,7 +44,7 @@ def mixed(weights, planes):
                 weight, plane = np.float32(weights[k, d]), planes[d, start:stop]
                 for i in range(out.size):
                     out[i] += weight * plane[i]
-    return found
+    return result
 
 
 @njit(cache=True, nogil=True)
@@ -53,69 +55,69 @@ def _add_four(weights, one, two, three, four, out):
 
 
 @njit(cache=True, nogil=True)
-def products(one, other):
-    """one (k, n) times the transpose of other (d, n): sums over the columns, float64 (k, d)."""
-    found, lanes = np.zeros((one.shape[0], other.shape[0])), np.empty(LANES, np.float32)
+def inner_products(one, other):
+    """Multiply one (k, n) by the transpose of other (d, n): sums over the columns, float64 (k, d)."""
+    result, lanes = np.zeros((one.shape[0], other.shape[0])), np.empty(LANES, np.float32)
     for start in range(0, one.shape[1], SUMMED):
         for k in range(one.shape[0]):
             left = one[k, start : start + SUMMED]
             for d in range(other.shape[0]):
-                found[k, d] += _dot(left, other[d, start : start + SUMMED], lanes)
-    return found
+                result[k, d] += _dot(left, other[d, start : start + SUMMED], lanes)
+    return result
 
 
-def scatter(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "n"]) -> Float64[np.ndarray, "d d"]:
-    """Weighted second moments, sum of w z z' over the columns; large ones by all processors."""
+def scatter_matrix(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "n"]) -> Float64[np.ndarray, "d d"]:
+    """Compute weighted second moments, the sum of w z z' over the columns; large ones on all processors."""
     size, columns = planes.shape
     parts = thread_count() if size * size * columns >= SHARED else 1
-    found = np.zeros((size, size))
+    result = np.zeros((size, size))
 
     def work(share: Iterable[int]) -> None:
         for first in share:
-            _scatter_rows(planes, weights, first, parts, found)
+            _scatter_rows(planes, weights, first, parts, result)
 
     in_turns(list(range(parts)), work)
-    return _mirrored(found)
+    return _mirror_lower_triangle(result)
 
 
 @njit(cache=True, nogil=True)
-def scatter_alone(planes, weights):
-    """As `scatter`, for a kernel: by the processor that calls it."""
-    found = np.zeros((planes.shape[0], planes.shape[0]))
-    _scatter_rows(planes, weights, 0, 1, found)
-    return _mirrored(found)
+def scatter_matrix_in_kernel(planes, weights):
+    """Compute `scatter_matrix` on the calling thread alone, for use in a kernel."""
+    result = np.zeros((planes.shape[0], planes.shape[0]))
+    _scatter_rows(planes, weights, 0, 1, result)
+    return _mirror_lower_triangle(result)
 
 
 @njit(cache=True, nogil=True)
-def _scatter_rows(planes, weights, first, step, found):
-    """Every step-th row from the first on of the lower triangle; no sum depends on the step."""
+def _scatter_rows(planes, weights, first, step, result):
+    """Fill every step-th row from `first` on of the lower triangle; no sum depends on the step."""
     lanes = np.empty(LANES, np.float32)
     for start in range(0, planes.shape[1], SUMMED):
         heavy = weights[start : start + SUMMED]
         for d in range(first, planes.shape[0], step):
             weighted = heavy * planes[d, start : start + SUMMED]
             for e in range(d + 1):
-                found[d, e] += _dot(weighted, planes[e, start : start + SUMMED], lanes)
+                result[d, e] += _dot(weighted, planes[e, start : start + SUMMED], lanes)
 
 
 @njit(cache=True, nogil=True)
-def _mirrored(found):
-    """The upper triangle as the lower one, in place."""
-    for d in range(found.shape[0]):
+def _mirror_lower_triangle(result):
+    """Copy the lower triangle to the upper one, in place."""
+    for d in range(result.shape[0]):
         for e in range(d):
-            found[e, d] = found[d, e]
-    return found
+            result[e, d] = result[d, e]
+    return result
 
 
 @njit(cache=True, nogil=True)
 def _dot(one, other, lanes):
-    """The sum of products of two rows of float32, in lanes of a fixed number.
+    """Sum the products of two rows of float32 in LANES partial sums.
 
-    So the order of its sums is that of the source, however many values the processor adds at once.
+    The order of the sums is that of the source, however many values the processor adds at once.
     """
     whole = one.size // (8 * LANES) * (8 * LANES)
     lanes[:] = 0
-    for start in range(0, whole, 8 * LANES):  # eight at a time: sums are written an eighth as often
+    for start in range(0, whole, 8 * LANES):  # eight at a time: an eighth of the writes
         for j in range(LANES):
             i = start + j
             lanes[j] = (

@@ -1,4 +1,4 @@
-"""What `local_energy` does to every sample: cutting a filtered part out of a spectrum, squaring, smoothing."""
+"""Kernels of `local_energy`: a filtered part of a spectrum, squared magnitudes, smoothing."""
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- numba takes the types from the call
 
@@ -12,8 +12,8 @@ from numba import njit
 def filter_part(values, shape, first, frequency, along, across, part):
     """Write gain times spectrum, row by row; the half that a real picture's spectrum leaves out is mirrored.
 
-    The gain 2 exp(-(one^2 + two^2) / 2), which keeps a wave's height, has one and two grow evenly down a column: each
-    gain is the one above times a ratio, which shrinks by the same factor every time.
+    The gain 2 exp(-(one^2 + two^2) / 2), which keeps a wave's amplitude, has one and two grow evenly down a column:
+    each gain is the one above times a ratio, which shrinks by the same factor every time.
     """
     (high, wide), (top, left), (down, right) = shape, first, frequency
     rows, columns = part.shape
@@ -56,7 +56,7 @@ def _scale(values, gain, sign, part):
 
 @njit(cache=True, nogil=True)
 def power(grid):
-    """|z|^2 of a contiguous array of complex numbers."""
+    """Compute |z|^2 of a contiguous array of complex numbers."""
     rows, columns = grid.shape
     out, parts = np.empty((rows, columns), np.float32), grid.view(np.float32)
     for i in range(rows):
@@ -66,19 +66,19 @@ def power(grid):
 
 
 @njit(cache=True, nogil=True)
-def times(one, other):
-    """Products of complex numbers, one by one: NumPy's are fused where a processor can."""
-    found = np.empty_like(one)
+def complex_products(one, other):
+    """Multiply complex numbers one by one: NumPy fuses multiply and add on some processors."""
+    product = np.empty_like(one)
     for i in range(one.shape[0]):
         for j in range(one.shape[1]):
             a, b = one[i, j], other[i, j]
-            found[i, j] = complex(a.real * b.real - a.imag * b.imag, a.real * b.imag + a.imag * b.real)
-    return found
+            product[i, j] = complex(a.real * b.real - a.imag * b.imag, a.real * b.imag + a.imag * b.real)
+    return product
 
 
 @njit(cache=True, nogil=True)
 def weighted_rows(values, first, weights):
-    """Weighted sums of rows: out[i] is the sum of weights[i, k] values[first[i] + k]."""
+    """Compute weighted sums of rows: out[i] is the sum of weights[i, k] values[first[i] + k]."""
     out = np.zeros((len(first), values.shape[1]), np.float32)
     for i in range(len(first)):
         total = out[i]

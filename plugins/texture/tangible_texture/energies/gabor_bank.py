@@ -1,4 +1,4 @@
-"""Gabor filters: the formula, its bandwidth, and which wavelengths and orientations to take.
+"""Gabor filters: the formula, its bandwidth, and banks of wavelengths and orientations.
 
 Source: Jain & Farrokhnia, Unsupervised texture segmentation using Gabor filters, Pattern Recognition 24 (1991).
 """
@@ -11,8 +11,9 @@ import numpy as np
 from jaxtyping import Complex128
 
 SHORTEST_PX = 2 * sqrt(2)
-"""The wavelength of the highest octave, of sqrt(2)/4 cycles a pixel: one octave wide, it ends near the finest waves."""
+"""The wavelength of the highest octave, px: sqrt(2)/4 cycles a pixel; one octave wide, it ends near Nyquist's."""
 HALF = sqrt(log(2) / 2)
+"""The constant sqrt(ln 2 / 2) of the formulas for the bandwidth at half height."""
 
 
 class Gabor(NamedTuple):
@@ -20,18 +21,18 @@ class Gabor(NamedTuple):
 
     wavelength_px: float
     theta_rad: float
-    """Direction of the wave, from right (columns grow) to down (rows grow); 0 is upright stripes."""
+    """Direction of the wave, from right (growing columns) to down (growing rows); 0 is vertical stripes."""
     sigma_px: float
     gamma: float
 
     @property
     def frequency(self) -> tuple[float, float]:
-        """(down, right), in cycles a pixel."""
+        """The frequency (down, right), in cycles a pixel."""
         return sin(self.theta_rad) / self.wavelength_px, cos(self.theta_rad) / self.wavelength_px
 
 
 def sigma_of_bandwidth(wavelength_px: float, octaves: float = 1.0) -> float:
-    """sigma = lambda / pi sqrt(ln 2 / 2) (2^b + 1) / (2^b - 1): half the height is b octaves wide.
+    """Return sigma = lambda / pi sqrt(ln 2 / 2) (2^b + 1) / (2^b - 1) in px, for a width of b octaves at half height.
 
     >>> round(sigma_of_bandwidth(8.0), 4)
     4.4974
@@ -40,7 +41,7 @@ def sigma_of_bandwidth(wavelength_px: float, octaves: float = 1.0) -> float:
 
 
 def bandwidth_of_sigma(wavelength_px: float, sigma_px: float) -> float:
-    """b = log2 (s + c) / (s - c), s = pi sigma / lambda and c = sqrt(ln 2 / 2): octaves, infinite if s <= c.
+    """Return b = log2 (s + c) / (s - c) in octaves, s = pi sigma / lambda, c = sqrt(ln 2 / 2); infinite if s <= c.
 
     >>> round(bandwidth_of_sigma(8.0, sigma_of_bandwidth(8.0, 1.5)), 12)
     1.5
@@ -50,7 +51,7 @@ def bandwidth_of_sigma(wavelength_px: float, sigma_px: float) -> float:
 
 
 def octaves(lambda_max_px: float) -> tuple[float, ...]:
-    """Wavelengths 2 sqrt 2, 4 sqrt 2, ... px up to lambda_max_px, whatever the picture's size; at least the first.
+    """Return wavelengths 2 sqrt 2, 4 sqrt 2, ... px up to lambda_max_px, for a picture of any size; at least the first.
 
     >>> [round(each, 2) for each in octaves(24)]
     [2.83, 5.66, 11.31, 22.63]
@@ -59,13 +60,13 @@ def octaves(lambda_max_px: float) -> tuple[float, ...]:
     return tuple(SHORTEST_PX * 2**i for i in range(count))
 
 
-def printed(width_px: int) -> tuple[float, ...]:
-    """Wavelengths in px, rising, of the printed frequencies 0.25 -+ 2^(i - 0.5) / N cycles a pixel, i = 1..log2(N / 8).
+def printed_wavelengths(width_px: int) -> tuple[float, ...]:
+    """Return rising wavelengths in px of the printed frequencies, 0.25 -+ 2^(i - 0.5) / N cycles a pixel.
 
-    The paper has widths N that are powers of two. For another one i ends at the whole part of log2(N / 8), with N
-    itself in the formula; under 16 px, where no i is left, 0.25 alone remains.
+    i = 1..log2(N / 8). The paper has widths N that are powers of two. For another width i ends at the whole part of
+    log2(N / 8), with N itself in the formula; under 16 px, where no i is left, 0.25 alone remains.
 
-    >>> [round(1 / each, 3) for each in printed(32)]
+    >>> [round(1 / each, 3) for each in printed_wavelengths(32)]
     [0.338, 0.294, 0.206, 0.162]
     """
     last = floor(log2(max(width_px, 8) / 8) + 1e-9)
@@ -77,10 +78,10 @@ def printed(width_px: int) -> tuple[float, ...]:
 def bank(
     wavelengths_px: Sequence[float], orientations: int = 6, bandwidth: float = 1.0, gamma: float | None = None
 ) -> list[Gabor]:
-    """Every wavelength in every orientation 0, 180 / n, ... degrees; a wavelength's orientations follow each other.
+    """Return filters of every wavelength in every orientation 0, 180 / n, ... degrees, sorted by wavelength.
 
-    gamma: height over width of the Gaussian; None: as much as makes neighbouring orientations meet at half height,
-    1 at most (for 6 orientations and one octave 0.80).
+    gamma: width along over width across the wave; None: the value at which neighbouring orientations meet at half
+    height, 1 at most (for 6 orientations and one octave 0.80).
     """
     if gamma is None:
         ratio = (2**bandwidth - 1) / (2**bandwidth + 1)
@@ -93,11 +94,11 @@ def bank(
 
 
 def kernel(gabor: Gabor, reach: float = 3.5) -> Complex128[np.ndarray, "n n"]:
-    """The filter in space, sampled to `reach` sigma on each side: its real part is even, its imaginary part odd.
+    """Sample the filter in space to `reach` sigma on each side: its real part is even, its imaginary part odd.
 
     exp(-(x'^2 + gamma^2 y'^2) / (2 sigma^2)) exp(2 pi i x' / lambda), x' = x cos t + y sin t, y' = -x sin t + y cos t;
-    scaled so that a wave of its own frequency and of height a gives a response of magnitude a, and less as much of the
-    Gaussian as makes flat grey give none.
+    scaled so that a wave of its own frequency and amplitude a gives a response of magnitude a, minus the multiple of
+    the Gaussian that makes the response to flat grey zero.
     """
     radius = ceil(reach * gabor.sigma_px / min(1.0, gabor.gamma))
     y, x = np.mgrid[-radius : radius + 1, -radius : radius + 1].astype(np.float64)

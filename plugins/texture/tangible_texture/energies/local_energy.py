@@ -1,7 +1,7 @@
-"""Local energy in a bank of Gabor filters: one Fourier transform of the picture, a small inverse one a filter.
+"""Local energy in a bank of Gabor filters: one Fourier transform of the picture, a small inverse one for each filter.
 
-A filter passes a small part of the spectrum. That part is cut out and transformed back on a grid just as fine as it
-needs; that moves it to frequency 0, which leaves the magnitude as it was. Smoothing and sampling are one table an axis.
+A filter passes a small part of the spectrum. That part is cut out and transformed back on the coarsest grid that holds
+it; that moves it to frequency 0, which keeps the magnitude. Smoothing and sampling are one table for each axis.
 """
 
 from collections.abc import Iterable, Sequence
@@ -20,15 +20,15 @@ from tangible_core.errors import PictureError
 from .energy_kernels import filter_part, power, weighted_rows
 from .gabor_bank import Gabor, bank
 
-fft: Any = scipy.fft  # whose annotations are those of its dispatcher
+fft: Any = scipy.fft  # its annotations are those of its dispatcher
 RELATIVE_SIGMA = 0.35
-"""Of a wavelength: energy is smoothed at least so far, as one wave more or less should not show."""
+"""The least standard deviation of smoothing, in wavelengths: single waves must not show in the energy."""
 REACH = 4.0
-"""Standard deviations at which the smoothing Gaussian ends."""
+"""The standard deviations at which the smoothing Gaussian ends."""
 TAIL = 3.0
-"""Standard deviations of a filter, in frequency, that are kept: the fifth decimal of its energy lies beyond."""
+"""The standard deviations of a filter, in frequency, at which it is cut: an energy below the fifth decimal is lost."""
 FINENESS = 3.4
-"""Samples per unit of bandwidth of what is sampled and smoothed, as standard deviations: less than 1 % folds back."""
+"""The samples per standard deviation of the smoothed energy's spectrum: less than 1 % is aliased."""
 
 
 class Spectrum(NamedTuple):
@@ -36,7 +36,7 @@ class Spectrum(NamedTuple):
 
     values: Complex64[np.ndarray, "rows half_columns"]
     shape: tuple[int, int]
-    """Of the mirrored picture."""
+    """The shape of the mirrored picture."""
     pad_px: int
 
 
@@ -47,14 +47,14 @@ def local_energy(
     step_px: int = 4,
     sigma_px: float = 4.0,
 ) -> Float32[np.ndarray, "filters rows columns"]:
-    """Smoothed energy |z|^2 of each filter of `gabor_bank.bank`, one value every step_px pixels, rounded up.
+    """Compute smoothed energy |z|^2 in each filter of `gabor_bank.bank`, one value every step_px pixels, rounded up.
 
-    A wave of height a at a filter's own frequency has the energy a^2 / v, v being the variance of the picture: any
-    gain and offset give the same. A flat picture has none. Outside of the picture is its mirror image.
+    A wave of amplitude a at a filter's own frequency has the energy a^2 / v, v being the variance of the picture: gain
+    and offset have no effect. A flat picture has none. Outside of the picture is its mirror image.
 
     grey: finite, of any scale. Value (i, j) is the Gaussian mean round pixel ((i + 0.5) step_px - 0.5, ...), with a
     standard deviation of sigma_px, or RELATIVE_SIGMA wavelengths if that is more.
-    Memory: about 30 bytes a pixel, the result of 6 among them, where two threads are at work on wavelengths of 2.8 px.
+    Memory: about 30 bytes a pixel, the result of 6 among them, with two threads on wavelengths of 2.8 px.
     Raises: PictureError naming the first place that is NaN or infinite.
     """
     filters = bank(wavelengths_px, orientations)
@@ -62,17 +62,17 @@ def local_energy(
 
 
 def padding(filters: Sequence[Gabor], sigma_px: float) -> int:
-    """How far to mirror the picture outwards: as far as the widest smoothing reaches, and two sigma of its filter."""
+    """Return the width of the mirrored frame in px: the reach of the widest smoothing and two sigma of its filter."""
     return ceil(max((REACH * smoothing_px(each, sigma_px) + 2 * each.sigma_px for each in filters), default=0.0))
 
 
 def smoothing_px(gabor: Gabor, sigma_px: float) -> float:
-    """Standard deviation of the window in which a filter's energy is averaged."""
+    """Return the standard deviation in px of the window in which a filter's energy is averaged."""
     return max(sigma_px, RELATIVE_SIGMA * gabor.wavelength_px)
 
 
 def spectrum_of(grey: Float32[np.ndarray, "h w"], pad_px: int) -> Spectrum:
-    """Scaled before anything is squared, so that no scale of grey overflows or vanishes; mirrored; transformed.
+    """Standardise, mirror and transform a picture; scaled first, so that no square overflows or vanishes.
 
     Raises: PictureError naming the first place that is NaN or infinite, or for an empty picture.
     """
@@ -81,14 +81,14 @@ def spectrum_of(grey: Float32[np.ndarray, "h w"], pad_px: int) -> Spectrum:
     check_finite(grey, "grey")
     shape = (fft.next_fast_len(grey.shape[0] + 2 * pad_px), fft.next_fast_len(grey.shape[1] + 2 * pad_px, real=True))
     ends = [(pad_px, padded - pad_px - side) for padded, side in zip(shape, grey.shape, strict=True)]
-    mirrored = np.pad(standardised(grey), ends, mode="symmetric")
+    mirrored = np.pad(standardise(grey), ends, mode="symmetric")
     values = fft.rfft2(mirrored, norm="forward", workers=thread_count())
     values[0, 0] = 0
     return Spectrum(values, shape, pad_px)
 
 
-def standardised(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
-    """Of mean 0 and standard deviation 1; all 0 where nothing is left but what rounding makes of one value."""
+def standardise(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
+    """Return the picture with mean 0 and standard deviation 1; all 0 if its values differ by rounding only."""
     top = np.float32(max(float(grey.max()), -float(grey.min())))
     scaled = grey / top if top else grey
     scaled = scaled - np.float32(scaled.mean(dtype=np.float64))
@@ -104,7 +104,7 @@ def energy_planes(
     sigma_px: float,
     out: Float32[np.ndarray, "filters rows columns"] | None = None,
 ) -> Float32[np.ndarray, "filters rows columns"]:
-    """As `local_energy`, of the filters given; shape: the picture's. out: where they are written."""
+    """Compute `local_energy` in these filters, for a picture of this shape; written to `out` if given."""
     cells = tuple(-(-side // step_px) for side in shape)
     planes = np.empty((len(filters), *cells), np.float32) if out is None else out
 
@@ -124,7 +124,7 @@ def energy_planes(
 
 
 def mean_energies(spectrum: Spectrum, filters: Sequence[Gabor]) -> Float64[np.ndarray, "filters"]:
-    """The mean of |z|^2 over the whole picture, each filter: from the spectrum alone (Parseval), before any inverse."""
+    """Compute the mean of |z|^2 over the picture in each filter, from the spectrum alone (Parseval)."""
     means = np.empty(len(filters))
 
     def work(share: Iterable[int]) -> None:
@@ -136,12 +136,12 @@ def mean_energies(spectrum: Spectrum, filters: Sequence[Gabor]) -> Float64[np.nd
 
 
 def _response(spectrum: Spectrum, gabor: Gabor, wide_px: float) -> Complex64[np.ndarray, "rows columns"]:
-    """The analytic response on the coarsest grid that holds it; sample j lies at j times side / samples."""
+    """Compute the analytic response on the coarsest grid that holds it; sample j lies at j times side / samples."""
     return fft.ifft2(_cut(spectrum, gabor, wide_px), norm="forward", overwrite_x=True, workers=1)
 
 
 def _cut(spectrum: Spectrum, gabor: Gabor, wide_px: float) -> Complex64[np.ndarray, "rows columns"]:
-    """The filtered spectrum round the filter's centre."""
+    """Return the filtered spectrum around the filter's centre."""
     samples = _samples(spectrum.shape, gabor, wide_px)
     top, left = (
         round(frequency * side) - count // 2
@@ -155,7 +155,7 @@ def _cut(spectrum: Spectrum, gabor: Gabor, wide_px: float) -> Complex64[np.ndarr
 
 
 def _samples(shape: tuple[int, int], gabor: Gabor, wide_px: float) -> tuple[int, int]:
-    """Of the grid that holds the filter, and on which its squared response can be smoothed so far."""
+    """Return the shape of the grid that holds the filter and its squared response, smoothed by wide_px."""
     s, c = sin(gabor.theta_rad), cos(gabor.theta_rad)
     along = 1 / (2 * pi * gabor.sigma_px)
     down, right = (along * hypot(a, gabor.gamma * b) for a, b in ((s, c), (c, s)))
@@ -169,7 +169,7 @@ def _samples(shape: tuple[int, int], gabor: Gabor, wide_px: float) -> tuple[int,
 def smoothing_table(
     cells: int, step_px: int, sigma_px: float, samples: int, spacing_px: float, pad_px: int
 ) -> tuple[Int64[np.ndarray, "cells"], Float32[np.ndarray, "cells taps"]]:
-    """For each cell the first sample that its Gaussian reaches, and the weights from there on."""
+    """Return for each cell the first sample that its Gaussian reaches, and the weights from there on."""
     centre = ((np.arange(cells) + 0.5) * step_px - 0.5 + pad_px) / spacing_px
     reach = REACH * sigma_px / spacing_px
     taps = min(samples, int(2 * reach) + 2)

@@ -1,29 +1,29 @@
-"""Pictures in which nothing but noise or rounding differs: one texture, however many are asked for."""
+"""Tests for pictures that differ by noise or rounding only: they are one texture for any requested number."""
 
 import numpy as np
 from jaxtyping import Float32
 
 SAME = 0.03
-"""Features that spread by less than this share of their size are those of one texture: noise has ten times as much."""
+"""The least relative spread of features of several textures; the spread of noise is ten times as large."""
 FAINT = 0.05
-"""Features that come to less than this share of the greatest one say nothing."""
+"""The least share of the greatest feature that carries information."""
 
 
 def is_flat(grey: Float32[np.ndarray, "h w"]) -> bool:
-    """Whether all is one grey but for single pixels."""
-    from ..signal.smoothing import without_specks
-    from .local_energy import standardised
+    """Return True if all pixels have one grey, single pixels apart."""
+    from ..signal.smoothing import remove_specks
+    from .local_energy import standardise
 
-    return not standardised(without_specks(grey[..., None])[..., 0]).any()
+    return not standardise(remove_specks(grey[..., None])[..., 0]).any()
 
 
 def is_one_texture(
     amplitudes: Float32[np.ndarray, "d rows columns"], reach_cells: float, grey: Float32[np.ndarray, "h w"]
 ) -> bool:
-    """Whether features spread by less than SAME, or what differs in the picture is too fine for them.
+    """Return True if features spread by less than SAME, or the picture's detail is too fine for them.
 
-    Looked at away from the frame, where mirrored waves may not go on evenly: too fine is a picture of which features
-    see hardly anything but the fold at its frame. reach_cells: the standard deviation of the features' windows.
+    Both are measured away from the frame, where mirrored waves may not continue evenly: a picture is too fine if its
+    features see hardly anything but the fold at its frame. reach_cells: standard deviation of the features' windows.
     """
     frame = [min(round(4 * reach_cells), side // 4) for side in amplitudes.shape[1:]]
     inside = amplitudes[:, frame[0] : -frame[0] or None, frame[1] : -frame[1] or None]

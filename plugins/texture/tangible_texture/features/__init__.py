@@ -1,1 +1,1 @@
-"""What a picture's texture is like, in windows of several widths."""
+"""Features of texture, in windows of several widths."""

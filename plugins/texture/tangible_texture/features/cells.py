@@ -1,4 +1,4 @@
-"""What a picture's texture is like, cell by cell: planes of features, averaged in windows."""
+"""Planes of features, one value a cell: capping, averaging in windows, standardising."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -12,17 +12,21 @@ from tangible_core.compiled.threads import in_turns
 from tangible_core.runtime.opencv import plain_opencv
 
 CELL_PX = 4
+"""The side of a cell, px."""
 ENERGY_SIGMA_PX = 4.0
+"""The standard deviation of the window in which energies are averaged before windows of cells, px."""
 RARE = 0.985
-"""Quantile of a plane above which values are held down, to LEAST_RARE times its value: a scratch is no texture."""
+"""The quantile of a plane that limits its values: a scratch is not a texture."""
 LEAST_RARE = 1.5
+"""The largest value of a plane, as a multiple of its RARE quantile."""
 LANES = 64
+"""The number of parallel partial sums: a constant, so that the order of sums is the same on every processor."""
 STILL = 1e-6
-"""Standard deviation under which a plane says nothing, features being of the order of 1."""
+"""The least standard deviation of an informative plane, features being of the order of 1."""
 
 
-def capped(planes: Float32[np.ndarray, "d h w"]) -> Float32[np.ndarray, "d h w"]:
-    """Rare huge values held down, in place."""
+def cap_rare_values(planes: Float32[np.ndarray, "d h w"]) -> Float32[np.ndarray, "d h w"]:
+    """Limit rare huge values, in place."""
 
     def work(share: Iterable[int]) -> None:
         for i in share:
@@ -34,36 +38,39 @@ def capped(planes: Float32[np.ndarray, "d h w"]) -> Float32[np.ndarray, "d h w"]
     return planes
 
 
-def averaged(
+def window_means(
     planes: Float32[np.ndarray, "d h w"],
     sigma_cells: float,
     step: int = 1,
     out: Float32[np.ndarray, "d rows columns"] | None = None,
 ) -> Float32[np.ndarray, "d rows columns"]:
-    """Gaussian means in windows of sigma_cells, then means of step x step cells; mirrored outside.
+    """Compute Gaussian means in windows of sigma_cells, then means of step x step cells; mirrored outside.
 
-    out: where they are written; it may be `planes` where step is 1.
+    out: the array to write to; it may be `planes` where step is 1.
     """
     import cv2
 
     rows, columns = (-(-side // step) for side in planes.shape[1:])
-    found = np.empty((len(planes), rows, columns), np.float32) if out is None else out
+    means = np.empty((len(planes), rows, columns), np.float32) if out is None else out
 
     @plain_opencv()
     def work(share: Iterable[int]) -> None:
         room = np.empty(planes.shape[1:], np.float32) if step > 1 else None
         for i in share:
-            smooth = found[i] if room is None else room
+            smooth = means[i] if room is None else room
             cv2.GaussianBlur(planes[i], (0, 0), sigma_cells, dst=smooth, borderType=cv2.BORDER_REFLECT)
             if room is not None:
-                cv2.resize(smooth, (columns, rows), dst=found[i], interpolation=cv2.INTER_AREA)
+                cv2.resize(smooth, (columns, rows), dst=means[i], interpolation=cv2.INTER_AREA)
 
     in_turns(list(range(len(planes))), work)
-    return found
+    return means
 
 
 def standardise_roots(planes: Float32[np.ndarray, "d n"]) -> None:
-    """Square roots, which make spreads alike where means are not, of mean 0 and deviation 1; a still plane is 0."""
+    """Replace planes by standardised square roots, in place; a constant plane becomes 0.
+
+    Square roots have similar spreads where means differ.
+    """
     in_turns(list(range(len(planes))), lambda share: [_standardise(planes[i]) for i in share])
 
 
@@ -80,9 +87,9 @@ def _standardise(plane):
 
 @njit(cache=True, nogil=True)
 def _total(values, squared):
-    """The sum, of the squares if asked, in lanes of a fixed number.
+    """Sum the values, or their squares, in LANES partial sums.
 
-    So no order depends on how many values the processor adds at once, and squares need no memory of their own.
+    No order of sums depends on the processor's vectors, and squares need no extra memory.
     """
     lanes, whole = np.zeros(LANES), values.size // LANES * LANES
     for i in range(0, whole, LANES):

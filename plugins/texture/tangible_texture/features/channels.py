@@ -1,4 +1,4 @@
-"""The channels of a picture in which boundaries are looked for."""
+"""The channels of a picture in which boundaries are detected."""
 
 import numpy as np
 from jaxtyping import Float32
@@ -7,10 +7,10 @@ from tangible_core.data.pictures import check_picture, full_scale, luma
 
 
 def channels(picture: np.ndarray, colour: bool) -> Float32[np.ndarray, "h w c"]:
-    """Red, green and blue; or one channel of grey, where colour is not asked for or there is none.
+    """Return red, green and blue; or one channel of grey, if `colour` is False or the picture has none.
 
-    Transparency lies over white. The largest magnitude is 1 whatever the picture's own scale is, so that what is
-    squared later neither overflows nor vanishes.
+    Transparency lies over white. The largest magnitude is 1 for any scale of the picture, so that later squares neither
+    overflow nor vanish.
     Raises: PictureError as `check_picture`.
     """
     white = full_scale(check_picture(picture))
@@ -30,5 +30,5 @@ def _has_colour(paint: np.ndarray) -> bool:
 
 
 def _share(values: np.ndarray, white: float) -> Float32[np.ndarray, "h w c"]:
-    """Values as shares of white, divided in single precision at least, so that every type gives the same."""
+    """Return values as shares of white, divided in single precision at least, so that every dtype gives the same."""
     return np.asarray((values if values.dtype.kind == "f" else values.astype(np.float32)) / white, np.float32)

@@ -1,4 +1,4 @@
-"""What a picture's texture is like in windows of three widths."""
+"""Features of a picture's texture in windows of three widths."""
 
 import logging
 from typing import Literal, NamedTuple
@@ -13,14 +13,16 @@ from tangible_core.runtime.opencv import plain_opencv
 log = logging.getLogger(__name__)
 
 NARROW_PX, MIDDLE_PX, WIDE_PX = 5.0, 10.0, 18.0
-"""Standard deviations of the windows: along borders, in which classes are told apart, and to begin with."""
+"""The standard deviations of the windows, px: along borders, for the classes, and for the initial division."""
 LARGE_PX = 320
-"""Where the root of a picture's area is less, its windows are narrower in proportion, down to half as wide."""
+"""The root of a picture's area, px, below which windows are narrower in proportion, down to half as wide."""
 COLOURFUL = 0.02
-"""Windows that differ in colour by less than this share of white, an even change across the picture apart, do so by
-chance, or by the light."""
+"""The least difference of windows in colour, as a share of white, that is more than chance or light.
+
+An even change across the picture, as of light, does not count.
+"""
 COLOUR_WEIGHT = 3.0
-"""What a plane of colour counts against one of ninety of texture."""
+"""The weight of a plane of colour against one of ninety planes of texture."""
 
 
 class Window(NamedTuple):
@@ -41,28 +43,28 @@ class Features(NamedTuple):
 def features(
     picture: np.ndarray, lambda_max_px: float, least_energy: float, colour: bool | Literal["auto"]
 ) -> Features | None:
-    """Features in windows of WIDE_PX, MIDDLE_PX and NARROW_PX, or less in a small picture; None where all are alike.
+    """Compute features in windows of WIDE_PX, MIDDLE_PX and NARROW_PX, or less in a small picture; None if all agree.
 
     The narrow ones have a value every 4 pixels, the middle ones every 8 and the wide ones every 16; of small pictures
     all of them every 4. Raises: PictureError as `check_picture`.
     """
     from ..energies.noise_floor import is_flat, is_one_texture
-    from .cells import CELL_PX, ENERGY_SIGMA_PX, averaged
+    from .cells import CELL_PX, ENERGY_SIGMA_PX, window_means
 
     grey = to_grey(picture)
     if is_flat(grey):
         note(log, "one segment: the picture is flat")
         return None
-    planes, colours = _planes(picture, grey, lambda_max_px, least_energy, colour)
+    planes, colour_count = _planes(picture, grey, lambda_max_px, least_energy, colour)
     step = 2 if min(planes.shape[1:]) >= 32 else 1
     narrow_px, middle_px, wide_px = _widths(grey.size)
-    narrow = averaged(planes, (narrow_px**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX, out=planes)
-    middle = averaged(narrow, (middle_px**2 - narrow_px**2) ** 0.5 / CELL_PX, step)
+    narrow = window_means(planes, (narrow_px**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX, out=planes)
+    middle = window_means(narrow, (middle_px**2 - narrow_px**2) ** 0.5 / CELL_PX, step)
     if is_one_texture(np.sqrt(middle), middle_px / CELL_PX / step, grey):
-        note(log, "one segment: the texture is the same all over the picture")
+        note(log, "one segment: the picture has the same texture everywhere")
         return None
-    wide = averaged(middle, (wide_px**2 - middle_px**2) ** 0.5 / CELL_PX / step, step)
-    return Features(_window(wide, colours), _window(middle, colours), _window(narrow, colours))
+    wide = window_means(middle, (wide_px**2 - middle_px**2) ** 0.5 / CELL_PX / step, step)
+    return Features(_window(wide, colour_count), _window(middle, colour_count), _window(narrow, colour_count))
 
 
 def _widths(pixels: int) -> tuple[float, float, float]:
@@ -70,14 +72,14 @@ def _widths(pixels: int) -> tuple[float, float, float]:
     return min(NARROW_PX, 0.9 * MIDDLE_PX * share), MIDDLE_PX * share, WIDE_PX * share
 
 
-def _window(planes: Float32[np.ndarray, "d rows columns"], colours: int) -> Window:
-    """Standardised, in place; the last `colours` planes weigh more."""
+def _window(planes: Float32[np.ndarray, "d rows columns"], colour_count: int) -> Window:
+    """Standardise planes in place; the last `colour_count` ones weigh more."""
     from .cells import standardise_roots
 
     rows, columns = planes.shape[1:]
     flat = planes.reshape(len(planes), -1)
     standardise_roots(flat)
-    flat[len(flat) - colours :] *= np.float32(COLOUR_WEIGHT)
+    flat[len(flat) - colour_count :] *= np.float32(COLOUR_WEIGHT)
     return Window(flat, (rows, columns))
 
 
@@ -88,36 +90,39 @@ def _planes(
     least_energy: float,
     colour: bool | Literal["auto"],
 ) -> tuple[Float32[np.ndarray, "d rows columns"], int]:
-    """Energies, pattern frequencies and tints, cell by cell, and how many of the planes are tints.
+    """Return energies, pattern frequencies and colours, cell by cell, and the number of planes of colour.
 
-    All are written where they stay: of a large picture they are hundreds of megabytes, and so would be each copy.
+    All are written to one array: for a large picture it has hundreds of megabytes, and so would each copy.
     """
     from ..energies.gabor_bank import bank, octaves
-    from ..energies.local_energy import energy_planes, mean_energies, padding, spectrum_of, standardised
-    from .cells import CELL_PX, ENERGY_SIGMA_PX, capped
+    from ..energies.local_energy import energy_planes, mean_energies, padding, spectrum_of, standardise
+    from .cells import CELL_PX, ENERGY_SIGMA_PX, cap_rare_values
     from .patterns import PATTERNS, pattern_frequencies
 
     filters = bank(octaves(lambda_max_px))
     spectrum = spectrum_of(grey, padding(filters, ENERGY_SIGMA_PX))
     means = mean_energies(spectrum, filters)
-    kept = [each for each, mean in zip(filters, means, strict=True) if mean >= least_energy * means.sum()]
-    if len(kept) < len(filters):
-        note(log, f"{len(filters) - len(kept)} of {len(filters)} filters left out: they hold no energy to speak of")
-    tints = _tints(picture, colour)
+    filters_used = [each for each, mean in zip(filters, means, strict=True) if mean >= least_energy * means.sum()]
+    if len(filters_used) < len(filters):
+        note(
+            log,
+            f"{len(filters) - len(filters_used)} of {len(filters)} filters left out: they hold hardly any energy",
+        )
+    colours = _colour_planes(picture, colour)
     rows, columns = (-(-side // CELL_PX) for side in grey.shape)
-    planes = np.empty((len(kept) + PATTERNS + len(tints), rows, columns), np.float32)
-    energies, patterns = planes[: len(kept)], planes[len(kept) : len(kept) + PATTERNS]
-    capped(energy_planes(spectrum, kept, grey.shape, CELL_PX, ENERGY_SIGMA_PX, energies))
-    pattern_frequencies(standardised(grey), patterns)
-    planes[len(kept) + PATTERNS :] = tints
-    return planes, len(tints)
+    planes = np.empty((len(filters_used) + PATTERNS + len(colours), rows, columns), np.float32)
+    energies, patterns = planes[: len(filters_used)], planes[len(filters_used) : len(filters_used) + PATTERNS]
+    cap_rare_values(energy_planes(spectrum, filters_used, grey.shape, CELL_PX, ENERGY_SIGMA_PX, energies))
+    pattern_frequencies(standardise(grey), patterns)
+    planes[len(filters_used) + PATTERNS :] = colours
+    return planes, len(colours)
 
 
-def _tints(picture: np.ndarray, colour: bool | Literal["auto"]) -> Float32[np.ndarray, "tints rows columns"]:
-    """Red against green and both against blue, cell by cell, 0..2; no plane where colour is not used."""
+def _colour_planes(picture: np.ndarray, colour: bool | Literal["auto"]) -> Float32[np.ndarray, "colours rows columns"]:
+    """Return red against green and both against blue, cell by cell, 0..2; no plane where colour is not used."""
     import cv2
 
-    from .cells import CELL_PX, averaged
+    from .cells import CELL_PX, window_means
     from .channels import channels
 
     rows, columns = (-(-side // CELL_PX) for side in picture.shape[:2])
@@ -126,22 +131,22 @@ def _tints(picture: np.ndarray, colour: bool | Literal["auto"]) -> Float32[np.nd
         return none
     paint = channels(picture, colour=True)
     if paint.shape[2] == 1:
-        note(log, "colour left out: there is none")
+        note(log, "colour left out: the picture has none")
         return none
     red, green, blue = np.moveaxis(paint, 2, 0)
     opponents = (1 + (red - green) / 2, 1 + (red + green) / 4 - blue / 2)
     with plain_opencv():
         planes = np.stack([cv2.resize(each, (columns, rows), interpolation=cv2.INTER_AREA) for each in opponents])
-    differ = float(np.sqrt(_without_slope(averaged(planes, MIDDLE_PX / CELL_PX)).var(axis=(1, 2)).sum()))
+    differ = float(np.sqrt(_remove_slope(window_means(planes, MIDDLE_PX / CELL_PX)).var(axis=(1, 2)).sum()))
     if colour == "auto" and differ < COLOURFUL:
-        note(log, f"colour left out: windows differ in it by {differ:.3f} of white, under {COLOURFUL:g}")
+        note(log, f"colour left out: it differs between windows by {differ:.3f} of white, under {COLOURFUL:g}")
         return none
-    note(log, f"colour used: windows differ in it by {differ:.3f} of white")
+    note(log, f"colour used: it differs between windows by {differ:.3f} of white")
     return planes
 
 
-def _without_slope(planes: Float32[np.ndarray, "d rows columns"]) -> Float32[np.ndarray, "d rows columns"]:
-    """Less what changes evenly across the picture, as light does."""
+def _remove_slope(planes: Float32[np.ndarray, "d rows columns"]) -> Float32[np.ndarray, "d rows columns"]:
+    """Subtract an even change across the picture, as light causes."""
     for axis in (1, 2):
         place = np.arange(planes.shape[axis], dtype=np.float32) - np.float32((planes.shape[axis] - 1) / 2)
         place = np.expand_dims(place, tuple({0, 1, 2} - {axis}))

@@ -1,10 +1,10 @@
-"""Local binary patterns, counted straight into cells of 4 x 4 pixels. Compiled by numba.
+"""Local binary patterns, counted directly into cells of 4 x 4 pixels. Compiled by numba.
 
-A pixel's code says which of eight neighbours are as bright as it is. It adds one to one of 10 rotation-invariant
-classes (Ojala, Pietikainen & Maenpaa, IEEE TPAMI 24, 2002), and to some of 12 agreements that tell directions: both
-neighbours of an axis are dark, both are bright, those a quarter turn apart are alike. A picture's negative exchanges
-counters, but for neighbours of equal grey. A cell holds 16 pixels, so that a counter fits 5 bits (6 for quarter turns,
-of which each pixel has two) and all of a pixel's are two additions.
+The bits of a pixel's code mark the neighbours, of eight, that are at least as bright as the pixel. The code adds one to
+one of 10 rotation-invariant classes (Ojala, Pietikainen & Maenpaa, IEEE TPAMI 24, 2002), and to some of 12 agreements
+that depend on direction: both neighbours of an axis are dark, both are bright, neighbours a quarter turn apart agree.
+The negative of a picture exchanges counters, except for neighbours of equal grey. A cell holds 16 pixels, so that a
+counter fits 5 bits (6 for quarter turns, of which each pixel has two), and two additions count a pixel.
 """
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
@@ -19,36 +19,41 @@ from tangible_core.compiled.threads import in_blocks
 from tangible_core.runtime.opencv import plain_opencv
 
 CELL_PX = 4
-CLASSES, AGREEMENTS = 10, 12
+"""The side of a cell, px."""
+CLASSES = 10
+"""The number of rotation-invariant classes."""
+AGREEMENTS = 12
+"""The number of agreements between neighbours, by direction."""
 COUNTERS = CLASSES + AGREEMENTS
+"""The number of counters for each radius."""
 RADII = ((1, 0.0), (3, 0.0), (5, 1.5))
-"""How far the neighbours are, in px, and the standard deviation of the Gaussian that smooths before."""
+"""The distances of the neighbours, px, and the standard deviations of the smoothing before, px."""
 PATTERNS = len(RADII) * COUNTERS
-"""Planes of `pattern_frequencies`."""
+"""The number of planes of `pattern_frequencies`."""
 ALIKE = 1e-3
-"""A neighbour darker by less than this share of the picture's standard deviation is as bright: rounding is none."""
+"""The largest difference of equal greys, as a share of the picture's standard deviation: that of rounding."""
 
 
 def pattern_frequencies(
     grey: Float32[np.ndarray, "h w"], out: Float32[np.ndarray, "counters rows columns"] | None = None
 ) -> Float32[np.ndarray, "counters rows columns"]:
-    """How often each class and agreement occurs in each cell, 0..1, for every radius of RADII in turn.
+    """Compute the frequency, 0..1, of each class and agreement in each cell, for every radius of RADII in turn.
 
     grey: of standard deviation 1. Cells lie as those of `local_energy` with step_px = 4; the last may be cut. A flip or
-    a quarter turn of the picture flips or turns the planes and exchanges some of them. out: where they are written.
+    a quarter turn of the picture flips or turns the planes and exchanges some of them. out: the array to write to.
     """
     import cv2
 
     shape = tuple(-(-side // CELL_PX) for side in grey.shape)
-    found = np.empty((PATTERNS, *shape), np.float32) if out is None else out
-    for planes, (radius, sigma) in zip(found.reshape(len(RADII), COUNTERS, *shape), RADII, strict=True):
+    frequencies = np.empty((PATTERNS, *shape), np.float32) if out is None else out
+    for planes, (radius, sigma) in zip(frequencies.reshape(len(RADII), COUNTERS, *shape), RADII, strict=True):
         with plain_opencv():
             smooth = cv2.GaussianBlur(grey, (0, 0), sigma, borderType=cv2.BORDER_REFLECT_101) if sigma else grey
         framed = np.pad(smooth, radius, mode="edge")
         in_blocks(
             shape[0], lambda a, b, f=framed, r=radius, p=planes: _count(f, r, a, b, grey.shape, _FIRST, _SECOND, p), 4
         )
-    return found
+    return frequencies
 
 
 def _pairs_of(code: int) -> Iterator[tuple[bool, ...]]:
@@ -61,18 +66,18 @@ def _pairs_of(code: int) -> Iterator[tuple[bool, ...]]:
 
 
 def _class_of(code: int) -> int:
-    """The number of bright neighbours, if they are in one piece; else 9."""
+    """Return the number of bright neighbours if they are contiguous, else 9."""
     bits = [code >> i & 1 for i in range(8)]
     return sum(bits) if sum(bits[i] != bits[i - 1] for i in range(8)) <= 2 else CLASSES - 1
 
 
-def _packed(flags: Iterable[bool], first_bit: int, width: int) -> int:
+def _pack_bits(flags: Iterable[bool], first_bit: int, width: int) -> int:
     return sum(1 << (first_bit + width * i) for i, flag in enumerate(flags) if flag)
 
 
 def _agreements_of(code: int) -> int:
     dark, bright, *quarters = _pairs_of(code)
-    return _packed(dark, 0, 5) + _packed(bright, 20, 5) + sum(_packed(each, 40, 6) for each in quarters)
+    return _pack_bits(dark, 0, 5) + _pack_bits(bright, 20, 5) + sum(_pack_bits(each, 40, 6) for each in quarters)
 
 
 _FIRST: UInt64[np.ndarray, "256"] = np.array([1 << 5 * _class_of(code) for code in range(256)], np.uint64)
@@ -90,7 +95,7 @@ def _count(grey, radius, start, stop, shape, first_words, second_words, planes):
         for row in range(cell_row * CELL_PX, end):
             _codes(grey, row, radius, codes)
             whole = width // CELL_PX
-            for cell in range(whole):  # the cell's own sum in registers: each word is written once a row
+            for cell in range(whole):  # the cell's sums stay in registers: each word is written once a row
                 one, other = first[cell], second[cell]
                 for column in range(cell * CELL_PX, (cell + 1) * CELL_PX):
                     one += first_words[codes[column]]
@@ -107,7 +112,7 @@ def _count(grey, radius, start, stop, shape, first_words, second_words, planes):
 
 @njit(cache=True, nogil=True)
 def _codes(grey, row, radius, codes):
-    """The codes of one row; neighbours are numbered against the clock, from the right."""
+    """Write the codes of one row; neighbours are numbered counter-clockwise from the right."""
     near = round(radius * 0.70710678)
     up, down, above, below = grey[row], grey[row + 2 * radius], grey[row + radius - near], grey[row + radius + near]
     own = grey[row + radius]
@@ -128,7 +133,7 @@ def _codes(grey, row, radius, codes):
 
 @njit(cache=True, nogil=True)
 def _unpack(first, second, shares, counters):
-    """Counter after counter, as their planes lie far apart."""
+    """Write counter after counter, as their planes lie far apart in memory."""
     for i in range(CLASSES):
         for cell in range(shares.size):
             counters[i, cell] = np.float32((first[cell] >> np.uint64(5 * i)) & np.uint64(31)) * shares[cell]

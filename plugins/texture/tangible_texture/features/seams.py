@@ -1,17 +1,17 @@
-"""Seams: strips between two textures that a window over both of them makes into a third."""
+"""Seams: strips between two textures that look like a third in a window over both."""
 
 import numpy as np
 from jaxtyping import Bool, Int32
 
 
-def without_seams(
+def remove_seams(
     labels: Int32[np.ndarray, "rows columns"], radius: int
 ) -> tuple[Int32[np.ndarray, "rows columns"], Bool[np.ndarray, "rows columns"]]:
-    """Labels in which every part of a segment that no disc of this radius fits into goes to what is nearest by.
+    """Give every part of a segment that is too narrow for a disc of this radius to the nearest wide segment.
 
-    Segments that are nowhere so wide vanish, and the others are numbered anew. Outside lies the mirror image. Where
-    nothing is so wide, everything stays.
-    Returns: the labels, and where they are still those of the same segment.
+    Segments that are narrow everywhere vanish, and the others are renumbered. Outside lies the mirror image. Where no
+    segment is wide enough, all stay.
+    Returns: the labels, and a mask of the cells that kept their segment.
     """
     import cv2
     from scipy.ndimage import distance_transform_edt

@@ -1,1 +1,1 @@
-"""Regions of a picture: basins, flooding, borders, merging."""
+"""Regions of a picture: basins, watershed, borders, merging."""

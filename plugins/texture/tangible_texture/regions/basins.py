@@ -1,4 +1,4 @@
-"""Flat basins of a landscape: where segments begin. Compiled by numba where every pixel is visited."""
+"""Flat basins of a landscape, the seeds of segments. Compiled by numba where every pixel is visited."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -13,57 +13,57 @@ from tangible_core.compiled.compiling import KERNEL, inner
 from .watershed import UNSEEN
 
 MOST_SEGMENTS = 64
-"""What `segments: auto` stops at, far beyond what touch tells apart."""
+"""The largest number of segments under `auto`, far more than touch can distinguish."""
 STEEPER = (1, 4, 16)
-"""Where nothing is flat, a part this many times as steep counts as flat."""
+"""The multiples of the flat threshold, tried in turn where nothing is flat enough."""
 _SEVERAL = -2
 
 
 def basins(
     height: Float32[np.ndarray, "h w"], levels: Iterable[float], smallest_px: int
 ) -> tuple[Int32[np.ndarray, "h w"], int]:
-    """Connected parts (4 neighbours) that lie at or under a level and hold smallest_px pixels or more.
+    """Label connected parts (4 neighbours) at or under a level with at least smallest_px pixels.
 
-    The levels rise. At a higher one, a part with no basin in it yet is a new one: so a rough thing between smooth ones
-    has a basin of its own, although it is nowhere as flat as they are. A part with one basin in it is all that basin's,
-    as a watershed would find too: water fills it before it flows over.
+    The levels rise. At a higher level, a part without a basin becomes a new one: a rough object between smooth ones has
+    its own basin, although it is nowhere as flat as they are. A part with one basin belongs to that basin entirely, as
+    in a watershed: water fills it before it flows over.
     Returns: labels, -1 outside of the basins, and their number.
     """
     import cv2
 
-    found = np.full(height.shape, UNSEEN, np.int32)
+    labels = np.full(height.shape, UNSEEN, np.int32)
     count = 0
     for level in levels:
         size, parts = cv2.connectedComponents((height <= level).view(np.uint8), connectivity=4)
         owners, areas = np.full(size, UNSEEN, np.int32), np.zeros(size, np.int32)
-        count = _add(found, parts, owners, areas, smallest_px, count)
-    return found, count
+        count = _label_parts(labels, parts, owners, areas, smallest_px, count)
+    return labels, count
 
 
 @njit(**KERNEL)
-def _add(found, parts, names, areas, smallest_px, count):
-    """Give every part with one basin in it to that basin, every large one without to a new one, from `count` on.
+def _label_parts(labels, parts, names, areas, smallest_px, count):
+    """Give every part with one basin to that basin, every large part without one to a new basin, from `count` on.
 
     names, areas: scratch, -1 and 0 for each part.
     """
-    _own(found, parts, names, areas)
-    names[0] = _SEVERAL  # what is too high
+    _find_owners(labels, parts, names, areas)
+    names[0] = _SEVERAL  # part 0 is above the level
     for part in range(1, names.size):
         if names[part] == UNSEEN and areas[part] >= smallest_px:
             names[part] = count
             count += 1
-    for row in range(found.shape[0]):
-        for column in range(found.shape[1]):
-            found[row, column] = max(found[row, column], names[parts[row, column]], UNSEEN)
+    for row in range(labels.shape[0]):
+        for column in range(labels.shape[1]):
+            labels[row, column] = max(labels[row, column], names[parts[row, column]], UNSEEN)
     return count
 
 
 @inner()
-def _own(found, parts, owners, areas):
-    """The basin in each part, -1 if there is none, -2 if there are several; and the areas of the parts."""
-    for row in range(found.shape[0]):
-        for column in range(found.shape[1]):
-            part, basin = parts[row, column], found[row, column]
+def _find_owners(labels, parts, owners, areas):
+    """Write the basin in each part, -1 if there is none, -2 if there are several; and the areas of the parts."""
+    for row in range(labels.shape[0]):
+        for column in range(labels.shape[1]):
+            part, basin = parts[row, column], labels[row, column]
             areas[part] += 1
             if basin >= 0 and owners[part] != basin:
                 owners[part] = basin if owners[part] == UNSEEN else _SEVERAL

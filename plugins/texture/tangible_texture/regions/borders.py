@@ -8,36 +8,40 @@ from jaxtyping import Int32, UInt8
 from .landscape import Landscape
 
 Ways = tuple[tuple[slice, slice], tuple[slice, slice]]
-"""Where the first pixels of all pairs are, and where the second ones."""
+"""The slices of the first and of the second pixels of all pairs in one direction."""
 
-WEAK_EDGE, ACROSS_IT = 2 / 3, 0.45
-"""Parts of the slope at which an edge begins that is one where two regions meet, and of it what must lead across."""
+WEAK_EDGE = 2 / 3
+"""The least slope of an edge on a border of two regions, as a share of the slope that starts an edge elsewhere."""
+ACROSS_IT = 0.45
+"""The least share of that slope that leads across the border."""
 DOWN: Ways = np.s_[:-1, :], np.s_[1:, :]
 ACROSS: Ways = np.s_[:, :-1], np.s_[:, 1:]
 
 
 class Border(NamedTuple):
-    """What two neighbouring regions have between them, summed over the pairs of pixels (4 neighbours) across."""
+    """The border of two neighbouring regions: sums over the pairs of pixels (4 neighbours) across it."""
 
     pairs: float
+    """The number of pairs."""
     height: float
-    """The higher pixel of each pair."""
+    """The sum of the higher pixel of each pair."""
     edges: float
-    """How many pairs have an edge in them or between them."""
+    """The number of pairs with an edge in them or between them."""
 
-    def joined(self, other: "Border") -> "Border":
-        """Both borders, of one region with two that have become one."""
+    def plus(self, other: "Border") -> "Border":
+        """Add two borders of one region, with two regions that are merged."""
         return Border(self.pairs + other.pairs, self.height + other.height, self.edges + other.edges)
 
 
 def borders(
     labels: Int32[np.ndarray, "h w"], land: Landscape, edges: UInt8[np.ndarray, "h w"], edge_slope: float
 ) -> dict[tuple[int, int], Border]:
-    """Every border there is, by its two regions, the lower label first.
+    """Return every border by its two regions, the lower label first.
 
     A pair has an edge where `edges` is not 0, and where the picture is as steep as WEAK_EDGE times edge_slope and rises
-    or falls from one of its pixels to the other. The second finds what is no crest, a weak edge between the flanks of
-    strong ones, and what noise has broken: regions meet there, and noise alone has no slope that leads across for long.
+    or falls from one of its pixels to the other. The second condition detects edges without a crest: weak ones between
+    the flanks of strong ones, and edges broken by noise. Regions meet there, and noise alone has no slope that leads
+    across for long.
     """
     count = int(labels.max()) + 1
     pairs = [
@@ -45,10 +49,10 @@ def borders(
         for slopes, ways in (((land.down, land.across), DOWN), ((land.across, land.down), ACROSS))
     ]
     keys, highest, edged = (np.concatenate(each) for each in zip(*pairs, strict=True))
-    found, which, number = np.unique(keys, return_inverse=True, return_counts=True)
-    sums = (np.bincount(which, weights, found.size).tolist() for weights in (highest, edged))
+    bordering, which, number = np.unique(keys, return_inverse=True, return_counts=True)
+    sums = (np.bincount(which, weights, bordering.size).tolist() for weights in (highest, edged))
     return {
-        divmod(key, count): Border(*sums) for key, *sums in zip(found.tolist(), number.tolist(), *sums, strict=True)
+        divmod(key, count): Border(*sums) for key, *sums in zip(bordering.tolist(), number.tolist(), *sums, strict=True)
     }
 
 
@@ -61,9 +65,9 @@ def _pairs(
     ways: Ways,
     count: int,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A key, the greater height and whether there is an edge, of every two pixels of two labels that lie this way.
+    """Return the key, the greater height and an edge flag of every pair of pixels with two labels in this direction.
 
-    slopes: this way, and the other.
+    slopes: along this direction, and along the other.
     """
     first, second = ways
     at = np.flatnonzero(labels[first] != labels[second])

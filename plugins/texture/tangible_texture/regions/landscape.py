@@ -10,11 +10,11 @@ from tangible_core.runtime.opencv import plain_opencv
 from ..signal.slopes import slopes
 
 _LARGEST = 16000
-"""Of 16 bits, what the steepest slope is given before Canny's thresholds."""
+"""The value of the steepest slope in 16 bits, for Canny's thresholds."""
 
 
 class Landscape(NamedTuple):
-    """Float32 (h, w) each: slopes in the channel where they are steepest, in units of the noise hereabouts."""
+    """Slopes in the channel where they are steepest, in units of the local noise: float32 (h, w) each."""
 
     steep: Float32[np.ndarray, "h w"]
     """The magnitude."""
@@ -23,10 +23,10 @@ class Landscape(NamedTuple):
 
 
 def landscape(smooth: Float32[np.ndarray, "h w c"], most: float, noise: Float32[np.ndarray, "r s"]) -> Landscape:
-    """Slopes over their noise, which is taken to be such that none is above `most`.
+    """Divide slopes by their noise, which is raised until no slope is above `most`.
 
-    noise: what the same picture less smooth has, at any size; it is at most twice that. Where edges are many, smoothing
-    leaves little that is flat between them, and what is measured there is no noise.
+    noise: that of the same picture with less smoothing, at any size, of which twice the value bounds the noise here.
+    Where edges are many, smoothing leaves little flat area between them, and the slopes measured there are not noise.
     """
     import cv2
 
@@ -38,7 +38,7 @@ def landscape(smooth: Float32[np.ndarray, "h w c"], most: float, noise: Float32[
 
 
 def canny_edges(land: Landscape, low: float, high: float, most: float) -> UInt8[np.ndarray, "h w"]:
-    """255 within one pixel of Canny's edges; the thresholds are in units of the noise."""
+    """Return 255 within one pixel of Canny's edges, else 0; the thresholds are in units of the noise."""
     import cv2
 
     unit = _LARGEST / most

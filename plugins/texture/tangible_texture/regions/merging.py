@@ -13,15 +13,15 @@ from tangible_core.compiled.compiling import KERNEL
 from .borders import Border
 
 HELD_APART = 0.6
-"""Two neighbours stay apart where at least this share of their border lies on edges."""
+"""The least share of edges in a border that keeps its two regions separate."""
 
 
 def merge(areas: list[int], borders: dict[tuple[int, int], Border], most: int) -> Int32[np.ndarray, "n"]:
-    """Merge neighbours until edges hold all of them apart and no more than `most` are left.
+    """Merge neighbours until edges separate all of them and no more than `most` are left.
 
-    Those with the least share of edges in their border go first; after them, those with the lowest mean height of the
+    Pairs with the least share of edges in their border go first; after them, pairs with the lowest mean height of the
     border times a b / (a + b), a and b being their areas: small regions give way to large ones, as in Ward's method.
-    Returns: for each region the one that it has become part of.
+    Returns: for each region the region into which it was merged.
     """
     graph = _Graph(areas, borders)
     graph.merge(most)
@@ -32,19 +32,19 @@ def merge(areas: list[int], borders: dict[tuple[int, int], Border], most: int) -
 
 
 def weakest_border(borders: dict[tuple[int, int], Border], parts: Int32[np.ndarray, "n"]) -> float:
-    """The least share of edges in the border of two merged regions; 0 where there is one. `parts`: from `merge`."""
+    """Return the least share of edges in the border of two merged regions; 0 for one region. `parts`: from `merge`."""
     merged: dict[tuple[int, int], Border] = {}
     for (one, other), border in borders.items():
         low, high = sorted((int(parts[one]), int(parts[other])))
         if low < high:
-            merged[low, high] = border.joined(merged[low, high]) if (low, high) in merged else border
+            merged[low, high] = border.plus(merged[low, high]) if (low, high) in merged else border
     return min((border.edges / border.pairs for border in merged.values()), default=0.0)
 
 
 class _Graph:
-    """Regions, their neighbours, and a queue of pairs; a pair in it whose border is no longer the same is void.
+    """Regions, their neighbours, and a queue of pairs; a queued pair is void once its border is another object.
 
-    Pairs that edges hold apart come last, and their order changes with every merge: they are queued by `weigh`.
+    Pairs that edges separate come last, and their order changes with every merge: `weigh` queues them.
     """
 
     def __init__(self, areas: list[int], borders: dict[tuple[int, int], Border]) -> None:
@@ -52,76 +52,76 @@ class _Graph:
         self.left = len(areas)
         self.weighing = False
         self.parent = list(range(len(areas)))
-        self.beside: list[dict[int, Border]] = [{} for _ in areas]
+        self.neighbours: list[dict[int, Border]] = [{} for _ in areas]
         self.queue: list[tuple[float, int, int, Border]] = []
         for (one, other), border in borders.items():
             self.connect(one, other, border)
 
     def connect(self, one: int, other: int, border: Border) -> None:
         """Set the border of two regions."""
-        self.beside[one][other] = self.beside[other][one] = border
+        self.neighbours[one][other] = self.neighbours[other][one] = border
         reluctance = self.reluctance(one, other, border)
         if reluctance < 0 or self.weighing:
             heapq.heappush(self.queue, (reluctance, min(one, other), max(one, other), border))
 
     def weigh(self) -> None:
-        """Queue what edges hold apart, too."""
+        """Queue the pairs that edges separate, too."""
         self.weighing = True
-        for one, others in enumerate(self.beside):
+        for one, others in enumerate(self.neighbours):
             for other, border in others.items():
                 if one < other:
                     self.connect(one, other, border)
 
     def merge(self, most: int) -> None:
-        """Merge the pairs in the queue until no more than `most` regions are left, or edges hold all apart."""
+        """Merge the pairs in the queue until no more than `most` regions are left, or edges separate all."""
         while self.queue:
             reluctance, one, other, border = heapq.heappop(self.queue)
-            if self.beside[one].get(other) is not border:
+            if self.neighbours[one].get(other) is not border:
                 continue
             if reluctance >= 0 and self.left <= most:
                 break
             self.join(one, other)
 
     def reluctance(self, one: int, other: int, border: Border) -> float:
-        """How much speaks against merging; negative where edges do not."""
+        """Return the cost of merging; negative where edges do not forbid it."""
         share = border.edges / border.pairs
         if share < HELD_APART:
             return share - 1
         a, b = self.areas[one], self.areas[other]
         return border.height / border.pairs * a * b / (a + b)
 
-    def join(self, kept: int, lost: int) -> None:
+    def join(self, survivor: int, lost: int) -> None:
         """Make two regions one."""
-        self.parent[lost] = kept
-        self.areas[kept] += self.areas[lost]
+        self.parent[lost] = survivor
+        self.areas[survivor] += self.areas[lost]
         self.left -= 1
-        borders, self.beside[lost] = self.beside[lost], {}
+        borders, self.neighbours[lost] = self.neighbours[lost], {}
         for far, border in borders.items():
-            del self.beside[far][lost]
-            if far != kept:
-                own = self.beside[kept].get(far)
-                self.beside[kept][far] = border.joined(own) if own else border
-        for far in self.beside[kept] if self.weighing else borders:
-            if far != kept:
-                border = Border(*self.beside[kept][far])  # a new one, so that the pairs of the old area are void
-                self.connect(kept, far, border)
+            del self.neighbours[far][lost]
+            if far != survivor:
+                own = self.neighbours[survivor].get(far)
+                self.neighbours[survivor][far] = border.plus(own) if own else border
+        for far in self.neighbours[survivor] if self.weighing else borders:
+            if far != survivor:
+                border = Border(*self.neighbours[survivor][far])  # a new object voids the queued pairs of the old area
+                self.connect(survivor, far, border)
 
     def root(self, region: int) -> int:
-        """The region that this one has become part of."""
+        """Return the region into which this one was merged."""
         while self.parent[region] != region:
             region = self.parent[region]
         return region
 
 
-def in_reading_order(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
-    """Labels 0..n-1 in the order of their first pixels, row by row. Parameters: labels >= 0."""
-    found = np.empty_like(labels)
-    _rename(labels, np.full(int(labels.max()) + 1, -1, np.int32), found)
-    return found
+def number_in_reading_order(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
+    """Renumber labels 0..n-1 in the order of their first pixels, row by row. Parameters: labels >= 0."""
+    numbered = np.empty_like(labels)
+    _rename(labels, np.full(int(labels.max()) + 1, -1, np.int32), numbered)
+    return numbered
 
 
 @njit(**KERNEL)
-def _rename(labels, order, found):
+def _rename(labels, order, numbered):
     count = 0
     for row in range(labels.shape[0]):
         for column in range(labels.shape[1]):
@@ -129,4 +129,4 @@ def _rename(labels, order, found):
             if order[label] < 0:
                 order[label] = count
                 count += 1
-            found[row, column] = order[label]
+            numbered[row, column] = order[label]

@@ -1,4 +1,4 @@
-"""Regions found on a coarse grid, to the pixel."""
+"""Refining of regions from a coarse grid to the pixel."""
 
 import numpy as np
 from jaxtyping import Bool, Float32, Int32
@@ -7,12 +7,12 @@ from .borders import ACROSS, DOWN
 from .watershed import UNSEEN, watershed
 
 
-def refined(
+def refine_labels(
     labels: Int32[np.ndarray, "r c"], step: int, height: Float32[np.ndarray, "h w"]
 ) -> Int32[np.ndarray, "h w"]:
-    """Labels of every step-th pixel as labels of every pixel: the cells beside borders are flooded anew, from within.
+    """Refine labels of every step-th pixel to labels of every pixel: cells along borders are flooded again from within.
 
-    Parameters: height >= 0, whose crests are where borders belong.
+    Parameters: height >= 0; borders belong on its crests.
     """
     rows, columns = height.shape
     markers = np.where(_inside(labels), labels, np.int32(UNSEEN))
@@ -20,11 +20,11 @@ def refined(
 
 
 def _inside(labels: Int32[np.ndarray, "r c"]) -> Bool[np.ndarray, "r c"]:
-    """Where all 4 neighbours have the same label; all of a region that is too narrow to have such a place."""
+    """Return a mask of cells whose 4 neighbours have the same label, and of regions without any such cell."""
     inside = np.ones(labels.shape, np.bool_)
     for first, second in (DOWN, ACROSS):
         same = labels[first] == labels[second]
         inside[first] &= same
         inside[second] &= same
-    kept = np.bincount(labels[inside], minlength=int(labels.max()) + 1) > 0
-    return inside if kept.all() else inside | ~kept[labels]
+    has_inside = np.bincount(labels[inside], minlength=int(labels.max()) + 1) > 0
+    return inside if has_inside.all() else inside | ~has_inside[labels]

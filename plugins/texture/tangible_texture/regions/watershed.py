@@ -1,4 +1,4 @@
-"""Watershed by flooding, with one queue a level. Compiled by numba."""
+"""Watershed by flooding, with one queue for each level. Compiled by numba."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -9,13 +9,13 @@ from numba import njit
 from tangible_core.compiled.compiling import KERNEL, inner
 
 LEVELS = 1024
-"""How many heights are told apart; low ones, at which most waters meet, more finely than high ones."""
+"""The number of levels of height; low ones, where most waters meet, are finer than high ones."""
 
 TILE_PX = 512
-"""Side of what is flooded at once."""
+"""The side of a tile flooded at once, px."""
 
 AROUND_PX = 32
-"""More than the width of what lies between two flat basins."""
+"""The margin flooded around a tile, px: more than the distance between two flat basins."""
 
 UNSEEN = -1
 _OUTSIDE = -2
@@ -23,7 +23,7 @@ _LAST = -1
 _UNQUEUED = -2
 
 _LABEL, _LEVEL, _NEXT = range(3)
-"""What is known of a pixel: all of it side by side, as the flood jumps about in memory."""
+"""The columns of the state of a pixel, contiguous because the flood jumps about in memory."""
 
 
 Heights = Float32[np.ndarray, "h w"]
@@ -33,39 +33,39 @@ Labels = Int32[np.ndarray, "h w"]
 def watershed(height: Heights, markers: Labels) -> Labels:
     """Flood a landscape from markers: each pixel gets the marker whose water reaches it first, over its 4 neighbours.
 
-    Large landscapes are flooded tile by tile, each with AROUND_PX around it, from beyond which no water comes unless a
-    tile has no marker. Parameters: height >= 0; markers, -1 where there is none.
-    Returns: labels, those of the markers; no pixel is left on a shed. Where there is no marker at all, all are -1.
+    Large landscapes are flooded tile by tile, each with a margin of AROUND_PX; no water comes from further away unless
+    a tile has no marker. Parameters: height >= 0; markers, -1 where there is none.
+    Returns: the labels of the markers; no pixel is left on a shed. Without any marker, all are -1.
     Source: Meyer, Un algorithme optimal pour la ligne de partage des eaux, 1991; the queue is an array of first-in
-    first-out lists, one a level.
+    first-out lists, one for each level.
     """
     top = float(height.max())
     scale = np.float32((LEVELS - 1) / np.sqrt(top) if top else 0)
-    found = np.empty_like(markers)
+    flooded = np.empty_like(markers)
     for row in range(0, len(height), TILE_PX):
         for column in range(0, height.shape[1], TILE_PX):
-            _flood_tile(found, row, column, height, markers, scale)
-    return found if found.min() > UNSEEN else _flood(height, found, scale)
+            _flood_tile(flooded, row, column, height, markers, scale)
+    return flooded if flooded.min() > UNSEEN else _flood(height, flooded, scale)
 
 
-def _flood_tile(found: Labels, row: int, column: int, height: Heights, markers: Labels, scale: np.float32) -> None:
-    """Flood one tile and what is around it, and keep the tile: a whole picture's memory is too far to jump about in."""
+def _flood_tile(flooded: Labels, row: int, column: int, height: Heights, markers: Labels, scale: np.float32) -> None:
+    """Flood one tile with its margin, and keep the tile: a whole picture does not fit the cache."""
     top, left = max(0, row - AROUND_PX), max(0, column - AROUND_PX)
     window = np.s_[top : row + TILE_PX + AROUND_PX, left : column + TILE_PX + AROUND_PX]
     labels = _flood(np.ascontiguousarray(height[window]), np.ascontiguousarray(markers[window]), scale)
     inner = labels[row - top :, column - left :][:TILE_PX, :TILE_PX]
-    found[row : row + TILE_PX, column : column + TILE_PX] = inner
+    flooded[row : row + TILE_PX, column : column + TILE_PX] = inner
 
 
 def _flood(height: Heights, markers: Labels, scale: np.float32) -> Labels:
     rows, columns = height.shape
-    cells, found = np.empty(((rows + 2) * (columns + 2), 3), np.int32), np.empty_like(markers)
-    _pour(height, markers, scale, cells, np.full(LEVELS, _LAST, np.int32), np.empty(LEVELS, np.int32), found)
-    return found
+    cells, flooded = np.empty(((rows + 2) * (columns + 2), 3), np.int32), np.empty_like(markers)
+    _pour(height, markers, scale, cells, np.full(LEVELS, _LAST, np.int32), np.empty(LEVELS, np.int32), flooded)
+    return flooded
 
 
 @njit(**KERNEL)
-def _pour(height, markers, scale, cells, first, last, found):
+def _pour(height, markers, scale, cells, first, last, flooded):
     rows, columns = height.shape
     width = columns + 2
     _frame(height, markers, scale, cells)
@@ -79,19 +79,19 @@ def _pour(height, markers, scale, cells, first, last, found):
         pixel = first[level]
         while pixel != _LAST:
             for step in neighbours:
-                beside = pixel + step
-                if cells[beside, _LABEL] == UNSEEN:
-                    cells[beside, _LABEL] = cells[pixel, _LABEL]
-                    _append(beside, max(level, np.int64(cells[beside, _LEVEL])), cells, first, last)
+                neighbour = pixel + step
+                if cells[neighbour, _LABEL] == UNSEEN:
+                    cells[neighbour, _LABEL] = cells[pixel, _LABEL]
+                    _append(neighbour, max(level, np.int64(cells[neighbour, _LEVEL])), cells, first, last)
             pixel = cells[pixel, _NEXT]
     for row in range(rows):
         for column in range(columns):
-            found[row, column] = cells[(row + 1) * width + column + 1, _LABEL]
+            flooded[row, column] = cells[(row + 1) * width + column + 1, _LABEL]
 
 
 @inner()
 def _frame(height, markers, scale, cells):
-    """The pixels in a frame one pixel wide that counts as outside."""
+    """Copy the pixels into a frame one pixel wide that counts as outside."""
     rows, columns = height.shape
     for column in range(columns + 2):
         cells[column, _LABEL] = cells[(rows + 1) * (columns + 2) + column, _LABEL] = _OUTSIDE

@@ -1,1 +1,1 @@
-"""Smoothing, slopes, and whether there is anything in a picture to divide."""
+"""Smoothing, slopes, and reasons to leave a picture undivided."""

@@ -1,4 +1,4 @@
-"""When a picture need not be divided at all."""
+"""Reasons to leave a picture undivided."""
 
 from typing import Literal
 
@@ -8,13 +8,13 @@ from tangible_core.data import SegmentMap
 from tangible_core.data.pictures import is_one_colour
 
 
-def nothing_to_divide(picture: np.ndarray, segments: int | Literal["auto"]) -> str | None:
-    """Why a picture is one segment whatever it shows, in words; None if that is not known beforehand."""
+def reason_to_skip(picture: np.ndarray, segments: int | Literal["auto"]) -> str | None:
+    """Return a reason in words why the picture is one segment; None if it must be segmented to know."""
     if segments == 1:
-        return "one segment is asked for; `segments: auto` or a larger number divides the picture"
+        return "one segment is requested; `segments: auto` or a larger number divides the picture"
     return "the picture is one flat colour" if is_one_colour(picture) else None
 
 
 def one_segment(shape: tuple[int, int]) -> SegmentMap:
-    """All of a picture of (h, w) pixels."""
+    """Return one segment that covers a picture of (h, w) pixels."""
     return SegmentMap(np.zeros(shape, np.int32))

@@ -1,4 +1,4 @@
-"""Slopes of a smoothed picture: how steep, which way, and how much of it is noise."""
+"""Slopes of a smoothed picture: magnitude, direction, and the noise in them."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -12,13 +12,13 @@ from tangible_core.compiled.compiling import KERNEL, inner
 from tangible_core.runtime.opencv import plain_opencv
 
 TILE_PX = 128
-"""Side of the tiles in which noise is measured."""
+"""The side of the tiles in which noise is measured, px."""
 
 QUIET_SHARE = 0.25
-"""In every tile at least this share of the pixels is taken to hold noise and no edge."""
+"""The share of the pixels of a tile assumed to hold noise and no edge, at least."""
 
 _QUIET_RATIO = np.float32(sqrt(-2 * log(1 - QUIET_SHARE)))
-"""That quantile of a Rayleigh distribution, which slopes of Gaussian noise follow, over its parameter."""
+"""The QUIET_SHARE quantile over the parameter of a Rayleigh distribution, that of slopes of Gaussian noise."""
 
 _HALF = np.float32(0.5)
 
@@ -26,12 +26,12 @@ Map = Float32[np.ndarray, "h w"]
 
 
 def slopes(smooth: Float32[np.ndarray, "h w c"]) -> tuple[Map, Map, Map, Map]:
-    """Slopes per pixel, by central differences, in the channel where they are steepest, and the noise in them.
+    """Compute slopes per pixel, by central differences, in the channel where they are steepest, and their noise.
 
     Noise is the parameter of its Rayleigh distribution, in the noisiest channel; it is measured in tiles, from the
     flattest quarter of their pixels, and interpolated between the tiles. A texture that fills its tile counts as noise,
     as does a steady shading.
-    Returns: magnitude, across, down, noise.
+    Returns: magnitude, across, down, noise: float32 (h, w) each.
     """
     across, down = np.empty(smooth.shape, np.float32), np.empty(smooth.shape, np.float32)
     rows, across_rows, down_rows = (each.reshape(len(smooth), -1) for each in (smooth, across, down))
@@ -40,14 +40,14 @@ def slopes(smooth: Float32[np.ndarray, "h w c"]) -> tuple[Map, Map, Map, Map]:
     noise = _noise(magnitude)
     if smooth.shape[2] == 1:
         return magnitude[..., 0], across[..., 0], down[..., 0], noise
-    found = np.empty((3, *magnitude.shape[:2]), np.float32)
-    _steepest(magnitude, across, down, found)
-    return found[0], found[1], found[2], noise
+    result = np.empty((3, *magnitude.shape[:2]), np.float32)
+    _steepest(magnitude, across, down, result)
+    return result[0], result[1], result[2], noise
 
 
 @njit(**KERNEL)
 def _differences(rows, across, down, channels):
-    """Central differences across and down; channels stand side by side in a row, and the border is repeated."""
+    """Write central differences across and down; channels are interleaved in a row, and the border is repeated."""
     for row in range(len(rows)):
         _halve(rows[min(row + 1, len(rows) - 1)], rows[max(row - 1, 0)], down[row])
         here, there = rows[row], across[row]
@@ -61,13 +61,13 @@ def _differences(rows, across, down, channels):
 
 
 @inner()
-def _halve(right, left, found):
-    for at in range(len(found)):
-        found[at] = _HALF * (right[at] - left[at])
+def _halve(right, left, result):
+    for at in range(len(result)):
+        result[at] = _HALF * (right[at] - left[at])
 
 
 @njit(**KERNEL)
-def _steepest(magnitude, across, down, found):
+def _steepest(magnitude, across, down, result):
     rows, columns, channels = magnitude.shape
     for row in range(rows):
         for column in range(columns):
@@ -75,9 +75,9 @@ def _steepest(magnitude, across, down, found):
             for channel in range(1, channels):
                 if magnitude[row, column, channel] > magnitude[row, column, best]:
                     best = channel
-            found[0, row, column] = magnitude[row, column, best]
-            found[1, row, column] = across[row, column, best]
-            found[2, row, column] = down[row, column, best]
+            result[0, row, column] = magnitude[row, column, best]
+            result[1, row, column] = across[row, column, best]
+            result[2, row, column] = down[row, column, best]
 
 
 def _noise(magnitude: Float32[np.ndarray, "h w c"]) -> Map:
@@ -86,7 +86,7 @@ def _noise(magnitude: Float32[np.ndarray, "h w c"]) -> Map:
     rows, columns = magnitude.shape[:2]
     step = 4 if min(rows, columns) >= TILE_PX else 1
     strips = np.array_split(magnitude[::step, ::step], _tiles(rows), axis=0)
-    levels = [[_quiet(tile) for tile in np.array_split(strip, _tiles(columns), axis=1)] for strip in strips]
+    levels = [[_quiet_level(tile) for tile in np.array_split(strip, _tiles(columns), axis=1)] for strip in strips]
     with plain_opencv():
         return cv2.resize(np.array(levels, np.float32) / _QUIET_RATIO, (columns, rows), interpolation=cv2.INTER_LINEAR)
 
@@ -95,8 +95,8 @@ def _tiles(length: int) -> int:
     return max(1, round(length / TILE_PX))
 
 
-def _quiet(tile: Float32[np.ndarray, "h w c"]) -> np.float32:
-    """The quantile of the magnitudes, in the channel where it is highest."""
+def _quiet_level(tile: Float32[np.ndarray, "h w c"]) -> np.float32:
+    """Return the QUIET_SHARE quantile of the magnitudes, in the channel where it is highest."""
     every = tile.reshape(-1, tile.shape[2])
     at = int(QUIET_SHARE * len(every))
     return np.partition(every, at, axis=0)[at].max()

@@ -1,4 +1,4 @@
-"""Smoothing before edges are looked for. Compiled by numba where every pixel is visited."""
+"""Smoothing before edge detection. Compiled by numba where every pixel is visited."""
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
@@ -10,18 +10,18 @@ from tangible_core.compiled.compiling import KERNEL
 from tangible_core.runtime.opencv import plain_opencv
 
 WIDER = 1.75
-"""Regions are looked for at this many times the sigma at which their boundaries are drawn.
+"""The sigma of region detection as a multiple of that of their boundaries.
 
-Slopes of noise fall with the square of sigma, those of an edge with sigma itself. More finds weaker edges still, and
-loses narrow regions.
+Slopes of noise fall with the square of sigma, those of an edge with sigma itself. A larger factor detects weaker edges
+and loses narrow regions.
 """
 
 
-def without_specks(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w c"]:
-    """A pixel further from its 8 neighbours than they are from one another takes the nearest of their values.
+def remove_specks(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w c"]:
+    """Set a pixel further from its 8 neighbours than they are from one another to the nearest of their values.
 
     Noise, lines, corners and steps stay as they are. A picture of one pixel has no neighbours and stays.
-    Source: conservative smoothing (Jain, Kasturi & Schunck, Machine Vision, 1995, ch. 4), held back by the spread.
+    Source: conservative smoothing (Jain, Kasturi & Schunck, Machine Vision, 1995, ch. 4), limited by the spread.
     """
     import cv2
 
@@ -30,13 +30,13 @@ def without_specks(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, 
     around = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], np.uint8)
     lowest, highest = (each(values, around).reshape(values.shape) for each in (cv2.erode, cv2.dilate))
     calm = np.empty(values.size, values.dtype)
-    _calm(values.ravel(), lowest.ravel(), highest.ravel(), calm)
+    _replace_specks(values.ravel(), lowest.ravel(), highest.ravel(), calm)
     return calm.reshape(values.shape)
 
 
 @njit(**KERNEL)
-def _calm(values, lowest, highest, calm):
-    """A value that is further outside of lowest..highest than these are apart becomes the nearer of them."""
+def _replace_specks(values, lowest, highest, calm):
+    """Set a value further outside of lowest..highest than these are apart to the nearer of them."""
     for at in range(values.size):
         value, low, high = values[at], lowest[at], highest[at]
         spread = high - low
@@ -44,19 +44,19 @@ def _calm(values, lowest, highest, calm):
 
 
 def gaussian(values: Float32[np.ndarray, "h w c"], sigma_px: float) -> Float32[np.ndarray, "h w c"]:
-    """Gaussian smoothing; outside of the picture is its mirror image."""
+    """Smooth by a Gaussian; outside of the picture is its mirror image."""
     import cv2
 
     with plain_opencv():
         return cv2.GaussianBlur(values, (0, 0), sigma_px, borderType=cv2.BORDER_REFLECT).reshape(values.shape)
 
 
-def two_scales(
+def smooth_at_two_scales(
     values: Float32[np.ndarray, "h w c"], sigma_px: float
 ) -> tuple[Float32[np.ndarray, "h w c"], Float32[np.ndarray, "r s c"], int]:
-    """Smoothed by sigma_px, and by WIDER times as much, each at most 1/16 of the root of the picture's area.
+    """Smooth by sigma_px, and by WIDER times as much, each at most 1/16 of the root of the picture's area.
 
-    Little finer than its sigma is left in the second: it has every step-th pixel only, a mean over step x step ones.
+    The second has little detail finer than its sigma: it has every step-th pixel only, a mean over step x step pixels.
     Returns: the first, the second, and the step, 1 pixel at least.
     """
     import cv2

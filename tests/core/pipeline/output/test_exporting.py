@@ -30,7 +30,7 @@ from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.config.model import PRODUCTS
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
-from tangible_core.pipeline.engine.felt import parts_on_grid
+from tangible_core.pipeline.engine.working_grid import parts_on_grid
 from tangible_core.pipeline.output.export_folder import move, read_list
 from tangible_core.pipeline.output.exporting import EXPORTABLE, MOST_STEM_BYTES, stem_of
 from tangible_core.plugins.registry import default_registry

@@ -5,6 +5,7 @@ import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,8 @@ HEIGHTS = np.arange(16.0).reshape(4, 4)
 @pytest.fixture(autouse=True)
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Drawing takes most of the time of a run."""
-    monkeypatch.setattr(runs, "draw_sheet", lambda path, **_: str(path.write_bytes(b"a sheet")))
+    sheet = SimpleNamespace(draw=lambda work, path: str(path.write_bytes(b"a sheet")))
+    monkeypatch.setattr(runs, "drawing", lambda: sheet)
 
 
 def run(out: Path, want: Product = "touch", heights: np.ndarray = HEIGHTS):

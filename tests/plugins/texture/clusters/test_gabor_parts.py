@@ -1,4 +1,4 @@
-"""The parts of the segmenter by texture, against plain formulas."""
+"""The steps of the Gabor segmenter against plain formulas."""
 
 import numpy as np
 import pytest
@@ -6,11 +6,16 @@ import pytest
 from tangible_core.compiled.small_matrices import eigen, solved
 from tangible_texture.clusters import planes as matrices
 from tangible_texture.clusters.discriminants import discriminant_axes, evidence, principal_axes, scatters
-from tangible_texture.clusters.dividing import divided, members
+from tangible_texture.clusters.dividing import divide, one_hot
 from tangible_texture.clusters.full_size import pixel_labels
-from tangible_texture.clusters.joining import joining, joining_costs
-from tangible_texture.clusters.neighbourhood import INSIDE_CELLS, smoothed
-from tangible_texture.clusters.planes import mixed, products, scatter, scatter_alone
+from tangible_texture.clusters.joining import join_clusters, joining_costs
+from tangible_texture.clusters.neighbourhood import INSIDE_CELLS, smooth_memberships
+from tangible_texture.clusters.planes import (
+    combine_planes,
+    inner_products,
+    scatter_matrix,
+    scatter_matrix_in_kernel,
+)
 from tangible_texture.features.patterns import COUNTERS, RADII, pattern_frequencies
 
 
@@ -20,7 +25,7 @@ def random() -> np.random.Generator:
 
 
 @pytest.mark.parametrize("size", [1, 2, 7, 40])
-def test_eigenvalues_and_solutions_are_those_of_lapack(random: np.random.Generator, size: int):
+def test_eigenvalues_and_solutions_match_lapack(random: np.random.Generator, size: int):
     root = random.standard_normal((size, size + 3))
     matrix = root @ root.T
     values, vectors = eigen(matrix)
@@ -31,7 +36,7 @@ def test_eigenvalues_and_solutions_are_those_of_lapack(random: np.random.Generat
 
 
 @pytest.mark.parametrize("diagonal", [[0, 0, 0], [2, 2, 2, 2], [5, 0, 3, 0, 0], [1e-30, 1, 1e30]])
-def test_eigenvalues_that_are_nothing_or_the_same_are_found(diagonal: list[float]):
+def test_eigenvalues_zero_or_equal_are_found(diagonal: list[float]):
     values, vectors = eigen(np.diag(diagonal).astype(float))
     assert values.tolist() == sorted(diagonal, reverse=True)
     np.testing.assert_array_equal(np.abs(vectors).sum(axis=0), 1)
@@ -41,24 +46,24 @@ def test_eigenvalues_that_are_nothing_or_the_same_are_found(diagonal: list[float
     np.testing.assert_allclose(vectors @ vectors.T, np.eye(len(diagonal)), atol=1e-12)
 
 
-def test_products_of_planes_are_those_of_matrices(random: np.random.Generator):
+def test_products_of_planes_match_matrix_products(random: np.random.Generator):
     planes, others = (random.standard_normal((count, 2500)).astype(np.float32) for count in (7, 3))
     weights = random.random(2500).astype(np.float32)
     mix = random.standard_normal((4, 7))
-    np.testing.assert_allclose(mixed(mix, planes), mix @ planes, atol=1e-4)
-    np.testing.assert_allclose(products(others, planes), others.astype(float) @ planes.T, atol=1e-2)
-    np.testing.assert_allclose(scatter(planes, weights), (planes * weights) @ planes.T.astype(float), atol=1e-2)
+    np.testing.assert_allclose(combine_planes(mix, planes), mix @ planes, atol=1e-4)
+    np.testing.assert_allclose(inner_products(others, planes), others.astype(float) @ planes.T, atol=1e-2)
+    np.testing.assert_allclose(scatter_matrix(planes, weights), (planes * weights) @ planes.T.astype(float), atol=1e-2)
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 8])
-def test_a_scatter_is_the_same_to_the_last_bit_however_many_threads_share_it(
+def test_scatter_with_any_number_of_threads_has_the_same_bits(
     threads: int, random: np.random.Generator, monkeypatch: pytest.MonkeyPatch
 ):
     planes, weights = random.standard_normal((7, 9000)).astype(np.float32), random.random(9000).astype(np.float32)
-    alone = scatter_alone(planes, weights)
+    alone = scatter_matrix_in_kernel(planes, weights)
     monkeypatch.setattr(matrices, "SHARED", 1)
     monkeypatch.setattr(matrices, "thread_count", lambda: threads)
-    assert np.array_equal(matrices.scatter(planes, weights), alone)
+    assert np.array_equal(matrices.scatter_matrix(planes, weights), alone)
     assert np.array_equal(alone, alone.T)
 
 
@@ -69,9 +74,9 @@ def two_groups(random: np.random.Generator, count: int = 400) -> tuple[np.ndarra
     return planes - planes.mean(axis=1, keepdims=True), labels
 
 
-def test_discriminants_find_what_tells_groups_apart(random: np.random.Generator):
+def test_discriminants_of_two_groups_find_the_separating_feature(random: np.random.Generator):
     planes, labels = two_groups(random)
-    fit = scatters(planes, members(labels, 2))
+    fit = scatters(planes, one_hot(labels, 2))
     axes = discriminant_axes(fit, 20)
     assert axes.shape == (1, 5)
     assert np.abs(axes[0]).argmax() == 2
@@ -81,34 +86,34 @@ def test_discriminants_find_what_tells_groups_apart(random: np.random.Generator)
 
 @pytest.mark.parametrize(("count", "share"), [(50, 1.0), (400, 0.5), (8000, 0.05)])
 def test_scatter_of_few_cells_is_shrunk_further(random: np.random.Generator, count: int, share: float):
-    """200 cells' worth, but a twentieth at least and the whole at most."""
+    """The shrinkage is 200 cells' share, at least a twentieth and at most all."""
     planes, labels = two_groups(random, count)
     total = np.cov(planes, bias=True)
     centres = np.stack([planes[:, labels == k].mean(axis=1) for k in (0, 1)])
     within = total - centres.T @ centres / 2
     expected = within + share * total + share * np.trace(within) / 5 * np.eye(5)
-    np.testing.assert_allclose(scatters(planes, members(labels, 2)).within, expected, rtol=1e-3, atol=1e-3)
+    np.testing.assert_allclose(scatters(planes, one_hot(labels, 2)).within, expected, rtol=1e-3, atol=1e-3)
 
 
-def test_principal_axes_half_whitened(random: np.random.Generator):
+def test_principal_axes_half_whitened_have_the_root_of_their_variance(random: np.random.Generator):
     planes, _ = two_groups(random)
-    variances = mixed(principal_axes(planes, 3, 0.25), planes).var(axis=1)
+    variances = combine_planes(principal_axes(planes, 3, 0.25), planes).var(axis=1)
     values = np.sort(np.linalg.eigvalsh(np.cov(planes, bias=True)))[::-1][:3]
     np.testing.assert_allclose(variances, np.sqrt(values), rtol=1e-4)
 
 
-def test_the_widest_group_is_halved_first_and_equal_cells_never(random: np.random.Generator):
+def test_division_halves_the_widest_group_first_and_equal_cells_never(random: np.random.Generator):
     planes, labels = two_groups(random)
-    found = divided(planes, 2)
+    found = divide(planes, 2)
     assert np.mean((found == found[0]) == (labels == 0)) > 0.99
     same = np.repeat(np.array([[-1.0, 1.0]], np.float32), 50, axis=1)
-    assert divided(same, 9).max() == 1
+    assert divide(same, 9).max() == 1
 
 
-def test_a_division_does_not_depend_on_the_order_of_cells(random: np.random.Generator):
+def test_division_of_cells_in_another_order_is_the_same(random: np.random.Generator):
     planes, _ = two_groups(random)
     order = random.permutation(planes.shape[1])
-    one, other = divided(planes, 6)[order], divided(np.ascontiguousarray(planes[:, order]), 6)
+    one, other = divide(planes, 6)[order], divide(np.ascontiguousarray(planes[:, order]), 6)
     assert len(set(zip(one.tolist(), other.tolist(), strict=True))) == one.max() + 1
 
 
@@ -120,27 +125,27 @@ def test_halves_of_one_group_cost_the_least_to_join(random: np.random.Generator,
     thirds = thirds.astype(np.int32)
     costs = joining_costs(planes, thirds, shape)
     assert np.unravel_index(costs.argmin(), costs.shape) == (1, 0)
-    steps = list(joining(planes, thirds, shape, renewed))
+    steps = list(join_clusters(planes, thirds, shape, renewed))
     assert [each.clusters for each in steps] == [3, 2, 1]
     np.testing.assert_array_equal(steps[1].labels, labels)
     assert steps[-1].cost == np.inf
 
 
-def test_clusters_that_nothing_tells_apart_are_one():
-    steps = list(joining(np.zeros((3, 64), np.float32), (np.arange(64) % 4).astype(np.int32), (8, 8), 9))
+def test_clusters_without_differences_are_joined_into_one():
+    steps = list(join_clusters(np.zeros((3, 64), np.float32), (np.arange(64) % 4).astype(np.int32), (8, 8), 9))
     assert [each.clusters for each in steps] == [1]
     assert not steps[0].labels.any()
 
 
-def test_what_joining_costs_is_as_it_is_written(random: np.random.Generator):
-    """D (m k / n)^0.4, D the squared Mahalanobis distance, in scatters with a ridge of a twentieth."""
+def test_joining_costs_match_their_formula(random: np.random.Generator):
+    """The formula is D (m k / n)^0.4, D the squared Mahalanobis distance, in scatters with a ridge of a twentieth."""
     shape, count = (12, 30), 4
     labels = random.integers(0, 3, shape).astype(np.int32)
     labels[:, 20:] = 3
     planes = random.standard_normal((5, labels.size)).astype(np.float32) + labels.ravel() * 0.3
     planes = planes.astype(np.float32)
-    own = members(labels.ravel(), count)
-    weights = (own * (smoothed(own, shape, INSIDE_CELLS) ** 2 + 1e-3)).max(axis=0).astype(np.float64)
+    own = one_hot(labels.ravel(), count)
+    weights = (own * (smooth_memberships(own, shape, INSIDE_CELLS) ** 2 + 1e-3)).max(axis=0).astype(np.float64)
     sizes = np.bincount(labels.ravel())
     parts = [(planes[:, labels.ravel() == k].astype(np.float64), weights[labels.ravel() == k]) for k in range(count)]
     means = [np.average(part, axis=1, weights=heavy) for part, heavy in parts]
@@ -164,15 +169,15 @@ def test_patterns_of_a_flat_picture_are_all_bright():
     np.testing.assert_array_equal(found, np.broadcast_to(expected[:, None, None], found.shape))
 
 
-def test_frequencies_of_classes_sum_to_one_in_cut_cells_too(random: np.random.Generator):
+def test_frequencies_of_classes_in_cut_cells_sum_to_one(random: np.random.Generator):
     found = pattern_frequencies(random.standard_normal((10, 7)).astype(np.float32)).reshape(3, COUNTERS, 3, 2)
     np.testing.assert_allclose(found[:, :10].sum(axis=1), 1, rtol=1e-6)
     assert found.min() >= 0
     assert found.max() <= 1
 
 
-def test_a_flipped_picture_has_flipped_patterns(random: np.random.Generator):
-    """As sets of planes: a flip exchanges the counters of directions."""
+def test_patterns_of_a_flipped_picture_are_flipped(random: np.random.Generator):
+    """The planes agree as sets: a flip exchanges the counters of directions."""
     picture = random.standard_normal((16, 24)).astype(np.float32)
     one = pattern_frequencies(picture)[:, :, ::-1]
     other = pattern_frequencies(np.ascontiguousarray(picture[:, ::-1]))
@@ -182,15 +187,15 @@ def test_a_flipped_picture_has_flipped_patterns(random: np.random.Generator):
         assert sets[0] == sets[1]
 
 
-def test_a_negative_exchanges_patterns(random: np.random.Generator):
-    """k bright neighbours become 8 - k, two bright ones two dark ones."""
+def test_patterns_of_a_negative_are_exchanged(random: np.random.Generator):
+    """Counts of k bright neighbours become 8 - k, and pairs of bright neighbours dark ones."""
     picture = random.permutation(16 * 24).reshape(16, 24).astype(np.float32)
     plain, negative = (pattern_frequencies(each).reshape(len(RADII), COUNTERS, 4, 6) for each in (picture, -picture))
     exchanged = [*range(8, -1, -1), 9, *range(14, 18), *range(10, 14), *range(18, COUNTERS)]
     np.testing.assert_array_equal(negative[:2, exchanged, 1:-1, 1:-1], plain[:2, :, 1:-1, 1:-1])
 
 
-def test_a_border_lies_between_the_centres_of_cells():
+def test_border_of_pixels_lies_between_the_centres_of_cells():
     memberships = np.array([[[0.9, 0.1]], [[0.1, 0.9]]], np.float32)
     labels, confidence = pixel_labels(memberships, 4, (2, 8))
     np.testing.assert_array_equal(labels, [[0, 0, 0, 0, 1, 1, 1, 1]] * 2)

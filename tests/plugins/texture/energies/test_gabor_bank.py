@@ -13,23 +13,23 @@ from tangible_texture.energies.gabor_bank import (
     bank,
     kernel,
     octaves,
-    printed,
+    printed_wavelengths,
     sigma_of_bandwidth,
 )
 
 
 @given(st.floats(2, 500), st.floats(0.1, 5))
-def test_bandwidth_and_sigma_are_each_others_inverse(wavelength, bandwidth):
+def test_bandwidth_of_sigma_inverts_sigma_of_bandwidth(wavelength, bandwidth):
     sigma = sigma_of_bandwidth(wavelength, bandwidth)
     assert bandwidth_of_sigma(wavelength, sigma) == pytest.approx(bandwidth, rel=1e-9)
 
 
-def test_a_narrow_gaussian_has_no_lower_end():
+def test_bandwidth_of_a_narrow_gaussian_is_infinite():
     assert bandwidth_of_sigma(10.0, 1.0) == float("inf")
 
 
 @pytest.mark.parametrize("bandwidth", [0.5, 1.0, 2.0])
-def test_half_the_height_is_so_many_octaves_wide(bandwidth):
+def test_bandwidth_at_half_height_is_the_requested_one(bandwidth):
     sigma = sigma_of_bandwidth(16.0, bandwidth)
 
     def height(frequency):
@@ -40,31 +40,31 @@ def test_half_the_height_is_so_many_octaves_wide(bandwidth):
     assert log2((1 / 16 + half) / (1 / 16 - half)) == pytest.approx(bandwidth)
 
 
-def test_printed_frequencies_for_a_width_of_a_power_of_two():
+def test_printed_frequencies_for_a_power_of_two_match_the_paper():
     offsets = np.array([2**-0.5, 2**0.5, 2**1.5]) * 2 / 128  # i = 0.5, 1.5, 2.5 less 1, doubled
     expected = np.concatenate([0.25 - offsets, [0.25 - 2**3.5 / 128], 0.25 + offsets, [0.25 + 2**3.5 / 128]])
-    assert np.sort(1 / np.array(printed(128))) == pytest.approx(np.sort(expected))
-    assert len(printed(512)) == 12
-    assert list(printed(512)) == sorted(printed(512))
+    assert np.sort(1 / np.array(printed_wavelengths(128))) == pytest.approx(np.sort(expected))
+    assert len(printed_wavelengths(512)) == 12
+    assert list(printed_wavelengths(512)) == sorted(printed_wavelengths(512))
 
 
-def test_printed_frequencies_for_other_widths():
-    assert len(printed(511)) == len(printed(256)) == 10
-    assert max(1 / each for each in printed(300)) == pytest.approx(0.25 + 2**4.5 / 300)
+def test_printed_frequencies_for_other_widths_stay_in_range():
+    assert len(printed_wavelengths(511)) == len(printed_wavelengths(256)) == 10
+    assert max(1 / each for each in printed_wavelengths(300)) == pytest.approx(0.25 + 2**4.5 / 300)
     for width in (1, 7, 15):
-        assert printed(width) == (4.0,)
+        assert printed_wavelengths(width) == (4.0,)
     for width in range(16, 2000, 37):
-        frequencies = 1 / np.array(printed(width))
+        frequencies = 1 / np.array(printed_wavelengths(width))
         assert 0.07 < frequencies.min() < 0.25 < frequencies.max() < 0.43
 
 
-def test_octaves_go_down_from_the_finest():
+def test_octaves_start_at_the_finest():
     assert octaves(1) == octaves(5.6) == (2 * sqrt(2),)
     assert octaves(4 * sqrt(2)) == pytest.approx((2 * sqrt(2), 4 * sqrt(2)))
     assert len(octaves(1000)) == 9
 
 
-def test_a_bank_has_every_wavelength_in_every_direction():
+def test_bank_has_every_wavelength_in_every_direction():
     filters = bank((4.0, 8.0), 6)
     assert [each.wavelength_px for each in filters] == [4.0] * 6 + [8.0] * 6
     assert np.degrees([each.theta_rad for each in filters[:6]]) == pytest.approx([0, 30, 60, 90, 120, 150])
@@ -78,7 +78,7 @@ def test_neighbouring_directions_meet_at_half_height():
     assert np.exp(-2 * (pi * one.sigma_px / one.gamma * across) ** 2) == pytest.approx(0.5)
 
 
-def test_the_kernel_is_the_formula():
+def test_kernel_matches_its_formula():
     gabor = Gabor(6.0, np.radians(30), 6.0, 0.5)
     values = kernel(gabor)
     half = len(values) // 2
@@ -90,7 +90,7 @@ def test_the_kernel_is_the_formula():
 
 
 @pytest.mark.parametrize("gabor", bank((4.0, 11.0), 3))
-def test_the_kernel_is_even_and_odd_blind_to_flat_grey_and_keeps_its_own_wave(gabor):
+def test_kernel_of_every_filter_is_blind_to_grey_and_keeps_its_wave(gabor):
     values = kernel(gabor)
     assert abs(values.sum()) < 1e-12
     assert np.real(values) == pytest.approx(np.real(values)[::-1, ::-1], abs=1e-15)

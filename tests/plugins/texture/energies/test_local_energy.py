@@ -1,4 +1,4 @@
-"""Local energy against gratings whose energy is known, and against the same filters applied one by one in float64."""
+"""Local energy against gratings of known energy, and against the same filters applied one by one in float64."""
 
 from math import ceil
 
@@ -10,7 +10,7 @@ from scipy.signal import fftconvolve
 
 from tangible_core.compiled import threads
 from tangible_core.errors import PictureError
-from tangible_texture.energies.gabor_bank import bank, octaves, printed
+from tangible_texture.energies.gabor_bank import bank, octaves, printed_wavelengths
 from tangible_texture.energies.local_energy import (
     REACH,
     energy_planes,
@@ -19,7 +19,7 @@ from tangible_texture.energies.local_energy import (
     padding,
     smoothing_px,
     spectrum_of,
-    standardised,
+    standardise,
 )
 
 OCTAVES = octaves(24)
@@ -32,14 +32,14 @@ def grating(shape, wavelength_px, theta_rad, height=1.0):
 
 
 def natural(shape, seed=0):
-    """Noise whose spectrum falls as that of photographs does."""
+    """Return noise with the falling spectrum of photographs."""
     noise = np.fft.rfft2(np.random.default_rng(seed).normal(size=shape))
     frequency = np.hypot(np.fft.fftfreq(shape[0])[:, None], np.fft.rfftfreq(shape[1])[None])
     return np.fft.irfft2(noise / np.maximum(frequency, 1 / max(shape)), shape).astype(np.float32)
 
 
 def gabor(each):
-    """The formula, to seven sigma."""
+    """Sample the formula to seven sigma."""
     half = ceil(7 * each.sigma_px / each.gamma)
     y, x = np.mgrid[-half : half + 1, -half : half + 1].astype(float)
     along = x * np.cos(each.theta_rad) + y * np.sin(each.theta_rad)
@@ -69,20 +69,20 @@ def direct(grey, filters, step_px, sigma_px):
 
 
 def worst(found, expected):
-    """The largest difference anywhere in a filter's plane as a share of its mean, of the worst filter."""
+    """Return the largest difference in a filter's plane as a share of its mean, for the worst filter."""
     return (np.abs(found - expected).max(axis=(1, 2)) / expected.mean(axis=(1, 2))).max()
 
 
 @pytest.mark.parametrize("name", ["noise", "photograph"])
 @pytest.mark.slow
-def test_every_filter_is_within_one_percent_of_the_full_bank(name):
+def test_energies_are_within_one_percent_of_the_full_bank(name):
     grey = np.random.default_rng(0).random((160, 200)).astype(np.float32) if name == "noise" else natural((180, 150))
     assert worst(local_energy(grey, OCTAVES), direct(grey, bank(OCTAVES), 4, 4.0)) < 0.01
 
 
 @pytest.mark.parametrize("name", ["gratings", "edge"])
 @pytest.mark.slow
-def test_filters_that_nearly_nothing_passes_are_within_a_thousandth_of_the_strongest(name):
+def test_energies_of_weak_filters_are_within_a_thousandth_of_the_strongest(name):
     edge = np.repeat((np.arange(160) > 70).astype(np.float32)[None], 140, axis=0)
     grey = edge if name == "edge" else np.hstack([grating((150, 80), 5.0, 0.4), grating((150, 90), 11.0, 2.0)])
     expected = direct(grey, bank(OCTAVES), 4, 4.0)
@@ -92,9 +92,9 @@ def test_filters_that_nearly_nothing_passes_are_within_a_thousandth_of_the_stron
 
 
 @pytest.mark.parametrize(("step_px", "sigma_px"), [(1, 2.0), (3, 8.0), (8, 12.0), (5, 4.0)])
-def test_other_steps_and_windows_are_as_exact(step_px, sigma_px):
+def test_energies_with_other_steps_and_windows_are_as_exact(step_px, sigma_px):
     grey = natural((97, 131), seed=1)
-    wavelengths = (*printed(97)[:2], 16.0)
+    wavelengths = (*printed_wavelengths(97)[:2], 16.0)
     found = local_energy(grey, wavelengths, 4, step_px, sigma_px)
     assert found.shape == (12, ceil(97 / step_px), ceil(131 / step_px))
     assert found.dtype == np.float32
@@ -102,7 +102,7 @@ def test_other_steps_and_windows_are_as_exact(step_px, sigma_px):
 
 
 @pytest.mark.parametrize("wavelength_px", OCTAVES)
-def test_a_grating_has_its_peak_in_its_own_filter_and_a_known_energy(wavelength_px):
+def test_grating_peaks_in_its_own_filter_with_a_known_energy(wavelength_px):
     filters = bank(OCTAVES)
     grey = grating((240, 260), wavelength_px, np.radians(60), height=3.0)
     found = local_energy(grey, OCTAVES)[:, 20:-20, 20:-20].mean(axis=(1, 2))
@@ -117,20 +117,20 @@ def test_a_grating_has_its_peak_in_its_own_filter_and_a_known_energy(wavelength_
         assert energy == pytest.approx(gain**2 * 9 / variance, abs=0.002 * 9 / variance)
 
 
-def test_a_wave_as_high_as_root_two_has_the_energy_two():
+def test_wave_of_unit_deviation_has_the_energy_two():
     found = local_energy(grating((256, 256), 2 * np.sqrt(2), 0.0), OCTAVES[:1])
     assert found[0, 10:-10, 10:-10].mean() == pytest.approx(2, rel=2e-3)
 
 
 @pytest.mark.parametrize("scale", [1e-20, 1e-3, 255.0, 1e20])
-def test_gain_and_offset_change_nothing(scale):
+def test_energies_under_gain_and_offset_are_the_same(scale):
     grey = natural((60, 70), seed=2)
     found = local_energy(np.float32(scale) * (grey + np.float32(1.5)), OCTAVES[:3])
     expected = local_energy(grey, OCTAVES[:3])
     assert worst(found, expected) < 1e-4
 
 
-def test_a_flat_picture_has_no_energy():
+def test_flat_picture_has_no_energy():
     for value in (0.0, 0.3, -1e20, 1e-20, 255.0):
         assert not local_energy(np.full((33, 20), value, np.float32), OCTAVES).any()
     assert not local_energy(np.ones((1, 1), np.float32), OCTAVES).any()
@@ -138,7 +138,7 @@ def test_a_flat_picture_has_no_energy():
 
 @settings(max_examples=25)
 @given(st.integers(1, 20), st.integers(1, 20), st.integers(1, 9))
-def test_every_size_has_finite_energies(rows, columns, step_px):
+def test_energies_of_every_size_are_finite(rows, columns, step_px):
     grey = np.random.default_rng(rows).random((rows, columns)).astype(np.float32)
     found = local_energy(grey, OCTAVES, 3, step_px)
     assert found.shape == (12, ceil(rows / step_px), ceil(columns / step_px))
@@ -147,7 +147,7 @@ def test_every_size_has_finite_energies(rows, columns, step_px):
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-def test_what_is_not_finite_is_named(bad):
+def test_non_finite_value_is_named_with_its_place(bad):
     grey = natural((20, 30))
     grey[7, 11] = bad
     with pytest.raises(PictureError, match="row 7, column 11"):
@@ -155,13 +155,13 @@ def test_what_is_not_finite_is_named(bad):
 
 
 @pytest.mark.usefixtures("unchecked_shapes")
-def test_what_is_no_grey_picture_is_refused():
+def test_array_of_another_shape_is_refused():
     for shape in ((0, 4), (4, 4, 3)):
         with pytest.raises(PictureError, match="grey is"):
             local_energy(np.zeros(shape, np.float32), OCTAVES)
 
 
-def test_flips_and_quarter_turns_move_the_energies_along():
+def test_energies_of_a_flipped_or_turned_picture_move_along():
     grey = natural((128, 128), seed=3)
     found = local_energy(grey, OCTAVES).reshape(4, 6, 32, 32)
     flipped = local_energy(grey[:, ::-1], OCTAVES).reshape(4, 6, 32, 32)
@@ -173,14 +173,14 @@ def test_flips_and_quarter_turns_move_the_energies_along():
     assert worst(back.reshape(24, 32, 32), found.reshape(24, 32, 32)) < 0.01
 
 
-def test_the_frame_does_not_wrap_round():
+def test_energies_do_not_wrap_around_the_frame():
     grey = np.zeros((200, 200), np.float32)
     grey[:, :30] = grating((200, 30), 5.66, 0.0)
     found = local_energy(grey, OCTAVES)
     assert found[:, :, -3:].max() < 1e-3 * found.max()
 
 
-def test_the_number_of_threads_changes_nothing(monkeypatch):
+def test_energies_with_any_number_of_threads_are_the_same(monkeypatch):
     grey = natural((90, 70), seed=4)
     planes = []
     for count in (1, 3):
@@ -189,7 +189,7 @@ def test_the_number_of_threads_changes_nothing(monkeypatch):
     assert np.array_equal(*planes)
 
 
-def test_mean_energies_are_the_means_over_the_mirrored_picture():
+def test_mean_energies_are_those_of_the_mirrored_picture():
     grey = natural((150, 140), seed=5)
     filters = bank(OCTAVES)
     means = mean_energies(spectrum_of(grey, padding(filters, 4.0)), filters)
@@ -199,7 +199,7 @@ def test_mean_energies_are_the_means_over_the_mirrored_picture():
     assert own == pytest.approx(2, rel=1e-4)
 
 
-def test_filters_can_be_chosen_one_by_one():
+def test_energies_of_some_filters_match_those_of_all():
     grey = natural((64, 64), seed=6)
     filters = bank(OCTAVES)
     spectrum = spectrum_of(grey, padding(filters, 4.0))
@@ -208,7 +208,7 @@ def test_filters_can_be_chosen_one_by_one():
     assert energy_planes(spectrum, [], grey.shape, 4, 4.0).shape == (0, 16, 16)
 
 
-def test_standardised_has_mean_0_and_deviation_1():
-    values = standardised(np.random.default_rng(0).normal(7, 1e-3, (50, 60)).astype(np.float32))
+def test_standardised_picture_has_mean_0_and_deviation_1():
+    values = standardise(np.random.default_rng(0).normal(7, 1e-3, (50, 60)).astype(np.float32))
     assert values.mean(dtype=float) == pytest.approx(0, abs=1e-3)
     assert values.std(dtype=float) == pytest.approx(1, rel=1e-5)

@@ -1,4 +1,4 @@
-"""The channels that a picture is compared in."""
+"""The channels in which boundaries are detected."""
 
 import numpy as np
 import pytest
@@ -7,14 +7,14 @@ from tangible_texture.features.channels import channels
 
 
 class TestChannels:
-    def test_grey_is_one_channel_however_it_comes(self):
+    def test_grey_in_any_form_is_one_channel(self):
         grey = np.random.default_rng(0).integers(0, 256, (5, 7), np.uint8)
         expected = channels(grey, colour=True)
         assert expected.shape == (5, 7, 1)
         assert expected.max() == 1
         assert np.array_equal(channels(np.repeat(grey[..., None], 3, axis=2), colour=True), expected)
 
-    def test_types_agree_to_the_last_bit(self):
+    def test_channels_of_any_type_have_the_same_bits(self):
         eight = np.random.default_rng(0).integers(0, 256, (5, 7, 3), np.uint8)
         expected = channels(eight, colour=True)
         assert expected.shape == (5, 7, 3)
@@ -23,7 +23,7 @@ class TestChannels:
             assert np.array_equal(channels(same, colour=True), expected)
 
     @pytest.mark.parametrize("scale", [1e-20, 1e20, 1e300])
-    def test_scale_is_taken_out(self, scale: float):
+    def test_channels_of_any_scale_have_a_maximum_of_one(self, scale: float):
         picture = np.random.default_rng(0).random((5, 7, 3))
         assert np.allclose(channels(picture * scale, colour=True), picture / picture.max(), rtol=1e-6)
 

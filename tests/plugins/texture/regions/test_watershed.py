@@ -1,11 +1,11 @@
-"""The watershed on pictures whose answer is known, and its borders at full size."""
+"""The watershed on pictures of a known answer, and its borders at full size."""
 
 import numpy as np
 import pytest
 
 from tangible_texture.features.channels import channels
 from tangible_texture.regions.basins import basins
-from tangible_texture.regions.refining import refined
+from tangible_texture.regions.refining import refine_labels
 from tangible_texture.regions.watershed import watershed
 from tangible_texture.signal.slopes import slopes
 from tangible_texture.signal.smoothing import gaussian
@@ -20,22 +20,22 @@ class TestWatershed:
         assert np.delete(found, 3).tolist() == [0, 0, 0, 1, 1, 1, 1]
         assert found[3] in (0, 1)
 
-    def test_water_goes_round_a_wall_and_never_over_the_picture_s_border(self):
+    def test_water_goes_round_a_wall_and_not_over_the_frame(self):
         height = np.zeros((5, 5), np.float32)
         height[:4, 2] = 1
         markers = np.full((5, 5), -1, np.int32)
         markers[0, 0], markers[0, 4] = 7, 8
         assert watershed(height, markers)[:, [0, 4]].tolist() == [[7, 8]] * 5
 
-    def test_without_a_marker_nothing_is_flooded(self):
+    def test_landscape_without_a_marker_is_not_flooded(self):
         assert np.all(watershed(np.ones((3, 4), np.float32), np.full((3, 4), -1, np.int32)) == -1)
 
-    def test_without_a_slope_the_nearest_marker_wins(self):
+    def test_flat_landscape_goes_to_the_nearest_marker(self):
         markers = np.array([[3, -1, -1, -1, -1, 5]], np.int32)
         assert watershed(np.zeros((1, 6), np.float32), markers).tolist() == [[3, 3, 3, 5, 5, 5]]
 
     @pytest.mark.parametrize("seed", range(3))
-    def test_agrees_with_scikit_image(self, seed: int):
+    def test_watershed_agrees_with_scikit_image(self, seed: int):
         from skimage.segmentation import watershed as reference
 
         picture, _ = smooth_scene(seed, noise=5)
@@ -46,7 +46,7 @@ class TestWatershed:
         assert np.mean(watershed(height, markers) == expected) >= 0.99
 
     @pytest.mark.parametrize("seed", range(3))
-    def test_parts_that_basins_fill_are_what_it_would_flood(self, seed: int):
+    def test_parts_filled_by_basins_match_the_watershed(self, seed: int):
         picture, _ = smooth_scene(seed, noise=5)
         height = slopes(gaussian(channels(picture, colour=False), 2.0))[0]
         level = float(np.quantile(height, 0.6))
@@ -62,7 +62,7 @@ class TestWatershed:
         monkeypatch.setattr("tangible_texture.regions.watershed.TILE_PX", 48)
         assert np.array_equal(watershed(height, markers), whole)
 
-    def test_water_reaches_a_tile_without_a_marker(self, monkeypatch: pytest.MonkeyPatch):
+    def test_tile_without_a_marker_is_flooded(self, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr("tangible_texture.regions.watershed.TILE_PX", 8)
         monkeypatch.setattr("tangible_texture.regions.watershed.AROUND_PX", 2)
         markers = np.full((4, 40), -1, np.int32)
@@ -71,14 +71,14 @@ class TestWatershed:
 
 
 class TestRefining:
-    def test_cells_become_pixels_and_borders_go_where_the_crest_is(self):
+    def test_cells_refined_to_pixels_have_borders_on_the_crest(self):
         height = np.zeros((9, 11), np.float32)
         height[:, 5] = 1
         labels = np.array([[0, 0, 0, 1, 1, 1]] * 5, np.int32)
-        found = refined(labels, 2, height)
+        found = refine_labels(labels, 2, height)
         assert np.delete(found, 5, axis=1).tolist() == [[0] * 5 + [1] * 5] * 9
 
-    def test_a_region_of_one_cell_stays(self):
+    def test_region_of_one_cell_stays(self):
         labels = np.zeros((5, 5), np.int32)
         labels[2, 2] = 1
-        assert np.count_nonzero(refined(labels, 2, np.zeros((10, 10), np.float32)) == 1) >= 4
+        assert np.count_nonzero(refine_labels(labels, 2, np.zeros((10, 10), np.float32)) == 1) >= 4

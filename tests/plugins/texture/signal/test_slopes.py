@@ -8,28 +8,28 @@ from tangible_texture.signal.smoothing import gaussian
 
 
 class TestSlopes:
-    def test_a_plane_has_its_slope_everywhere_inside(self):
+    def test_plane_has_its_slope_everywhere_inside(self):
         rows, columns = np.indices((20, 30), np.float32)
         magnitude, across, down, _ = slopes((0.003 * columns - 0.004 * rows)[..., None])
         assert np.allclose(across[:, 1:-1], 0.003, atol=1e-6)
         assert np.allclose(down[1:-1], -0.004, atol=1e-6)
         assert np.allclose(magnitude[1:-1, 1:-1], 0.005, atol=1e-6)
 
-    def test_the_steepest_channel_counts(self):
+    def test_slope_is_that_of_the_steepest_channel(self):
         columns = np.indices((5, 9), np.float32)[1]
         magnitude, across, _, _ = slopes(np.dstack([0.1 * columns, -0.3 * columns, 0.2 * columns]))
         assert np.allclose(magnitude[:, 1:-1], 0.3)
         assert np.allclose(across[:, 1:-1], -0.3)
 
     @pytest.mark.parametrize("channel_count", [1, 3])
-    def test_noise_is_measured(self, channel_count: int):
+    def test_noise_of_white_noise_matches_theory(self, channel_count: int):
         sigma_px = 2.0
         noise = np.random.default_rng(0).normal(0, 1, (512, 512, channel_count)).astype(np.float32)
         found = slopes(gaussian(noise, sigma_px))[3]
         expected = 1 / (np.sqrt(8 * np.pi) * sigma_px**2)  # of a derivative of a Gaussian, under white noise
         assert found.mean() == pytest.approx(expected, rel=0.1)
 
-    def test_noise_differs_from_place_to_place(self):
+    def test_noise_is_measured_locally(self):
         noise = np.random.default_rng(0).normal(0, 1, (256, 512, 1)).astype(np.float32)
         noise[:, 256:] *= 10
         found = slopes(gaussian(noise, 2.0))[3]

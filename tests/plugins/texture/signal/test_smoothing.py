@@ -1,25 +1,25 @@
-"""Smoothing before slopes: what goes and what stays."""
+"""Smoothing before slopes removes specks and keeps structure."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangible_texture.signal.smoothing import WIDER, gaussian, two_scales, without_specks
+from tangible_texture.signal.smoothing import WIDER, gaussian, remove_specks, smooth_at_two_scales
 
 
 class TestSmoothing:
     @given(st.integers(2, 6), st.integers(2, 6), st.data())
-    def test_one_pixel_that_differs_vanishes(self, rows: int, columns: int, data: st.DataObject):
+    def test_single_pixel_vanishes(self, rows: int, columns: int, data: st.DataObject):
         picture = np.full((rows, columns, 1), 0.5, np.float32)
         row, column = data.draw(st.integers(0, rows - 1)), data.draw(st.integers(0, columns - 1))
         picture[row, column] = data.draw(st.sampled_from([0.0, 0.499, 0.501, 1.0]))
-        assert np.all(without_specks(picture) == 0.5)
+        assert np.all(remove_specks(picture) == 0.5)
 
     @pytest.mark.parametrize("thing", [np.eye(9), np.tri(9), np.indices((9, 9))[1] == 4, np.indices((9, 9))[0]])
     def test_lines_corners_steps_and_slopes_stay(self, thing: np.ndarray):
         values = np.asarray(thing, np.float32)[..., None]
-        assert np.array_equal(without_specks(values), values)
+        assert np.array_equal(remove_specks(values), values)
 
     def test_gaussian_mirrors_at_the_border_and_does_not_wrap(self):
         values = np.zeros((1, 40, 1), np.float32)
@@ -30,9 +30,9 @@ class TestSmoothing:
         assert found.sum() == pytest.approx(1, abs=1e-5)
 
     @pytest.mark.parametrize(("shape", "step"), [((512, 512), 2), ((511, 301), 2), ((30, 40), 1), ((1, 1), 1)])
-    def test_two_scales(self, shape: tuple[int, int], step: int):
+    def test_two_scales_have_their_shapes_and_deviations(self, shape: tuple[int, int], step: int):
         noise = np.random.default_rng(0).normal(0, 1, (*shape, 2)).astype(np.float32)
-        near, wide, found = two_scales(noise, 2.0)
+        near, wide, found = smooth_at_two_scales(noise, 2.0)
         assert found == step
         assert near.shape == noise.shape
         assert wide.shape == (-(-shape[0] // step), -(-shape[1] // step), 2)

@@ -11,9 +11,8 @@ from tangible_core.data.records import digest_of
 from tangible_core.errors import ConfigError
 from tangible_core.parts import PartChoice, find_parts
 from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.engine import felt as on_grid
-from tangible_core.pipeline.engine import parts_found
-from tangible_core.pipeline.engine.parts_found import check_found
+from tangible_core.pipeline.engine import part_validation, working_grid
+from tangible_core.pipeline.engine.part_validation import check_found
 from tangible_core.pipeline.engine.rules import fitted
 
 from ..loop_input import parcel_of
@@ -168,12 +167,12 @@ def parts_heights(
         raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
     kept = kept_of(bench, pipeline.changed(config))
     said = {number: checked(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
-    parts_found.check_found(config.changed(parts=said), kept.parts, kept.grid.scene.shape[1])
+    part_validation.check_found(config.changed(parts=said), kept.parts, kept.grid.scene.shape[1])
     known = known_heights(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
-    relief = on_grid.layered(kept.layering, known, config.size, kept.grid.shown)
-    own = parts_found.own_materials(config) if materials is None else dict(enumerate(materials))
+    relief = working_grid.layered(kept.layering, known, config.size, kept.grid.shown)
+    own = part_validation.own_materials(config) if materials is None else dict(enumerate(materials))
     made = None if kept.materials is None else materials_of(kept.materials, own, config)
-    names = parts_found.surface_with_names
+    names = part_validation.surface_with_names
     kept.surface = names(config, HapticSurface(relief, kept.parts.labels, made, ("",) * kept.parts.count))
     device = config.felt_device
     surface = kept.surface if device is None else fitted(kept.surface, config, device)[0]

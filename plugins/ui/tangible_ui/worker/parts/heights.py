@@ -1,8 +1,8 @@
 """Jobs that make heights and materials of parts felt while they are changed, and that show them.
 
 What does not depend on the heights is made once and kept. What is felt is, to the bit, what the document gives once it
-says these heights: the same steps make it (`felt.layered`, `fitted`, the law's own `touch`). Only where that has more
-than MOST_CELLS it is felt on a coarser grid until it is saved: a hand that drags a height waits for nothing.
+says these heights: the same steps make it (`working_grid.layered`, `fitted`, the law's own `touch`). Only where that
+has more than MOST_CELLS it is felt on a coarser grid until it is saved: a hand that drags a height waits for nothing.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,7 +19,7 @@ from tangible_core.materials.assignment import find, load_library
 from tangible_core.parts import HeightChoice, Layering, PartChoice
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.part_checks import wrong_of_parts
-from tangible_core.pipeline.engine import felt as on_grid
+from tangible_core.pipeline.engine import working_grid
 from tangible_core.pipeline.engine.rules import part_heights
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scaling import felt_factor
@@ -42,7 +42,7 @@ class Kept:
     config: PipelineConfig
     """With nothing said of the parts but their names, by which rules may call them."""
     pipeline: Pipeline
-    grid: on_grid.FeltScene
+    grid: working_grid.WorkingGrid
     parts: PartMap
     """On the grid that is felt."""
     materials: tuple[Material, ...] | None
@@ -105,8 +105,8 @@ def kept_of(bench: Bench, pipeline: Pipeline) -> Kept:
     if wrong := list(wrong_of_parts(config)):
         raise config.complained(*wrong)
     made = pipeline.changed(bare)
-    grid = on_grid.FeltScene(made.scene, bare.size)
-    parts = on_grid.parts_on_grid(made.engine.felt(bare.felt_parts), grid.shape, bare.felt_parts)
+    grid = working_grid.WorkingGrid(made.scene, bare.size)
+    parts = working_grid.parts_on_grid(made.engine.working_grid(bare.felt_parts), grid.shape, bare.felt_parts)
     uses = bare.render is None or bare.render.method.uses_materials
     chosen = made.make("materials") if uses else None
     layering = None if before is None else _same_layering(before, bare, parts, grid)
@@ -118,7 +118,9 @@ def kept_of(bench: Bench, pipeline: Pipeline) -> Kept:
     return kept
 
 
-def _same_layering(before: Kept, config: PipelineConfig, parts: PartMap, grid: on_grid.FeltScene) -> Layering | None:
+def _same_layering(
+    before: Kept, config: PipelineConfig, parts: PartMap, grid: working_grid.WorkingGrid
+) -> Layering | None:
     """The one that is there, if it is of the same parts."""
     same = before.config.heights == config.heights and before.config.size == config.size
     return (

@@ -14,7 +14,7 @@ from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
 from tangible_core.parts import HeightChoice, PartChoice, find_parts, part_sizes
 from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.pipeline.engine.parts_found import parts_of
+from tangible_core.pipeline.engine.part_validation import parts_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
 

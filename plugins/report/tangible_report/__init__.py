@@ -1,0 +1,11 @@
+"""A run as a sheet of pictures, and a surface in words: two exporters, each imported when it is first used."""
+
+from typing import TYPE_CHECKING
+
+from tangible_core.lazily import lazily
+
+if TYPE_CHECKING:
+    from .sheet import Sheet as Sheet
+    from .text import Text as Text
+
+__all__, __getattr__ = lazily(__name__, {"sheet": ["Sheet"], "text": ["Text"]})  # pyright: ignore[reportUnsupportedDunderAll]

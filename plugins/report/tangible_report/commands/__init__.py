@@ -1,0 +1,18 @@
+"""The command that shows materials. Imported whenever `tangible` starts, so this room imports next to nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangible_core import hookimpl
+
+if TYPE_CHECKING:
+    from typer import Typer
+
+
+@hookimpl
+def tangible_commands(app: Typer) -> None:
+    """Add `tangible materials`."""
+    from tangible_core.cli.commands import add
+
+    add("materials", "tangible_report.commands.materials:app", "List the materials; show or draw some.")

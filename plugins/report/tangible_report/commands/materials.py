@@ -1,0 +1,146 @@
+"""`tangible materials ...`: the library, with units and sources, as tables and as pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tangible_core.cli import completing
+from tangible_core.cli.options import Json
+from tangible_core.errors import ConfigError
+
+if TYPE_CHECKING:
+    from tangible_core.data import Material, Texture
+
+STROKE_M_PER_S = 0.12
+"""At which the sources measured vibration."""
+MODELS: dict[Texture, str] = {
+    "smooth": "no heights",
+    "periodic": "lines a grain apart, or two crossed sets of them",
+    "stochastic": "noise of one octave round the grain",
+    "stick-slip": "friction that sticks and slips once a grain, over noise of one octave round the grain",
+    "drag": "a force against the velocity, over noise of one octave round the grain where there is roughness",
+}
+UNITS = {"_n_s_per_m": "N s/m", "_n_per_m": "N/m", "_deg": "degrees", "_m": "m"}
+Library = Annotated[Path | None, typer.Option(help="YAML file of your own, added to the shipped materials.")]
+
+app = typer.Typer(name="materials", rich_markup_mode=None, add_completion=False)
+
+
+@app.callback(invoke_without_command=True)
+def materials(context: typer.Context, library: Library = None, as_json: Json = False) -> None:
+    """List the materials; show or draw some."""
+    if context.invoked_subcommand is not None:
+        if library or as_json:
+            raise ConfigError(f"materials: write the options after {context.invoked_subcommand!r}")
+        return
+    from dataclasses import asdict
+
+    from tangible_core.cli import show
+    from tangible_core.materials.assignment import load_library
+
+    known = load_library(library)
+    if as_json:
+        show.print_json({name: asdict(material) for name, material in known.items()})
+        return
+    show.sentence(f"{len(known)} materials; `tangible materials show NAME` says what the values of one mean.")
+    rows = [
+        (
+            each.name,
+            f"{each.stiffness_n_per_m:g}",
+            f"{each.damping_n_s_per_m:g}",
+            f"{each.static_friction:g}",
+            f"{each.dynamic_friction:g}",
+            each.texture,
+            f"{1e6 * each.roughness_m:g}",
+            f"{1e3 * each.grain_m:g}",
+        )
+        for each in known.values()
+    ]
+    headings = ("material", "N/m", "N s/m", "static", "dynamic friction", "texture", "roughness um", "grain mm")
+    show.table(headings, rows)
+    show.say("\n[bold]sources[/]")
+    for each in known.values():
+        show.say(f"  {each.name}: {each.source}")
+
+
+@app.command("show")
+def show_one(
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="The material, as `tangible materials` lists it.",
+            show_default=False,
+            autocompletion=completing.materials,
+        ),
+    ],
+    library: Library = None,
+    as_json: Json = False,
+) -> None:
+    """Say everything of one material.
+
+    Each value with its unit and its source, and what its texture is.
+    """
+    from dataclasses import asdict
+
+    from tangible_core.cli import show
+    from tangible_core.materials.assignment import find, load_library
+    from tangible_core.materials.files import VALUES, sources_of
+
+    material = find(name, load_library(library))
+    sources = sources_of(material)
+    if as_json:
+        show.print_json({**asdict(material), "sources": sources, "vibration_hz": _vibration_hz(material)})
+        return
+    rows = [(key, _worth(getattr(material, key)), _unit(key), sources[key]) for key in VALUES]
+    show.table(("value", "", "unit", "source"), rows, f"[bold]{material.name}[/]")
+    show.say(f"\n{material.texture}: {MODELS[material.texture]}.")
+    if (hertz := _vibration_hz(material)) is not None:
+        show.say(f"A stroke at {STROKE_M_PER_S:g} m/s vibrates with {hertz:.0f} Hz.")
+
+
+@app.command()
+def draw(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(help="The materials [default: all].", show_default=False, autocompletion=completing.materials),
+    ] = None,
+    out: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")] = Path("out/materials"),
+    library: Library = None,
+    as_json: Json = False,
+) -> None:
+    """Draw materials, one picture each.
+
+    The surface, its spectrum, and the force of a stroke.
+    """
+    from tangible_core.cli import show
+    from tangible_core.materials.assignment import find, load_library
+
+    from ..material_sheet import draw_material
+
+    known = load_library(library)
+    chosen = [find(name, known) for name in names or ()] or list(known.values())
+    files: list[Any] = []
+    for material in chosen:
+        draw_material(out / f"{material.name}.png", material)
+        files.append(out / f"{material.name}.png")
+        if not as_json:
+            show.plain(str(files[-1]))
+    if as_json:
+        show.print_json({"files": files})
+
+
+def _vibration_hz(material: Material) -> float | None:
+    """Of a stroke at the sources' speed; None for a material without waves."""
+    waves = material.roughness_m > 0 or material.texture == "stick-slip"
+    return STROKE_M_PER_S / material.grain_m if waves else None
+
+
+def _unit(key: str) -> str:
+    return next((unit for suffix, unit in UNITS.items() if key.endswith(suffix)), "")
+
+
+def _worth(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:g}"

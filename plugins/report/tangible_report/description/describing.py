@@ -1,0 +1,152 @@
+"""A surface in a few sentences, for somebody who does not see it: how large, where it is high, of what, and where."""
+
+import math
+
+import numpy as np
+from jaxtyping import Bool
+
+from tangible_core.data import HapticSurface
+from tangible_core.errors import shown, wrong_argument
+from tangible_core.parts.words.languages import LANGUAGES, Language, Words
+from tangible_core.parts.words.places import NOWHERE, place_of
+from tangible_core.scene.workspace import SceneKind
+
+from .facts import middle_heights_m
+
+MOST_CELLS = 512
+"""A side: what is said of a surface shows on so many."""
+ALIKE = 0.1
+"""Share of the relief's height by which the highest places, or the lowest, may differ."""
+LEVEL_SLOPE = 0.02
+"""Up to one degree, a hand feels no slope."""
+MOST_NAMED = 4
+"""Materials; of the others, how many they are."""
+MOST_PARTS = 12
+"""Parts by name, the nearest; of the others, how many they are."""
+FLAT_M = 1e-6
+"""No hand feels a relief so low."""
+
+
+def describe(surface: HapticSurface, scene_name: str, language: Language = "en", kind: SceneKind | None = None) -> str:
+    """One to three sentences on a surface and its scene, always the same for the same surface.
+
+    Places are those of the picture: what is `at the top` of it lies away from the hand. Parts that have a name are
+    said one by one, each with its material; else, which materials there are.
+    kind: what the scene is made of, if it is to be said (`kind_of`). language: one of `LANGUAGES`.
+    Raises: ArgumentError for another language.
+
+    >>> describe(HapticSurface.from_heights(np.zeros((8, 8))), "a plate")
+    'a plate is felt as a surface 8 cm wide and 8 cm long. It is flat everywhere.'
+    """
+    if language not in LANGUAGES:
+        raise wrong_argument("language", language, f"one of {', '.join(LANGUAGES)}")
+    say = Words(language)
+    of_what = _parts(surface, say) if any(surface.names or ()) else materials_in_words(surface, say)
+    return " ".join(filter(None, [_size(surface, scene_name, kind, say), heights_in_words(surface, say), of_what]))
+
+
+def _size(surface: HapticSurface, name: str, kind: SceneKind | None, say: Words) -> str:
+    width, length = (say.number(100 * each) for each in surface.extent_m)
+    relief_m = float(np.ptp(surface.height_m))
+    name = shown(name.removeprefix("builtin/"))
+    what = say(kind or "surface", name=name) if name else say("nameless")
+    high = say("high", relief=say.number(1000 * relief_m)) if relief_m > FLAT_M else ""
+    return say("size", what=what, width=width, length=length, high=high)
+
+
+def heights_in_words(surface: HapticSurface, say: Words) -> str:
+    """Where it is high and low, and how much of it is flat."""
+    lowest_m, highest_m = float(surface.height_m.min()), float(surface.height_m.max())
+    if highest_m - lowest_m <= FLAT_M:
+        return say("all flat")
+    step = _step(surface)
+    height_m = surface.height_m[::step, ::step].astype(np.float64)
+    low_m, high_m = np.percentile(height_m, (1, 99)).tolist()
+    if high_m - low_m < (highest_m - lowest_m) / 2:  # what stands out is small: it is no stray pixel that counts
+        low_m, high_m = float(height_m.min()), float(height_m.max())
+    band_m = ALIKE * (high_m - low_m)
+    highest, lowest = height_m >= high_m - band_m, height_m <= low_m + band_m
+    flat = _flat(surface, height_m, step, say)
+    if place_of(highest) == place_of(lowest) == NOWHERE:
+        return say("mixed", flat=flat)
+    around = place_of(lowest) == NOWHERE and lowest.mean() > 1 / 2
+    return say(
+        "highest", highest=say(place_of(highest)), lowest=say("around" if around else place_of(lowest)), flat=flat
+    )
+
+
+def _flat(surface: HapticSurface, height_m: np.ndarray, step: int, say: Words) -> str:
+    if min(height_m.shape) < 2:
+        return ""
+    across_m, along_m = (step * each for each in surface.relief.pitch_m)
+    down, right = np.gradient(height_m, along_m, across_m)
+    level = np.hypot(down, right) <= LEVEL_SLOPE
+    share = float(level.mean())
+    if share < 0.05:
+        return say("hardly flat")
+    if share > 0.95:
+        return say("nearly all flat")
+    return say("flat", share=percent(share), where=_aside(level, ", {}", say))
+
+
+def materials_in_words(surface: HapticSurface, say: Words) -> str:
+    """Which there are, how much of each, and where; several segments of one material are one part."""
+    if surface.labels is None or not surface.materials:
+        return ""
+    step = _step(surface)
+    labels = surface.labels[::step, ::step]
+    names = [each.name for each in surface.materials]
+    parts = {
+        name: np.isin(labels, [i for i, each in enumerate(names) if each == name]) for name in dict.fromkeys(names)
+    }
+    shares = {name: float(part.mean()) for name, part in parts.items() if part.any()}
+    if len(shares) == 1:
+        return say("one material", material=say.felt(next(iter(shares))))
+    ranked = sorted(shares, key=lambda name: (-shares[name], name))
+    said = [
+        say("part", material=say.material(name), share=percent(shares[name]), where=_aside(parts[name], " ({})", say))
+        for name in ranked[:MOST_NAMED]
+    ]
+    if others := ranked[MOST_NAMED:]:
+        key = "another" if len(others) == 1 else "others"
+        said.append(say(key, count=len(others), share=percent(sum(shares[name] for name in others))))
+    return say("materials", count=len(shares), parts=say.together(said))
+
+
+def _parts(surface: HapticSurface, say: Words) -> str:
+    """Those that have a name, the highest first, for it is the nearest: where each is, how high, and of what."""
+    names, step = surface.names or (), _step(surface)
+    assert surface.labels is not None
+    labels = surface.labels[::step, ::step]
+    height_m = middle_heights_m(labels, surface.height_m[::step, ::step], len(names))
+    there = np.flatnonzero(np.isfinite(height_m))
+    named = [number for number in there[np.argsort(-height_m[there], kind="stable")].tolist() if names[number]]
+    said = [_part(surface, labels == number, number, float(height_m[number]), say) for number in named[:MOST_PARTS]]
+    left, unnamed = len(named) - len(said), len(there) - len(named)
+    said += [say("part left" if left == 1 else "parts left", count=left)] if left else []
+    said += [say("unnamed" if unnamed == 1 else "all unnamed", count=unnamed)] if unnamed else []
+    return say("one part" if len(said) == 1 else "parts", parts=say.together(said)) if said else ""
+
+
+def _part(surface: HapticSurface, there: Bool[np.ndarray, "h w"], number: int, height_m: float, say: Words) -> str:
+    assert surface.names is not None
+    facts = [] if place_of(there) == NOWHERE else [say(place_of(there))]
+    facts += [say("part high", height=say.number(1000 * height_m))] if height_m > FLAT_M else []
+    facts += [say("part feels", material=say.felt(surface.materials[number].name))] if surface.materials else []
+    name = shown(surface.names[number])
+    return say("of a part", name=name, facts=", ".join(facts)) if facts else name
+
+
+def _step(surface: HapticSurface) -> int:
+    return math.ceil(max(surface.height_m.shape) / MOST_CELLS)
+
+
+def percent(share: float) -> str:
+    """Whole ones; the smallest part is one."""
+    return str(max(1, round(100 * share)))
+
+
+def _aside(part: np.ndarray, form: str, say: Words) -> str:
+    """Where it lies, unless it is on no side."""
+    place = place_of(part)
+    return "" if place == NOWHERE else form.format(say(place))

@@ -1,0 +1,65 @@
+"""A sheet as a file: PNG, SVG or PDF, each with a title and a description for who does not see it."""
+# pyright: reportUnknownMemberType=false
+# (matplotlib leaves its keywords without types)
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+from xml.sax.saxutils import escape
+
+from tangible_core.errors import OutputError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Write = Callable[["Figure", IO[bytes], str, str], None]
+
+
+def described(figure: Figure) -> str:
+    """What is on a sheet, in words: each panel's headline, the caption of a picture, and its legend."""
+    title, *texts = (text.get_text() for text in figure.texts)
+    said: list[str] = []
+    for headline, axes in zip(texts[1::2], figure.axes, strict=False):
+        legend = axes.get_legend()
+        caption = [] if len(axes.get_xticks()) else [axes.get_xlabel()]
+        parts = [*caption, *(each.get_text() for each in (legend.get_texts() if legend else ()))]
+        said.append(": ".join(filter(None, (headline, "; ".join(filter(None, parts))))))
+    pictures = "one picture" if len(said) == 1 else f"{len(said)} pictures"
+    return f"A sheet of {pictures} of {title or 'a run'}. {'. '.join(said)}."
+
+
+def writer(path: Path) -> Write:
+    """What writes a sheet of this suffix. Raises: OutputError if there is none."""
+    if path.suffix not in WRITERS:
+        raise OutputError(f"{path}: a sheet is drawn as .png, .svg or .pdf; change the end of the name")
+    return WRITERS[path.suffix]
+
+
+def _png(figure: Figure, file: IO[bytes], title: str, says: str) -> None:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    FigureCanvasAgg(figure).print_png(file, metadata={"Title": title, "Description": says})
+
+
+def _svg(figure: Figure, file: IO[bytes], title: str, says: str) -> None:
+    """A reader of screens reads what <title> and <desc> at the top say."""
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    drawn = BytesIO()
+    FigureCanvasSVG(figure).print_svg(drawn, metadata={"Date": None})
+    head, start, rest = drawn.getvalue().decode().partition("<svg ")
+    attributes, end, body = rest.partition(">")
+    words = f"\n <title>{escape(title)}</title>\n <desc>{escape(says)}</desc>"
+    file.write(f'{head}{start}role="img" {attributes}{end}{words}{body}'.encode())
+
+
+def _pdf(figure: Figure, file: IO[bytes], title: str, says: str) -> None:
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf
+
+    FigureCanvasPdf(figure).print_pdf(file, metadata={"Title": title, "Subject": says, "CreationDate": None})
+
+
+WRITERS: dict[str, Write] = {".png": _png, ".svg": _svg, ".pdf": _pdf}

@@ -1,0 +1,203 @@
+"""The picture with the borders and numbers of its parts, for a person to look up which number is what."""
+
+from __future__ import annotations
+
+from base64 import b64decode, b64encode
+from collections.abc import Sequence
+from functools import cache
+from importlib.util import find_spec
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Int32, UInt8
+
+from tangible_core.data.parts import PartMap
+from tangible_core.data.pictures import to_rgb8
+from tangible_core.data.records import digest_of
+from tangible_core.runtime.opencv import plain_opencv
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+    from PIL.ImageDraw import ImageDraw
+    from PIL.ImageFont import FreeTypeFont
+
+SHORTEST_PX, LONGEST_PX = 1200, 2400
+"""Between which the longer side of what is drawn lies: a small picture grows, a large one shrinks, and its numbers are
+read alike on a screen."""
+LARGE, SMALL = 1 / 32, 1 / 52
+"""Height of a number, as a share of the longer side, where its part has room for it, and where it has none."""
+ALIKE = 0.95
+"""Of discs that are nearly as wide as the largest one, that is taken which lies in the middle of its part."""
+DRAWN, NUMBERS = "tangible parts", "tangible numbers"
+"""Text chunks of the PNG: which pixels were drawn, and the numbers of the parts, to tell later which ones changed."""
+COARSE = 256
+"""Longer side of the grid that these are kept on."""
+INK, HALO = (0, 0, 0), (255, 255, 255)
+
+
+def numbered_parts(picture: np.ndarray, parts: PartMap, names: Sequence[str] = ()) -> bytes:
+    """A PNG of the picture, with every part outlined, and numbered in the middle of the largest disc within it.
+
+    names: of the parts, in their order, empty for none; each is written where there is room for it.
+    The picture is of the parts' size.
+    """
+    from PIL import Image, ImageDraw
+    from PIL.PngImagePlugin import PngInfo
+
+    shown, labels = _at_size(to_rgb8(picture), parts.labels)
+    longer = max(labels.shape)
+    _draw_borders(shown, labels, max(1, round(longer / 800)))
+    image = Image.fromarray(shown)
+    draw = ImageDraw.Draw(image)
+    for number in range(parts.count):
+        name = names[number] if number < len(names) else ""
+        texts = [f"{number} {name}", str(number)] if name else [str(number)]
+        _write(draw, _largest_disc(labels == number), texts, longer)
+    told = PngInfo()
+    told.add_text(DRAWN, _digest(image))
+    told.add_text(NUMBERS, _in_text(_coarse(parts.labels, COARSE)), zip=True)
+    file = BytesIO()
+    image.save(file, format="PNG", pnginfo=told)
+    return file.getvalue()
+
+
+class Before(NamedTuple):
+    """What a part was when it was drawn."""
+
+    number: int | None
+    """None for one that is new."""
+    cut_from: int
+    """The part that most of it was in."""
+
+
+class Drawn(NamedTuple):
+    """What a picture of numbered parts was drawn of."""
+
+    numbers: Int32[np.ndarray, "r c"]
+    """Of the part at each place of a coarse grid."""
+
+    def before(self, parts: PartMap) -> tuple[Before, ...] | None:
+        """What each of these parts was; None where they are of another picture.
+
+        Two parts are the same if of all parts each covers most of the other.
+        """
+        now = _coarse(parts.labels, max(self.numbers.shape))
+        if now.shape != self.numbers.shape:
+            return None
+        both = np.zeros((int(self.numbers.max()) + 1, parts.count), np.int64)
+        np.add.at(both, (self.numbers, now), 1)
+        of_old, of_new = both.argmax(axis=1), both.argmax(axis=0)
+        same = (of_old[of_new] == np.arange(parts.count)) & both.any(axis=0)
+        found = zip(of_new.tolist(), same.tolist(), strict=True)
+        return tuple(Before(old if alike else None, old) for old, alike in found)
+
+
+def as_drawn(path: Path) -> Drawn | None:
+    """What a file was drawn of; None where `numbered_parts` did not draw it, or somebody has painted on it since."""
+    from PIL.Image import open as opened
+
+    try:
+        with opened(path, formats=("PNG",)) as image:
+            if image.info.get(DRAWN) == _digest(image):
+                return Drawn(_out_of_text(image.info[NUMBERS]))
+    except Exception:  # noqa: BLE001 - a damaged file can provoke any, and is none of ours
+        return None
+    return None
+
+
+def _digest(image: Image) -> str:
+    return digest_of(np.asarray(image))
+
+
+def _coarse(labels: Int32[np.ndarray, "h w"], longest: int) -> Int32[np.ndarray, "r c"]:
+    """The labels at the middles of a grid, whose longer side is at most so long."""
+    scale = min(1.0, longest / max(labels.shape))
+    rows, columns = (max(1, round(scale * side)) for side in labels.shape)
+    places = ((np.arange(new) * old + old // 2) // new for new, old in zip((rows, columns), labels.shape, strict=True))
+    return labels[np.ix_(*places)]
+
+
+def _in_text(numbers: Int32[np.ndarray, "r c"]) -> str:
+    rows, columns = numbers.shape
+    return f"{rows} {columns} {b64encode(numbers.astype('<u2').tobytes()).decode()}"
+
+
+def _out_of_text(text: str) -> Int32[np.ndarray, "r c"]:
+    rows, columns, numbers = text.split(" ")
+    return np.frombuffer(b64decode(numbers), "<u2").reshape(int(rows), int(columns)).astype(np.int32)
+
+
+def _at_size(
+    picture: UInt8[np.ndarray, "h w 3"], labels: Int32[np.ndarray, "h w"]
+) -> tuple[UInt8[np.ndarray, "r c 3"], Int32[np.ndarray, "r c"]]:
+    """Both as large as they are drawn; arrays of their own."""
+    import cv2
+
+    longer = max(labels.shape)
+    scale = -(-SHORTEST_PX // longer) if longer < SHORTEST_PX else min(1.0, LONGEST_PX / longer)
+    rows, columns = (max(1, round(scale * side)) for side in labels.shape)
+    with plain_opencv():
+        shown = cv2.resize(picture, (columns, rows), interpolation=cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR)
+        nearest = cv2.resize(labels, (columns, rows), interpolation=cv2.INTER_NEAREST)
+    return np.array(shown, np.uint8), np.array(nearest, np.int32)
+
+
+def _draw_borders(shown: UInt8[np.ndarray, "h w 3"], labels: Int32[np.ndarray, "h w"], width_px: int) -> None:
+    """A dark line with a light one on both sides, which is seen on any picture."""
+    import cv2
+
+    border = np.zeros(labels.shape, np.uint8)
+    border[:, 1:] |= labels[:, 1:] != labels[:, :-1]
+    border[1:] |= labels[1:] != labels[:-1]
+    for colour, width in ((HALO, 3 * width_px), (INK, width_px)):
+        shown[cv2.dilate(border, np.ones((width, width), np.uint8)) > 0] = colour
+
+
+class _Disc(NamedTuple):
+    column: float
+    row: float
+    radius_px: float
+
+
+def _largest_disc(part: Bool[np.ndarray, "h w"]) -> _Disc | None:
+    """Within a part, the picture's rim being a border; None for a part that is too small to be drawn."""
+    import cv2
+
+    if not part.any():
+        return None
+    rows, columns = (np.flatnonzero(part.any(axis=axis)) for axis in (1, 0))
+    top, left = int(rows[0]), int(columns[0])
+    cut = part[top : int(rows[-1]) + 1, left : int(columns[-1]) + 1]
+    with plain_opencv():
+        depth = cv2.distanceTransform(np.pad(cut, 1).astype(np.uint8), cv2.DIST_L2, 5)
+    widest = np.argwhere(depth >= ALIKE * depth.max())
+    row, column = widest[np.square(widest - np.argwhere(np.pad(cut, 1)).mean(axis=0)).sum(axis=1).argmin()].tolist()
+    return _Disc(left + column - 1.0, top + row - 1.0, float(depth[row, column]))
+
+
+def _write(draw: ImageDraw, disc: _Disc | None, texts: Sequence[str], longer: int) -> None:
+    """The first of these texts that fits into the disc, or the last one, small."""
+    if disc is None:
+        return
+    large, small = _font(round(LARGE * longer)), _font(round(SMALL * longer))
+    fits = ((text, font) for text in texts for font in (large, small) if _fits(draw, text, font, disc.radius_px))
+    text, font = next(fits, (texts[-1], small))
+    place = disc.column + 0.5, disc.row + 0.5
+    draw.text(place, text, INK, font, anchor="mm", stroke_width=max(2, round(font.size / 8)), stroke_fill=HALO)
+
+
+def _fits(draw: ImageDraw, text: str, font: FreeTypeFont, radius_px: float) -> bool:
+    left, top, right, bottom = draw.textbbox((0, 0), text, font, anchor="mm")
+    return float(np.hypot(right - left, bottom - top)) <= 2 * radius_px
+
+
+@cache
+def _font(size_px: int) -> FreeTypeFont:
+    """The sheet's own, as matplotlib brings it; matplotlib itself is not imported."""
+    from PIL import ImageFont
+
+    spec = find_spec("matplotlib")
+    assert spec is not None and spec.origin is not None
+    return ImageFont.truetype(Path(spec.origin).parent / "mpl-data" / "fonts" / "ttf" / "DejaVuSans-Bold.ttf", size_px)

@@ -1,0 +1,24 @@
+"""Every panel of the sheet: one function each, which draws into its axes and returns its headline."""
+
+from tangible_core.plugins.panel import Panel as Panel
+
+from .disparity import draw_disparity, draw_disparity_error
+from .force import draw_force_map
+from .relief import draw_relief, relief_aspect
+from .segments import draw_parts, draw_segments
+from .time import draw_force_time
+from .views import draw_views
+
+PANELS = (
+    Panel(draw_views, {"views"}, least_in=2.2),
+    Panel(draw_disparity, {"disparity"}, right_in=0.85, least_in=2.2),
+    Panel(draw_disparity_error, {"disparity", "truth"}, right_in=0.75),
+    Panel(draw_segments, {"segments"}, {"views", "materials"}, right_in=1.75),
+    Panel(draw_parts, {"parts"}, {"views", "surface"}, right_in=1.75),
+    Panel(draw_relief, {"relief"}, aspect=relief_aspect, right_in=0.85),
+    Panel(draw_force_map, {"relief", "recording"}, left_in=0.65, right_in=0.95, bottom_in=0.65),
+    Panel(
+        draw_force_time, {"recording"}, {"relief"}, 4.5, left_in=0.65, bottom_in=0.55, least_in=7.6, least_aspect=3.0
+    ),
+)
+"""In the order in which a picture becomes a force."""

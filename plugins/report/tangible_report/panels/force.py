@@ -1,0 +1,88 @@
+"""The force along the path: vectors on the map of heights."""
+# pyright: reportUnknownMemberType=false
+# (matplotlib leaves its keywords without types)
+
+import numpy as np
+from jaxtyping import Bool, Float64, Int64
+from matplotlib.axes import Axes
+from matplotlib.colors import LightSource
+
+from tangible_core.data import Relief
+from tangible_core.session import Recording
+
+from ..block import drawn_size
+from ..style import FORCES, INK, colour_bar, inches
+
+ARROWS = 150
+STRONG = 0.1
+"""Share of the surface's size, the mean of its sides, that a strong lateral force takes."""
+
+
+def draw_force_map(axes: Axes, relief: Relief, recording: Recording) -> str:
+    """Lateral force as arrows (their scale is below), vertical force as their colour, over the shaded heights."""
+    _draw_heights(axes, relief)
+    at_mm = 1000 * recording.position_m
+    axes.plot(at_mm[:, 0], at_mm[:, 1], color=INK, linewidth=0.5, alpha=0.6)
+    some = spread(at_mm, np.linalg.norm(recording.force_n, axis=1) > 0, ARROWS)
+    if not some.size:
+        return "Path, never in contact"
+    _draw_arrows(axes, at_mm[some], recording.force_n[some], (1000 * relief.extent_m[0], 1000 * relief.extent_m[1]))
+    return "Lateral force along the path"
+
+
+def _draw_heights(axes: Axes, relief: Relief) -> None:
+    shown = drawn_size(relief, 600)
+    width_m, length_m = shown.pitch_m
+    light = LightSource(azdeg=315, altdeg=50).hillshade(np.pad(shown.height_m, 1, "edge"), dx=width_m, dy=length_m)
+    right_mm, far_mm = (500 * extent for extent in relief.extent_m)
+    axes.imshow(light[1:-1, 1:-1], cmap="gray", vmin=-2, vmax=1, extent=(-right_mm, right_mm, -far_mm, far_mm))
+    axes.autoscale(False)
+    axes.set_xlabel("x [mm]", loc="left")
+    axes.set_ylabel("y [mm]")
+
+
+def _draw_arrows(
+    axes: Axes, at_mm: Float64[np.ndarray, "n 3"], force_n: Float64[np.ndarray, "n 3"], size_mm: tuple[float, float]
+) -> None:
+    """Lateral arrows, cut where they are over twice the strong one that the scale below the map shows."""
+    width_mm, strong_mm = size_mm[0], STRONG * (size_mm[0] * size_mm[1]) ** 0.5
+    lateral_n = np.hypot(force_n[:, 0], force_n[:, 1])
+    key_n = round_number(float(np.percentile(lateral_n, 95)))
+    cut = np.minimum(1, 2 * key_n / np.maximum(lateral_n, 1e-300))
+    arrows = axes.quiver(
+        *at_mm[:, :2].T, *(force_n[:, :2] * cut[:, None]).T, force_n[:, 2],
+        cmap=FORCES, angles="xy", scale_units="xy", scale=key_n / strong_mm, units="inches", width=0.014,
+    )  # fmt: skip
+    wide, high = inches(axes)
+    label = f"{key_n:g} N" + (f", cut at {2 * key_n:g} N" if cut.min() < 1 else "")
+    right = 1 + 0.8 * wide - strong_mm / width_mm
+    axes.quiverkey(arrows, right, -0.47 * high, key_n, label, labelpos="W", coordinates="axes", color=INK)
+    colour_bar(axes, arrows, "vertical force [N]")
+
+
+def spread(at_mm: Float64[np.ndarray, "n 3"], touching: Bool[np.ndarray, " n"], most: int) -> Int64[np.ndarray, " m"]:
+    """Indices of at most `most` samples in contact, at equal steps of the way made in contact.
+
+    Where contact does not move, the steps are of time.
+    """
+    some = np.flatnonzero(touching)
+    if not some.size:
+        return some
+    step_mm = np.linalg.norm(np.diff(at_mm, axis=0, prepend=at_mm[:1]), axis=1)
+    way_mm = np.cumsum(step_mm * touching)[some]
+    if way_mm[0] == way_mm[-1]:
+        way_mm = np.arange(some.size, dtype=np.float64)
+    marks_mm = np.linspace(float(way_mm[0]), float(way_mm[-1]), most)
+    return some[np.unique(np.searchsorted(way_mm, marks_mm))]
+
+
+def round_number(value: float) -> float:
+    """The largest of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ... that is not above the value; 1 if that is not positive.
+
+    >>> round_number(0.73), round_number(30.0)
+    (0.5, 20.0)
+    """
+    if value <= 0:
+        return 1.0
+    decade = 10.0 ** np.floor(np.log10(value))
+    return float(max(factor * decade for factor in (1, 2, 5) if factor * decade <= value * (1 + 1e-9)))

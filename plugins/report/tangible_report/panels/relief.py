@@ -1,0 +1,155 @@
+"""The relief as a lit block, with some of its normals."""
+# pyright: reportUnknownMemberType=false
+# (matplotlib leaves its keywords without types)
+
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Float64
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import LightSource, Normalize
+from matplotlib.patches import Polygon
+from matplotlib.ticker import MaxNLocator
+
+from tangible_core.data import Relief
+from tangible_core.scene.geometry import normals
+
+from ..block import drawn_size, facets, framed, on_paper, points_of, seen
+from ..style import INK, VIRIDIS, colour_bar, inches
+
+LIGHT = LightSource(azdeg=315, altdeg=50)
+CELLS = 160
+"""Along the longer side."""
+NORMALS = 11
+"""Along the longer side."""
+FLAT_M = 1e-6
+"""Lower reliefs are drawn as a plane."""
+ROOM_IN = (0.1, 0.45, 0.4, 0.12)
+"""Left of the block, right of it, below and above: for its scales and normals."""
+LARGE_IN2 = 6.0
+"""Of the block on paper, as wide as it is high together, about."""
+SCALE_MARK_IN = 0.35
+"""From one number of a scale to the next, at least."""
+TICK = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0, "shrinkB": 0}
+
+
+def draw_relief(axes: Axes, relief: Relief) -> str:
+    """Heights lit from the upper left, in true proportion or stretched as the headline says; axes in mm."""
+    stretched = _draw_heights(axes, drawn_size(relief, CELLS))
+    _draw_normals(axes, stretched.relief)
+    return f"Relief and its normals{stretched.note}"
+
+
+def draw_surface(axes: Axes, relief: Relief) -> str:
+    """The same without normals, for a fine texture."""
+    drawn = _draw_heights(axes, drawn_size(relief, CELLS))
+    return f"Surface{drawn.note if relief.height_m.max() > FLAT_M else ', smooth'}"
+
+
+class _StretchedRelief(NamedTuple):
+    """A relief as it is drawn, and what to say of its proportion."""
+
+    relief: Relief
+    note: str
+
+
+def _draw_heights(axes: Axes, relief: Relief) -> _StretchedRelief:
+    stretch = _stretch(relief)
+    heights = ScalarMappable(Normalize(0, 1000 * max(float(relief.height_m.max()), FLAT_M)), VIRIDIS)
+    stretched = replace(relief, height_m=np.float32(stretch) * relief.height_m)
+    _draw_block(axes, stretched, heights.to_rgba(np.pad(1000 * relief.height_m, 1, "edge"))[..., :3])
+    _leave_room(axes, stretched)
+    _draw_scales(axes, *relief.extent_m)
+    axes.set_axis_off()
+    colour_bar(axes, heights, "height [mm]")
+    return _StretchedRelief(stretched, f", heights x {stretch}" if stretch > 1 else "")
+
+
+def relief_aspect(relief: Relief) -> float:
+    """Width over height of the panel that the block and its scales fill, where that is about as large as others."""
+    width, height = np.ptp(_corners(relief.extent_m, _stretch(relief) * float(relief.height_m.max())), axis=0).tolist()
+    per_m = (LARGE_IN2 / (width * height)) ** 0.5
+    left_in, right_in, low_in, high_in = ROOM_IN
+    return (width * per_m + left_in + right_in) / (height * per_m + low_in + high_in)
+
+
+def _corners(extent_m: tuple[float, float], top_m: float) -> Float64[np.ndarray, "8 2"]:
+    """Of the block, on paper."""
+    x_m, y_m = (side / 2 for side in extent_m)
+    return on_paper(np.array([(x, y, z) for x in (-x_m, x_m) for y in (-y_m, y_m) for z in (0.0, top_m)]))
+
+
+def _leave_room(axes: Axes, stretched: Relief) -> None:
+    """In true proportion, in the middle of what the scales leave of the axes."""
+    corners = _corners(stretched.extent_m, float(stretched.height_m.max()))
+    least, most = corners.min(axis=0), corners.max(axis=0)
+    shares, (left_in, right_in, low_in, high_in) = np.array(inches(axes)), ROOM_IN
+    free_in = 1 / shares - [left_in + right_in, low_in + high_in]
+    per_in = float(np.max((most - least) / np.maximum(free_in, 0.2)))
+    start = (least + most) / 2 - per_in * (free_in / 2 + [left_in, low_in])
+    end = start + per_in / shares
+    axes.set(xlim=(start[0], end[0]), ylim=(start[1], end[1]), aspect="auto")
+
+
+def _stretch(relief: Relief) -> int:
+    """Whole factor on heights that makes the block no flatter than a sixth of its longer side."""
+    top_m = float(relief.height_m.max())
+    return max(1, round(max(relief.extent_m) / 6 / top_m)) if top_m > FLAT_M else 1
+
+
+def _draw_block(axes: Axes, relief: Relief, paint: np.ndarray) -> None:
+    points_m = framed(points_of(relief), relief.extent_m)
+    width_m, length_m = relief.pitch_m
+    lit = LIGHT.shade_rgb(paint, points_m[..., 2], blend_mode=_dimmed, dx=width_m, dy=length_m)
+    top = facets(points_m)
+    corners: Any = top.corners  # matplotlib takes arrays of polygons; its types know only lists of them
+    colours = lit[top.row, top.column]
+    axes.add_collection(PolyCollection(corners, facecolors=colours, edgecolors="face", linewidths=0.3, rasterized=True))
+    for edge_m, grey in ((points_m[-1], "0.72"), (points_m[:, -1], "0.55")):
+        wall_m = np.concatenate([edge_m, edge_m[::-1] * (1, 1, 0)])
+        axes.add_patch(Polygon(on_paper(wall_m), facecolor=grey, edgecolor=INK, linewidth=0.4))
+
+
+def _dimmed(colours: np.ndarray, light: np.ndarray) -> np.ndarray:
+    return colours * (0.3 + 0.7 * light)
+
+
+def _draw_normals(axes: Axes, relief: Relief) -> None:
+    """Normals of the surface as drawn, at the points that the reader sees."""
+    step = max(1, max(relief.height_m.shape) // NORMALS)
+    some = np.s_[step // 2 :: step, step // 2 :: step]
+    base_m, normal = points_of(relief)[some].reshape(-1, 3), normals(relief)[some].reshape(-1, 3)
+    clear = seen(relief, base_m)
+    arrow_m = 0.08 * max(relief.extent_m) * normal[clear]
+    axes.quiver(
+        *on_paper(base_m[clear]).T, *on_paper(arrow_m).T,
+        angles="xy", scale_units="xy", scale=1, width=0.0035, color=INK,
+    )  # fmt: skip
+
+
+def _draw_scales(axes: Axes, width_m: float, length_m: float) -> None:
+    """Scales in mm along the near and the right edge of the base."""
+    _draw_scale(axes, "x [mm]", np.array([0, -length_m / 2, 0]), np.array([1.0, 0, 0]), width_m / 2)
+    _draw_scale(axes, "y [mm]", np.array([width_m / 2, 0, 0]), np.array([0, 1.0, 0]), length_m / 2)
+
+
+def _draw_scale(axes: Axes, name: str, middle_m: np.ndarray, along: np.ndarray, half_m: float) -> None:
+    """Ticks and a name below an edge of the base, at right angles to it; none in the corners, where scales meet."""
+    way = on_paper(along)
+    below = np.array([way[1], -way[0]]) / np.linalg.norm(way)
+    ends = axes.transData.transform([on_paper(middle_m - half_m * along), on_paper(middle_m + half_m * along)])
+    long_in = float(np.hypot(*(ends[1] - ends[0]))) / axes.figure.dpi
+    for tick_mm in MaxNLocator(min(4, max(1, int(long_in / SCALE_MARK_IN)))).tick_values(-1000 * half_m, 1000 * half_m):
+        if abs(tick_mm) < 950 * half_m:
+            at = on_paper(middle_m + tick_mm / 1000 * along)
+            _write(axes, "", at, 4 * below, arrowprops=TICK)
+            _write(axes, f"{tick_mm:g}".replace("-", "\N{MINUS SIGN}"), at, 11 * below, fontsize=8)
+    _write(axes, name, on_paper(middle_m), 24 * below, rotation=np.degrees(np.arctan2(way[1], way[0])))
+
+
+def _write(axes: Axes, text: str, at: np.ndarray, offset_pt: np.ndarray, **look: Any) -> None:
+    beside = (offset_pt[0], offset_pt[1])
+    axes.annotate(text, (at[0], at[1]), beside, textcoords="offset points", ha="center", va="center", **look)

@@ -1,0 +1,42 @@
+"""A run's figures as JSON that any program reads."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .writing import write_text
+
+
+def write_figures(path: Path, data: Mapping[str, Any]) -> None:
+    """Write figures as JSON, whole or not at all; what is not finite becomes null, for JSON has no NaN.
+
+    data: strings, numbers, paths, numpy scalars and arrays, records, and mappings and sequences of these.
+    Raises: OutputError if the place cannot be written, TypeError for a value that has no place in JSON.
+    """
+    write_text(path, as_json(data) + "\n")
+
+
+def as_json(data: Any) -> str:
+    """JSON text of what `write_figures` takes."""
+    return json.dumps(_plain(data), indent=2, ensure_ascii=False, allow_nan=False)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray | np.generic):
+        return _plain(value.tolist())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Path):
+        return str(value)
+    if isinstance(value, Mapping):
+        return {str(name): _plain(part) for name, part in value.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]  # pyright: ignore[reportUnknownVariableType]
+    if is_dataclass(value):
+        return {each.name: _plain(getattr(value, each.name)) for each in fields(value)}
+    return value

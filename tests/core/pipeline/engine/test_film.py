@@ -1,0 +1,201 @@
+import threading
+import time
+
+import cv2
+import numpy as np
+import pytest
+
+from films import layered, true_disparity
+from tangible_core import Pipeline, Scene
+from tangible_core.data import DisparityMap, Views
+from tangible_core.errors import BrokenMethod, ConfigError
+from tangible_core.pipeline.engine.film import PipelineFrames
+from tangible_core.pipeline.engine.rules import relief_of
+from tangible_core.pipeline.engine.working_grid import WorkingGrid
+from tangible_core.plugins.interfaces import DepthEstimator, Film
+from tangible_core.scene.geometry import nearness_range
+from tangible_depth import Luminance, SemiGlobal
+from tangible_devices import Mock
+from tangible_render import Penalty, Proxy
+from tangible_texture import Histogram
+
+COUNT = 8
+
+
+@pytest.fixture(scope="module")
+def walk(tmp_path_factory):
+    """A folder of pairs side by side: a box walks over a ground."""
+    folder, generator = tmp_path_factory.mktemp("walk"), np.random.default_rng(8)
+    for number in range(COUNT):
+        views = layered(number, 1.0, generator)
+        cv2.imwrite(str(folder / f"{number:03}.png"), np.hstack([views.left, views.right]))
+    return folder
+
+
+@pytest.fixture
+def filmed(walk):
+    """A pipeline on it."""
+
+    def made(**changed):
+        scene = Scene.of(video=walk, layout="side-by-side", fps=20, repeat=False)
+        methods = {"depth": SemiGlobal(resolution="half", max_disparity_px=32), "render": Proxy()}
+        return Pipeline(scene, **methods | changed, cached=False)
+
+    return made
+
+
+def test_the_first_frame_is_the_relief_of_the_still(filmed):
+    pipeline = filmed()
+    with pipeline.reliefs as reliefs:
+        first = next(iter(reliefs))
+    assert np.array_equal(first.relief.height_m, pipeline.relief.height_m)
+
+
+def test_each_frame_is_what_the_still_makes_of_its_disparity_and_range(filmed, walk):
+    """Where nothing is averaged: a still of a later frame, its range that of the first."""
+    pipeline = filmed()
+    later = Pipeline(Scene.of(stereo=walk / "004.png", layout="side-by-side"), depth=pipeline.config.depth.method)
+    spans = nearness_range(pipeline.disparity, None)
+    maker = PipelineFrames(pipeline.config, pipeline.scene)
+    first = maker.begin(pipeline.views)
+    assert np.array_equal(first.disparity_px, maker.disparity(pipeline.views).disparity_px)
+    disparity = maker.disparity(later.views)
+    assert np.array_equal(disparity.disparity_px, later.disparity.disparity_px)
+    still = relief_of(later.disparity, WorkingGrid(later.scene, pipeline.config.size), pipeline.config.size, spans)
+    assert np.array_equal(maker.relief(disparity, spans).height_m, still.height_m)
+
+
+def test_the_box_walks(filmed):
+    pipeline = filmed(workspace={"smooth_m": 0})
+    with pipeline.reliefs as reliefs:
+        film = [each.relief.height_m for each in reliefs]
+    assert len(film) == COUNT
+    for number in (0, COUNT - 1):
+        box = true_disparity(max(0, number - 1)) == 16
+        assert (film[number] > 0.008)[box].mean() > 0.85
+        assert (film[number] > 0.008)[~box].mean() < 0.1
+
+
+def test_exchanged_views_stay_exchanged(walk, tmp_path):
+    for path in walk.iterdir():
+        left, right = np.split(cv2.imread(str(path)), 2, axis=1)
+        cv2.imwrite(str(tmp_path / path.name), np.hstack([right, left]))
+    scene = Scene.of(video=tmp_path, layout="side-by-side", fps=20, repeat=False)
+    pipeline = Pipeline(scene, depth=SemiGlobal(resolution="half"), workspace={"smooth_m": 0}, cached=False)
+    with pipeline.reliefs as reliefs:
+        film = [each.relief.height_m for each in reliefs]
+    assert all(each[5, 64] < 0.004 for each in film), "the ground is low"
+    assert all(each.max() > 0.009 for each in film)
+
+
+def test_it_is_felt_by_the_clock_of_a_simulated_device(filmed):
+    reports = []
+    recording = filmed().feel(Mock(path="circle"), 0.6, in_real_time=False, on_report=reports.append)
+    frames = recording.frame
+    assert np.array_equal(np.unique(frames[np.isfinite(frames)]), np.arange(COUNT))
+    assert np.all(np.diff(frames[np.isfinite(frames)]) >= 0)
+    assert np.abs(recording.time_s[np.searchsorted(frames, 4)] - recording.time_s[0] - 0.2) < 0.06
+    assert reports[-1].film.shown == COUNT and reports[-1].film.skipped == 0
+
+
+def test_the_same_film_is_the_same_recording(filmed):
+    first, again = (filmed().feel(Mock(path="circle"), 0.3, in_real_time=False) for _ in range(2))
+    assert np.array_equal(first.rows, again.rows, equal_nan=True)
+
+
+def test_it_is_felt_in_real_time_and_recorded(filmed, tmp_path):
+    reports, file = [], tmp_path / "hand.nc"
+    recording = filmed().feel(Mock(path="circle"), 1.5, on_report=reports.append, record=file)
+    film = reports[-1].film
+    assert film.shown + film.skipped >= 2 and film.damaged == 0
+    assert film.age_ms > 0
+    felt = recording.frame[np.isfinite(recording.frame)]
+    assert felt.size and np.all(np.diff(felt) >= 0) and felt[-1] > 0
+    assert not [each for each in threading.enumerate() if each.name == "film"]
+
+
+def test_films_and_stills_are_felt_in_turn_and_a_film_begins_anew(filmed, walk):
+    still = Pipeline(Scene.of(photo=walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
+    reports = []
+    recording = filmed().feel(Mock(path="circle"), 2.4, then=[still], each_s=0.6, on_report=reports.append)
+    frames = recording.frame
+    stood = np.isnan(frames)
+    turns = np.flatnonzero(np.diff(stood.astype(int)))
+    assert turns.size >= 2, "film, still, film"
+    assert frames[turns[1] + 1] == 0
+    assert not [each for each in threading.enumerate() if each.name == "film"], "the first one ended with its turn"
+    assert any(each.film is None for each in reports) and any(each.film is not None for each in reports)
+
+
+def test_a_beacon_pulls_over_a_film(filmed):
+    pipeline = filmed(texture=Histogram(segments=2), parts={0: "ground"})
+    reports = []
+    pipeline.feel(Mock(path="circle"), 0.3, in_real_time=False, beacon="ground", on_report=reports.append)
+    assert reports[-1].ticks == 300
+
+
+def test_a_law_that_feels_no_film_is_refused_in_one_line_that_names_those_that_do(filmed):
+    with pytest.raises(ConfigError, match=r"penalty feels no surface that moves.*proxy") as refused:
+        filmed(render=Penalty()).feel(Mock(), 0.1, in_real_time=False)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_relief_of_parts_is_refused(filmed):
+    pipeline = filmed(texture=Histogram(segments=2), heights="guess")
+    with pytest.raises(ConfigError, match="leave `heights:` out"):
+        pipeline.feel(Mock(), 0.1, in_real_time=False)
+
+
+def test_a_scene_that_stands_still_is_no_film(walk):
+    still = Pipeline(Scene.of(photo=walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
+    with pytest.raises(ConfigError, match="does not move"):
+        _ = still.reliefs
+    with pytest.raises(ConfigError, match="does not move"):
+        still.film()
+
+
+def test_a_film_is_had_in_python(filmed):
+    pipeline = filmed()
+    film = pipeline.film()
+    assert isinstance(film, Film)
+    with pipeline.reliefs as reliefs:
+        for number, _, relief in reliefs:
+            film.show(relief, number)
+    assert film.dropped == COUNT - 1
+
+
+class Shrinks(DepthEstimator):
+    """Makes a smaller map of every frame but the first."""
+
+    def estimate(self, views: Views) -> DisparityMap:
+        """A map."""
+        shape = views.shape if views.left.mean() == FIRST_MEAN else (3, 4)
+        return DisparityMap(np.tile(np.arange(shape[1], dtype=np.float32), (shape[0], 1)))
+
+
+FIRST_MEAN = 0.0
+
+
+@pytest.mark.parametrize("in_real_time", [True, False])
+def test_a_plugins_fault_ends_the_session(filmed, monkeypatch, in_real_time):
+    pipeline = filmed(depth=Shrinks())
+    monkeypatch.setitem(globals(), "FIRST_MEAN", pipeline.views.left.mean())
+    began = time.monotonic()
+    with pytest.raises(BrokenMethod, match="made disparity of 4 x 3"):
+        pipeline.feel(Mock(path="circle"), 60.0, in_real_time=in_real_time)
+    assert time.monotonic() - began < 50
+
+
+@pytest.mark.slow
+def test_stop_ends_it_soon_and_leaves_no_thread(filmed):
+    stop, began = threading.Event(), time.monotonic()
+
+    def heard(report):
+        nonlocal began
+        if not stop.is_set() and report.film and report.film.shown:
+            began = time.monotonic()
+            stop.set()
+
+    recording = filmed().feel(Mock(path="circle"), 60.0, stop=stop, on_report=heard)
+    assert recording.stopped and time.monotonic() - began < 10
+    assert not [each for each in threading.enumerate() if each.name == "film"]

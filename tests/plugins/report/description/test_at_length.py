@@ -1,0 +1,201 @@
+"""The parts of a surface as facts, and a description of it part by part, as lines and as a page."""
+
+from dataclasses import replace
+from html.parser import HTMLParser
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tangible_core.data import HapticSurface, MaterialMap, PartMap
+from tangible_core.materials.assignment import library
+from tangible_core.parts.words.languages import LANGUAGES
+from tangible_report.description import describe_at_length, facts, page_of
+from tangible_report.description.at_length import MOST_PARTS
+
+Y, X = np.mgrid[0:60, 0:80] / np.array([60, 80]).reshape(2, 1, 1)
+LABELS = np.where(Y >= 0.6, 1, 0).astype(np.int32)
+LABELS[(X >= 0.7) & (Y >= 0.3) & (Y < 0.8)] = 2
+STONE, WOOD, GLASS = (library()[name] for name in ("stone", "wood", "glass"))
+
+
+def still_life(names: tuple[str, ...] = ("wall", "", "cup")) -> HapticSurface:
+    """A wall, in front of it a table without a name, and on that a cup on the right; 80 by 60 mm."""
+    height_m = 1e-3 * np.array([0.0, 2.0, 4.25])[LABELS]
+    return replace(HapticSurface.from_heights(height_m, 0.08, LABELS, (STONE, WOOD, GLASS)), names=names)
+
+
+def test_facts_from_near_to_far():
+    cup, table, wall = facts(still_life())
+    assert [each.number for each in (cup, table, wall)] == [2, 1, 0]
+    assert (cup.name, table.name, wall.name) == ("cup", "", "wall")
+    assert cup.size_m == pytest.approx((0.024, 0.030))
+    assert table.size_m == pytest.approx((0.080, 0.024))
+    assert (cup.share, wall.share) == pytest.approx((0.15, 0.51))
+    assert (cup.height_m, table.height_m) == pytest.approx((0.00425, 0.002))
+    assert (cup.place, table.place, wall.place) == ("1 2", "2 -", "0 -")
+    assert (cup.material, table.material, wall.material) == ("glass", "wood", "stone")
+    assert cup.neighbours == (0, 1)  # 42 sides of pixels with the wall, 36 with the table
+    assert table.neighbours == (0, 2)
+
+
+def test_facts_of_parts_that_lie_on_another_grid():
+    """Parts made simpler are larger or smaller maps, in which some of the numbers are gone."""
+    surface = replace(still_life(), names=None)
+    coarse = PartMap(np.where(LABELS[::4, ::4] == 2, 5, 3).astype(np.int32), tuple(range(7)))
+    cup, rest = facts(surface, parts=coarse, names=("", "", "", " table ", "", "cup"))
+    assert [(each.number, each.name, each.material) for each in (cup, rest)] == [
+        (5, "cup", "glass"),
+        (3, "table", "stone"),
+    ]
+    assert cup.size_m == pytest.approx((0.024, 0.028))
+    assert cup.height_m == pytest.approx(0.00425)
+    fine = PartMap(np.kron(LABELS, np.ones((9, 9), np.int32)), (0, 1, 2))
+    assert [each._replace(name="") for each in facts(surface, parts=fine)] == [
+        each._replace(name="", share=pytest.approx(each.share, rel=0.02), size_m=pytest.approx(each.size_m, rel=0.02))
+        for each in facts(still_life())
+    ]
+
+
+def test_materials_that_the_surface_does_not_bring():
+    bare = replace(still_life(), materials=None)
+    assert {each.material for each in facts(bare)} == {""}
+    of_segments = MaterialMap((GLASS, GLASS, WOOD), ("", "", ""))
+    assert [each.material for each in facts(bare, of_segments)] == ["wood", "glass", "glass"]
+
+
+def test_one_pixel_and_no_parts():
+    dot = HapticSurface.from_heights(np.ones((1, 1)), 0.01, np.zeros((1, 1), np.int32))
+    [only] = facts(dot)
+    assert (only.share, only.size_m, only.neighbours, only.place) == (1.0, (0.01, 0.01), (), "- -")
+    assert describe_at_length(dot, "dot", "en", [only])[-1] == (
+        "1. part 0. More than half of the picture (100 %), 10 mm wide and 10 mm long, 1000 mm high."
+    )
+    flat = HapticSurface.from_heights(np.zeros((4, 4)))
+    assert facts(flat) == ()
+    assert describe_at_length(flat, "plate", "en")[-1].endswith("It is flat everywhere.")
+
+
+@pytest.mark.parametrize(
+    ("language", "lines"),
+    [
+        ("en", (
+            "Still life",
+            "",
+            "A surface 80 mm wide and 60 mm long, up to 4.3 mm high. "
+            "It is highest on the right, halfway down and lowest along the top; about 94 % of it is flat.",
+            "",
+            "Parts, from near to far",
+            "1. cup. On the right, halfway down. A medium-sized part of the picture (15 %), 24 mm wide and 30 mm long, "
+            "4.3 mm high. Feels like glass. Beside it: wall, part 1.",
+            "2. part 1. Along the bottom. A large part of the picture (34 %), 80 mm wide and 24 mm long, 2 mm high. "
+            "Feels like wood. Beside it: wall, cup.",
+            "3. wall. Along the top. More than half of the picture (51 %), 80 mm wide and 36 mm long. "
+            "Feels like stone. Beside it: part 1, cup.",
+        )),
+        ("de", (
+            "Still life",
+            "",
+            "Eine Fläche, 80 mm breit und 60 mm lang, bis zu 4,3 mm hoch. Am höchsten ist sie rechts auf halber Höhe, "
+            "am tiefsten am oberen Rand entlang; etwa 94 % davon sind eben.",
+            "",
+            "Teile, von nah nach fern",
+            "1. cup. Rechts auf halber Höhe. Ein mittelgroßer Teil des Bildes (15 %), 24 mm breit und 30 mm lang, "
+            "4,3 mm hoch. Fühlt sich an wie Glas. Daneben: wall, Teil 1.",
+            "2. Teil 1. Am unteren Rand entlang. Ein großer Teil des Bildes (34 %), 80 mm breit und 24 mm lang, "
+            "2 mm hoch. Fühlt sich an wie Holz. Daneben: wall, cup.",
+            "3. wall. Am oberen Rand entlang. Mehr als die Hälfte des Bildes (51 %), 80 mm breit und 36 mm lang. "
+            "Fühlt sich an wie Stein. Daneben: Teil 1, cup.",
+        )),
+        ("fr", (
+            "Still life",
+            "",
+            "Une surface de 80 mm de large et 60 mm de long, jusqu'à 4,3 mm de haut. Le relief culmine à droite, à "
+            "mi-hauteur ; il est le plus bas le long du bord supérieur ; environ 94 % de la surface sont plats.",
+            "",
+            "Parties, de la plus proche à la plus lointaine",
+            "1. cup. À droite, à mi-hauteur. Une partie moyenne de l'image (15 %), 24 mm de large et 30 mm de long, "
+            "4,3 mm de haut. Au toucher, comme du verre. À côté : wall, partie 1.",
+            "2. partie 1. Le long du bord inférieur. Une grande partie de l'image (34 %), 80 mm de large et 24 mm de "
+            "long, 2 mm de haut. Au toucher, comme du bois. À côté : wall, cup.",
+            "3. wall. Le long du bord supérieur. Plus de la moitié de l'image (51 %), 80 mm de large et 36 mm de long. "
+            "Au toucher, comme de la pierre. À côté : partie 1, cup.",
+        )),
+    ],
+)  # fmt: skip
+def test_every_word_of_it(language: Any, lines: tuple[str, ...]):
+    found = describe_at_length(still_life(), "Still life", language, facts(still_life()))
+    assert tuple(line.replace("\u00a0", " ") for line in found) == lines
+
+
+def test_heights_are_from_high_to_low():
+    assert "Parts, from high to low" in describe_at_length(still_life(), "x", "en", facts(still_life()), "heights")
+
+
+@pytest.mark.parametrize(("extra", "says"), [
+    (0, None),
+    (1, "One smaller part, 2 % of the picture, is left out."),
+    (20, "20 smaller parts, 25 % of the picture together, are left out."),
+])  # fmt: skip
+def test_of_very_many_parts_the_named_and_the_largest(extra: int, says: str | None):
+    count = MOST_PARTS + extra
+    labels = np.repeat(np.arange(count, dtype=np.int32), 160).reshape(-1, 80)
+    surface = replace(
+        HapticSurface.from_heights(labels * 1e-4, 0.08, labels), names=("the lowest", *[""] * (count - 1))
+    )
+    lines = describe_at_length(surface, "x", "en", facts(surface))
+    assert sum(". part " in line or "the lowest" in line for line in lines if line[:1].isdigit()) == MOST_PARTS
+    assert any(line.startswith(f"{MOST_PARTS}. the lowest. ") for line in lines)
+    assert (lines[-1] if says else None) == says
+
+
+class Page(HTMLParser):
+    """The tags of a page in order, and its text by the language that it is in."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tags, self.text, self.open, self.attributes = list[str](), list[tuple[str, str]](), [("", "")], []
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.attributes += [(tag, *each) for each in attrs]
+        if tag != "meta":
+            self.open.append((tag, dict(attrs).get("lang") or self.open[-1][1]))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop()[0] == tag
+
+    def handle_data(self, data: str) -> None:
+        if data.strip():
+            self.text.append((self.open[-1][1], data.strip()))
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_page_says_what_the_lines_say(language: Any):
+    surface = still_life(("wall & <b>", "", "cup"))
+    page = Page(page_of(surface, 'A "still" <life>', language, facts(surface)))
+    assert page.open == [("", "")]
+    assert page.tags.count("h1") == page.tags.count("main") == page.tags.count("title") == page.tags.count("ol") == 1
+    assert page.tags.count("li") == 3
+    assert page.tags.index("h1") < page.tags.index("h2") < page.tags.index("ol")
+    assert {"script", "img", "link", "b"}.isdisjoint(page.tags)
+    assert ("html", "lang", language) in page.attributes
+    body = " ".join(text for _, text in page.text[2:])
+    lines = describe_at_length(surface, 'A "still" <life>', language, facts(surface))
+    told = " ".join(line.split(". ", 1)[1] if line[:1].isdigit() else line for line in lines if line)
+    assert body == told
+
+
+def test_names_in_another_language_are_marked():
+    page = Page(page_of(still_life(), "Still life", "fr", facts(still_life()), named_in="en-GB"))
+    said = {text for language, text in page.text if language == "en-GB"}
+    assert said == {"Still life", "wall", "cup"}
+    assert ("fr", "partie 1.") in page.text
+    alike = page_of(still_life(), "Still life", "en", facts(still_life()), named_in="en")
+    assert "<span" not in alike
+
+
+def test_the_page_is_the_same_every_time():
+    pages = {page_of(still_life(), "x", "de", facts(still_life())) for _ in range(3)}
+    assert len(pages) == 1

@@ -1,0 +1,154 @@
+"""A surface in words, of surfaces whose every word can be checked."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tangible_core.data import HapticSurface
+from tangible_core.errors import ArgumentError
+from tangible_core.materials.assignment import library
+from tangible_report.description import describe
+
+Y, X = np.mgrid[0:60, 0:80] / np.array([60, 80]).reshape(2, 1, 1)
+
+
+def surface(height: np.ndarray, *names: str, labels: np.ndarray | None = None) -> HapticSurface:
+    """8 cm wide and 6 cm long, as high as it says in millimetres."""
+    materials = tuple(library()[name] for name in names) or None
+    return HapticSurface.from_heights(1e-3 * height, 0.08, labels, materials)
+
+
+def bump(x: float, y: float) -> np.ndarray:
+    return 10 * np.exp(-((X - x) ** 2 + (Y - y) ** 2) / 0.01)
+
+
+@pytest.mark.parametrize(
+    ("height", "says"),
+    [
+        (bump(0.15, 0.15), "highest at the upper left and lowest nearly everywhere else"),
+        (bump(0.85, 0.5), "highest on the right, halfway down and lowest nearly everywhere else"),
+        (bump(0.5, 0.5), "highest in the middle"),
+        (10 - bump(0.5, 0.9), "lowest at the bottom in the middle"),
+        (10 * X, "highest on the right and lowest on the left; hardly any of it is flat"),
+        (10 * (1 - Y), "highest along the top and lowest along the bottom"),
+        (10 * (X > 0.5), "highest on the right and lowest on the left; nearly all of it is flat"),
+        (5 + 5 * np.sin(20 * X) * np.sin(20 * Y), "High and low places lie all over it"),
+        (np.where(X < 0.5, 3, 3 + 10 * (X - 0.5)), "about 50 % of it is flat, on the left"),
+    ],
+)
+def test_where_it_is_high_and_low(height: np.ndarray, says: str):
+    assert says in describe(surface(height), "it")
+
+
+def test_a_pin_that_stands_out_is_the_highest():
+    pin = np.zeros((60, 80))
+    pin[50, 70] = 9
+    assert "up to 9 mm high. It is highest at the lower right" in describe(surface(pin), "pin")
+
+
+@pytest.mark.parametrize(
+    ("height_m", "width_m", "says"),
+    [
+        (np.eye(8) * 4e-3, 0.08, "a surface 8 cm wide and 8 cm long, up to 4 mm high."),
+        (np.eye(4, 9) * 1.234e-4, 0.123, "a surface 12 cm wide and 5.5 cm long, up to 0.12 mm high."),
+        (np.full((3, 3), 0.01), 10.0, "a surface 1000 cm wide and 1000 cm long. It is flat everywhere."),
+        (np.zeros((1, 1)), 1e-6, "a surface 0.0001 cm wide and 0.0001 cm long. It is flat everywhere."),
+        (np.array([[0.0, 1e-3]]), 0.02, "a surface 2 cm wide and 1 cm long, up to 1 mm high. High and low"),
+    ],
+)
+def test_how_large_it_is(height_m: np.ndarray, width_m: float, says: str):
+    assert says in describe(HapticSurface.from_heights(height_m, width_m), "x")
+
+
+def test_materials_how_much_of_each_and_where():
+    labels = np.where(X < 0.25, 0, np.where(Y < 0.5, 1, 2)).astype(np.int32)
+    flat = np.zeros((60, 80))
+    assert describe(surface(flat, "ice", "wood", "sand", labels=labels), "it").endswith(
+        "It has 3 materials: sand on 38 % (along the bottom), wood on 38 % (along the top) "
+        "and ice on 25 % (on the left)."
+    )
+    assert describe(surface(flat, "ice", "ice", "ice", labels=labels), "it").endswith("All of it feels like ice.")
+    two = describe(surface(flat, "ice", "wood", "ice", labels=labels), "it")
+    assert "2 materials: ice on 62 %" in two and "wood on 38 % (along the top)" in two
+    many = (np.arange(4800) % 7).reshape(60, 80).astype(np.int32)
+    names = ("ice", "wood", "sand", "foam", "glass", "metal", "skin")
+    assert re.search(r"7 materials: .* and 3 others on 43 %\.$", describe(surface(flat, *names, labels=many), "it"))
+
+
+def in_parts(names: tuple[str, ...], *materials: str) -> HapticSurface:
+    """A wall, in front of it a table at the bottom, and on that a cup on the right."""
+    labels = np.where(Y > 0.6, 1, 0).astype(np.int32)
+    labels[(X > 0.7) & (Y > 0.3) & (Y < 0.8)] = 2
+    height = np.array([0.0, 2.0, 4.25])[labels]
+    return replace(surface(height, *materials, labels=labels), names=names)
+
+
+def test_parts_by_name_from_near_to_far():
+    found = in_parts(("wall", "", "cup\n"), "stone", "wood", "glass")
+    assert describe(found, "it").endswith(
+        " Its parts, from near to far, are cup\\n (on the right, halfway down, 4.3 mm high, feels like glass), "
+        "wall (along the top, feels like stone) and one that has no name."
+    )
+    assert describe(in_parts(("Wand", "Tisch", "Tasse"), "stone", "wood", "glass"), "es", "de").endswith(
+        " Ihre Teile sind, von nah nach fern, Tasse (rechts auf halber Höhe, 4,3 mm hoch, fühlt sich an wie Glas), "
+        "Tisch (am unteren Rand entlang, 2 mm hoch, fühlt sich an wie Holz) "
+        "und Wand (am oberen Rand entlang, fühlt sich an wie Stein)."
+    )
+    assert describe(in_parts(("", "", "cup")), "it").endswith(
+        "are cup (on the right, halfway down, 4.3 mm high) and 2 that have no name."
+    )
+    assert "It has 3 materials" in describe(in_parts(("", "", ""), "stone", "wood", "glass"), "it")
+
+
+def test_of_many_parts_the_nearest():
+    labels = np.repeat(np.arange(30, dtype=np.int32), 160).reshape(60, 80)
+    many = replace(surface(labels / 10.0, labels=labels), names=tuple(f"step {each}" for each in range(30)))
+    said = describe(many, "it")
+    assert "are step 29 (along the bottom, 2.9 mm high), step 28 (" in said
+    assert said.endswith("step 18 (across the middle, from left to right, 1.8 mm high) and 18 others.")
+    one = replace(surface(np.zeros((4, 4)), labels=np.zeros((4, 4), np.int32)), names=("plate",))
+    assert describe(one, "it").endswith("It is of one part, plate.")
+
+
+def test_the_same_in_german():
+    labels = (X > 0.7).astype(np.int32)
+    hill = surface(bump(0.15, 0.15), "wood", "ice", labels=labels)
+    assert describe(hill, "builtin/hügel", "de", "heights") == (
+        "Die Höhenkarte hügel ist als Fläche zu fühlen, 8 cm breit und 6 cm lang, bis zu 10 mm hoch. "
+        "Am höchsten ist sie oben links, am tiefsten fast überall sonst; etwa 86 % davon sind eben. "
+        "Sie hat 2 Materialien: Holz auf 71 % und Eis auf 29 % (rechts)."
+    )
+
+
+def test_the_same_in_french():
+    hill = surface(bump(0.15, 0.15), "wood", "ice", labels=(X > 0.7).astype(np.int32))
+    assert describe(hill, "colline", "fr", "heights").replace("\u00a0", "~") == (
+        "La carte de hauteurs colline se touche comme une surface de 8 cm de large et 6 cm de long, jusqu'à 10 mm de "
+        "haut. Le relief culmine en haut à gauche~; il est le plus bas presque partout ailleurs~; environ 86~% de la "
+        "surface sont plats. On y trouve 2 matières~: bois sur 71~% et glace sur 29~% (à droite)."
+    )
+    assert describe(in_parts(("mur", "table", "tasse"), "stone", "wood", "water"), "x", "fr").endswith(
+        " Ses parties sont, de la plus proche à la plus lointaine, tasse (à droite, à mi-hauteur, 4,3 mm de haut, au "
+        "toucher comme de l'eau), table (le long du bord inférieur, 2 mm de haut, au toucher comme du bois) et mur (le "
+        "long du bord supérieur, au toucher comme de la pierre)."
+    )
+
+
+@pytest.mark.usefixtures("unchecked_shapes")
+def test_another_language_is_refused():
+    with pytest.raises(ArgumentError, match="language: is the str 'pt'; it must be one of en, de, fr"):
+        describe(surface(10 * X), "", "pt")  # pyright: ignore[reportArgumentType]
+
+
+def test_every_kind_of_scene_has_its_words():
+    hill = surface(bump(0.5, 0.5))
+    starts = {kind: describe(hill, "x\n", "en", kind) for kind in ("photograph", "depth", "heights")}
+    assert len(set(starts.values())) == 3
+    assert all("\n" not in each for each in starts.values())
+
+
+def test_a_large_one_is_described_by_a_part_of_its_cells():
+    large = HapticSurface.from_heights(np.tile(np.linspace(0, 0.01, 3000, dtype=np.float32), (20, 1)), 0.08)
+    assert "highest on the right and lowest on the left" in describe(large, "x")

@@ -1,0 +1,61 @@
+"""The picture with the borders and numbers of its parts."""
+
+from io import BytesIO
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tangible_core.data import SegmentMap
+from tangible_core.parts import find_parts
+from tangible_report.numbered_parts import LONGEST_PX, SHORTEST_PX, numbered_parts
+
+
+def drawn(picture: np.ndarray, labels: np.ndarray, names: tuple[str, ...] = ()) -> np.ndarray:
+    parts = find_parts(SegmentMap(labels.astype(np.int32)))
+    return np.asarray(Image.open(BytesIO(numbered_parts(picture, parts, names))))
+
+
+def halves(rows: int, columns: int) -> tuple[np.ndarray, np.ndarray]:
+    labels = (np.arange(columns) * 2 // columns) * np.ones((rows, 1), int)
+    return np.full((rows, columns, 3), 127, np.uint8), labels
+
+
+@pytest.mark.parametrize("size", [(80, 100), (700, 900), (3000, 4000)])
+def test_numbers_are_as_large_whatever_the_size_of_the_picture(size: tuple[int, int]):
+    shown = drawn(*halves(*size))
+    longer = max(shown.shape)
+    assert SHORTEST_PX <= longer <= LONGEST_PX and shown.shape[1] / shown.shape[0] == pytest.approx(size[1] / size[0])
+    left = (shown[:, : shown.shape[1] * 2 // 5] != 127).any(axis=2)
+    heights = np.flatnonzero(left.any(axis=1))
+    assert 1 / 60 < np.ptp(heights) / longer < 1 / 15, "the number 0 in the middle of the left half"
+    assert heights.mean() / shown.shape[0] == pytest.approx(0.5, abs=0.02)
+
+
+def test_borders_are_seen_on_black_and_on_white():
+    picture, labels = halves(600, 800)
+    for grey in (0, 255):
+        row = drawn(np.full_like(picture, grey), labels)[5]
+        middle = len(row) // 2
+        assert {0, 255} <= set(row[middle - 10 : middle + 10].ravel().tolist())
+        assert (row[: middle - 20] == grey).all()
+
+
+def test_names_are_written_where_there_is_room():
+    picture, labels = halves(600, 800)
+    labels[:30, :30] = 2  # a part too small for its name
+    plain, named = drawn(picture, labels), drawn(picture, labels, ("corner of the wall", "helmet", ""))
+
+    def inked(shown: np.ndarray, columns: slice) -> int:
+        return int((shown[:, columns] == 0).all(axis=2).sum())
+
+    left, right = slice(100, plain.shape[1] // 2 - 40), slice(plain.shape[1] // 2 + 40, None)
+    assert inked(named, left) > 3 * inked(plain, left), "1 helmet"
+    assert inked(named, right) == inked(plain, right), "no name, its number alone"
+    assert (named[:60, :60] == plain[:60, :60]).all(), "its number alone"
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 900), (5000, 1)])
+def test_a_line_of_pixels_is_drawn_as_well(shape: tuple[int, int]):
+    labels = (np.arange(shape[0] * shape[1]) // 7).reshape(shape)
+    assert drawn(np.zeros(shape, np.uint8), labels).size

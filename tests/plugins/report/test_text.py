@@ -1,0 +1,124 @@
+"""The exporter of words: what it says of which parts, in which language, and in braille."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangible_core import Pipeline, Scene
+from tangible_core.data import HapticSurface, MaterialMap, PartMap, Work
+from tangible_core.errors import BrailleError
+from tangible_core.materials.assignment import library
+from tangible_core.plugins.notes import collected
+from tangible_core.scene.workspace import Workspace
+from tangible_depth import Luminance
+from tangible_export.braille import as_ascii, translate
+from tangible_report import Text
+
+LABELS = np.repeat(np.arange(4, dtype=np.int32), 16).reshape(8, 8)
+MATERIALS = tuple(library()[name] for name in ("ice", "wood", "sand", "glass"))
+
+
+def work(*names: str, title: str = "Le lac", language: str = "fr", simplified: np.ndarray | None = LABELS) -> Work:
+    """Four strips from top to bottom, each 1 mm higher than the one before."""
+    surface = HapticSurface.from_heights(1e-3 * LABELS, 0.08, LABELS, MATERIALS)
+    return Work(
+        title,
+        language,
+        {
+            "surface": replace(surface, names=names) if names else surface,
+            "simplified": None if simplified is None else PartMap(simplified, (0, 1, 2, 3)),
+            "materials": MaterialMap(MATERIALS, ("",) * 4),
+        },
+        np.zeros((8, 8, 3), np.uint8),
+        names,
+    )
+
+
+def written(given: Work, exporter: Text, folder: Path) -> tuple[dict[str, str], list[str]]:
+    """The texts by the endings of their files, and the notes."""
+    with collected() as notes:
+        files = exporter.write(given, folder / "lac")
+    return {path.suffix: path.read_bytes().decode() for path in files}, notes
+
+
+def items(text: str) -> list[str]:
+    return [line for line in text.splitlines() if line[:1].isdigit()]
+
+
+def test_parts_that_have_names_are_those_that_are_felt(tmp_path: Path):
+    merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
+    texts, notes = written(work("ciel", "", "île", "eau", simplified=merged), Text(), tmp_path)
+    assert texts.keys() == {".txt", ".html"}
+    assert [each.split(".")[1] for each in items(texts[".txt"])] == [" eau", " île", " partie 1", " ciel"]
+    assert "Le long du bord inférieur" in items(texts[".txt"])[0]
+    assert '<html lang="fr">' in texts[".html"]
+    assert notes == []
+
+
+def test_parts_without_names_are_those_that_fingers_read(tmp_path: Path):
+    merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
+    texts, notes = written(work(simplified=merged), Text(), tmp_path)
+    assert [each[:12] for each in items(texts[".txt"])] == ["1. partie 3.", "2. partie 0."]
+    assert notes == ["no part has a name, so that they go by numbers; `tangible parts` shows them to be named"]
+    texts, notes = written(work(simplified=None), Text(), tmp_path)
+    assert items(texts[".txt"]) == [] and "<ol>" not in texts[".html"] and notes == []
+    assert "4 matières" in texts[".txt"]
+
+
+def test_its_language_is_that_of_the_pipeline_unless_it_is_named(tmp_path: Path):
+    names = "ciel", "lac", "île", "eau"
+    texts, _ = written(work(*names), Text(language="de"), tmp_path)
+    assert "1. eau. Am unteren Rand entlang." in texts[".txt"]
+    assert '<html lang="de">' in texts[".html"] and '<span lang="fr" dir="auto">eau</span>' in texts[".html"]
+    texts, notes = written(work(*names, language="pt-BR"), Text(), tmp_path)
+    assert "1. eau. Along the bottom." in texts[".txt"]
+    assert '<html lang="en">' in texts[".html"] and '<h1><span lang="pt-BR" dir="auto">Le lac</span>' in texts[".html"]
+    assert notes == ["described in English: there are no words for the language 'pt-BR'; there are for en, de and fr"]
+
+
+def test_paper_has_no_materials(tmp_path: Path):
+    names = "ciel", "lac", "île", "eau"
+    assert "Au toucher, comme du verre." in written(work(*names), Text(), tmp_path)[0][".txt"]
+    texts, _ = written(work(*names), Text(materials=False), tmp_path)
+    assert not any("toucher" in text or "matière" in text or "verre" in text for text in texts.values())
+
+
+def test_braille_in_lines_and_pages_that_embossers_take(tmp_path: Path):
+    exporter = Text(braille=True, cells=20, lines=6)
+    texts, [*_, note] = written(work("ciel", "lac", "île", "eau"), exporter, tmp_path)
+    assert note.startswith("braille by ")
+    pages = texts[".brf"].split("\f")
+    assert len(pages) > 2
+    assert all(page.endswith("\r\n") and page.count("\r\n") == 6 for page in pages[:-1])
+    lines = texts[".brf"].replace("\f", "").split("\r\n")
+    assert max(map(len, lines)) <= 20
+    first, *later = (line for line in lines if line)
+    assert first == as_ascii(translate("Le lac", "fr"))
+    starts = [line for line in later if not line.startswith(" ")]
+    assert sum(line.startswith(as_ascii(translate(f"{n}.", "fr"))) for line in starts for n in (1, 2, 3, 4)) == 4
+    assert all(line.startswith("  ") for line in later if line not in starts)
+
+
+def test_a_name_without_braille_is_refused_and_nothing_is_wrong_without_braille(tmp_path: Path):
+    given = work("ciel", "湖", "île", "eau")
+    assert "湖" in written(given, Text(), tmp_path)[0][".txt"]
+    with pytest.raises(BrailleError, match="'湖'"):
+        written(given, Text(braille=True), tmp_path)
+
+
+def test_a_pipeline_exports_its_words(tmp_path: Path):
+    """From the pipeline to the files, at the width of a page."""
+    picture = np.repeat(np.linspace(0, 255, 64).astype(np.uint8)[:, None], 96, axis=1)
+    scene = Scene.of(photo=picture, segments=np.repeat(np.arange(2), 32)[:, None].repeat(96, axis=1))
+    pipeline = Pipeline(
+        scene, depth=Luminance(), workspace=Workspace(width_m=0.08), title="Rampe", language="de",
+        parts={0: "oben", 1: "unten"},
+    )  # fmt: skip
+    export = pipeline.export(tmp_path, [Text(width_m=0.24)])
+    [[text, _]] = [each.files for each in export.exports]
+    lines = text.read_text().splitlines()
+    assert lines[0] == "Rampe"
+    assert lines[2].startswith("Eine Fläche, 240 mm breit und 160 mm lang")
+    assert [each[:9] for each in items(text.read_text())] == ["1. unten.", "2. oben. "]

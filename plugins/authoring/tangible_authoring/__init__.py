@@ -1,1 +1,1 @@
-"""Files to begin with: a pipeline file for a picture, its parts as a list to name and to give heights."""
+"""Starter files: a pipeline file for a picture, and its parts as a list to name and to give heights."""

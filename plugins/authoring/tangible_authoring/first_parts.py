@@ -1,4 +1,4 @@
-"""A picture's first parts, for a person to name, correct and paint over: a label picture, numbers, a pipeline file."""
+"""The first parts of a picture, for a person to name, correct and paint over: a label picture and a pipeline file."""
 
 from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
@@ -25,39 +25,39 @@ from tangible_core.plugins.registry import Registry, default_registry
 from tangible_core.scene.scene import Scene
 from tangible_report.numbered_parts import numbered_parts
 
-from .listed_parts import ListedPart, listed
+from .listed_parts import ListedPart, list_rows
 from .parts_starter import RELIEF_MM, parts_starter, title_of
 
 LABELS, NUMBERED = "parts.png", "parts-numbered.png"
 MOST_PARTS = 12
-"""As many as a person names in a few minutes, and as many as fingers tell from each other on one surface."""
+"""The most parts by default: a person names so many in a few minutes, and fingers can tell them apart."""
 SMALLEST_MM = 5.0
-"""What holds no disc so wide is felt as an edge rather than as a thing."""
-ASKED_FOR = 2
-"""Times as many segments are asked of a method: those that are too small go to their neighbours."""
+"""The diameter of a disc, mm, that each part must hold: a narrower part is felt as an edge rather than as a thing."""
+SEGMENTS_PER_PART = 2
+"""Segments that are requested of a method for each part: segments that are too small go to their neighbours."""
 STEPS_PER_M = 10_000
-"""Heights are rounded down to a tenth of a millimetre: nobody feels less, and it is easy to read."""
+"""Steps of a height in a metre: a tenth of a millimetre is easy to read, and nobody feels less."""
 
 
 @dataclass(frozen=True, eq=False)
 class FirstParts:
-    """The parts of a picture as they were found, and the files that say them."""
+    """The parts that were found in a picture, and the content of the files about them."""
 
     scene: Scene
     parts: PartMap
     listed: tuple[ListedPart, ...]
-    """What the pipeline file says of each."""
+    """The parts as the pipeline file lists them."""
     title: str
     method: str
-    """Which texture method found the segments."""
+    """The name of the texture method that found the segments."""
     contents: Mapping[Path, bytes]
-    """The files by their paths: label picture, numbers, pipeline file. That comes last: it names no file that is
-    missing."""
+    """The content of the files by path: label picture, numbers, pipeline file. The pipeline file is the last, so that
+    it never names a missing file."""
 
     def write(self, force: bool = False) -> tuple[Path, ...]:
-        """Write the files, each whole or not at all. force: over files that are there.
+        """Write the files, each whole or not at all. force: overwrite existing files.
 
-        Raises: OutputError if one is there, or the place cannot be written.
+        Raises: OutputError if a file exists, or cannot be written.
         """
         check_free(self.contents, force=force)
         for path, content in self.contents.items():
@@ -67,12 +67,12 @@ class FirstParts:
 
 
 def files_beside(file: Path) -> tuple[Path, Path, Path]:
-    """The label picture and the numbers that stand beside a pipeline file, and that itself."""
+    """Return the paths of the label picture and the numbers next to a pipeline file, and of the file itself."""
     return file.parent / LABELS, file.parent / NUMBERED, file
 
 
 def check_free(paths: Iterable[Path], pictures: Sequence[Path] = (), force: bool = False) -> None:
-    """Raises: OutputError for the first of these that is there, and for one that is a picture, force or not."""
+    """Refuse to overwrite. Raises: OutputError for the first path that exists, or is a picture, forced or not."""
     for path in paths:
         if any(path.exists() and picture.exists() and path.samefile(picture) for picture in pictures):
             raise OutputError(f"{path}: is the picture itself; --out FOLDER writes to another folder")
@@ -93,31 +93,32 @@ def first_parts(
     registry: Registry | None = None,
     cache: Cache | None = None,
 ) -> FirstParts:
-    """Parts of a photo, or of a pair, whose heights are then by depth; nothing is written (see `FirstParts.write`).
+    """Find the parts of a photo, or of a pair, whose heights are then by depth; `FirstParts.write` writes the files.
 
-    file: where the pipeline file is to stand: its paths are relative to that. method: which texture method finds the
-    segments; that of `starter` by default. overrides: `texture.key=value` each, for its options. most: parts, at most.
-    smallest_mm: what holds no disc so wide, on a surface whose longer side is 80 mm, is joined to a neighbour.
-    Raises: ConfigError for what is no picture, and for options; PictureError for a picture that cannot be read.
+    file: the path of the pipeline file; its own paths are relative to that. method: the texture method that finds the
+    segments; by default the method of `starter`. overrides: `texture.key=value` each, for its options. most: the most
+    parts. smallest_mm: parts that hold no disc of this diameter, mm, on a surface whose longer side is 80 mm, are
+    joined to a neighbour.
+    Raises: ConfigError for files that are not pictures, and for options; PictureError for an unreadable picture.
     """
     if most < 1:
-        raise ConfigError(f"count: is {most}; there is at least one part")
+        raise ConfigError(f"count: must be at least 1, not {most}")
     check_positive("smallest", smallest_mm)
     pipeline = _pipeline(pictures, file, method, overrides, most, registry or default_registry(), cache)
     scene, segments = pipeline.scene, pipeline.make("segments")
     assert scene.views is not None
     if segments is None:
         segments = SegmentMap(np.zeros(scene.shape, np.int32))
-    with _told(pipeline.engine.registry):
+    with _observers_notified(pipeline.engine.registry):
         parts = large_parts(segments, scene.views.left, smallest_mm / SIDE_MM * max(scene.shape), most)
     heights = _heights(pipeline, parts)
-    found, title = listed(parts, heights, {}), title_of(pictures[0])
-    text = parts_starter(pipeline, file, LABELS, NUMBERED, title, found)
+    rows, title = list_rows(parts, heights, {}), title_of(pictures[0])
+    text = parts_starter(pipeline, file, LABELS, NUMBERED, title, rows)
     labels, numbered, _ = files_beside(file)
     shown = numbered_parts(scene.views.left, parts)
     contents = {labels: label_picture(parts.labels), numbered: shown, file: text.encode()}
     chosen = pipeline.config.texture
-    return FirstParts(scene, parts, found, title, chosen.name if chosen else "", contents)
+    return FirstParts(scene, parts, rows, title, chosen.name if chosen else "", contents)
 
 
 def _pipeline(
@@ -129,21 +130,21 @@ def _pipeline(
     registry: Registry,
     cache: Cache | None,
 ) -> Pipeline:
-    """That of the starter file, with another texture method, or with more segments of its own."""
+    """Make the pipeline of the starter file, with another texture method, or with more segments."""
     if method:
         registry.find("texture", method)
     if other := next((each for each in overrides if not each.lstrip().startswith("texture.")), None):
         raise ConfigError(f"--set {other}: sets options of the texture method, such as texture.segments=8; edit {file}")
     if maps := [picture for picture in pictures if picture.suffix.lower() in MAPS]:
         raise ConfigError(f"{maps[0]}: is a map of heights, which are felt as they are; parts are those of a picture")
-    made = starter(pictures, file)
-    chosen = f"texture={{use: {in_yaml(method)}}}" if method else f"texture.segments={ASKED_FOR * most}"
-    config = parse_config(made.text, file, registry, [chosen, *overrides])
-    return Pipeline.of(config.changed(scene=made.scene), registry, cache)
+    template = starter(pictures, file)
+    chosen = f"texture={{use: {in_yaml(method)}}}" if method else f"texture.segments={SEGMENTS_PER_PART * most}"
+    config = parse_config(template.text, file, registry, [chosen, *overrides])
+    return Pipeline.of(config.changed(scene=template.scene), registry, cache)
 
 
 def _heights(pipeline: Pipeline, parts: PartMap) -> PartHeights:
-    """By depth where the scene shows it, else guessed."""
+    """Find the heights of parts: by depth where the scene has depth, else by a guess; rounded down, metres."""
     scene = pipeline.scene
     has_depth = scene.disparity is not None or (scene.views is not None and scene.views.right is not None)
     disparity = pipeline.make("disparity") if has_depth else None
@@ -155,13 +156,13 @@ def _heights(pipeline: Pipeline, parts: PartMap) -> PartHeights:
 
 
 @contextmanager
-def _told(registry: Registry) -> Generator[None]:
-    """Who watches hears that parts are made, which takes seconds of a large picture."""
+def _observers_notified(registry: Registry) -> Generator[None]:
+    """Notify plugins that parts are made, which takes seconds for a large picture."""
     hooks.tell(registry.plugins, "tangible_stage_started", product="parts", method="core")
     start, became = perf_counter(), "failed"
     try:
         yield
         became = "ran"
     finally:
-        outcome = Outcome("parts", became, "asked for", "core", perf_counter() - start)
+        outcome = Outcome("parts", became, "requested", "core", perf_counter() - start)
         hooks.tell(registry.plugins, "tangible_stage_finished", outcome=outcome)

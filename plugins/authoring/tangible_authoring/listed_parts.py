@@ -15,35 +15,35 @@ from tangible_core.pipeline.pipeline import Pipeline
 from tangible_report.numbered_parts import numbered_parts
 
 MOST_CELLS = 512
-"""A side: where a part lies shows on so many."""
+"""The most cells of a map's side that the place of a part is found on: more show no other place."""
 
 
 class ListedPart(NamedTuple):
-    """What there is to say of one part."""
+    """A row of the list: one part."""
 
     number: int
     name: str
-    """Empty where nobody gave it one."""
+    """The name; empty for a part without one."""
     place: str
-    """Where it lies, in words; empty where that is on no side."""
+    """The place in the picture, in words; empty for a part that lies on no side."""
     share: float
-    """Of the picture."""
+    """The share of the picture's pixels, 0 to 1."""
     height_m: float | None
-    """None where the relief is not made of parts."""
+    """The height, metres; None where the relief is not made of parts."""
     why: str
-    """Where the height comes from."""
+    """The source of the height."""
     material: str
-    """What is said of it; empty where its material comes by a rule."""
+    """The material of the file; empty where a rule decides."""
 
     @property
     def where(self) -> str:
-        """Its place and its share of the picture, in words."""
+        """The place and the share of the picture, in words."""
         share = f"{max(0.1, 100 * self.share):.{0 if self.share >= 0.01 else 1}f} % of the picture"
         return f"{self.place}, {share}" if self.place else share
 
 
 class ListedParts(NamedTuple):
-    """The parts of a pipeline's picture, and what is wrong with what the pipeline says of them."""
+    """The parts of a pipeline's picture, and the mistakes in its `parts:`."""
 
     found: PartMap
     parts: tuple[ListedPart, ...]
@@ -51,16 +51,19 @@ class ListedParts(NamedTuple):
     """The picture with their borders, numbers and names, as PNG."""
     scene_name: str
     wrong: ConfigError | None
-    """What the pipeline says of parts that there are not, or that cannot be so high."""
+    """Complaints about parts that do not exist, or that cannot be so high."""
 
 
-def listed(parts: PartMap, heights: PartHeights | None, said: Mapping[int, PartChoice]) -> tuple[ListedPart, ...]:
-    """Every part with what is said of it. heights: None where the relief is not made of parts."""
+def list_rows(parts: PartMap, heights: PartHeights | None, choices: Mapping[int, PartChoice]) -> tuple[ListedPart, ...]:
+    """Make a row for every part.
+
+    heights: None where the relief is not made of parts. choices: what the file has for parts, by number.
+    """
     step = -(-max(parts.labels.shape) // MOST_CELLS)
     shown, sizes = parts.labels[::step, ::step], part_sizes(parts)
 
-    def one(number: int) -> ListedPart:
-        choice, there = said.get(number, PartChoice()), shown == number
+    def row(number: int) -> ListedPart:
+        choice, there = choices.get(number, PartChoice()), shown == number
         return ListedPart(
             number,
             choice.name.strip(),
@@ -71,13 +74,13 @@ def listed(parts: PartMap, heights: PartHeights | None, said: Mapping[int, PartC
             choice.material or "",
         )
 
-    return tuple(map(one, range(parts.count)))
+    return tuple(map(row, range(parts.count)))
 
 
 def list_parts(pipeline: Pipeline) -> ListedParts:
-    """The parts of this pipeline's picture, also where what it says of parts is wrong.
+    """List the parts of a pipeline's picture, even where its `parts:` is wrong.
 
-    Raises: ConfigError for a scene without segments, PictureError for more than can be felt; TangibleError as
+    Raises: ConfigError for a scene without segments, PictureError for too many parts; TangibleError as
     `Pipeline.make`.
     """
     config, scene = pipeline.config, pipeline.scene
@@ -88,16 +91,16 @@ def list_parts(pipeline: Pipeline) -> ListedParts:
         raise ConfigError(
             f"{where}the scene has no parts; give it a picture with `segments: parts.png`, or a `texture:` method"
         )
-    parts, said = parts_of(segments), config.parts or {}
+    parts = parts_of(segments)
     heights = None
     if config.heights is not None:
         given_m = {number: height_m for number, height_m in config.given_heights_m.items() if number < parts.count}
         disparity = alone.make("disparity") if config.heights.by == "depth" else None
         heights = heights_of(parts, config.heights, config.top_m, given_m, disparity, scene.shown)
-    found = listed(parts, heights, said)
-    names = [each.name for each in found]
+    rows = list_rows(parts, heights, config.parts or {})
+    names = [each.name for each in rows]
     numbered = numbered_parts(scene.views.left, parts, names)
-    return ListedParts(parts, found, numbered, scene.name, _wrong(config, parts))
+    return ListedParts(parts, rows, numbered, scene.name, _wrong(config, parts))
 
 
 def _wrong(config: PipelineConfig, parts: PartMap) -> ConfigError | None:

@@ -1,4 +1,4 @@
-"""The pipeline file for a picture in parts: commented, with a line a part, where it lies and what its height is."""
+"""The commented pipeline file for a picture in parts, with a line for each part: its place and its height."""
 
 import os
 import re
@@ -17,24 +17,26 @@ from tangible_core.scene.scene_files import SceneFiles
 from .listed_parts import ListedPart
 
 RELIEF_MM = 6.0
+"""The height of the whole relief, mm: as `workspace` has it for parts."""
 GUESSED = "it is a guess, as a picture does not tell what stands in front of what."
 MEASURED = "it is by depth, of which this is the median over the part."
 
 
 def parts_starter(
-    pipeline: Pipeline, file: Path, labels: str, numbered: str, title: str, found: Sequence[ListedPart]
+    pipeline: Pipeline, file: Path, labels: str, numbered: str, title: str, listed: Sequence[ListedPart]
 ) -> str:
-    """The text of a pipeline file for these parts, which stands at `file`, the pictures of these names beside it."""
+    """Write a pipeline file at `file` for these parts, with pictures of these names next to it."""
     scene, heights = pipeline.scene, HeightChoice(by="given")
     rows, columns = scene.shape
     longer = max(rows, columns)
     above_mm = 1000 * (heights.bulge_m + heights.detail_m)
-    guessed = all("guess" in each.why for each in found)
+    guessed = all("guess" in each.why for each in listed)
     depth = pipeline.config.depth
-    said = {
-        "name": Path(scene.name).name, "file": file, "columns": columns, "rows": rows, "count": _counted(len(found)),
+    values = {
+        "name": Path(scene.name).name, "file": file, "columns": columns, "rows": rows,
+        "count": _count_in_words(len(listed)),
         "labels": labels, "numbered": numbered, "scene": _scene_in_yaml(scene, file.parent, labels),
-        "title": in_yaml(title), "heights": GUESSED if guessed else MEASURED, "parts": _lines(found),
+        "title": in_yaml(title), "heights": GUESSED if guessed else MEASURED, "parts": _lines(listed),
         "round_mm": f"{1000 * heights.round_m:g}", "bulge_mm": f"{1000 * heights.bulge_m:g}",
         "detail_mm": f"{1000 * heights.detail_m:g}", "relief_mm": f"{RELIEF_MM:g}",
         "top_mm": f"{RELIEF_MM - above_mm:g}", "width_mm": f"{SIDE_MM * columns / longer:.3g}",
@@ -42,11 +44,11 @@ def parts_starter(
         "depth": f"depth: {{use: {depth.name}}}" if depth and not guessed else "",
     }  # fmt: skip
     text = files("tangible_core.pipeline").joinpath("starter_parts.yaml").read_text(encoding="utf-8")
-    return re.sub(r"\n{3,}", "\n\n", Template(text).substitute(said))
+    return re.sub(r"\n{3,}", "\n\n", Template(text).substitute(values))
 
 
 def title_of(picture: Path) -> str:
-    """A title by the name of a file: words, the first letter large.
+    """Make a title of the name of a file: words, the first letter large.
 
     >>> title_of(Path("old/girl_with-a pearl.jpg")), title_of(Path("IMG_2041.JPG"))
     ('Girl with a pearl', 'IMG 2041')
@@ -55,38 +57,38 @@ def title_of(picture: Path) -> str:
     return words[:1].upper() + words[1:]
 
 
-def _counted(parts: int) -> str:
+def _count_in_words(parts: int) -> str:
     return f"{parts} part{'s' * (parts != 1)}"
 
 
-def _lines(found: Sequence[ListedPart]) -> str:
+def _lines(listed: Sequence[ListedPart]) -> str:
     """Write a line for each part, with its place and the reason of its height."""
-    parts = {each.number: {"name": "", "height_m": f"{1000 * (each.height_m or 0):.1f} mm"} for each in found}
-    comments = {each.number: f"{each.where}, {_briefly(each.why)}" for each in found}
+    parts = {each.number: {"name": "", "height_m": f"{1000 * (each.height_m or 0):.1f} mm"} for each in listed}
+    comments = {each.number: f"{each.where}, {_briefly(each.why)}" for each in listed}
     return part_lines(parts, comments).removesuffix("\n")
 
 
 def _briefly(why: str) -> str:
-    """What a height comes from, without the details."""
+    """Return the source of a height, without the details."""
     return re.split("[:;]", why)[0]
 
 
 def _scene_in_yaml(scene: Scene, folder: Path, labels: str) -> str:
-    """The scene's files with the label picture, as a file in this folder names them."""
-    installed = isinstance(scene.files, str)  # with this program, and never beside the file
-    found = builtin_files(scene.files) if isinstance(scene.files, str) else scene.files
-    assert found is not None
+    """Write the scene's files, with the label picture, relative to this folder."""
+    installed = isinstance(scene.files, str)  # a builtin scene's files never move with the pipeline file
+    paths = builtin_files(scene.files) if isinstance(scene.files, str) else scene.files
+    assert paths is not None
     defaults = {name: field.default for name, field in SceneFiles.model_fields.items()}
-    named = {name: value for name, value in found if value != defaults[name]}
-    said = {
+    named = {name: value for name, value in paths if value != defaults[name]}
+    written = {
         name: _relative(value, folder) if isinstance(value, Path) and not installed else f"{value}"
         for name, value in named.items()
     }
-    return f"{{{', '.join(f'{name}: {in_yaml(value)}' for name, value in {**said, 'segments': labels}.items())}}}"
+    return f"{{{', '.join(f'{name}: {in_yaml(value)}' for name, value in {**written, 'segments': labels}.items())}}}"
 
 
 def _relative(path: Path, folder: Path) -> str:
-    """As a file in this folder names it: the same when both are moved together."""
+    """Return a path relative to this folder, so that both can be moved together."""
     here, there = path.absolute(), folder.absolute()
     if here.is_relative_to(there):
         return here.relative_to(there).as_posix()

@@ -1,4 +1,4 @@
-"""The numbers of parts after their label picture was painted over: told, drawn again, and followed by the file."""
+"""The numbers of parts after their label picture was painted over: reported, drawn again, followed by the file."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import ExitStack
@@ -18,11 +18,12 @@ from tangible_report.numbered_parts import Before, as_drawn
 from .first_parts import check_free
 from .listed_parts import ListedPart, ListedParts, list_parts
 
-MOST_TOLD = 6
+MOST_NAMED = 6
+"""The most parts that a message names: more do not fit its line."""
 
 
 class Moved(NamedTuple):
-    """A part of which the file says something, and the number that it has now; None where it is no more."""
+    """A part of the file, and the number that it has now; None for a part that is gone."""
 
     before: int
     now: int | None
@@ -30,16 +31,16 @@ class Moved(NamedTuple):
 
 
 class Numbers(NamedTuple):
-    """The parts of a pipeline file, what they were when they were last drawn, and what was done about it."""
+    """The parts of a pipeline file, their numbers when they were last drawn, and the files written since."""
 
     listed: ListedParts
     before: tuple[Before, ...] | None
-    """Of each part; None where nothing is known of before."""
+    """The earlier number of each part; None where the earlier numbers are unknown."""
     moved: list[Moved]
     title: str
     written: tuple[Path, ...]
     wrong: ConfigError | None
-    """What is left to be put right, with the cure."""
+    """The mistakes that are left, with the cure."""
 
 
 def draw_numbers(
@@ -53,9 +54,9 @@ def draw_numbers(
 ) -> Numbers:
     """List the parts of a pipeline file, and draw their numbers and names at `numbered`.
 
-    Where parts have other numbers than those that were drawn there, and the file says something of these, nothing is
-    drawn: with `renumber` what the file says follows them first, with `force` the numbers alone are drawn.
-    Raises: OutputError for another file at that place, unless forced; ConfigError and others as `list_parts`.
+    Where the numbers differ from those that were drawn there, and the file lists such parts, nothing is drawn: with
+    `renumber` the file is corrected first, with `force` the numbers alone are drawn.
+    Raises: OutputError for another file at `numbered`, unless forced; ConfigError and others as `list_parts`.
     """
     drawn = as_drawn(numbered)
     if drawn is None:
@@ -65,7 +66,7 @@ def draw_numbers(
     listed = list_parts(Pipeline.of(config, default_registry(), cache))
     before = drawn.before(listed.found) if drawn else None
     by_rules = {rule.part: "" for rule in config.materials.rules if isinstance(rule.part, int)}
-    moved = moves({**by_rules, **said_of_parts(text, file)}, before or ())
+    moved = moves({**by_rules, **parts_in(text, file)}, before or ())
     title = config.title or Path(listed.scene_name).name
     if moved and not (renumber or force):
         wrong = ConfigError(
@@ -76,7 +77,7 @@ def draw_numbers(
     contents = {numbered: listed.numbered}
     if moved and renumber and before:
         _check_rules(file, by_rules, moved)
-        text = renumbered(text, file, before, listed.parts)
+        text = renumber_parts(text, file, before, listed.parts)
         config = parse_config(text, file, default_registry(), overrides)
         listed = list_parts(Pipeline.of(config, default_registry(), cache))
         contents = {numbered: listed.numbered, file: text.encode()}
@@ -85,7 +86,7 @@ def draw_numbers(
 
 
 def _check_rules(file: Path, by_rules: Collection[int], moved: Iterable[Moved]) -> None:
-    """Raises: ConfigError for a rule that names by its number a part that has another one now."""
+    """Refuse rules for parts by numbers that have changed. Raises: ConfigError."""
     if each := next((each for each in moved if each.before in by_rules), None):
         raise ConfigError(
             f"{file}: a rule of materials.rules is for part {each.before} by its number, which has changed; give the "
@@ -94,7 +95,7 @@ def _check_rules(file: Path, by_rules: Collection[int], moved: Iterable[Moved]) 
 
 
 def _write_together(contents: Mapping[Path, bytes]) -> None:
-    """Write all or none: were one written alone, the numbers would be moved twice. Raises: OutputError."""
+    """Write all files or none: one file alone would move the numbers twice. Raises: OutputError."""
     with ExitStack() as stack:
         for path, content in contents.items():
             file = stack.enter_context(atomic_write(path))
@@ -102,44 +103,44 @@ def _write_together(contents: Mapping[Path, bytes]) -> None:
             file.flush()
 
 
-def moves(said: Mapping[int, Any], before: Sequence[Before]) -> list[Moved]:
-    """The parts that the file says something of and that have another number now, or none.
+def moves(written: Mapping[int, Any], before: Sequence[Before]) -> list[Moved]:
+    """Find the parts of the file that have another number now, or are gone.
 
-    said: by the numbers of before, as the file has it. before: of each part that there is; none where that is unknown.
+    written: the file's parts by their earlier numbers. before: the earlier number of each part; empty if unknown.
     """
     now = {each.number: number for number, each in enumerate(before) if each.number is not None}
-    found = (Moved(number, now.get(number), _name(choice)) for number, choice in said.items())
+    found = (Moved(number, now.get(number), _name(choice)) for number, choice in written.items())
     return [each for each in found if before and each.now != each.before]
 
 
 def in_words(moved: Sequence[Moved]) -> str:
-    """Which parts have other numbers than before.
+    """Name the parts whose numbers have changed.
 
     >>> in_words([Moved(2, 3, "head"), Moved(3, None, "")])
     'numbers of parts have changed: 2 (head) is now 3, 3 is no more'
     """
-    said = (
+    changes = (
         f"{each.before}{each.name and f' ({each.name})'} is {'no more' if each.now is None else f'now {each.now}'}"
-        for each in moved[:MOST_TOLD]
+        for each in moved[:MOST_NAMED]
     )
-    more = [f"and {len(moved) - MOST_TOLD} more"] if len(moved) > MOST_TOLD else []
-    return f"numbers of parts have changed: {', '.join([*said, *more])}"
+    more = [f"and {len(moved) - MOST_NAMED} more"] if len(moved) > MOST_NAMED else []
+    return f"numbers of parts have changed: {', '.join([*changes, *more])}"
 
 
-def said_of_parts(text: str, path: Path) -> dict[int, Any]:
-    """What a pipeline file says of each part, as plain values. Raises: ConfigError if it is no YAML."""
+def parts_in(text: str, path: Path) -> dict[int, Any]:
+    """Read the parts of a pipeline file as plain values. Raises: ConfigError if it is not YAML."""
     block = plain(parse_source(text, path, "a configuration is a mapping that starts with `scene:`").tree).get("parts")
     return cast("dict[int, Any]", block) if isinstance(block, dict) else {}
 
 
-def renumbered(text: str, path: Path, before: Sequence[Before], found: Sequence[ListedPart]) -> str:
-    """The text with a line for each part that there is, which says what it said by the number of before.
+def renumber_parts(text: str, path: Path, before: Sequence[Before], found: Sequence[ListedPart]) -> str:
+    """Return the text with a line for each part, which has the name, height and material of its earlier number.
 
-    A part that is new has the height of the one that it was cut from, and no name.
+    A new part has the height of the part that it was cut from, and no name.
     Raises: ConfigError where `parts:` does not stand in lines of its own.
     """
-    said = said_of_parts(text, path)
-    parts = {number: _of(said, each) for number, each in enumerate(before)}
+    written = parts_in(text, path)
+    parts = {number: _choice_of(written, each) for number, each in enumerate(before)}
     comments = {part.number: _comment(was, part) for was, part in zip(before, found, strict=True)}
     try:
         return with_parts(text, path, parts, comments)
@@ -147,10 +148,10 @@ def renumbered(text: str, path: Path, before: Sequence[Before], found: Sequence[
         raise ConfigError(f"{error}; number them by hand, as the table says") from error
 
 
-def _of(said: Mapping[int, Any], before: Before) -> Any:
+def _choice_of(written: Mapping[int, Any], before: Before) -> Any:
     if before.number is not None:
-        return said.get(before.number, {"name": ""})
-    height = _block(said.get(before.cut_from)).get("height_m")
+        return written.get(before.number, {"name": ""})
+    height = _block(written.get(before.cut_from)).get("height_m")
     return {"name": ""} if height is None else {"name": "", "height_m": height}
 
 
@@ -160,7 +161,7 @@ def _comment(before: Before, part: ListedPart) -> str:
 
 
 def _block(choice: Any) -> dict[str, Any]:
-    """What is said of a part, in full."""
+    """Return the block of a part, of which a word alone is the name."""
     return cast("dict[str, Any]", choice) if isinstance(choice, dict) else {"name": choice}
 
 

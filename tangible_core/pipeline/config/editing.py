@@ -43,7 +43,7 @@ def _parts_of(key: str | Location) -> Location:
 
 
 def _is_within_list(key: str | Location) -> bool:
-    """Whether the key is an option of a method in a list, such as `export.swell.page`."""
+    """Return True for an option of a method in a list, such as `export.swell.page`."""
     parts = _parts_of(key)
     return len(parts) > 2 and isinstance(KEYS.get(parts[0]), MethodList)
 

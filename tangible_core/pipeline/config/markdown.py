@@ -77,7 +77,7 @@ class Option(NamedTuple):
     name: str
     unit: str
     values: str
-    """What may be written, with bounds."""
+    """The values that may be written, with bounds."""
     default: str
     meaning: str
 

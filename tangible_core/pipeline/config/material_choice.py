@@ -13,7 +13,7 @@ from ...scene.workspace import Section
 
 
 class MaterialChoice(Section):
-    """Which material each segment gets; each part, where `parts:` or `heights:` is."""
+    """The material of each segment; of each part, with `parts:` or `heights:`."""
 
     rules: tuple[MaterialRule, ...] = ()
     """Rules, which decide first; of several that fit a segment or a part, the first one wins. Before them goes what
@@ -22,7 +22,7 @@ class MaterialChoice(Section):
         Annotated[Literal["roughness", "rules"], Tag(":word")] | Annotated[dict[int, str], Tag(":labels")],
         Discriminator(lambda value: ":labels" if isinstance(value, dict) else ":word"),
     ] = "roughness"
-    """How segments without a rule get a material. `roughness`: by rank, the roughest segment of the picture gets the
+    """The choice for segments without a rule. `roughness`: by rank, the roughest segment of the picture gets the
     roughest material. A map: from label to material, for all parts of that segment. `rules`: not at all, they get
     `default`."""
     default: str = NEUTRAL

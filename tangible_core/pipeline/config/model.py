@@ -65,7 +65,7 @@ class PipelineConfig(BaseModel):
     title: Annotated[str, Field(max_length=MOST_TITLE, coerce_numbers_to_str=True), NULL_IS_DEFAULT, Word()] = (
         ""  # a title may be a year
     )
-    """What the picture is called, in words of your own; empty for the name of its file."""
+    """The name of the picture, in your own words; empty for the name of its file."""
     language: Annotated[
         str, Field(json_schema_extra={"pattern": LANGUAGE_TAG}), AfterValidator(_check_tag), NULL_IS_DEFAULT, Word()
     ] = "en"
@@ -76,8 +76,8 @@ class PipelineConfig(BaseModel):
         Mapping[int, PartChoice] | None,
         PartsBlock("A word alone is a name (`{0: wall, 6: helmet}`), or ([more](parts.md)):"),
     ] = None
-    """What is said of the connected parts of the segments, by number: parts are numbered from 0 in the order of their
-    first pixels, row by row. With it, materials are one a part."""
+    """The names, heights and materials of the connected parts of the segments, by number: parts are numbered from 0 in
+    the order of their first pixels, row by row. With it, each part has one material."""
     heights: Annotated[HeightChoice | None, Block("A word alone is `by` (`heights: given`), or:", word="by")] = None
     """The relief is made of parts, each of one height, with rounded rims and a little of the picture's light, in place
     of depth or brightness; `null` switches it off."""
@@ -89,7 +89,7 @@ class PipelineConfig(BaseModel):
     workspace: Annotated[Workspace, Block()] = Workspace()
     """The size of the surface under the hand."""
     mapping: Annotated[WorkspaceMapping, Block()] = WorkspaceMapping()
-    """Where the surface lies in the device's workspace, and how the hand moves over it."""
+    """The place of the surface in the device's workspace, and how the hand moves over it."""
     materials: Annotated[
         MaterialChoice,
         Block("A map from label to material (`{0: ice, 1: sand}`), or:", labels="by", check=check_material_names),
@@ -104,7 +104,7 @@ class PipelineConfig(BaseModel):
     device: Annotated[NamedMethod[HapticDevice] | None, MethodBlock()] = None
     """The device that the surface is felt with."""
     export: Annotated[tuple[NamedMethod[Exporter], ...], MethodList("[More](export.md).")] = ()
-    """What `tangible export` writes: a list of names of exporters, `[stl, swell]`, or of blocks with options,
+    """The files that `tangible export` writes: a list of names of exporters, `[stl, swell]`, or of blocks with options,
     `[{use: pins, display: monarch}]`."""
     safety: Annotated[Safety, Block("[Why](safety.md).")] = Safety()
     """The guard between every force law and every device."""
@@ -122,7 +122,7 @@ class PipelineConfig(BaseModel):
 
     @property
     def by_parts(self) -> bool:
-        """Whether materials are one a part, and labels of the surface the numbers of parts."""
+        """True where each part has a material, and labels of the surface are numbers of parts."""
         return self.parts is not None or self.heights is not None or self.simplify is not None
 
     @property
@@ -193,7 +193,7 @@ class PipelineConfig(BaseModel):
         return {name: KEYS[name].write(values[name]) for name in shown}
 
     def _is_off(self, name: str) -> bool:
-        """Whether `null` must stand in the file, because without the key the heights of parts would be a mistake."""
+        """Return True for `heights: null`, without which the heights of parts would be a mistake."""
         return name == "heights" and self.heights is None and bool(self.given_heights_m)
 
     def as_yaml(self, leave_out: Collection[str] = ()) -> str:

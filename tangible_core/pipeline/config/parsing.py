@@ -44,7 +44,7 @@ def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[
             values[name] = key.read(reading, source.tree[name])
         elif key.missing:
             source.complain((), key.missing)
-    values["measured"] = _measured(source, values.get("scene"))
+    values["measured"] = _size_of_heights(source, values.get("scene"))
     values = {name: value for name, value in values.items() if value is not None}
     if "scene" in values:
         for location, wrong in wrong_of_parts(PipelineConfig(path=path, source=source, **values)):
@@ -92,7 +92,7 @@ def _override(source: Source, text: str) -> None:
     source.override(text, shorthand, place)
 
 
-def _measured(source: Source, scene: Any) -> Any:
+def _size_of_heights(source: Source, scene: Any) -> Any:
     try:
         return measured(scene) if isinstance(scene, SceneFiles) else None
     except PictureError as error:

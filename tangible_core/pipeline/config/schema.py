@@ -27,7 +27,7 @@ def json_schema(registry: Registry | None = None, distribution: str | None = "ta
         "type": "object",
         "required": [name for name in KEYS if PipelineConfig.model_fields[name].is_required()],
         "additionalProperties": False,
-        "properties": {name: key.described(forms) for name, key in KEYS.items()},
+        "properties": {name: key.schema_of_field(forms) for name, key in KEYS.items()},
         "$defs": forms.definitions,
     }
 
@@ -42,7 +42,12 @@ def stage_schema(
     if kind not in (known := [name for name, key in KEYS.items() if isinstance(key, MethodBlock | MethodList)]):
         raise UnknownMethod("stage", kind, known)
     forms = Forms(registry or default_registry(), distribution)
-    return {"$schema": DIALECT, "title": title_of(kind), **KEYS[kind].described(forms), "$defs": forms.definitions}
+    return {
+        "$schema": DIALECT,
+        "title": title_of(kind),
+        **KEYS[kind].schema_of_field(forms),
+        "$defs": forms.definitions,
+    }
 
 
 def method_schema(kind: str, name: str, registry: Registry | None = None) -> dict[str, Any]:

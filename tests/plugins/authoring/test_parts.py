@@ -39,7 +39,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def paint(labels: Path, box: tuple[int, int, int, int], colour: int) -> None:
-    """As a paint program does that keeps the palette."""
+    """Paint a box, as a paint program does that keeps the palette."""
     with Image.open(labels) as image:
         ImageDraw.Draw(image).rectangle(box, fill=colour)
         image.save(labels)
@@ -51,7 +51,7 @@ def well(done: Done) -> Done:
 
 
 @pytest.mark.slow
-def test_a_picture_becomes_files_that_run_as_they_stand(folder: Path):
+def test_picture_divided_into_parts_gives_files_that_run(folder: Path):
     done = well(tangible("parts", "still.png", cwd=folder))
     assert "still.png is divided into 3 parts" in done.stdout
     assert all(f"written: {name}" in done.stdout for name in HERE)
@@ -67,7 +67,7 @@ def test_a_picture_becomes_files_that_run_as_they_stand(folder: Path):
     assert wall < vase, "the vase stands before the wall"
 
 
-def test_each_part_has_a_line_that_says_where_it_lies(folder: Path):
+def test_part_line_says_where_the_part_lies(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     wall, vase, floor = [line for line in (folder / "still.yaml").read_text().splitlines() if line.startswith("  ")][:3]
     assert wall.startswith('  0: {name: "", height_m: 0.0 mm}   # ')
@@ -75,7 +75,7 @@ def test_each_part_has_a_line_that_says_where_it_lies(folder: Path):
     assert "# in the middle, " in vase and "# along the bottom, " in floor
 
 
-def test_nothing_is_written_over_that_is_there(folder: Path):
+def test_existing_file_without_force_is_kept(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     before = {name: (folder / name).read_bytes() for name in HERE}
     again = tangible("parts", "still.png", "--count", 2, cwd=folder)
@@ -91,7 +91,7 @@ def test_nothing_is_written_over_that_is_there(folder: Path):
     assert "parts-numbered.png: is there already" in kept.stderr and not (folder / "parts.png").exists()
 
 
-def test_the_picture_itself_is_never_written_over(folder: Path):
+def test_picture_itself_is_never_overwritten(folder: Path):
     (folder / "still.png").rename(folder / "parts.png")
     before = (folder / "parts.png").read_bytes()
     done = tangible("parts", "parts.png", "--force", cwd=folder)
@@ -99,7 +99,7 @@ def test_the_picture_itself_is_never_written_over(folder: Path):
     assert "is the picture itself; --out FOLDER" in done.stderr
 
 
-def test_in_another_folder_the_file_finds_its_picture(folder: Path):
+def test_pipeline_file_in_another_folder_finds_its_picture(folder: Path):
     done = well(tangible("parts", "still.png", "--out", "my parts/of it", "--json", cwd=folder))
     said = json.loads(done.stdout)
     assert [Path(each).name for each in said["files"]] == list(HERE) and said["title"] == "Still"
@@ -117,7 +117,7 @@ def test_in_another_folder_the_file_finds_its_picture(folder: Path):
         (("nothing.yaml",), "nothing.yaml: there is no such file"),
         (("map.npy",), "is a map of heights, which are felt as they are; parts are those of a picture"),
         (("still.png", "--method", "gradent"), "no texture method is named 'gradent' (did you mean 'gradient'?)"),
-        (("still.png", "--count", 0), "count: is 0; there is at least one part"),
+        (("still.png", "--count", 0), "count: must be at least 1, not 0"),
         (("still.png", "--smallest", "nan"), "smallest: is nan; it must be positive and finite"),
         (("still.png", "--set", "render.use=proxy"), "--set render.use=proxy: sets options of the texture method"),
         (("still.png", "--set", "texture.sigma_px=-1"), "texture.sigma_px"),
@@ -127,7 +127,7 @@ def test_in_another_folder_the_file_finds_its_picture(folder: Path):
         (("bare.yaml", "bare.yaml"), "name one picture, left and right, or one pipeline file"),
     ],
 )
-def test_a_mistake_is_one_line_with_the_cure(folder: Path, words: tuple[object, ...], said: str):
+def test_mistake_in_arguments_gives_one_line_with_the_cure(folder: Path, words: tuple[object, ...], said: str):
     np.save(folder / "map.npy", np.eye(9))
     write_png(folder / "small.png", still_life()[::2, ::2])
     (folder / "bare.yaml").write_text("scene: {photo: still.png}\nwant: segments\n")
@@ -136,7 +136,7 @@ def test_a_mistake_is_one_line_with_the_cure(folder: Path, words: tuple[object, 
     assert said in done.stderr and not (folder / "new").exists()
 
 
-def test_methods_and_how_many(folder: Path):
+def test_method_and_count_limit_the_parts(folder: Path):
     rng = np.random.default_rng(0)
     grain = np.kron(rng.integers(0, 255, (4, 5)), np.ones((30, 30))).astype(np.uint8)
     write_png(folder / "grain.png", grain)
@@ -148,7 +148,7 @@ def test_methods_and_how_many(folder: Path):
 
 
 @pytest.mark.parametrize("picture", [np.full((1, 1), 9), np.full((30, 40), 200)])
-def test_what_has_nothing_to_divide_is_one_part(folder: Path, picture: np.ndarray):
+def test_uniform_picture_is_one_part(folder: Path, picture: np.ndarray):
     write_png(folder / "flat.png", picture.astype(np.uint8))
     done = well(tangible("parts", "flat.png", cwd=folder))
     assert "flat.png is one part" in done.stdout
@@ -156,7 +156,7 @@ def test_what_has_nothing_to_divide_is_one_part(folder: Path, picture: np.ndarra
 
 
 @pytest.mark.slow
-def test_a_pair_has_heights_by_depth(folder: Path):
+def test_pair_has_heights_by_depth(folder: Path):
     wall = np.random.default_rng(5).integers(0, 255, (120, 170), dtype=np.uint8)
     left, right = wall[:, :160].copy(), wall[:, 4:164].copy()
     left[30:90, 60:110] = 255 - wall[30:90, 60:110] // 4
@@ -172,14 +172,14 @@ def test_a_pair_has_heights_by_depth(folder: Path):
     well(tangible("plan", "left.yaml", "--set", "heights.by=depth", cwd=folder))
 
 
-def test_a_builtin_scene(folder: Path):
+def test_builtin_scene_is_divided(folder: Path):
     well(tangible("parts", "builtin/coins", "--out", "c", cwd=folder))
     well(tangible("plan", "c/coins.yaml", cwd=folder))
 
 
 @pytest.mark.slow
-def test_painted_run_corrected_run(folder: Path):
-    """Somebody gives names, splits the wall, is told that numbers changed, lets the file follow, and goes on."""
+def test_painted_parts_are_renumbered_on_request(folder: Path):
+    """A person gives names, splits the wall, reads that numbers changed, lets the file follow, and goes on."""
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
     named = file.read_text().replace('0: {name: ""', "0: {name: wall").replace('1: {name: ""', "1: {name: vase")
@@ -211,7 +211,7 @@ def test_painted_run_corrected_run(folder: Path):
     assert file.read_text() == after, "once is enough"
 
 
-def test_painted_parts_that_are_no_more(folder: Path):
+def test_removed_part_is_reported_until_corrected(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
     file.write_text(file.read_text().replace('2: {name: ""', "2: {name: floor"))
@@ -225,7 +225,7 @@ def test_painted_parts_that_are_no_more(folder: Path):
     assert "written: parts-numbered.png" in alone.stdout
 
 
-def test_a_rule_by_number_is_not_left_behind(folder: Path):
+def test_rule_by_an_old_number_is_refused(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
     rules = "materials: {rules: [{part: 1, material: glass}]}"
@@ -237,7 +237,7 @@ def test_a_rule_by_number_is_not_left_behind(folder: Path):
     assert file.read_text() == before
 
 
-def test_parts_in_one_line_are_left_to_the_user(folder: Path):
+def test_parts_on_one_line_are_not_renumbered(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
     head, _, rest = file.read_text().partition("parts:\n")
@@ -250,7 +250,7 @@ def test_parts_in_one_line_are_left_to_the_user(folder: Path):
     assert (file.read_text(), (folder / "parts-numbered.png").read_bytes()) == (before, drawn)
 
 
-def test_a_picture_of_numbers_that_somebody_painted_on_is_theirs(folder: Path):
+def test_painted_picture_of_numbers_without_force_is_kept(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     numbered = folder / "parts-numbered.png"
     with Image.open(numbered) as image:
@@ -266,7 +266,7 @@ def test_a_picture_of_numbers_that_somebody_painted_on_is_theirs(folder: Path):
     well(tangible("parts", "still.yaml", "--force", cwd=folder))
 
 
-def test_on_a_full_disk_files_are_whole_or_not_there(folder: Path):
+def test_full_disk_leaves_whole_files_or_none(folder: Path):
     found = first_parts([folder / "still.png"], folder / "still.yaml")
     sizes = [len(content) for content in found.contents.values()]
     assert [*found.contents] == [folder / name for name in HERE] and sizes[0] < sizes[1]
@@ -286,7 +286,7 @@ def test_on_a_full_disk_files_are_whole_or_not_there(folder: Path):
 
 
 @pytest.mark.slow
-def test_names_go_from_the_file_through_a_session_to_its_replay(folder: Path):
+def test_names_of_parts_reach_recording_and_replay(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
     file.write_text(
@@ -311,7 +311,7 @@ def test_names_go_from_the_file_through_a_session_to_its_replay(folder: Path):
 
 
 @pytest.mark.slow
-def test_a_beacon_is_asked_for_by_name_and_said_by_the_recording_and_its_replay(folder: Path):
+def test_beacon_by_name_reaches_recording_and_replay(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
     file.write_text(file.read_text().replace('1: {name: ""', "1: {name: vase").replace("path: raster", "path: press"))
@@ -330,7 +330,7 @@ def test_a_beacon_is_asked_for_by_name_and_said_by_the_recording_and_its_replay(
     assert "no part is called 'vas' (did you mean 'vase'?); the parts are 1: 'vase'" in wrong.stderr
 
 
-def test_a_run_says_what_its_parts_are(folder: Path):
+def test_run_reports_its_parts(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
     file.write_text(file.read_text().replace('0: {name: ""', "0: {material: glass, name: '[wall]'"))

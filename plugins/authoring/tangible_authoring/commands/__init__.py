@@ -16,4 +16,4 @@ def tangible_commands(app: Typer) -> None:
     from tangible_core.cli.commands import add
 
     add("new", "tangible_authoring.commands.new:new", "Write a pipeline file for your pictures.")
-    add("parts", "tangible_authoring.commands.parts:parts", "Divide a picture into parts, to name and to give heights.")
+    add("parts", "tangible_authoring.commands.parts:parts", "Divide a picture into parts, which get names and heights.")

@@ -1,4 +1,4 @@
-"""`new`: a pipeline file to begin with."""
+"""`new`: write a starter pipeline file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def new(
         list[Path], typer.Argument(help="A picture, left and right, a map of heights, or a video.", show_default=False)
     ],
     out: Annotated[Path | None, typer.Option("--out", help="The file to write [default: NAME.yaml].")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Write over a file that is there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
 ) -> None:
     """Write a pipeline file for your pictures.
 

@@ -1,4 +1,4 @@
-"""`parts`: a picture divided into parts, to be named, corrected and painted over; those of a pipeline file, listed."""
+"""`parts`: divide a picture into parts to name, correct and paint over; list the parts of a pipeline file."""
 
 from __future__ import annotations
 
@@ -31,23 +31,23 @@ def parts(
     ],
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the files [default: the current one].")] = None,
     method: Annotated[str, typer.Option("--method", help="Texture method [default: that of `tangible new`].")] = "",
-    count: Annotated[int, typer.Option("--count", help="As many parts, at most.")] = 12,
+    count: Annotated[int, typer.Option("--count", help="The most parts.")] = 12,
     smallest: Annotated[
         float, typer.Option("--smallest", help="Width of the smallest part, mm, on a surface of 80 mm.")
     ] = 5.0,
     sets: Sets = None,
     renumber: Annotated[
         bool,
-        typer.Option("--renumber", help="Let what the pipeline file says of parts follow them."),
+        typer.Option("--renumber", help="Correct the numbers of parts in the pipeline file."),
     ] = False,
-    force: Annotated[bool, typer.Option("--force", help="Write over files that are there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite existing files.")] = False,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
-    """Divide a picture into parts, to name and to give heights.
+    """Divide a picture into parts, which get names and heights.
 
     Writes a label picture to paint on, a picture with the parts' numbers, and a pipeline file that runs as it stands.
-    Of a pipeline file, it lists the parts and draws their numbers and names.
+    For a pipeline file, it lists the parts and draws their numbers and names.
     """
     from tangible_core.pipeline.starter import are_pictures
 
@@ -74,7 +74,7 @@ def _divide(
     from ..first_parts import check_free, files_beside, first_parts
 
     file = folder / f"{pictures[0].stem}.yaml"
-    check_free(files_beside(file), pictures, force)  # before it takes any time
+    check_free(files_beside(file), pictures, force)  # before the work, which takes time
     found = first_parts(
         pictures,
         file,
@@ -86,8 +86,8 @@ def _divide(
     )
     files = found.write(force)
     if as_json:
-        said = {"title": found.title, "method": found.method, "parts": [each._asdict() for each in found.listed]}
-        show.print_json({**said, "files": [str(path) for path in files]})
+        summary = {"title": found.title, "method": found.method, "parts": [each._asdict() for each in found.listed]}
+        show.print_json({**summary, "files": [str(path) for path in files]})
         return
     if is_quiet():
         return
@@ -127,7 +127,7 @@ def _list(
     done = draw_numbers(file, path, sets, renumber=renumber, force=force, cached=not no_cache)
     found = done.listed.parts
     if as_json:
-        rows = [{**each._asdict(), "was": was and was.number} for each, was in _beside(found, done.before)]
+        rows = [{**each._asdict(), "was": was and was.number} for each, was in _with_earlier(found, done.before)]
         show.print_json({"title": done.title, "parts": rows, "files": [str(each) for each in done.written]})
     elif not is_quiet():
         show.sentence(sentences.divided(done.title, len(found)))
@@ -139,7 +139,9 @@ def _list(
         raise done.wrong
 
 
-def _beside(found: Sequence[ListedPart], before: Sequence[Before] | None) -> Iterable[tuple[ListedPart, Before | None]]:
+def _with_earlier(
+    found: Sequence[ListedPart], before: Sequence[Before] | None
+) -> Iterable[tuple[ListedPart, Before | None]]:
     return zip(found, before or [None] * len(found), strict=True)
 
 
@@ -158,7 +160,7 @@ def _print(found: Sequence[ListedPart], before: Sequence[Before] | None = None) 
             "" if each.height_m is None else f"{1000 * each.height_m:.1f}",
             escape(each.material),
         )
-        for each, was in _beside(found, before)
+        for each, was in _with_earlier(found, before)
     ]
     numbers = ("part", "was") if before else ("part",)
     show.table((*numbers, "name", "place", "% of the picture", "height mm", "material"), rows)

@@ -135,6 +135,19 @@ function numbersOf(schema: Schema, file: FileSchema): Schema[] {
   return alternatives(schema, file.$defs).filter((each) => each.type === "number" || each.type === "integer");
 }
 
+test("a key that the page has no words for has a form, with its shorthand", () => {
+  const shape = { enum: ["round", "sharp"], type: "string" };
+  const grain = { anyOf: [{ type: "object", properties: { shape } }, { enum: ["round", "sharp"] }, { type: "null" }] };
+  const proxy = { anyOf: [{ enum: ["proxy"] }, { type: "object", properties: { use: { const: "proxy" } } }] };
+  const properties: Record<string, Schema> = { title: { type: "string" }, fine_grain: grain, render: proxy, parts: grain };
+  const found = sections({ properties, $defs: {} });
+  assert.deepEqual(found.map(({ name, title, word }) => [name, title, word]), [
+    ["render", "Render", undefined],
+    ["fine_grain", "Fine grain", "shape"],
+  ]);
+  assert.deepEqual(found[1].options.map(({ name }) => name), ["shape"]);
+});
+
 test("every option of every installed method has a control that can say its default and its bounds", (context) => {
   const path = process.env.TANGIBLE_SCHEMA;
   if (!path) return context.skip("Python writes the schema: tests/ui/test_form_schema.py");

@@ -29,12 +29,12 @@ class Block(Key):
 
     @property
     def nullable(self) -> bool:
-        """Whether `null` switches off what the block describes."""
+        """True for a block that `null` switches off."""
         return type(None) in get_args(self.field.annotation)
 
     def read(self, reading: Reading, block: Any) -> Any:
         """Check the block of a file."""
-        found = self._checked(reading, block)
+        found = self._parse(reading, block)
         if found is not None and self.check is not None:
             self.check(reading.source, (self.name,), found)
         return found
@@ -44,9 +44,9 @@ class Block(Key):
         if isinstance(value, self.model):
             return value
         value = {self.labels: value} if self.labels and isinstance(value, str) else value
-        return self._checked(reading, dict(cast("Mapping[Any, Any]", value)) if isinstance(value, Mapping) else value)
+        return self._parse(reading, dict(cast("Mapping[Any, Any]", value)) if isinstance(value, Mapping) else value)
 
-    def _checked(self, reading: Reading, block: Any) -> Any:
+    def _parse(self, reading: Reading, block: Any) -> Any:
         if block is None and self.nullable:
             return None
         if self.word and isinstance(block, str):

@@ -35,7 +35,7 @@ class Forms:
 
     registry: Registry
     distribution: str | None
-    """Only methods of this distribution are described; of all that are installed when None."""
+    """The distribution whose methods are described; all that are installed when None."""
     definitions: dict[str, Any] = field(default_factory=dict[str, Any])
 
     def of(self, model: type[BaseModel]) -> dict[str, Any]:
@@ -77,14 +77,14 @@ class Key(ABC):
     note: str = ""
     """A sentence in Markdown that follows the description on the reference page."""
     name: str = ""
-    """The name of the field; `bound` fills it in."""
+    """The name of the field; `for_field` fills it in."""
     field: FieldInfo = field(default_factory=FieldInfo)
     stands_last: ClassVar[bool] = False
-    """Whether a completed file has the key behind all others."""
+    """True for a key that a completed file has behind the others."""
     missing: ClassVar[str] = ""
     """The complaint about a file without this key, for a key that every file needs."""
 
-    def bound(self, name: str, field: FieldInfo) -> Self:
+    def for_field(self, name: str, field: FieldInfo) -> Self:
         """Return this key of a field."""
         return replace(self, name=name, field=field)
 
@@ -116,7 +116,7 @@ class Key(ABC):
     def schema(self, forms: Forms) -> dict[str, Any]:
         """Return the JSON Schema of what a file may have under this key."""
 
-    def described(self, forms: Forms) -> dict[str, Any]:
+    def schema_of_field(self, forms: Forms) -> dict[str, Any]:
         """Return the JSON Schema with the description of the field."""
         return {**self.schema(forms), "description": self.field.description or ""}
 
@@ -124,7 +124,7 @@ class Key(ABC):
 def keys_of(model: type[BaseModel]) -> dict[str, Key]:
     """Return the keys of a pipeline file by name, in the order of the fields; fields without a marker are none."""
     return {
-        name: marker.bound(name, field)
+        name: marker.for_field(name, field)
         for name, field in model.model_fields.items()
         for marker in field.metadata
         if isinstance(marker, Key)

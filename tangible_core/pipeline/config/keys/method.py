@@ -26,7 +26,7 @@ class MethodBlock(Key, Unchecked):
 
     def take(self, reading: Reading, value: Any) -> Any:
         """Check the kind of a method that was made in Python."""
-        return _taken(self.name, reading, value)
+        return _name_method(self.name, reading, value)
 
     def write(self, value: NamedMethod[Any]) -> Any:
         """Write the name and all options."""
@@ -72,7 +72,7 @@ class MethodList(Key, Unchecked):
 
     def take(self, reading: Reading, value: Any) -> Any:
         """Check the kinds of methods that were made in Python."""
-        return tuple(_taken(self.name, reading, each) for each in value)
+        return tuple(_name_method(self.name, reading, each) for each in value)
 
     def write(self, value: Iterable[NamedMethod[Any]]) -> Any:
         """Write the name and all options of each."""
@@ -91,7 +91,7 @@ class MethodList(Key, Unchecked):
         return {"anyOf": [{"type": "array", "items": forms.of_kind(self.name)}, {"type": "null"}]}
 
 
-def _taken(kind: str, reading: Reading, method: Any) -> NamedMethod[Any] | None:
+def _name_method(kind: str, reading: Reading, method: Any) -> NamedMethod[Any] | None:
     """Return a method that was made in Python with its name; None after a complaint."""
     try:
         return named_method(kind, method, reading.registry)

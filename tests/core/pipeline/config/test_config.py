@@ -1,4 +1,4 @@
-"""Pipeline files: what they may say, and what is said of a wrong one."""
+"""Pipeline files: keys, overrides, and complaints about mistakes."""
 
 import json
 from pathlib import Path
@@ -30,15 +30,15 @@ PIPELINES = sorted(set(ROOT.glob("configs/*.yaml")) - set(ROOT.glob("configs/com
 
 
 @pytest.mark.parametrize("path", PIPELINES, ids=lambda path: path.name)
-def test_the_sample_configurations_are_right(path: Path):
+def test_sample_configurations_are_valid(path: Path):
     assert load_config(path, default_registry()).scene
 
 
-def test_the_embedded_demo_is_the_one_in_configs():
+def test_embedded_demo_equals_the_sample():
     assert (ROOT / "tangible_core" / "demo.yaml").read_bytes() == (ROOT / "configs" / "demo.yaml").read_bytes()
 
 
-def test_every_complaint_at_once_each_with_its_place():
+def test_complaints_come_all_at_once_with_places():
     text = """\
 scene: builtin/motorcycle
 depht: {use: opencv-sgbm}
@@ -115,13 +115,13 @@ RULES = "scene: builtin/brick\nmaterials:\n  rules:\n    - "
         ("scene: builtin/brick\nmaterials: {rules: ice}\n", "here/p.yaml:2:13", "materials.rules"),
     ],
 )
-def test_one_mistake_one_line(text: str, place: str, what: str):
+def test_mistake_gives_one_line_with_its_place(text: str, place: str, what: str):
     found = complaints(text)
     assert found[0].startswith(place + ": "), found
     assert what in "\n".join(found)
 
 
-def located(text: str, *overrides: str) -> list[Complaint]:
+def located_complaints(text: str, *overrides: str) -> list[Complaint]:
     """The complaints as a program has them, the same as in the sentences."""
     with pytest.raises(ConfigError) as error:
         parse(text, *overrides)
@@ -153,34 +153,34 @@ def located(text: str, *overrides: str) -> list[Complaint]:
         ("scene: builtin/brick\n", "workspace", (), (None, None)),
     ],
 )  # fmt: skip
-def test_a_complaint_knows_its_place(text: str, override: str | None, location: tuple, mark: tuple):
-    (found,) = located(text, *([override] if override else []))
+def test_complaint_has_location_line_and_column(text: str, override: str | None, location: tuple, mark: tuple):
+    (found,) = located_complaints(text, *([override] if override else []))
     assert (found.location, (found.line, found.column)) == (location, mark)
     assert json.loads(json.dumps(found._asdict()))["location"] == list(location)
 
 
-def test_all_complaints_have_their_places_at_once():
+def test_complaints_together_have_their_locations():
     text = "scene: builtin/brick\ndepht: x\nworkspace: {width_m: wide, relief_m: -1}\nwant: surfaces\n"
-    assert [each.location for each in located(text)] == [
+    assert [each.location for each in located_complaints(text)] == [
         ("depht",), ("want",), ("workspace", "width_m"), ("workspace", "relief_m"),
     ]  # fmt: skip
 
 
-def test_numbers_and_words_mean_what_they_look_like():
+def test_yaml_numbers_and_words_keep_their_types():
     config = parse("scene: {photo: off}\nrender: {use: penalty-gradient, stiffness_n_per_m: 1e3}\n")
     assert config.scene.photo == Path("here/off").absolute()
     assert config.render.method.stiffness_n_per_m == 1000.0
 
 
-def test_a_method_without_options_may_be_named_alone():
+def test_method_without_options_is_named_alone():
     assert parse("scene: builtin/brick\ndepth: luminance\n").depth.name == "luminance"
 
 
-def test_materials_by_label():
+def test_materials_by_label_are_read():
     assert parse("scene: builtin/brick\nmaterials: {0: ice, 2: sand}\n").materials.by == {0: "ice", 2: "sand"}
 
 
-def test_materials_by_rules():
+def test_materials_by_rules_are_read():
     rules = "{at: [1, 2.5], material: ice}, {segment: 0, material: sand}"
     text = f"scene: builtin/brick\nmaterials: {{rules: [{rules}], by: rules}}\n"
     choice = parse(text).materials
@@ -190,7 +190,7 @@ def test_materials_by_rules():
     assert (choice.by, choice.default) == ("rules", "plain")
 
 
-def test_a_completed_configuration_keeps_its_rules():
+def test_completed_configuration_keeps_its_rules():
     text = "scene: builtin/brick\nmaterials: {rules: [{colour: blue, material: water}]}"
     completed = parse(text).completed()["materials"]
     assert completed == {
@@ -198,7 +198,7 @@ def test_a_completed_configuration_keeps_its_rules():
     }  # fmt: skip
 
 
-def test_names_of_a_library_of_one_s_own_are_known(tmp_path: Path):
+def test_material_names_of_a_custom_library_are_known(tmp_path: Path):
     (tmp_path / "mine.yaml").write_text(
         "mud: {stiffness_n_per_m: 300, damping_n_s_per_m: 2, static_friction: 0.6, dynamic_friction: 0.5}\n"
     )
@@ -206,7 +206,7 @@ def test_names_of_a_library_of_one_s_own_are_known(tmp_path: Path):
     assert load_config(tmp_path / "p.yaml", default_registry()).materials.by == {0: "mud"}
 
 
-def test_scene_files():
+def test_scene_files_are_relative_to_the_pipeline_file():
     config = parse("scene: {left: a.png, right: b.png, focal_px: 900, baseline_m: 0.2}\n")
     assert isinstance(config.scene, SceneFiles)
     assert config.scene.left == Path("here/a.png").absolute()
@@ -230,12 +230,12 @@ def test_scene_files():
         ),
     ],
 )
-def test_a_complaint_has_the_words_and_places_of_the_file(text: str, says: str):
+def test_complaint_has_the_words_and_places_of_the_file(text: str, says: str):
     (found,) = complaints(text)
     assert says in found and not any(word in found for word in ("tuple", "float", "dictionary", "class", "[1]"))
 
 
-def test_an_override_goes_before_the_file_and_complains_the_same_way():
+def test_override_wins_over_the_file_and_complains_alike():
     text = "scene: builtin/brick\nrender: {use: penalty-gradient}\n"
     assert parse(text, "render.stiffness_n_per_m=500").render.method.stiffness_n_per_m == 500
     assert parse(text, "depth.use=luminance").depth.name == "luminance"
@@ -249,17 +249,17 @@ def test_an_override_goes_before_the_file_and_complains_the_same_way():
 
 
 @pytest.mark.parametrize("override", ["render", "=5", "render..x=5", "render.x=[", ""])
-def test_an_override_that_is_none(override: str):
+def test_malformed_override_is_refused(override: str):
     (found,) = complaints("scene: builtin/brick\n", override)
     assert found.startswith(f"--set {override}: ")
 
 
-def test_an_override_of_an_override():
+def test_later_override_wins():
     config = parse("scene: builtin/brick\n", "workspace.width_m=0.1", "workspace.width_m=0.2")
     assert config.workspace.width_m == 0.2
 
 
-def test_files_named_by_a_method_are_relative_to_the_pipeline_file(tmp_path: Path):
+def test_method_files_are_relative_to_the_pipeline_file(tmp_path: Path):
     (tmp_path / "p.yaml").write_text(
         "scene: builtin/brick\nmaterials: {library: mine.yaml}\ndevice: {use: mock, path: csv, csv_file: hand.csv}\n"
     )
@@ -268,20 +268,20 @@ def test_files_named_by_a_method_are_relative_to_the_pipeline_file(tmp_path: Pat
     assert config.device.method.csv_file == tmp_path / "hand.csv"
 
 
-def test_a_missing_file_is_named_with_what_is_there(tmp_path: Path):
+def test_missing_file_is_named_with_the_nearest_name(tmp_path: Path):
     (tmp_path / "feel.yaml").write_text("scene: builtin/brick\n")
     with pytest.raises(ConfigError, match=r"feeel\.yaml: there is no such file \(did you mean 'feel\.yaml'\?\)"):
         load_config(tmp_path / "feeel.yaml", default_registry())
 
 
 @pytest.mark.parametrize("content", [b"\xff\xfe\x00", b"scene: \x00"])
-def test_a_file_that_is_no_text(tmp_path: Path, content: bytes):
+def test_file_without_text_is_refused(tmp_path: Path, content: bytes):
     (tmp_path / "p.yaml").write_bytes(content)
     with pytest.raises(ConfigError, match=r"p\.yaml"):
         load_config(tmp_path / "p.yaml", default_registry())
 
 
-def test_the_completed_configuration_is_a_configuration_and_means_the_same(tmp_path: Path):
+def test_completed_configuration_is_read_back_equal(tmp_path: Path):
     from ruamel.yaml import YAML
 
     config = load_config(ROOT / "configs" / "feel.yaml", default_registry())
@@ -301,7 +301,7 @@ trees = st.recursive(
 
 
 @given(st.dictionaries(words, trees, max_size=5))
-def test_whatever_a_file_says_the_answer_is_a_configuration_or_complaints(tree: dict):
+def test_any_mapping_gives_a_configuration_or_complaints(tree: dict):
     from io import StringIO
 
     from ruamel.yaml import YAML
@@ -315,7 +315,7 @@ def test_whatever_a_file_says_the_answer_is_a_configuration_or_complaints(tree: 
 
 
 @given(st.text())
-def test_whatever_a_file_holds_the_answer_is_a_configuration_or_complaints(text: str):
+def test_any_text_gives_a_configuration_or_complaints(text: str):
     try:
         parse(text)
     except ConfigError as error:
@@ -329,7 +329,7 @@ device: {use: mock, hand: null}
 """
 
 
-def test_the_device_is_seen_through_the_mapping():
+def test_device_with_a_mapping_is_mapped():
     config = parse(MAPPED)
     assert config.felt_device is not None and config.device is not None
     assert config.felt_device.spec().workspace_m == pytest.approx((0.04, 0.04, 0.04))
@@ -338,13 +338,13 @@ def test_the_device_is_seen_through_the_mapping():
     assert again.mapping == config.mapping
 
 
-def test_without_a_mapping_the_device_is_itself():
+def test_device_without_a_mapping_is_itself():
     config = parse("scene: builtin/brick\ndevice: mock\n")
     assert config.device is not None
     assert config.felt_device is config.device.method
     assert parse("scene: builtin/brick\n").felt_device is None
 
 
-def test_a_mapping_is_checked_like_every_block():
+def test_mapping_with_a_mistake_gives_complaints():
     [line] = complaints("scene: builtin/brick\nmapping:\n  clutch: 1\n")
     assert line.startswith("here/p.yaml:3:3: mapping.clutch: unknown option (did you mean 'clutch_button'?)")

@@ -67,7 +67,7 @@ device: mock
         ({("materials", "by"): "rules"}, "mock\n", "mock\nmaterials: {by: rules}\n"),
     ],
 )  # fmt: skip
-def test_one_change_changes_one_thing(changes: dict, before: str, after: str | None):
+def test_change_of_a_key_leaves_the_rest(changes: dict, before: str, after: str | None):
     text = edited(OF_MINE, PATH, changes)
     if after is not None:
         options = "  confidence: 0.5   # half\n" if changes.get("depth.use") else ""
@@ -87,18 +87,18 @@ def _at(tree: Any, key: Any) -> Any:
     return tree
 
 
-def test_a_block_of_lines_becomes_a_line():
+def test_block_of_lines_with_a_new_value_becomes_one_line():
     text = edited(OF_MINE, PATH, {"depth": {"use": "zncc", "window_px": 9}})
     assert "# how deep\ndepth: {use: zncc, window_px: 9}\n\n# how high\n" in text
 
 
-def test_labels_are_whole_numbers():
+def test_labels_in_changes_become_whole_numbers():
     text = edited("scene: builtin/brick\n", PATH, {"materials": {"0": "ice"}})
     assert text == "scene: builtin/brick\nmaterials: {0: ice}\n"
     assert parse_config(text, PATH, default_registry()).materials.by == {0: "ice"}
 
 
-def test_a_file_that_says_nothing_yet():
+def test_empty_file_takes_changes():
     assert edited("", PATH, {"scene": "builtin/brick"}) == "scene: builtin/brick\n"
     assert edited("# mine", PATH, {"scene.photo": "a.png"}) == "# mine\nscene: {photo: a.png}\n"
     assert edited("scene: builtin/brick", PATH, {"depth": "zncc"}) == "scene: builtin/brick\ndepth: zncc\n"
@@ -120,19 +120,19 @@ LISTED = "scene: builtin/coins  # mine\nexport: [heights, {use: text, language: 
         ({"export.swell.page": "a3"}, "[heights, {use: text, language: de}, {use: swell, page: a3}]"),
     ],
 )  # fmt: skip
-def test_an_exporter_is_changed_by_its_name(changes: dict, exporters: str):
+def test_exporter_changed_by_its_name_keeps_the_list(changes: dict, exporters: str):
     text = edited(LISTED, PATH, {"scene": "builtin/brick", **changes})
     assert text == f"scene: builtin/brick  # mine\nexport: {exporters}  # for others\n"
 
 
-def test_exporters_stay_where_something_else_changes():
+def test_exporters_stay_where_another_key_changes():
     assert edited(LISTED, PATH, {"workspace.width_m": 0.1}).startswith(LISTED)
     assert edited("scene: builtin/coins\n", PATH, {"export.heights.width_m": 0.1}).endswith(
         "export: [{use: heights, width_m: 0.1}]\n"
     )
 
 
-def test_relative_files_of_an_exporter_lead_to_the_same_from_elsewhere(tmp_path: Path):
+def test_exporter_files_are_found_from_another_folder(tmp_path: Path):
     from tangible_core import Exporter
     from tangible_core.pipeline.config.editing import moved
     from tangible_core.pipeline.config.methods import NamedMethod
@@ -154,7 +154,7 @@ def test_relative_files_of_an_exporter_lead_to_the_same_from_elsewhere(tmp_path:
     assert found == text.replace("frames/", "../frames/")
 
 
-def test_what_an_alias_shares_changes_in_one_place():
+def test_alias_changed_in_one_place_leaves_the_other():
     text = "scene: builtin/brick  # mine\nmapping: &m {scale: 2}\nworkspace: {width_m: &w 0.1, relief_m: *w}\n"
     assert said(edited(text, PATH, {"workspace.relief_m": 0.2}), PATH)["workspace"] == {"width_m": 0.1, "relief_m": 0.2}
     assert said(edited(text, PATH, {"workspace.width_m": 0.2}), PATH)["workspace"] == {"width_m": 0.2, "relief_m": 0.1}
@@ -178,12 +178,12 @@ def test_what_an_alias_shares_changes_in_one_place():
         ("scene: a\n", {"depth": {1, 2, PATH.open}}, "what JSON can say"),
     ],
 )
-def test_what_cannot_be_changed_is_said(text: str, changes: dict, says: str):
+def test_impossible_change_is_refused(text: str, changes: dict, says: str):
     with pytest.raises(TangibleError, match=says):
         edited(text, PATH, changes)
 
 
-def test_numbers_that_JSON_cannot_say_are_words():
+def test_nan_and_dates_become_words_for_json():
     assert json.dumps(said("workspace: {width_m: .nan, 3: 2001-01-01}\n", PATH), allow_nan=False)
     with pytest.raises(ConfigError):
         said("scene: {", PATH)
@@ -209,7 +209,7 @@ values = st.recursive(
 
 
 @given(st.sampled_from(TEXTS), st.lists(st.tuples(keys, values | st.just(REMOVE)), min_size=1, max_size=4))
-def test_an_edited_text_says_what_was_set_and_what_it_said(text: str, changes: list):
+def test_edited_text_has_the_changes_and_the_rest(text: str, changes: list):
     tree = said(text, PATH)
     for key, value in changes:
         try:
@@ -223,7 +223,7 @@ def test_an_edited_text_says_what_was_set_and_what_it_said(text: str, changes: l
 
 
 def _set(tree: dict, parts: list[str], value: Any) -> None:
-    """What a change means, said another way: blocks down, then the key, then empty blocks up."""
+    """Apply a change in another way: blocks down, then the key, then empty blocks up."""
     name, *rest = parts
     if not rest:
         if value is REMOVE or (value is None and name in ("depth", "texture", "render", "device")):
@@ -250,12 +250,12 @@ def _set(tree: dict, parts: list[str], value: Any) -> None:
 
 
 def _json(tree: Any) -> Any:
-    return json.dumps(_worded(tree), sort_keys=True)
+    return json.dumps(_with_word_keys(tree), sort_keys=True)
 
 
-def _worded(node: Any) -> Any:
+def _with_word_keys(node: Any) -> Any:
     if isinstance(node, dict):
-        return {str(key): _worded(value) for key, value in node.items()}
+        return {str(key): _with_word_keys(value) for key, value in node.items()}
     if isinstance(node, list):
-        return [_worded(value) for value in node]
+        return [_with_word_keys(value) for value in node]
     return str(node) if isinstance(node, float) and not abs(node) < float("inf") else node

@@ -60,7 +60,7 @@ def parse(text, *overrides):
 text = "scene: builtin/brick\\ngrain: {shape: round, size_m: 2 mm}\\n"
 scene = Scene.of(height=np.eye(4))
 forms = Forms(registry, "tangible-images")
-properties = {name: KEYS[name].described(forms) for name in ("title", "grain", "workspace")}
+properties = {name: KEYS[name].schema_of_field(forms) for name in ("title", "grain", "workspace")}
 print(json.dumps({
     "home": tangible_core.__file__,
     "completed": parse(text).completed(),
@@ -81,7 +81,7 @@ print(json.dumps({
 
 @pytest.fixture(scope="module")
 def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """What a copy of the core answers in which one file has one more key."""
+    """The answers of a copy of the core, in which one file has one more key."""
     copy = tmp_path_factory.mktemp("copy")
     shutil.copytree(ROOT / "tangible_core", copy / "tangible_core", ignore=shutil.ignore_patterns("__pycache__"))
     model = (copy / MODEL).read_text(encoding="utf-8")

@@ -29,7 +29,7 @@ def validator() -> Draft202012Validator:
     sorted(set(ROOT.glob("configs/*.yaml")) - set(ROOT.glob("configs/compare-*.yaml"))),
     ids=lambda path: path.name,
 )
-def test_it_accepts_the_sample_configurations(validator: Draft202012Validator, path: Path):
+def test_schema_accepts_the_sample_configurations(validator: Draft202012Validator, path: Path):
     validator.validate(YAML(typ="safe").load(path))
 
 
@@ -54,7 +54,7 @@ def test_it_accepts_the_sample_configurations(validator: Draft202012Validator, p
         {"scene": "builtin/brick", "language": "?"},
     ],
 )
-def test_it_refuses_what_the_program_refuses(validator: Draft202012Validator, wrong: dict):
+def test_schema_refuses_what_the_program_refuses(validator: Draft202012Validator, wrong: dict):
     assert not validator.is_valid(wrong)
 
 
@@ -70,17 +70,17 @@ def test_it_refuses_what_the_program_refuses(validator: Draft202012Validator, wr
         },
     ],
 )
-def test_it_accepts_parts(validator: Draft202012Validator, right: dict):
+def test_schema_accepts_parts_in_every_form(validator: Draft202012Validator, right: dict):
     validator.validate({"scene": {"photo": "a.png", "segments": "parts.png"}, **right})
 
 
-def test_parts_and_heights_are_on_the_page():
+def test_page_has_parts_and_heights():
     page = markdown(json_schema())
     for key in ("| `name` | string |", "| `height_m` |", "| `bulge_m` |", "| `title` | string |", "| `rules.part` |"):
         assert f"\n{key}" in page
 
 
-def test_every_shipped_method_is_in_it_and_on_the_page():
+def test_schema_and_page_have_every_shipped_method():
     schema, page = json_schema(), markdown(json_schema())
     for kind in ("depth", "texture", "render", "device"):
         names = schema["properties"][kind]["anyOf"][0]["enum"]
@@ -89,7 +89,7 @@ def test_every_shipped_method_is_in_it_and_on_the_page():
         assert all(f"### {name}\n" in page for name in names)
 
 
-def test_every_option_says_what_it_means():
+def test_option_of_every_method_has_a_description():
     schema = json_schema()
     forms = [
         form for kind in ("depth", "texture", "render", "device") for form in schema["properties"][kind]["anyOf"][1:]
@@ -99,7 +99,7 @@ def test_every_option_says_what_it_means():
             assert name == "use" or option.get("description"), f"{form['title']}.{name}"
 
 
-def test_a_form_has_words_and_units():
+def test_form_has_titles_and_units():
     schema = json_schema()
     (proxy,) = (form for form in schema["properties"]["render"]["anyOf"] if form.get("title") == "proxy")
     stiffness = proxy["properties"]["stiffness_n_per_m"]
@@ -127,14 +127,14 @@ def _options(node: object) -> Iterator[tuple[str, dict]]:
 
 
 @pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
-def test_a_stage_has_a_schema_of_its_own(kind: str):
+def test_stage_schema_equals_its_part_of_the_whole(kind: str):
     whole, stage = json_schema(), stage_schema(kind)
     Draft202012Validator.check_schema(stage)
     assert whole["properties"][kind]["anyOf"] == stage["anyOf"]
     assert stage["$defs"].items() <= whole["$defs"].items()
 
 
-def test_a_method_has_a_schema_of_its_own_and_no_other_is_imported():
+def test_method_schema_imports_no_other_method():
     mock = Draft202012Validator(method_schema("device", "mock"))
     assert mock.is_valid({"use": "mock", "path": "circle", "hand": {"mass_kg": "90 g"}})
     assert not mock.is_valid({"use": "mock", "path": "circle", "hand": {"mass_kg": "90 m"}})
@@ -154,14 +154,14 @@ def test_a_method_has_a_schema_of_its_own_and_no_other_is_imported():
 
 
 @pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
-def test_every_default_is_a_value_that_JSON_can_say(kind: str):
+def test_default_of_every_option_is_json(kind: str):
     registry = default_registry()
     for name in registry.names(kind):
         config = parse_config(f"scene: builtin/brick\n{kind}: {name}\n", Path("p.yaml"), registry)
         assert json.loads(json.dumps(config.completed(), allow_nan=False))[kind]["use"] == name
 
 
-def test_the_page_in_docs_is_current():
+def test_page_in_docs_is_current():
     page = (ROOT / "docs" / "yaml.md").read_text(encoding="utf-8")
     assert page == markdown(json_schema()), "run: tangible schema --markdown > docs/yaml.md"
 
@@ -173,7 +173,7 @@ def materials() -> Draft202012Validator:
     return Draft202012Validator(schema)
 
 
-def test_the_shipped_library_is_one(materials: Draft202012Validator):
+def test_shipped_library_fits_the_schema_of_materials(materials: Draft202012Validator):
     materials.validate(YAML(typ="safe").load(ROOT / "tangible_core/materials/materials.yaml"))
 
 
@@ -195,18 +195,18 @@ def test_the_shipped_library_is_one(materials: Draft202012Validator):
         ),
     ],
 )
-def test_a_shipped_material_needs_what_changes_and_a_new_one_more(
+def test_shipped_material_needs_changes_only_and_a_new_one_all(
     materials: Draft202012Validator, block: dict, right: bool
 ):
     assert materials.is_valid(block) == right
 
 
-def test_the_schema_of_materials_in_configs_is_current():
+def test_schema_of_materials_in_configs_is_current():
     text = (ROOT / "configs" / "materials.schema.json").read_text(encoding="utf-8")
     said = "run: tangible schema --materials > configs/materials.schema.json"
     assert text == json.dumps(materials_schema(), indent=2, ensure_ascii=False) + "\n", said
 
 
-def test_every_value_says_what_it_means():
+def test_value_of_every_material_has_a_description():
     for name, value in materials_schema()["$defs"]["material"]["properties"].items():
         assert value.get("description"), name

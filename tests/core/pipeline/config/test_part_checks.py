@@ -1,4 +1,4 @@
-"""What a pipeline file says of parts: what is right, and one line with its place for what is wrong."""
+"""Parts in pipeline files: correct ones are read, each mistake is one line with its place."""
 
 from pathlib import Path
 
@@ -37,7 +37,7 @@ materials: {{rules: [{{part: helmet, material: ice}}, {{part: 7, material: sand}
 """
 
 
-def test_parts_by_number():
+def test_parts_are_read_by_number():
     config = parse(FULL)
     helmet = PartChoice(name=" helmet ", height_m=0.0042, material="glass")
     assert config.parts == {0: PartChoice(name="wall"), 6: helmet, 7: PartChoice(), 8: PartChoice()}
@@ -49,7 +49,7 @@ def test_parts_by_number():
     assert config.top_m == pytest.approx(0.0047)
 
 
-def test_what_says_nothing_of_parts_is_as_it_was():
+def test_file_without_parts_has_none():
     config = parse(SCENE)
     assert (config.parts, config.heights, config.by_parts, config.title, config.language) == (
         None,
@@ -73,7 +73,7 @@ def test_what_says_nothing_of_parts_is_as_it_was():
     ],
     ids=["all", "heights that are switched off", "heights alone", "parts of which nothing is said"],
 )
-def test_the_completed_configuration_means_the_same(text: str):
+def test_completed_parts_are_read_back_equal(text: str):
     config = parse(text)
     again = parse(config.as_yaml())
     assert (again.part_names, again.given_heights_m) == (config.part_names, config.given_heights_m)
@@ -117,7 +117,7 @@ def test_the_completed_configuration_means_the_same(text: str):
          ("materials", "rules", 0, "part"), "nothing is by parts; name them under `parts:`"),
     ],
 )  # fmt: skip
-def test_one_mistake_one_line_with_its_place(text: str, place: str, location: tuple, says: str):
+def test_part_mistake_gives_one_line_with_its_place(text: str, place: str, location: tuple, says: str):
     (sentence,), (complaint,) = complaints(f"{SCENE}{text}\n")
     assert sentence == f"here/p.yaml:{place}: {complaint.text}"
     assert complaint.location == location
@@ -125,14 +125,14 @@ def test_one_mistake_one_line_with_its_place(text: str, place: str, location: tu
     assert ".".join(map(str, location)) in sentence
 
 
-def test_a_map_of_heights_needs_no_others():
+def test_height_map_with_heights_is_refused():
     (sentence,), (complaint,) = complaints("scene: {height: a.npy, segments: b.png}\nheights: {by: given}\n")
     assert sentence.startswith("here/p.yaml:2:1: heights: the scene is a map of heights")
     assert complaint.location == ("heights",)
     assert parse("scene: {height: a.npy, segments: b.png}\nparts: {0: sea}\n").by_parts
 
 
-def test_all_mistakes_are_said_at_once():
+def test_part_mistakes_come_all_at_once():
     parts = "{0: wall, 1: wall, 2: {material: glas}, x: 1}"
     text = f"{SCENE}parts: {parts}\nwant: nothing\nheights: {{by: given, bulge_m: 1}}\n"
     assert [each.location for each in complaints(text)[1]] == [
@@ -140,7 +140,7 @@ def test_all_mistakes_are_said_at_once():
     ]  # fmt: skip
 
 
-def test_an_override_leaves_the_name_of_a_part():
+def test_override_keeps_the_name_of_a_part():
     config = parse(f"{SCENE}parts: {{0: wall}}\nheights: given\n", "parts.0.height_m=2 mm", "parts.5.name=x")
     assert config.parts == {0: PartChoice(name="wall", height_m=0.002), 5: PartChoice(name="x")}
     config = parse(f"{SCENE}parts: {{0: wall}}\nheights: given\n", "heights.bulge_m=2 mm")
@@ -152,7 +152,7 @@ def test_an_override_leaves_the_name_of_a_part():
     assert complaint == Complaint(("parts", 3, "name"), complaint.text, None, None)
 
 
-def test_a_program_edits_a_part_of_which_only_the_name_is_said():
+def test_edited_part_keeps_its_name():
     text = "scene: builtin/brick  # brick\nparts:\n  0: wall  # behind\n  6: helmet\nheights: given\n"
     changed = edited(text, PATH, {"parts.6.height_m": 0.004, "heights.round_m": 0.003})
     assert "  0: wall  # behind\n" in changed

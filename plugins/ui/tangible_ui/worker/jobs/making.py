@@ -8,9 +8,9 @@ from typing import Any, cast
 import numpy as np
 
 from tangible_core.data import Outcome, Plan
+from tangible_core.data.products import PRODUCTS
 from tangible_core.errors import TangibleError
-from tangible_core.pipeline.config.model import PRODUCTS
-from tangible_core.pipeline.engine.engine import Progress, Stage
+from tangible_core.pipeline.engine.engine import Progress, StageEvent
 from tangible_core.pipeline.pipeline import Pipeline
 
 from ..loop_input import felt
@@ -78,7 +78,7 @@ def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want
 def telling(bench: Bench, work: Work) -> Progress:
     """Hears of stages, and tells pages."""
 
-    def heard(stage: Stage) -> None:
+    def heard(stage: StageEvent) -> None:
         done = {} if stage.outcome is None else asdict(stage.outcome)
         bench.tell("stage", product=stage.product, method=stage.method, done=done)
         work.heard(stage)

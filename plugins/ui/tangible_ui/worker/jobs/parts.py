@@ -1,19 +1,21 @@
 """Jobs of the parts editor: open it, propose a part, follow edges, feel heights, save what was drawn."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from tangible_core.data import HapticSurface, SegmentMap
+from tangible_core.data import HapticSurface, Record, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.errors import ConfigError
 from tangible_core.parts import PartChoice, find_parts
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine import part_validation, working_grid
-from tangible_core.pipeline.engine.part_validation import check_found
-from tangible_core.pipeline.engine.rules import fitted
+from tangible_core.pipeline.engine.part_validation import check_parts
+from tangible_core.pipeline.engine.stages.touch import fit_to_device
+from tangible_core.plugins.notes import silently
 
 from ..loop_input import parcel_of
 from ..parts.heights import Kept, checked, coarse, kept_of, known_heights, materials_of, of_parts
@@ -133,7 +135,7 @@ def parts_save(
     place = beside(path) if in_file else on_shelf(shelf, picture)
     changed = said_of_parts(text, path, place, choices, heights, words)
     config = parse_config(changed, path, bench.registry, sets)
-    check_found(config, found, labels.shape[1])
+    check_parts(config, found, labels.shape[1])
     moved = kept_before(place, picture, shelf, [*earlier, text], path)
     write(place, picture, path if in_file else None, changed)
     warn_of_numbers(config, opened_of(bench, pipeline), found)
@@ -167,16 +169,21 @@ def parts_heights(
         raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
     kept = kept_of(bench, pipeline.changed(config))
     said = {number: checked(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
-    part_validation.check_found(config.changed(parts=said), kept.parts, kept.grid.scene.shape[1])
+    part_validation.check_parts(config.changed(parts=said), kept.parts, kept.grid.scene.shape[1])
+    part_validation.check_numbers(config, kept.parts.count)
     known = known_heights(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
-    relief = working_grid.layered(kept.layering, known, config.size, kept.grid.shown)
+    relief = working_grid.relief_of_layers(kept.layering, known, config.size, kept.grid.shown)
     own = part_validation.own_materials(config) if materials is None else dict(enumerate(materials))
-    made = None if kept.materials is None else materials_of(kept.materials, own, config)
-    names = part_validation.surface_with_names
-    kept.surface = names(config, HapticSurface(relief, kept.parts.labels, made, ("",) * kept.parts.count))
-    device = config.felt_device
-    surface = kept.surface if device is None else fitted(kept.surface, config, device)[0]
-    return parcel_of(config.render.method.touch(surface), surface, config)
+    products: dict[str, Record] = {config.felt_parts: kept.parts, "relief": relief}
+    if kept.materials is not None:
+        products["materials"] = replace(kept.materials, materials=materials_of(kept.materials.materials, own, config))
+    made = kept.pipeline.engine.with_products(**products)
+    surface: HapticSurface = made.make("surface")
+    kept.surface, device = surface, config.felt_device
+    if device is not None:
+        surface = fit_to_device(surface, config, device)[0]
+    with silently():  # what the device limits would be said at every step of a height
+        return parcel_of(made.make("touch"), surface, config)
 
 
 @job(quick=True)

@@ -1,8 +1,8 @@
 """Jobs that make heights and materials of parts felt while they are changed, and that show them.
 
 What does not depend on the heights is made once and kept. What is felt is, to the bit, what the document gives once it
-says these heights: the same steps make it (`working_grid.layered`, `fitted`, the law's own `touch`). Only where that
-has more than MOST_CELLS it is felt on a coarser grid until it is saved: a hand that drags a height waits for nothing.
+says these heights: the same stages make it (`Engine.with_products`). Only where that has more than MOST_CELLS it is
+felt on a coarser grid until it is saved: a hand that drags a height waits for nothing.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,14 +13,15 @@ from typing import Any, TypeVar
 import numpy as np
 from pydantic import BaseModel, ValidationError
 
-from tangible_core.data import HapticSurface, Material, PartMap
+from tangible_core.data import HapticSurface, Material, MaterialMap, PartMap
 from tangible_core.errors import ConfigError
 from tangible_core.materials.assignment import find, load_library
 from tangible_core.parts import HeightChoice, Layering, PartChoice
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.part_checks import wrong_of_parts
 from tangible_core.pipeline.engine import working_grid
-from tangible_core.pipeline.engine.rules import part_heights
+from tangible_core.pipeline.engine.stage import Context
+from tangible_core.pipeline.engine.stages.relief import ReliefStage
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scaling import felt_factor
 from tangible_core.scene.scene import Scene
@@ -45,7 +46,7 @@ class Kept:
     grid: working_grid.WorkingGrid
     parts: PartMap
     """On the grid that is felt."""
-    materials: tuple[Material, ...] | None
+    materials: MaterialMap | None
     """By part, of those that say none themselves; None where the law uses none."""
     layering: Layering
     found_m: dict[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
@@ -89,7 +90,7 @@ def known_heights(kept: Kept, heights_m: Sequence[float | None], by: str) -> lis
         if by == "depth" and disparity is None:
             raise ConfigError("the picture's depth is not made yet; make it, and heights by depth are felt")
         recipe = kept.config.changed(heights=checked(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
-        kept.found_m[by] = part_heights(recipe, kept.grid, kept.parts, disparity).heights_m
+        kept.found_m[by] = ReliefStage(Context(recipe, kept.scene)).part_heights(kept.parts, disparity).heights_m
     found_m = kept.found_m.get(by, ())
     return [found_m[number] if each is None and number < len(found_m) else each or 0.0
             for number, each in enumerate(heights_m)]  # fmt: skip
@@ -113,8 +114,7 @@ def kept_of(bench: Bench, pipeline: Pipeline) -> Kept:
     if layering is None:
         assert bare.heights is not None
         layering = Layering(parts, bare.size.width_m, bare.heights, grid.views.left if grid.views else None)
-    materials = None if chosen is None else chosen.materials
-    bench.kept = kept = Kept(made.scene, bare, made, grid, parts, materials, layering)
+    bench.kept = kept = Kept(made.scene, bare, made, grid, parts, chosen, layering)
     return kept
 
 

@@ -10,12 +10,12 @@ import numpy as np
 from PIL import Image
 
 from tangible_core.pipeline.engine.cache import Cache
-from tangible_ui.desk.desk import Desk
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.maker.bench import Bench
-from tangible_ui.maker.handle import MakingStopped
-from tangible_ui.maker.jobs import JOBS
-from tangible_ui.maker.messages import Event
+from tangible_ui.state.session import Desk
+from tangible_ui.worker.handle import MakingStopped
+from tangible_ui.worker.jobs import JOBS
+from tangible_ui.worker.messages import Event
+from tangible_ui.worker.state import Bench
 
 TEXT = """\
 # a photograph of mine
@@ -140,7 +140,7 @@ class SmallDesk:
     """A desk with a tab, whose touches are kept in `felt`."""
 
     def __init__(self, folder: Path, monkeypatch: Any) -> None:
-        monkeypatch.setattr("tangible_ui.desk.desk.Maker", InlineMaker)
+        monkeypatch.setattr("tangible_ui.state.session.Maker", InlineMaker)
         (folder / "drawn").mkdir()
         self.desk = Desk(folder / "drawn", Feeling("test"), [])
         self.maker: Any = self.desk.maker

@@ -13,11 +13,10 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from tangible_ui.address import HOST, Address
-from tangible_ui.desk.desk import Desk
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.serving.routes import application
-from tangible_ui.serving.serve import Server, settings
-from tangible_ui.serving.watching import watch
+from tangible_ui.serving.serve import Server, settings, watch
+from tangible_ui.state.session import Desk
 
 KEY = "key-of-a-test-0123456789"
 IN_TIME_S = 60.0
@@ -49,7 +48,7 @@ class PageServer:
     """It listens in its `with`."""
 
     def __init__(self, folder: Path, monkeypatch: Any) -> None:
-        monkeypatch.setattr("tangible_ui.desk.desk.Maker", NoMaker)
+        monkeypatch.setattr("tangible_ui.state.session.Maker", NoMaker)
         self.folder = folder / "drawn"
         self.folder.mkdir()
         self.complaints: list[dict[str, Any]] = []

@@ -17,13 +17,13 @@ from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.mapping import WorkspaceMapping
 from tangible_core.servo import Beacon, Safety, beacon_to, packed
 from tangible_core.servo.ring import shared_folder
-from tangible_ui.asks import ASKS
-from tangible_ui.asks.document import take
-from tangible_ui.asks.making import make
-from tangible_ui.desk.texts import Text
 from tangible_ui.feeling.feeling import Feeling, Felt
-from tangible_ui.serving.watching import watch
-from tangible_ui.wire import STATE_FRAME
+from tangible_ui.framing import STATE_FRAME
+from tangible_ui.requests import REQUESTS
+from tangible_ui.requests.document import take
+from tangible_ui.requests.making import make
+from tangible_ui.serving.serve import watch
+from tangible_ui.state.texts import Text
 
 IN_TIME_S = 20.0
 IN_PARTS = TEXT.replace("want: touch", "want: touch\nparts: {0: {name: wall}}")
@@ -45,7 +45,7 @@ def test_a_tab_asks_for_a_part_and_all_tabs_hear_of_it(tmp_path: Path, monkeypat
 
     async def asked() -> None:
         desk = SmallDesk(tmp_path, monkeypatch)
-        ask = ASKS["beacon"]
+        ask = REQUESTS["beacon"]
         with pytest.raises(DeviceError, match="nothing is felt"):
             await ask(desk.desk, desk.tab, part=0)
         runs[0] = True

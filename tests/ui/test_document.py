@@ -9,8 +9,8 @@ import pytest
 
 from desks import TEXT, SmallDesk, small_scene
 from tangible_core.errors import ConfigError
-from tangible_ui.asks import ASKS
-from tangible_ui.desk.desk import MOST_HISTORY
+from tangible_ui.requests import REQUESTS
+from tangible_ui.state.session import MOST_HISTORY
 
 Run = Callable[[Callable[[SmallDesk, Any], Coroutine[Any, Any, None]]], None]
 
@@ -25,7 +25,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
             small = SmallDesk(tmp_path, monkeypatch)
 
             async def ask(name: str, **told: Any) -> Any:
-                return await ASKS[name](small.desk, small.tab, **told)
+                return await REQUESTS[name](small.desk, small.tab, **told)
 
             small.desk.path = path
             await ask("edit", text=TEXT)

@@ -11,13 +11,13 @@ from typing import Any
 import pytest
 
 from tangible_core.errors import OutputError
-from tangible_ui import left_behind
-from tangible_ui.desk import drafts
-from tangible_ui.desk.drafts import MOST_LEFT, Drafts
-from tangible_ui.desk.texts import Text
-from tangible_ui.left_behind import channel_of_this_process, folder_of_this_process, left_in
-from tangible_ui.maker import process
-from tangible_ui.maker.messages import Ask, Refused
+from tangible_ui import stale_files as left_behind
+from tangible_ui.stale_files import channel_of_this_process, folder_of_this_process, left_in
+from tangible_ui.state import drafts
+from tangible_ui.state.drafts import MOST_LEFT, Drafts
+from tangible_ui.state.texts import Text
+from tangible_ui.worker import process
+from tangible_ui.worker.messages import Ask, Refused
 
 OPENED = "scene: builtin/brick\n"
 
@@ -147,8 +147,8 @@ class TestMaker:
         def fails(bench: Any) -> None:
             raise OSError(number, os.strerror(number), "/tmp/height.f32")
 
-        from tangible_ui.maker import jobs
-        from tangible_ui.maker.bench import Job
+        from tangible_ui.worker import jobs
+        from tangible_ui.worker.jobs import Job
 
         monkeypatch.setitem(jobs.JOBS, "fails", Job(fails))
         said = process.answer(Bench(tmp_path), Ask(7, "fails", {}))

@@ -15,8 +15,8 @@ from desks import TEXT, SmallDesk, small_scene, striped_scene
 from tangible_core.errors import ConfigError, TangibleError
 from tangible_core.pipeline.output.export_folder import LISTED
 from tangible_export.stl import Stl
-from tangible_ui.asks import ASKS
-from tangible_ui.maker.exporting import KEPT
+from tangible_ui.requests import REQUESTS
+from tangible_ui.worker.jobs.export import KEPT
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]
 STL = {"use": "stl", "longer_side_m": 0.06}
@@ -33,7 +33,7 @@ def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
             small = SmallDesk(tmp_path, monkeypatch)
 
             async def ask(name: str, **told: Any) -> Any:
-                return await ASKS[name](small.desk, small.tab, **told)
+                return await REQUESTS[name](small.desk, small.tab, **told)
 
             await ask("begin", files=[str(scene(tmp_path))])
             await small.tab.until("touch")
@@ -210,6 +210,6 @@ class TestDescription:
     def test_there_is_none_before_a_surface(self, tmp_path: Path, monkeypatch) -> None:
         async def check() -> None:
             small = SmallDesk(tmp_path, monkeypatch)
-            assert await ASKS["description"](small.desk, small.tab, language="en") is None
+            assert await REQUESTS["description"](small.desk, small.tab, language="en") is None
 
         asyncio.run(check())

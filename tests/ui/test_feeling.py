@@ -19,7 +19,7 @@ from tangible_core.servo.ring import STOP, shared_folder
 from tangible_core.testing.loop_devices import Failing
 from tangible_core.testing.loop_laws import FaultyTouch
 from tangible_ui.feeling.feeling import Feeling, Felt
-from tangible_ui.wire import STATE_FRAME
+from tangible_ui.framing import STATE_FRAME
 
 pytestmark = pytest.mark.usefixtures("own_memory")
 

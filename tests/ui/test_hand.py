@@ -17,12 +17,12 @@ from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.runtime.child_process import dumps
 from tangible_core.servo import Safety, packed
 from tangible_core.testing.loop_devices import Circling, Failing
-from tangible_ui.asks import ASKS
-from tangible_ui.desk import desk as desk_module
-from tangible_ui.desk.desk import Desk
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.feeling.hand import high_without_client
-from tangible_ui.serving.watching import watch
+from tangible_ui.requests import REQUESTS
+from tangible_ui.serving.serve import watch
+from tangible_ui.state import session as desk_module
+from tangible_ui.state.session import Desk
 
 LEVEL = HapticSurface.from_heights(np.full((32, 32), 0.002, np.float32))
 IN_TIME_S = 20.0
@@ -106,7 +106,7 @@ class TestWhoHolds:
             other = Page()
             desk.enter(other)
             assert (page.last("holding")["holding"], other.last("holding")["holding"]) == (True, False)
-            await ASKS["hold"](desk, other)
+            await REQUESTS["hold"](desk, other)
             assert (page.last("holding")["holding"], other.last("holding")["holding"]) == (False, True)
 
         at_desk(work)
@@ -140,17 +140,17 @@ class TestDevices:
         async def work(desk: Desk, page: Page) -> None:
             FakeMaker.device = Failing(fault="none", simulated=False)
             with pytest.raises(ConfigError, match="has a motor"):
-                await ASKS["choose_device"](desk, page, kind="document")
+                await REQUESTS["choose_device"](desk, page, kind="document")
             assert desk.choice.kind == "hand"
-            about = await ASKS["about_device"](desk, page, kind="document")
+            about = await REQUESTS["about_device"](desk, page, kind="document")
             assert not about["simulated"]
-            await ASKS["choose_device"](desk, page, kind="document", sure=True)
+            await REQUESTS["choose_device"](desk, page, kind="document", sure=True)
             assert page.last("loop") | {"at_s": 0} == {
                 "event": "loop", "at_s": 0, "running": True, "why": "", "device": "the other", "own_hand": False,
             }  # fmt: skip
             FakeMaker.device = Motor()  # the document was edited
             with pytest.raises(TangibleError, match="Motor has a motor"):
-                await ASKS["make"](desk, page)
+                await REQUESTS["make"](desk, page)
             assert desk.feeling.felt is not None
             assert isinstance(desk.feeling.felt.held, Failing)
             assert desk.feeling.running
@@ -171,17 +171,17 @@ class TestDevices:
         async def work(desk: Desk, page: Page) -> None:
             FakeMaker.device = Failing(fault="unplugged", at=100)
             with suppress(DeviceError):  # where it is gone before the law is felt on it
-                await ASKS["choose_device"](desk, page, kind="document")
+                await REQUESTS["choose_device"](desk, page, kind="document")
             await until(lambda: not page.last("loop")["running"])
             assert page.last("loop")["why"] == "the failing device does not answer; plug it in"
             assert page.last("loop")["lost"]
-            assert await ASKS["doctor"](desk, page) is None
+            assert await REQUESTS["doctor"](desk, page) is None
             FakeMaker.device = Failing(fault="none", opens="second", record=str(tmp_path / "held"))
-            await ASKS["wait_for_device"](desk, page)
+            await REQUESTS["wait_for_device"](desk, page)
             await until(lambda: page.last("loop").get("waiting"))
             assert "in use by another program" in page.last("loop")["why"]
             await until(lambda: page.last("loop")["running"])
-            figures = await ASKS["doctor"](desk, page)
+            figures = await REQUESTS["doctor"](desk, page)
             assert figures is not None
             assert figures["how"] == desk.feeling.how
 
@@ -192,13 +192,13 @@ class TestDevices:
         async def work(desk: Desk, page: Page) -> None:
             FakeMaker.device = Failing(opens="never")
             with pytest.raises(DeviceError):
-                await ASKS["choose_device"](desk, page, kind="document")
-            await ASKS["wait_for_device"](desk, page)
+                await REQUESTS["choose_device"](desk, page, kind="document")
+            await REQUESTS["wait_for_device"](desk, page)
             await until(lambda: page.last("loop").get("waiting"))
             if ended_by == "stop":
-                await ASKS["stop"](desk, page)
+                await REQUESTS["stop"](desk, page)
             else:
-                await ASKS["choose_device"](desk, page, kind="hand")
+                await REQUESTS["choose_device"](desk, page, kind="hand")
             await until(lambda: len(desk._tasks) == 0)
             assert desk.feeling.running == (ended_by != "stop")
 
@@ -206,13 +206,13 @@ class TestDevices:
 
     def test_stop_holds_until_somebody_feels_again(self, at_desk) -> None:
         async def work(desk: Desk, page: Page) -> None:
-            await ASKS["make"](desk, page)
+            await REQUESTS["make"](desk, page)
             assert desk.feeling.running
-            await ASKS["stop"](desk, page)
+            await REQUESTS["stop"](desk, page)
             assert page.last("loop")["stopped"]
-            await ASKS["make"](desk, page)  # an option was changed
+            await REQUESTS["make"](desk, page)  # an option was changed
             assert not desk.feeling.running
-            await ASKS["feel"](desk, page)
+            await REQUESTS["feel"](desk, page)
             assert desk.feeling.running
             assert page.last("loop")["running"]
 
@@ -222,7 +222,7 @@ class TestDevices:
     def test_no_choice(self, at_desk, told: dict[str, str]) -> None:
         async def work(desk: Desk, page: Page) -> None:
             with pytest.raises(ConfigError, match="a device is chosen as one of"):
-                await ASKS["choose_device"](desk, page, **told)
+                await REQUESTS["choose_device"](desk, page, **told)
 
         at_desk(work)
 

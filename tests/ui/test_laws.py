@@ -13,12 +13,12 @@ import pytest
 
 from tangible_core import load_method
 from tangible_core.errors import ConfigError
-from tangible_ui.asks import laws as asks
-from tangible_ui.desk.desk import Desk
 from tangible_ui.feeling.choice import Choice, NotAgreed
+from tangible_ui.feeling.comparison import NOTHING
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.feeling.rival import NOTHING
-from tangible_ui.wire import STATE_FRAME
+from tangible_ui.framing import STATE_FRAME
+from tangible_ui.requests import feeling as asks
+from tangible_ui.state.session import Desk
 
 TEXT = """\
 scene: {height: flat.npy}

@@ -8,12 +8,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tangible_core.errors import TangibleError
-from tangible_ui import wire
-from tangible_ui.asks import ASKS
+from tangible_ui import framing as wire
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.serving import asking
-from tangible_ui.serving.asking import NotUnderstood, parse
+from tangible_ui.requests import REQUESTS
+from tangible_ui.serving import parsing as asking
 from tangible_ui.serving.live import LiveTab
+from tangible_ui.serving.parsing import NotUnderstood, parse
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),
@@ -92,7 +92,7 @@ def ask(**said: Any) -> str:
 class TestAsks:
     def test_a_whole_one_is_understood(self) -> None:
         asked = parse(ask(ask="edit", text="scene: x", apply=True))
-        assert (asked.number, asked.ask, asked.told) == (1, ASKS["edit"], {"text": "scene: x", "apply": True})
+        assert (asked.number, asked.ask, asked.told) == (1, REQUESTS["edit"], {"text": "scene: x", "apply": True})
 
     @pytest.mark.parametrize(
         ("text", "number", "says"),
@@ -132,7 +132,7 @@ class TestAsks:
         assert len(str(refused.value)) < 400
         assert "\n" not in str(refused.value)
 
-    @given(JSON, st.sampled_from(sorted(ASKS)))
+    @given(JSON, st.sampled_from(sorted(REQUESTS)))
     @settings(suppress_health_check=[HealthCheck.too_slow])
     def test_any_json(self, told: Any, name: str) -> None:
         """It is understood, or refused; nothing else."""
@@ -142,8 +142,8 @@ class TestAsks:
             except TangibleError as error:
                 assert str(error)
             else:
-                assert asked.ask is ASKS[asked.name]
+                assert asked.ask is REQUESTS[asked.name]
 
     def test_every_ask_says_what_it_takes(self) -> None:
-        for name, work in ASKS.items():
+        for name, work in REQUESTS.items():
             assert asking._arguments(work).model_fields.keys().isdisjoint({"desk", "tab"}), name

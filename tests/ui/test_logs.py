@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from tangible_ui import logs
-from tangible_ui.desk.desk import MOST_LOGGED, Desk
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.logs import MOST_A_SECOND, PageHandler, silence, tell_pages
+from tangible_ui.state.session import MOST_LOGGED, Desk
 
 
 @pytest.fixture
@@ -101,7 +101,7 @@ def test_standard_error_hears_it_as_before(monkeypatch: pytest.MonkeyPatch):
 
 
 def test_however_much_is_logged_a_tab_hears_of_the_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("tangible_ui.desk.desk.Maker", lambda *_: None)
+    monkeypatch.setattr("tangible_ui.state.session.Maker", lambda *_: None)
     desk = Desk(tmp_path, Feeling("unheard"), [])
     desk.tell("document", text="")
     for number in range(3000):

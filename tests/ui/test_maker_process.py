@@ -11,12 +11,12 @@ import pytest
 
 from desks import Heard
 from tangible_core.runtime.child_process import command
-from tangible_ui.asks import ASKS
-from tangible_ui.beforehand import _started, maker_beforehand, maker_process
-from tangible_ui.desk.desk import Desk
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.maker import Maker
-from tangible_ui.maker.handle import MakerAbsent, MakingStopped
+from tangible_ui.prestart import _started, maker_beforehand, maker_process
+from tangible_ui.requests import REQUESTS
+from tangible_ui.state.session import Desk
+from tangible_ui.worker import Maker
+from tangible_ui.worker.handle import MakerAbsent, MakingStopped
 
 pytestmark = pytest.mark.slow
 
@@ -33,7 +33,7 @@ def test_what_is_made_ends_at_once_and_the_loop_feels_on(tmp_path: Path):
         desk.enter(tab)
 
         async def ask(name: str, **told: Any) -> Any:
-            return await ASKS[name](desk, tab, **told)
+            return await REQUESTS[name](desk, tab, **told)
 
         try:
             await asyncio.to_thread(desk.feeling.start)
@@ -77,7 +77,7 @@ def test_one_that_does_not_start_is_tried_three_times_and_says_why(tmp_path: Pat
             started.append(module)
             return [sys.executable, "-c", "raise SystemExit('no such library')"]
 
-        monkeypatch.setattr("tangible_ui.beforehand.command", broken)
+        monkeypatch.setattr("tangible_ui.prestart.command", broken)
         heard: list[Any] = []
         maker = Maker(tmp_path, heard.append)
         try:
@@ -91,7 +91,7 @@ def test_one_that_does_not_start_is_tried_three_times_and_says_why(tmp_path: Pat
             assert [event.event for event in heard] == ["maker_gone"]
             with pytest.raises(MakerAbsent):
                 await maker.quick("schema")
-            monkeypatch.setattr("tangible_ui.beforehand.command", command)
+            monkeypatch.setattr("tangible_ui.prestart.command", command)
             maker.try_again()
             assert "properties" in await maker.ask("schema")
             assert heard[-1].event != "maker_gone"
@@ -118,7 +118,7 @@ def test_the_one_that_was_started_beforehand_is_taken_once_and_otherwise_ended()
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="only Linux has a niceness for each thread")
 def test_only_long_jobs_let_others_go_first():
     code = (
-        "import os, queue, threading; from tangible_ui.maker import process, messages\n"
+        "import os, queue, threading; from tangible_ui.worker import process, messages\n"
         "process.answer = lambda bench, ask: ask\n"
         "class Voice:\n    def say(self, said): heard.put(said)\n"
         "heard, lanes = queue.Queue(), {True: queue.SimpleQueue(), False: queue.SimpleQueue()}\n"

@@ -12,11 +12,11 @@ import pytest
 from desks import TEXT, SmallDesk, small_scene
 from tangible_core.errors import ConfigError, Stopped, TangibleError
 from tangible_core.pipeline.engine.cache import Cache
-from tangible_ui.asks import ASKS
-from tangible_ui.asks import making as asks_making
-from tangible_ui.maker.bench import Bench
-from tangible_ui.maker.jobs import JOBS
-from tangible_ui.maker.messages import Late
+from tangible_ui.requests import REQUESTS
+from tangible_ui.requests import making as asks_making
+from tangible_ui.worker.jobs import JOBS
+from tangible_ui.worker.messages import Late
+from tangible_ui.worker.state import Bench
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]
 DEVICE = ["device={use: mock}"]
@@ -45,7 +45,7 @@ def small(tmp_path: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
             small = SmallDesk(tmp_path, monkeypatch)
 
             async def ask(name: str, **told: Any) -> Any:
-                return await ASKS[name](small.desk, small.tab, **told)
+                return await REQUESTS[name](small.desk, small.tab, **told)
 
             await ask("begin", files=[str(scene)])
             await small.tab.until("touch")

@@ -10,9 +10,9 @@ import pytest
 
 from tangible_core.data import Vector
 from tangible_core.mapping import WorkspaceMapping
-from tangible_ui.asks.mapping import limits
-from tangible_ui.maker import mapping
-from tangible_ui.maker.bench import Bench
+from tangible_ui.requests.devices import limits
+from tangible_ui.worker.jobs import devices as mapping
+from tangible_ui.worker.state import Bench
 
 CASES = Path(__file__).parents[2] / "plugins/ui/web/test/placement.json"
 PATH = Path("p.yaml")

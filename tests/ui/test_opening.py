@@ -14,9 +14,9 @@ from tangible_core.errors import ConfigError
 from tangible_core.pipeline.config.editing import said
 from tangible_core.session import Recording
 from tangible_core.session.tick_file import About
-from tangible_ui.desk.shelf import MOST_FILES, Shelf
-from tangible_ui.maker import opening
-from tangible_ui.maker.bench import Bench
+from tangible_ui.state.uploads import MOST_FILES, Shelf
+from tangible_ui.worker.jobs import document as opening
+from tangible_ui.worker.state import Bench
 from videos import greys
 
 
@@ -98,7 +98,7 @@ class TestShelf:
         put(shelf, batch, "0.png", b"again")
         with pytest.raises(ConfigError, match="at once"):
             put(shelf, batch, "more.png", b"x")
-        monkeypatch.setattr("tangible_ui.desk.shelf.MOST_BYTES", 10)
+        monkeypatch.setattr("tangible_ui.state.uploads.MOST_BYTES", 10)
         with pytest.raises(ConfigError, match="holds more than"):
             put(shelf, batch, "0.png", b"x" * 6, b"x" * 6)
 

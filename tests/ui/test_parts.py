@@ -19,15 +19,14 @@ from tangible_core.data import SegmentMap
 from tangible_core.errors import ConfigError, OutputError, TangibleError
 from tangible_core.parts import find_parts
 from tangible_core.scene.picture_files import read_labels
-from tangible_ui.asks import ASKS
-from tangible_ui.desk.desk import Desk
-from tangible_ui.desk.newest import Newest
-from tangible_ui.maker import making
-from tangible_ui.maker.bench import Bench
-from tangible_ui.maker.jobs import JOBS
-from tangible_ui.maker.label_files import as_png, is_ours, unpacked
-from tangible_ui.maker.parts import _places
-from tangible_ui.maker.saved_parts import numbered, said_of_parts
+from tangible_ui.requests import REQUESTS
+from tangible_ui.state.scheduling import Newest
+from tangible_ui.state.session import Desk
+from tangible_ui.worker.jobs import JOBS, making
+from tangible_ui.worker.parts.label_files import as_png, is_ours, unpacked
+from tangible_ui.worker.parts.opening import _places
+from tangible_ui.worker.parts.saving import numbered, said_of_parts
+from tangible_ui.worker.state import Bench
 
 SHAPE = (24, 32)
 Check = Callable[[SmallDesk, Any], Coroutine[Any, Any, None]]
@@ -126,7 +125,7 @@ class TestLabels:
             def eof(self) -> bool:
                 return self._real.eof
 
-        monkeypatch.setattr("tangible_ui.maker.label_files.zlib.decompressobj", Watched)
+        monkeypatch.setattr("tangible_ui.worker.parts.label_files.zlib.decompressobj", Watched)
         path = tmp_path / "sent"
         path.write_bytes(gzip.compress(bytes(10_000_000)))
         with pytest.raises(ConfigError, match="send them again"):
@@ -240,9 +239,9 @@ def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Check], 
             small = SmallDesk(tmp_path, monkeypatch)
 
             async def ask(name: str, **told: Any) -> Any:
-                return await ASKS[name](small.desk, small.tab, **told)
+                return await REQUESTS[name](small.desk, small.tab, **told)
 
-            await ASKS["begin"](small.desk, small.tab, files=[str(scene)], make_it=False)
+            await REQUESTS["begin"](small.desk, small.tab, files=[str(scene)], make_it=False)
             await check(small, ask)
 
         asyncio.run(all_of_it())
@@ -614,7 +613,7 @@ class TestHeights:
         async def check(small: SmallDesk, ask: Any) -> None:
             await saved(small, ask)
             await small.tab.until("touch")
-            monkeypatch.setattr("tangible_ui.maker.felt_parts.MOST_CELLS", 200)
+            monkeypatch.setattr("tangible_ui.worker.parts.heights.MOST_CELLS", 200)
             await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])
             kept = small.maker.bench.kept
             assert kept.grid.shape == (12, 16)
@@ -636,7 +635,7 @@ class TestHeights:
             def never(*_: Any, **__: Any) -> None:
                 raise AssertionError
 
-            monkeypatch.setattr("tangible_ui.maker.felt_parts.Layering", never)
+            monkeypatch.setattr("tangible_ui.worker.parts.heights.Layering", never)
             with pytest.MonkeyPatch.context() as within:
                 within.setattr("tangible_core.materials.assignment.assign", never)
                 within.setattr("tangible_core.parts.find.find_parts", never)
@@ -704,7 +703,7 @@ class TestHeights:
             put=put,
             feel=feel,
         )
-        monkeypatch.setattr("tangible_ui.desk.desk.Felt.of", lambda made, channel: made)
+        monkeypatch.setattr("tangible_ui.state.session.Felt.of", lambda made, channel: made)
         asyncio.run(Desk.feel_on(desk, {}))
         assert done == [says]
 

@@ -9,11 +9,11 @@ from PIL import Image
 
 from drawn_parts import drawn
 from tangible_core.errors import ConfigError
-from tangible_ui.maker import proposals
-from tangible_ui.maker.bench import Bench
-from tangible_ui.maker.jobs import JOBS
-from tangible_ui.maker.proposals import as_points, proposed, runs
-from tangible_ui.maker.snapping import snapped
+from tangible_ui.worker.jobs import JOBS
+from tangible_ui.worker.parts import proposals
+from tangible_ui.worker.parts.outlines import snapped
+from tangible_ui.worker.parts.proposals import as_points, proposed, runs
+from tangible_ui.worker.state import Bench
 
 SHAPE = (240, 320)
 

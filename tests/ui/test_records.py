@@ -15,10 +15,10 @@ from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import OutputError
 from tangible_core.servo import Servo
 from tangible_core.session import About, Recording, Writer
-from tangible_ui.asks.records import record
 from tangible_ui.feeling.recorder import BY_HAND, Recorder
-from tangible_ui.maker import records
-from tangible_ui.maker.bench import Bench
+from tangible_ui.requests.records import record
+from tangible_ui.worker.jobs import records
+from tangible_ui.worker.state import Bench
 
 
 @pytest.fixture
@@ -126,7 +126,7 @@ def test_a_recording_of_the_page_holds_the_names_of_the_parts_and_materials(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     kept: list[About] = []
-    monkeypatch.setattr("tangible_ui.asks.records.Recorder", lambda servo, path, about, ended: kept.append(about))
+    monkeypatch.setattr("tangible_ui.requests.records.Recorder", lambda servo, path, about, ended: kept.append(about))
     monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path))
     felt = SimpleNamespace(law="penalty", device_name="mouse", materials='{"1": "wood"}')
     feeling = SimpleNamespace(servo=SimpleNamespace(running=True), felt=felt)

@@ -16,11 +16,12 @@ from websockets.exceptions import InvalidStatus
 from page_server import KEY, PageServer
 from tangible_core.files.reading import MOST_BYTES
 from tangible_ui.address import new_key
+from tangible_ui.framing import ACK, ACK_FRAME, POINTER, POINTER_FRAME
 from tangible_ui.serving import routes, serve
+from tangible_ui.serving.access import HEADERS
 from tangible_ui.serving.connection import AT_ONCE_BYTES
 from tangible_ui.serving.live import IN_FLIGHT, MOST_ASKS
-from tangible_ui.serving.routes import HEADERS, WRONG_KEY
-from tangible_ui.wire import ACK, ACK_FRAME, POINTER, POINTER_FRAME
+from tangible_ui.serving.routes import WRONG_KEY
 
 NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16, "folder": "export-1"}
 

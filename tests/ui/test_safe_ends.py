@@ -19,7 +19,7 @@ from websockets.sync.client import connect
 from page_server import TestTab
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.servo.ring import Ring
-from tangible_ui.wire import POINTER, POINTER_FRAME
+from tangible_ui.framing import POINTER, POINTER_FRAME
 from ui_server import START, UiServer
 
 pytestmark = pytest.mark.slow
@@ -174,7 +174,7 @@ def test_what_ends_beside_the_server(home: Home) -> None:
     press.close()
 
     press = Press(home, server)
-    [maker] = children(server, "maker")
+    [maker] = children(server, "tangible_ui.worker")
     press.press()
     os.kill(maker, signal.SIGKILL)
     press.tab.until(event="maker")
@@ -319,13 +319,13 @@ def test_a_makers_end_under_work(home: Home) -> None:
     """It ends with its pipe, whatever it computes."""
     from tangible_core.runtime.child_process import command
     from tangible_core.servo.wire import send
-    from tangible_ui.maker.messages import Ask
+    from tangible_ui.worker.messages import Ask
 
     folder = home.folder / "drawn"
     folder.mkdir()
     env = {**os.environ, **home.env}
     with subprocess.Popen(
-        command("tangible_ui.maker.process"), stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=env, cwd=home.folder
+        command("tangible_ui.worker.process"), stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=env, cwd=home.folder
     ) as maker:
         assert maker.stdin and maker.stdout
         send(maker.stdin, folder)

@@ -15,11 +15,13 @@ from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.metrics import absolute_error
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
-from tangible_ui.maker import levels, making, textures
-from tangible_ui.maker.bench import Bench
-from tangible_ui.maker.seen import Layer, Seen, is_there, see
-from tangible_ui.maker.shown import ABOUT, KEPT, _put, show
-from tangible_ui.serving.windows import read_window
+from tangible_ui.serving.routes import read_window
+from tangible_ui.worker.jobs import making
+from tangible_ui.worker.jobs import surface as textures
+from tangible_ui.worker.state import Bench
+from tangible_ui.worker.view import levels
+from tangible_ui.worker.view.files import ABOUT, KEPT, _put, show
+from tangible_ui.worker.view.surface_view import Layer, Seen, is_there, see
 
 RANDOM = np.random.default_rng(3)
 WOOD = Material("wood", 800.0, 1.0, 0.4, 0.3, roughness_m=3e-5, grain_m=6e-4, texture="stochastic", seed=4)

@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from tangible_ui.desk.tally import Tally
+from tangible_ui.state.laws import Tally
 
 
 def test_a_choice_counts_for_the_law_that_was_called_so() -> None:

@@ -11,8 +11,8 @@ import pytest
 
 from page_files import WEB, node
 from tangible_core.data import TICK_COLUMNS, TickFlag
-from tangible_ui import wire
-from tangible_ui.asks import ASKS
+from tangible_ui import framing as wire
+from tangible_ui.requests import REQUESTS
 from tangible_ui.serving.routes import WRONG_KEY
 
 SOURCES = Path(wire.__file__).parent
@@ -101,11 +101,11 @@ class TestNames:
     def test_what_the_page_asks_for_can_be_asked_for(self) -> None:
         asked = set(re.findall(r"\bask(?:<[^(]*>)?\(\s*[\"'](\w+)[\"']", sources(WEB / "src", ".ts")))
         assert len(asked) > 20
-        assert asked <= ASKS.keys()
+        assert asked <= REQUESTS.keys()
 
     def test_what_can_be_asked_for_the_page_asks_for(self) -> None:
         written = set(re.findall(r"[\"'](\w+)[\"']", sources(WEB / "src", ".ts")))
-        assert ASKS.keys() - written <= NOT_ASKED
+        assert REQUESTS.keys() - written <= NOT_ASKED
 
     def test_events_have_the_same_names(self) -> None:
         here, there = sources(SOURCES, ".py"), (WEB / "src/server/messages.ts").read_text(encoding="utf-8")

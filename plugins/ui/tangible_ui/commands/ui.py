@@ -19,7 +19,7 @@ def ui(
     The page is served to this machine alone; its address holds a key that changes with every start. Ctrl-C ends it.
     """
     from ..address import Address
-    from ..beforehand import maker_beforehand
+    from ..prestart import maker_beforehand
 
     with Address.of(port) as address, maker_beforehand():
         address.announce(browser)

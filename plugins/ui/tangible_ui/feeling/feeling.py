@@ -17,7 +17,7 @@ from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Beacon, Packed, Safety, Servo, still
 from tangible_core.servo.ring import STOP
 
-from ..wire import BUTTON_BITS, FLAG_BITS, STATE, STATE_FRAME
+from ..framing import BUTTON_BITS, FLAG_BITS, STATE, STATE_FRAME
 from .hand import HIGH_M, Hand
 
 NOBODY: Vector = (0.0, 0.0, 0.0)

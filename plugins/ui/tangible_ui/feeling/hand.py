@@ -9,7 +9,7 @@ from tangible_core.errors import DeviceError
 from tangible_core.mapping import Placement
 from tangible_devices.pointer import PointerClient
 
-from ..wire import BUTTON_BITS, TAGS
+from ..framing import BUTTON_BITS, TAGS
 
 SILENT_S = 0.1
 """A page that has not moved its hand for so long is taken for gone: no force."""

@@ -8,9 +8,8 @@ from typing import Any, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from ..desk.desk import Desk
-from ..failing import told
-from ..wire import (
+from ..error_text import told
+from ..framing import (
     ACK,
     ACK_FRAME,
     HOLDING,
@@ -22,8 +21,9 @@ from ..wire import (
     RUNNING,
     VERSION,
 )
-from .asking import Asked, NotUnderstood, parse
+from ..state.session import Desk
 from .connection import cut_off
+from .parsing import Asked, NotUnderstood, parse
 
 IN_FLIGHT = 2
 """States that a tab has not drawn yet; more would only queue up in the browser."""

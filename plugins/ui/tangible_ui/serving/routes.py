@@ -11,84 +11,31 @@ from starlette.requests import ClientDisconnect, HTTPConnection, Request
 from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from tangible_core.errors import TangibleError
 from tangible_core.files.reading import MOST_BYTES, in_words
 
 from ..address import static
-from ..asks import feeling
-from ..desk.desk import Desk
+from ..requests import feeling
+from ..state.session import Desk
+from .access import Guarded
 from .live import LiveTab
-from .windows import WINDOW, read_window
 
-POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
-    "media-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
-)
-HEADERS = {
-    "content-security-policy": POLICY,
-    "x-content-type-options": "nosniff",
-    "referrer-policy": "no-referrer",
-    "cross-origin-opener-policy": "same-origin",
-    "cross-origin-resource-policy": "same-origin",
-}
 FOREVER = "private, max-age=31536000, immutable"
 ASK_AGAIN = "no-cache"
 """A browser may keep it, and asks each time whether it is still the same."""
-NEVER = "no-store"
-READING = ("GET", "HEAD")
 WRONG_KEY = 4401
 EXPORTS = "export-"
 """How the maker names folders of files that it exported."""
 NOT_YOURS = "the key in the address is not this program's; open the address it printed"
 
+WINDOW = frozenset({"row", "rows", "column", "columns", "of", "bytes"})
+"""The first row and how many, the first column and how many, of how many columns, and the bytes of an item."""
+MOST_ITEMS = 4_000_000
+
 Answer = Callable[[Request], Awaitable[Response]]
-
-
-class Guarded:
-    """Answers none but this machine's own page: the name it is called by is this machine's, the headers are strict."""
-
-    def __init__(self, app: ASGIApp, hosts: frozenset[str]) -> None:
-        self._app, self._hosts = app, hosts
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Whatever it answers, errors too, has the headers."""
-        if scope["type"] not in ("http", "websocket"):
-            await self._app(scope, receive, send)
-            return
-
-        async def with_headers(message: Message) -> None:
-            if message["type"] == "http.response.start":
-                message = {**message, "headers": _strict(message["headers"])}
-            await send(message)
-
-        why = self._wrong(HTTPConnection(scope))
-        if not why:
-            await self._app(scope, receive, with_headers)
-        elif scope["type"] == "websocket":
-            await send({"type": "websocket.close", "code": 1008})
-        else:
-            await PlainTextResponse(why, 403)(scope, receive, with_headers)
-
-    def _wrong(self, connection: HTTPConnection) -> str:
-        """A page elsewhere whose name was made to lead here (DNS rebinding) says its own name as host; one that reaches
-        out to here, its own origin: browsers say it with all that changes something, and with every websocket.
-        """
-        host = connection.headers.get("host", "")
-        if host not in self._hosts:
-            return "this address is not served"
-        reads = connection.scope["type"] == "http" and connection.scope["method"] in READING
-        if not reads and connection.headers.get("origin") != f"http://{host}":
-            return "another page may not do that"
-        return ""
-
-
-def _strict(headers: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
-    cached = any(name.lower() == b"cache-control" for name, _ in headers)
-    extra = HEADERS if cached else {**HEADERS, "cache-control": NEVER}
-    return [*headers, *((name.encode(), value.encode()) for name, value in extra.items())]
 
 
 class BuiltPage(StaticFiles):
@@ -184,3 +131,17 @@ def _lying(folder: Path, digest: str, name: str) -> Path | None:
         return path if folder.resolve() in path.parents and path.is_file() else None
     except (OSError, ValueError):  # too long, or a NUL in it
         return None
+
+
+def read_window(path: Path, asked: dict[str, int]) -> bytes:
+    """The rectangle, row by row. asked: a number for each of WINDOW. Raises: ValueError if the file has none such."""
+    row, rows, column, columns, of, size = (asked[key] for key in ("row", "rows", "column", "columns", "of", "bytes"))
+    inside = min(row, column) >= 0 and min(rows, columns, size) > 0 and column + columns <= of
+    if not inside or rows * columns > MOST_ITEMS or (row + rows) * of * size > path.stat().st_size:
+        raise ValueError("no such window")
+    with path.open("rb") as file:
+        parts: list[bytes] = []
+        for each in range(row, row + rows):
+            file.seek((each * of + column) * size)
+            parts.append(file.read(columns * size))
+    return b"".join(parts)

@@ -17,14 +17,14 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from ..address import Address
-from ..asks import document, drafts
-from ..desk.desk import Desk
 from ..feeling.feeling import Feeling
-from ..left_behind import channel_of_this_process, folder_of_this_process
 from ..logs import silence, tell_pages
+from ..requests import document
+from ..requests import document as drafts
+from ..stale_files import channel_of_this_process, folder_of_this_process
+from ..state.session import Desk
 from .connection import PING_S, Connection
 from .routes import application
-from .watching import watch
 
 EXAMPLE = Path("builtin/motorcycle")
 MOST_CONNECTIONS = 256
@@ -35,6 +35,8 @@ THREADS = 32
 """For what waits: a disk, a pipe, a loop that ends. It is to wait for nothing else that waits."""
 ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
+KEEP_S = 0.01
+"""How often the server says that it lives, and hands the hand on to a law that is computed beside."""
 LATEST_START_S = 2.0
 """A scene that takes longer than that is not waited for."""
 
@@ -155,3 +157,15 @@ async def _start(desk: Desk) -> None:
     while desk.scene is None and time.monotonic() < until_s:
         await asyncio.sleep(0.02)
     await asyncio.to_thread(desk.feeling.start)
+
+
+async def watch(desk: Desk) -> None:
+    """Until the server ends."""
+    while True:
+        desk.feeling.hand.keep()
+        desk.laws.follow(desk.feeling)
+        if why := desk.feeling.beacon_over():
+            desk.tell("beacon", part=None, name="", why=why)
+        if (ended := desk.feeling.ended()) is not None:
+            desk.tell("loop", running=False, why=ended.why, lost=ended.lost)
+        await asyncio.sleep(KEEP_S)

@@ -1,4 +1,4 @@
-/** Binary frames of the websocket, little-endian; the counterpart of tangible_ui/wire.py. */
+/** The binary frames of the websocket, little-endian; the counterpart of tangible_ui/framing.py. */
 
 export const VERSION = 1;
 export const STATE = 1;

@@ -1,0 +1,56 @@
+"""Judge the document before a hand meets it, and put right what can be."""
+
+import json
+from typing import Any
+
+from tangible_core.data import TICK_COLUMNS
+from tangible_core.plugins.interfaces import Medium
+from tangible_core.servo.ring import PERIOD_NS, SPINS
+
+from ..state.session import Desk, Tab
+from ..worker.messages import Late
+from .document import change
+from .making import long_job
+from .table import request
+
+LEAST_TICKS = 1000
+"""Of a loop whose lateness counts."""
+
+
+@request()
+async def preflight(desk: Desk, tab: Tab | None) -> dict[str, Any] | None:
+    """Judge the document on its device, or on the page's own hand where it names none; None if it was stopped."""
+    return await long_job(desk, "preflight", "touch", sets=desk.sets, **_loop(desk))
+
+
+@request()
+async def fix(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
+    """Change what preflight would have changed, and judge again; None if it was stopped."""
+    found = await long_job(desk, "fix", "touch", sets=desk.sets, **_loop(desk))
+    if found is None:
+        return None
+    if found["changes"]:
+        await change(desk, tab, changes=found["changes"], apply=apply)
+    await preflight(desk, tab)
+    return found
+
+
+@request()
+async def legible(desk: Desk, tab: Tab | None, medium: Medium, width_m: float | None = None) -> dict[str, Any] | None:
+    """Judge the document by the rules of one medium; None if it was stopped.
+
+    width_m: of the whole picture there; that of the workspace without one.
+    """
+    return await long_job(desk, "legible", "parts", sets=desk.sets, medium=medium, width_m=width_m)
+
+
+def _loop(desk: Desk) -> dict[str, Any]:
+    """The page's own hand, and how late the loop's ticks begin, where enough of them were."""
+    own = f"device={json.dumps(desk.feeling.own_device)}"
+    servo = desk.feeling.servo
+    if servo is None or not desk.feeling.running:
+        return {"own": own, "late": None}
+    rows, _ = servo.ring.since(0)
+    header = servo.ring.header
+    late = Late(rows[:, TICK_COLUMNS.index("late_s")], float(header[PERIOD_NS]) / 1e9, bool(header[SPINS]))
+    return {"own": own, "late": late if len(rows) >= LEAST_TICKS else None}

@@ -1,0 +1,27 @@
+"""The table of all requests by name, filled by the decorator at each."""
+
+from collections.abc import Awaitable, Callable
+from typing import Any, TypeVar
+
+Request = Callable[..., Awaitable[Any]]
+"""Called with the session's state, the tab, and the tab's arguments by name; its result is the answer, as JSON."""
+R = TypeVar("R", bound=Request)
+
+REQUESTS: dict[str, Request] = {}
+
+
+def request(name: str = "") -> Callable[[R], R]:
+    """Register a coroutine function as a request that tabs may send.
+
+    Its annotations are the types that arguments must have. name: of the request, where it is not the function's own.
+    Raises: ValueError if there is a request of this name.
+    """
+
+    def register(function: R) -> R:
+        key = name or function.__name__
+        if key in REQUESTS:
+            raise ValueError(f"there are two requests named {key}")
+        REQUESTS[key] = function
+        return function
+
+    return register

@@ -1,0 +1,63 @@
+"""Access to the server: this machine's own page alone, under strict headers."""
+
+from starlette.requests import HTTPConnection
+from starlette.responses import PlainTextResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
+    "media-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+HEADERS = {
+    "content-security-policy": POLICY,
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+}
+NEVER = "no-store"
+READING = ("GET", "HEAD")
+
+
+class Guarded:
+    """Answers none but this machine's own page: the name it is called by is this machine's, the headers are strict."""
+
+    def __init__(self, app: ASGIApp, hosts: frozenset[str]) -> None:
+        self._app, self._hosts = app, hosts
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Whatever it answers, errors too, has the headers."""
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+
+        async def with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                message = {**message, "headers": _strict(message["headers"])}
+            await send(message)
+
+        why = self._wrong(HTTPConnection(scope))
+        if not why:
+            await self._app(scope, receive, with_headers)
+        elif scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008})
+        else:
+            await PlainTextResponse(why, 403)(scope, receive, with_headers)
+
+    def _wrong(self, connection: HTTPConnection) -> str:
+        """A page elsewhere whose name was made to lead here (DNS rebinding) says its own name as host; one that reaches
+        out to here, its own origin: browsers say it with all that changes something, and with every websocket.
+        """
+        host = connection.headers.get("host", "")
+        if host not in self._hosts:
+            return "this address is not served"
+        reads = connection.scope["type"] == "http" and connection.scope["method"] in READING
+        if not reads and connection.headers.get("origin") != f"http://{host}":
+            return "another page may not do that"
+        return ""
+
+
+def _strict(headers: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
+    cached = any(name.lower() == b"cache-control" for name, _ in headers)
+    extra = HEADERS if cached else {**HEADERS, "cache-control": NEVER}
+    return [*headers, *((name.encode(), value.encode()) for name, value in extra.items())]

@@ -1,0 +1,76 @@
+"""What a tab asks for, taken apart: a name that there is and arguments that fit, or a sentence of what is wrong."""
+
+import inspect
+import json
+from functools import cache
+from typing import Any, NamedTuple, NoReturn, get_type_hints
+
+from pydantic import BaseModel, ConfigDict, ValidationError, create_model
+
+from tangible_core.errors import TangibleError, did_you_mean, quoted, shown
+
+from ..requests import REQUESTS, Request
+
+MOST_SHOWN = 200
+
+
+class NotUnderstood(TangibleError):
+    """What a tab says is nothing that can be asked for."""
+
+    def __init__(self, number: int | None, text: str) -> None:
+        super().__init__(text)
+        self.number = number
+        """Under which the tab waits for an answer, if it said one."""
+
+
+class Asked(NamedTuple):
+    """Something to do for a tab."""
+
+    number: int
+    name: str
+    ask: Request
+    told: dict[str, Any]
+
+
+def parse(text: str) -> Asked:
+    """Raises: NotUnderstood."""
+    try:
+        said = json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError) as error:
+        raise NotUnderstood(None, "a message is no JSON") from error
+    number = said.pop("number", None) if isinstance(said, dict) else None
+    if type(number) is not int:
+        raise NotUnderstood(None, 'a message is no JSON object with a "number"')
+    name = said.pop("ask", None)
+    if not isinstance(name, str) or (ask := REQUESTS.get(name)) is None:
+        hint = did_you_mean(name, REQUESTS) if isinstance(name, str) else ""
+        raise NotUnderstood(number, f"there is no {quoted(name)} to ask for{hint}")
+    return Asked(number, name, ask, _fitting(number, name, ask, said))
+
+
+def _fitting(number: int, name: str, ask: Request, said: dict[str, Any]) -> dict[str, Any]:
+    """The arguments that were said, of the types that they must have."""
+    try:
+        found = _arguments(ask).model_validate_json(json.dumps(said))
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(map(str, first["loc"])) or "what is told"
+        raise NotUnderstood(number, shown(f"{name}: {where}: {first['msg']}", MOST_SHOWN)) from error
+    except RecursionError as error:
+        raise NotUnderstood(number, f"{name}: what is told is nested too deep") from error
+    return {key: getattr(found, key) for key in found.model_fields_set}
+
+
+@cache
+def _arguments(ask: Request) -> type[BaseModel]:
+    """All that may be told, with its types; nothing else may."""
+    types = get_type_hints(ask)
+    _, _, *rest = inspect.signature(ask).parameters.values()  # the desk and the tab come first
+    fields: dict[str, Any] = {
+        each.name: (types[each.name], ... if each.default is each.empty else each.default) for each in rest
+    }
+    return create_model(ask.__name__, __config__=ConfigDict(extra="forbid", strict=True), **fields)
+
+
+def _refuse(constant: str) -> NoReturn:
+    raise ValueError(f"{constant} is no JSON")

@@ -1,0 +1,99 @@
+"""The document as it was edited and not saved: kept in a file of the user's, and offered at the next start."""
+
+import asyncio
+import json
+import logging
+import os
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NamedTuple, final
+
+from tangible_core.errors import OutputError
+from tangible_core.files.writing import write_text
+
+from ..stale_files import left_in
+from .texts import Text
+
+log = logging.getLogger(__name__)
+MOST_LEFT = 10
+"""Older ones are taken away."""
+
+
+class Draft(NamedTuple):
+    """What a program that ended had not saved."""
+
+    file: Path
+    text: Text
+    at_s: float
+    """When it was edited last, Unix time."""
+
+
+@final
+class Drafts:
+    """One file for each program that runs; it is there while the document says what no file says."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._file = folder / f"{os.getpid()}.json"
+        self._opened = ""
+        self._newest = self._kept = Text("", Path())
+        self._lock = asyncio.Lock()
+        self._failed = False
+        self.left: Draft | None = None
+        """Of a program before this one."""
+
+    def opened(self, text: str) -> None:
+        """This text is that of a file, or can be had again."""
+        self._opened = text
+
+    @property
+    def opened_text(self) -> str:
+        """What the document's file said when it was opened or saved."""
+        return self._opened
+
+    async def keep(self, text: Text) -> None:
+        """The document's text from now on. A disk that is full is warned of once."""
+        self._newest = text
+        async with self._lock:  # one after the other; of many edits the newest alone is written
+            if (text := self._newest) != self._kept:
+                await asyncio.to_thread(self._put, text)
+                self._kept = text
+
+    def look(self) -> Draft | None:
+        """The newest that a program before this one left."""
+        found = sorted(filter(None, map(_read, left_in(self._folder, "*.json"))), key=lambda draft: draft.at_s)
+        for draft in found[:-MOST_LEFT]:
+            _remove(draft.file)
+        self.left = found[-1] if found else None
+        return self.left
+
+    def drop(self) -> None:
+        """What was left is not wanted any more, or is the document now."""
+        if self.left is not None:
+            _remove(self.left.file)
+            self.left = None
+
+    def _put(self, text: Text) -> None:
+        if text.text == self._opened:
+            _remove(self._file)
+            return
+        try:
+            write_text(self._file, json.dumps({"text": text.text, "path": str(text.path)}))
+            self._failed = False
+        except OutputError as error:
+            if not self._failed:
+                log.warning("what is edited and not saved is not kept for the next start: %s", error)
+            self._failed = True
+
+
+def _read(file: Path) -> Draft | None:
+    try:
+        said: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        return Draft(file, Text(str(said["text"]), Path(str(said["path"]))), file.stat().st_mtime)
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _remove(file: Path) -> None:
+    with suppress(OSError):
+        file.unlink()

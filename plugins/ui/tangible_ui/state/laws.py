@@ -1,0 +1,116 @@
+"""Two force laws that are compared: which one is felt, and the trials of a blind comparison."""
+
+import math
+import secrets
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from ..feeling.comparison import Rival
+from ..feeling.feeling import ALONE, Beside, Feeling
+
+Choice = Literal[0, 1, 2]
+"""The one that is called 1, or 2; 0 for neither."""
+
+
+@dataclass
+class Tally:
+    """Trials of two laws. `draw` begins one, `choose` ends it."""
+
+    laws: tuple[str, str]
+    question: str
+    """What is asked in each trial."""
+    trials: list[tuple[str, str, str]] = field(default_factory=list[tuple[str, str, str]])
+    """Of each: the law that was called 1, the one called 2, and the one that was chosen, empty for neither."""
+    first: int = 0
+    """Which of the laws is called 1 now."""
+
+    def draw(self) -> None:
+        """Another trial."""
+        self.first = secrets.randbelow(2)
+
+    def law(self, called: int) -> int:
+        """Which of the laws is called 1, or 2."""
+        return self.first if called == 1 else 1 - self.first
+
+    def choose(self, choice: Choice) -> None:
+        """What was chosen in this trial; another one is drawn."""
+        named = self.laws[self.law(1)], self.laws[self.law(2)]
+        self.trials.append((*named, self.laws[self.law(choice)] if choice else ""))
+        self.draw()
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """How often each was chosen, and neither."""
+        chosen = [trial[2] for trial in self.trials]
+        one, two = (sum(1 for each in chosen if each == law) for law in self.laws)
+        return one, two, len(chosen) - one - two
+
+    @property
+    def chance(self) -> float:
+        """How likely it is that who feels no difference chooses so one-sidedly, or more; exact.
+
+        The two-sided sign test, trials without a choice left out. Source: Dixon and Mood, J. Am. Stat. Assoc. 41
+        (1946), 557.
+
+        >>> Tally(("a", "b"), "", [("a", "b", "a")] * 5).chance
+        0.0625
+        """
+        one, two, _ = self.counts
+        trials, fewer = one + two, min(one, two)
+        tail = sum(math.comb(trials, k) for k in range(fewer + 1)) / 2**trials
+        return min(1.0, 2 * tail)
+
+    def told(self) -> dict[str, Any]:
+        """All of it, as JSON has it."""
+        one, two, neither = self.counts
+        return {
+            "question": self.question,
+            "laws": list(self.laws),
+            "chosen": [one, two],
+            "neither": neither,
+            "trials": [list(each) for each in self.trials],
+            "chance": self.chance,
+        }
+
+
+@dataclass
+class Laws:
+    """The document's law and another one; none while one law alone is felt."""
+
+    rival: Rival
+    other: dict[str, Any] | None = None
+    """The other law, as `render:` has it."""
+    named: tuple[str, str] = ("", "")
+    felt: int = 0
+    """Which of the two is felt."""
+    tally: Tally | None = None
+    """Of a blind comparison that goes on."""
+    called: int = 1
+    """What the law that is felt is called there."""
+
+    def alone(self) -> None:
+        """One law again; what was counted is lost."""
+        self.other, self.tally, self.felt = None, None, 0
+
+    def follow(self, feeling: Feeling) -> None:
+        """Hand the hand that is felt on to the law beside. To be called often; returns at once."""
+        servo = feeling.servo
+        if not self.rival.running or servo is None or (row := servo.ring.latest()) is None:
+            return
+        x, y, z = row[2:5].tolist()
+        self.rival.follow((x, y, z if feeling.running else math.inf))
+
+    def beside(self) -> Beside:
+        """What pages are shown of the other law."""
+        if self.tally is not None:
+            return Beside(blind=True)
+        return ALONE if self.other is None else Beside(self.rival.force_n)
+
+    def told(self) -> dict[str, Any]:
+        """What pages may know."""
+        if self.tally is not None:
+            trials = len(self.tally.trials)
+            return {"state": "blind", "called": self.called, "trials": trials, "question": self.tally.question}
+        if self.other is not None:
+            return {"state": "two", "named": list(self.named), "felt": self.felt}
+        return {"state": "one"}

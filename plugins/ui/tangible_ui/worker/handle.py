@@ -1,0 +1,160 @@
+"""The maker from outside: ask it, hear it, kill it, start it again."""
+
+import asyncio
+import itertools
+import subprocess
+import sys
+import threading
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, final
+
+from tangible_core.errors import TangibleError, shown
+from tangible_core.servo.wire import receive, send
+
+from ..prestart import maker_process
+from .messages import Answer, Ask, Event, Refused
+
+MOST_DEATHS = 3
+"""So often in a row it may end before it is ready; then somebody has to say that it is worth another try."""
+
+
+class MakingStopped(TangibleError):
+    """The maker was killed while it worked."""
+
+
+class MakerAbsent(TangibleError):
+    """The maker does not start."""
+
+
+@final
+class Maker:
+    """A process that does jobs. One that is killed is followed by another; what waited for it gets MakingStopped.
+
+    One that ends before it is ready, three times in a row, is not: pages hear `maker_gone` with the reason, and what is
+    asked of it is refused until `try_again`.
+    """
+
+    def __init__(self, folder: Path, hear: Callable[[Event], None]) -> None:
+        """folder: where it leaves what pages fetch. hear: called in the event loop's thread for each event."""
+        self._folder, self._hear = folder, hear
+        self._numbers = itertools.count(1)
+        self._waiting: dict[int, asyncio.Future[Any]] = {}
+        self._loop = asyncio.get_running_loop()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._closed = False
+        self._ready = self._killed = False
+        self._deaths, self._gone = 0, ""
+        self._last_words: deque[str] = deque(maxlen=1)
+        self._lock = threading.Lock()
+        self._start()
+
+    @property
+    def busy(self) -> bool:
+        """Whether anybody waits for a job."""
+        return bool(self._waiting)
+
+    async def ask(self, job: str, **told: Any) -> Any:
+        """Do a job, and return what it made.
+
+        Raises: MakingStopped if the maker was killed meanwhile, MakerAbsent if it does not start, and whatever the job
+        raises.
+        """
+        if self._gone:
+            raise MakerAbsent(self._gone)
+        number, future = next(self._numbers), self._loop.create_future()
+        self._waiting[number] = future
+        try:
+            await asyncio.to_thread(self._send, Ask(number, job, told))
+            return await future
+        finally:
+            self._waiting.pop(number, None)
+
+    async def quick(self, job: str, **told: Any) -> Any:
+        """Do a quick job; once more, if the maker was killed for the sake of a long one. Raises: as `ask`."""
+        try:
+            return await self.ask(job, **told)
+        except MakingStopped:
+            return await self.ask(job, **told)
+
+    def kill(self) -> None:
+        """End whatever it does; another one takes its place."""
+        self._killed = True
+        if self._process is not None:
+            self._process.kill()
+
+    def close(self) -> None:
+        """End it for good."""
+        self._closed = True
+        self.kill()
+
+    def try_again(self) -> None:
+        """Start it, if it was given up."""
+        if self._gone:
+            self._gone, self._deaths = "", 0
+            self._start()
+
+    def _start(self) -> None:
+        self._ready = self._killed = False
+        self._process = process = maker_process()
+        self._send(self._folder)
+        reading = threading.Thread(target=self._read, args=(process,), daemon=True)
+        reading.start()
+        threading.Thread(target=self._listen, args=(process, reading), daemon=True).start()
+
+    def _read(self, process: subprocess.Popen[bytes]) -> None:
+        """What it prints goes where this process prints; its last line says why it ended."""
+        assert process.stderr is not None
+        with process.stderr as lines, suppress(OSError, ValueError):
+            for line in lines:
+                text = line.decode(errors="replace")
+                self._last_words.append(text.strip())
+                sys.stderr.write(text)
+
+    def _send(self, message: Any) -> None:
+        with self._lock, suppress(OSError, ValueError):  # it was killed: whoever waits hears of it
+            assert self._process is not None and self._process.stdin is not None
+            send(self._process.stdin, message)
+
+    def _listen(self, process: subprocess.Popen[bytes], reading: threading.Thread) -> None:
+        assert process.stdout is not None and process.stdin is not None
+        with process.stdout as replies, suppress(Exception):
+            while (message := receive(replies)) is not None:
+                self._loop.call_soon_threadsafe(self._take, message)
+        process.wait()
+        reading.join(1.0)  # its last words; a child of its own may hold the pipe open
+        with suppress(OSError):
+            process.stdin.close()
+        with suppress(RuntimeError):  # the server ended
+            self._loop.call_soon_threadsafe(self._lost)
+
+    def _take(self, message: Answer | Refused | Event) -> None:
+        if isinstance(message, Event):
+            self._ready, self._deaths = True, 0
+            self._hear(message)
+            return
+        future = self._waiting.get(message.number)
+        if future is None or future.done():
+            return
+        if isinstance(message, Refused):
+            future.set_exception(message.error)
+        else:
+            future.set_result(message.value)
+
+    def _lost(self) -> None:
+        if self._closed:
+            return
+        self._deaths += not (self._ready or self._killed)
+        if self._deaths < MOST_DEATHS:
+            self._start()
+            error: TangibleError = MakingStopped("making was stopped; what was finished is kept")
+        else:
+            why = self._last_words[-1] if self._last_words else "it says nothing"
+            self._gone = f"the process that computes does not start: {shown(why, 300)}"
+            error = MakerAbsent(self._gone)
+            self._hear(Event("maker_gone", {"why": self._gone}))
+        for future in self._waiting.values():
+            if not future.done():
+                future.set_exception(error)

@@ -1,0 +1,11 @@
+"""Jobs of the worker, one module per topic: every module in this folder is loaded, no list names them."""
+
+from importlib import import_module
+from pkgutil import iter_modules
+
+from .table import JOBS, Job
+
+__all__ = ["JOBS", "Job"]
+
+for _each in iter_modules(__path__):
+    import_module(f"{__name__}.{_each.name}")

@@ -1,0 +1,47 @@
+"""Jobs about devices; none opens a device."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.plugins.devices import examined, installed_devices
+
+from ..state import Bench
+from .table import job
+
+
+@job(quick=True)
+def devices(bench: Bench) -> list[dict[str, Any]]:
+    """Every installed device: what it is, its units that are connected, and why one cannot be used."""
+    return [{**asdict(each), "usable": each.usable} for each in installed_devices(bench.registry)]
+
+
+@job(quick=True)
+def examine(bench: Bench, name: str) -> list[dict[str, Any]]:
+    """What keeps a device from working, and the cure."""
+    return [asdict(each) for each in examined(bench.registry, name)]
+
+
+@job(quick=True)
+def about_device(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
+    """What feeling this document with its device means. Raises: ConfigError, also where it names no device."""
+    config = parse_config(text, path, bench.registry, sets)
+    if config.device is None or config.felt_device is None:
+        raise config.missing("device")
+    spec, limit_n = config.device.method.spec(), config.safety.max_force_n
+    return {
+        "name": config.device.name,
+        "simulated": spec.simulated,
+        "most_force_n": min(spec.max_force_n, limit_n or spec.max_force_n),
+        "relief_m": config.size.relief_m,
+    }
+
+
+@job(quick=True)
+def reach(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
+    """The device that the document names, and its workspace; none where it names none. Raises: ConfigError."""
+    device = parse_config(text, path, bench.registry, sets).device
+    if device is None:
+        return {"device": "", "workspace_m": None}
+    return {"device": device.name, "workspace_m": list(device.method.spec().workspace_m)}

@@ -1,0 +1,192 @@
+"""Jobs on the document's text: read, check, change and save it; nothing is computed from it."""
+
+from dataclasses import asdict
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, cast
+
+from ruamel.yaml.error import YAMLError
+
+from tangible_core.errors import Complaint, ConfigError, quoted
+from tangible_core.files.source import parse_value, plain, read_text
+from tangible_core.files.writing import write_text
+from tangible_core.materials.assignment import load_library
+from tangible_core.pipeline.config.editing import REMOVE, edited, moved, said, with_overrides
+from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.pipeline.config.schema import json_schema
+from tangible_core.pipeline.starter import MAPS, PICTURES, VIDEOS, are_pictures, starter
+from tangible_core.scene.scene_files import BUILTINS
+from tangible_core.session.recording_files import SUFFIXES
+
+from ..state import Bench
+from .table import job
+
+
+@job(quick=True)
+def check(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
+    """What a pipeline file says, alone and with every default filled in, or what is wrong with it."""
+    values, complaints = None, list[Complaint]()
+    try:
+        values = bench.config_of(text, path, sets).completed()
+    except ConfigError as error:
+        complaints = list(error.complaints)
+    return {
+        "text": text,
+        "path": str(path),
+        "digest": digest_of(text),
+        "said": _said(text, path),
+        "values": values,
+        "complaints": [each._asdict() for each in complaints],
+    }
+
+
+@job(quick=True)
+def change(
+    bench: Bench,
+    text: str,
+    path: Path,
+    sets: list[str],
+    changes: dict[str, Any],
+    written: dict[str, str],
+    removed: list[str],
+) -> dict[str, Any]:
+    """A text with some keys changed, and `check` of it.
+
+    changes: values by key, as `render.stiffness_n_per_m`. written: the same, each value in YAML. removed: keys to go.
+    Raises: ConfigError if the text is no YAML, or a key leads nowhere; nothing is checked but that it is YAML.
+    """
+    loaded = {key: _value(key, value) for key, value in written.items()}
+    gone = dict.fromkeys(removed, REMOVE)
+    return check(bench, edited(text, path, {**gone, **changes, **loaded}), path, sets)
+
+
+@job(quick=True)
+def overridden(bench: Bench, text: str, path: Path, sets: list[str]) -> str:
+    """The text with `key.key=value`, each as `--set` takes it. Raises: ConfigError."""
+    return with_overrides(text, path, sets)
+
+
+@job(quick=True)
+def schema(bench: Bench) -> dict[str, Any]:
+    """The JSON Schema of all methods that are installed."""
+    return json_schema(bench.registry, None)
+
+
+@job(quick=True)
+def library(bench: Bench, text: str, path: Path, sets: list[str]) -> list[dict[str, Any]]:
+    """The materials that a document can name: figures, and where they come from. Raises: ConfigError."""
+    return [asdict(each) for each in load_library(bench.config_of(text, path, sets).materials.library).values()]
+
+
+def digest_of(text: str) -> str:
+    """What two events say that are of the same text."""
+    return sha256(text.encode()).hexdigest()[:16]
+
+
+def _said(text: str, path: Path) -> dict[str, Any] | None:
+    try:
+        return said(text, path)
+    except ConfigError:
+        return None
+
+
+def _value(key: str, written: str) -> Any:
+    """Raises: ConfigError for what is no YAML."""
+    try:
+        return plain(parse_value(written))
+    except YAMLError as error:
+        sentence = f"{quoted(written)} is not a YAML value: {getattr(error, 'problem', None) or error}"
+        location = cast("tuple[str | int, ...]", tuple(key.split(".")))
+        raise ConfigError(f"{key}: {sentence}", complaints=[Complaint(location, sentence)]) from error
+
+
+PIPELINES = (".yaml", ".yml")
+KINDS = {
+    **dict.fromkeys(PICTURES, "picture"),
+    **dict.fromkeys(VIDEOS, "video"),
+    **dict.fromkeys(SUFFIXES, "recording"),
+    **dict.fromkeys(MAPS, "heights"),
+    **dict.fromkeys(PIPELINES, "pipeline"),
+}
+"""What a file is taken for, by the end of its name; whether an .npz is a recording is looked up."""
+MOST = 2000
+"""Entries that are shown of a folder."""
+
+
+@job(quick=True)
+def folder(bench: Bench, path: Path) -> dict[str, Any]:
+    """Folders, and files that can be opened, by name. Raises: ConfigError if it is no folder."""
+    try:
+        path = path.expanduser().absolute()
+        found = [(each.name, "folder" if each.is_dir() else KINDS.get(each.suffix.lower())) for each in path.iterdir()]
+    except OSError as error:
+        raise ConfigError(f"{path}: {error.strerror or error}; name a folder of this machine") from error
+    shown = sorted((name, kind) for name, kind in found if kind and not name.startswith("."))
+    return {
+        "folder": str(path),
+        "parent": str(path.parent),
+        "entries": [{"name": name, "kind": kind} for name, kind in shown[:MOST]],
+        "more": max(0, len(shown) - MOST),
+    }
+
+
+@job(quick=True)
+def begin(bench: Bench, files: list[Path]) -> dict[str, Any]:
+    """A pipeline file's text, or that of a new one for pictures, and where it stands; or the path of a recording.
+
+    Of a pipeline file and its pictures, the file counts. Raises: ConfigError for what cannot be opened together.
+    """
+    pipelines = [each for each in files if each.suffix.lower() in PIPELINES]
+    if len(pipelines) > 1:
+        raise ConfigError(f"{', '.join(each.name for each in pipelines)}: open one pipeline file at a time")
+    if pipelines:
+        path = pipelines[0].expanduser().absolute()
+        return {"text": read_text(path), "path": path}
+    if len(files) == 1 and _is_recording(files[0]):
+        return {"recording": str(files[0].expanduser().absolute())}
+    if not are_pictures(files):
+        odd = next(each for each in files if not are_pictures([each]))
+        raise ConfigError(
+            f"{odd.name}: is no picture, video, height map (.npy, .npz, .pfm), recording (.nc, .npz, .csv) or "
+            "pipeline file (.yaml); if it is one, give it the right ending"
+        )
+    path = Path.cwd() / f"{files[0].stem}.yaml"
+    return {"text": starter(files, path).text, "path": path}
+
+
+def _is_recording(path: Path) -> bool:
+    suffix = path.suffix.lower()
+    if suffix != ".npz":
+        return suffix in SUFFIXES
+    import zipfile
+
+    try:
+        with zipfile.ZipFile(path) as found:
+            return "time_s.npy" in found.namelist()
+    except (OSError, zipfile.BadZipFile):
+        return False
+
+
+@job(quick=True)
+def examples(bench: Bench) -> list[str]:
+    """Scenes that are built in."""
+    return list(BUILTINS)
+
+
+@job(quick=True)
+def save(bench: Bench, text: str, path: Path, out: Path) -> None:
+    """Write a document that stood at `path` to another place; its relative paths lead to the same files from there.
+
+    Raises: OutputError if it cannot be written; ConfigError for what is wrong with it.
+    """
+    config = parse_config(text, path, bench.registry)
+    write_text(out, moved(text, path, config, out))
+
+
+@job(quick=True)
+def exchange(bench: Bench, text: str, path: Path) -> str:
+    """The text with left and right in each other's place. Raises: ConfigError if they are no pair."""
+    scene = said(text, path).get("scene")
+    if not (isinstance(scene, dict) and {"left", "right"} <= scene.keys()):
+        raise ConfigError("the scene is no pair of pictures, left and right")
+    return edited(text, path, {"scene.left": scene["right"], "scene.right": scene["left"]})

@@ -1,0 +1,91 @@
+"""Jobs that write files for others into a folder that pages fetch from, and pack them."""
+
+import json
+import re
+import secrets
+import shutil
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+from zipfile import ZIP_DEFLATED, ZipFile
+
+from tangible_core.errors import ConfigError
+from tangible_core.pipeline.output.export_folder import read_list
+from tangible_core.pipeline.output.exporting import Exported
+
+from ..state import Bench
+from .document import digest_of
+from .making import telling
+from .table import job
+
+FOLDER = "export-"
+NAMED = re.compile(rf"{FOLDER}[0-9a-f]{{16}}")
+KEPT = 2
+"""Folders that stay: tabs may still fetch from the one before."""
+
+
+@job()
+def export(bench: Bench, number: int, text: str, path: Path, sets: list[str], exports: list[Any]) -> dict[str, Any]:
+    """Have exporters write their files, into a folder that pages fetch from; what became of each.
+
+    exports: as `export:` of a pipeline file has them. Raises: ConfigError for what none can be; TangibleError as
+    `Pipeline.export`.
+    """
+    begun_s = perf_counter()
+    pipeline = bench.pipeline_of(text, path, [*sets, f"export={json.dumps(exports)}"])
+    at = bench.folder / f"{FOLDER}{secrets.token_hex(8)}"
+    try:
+        with bench.work(pipeline, number) as work:
+            bench.tell("making", want="export", digest=digest_of(text))
+            _sweep(bench.folder)
+            done = pipeline.export(at, None, telling(bench, work), work.stop)
+        found = {"digest": digest_of(text), "folder": at.name, "exports": [_told(each) for each in done.exports]}
+    except BaseException:
+        shutil.rmtree(at, ignore_errors=True)
+        raise
+    bench.tell("exported", **found)
+    bench.tell("made", want="export", digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
+    return found
+
+
+@job(quick=True)
+def export_zip(bench: Bench, folder: str) -> str:
+    """Pack what was exported into that folder into one file beside it; its name. Raises: ConfigError if it is gone."""
+    at = bench.folder / folder
+    names = sorted(read_list(at)) if NAMED.fullmatch(folder) else []
+    if not names:
+        raise ConfigError("these files are not there any more; export them again")
+    whole = at / f"{min(names, key=len).partition('.')[0]}.zip"
+    if not whole.exists():
+        part = at / f".{secrets.token_hex(8)}"
+        try:
+            with ZipFile(part, "w", ZIP_DEFLATED) as packed:
+                for name in names:
+                    packed.write(at / name, name)
+            part.replace(whole)
+        finally:
+            part.unlink(missing_ok=True)
+    return whole.name
+
+
+def _told(each: Exported) -> dict[str, Any]:
+    said = asdict(each.outcome)
+    return {
+        "name": each.name,
+        **{key: said[key] for key in ("outcome", "why", "seconds", "notes")},
+        "method": each.outcome.method,
+        "files": [{"name": file.name, "bytes": file.stat().st_size} for file in each.files],
+        "legible": None if each.legible is None else each.legible.as_data(),
+    }
+
+
+def _sweep(folder: Path) -> None:
+    """Files that were exported long ago go; so do those of a process that was killed."""
+    found: list[tuple[int, Path]] = []
+    for each in folder.glob(f"{FOLDER}*"):
+        with suppress(OSError):  # another thread swept it
+            found.append((each.stat().st_mtime_ns, each))
+    for _, each in sorted(found)[: -KEPT + 1]:
+        shutil.rmtree(each, ignore_errors=True)

@@ -1,0 +1,57 @@
+"""Jobs that prepare what the force loop takes: a beacon, and several force laws on one surface."""
+
+import json
+from pathlib import Path
+from typing import Any, cast
+
+from tangible_core.data import HapticSurface
+from tangible_core.errors import ConfigError, quoted
+from tangible_core.files.source import parse_value, plain
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.servo import beacon_to, parcel
+
+from ..loop_input import felt
+from ..state import Bench
+from ..view.surface_view import at_hand
+from .table import job
+
+
+@job(quick=True)
+def beacon(bench: Bench, text: str, path: Path, sets: list[str], part: int) -> dict[str, Any]:
+    """A beacon to a part of the document's surface, by its number, in a parcel. Raises: ConfigError without one."""
+    surface: HapticSurface | None = at_hand(bench.pipeline_of(text, path, sets), "surface")
+    if surface is None:
+        raise ConfigError("the surface of this document is not made yet; make it, and a beacon leads to its parts")
+    made = beacon_to(surface, part)
+    return {"part": made.part, "name": made.name, "parcel": str(parcel.pack(made))}
+
+
+@job(quick=True)
+def law_names(bench: Bench) -> list[str]:
+    """The force laws that are installed."""
+    return sorted(bench.registry.names("render"))
+
+
+@job(quick=True)
+def law_block(bench: Bench, use: str, options: str) -> dict[str, Any]:
+    """A law as `render:` has it, its options written in YAML, such as {stiffness_n_per_m: 500}. Raises: ConfigError."""
+    try:
+        said = plain(parse_value(options)) if options.strip() else {}
+    except Exception as error:
+        raise ConfigError(f"{quoted(options)} is not YAML; write options as {{stiffness_n_per_m: 500}}") from error
+    if not isinstance(said, dict):
+        raise ConfigError(f"{quoted(options)}: write options as {{stiffness_n_per_m: 500}}")
+    return {"use": use, **cast("dict[str, Any]", said)}
+
+
+@job()
+def laws(bench: Bench, text: str, path: Path, sets: list[str], others: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """What the force loop needs of the document's law, and then of others, blocks as `render:` has them.
+
+    Raises: ConfigError if the document has no law, or a block is wrong; TangibleError as `Pipeline.make`.
+    """
+    first = bench.pipeline_of(text, path, sets)
+    if first.config.render is None:
+        raise first.config.missing("render")
+    with_others = [bench.config_of(text, path, [*sets, f"render={json.dumps(each)}"]) for each in others]
+    return [felt(first), *(felt(Pipeline.from_config(config, like=first)) for config in with_others)]

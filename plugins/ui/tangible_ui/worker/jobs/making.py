@@ -1,0 +1,124 @@
+"""Jobs that make products, and say on the way what there is to see; and what making would do."""
+
+from dataclasses import asdict, replace
+from pathlib import Path
+from time import perf_counter
+from typing import Any, cast
+
+import numpy as np
+
+from tangible_core.data import Outcome, Plan
+from tangible_core.data.products import PRODUCTS
+from tangible_core.errors import TangibleError
+from tangible_core.pipeline.engine.engine import Progress, StageEvent
+from tangible_core.pipeline.pipeline import Pipeline
+
+from ..loop_input import felt
+from ..state import Bench, Work
+from ..view.files import show
+from ..view.surface_view import Seen, see
+from .document import digest_of
+from .surface import described
+from .table import job
+
+SLOW = ("disparity", "segments")
+"""Products that take seconds: who edits says when they are made."""
+
+
+@job(quick=True)
+def plan(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
+    """What making a product would do, and why; what stands in the way where it cannot."""
+    try:
+        return planned(bench.pipeline_of(text, path, sets), text, want)
+    except TangibleError as error:
+        return {"digest": digest_of(text), "want": want, "steps": [], "slow": [], "refusal": str(error)}
+
+
+def planned(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
+    """The plan as pages have it. Raises: as `Pipeline.plan`."""
+    found = pipeline.plan(cast(Any, want))
+    slow = [each.product for each in found.steps if each.outcome == "ran" and each.product in SLOW]
+    steps = [asdict(each) for each in _all_steps(pipeline, found)]
+    return {"digest": digest_of(text), "want": want, "steps": steps, "slow": slow, "refusal": found.refusal}
+
+
+def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
+    """Those of the plan, and the products that are within one which is kept, in the order of making."""
+    steps = {each.product: each for each in found.steps}
+    if not found.refusal:
+        needed = pipeline.engine.needed(found.want)
+        for each in pipeline.outcomes:
+            if each.product in needed and each.product not in steps:
+                steps[each.product] = each if each.outcome == "given" else replace(each, outcome="cached", why="")
+    order = ["views", *PRODUCTS]
+    return sorted(steps.values(), key=lambda each: order.index(each.product))
+
+
+@job()
+def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:
+    """Make a product; pages hear of every stage, and of the surface as soon as it can be drawn.
+
+    Returns: what the force loop needs, where a touch was wanted.
+    """
+    begun_s = perf_counter()
+    pipeline = bench.pipeline_of(text, path, sets)
+    with bench.work(pipeline, number) as work:
+        bench.tell("making", want=want, digest=digest_of(text))
+        bench.tell("plan", **planned(pipeline, text, want))
+        heard = telling(bench, work)
+        product = TO_SEE.get(want, want)
+        pipeline.make(product, heard, work.stop)
+        _show(bench, pipeline, product)
+        work.worth = True
+        made = felt(pipeline, heard, work.stop) if want == "touch" else None
+    bench.tell("made", want=want, digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
+    return made
+
+
+def telling(bench: Bench, work: Work) -> Progress:
+    """Hears of stages, and tells pages."""
+
+    def heard(stage: StageEvent) -> None:
+        done = {} if stage.outcome is None else asdict(stage.outcome)
+        bench.tell("stage", product=stage.product, method=stage.method, done=done)
+        work.heard(stage)
+
+    return heard
+
+
+@job(quick=True)
+def give_way(bench: Bench, number: int, text: str, path: Path, sets: list[str], want: str) -> bool:
+    """What is being made ends for this newer document; whether at once, as it needs nothing of what is at work.
+
+    Raises: ConfigError if that makes no sense; then what is being made goes on.
+    """
+    return bench.give_way(number, bench.pipeline_of(text, path, sets), want)
+
+
+TO_SEE = {"touch": "surface", "disparity": "relief", "segments": "materials"}
+"""What is seen of a product, where that is another one."""
+
+
+def _show(bench: Bench, pipeline: Pipeline, product: str) -> None:
+    """Pages draw it while the touch is made."""
+    if (seen := see(pipeline, product)).digest != bench.shown:
+        bench.tell("scene", **show(seen, bench.folder))
+        bench.shown = seen.digest
+        bench.described = pipeline, seen
+        bench.tell("described", **described(pipeline, seen))
+    bench.tell("materials", segments=_segments(pipeline, seen))
+
+
+def _segments(pipeline: Pipeline, seen: Seen) -> list[dict[str, Any]]:
+    """Each segment with its material, why it has it, its share of the area, and its name where it is a part."""
+    if seen.labels is None or not seen.materials:
+        return []
+    chosen = pipeline.make("materials")
+    reasons = chosen.reasons if chosen is not None else ("",) * len(seen.materials)
+    names = seen.names or ("",) * len(seen.materials)
+    shares = np.bincount(seen.labels.ravel(), minlength=len(seen.materials)) / max(1, seen.labels.size)
+    named = enumerate(zip(seen.materials, reasons, shares.tolist(), strict=False))
+    return [
+        {"label": label, "material": material.name, "why": why, "share": share, "name": names[label]}
+        for label, (material, why, share) in named
+    ]

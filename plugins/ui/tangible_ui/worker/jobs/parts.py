@@ -1,0 +1,199 @@
+"""Jobs of the parts editor: open it, propose a part, follow edges, feel heights, save what was drawn."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tangible_core.data import HapticSurface, Record, SegmentMap
+from tangible_core.data.records import digest_of
+from tangible_core.errors import ConfigError
+from tangible_core.parts import PartChoice, find_parts
+from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.pipeline.engine import part_validation, working_grid
+from tangible_core.pipeline.engine.part_validation import check_parts
+from tangible_core.pipeline.engine.stages.touch import fit_to_device
+from tangible_core.plugins.notes import silently
+
+from ..loop_input import parcel_of
+from ..parts.heights import Kept, checked, coarse, kept_of, known_heights, materials_of, of_parts
+from ..parts.label_files import as_png, unpacked
+from ..parts.opening import FOLDER, config_heights, config_parts, digest, edited_of, leave_files, listed, opened_of
+from ..parts.outlines import snapped
+from ..parts.proposals import Kind, as_points, proposed, runs
+from ..parts.saving import (
+    beside,
+    compact,
+    kept_before,
+    numbered,
+    on_shelf,
+    said_of_parts,
+    stands,
+    unframed,
+    warn_of_numbers,
+    write,
+)
+from ..state import Bench
+from ..view.files import show
+from ..view.surface_view import see_parts
+from .table import job
+
+
+@job(quick=True)
+def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
+    """What an editor begins with; the picture, and the number of each pixel's part, are left in files.
+
+    Raises: ConfigError for a document that is wrong; PictureError for a scene that cannot be read, or has too many
+    parts; OutputError if there is no room for the files.
+    """
+    pipeline = edited_of(bench, text, path, sets)
+    opened, config = opened_of(bench, pipeline), pipeline.config
+    at = f"{FOLDER}{digest_of((opened.picture, opened.parts))}"
+    leave_files(opened, bench.folder / at)
+    by_parts = config.changed(heights=config_heights(config))
+    rows, columns = opened.parts.labels.shape
+    return {
+        "columns": columns,
+        "rows": rows,
+        "picture": f"{at}/picture.jpg",
+        "labels": f"{at}/labels.u16",
+        "digest": digest(opened.parts, config),
+        "parts": listed(opened.parts, config_parts(config)),
+        "heights": config_heights(config).model_dump(mode="json"),
+        "top_m": max(0.0, by_parts.top_m),
+        "widthM": by_parts.size.width_m,
+        "title": config.title,
+        "language": config.language,
+    }
+
+
+@job(quick=True)
+def parts_propose(
+    bench: Bench,
+    text: str,
+    path: Path,
+    sets: list[str],
+    points: Sequence[Sequence[float]],
+    width_px: float,
+    kind: Kind,
+    within: Sequence[float] | None,
+) -> dict[str, Any]:
+    """The part on which a stroke lies: its box, and runs of pixels outside and inside in turn, row by row.
+
+    Raises: ConfigError for what is no stroke in the picture; otherwise as `parts_open`.
+    """
+    picture = opened_of(bench, edited_of(bench, text, path, sets)).picture
+    box, mask = proposed(picture, as_points(points, picture.shape), width_px, kind, within)
+    return {"box": list(box), "runs": runs(mask)}
+
+
+@job(quick=True)
+def parts_snap(
+    bench: Bench, text: str, path: Path, sets: list[str], points: Sequence[Sequence[float]], reach_px: float
+) -> dict[str, Any]:
+    """A closed outline, moved to the strongest edges that are no farther than this. Raises: as `parts_propose`."""
+    picture = opened_of(bench, edited_of(bench, text, path, sets)).picture
+    outline = as_points(points, picture.shape)
+    return {"points": np.round(snapped(picture, outline, reach_px), 2).tolist()}
+
+
+@job(quick=True)
+def parts_save(
+    bench: Bench,
+    text: str,
+    path: Path,
+    sets: list[str],
+    sent: Path,
+    parts: Sequence[Mapping[str, Any]],
+    heights: Mapping[str, Any] | None,
+    words: Mapping[str, str | None],
+    of: str,
+    opened: str,
+    shelf: Path,
+    earlier: Sequence[str] = (),
+) -> dict[str, Any]:
+    """Keep labels that a page has sent, and what is said of each; a document that stands in its file is saved there.
+
+    of: digest of the parts that were edited, or nothing. opened: what the document's file said when it was opened or
+    saved; a file that says something else is left alone. shelf: where the labels of a document go without a file, and
+    those that others take the place of. earlier: texts that the document had.
+    Returns: with `moved`, what earlier texts, and this one, say from now on if they named labels that are elsewhere.
+    Raises: ConfigError for labels that are none, parts that were changed elsewhere meanwhile, and what the document
+    must not say; OutputError, and then nothing is changed.
+    """
+    pipeline = edited_of(bench, text, path, sets)
+    if of and of != digest(opened_of(bench, pipeline).parts, pipeline.config):
+        raise ConfigError("the parts were changed elsewhere meanwhile, as in another tab; open the editor again")
+    labels = unpacked(sent, pipeline.scene.shape)
+    known, segments = compact(labels)
+    found = find_parts(SegmentMap(segments))
+    choices, numbers = numbered(parts, [int(known[each]) for each in found.segments], found.labels)
+    picture = as_png(unframed(found.labels, pipeline.config), path.name)
+    in_file = stands(path, opened)
+    place = beside(path) if in_file else on_shelf(shelf, picture)
+    changed = said_of_parts(text, path, place, choices, heights, words)
+    config = parse_config(changed, path, bench.registry, sets)
+    check_parts(config, found, labels.shape[1])
+    moved = kept_before(place, picture, shelf, [*earlier, text], path)
+    write(place, picture, path if in_file else None, changed)
+    warn_of_numbers(config, opened_of(bench, pipeline), found)
+    of = digest(found, config)
+    return {"text": changed, "path": str(place), "numbers": numbers, "saved": in_file, "digest": of, "moved": moved}
+
+
+@job(quick=True)
+def parts_heights(
+    bench: Bench,
+    text: str,
+    path: Path,
+    sets: list[str],
+    heights_m: Sequence[float | None],
+    materials: Sequence[str | None] | None = None,
+    heights: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
+    """What the force loop needs of the document with these heights of its parts; the document stays as it is.
+
+    heights_m: by the number of a part; None for what the recipe finds, by guess or by depth. materials: the same; None
+    for those that the document says. heights: the recipe, widths of rims and the like, where they are not the
+    document's. Raises: ConfigError for a height above the workspace, a part that is not there, a depth that was not
+    made yet, a document without a law or a device; MaterialError; TangibleError as `Pipeline.make`.
+    """
+    pipeline = edited_of(bench, text, path, sets)
+    opened_of(bench, pipeline)
+    config = coarse(of_parts(pipeline.config, heights), pipeline.scene.shape)
+    if config.render is None:
+        raise config.missing("render")
+    if pipeline.scene.segments is None and not pipeline.config.by_parts:
+        raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
+    kept = kept_of(bench, Pipeline.from_config(config, like=pipeline))
+    said = {number: checked(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
+    part_validation.check_parts(config.changed(parts=said), kept.parts, kept.grid.scene.shape[1])
+    part_validation.check_numbers(config, kept.parts.count)
+    known = known_heights(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
+    relief = working_grid.relief_of_layers(kept.layering, known, config.size, kept.grid.shown)
+    own = part_validation.own_materials(config) if materials is None else dict(enumerate(materials))
+    products: dict[str, Record] = {config.felt_parts: kept.parts, "relief": relief}
+    if kept.materials is not None:
+        products["materials"] = replace(kept.materials, materials=materials_of(kept.materials.materials, own, config))
+    made = kept.pipeline.engine.with_products(**products)
+    surface: HapticSurface = made.make("surface")
+    kept.surface, device = surface, config.felt_device
+    if device is not None:
+        surface = fit_to_device(surface, config, device)[0]
+    with silently():  # what the device limits would be said at every step of a height
+        return parcel_of(made.make("touch"), surface, config)
+
+
+@job(quick=True)
+def parts_shown(bench: Bench) -> None:
+    """Pages draw what `parts_heights` made last."""
+    kept: Kept | None = bench.kept
+    if kept is None or kept.surface is None:
+        return
+    surface, kept.surface = kept.surface, None
+    kept.seen = see_parts(kept.pipeline, surface, kept.seen)
+    if kept.seen.digest != bench.shown:
+        bench.tell("scene", **show(kept.seen, bench.folder))
+        bench.shown = kept.seen.digest

@@ -1,0 +1,123 @@
+"""Jobs that describe the surface on the screen: in words, and a fine texture as heights."""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float32, Float64, Shaped
+
+from tangible_core.data import Material
+from tangible_core.data.records import digest_of
+from tangible_core.errors import GeometryError
+from tangible_core.haptic_textures.waves import waves
+from tangible_core.parts.words.languages import LANGUAGES, TABLES, Language
+from tangible_core.pipeline.output.exporting import title_of
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.scene.workspace import kind_of
+from tangible_report.description import describe, describe_at_length, facts, page_of
+from tangible_report.description.at_length import tell
+
+from ..state import Bench
+from ..view.files import ABOUT
+from ..view.surface_view import Seen
+from .table import job
+
+KEPT = 8
+MOST_PIXELS = 512
+LARGEST_M = 0.1
+
+
+@job(quick=True)
+def texture_patch(
+    bench: Bench, digest: str, x_m: float, y_m: float, side_m: float, pixels: int = 192
+) -> dict[str, Any]:
+    """Write the heights of a square round a place over the surface's own, metres, the top row far; and say where.
+
+    digest: of the surface as pages know it. Raises: GeometryError if that is gone, or the square is none.
+    """
+    at = bench.folder / digest
+    if not re.fullmatch("[0-9a-f]{32}", digest) or not (at / ABOUT).is_file():
+        raise GeometryError("this surface is not kept any more; make it again")
+    square = 0 < side_m <= LARGEST_M and 1 <= pixels <= MOST_PIXELS and np.isfinite(x_m + y_m)
+    if not square:
+        raise GeometryError(
+            f"a texture is shown on up to {LARGEST_M} m and {MOST_PIXELS} pixels, not {side_m} m, {pixels}"
+        )
+    heights = patch(at, (x_m, y_m), side_m, pixels)
+    name = f"texture-{digest_of((x_m, y_m, side_m, pixels))}.f32"
+    (at / name).write_bytes(heights.astype("<f4").data)
+    for old in sorted(at.glob("texture-*.f32"), key=lambda path: path.stat().st_mtime_ns)[:-KEPT]:
+        old.unlink(missing_ok=True)
+    return {"file": name, "x_m": x_m, "y_m": y_m, "side_m": side_m, "pixels": pixels}
+
+
+def patch(at: Path, centre_m: tuple[float, float], side_m: float, pixels: int) -> Float32[np.ndarray, "n n"]:
+    """Heights of the textures of all materials in a square, each at its pixel's centre; 0 beyond the surface."""
+    about = json.loads((at / ABOUT).read_text())
+    steps_m = ((np.arange(pixels) + 0.5) / pixels - 0.5) * side_m
+    x, y = np.meshgrid(centre_m[0] + steps_m, centre_m[1] - steps_m)
+    found = np.zeros((pixels, pixels))
+    if not about["labels"] or not about["materials"]:
+        return found.astype(np.float32)
+    width_m, length_m = about["extent_m"]
+    inside = (np.abs(x) <= width_m / 2) & (np.abs(y) <= length_m / 2)
+    kinds = np.fromfile(at / "materials.u16", "<u2")[_labels(at, about, x, y)]
+    for kind in np.unique(kinds[inside]):
+        here = inside & (kinds == kind)
+        found[here] = _heights(Material(**about["materials"][kind]), x[here], y[here])
+    return found.astype(np.float32)
+
+
+def _labels(at: Path, about: dict[str, Any], x: np.ndarray, y: np.ndarray) -> Shaped[np.ndarray, "n n"]:
+    """Of the cell that each place is in, or is nearest to."""
+    rows, columns, (width_m, length_m) = about["rows"], about["columns"], about["extent_m"]
+    labels = np.memmap(at / "labels-0.u", f"<u{about['label_bytes']}", "r", shape=(rows, columns))
+    row = np.clip(((0.5 - y / length_m) * rows).astype(int), 0, rows - 1)
+    column = np.clip(((x / width_m + 0.5) * columns).astype(int), 0, columns - 1)
+    return labels[row, column]
+
+
+def _heights(
+    material: Material, x: Float64[np.ndarray, " n"], y: Float64[np.ndarray, " n"]
+) -> Float64[np.ndarray, " n"]:
+    found = np.zeros(x.shape)
+    for fx, fy, amplitude_m, phase in zip(*waves(material), strict=True):
+        found += amplitude_m * np.cos(2 * np.pi * (fx * x + fy * y + phase))
+    return found
+
+
+@job(quick=True)
+def description(bench: Bench, language: Language) -> dict[str, Any] | None:
+    """What there is to say, as text too and as a page of its own; nothing while there is no surface."""
+    if bench.described is None:
+        return None
+    pipeline, seen = bench.described
+    config, kind = pipeline.config, kind_of(pipeline.scene)
+    title, parts = title_of(config, pipeline.scene), facts(seen.surface)
+    told = tell(seen.surface, title, language, parts, kind)
+    return {
+        "digest": seen.digest,
+        "title": told.title,
+        "overview": " ".join(told.overview),
+        "heading": told.heading,
+        "parts": [{"label": each.label, "says": " ".join(each.sentences)} for each in told.parts],
+        "left_out": told.left_out,
+        "text": "\n".join(describe_at_length(seen.surface, title, language, parts, kind)),
+        "html": page_of(seen.surface, title, language, parts, kind, named_in=config.language),
+    }
+
+
+def described(pipeline: Pipeline, seen: Seen) -> dict[str, Any]:
+    """What is said of what is seen, by language; a material that has no name in a language keeps its own."""
+    scene = pipeline.scene
+    kind = kind_of(scene)
+    names = {each.name for each in seen.materials}
+    return {
+        "digest": seen.digest,
+        "says": {each: describe(seen.surface, scene.name, each, kind) for each in LANGUAGES},
+        "names": {
+            each: {name: said for name, said in TABLES[each].materials.items() if name in names} for each in LANGUAGES
+        },
+    }

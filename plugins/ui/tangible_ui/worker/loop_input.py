@@ -1,0 +1,38 @@
+"""What the force loop needs of a touch: the touch in a parcel, its device, mapping and limits."""
+
+from threading import Event
+from typing import Any
+
+from tangible_core.data import HapticSurface
+from tangible_core.mapping import over
+from tangible_core.pipeline.config.model import PipelineConfig
+from tangible_core.pipeline.engine.engine import Progress
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.plugins.interfaces import Touch
+from tangible_core.runtime.child_process import dumps
+from tangible_core.servo import packed
+from tangible_core.session import materials_text
+
+
+def felt(pipeline: Pipeline, heard: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
+    """What the force loop needs of a touch, which is made. Raises: ConfigError without a device; as `Pipeline.make`."""
+    touch, config = pipeline.make("touch", heard, stop), pipeline.config
+    return parcel_of(touch, pipeline.make("surface"), config)
+
+
+def parcel_of(touch: Touch, surface: HapticSurface, config: PipelineConfig) -> dict[str, Any]:
+    """What the force loop needs of a touch. Raises: ConfigError without a device; DeviceError if there is no room."""
+    if config.device is None or config.felt_device is None:
+        raise config.missing("device")
+    device = over(config.felt_device, surface.extent_m)
+    sent = packed(touch, device.spec())
+    return {
+        "parcel": str(sent.parcel),
+        "stiffness_n_per_m": sent.stiffness_n_per_m,
+        "law": config.render.name if config.render else "",
+        "device_name": config.device.name,
+        "device": dumps(device),
+        "mapping": dumps(config.mapping),
+        "safety": dumps(config.safety),
+        "materials": materials_text(surface),
+    }

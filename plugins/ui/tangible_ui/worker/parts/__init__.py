@@ -1,0 +1,1 @@
+"""The parts editor's computations: opening, heights, outlines, proposals, saving."""

@@ -1,0 +1,139 @@
+"""Jobs that make heights and materials of parts felt while they are changed, and that show them.
+
+What does not depend on the heights is made once and kept. What is felt is, to the bit, what the document gives once it
+says these heights: the same stages make it (`Engine.with_products`). Only where that has more than MOST_CELLS it is
+felt on a coarser grid until it is saved: a hand that drags a height waits for nothing.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import ceil, sqrt
+from typing import Any, TypeVar
+
+import numpy as np
+from pydantic import BaseModel, ValidationError
+
+from tangible_core.data import HapticSurface, Material, MaterialMap, PartMap
+from tangible_core.errors import ConfigError
+from tangible_core.materials.assignment import find, load_library
+from tangible_core.parts import HeightChoice, Layering, PartChoice
+from tangible_core.pipeline.config.model import PipelineConfig
+from tangible_core.pipeline.config.part_checks import wrong_of_parts
+from tangible_core.pipeline.engine import working_grid
+from tangible_core.pipeline.engine.stage import Context
+from tangible_core.pipeline.engine.stages.relief import ReliefStage
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.scene.scaling import felt_factor
+from tangible_core.scene.scene import Scene
+
+from ..state import Bench
+from ..view.surface_view import Seen, at_hand
+from .opening import config_heights
+
+S = TypeVar("S", bound=BaseModel)
+MOST_CELLS = 500_000
+"""Of a surface that is felt while it is changed."""
+
+
+@dataclass
+class Kept:
+    """What is made once for all heights."""
+
+    scene: Scene
+    config: PipelineConfig
+    """With nothing said of the parts but their names, by which rules may call them."""
+    pipeline: Pipeline
+    grid: working_grid.WorkingGrid
+    parts: PartMap
+    """On the grid that is felt."""
+    materials: MaterialMap | None
+    """By part, of those that say none themselves; None where the law uses none."""
+    layering: Layering
+    found_m: dict[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
+    """What recipes find, by part; those that were asked for."""
+    seen: Seen | None = None
+    """What was seen last, and the surface that is felt now, if it is another."""
+    surface: HapticSurface | None = None
+
+
+def of_parts(config: PipelineConfig, heights: Mapping[str, Any] | None) -> PipelineConfig:
+    """The configuration with a relief of parts, as it is once all their heights are given."""
+    choice = config_heights(config)
+    told = {**choice.model_dump(), **(heights or {}), "by": "given"}
+    return config.changed(heights=checked(HeightChoice, told), parts=config.parts or {})
+
+
+def coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
+    """With a grid of at most about MOST_CELLS, in steps of half a pixel of the pictures as every felt grid."""
+    size, (rows, columns) = config.size, shape
+    factor = ceil(2 * sqrt(rows * columns / MOST_CELLS)) / 2
+    if factor <= felt_factor(columns, size.width_m, size.finest_m):
+        return config
+    finest_m = (factor + 0.01) * size.width_m / columns
+    return config.changed(workspace=config.workspace.model_copy(update={"finest_m": finest_m}))
+
+
+def checked(section: type[S], said: Mapping[str, Any]) -> S:
+    """Raises: ConfigError for what it cannot say."""
+    try:
+        return section.model_validate(said)
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise ConfigError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from error
+
+
+def known_heights(kept: Kept, heights_m: Sequence[float | None], by: str) -> list[float]:
+    """With what the recipe finds where nothing is given. Raises: ConfigError for a depth that was not made yet."""
+    if None in heights_m and by not in kept.found_m:
+        assert kept.config.heights is not None
+        disparity = at_hand(kept.pipeline, "disparity") if by == "depth" else None
+        if by == "depth" and disparity is None:
+            raise ConfigError("the picture's depth is not made yet; make it, and heights by depth are felt")
+        recipe = kept.config.changed(heights=checked(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
+        kept.found_m[by] = ReliefStage(Context(recipe, kept.scene)).part_heights(kept.parts, disparity).heights_m
+    found_m = kept.found_m.get(by, ())
+    return [found_m[number] if each is None and number < len(found_m) else each or 0.0
+            for number, each in enumerate(heights_m)]  # fmt: skip
+
+
+def kept_of(bench: Bench, pipeline: Pipeline) -> Kept:
+    """What was kept, or as much of it as still holds."""
+    config, before = pipeline.config, bench.kept
+    named = {number: PartChoice(name=each.name) for number, each in (config.parts or {}).items() if each.name}
+    bare = config.changed(parts=named, title="", language="en", source=None)
+    if before is not None and before.scene is pipeline.scene and before.config == bare:
+        return before
+    if wrong := list(wrong_of_parts(config)):
+        raise config.complained(*wrong)
+    made = Pipeline.from_config(bare, like=pipeline)
+    grid = working_grid.WorkingGrid(made.scene, bare.size)
+    parts = working_grid.parts_on_grid(made.engine.felt(bare.felt_parts), grid.shape, bare.felt_parts)
+    uses = bare.render is None or bare.render.method.uses_materials
+    chosen = made.make("materials") if uses else None
+    layering = None if before is None else _same_layering(before, bare, parts, grid)
+    if layering is None:
+        assert bare.heights is not None
+        layering = Layering(parts, bare.size.width_m, bare.heights, grid.views.left if grid.views else None)
+    bench.kept = kept = Kept(made.scene, bare, made, grid, parts, chosen, layering)
+    return kept
+
+
+def _same_layering(
+    before: Kept, config: PipelineConfig, parts: PartMap, grid: working_grid.WorkingGrid
+) -> Layering | None:
+    """The one that is there, if it is of the same parts."""
+    same = before.config.heights == config.heights and before.config.size == config.size
+    return (
+        before.layering
+        if same and before.grid.scene is grid.scene and np.array_equal(before.parts.labels, parts.labels)
+        else None
+    )
+
+
+def materials_of(
+    found: tuple[Material, ...], own: Mapping[int, str | None], config: PipelineConfig
+) -> tuple[Material, ...]:
+    """With those that parts say themselves. Raises: MaterialError for a name that is not in the library."""
+    library = load_library(config.materials.library)
+    named = {number: find(name, library) for number, name in own.items() if name is not None}
+    return tuple(named.get(number, each) for number, each in enumerate(found))

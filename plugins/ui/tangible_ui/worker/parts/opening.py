@@ -1,0 +1,143 @@
+"""Jobs of the parts editor: what a scene's parts are, and parts that were drawn, as files."""
+
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import UInt8
+
+from tangible_core.data import SegmentMap
+from tangible_core.data.parts import PartMap, beside_border
+from tangible_core.data.pictures import to_rgb8
+from tangible_core.data.records import digest_of
+from tangible_core.parts import HeightChoice, PartChoice, find_parts, part_sizes
+from tangible_core.pipeline.config.model import PipelineConfig
+from tangible_core.pipeline.engine.part_validation import parts_of
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.scene.scene import Scene
+
+from ..state import Bench
+from ..view.files import leave, write_whole
+from ..view.surface_view import is_there
+
+FOLDER = "parts-"
+KEPT = 3
+"""Folders of what editors fetch that stay: tabs may still fetch from the one before."""
+MOST_LOOKED_AT = 400_000
+"""Pixels among which a place is looked for that is well inside a part."""
+
+
+class Opened(NamedTuple):
+    """What an editor works on."""
+
+    pipeline: Pipeline
+    """The last one; what it read is not read again."""
+    scene: Scene
+    picture: UInt8[np.ndarray, "h w 3"]
+    parts: PartMap
+
+
+def edited_of(bench: Bench, text: str, path: Path, sets: list[str]) -> Pipeline:
+    """The pipeline that a text says, after that of the last quick job here. Raises: ConfigError."""
+    config, before = bench.config_of(text, path, sets), bench.opened
+    made = bench.after(before.pipeline, config) if before and before.pipeline.config.scene == config.scene else None
+    return made or bench.pipeline_of(text, path, sets)
+
+
+def opened_of(bench: Bench, pipeline: Pipeline) -> Opened:
+    """A scene's picture and parts; the last one's are kept. Raises: as `parts_open`."""
+    before, scene = bench.opened, pipeline.scene
+    if before is None or before.scene is not scene:
+        before = Opened(pipeline, scene, to_rgb8(_picture(scene)), _parts(pipeline))
+    bench.opened = before._replace(pipeline=pipeline)
+    return before
+
+
+def digest(parts: PartMap, config: PipelineConfig) -> str:
+    """Of the parts, and of what a document says of them."""
+    choices = tuple((number, repr(each)) for number, each in sorted(config_parts(config).items()))
+    return digest_of((parts.labels, choices, repr(config_heights(config))))
+
+
+def config_parts(config: PipelineConfig) -> Mapping[int, PartChoice]:
+    """What a document says of its parts, by number."""
+    return config.parts or {}
+
+
+def config_heights(config: PipelineConfig) -> HeightChoice:
+    """How a document makes its relief of parts; how an editor begins, where it does not."""
+    return config.heights or HeightChoice(by="given")
+
+
+def listed(parts: PartMap, choices: Mapping[int, PartChoice]) -> list[dict[str, Any]]:
+    """Every part: what is said of it, its pixels, and a pixel well inside it."""
+    places = _places(parts)
+    said = [choices.get(number, PartChoice()).model_dump(mode="json") for number in range(parts.count)]
+    sizes = part_sizes(parts).tolist()
+    return [
+        {"number": number, **said[number], "pixels": sizes[number], "at": places[number]}
+        for number in range(parts.count)
+    ]
+
+
+def _picture(scene: Scene) -> np.ndarray:
+    """The left view, the photo, or the heights as grey values, higher being lighter."""
+    if scene.views is not None:
+        return scene.views.left
+    height = scene.height
+    assert height is not None
+    known = np.isfinite(height)
+    if not known.any():
+        return np.zeros(height.shape, np.uint8)
+    low, high = (float(each) for each in (height[known].min(), height[known].max()))
+    return np.where(known, np.round(255 * ((height - low) / ((high - low) or 1))), 0).astype(np.uint8)
+
+
+def _parts(pipeline: Pipeline) -> PartMap:
+    """Those of the scene's own segments, or of those that a document names parts of; one part without any."""
+    scene = pipeline.scene
+    if scene.segments is not None:
+        return parts_of(scene.segments)
+    if pipeline.config.by_parts and is_there(pipeline, "parts") and (found := pipeline.make("parts")) is not None:
+        return found
+    return find_parts(SegmentMap(np.zeros(scene.shape, np.int32)))
+
+
+def _places(parts: PartMap) -> list[tuple[int, int]]:
+    """Column and row of a pixel well inside each part: of those looked at, the farthest from all borders."""
+    import cv2
+
+    step = max(1, round((parts.labels.size / MOST_LOOKED_AT) ** 0.5))
+    labels = np.pad(parts.labels[::step, ::step], 1, constant_values=-1)
+    inside = (~beside_border(labels)).view(np.uint8)
+    far = np.asarray(cv2.distanceTransform(inside, cv2.DIST_L2, 3)) + inside
+    order = np.argsort(far, axis=None)
+    best = np.full(parts.count + 1, -1, np.int64)
+    best[labels.ravel()[order]] = order  # the last one stays: the farthest
+    rows, columns = np.divmod(best[: parts.count], labels.shape[1])
+    found = [(int(column), int(row)) for row, column in zip((rows - 1) * step, (columns - 1) * step, strict=True)]
+    lost = np.flatnonzero(best[: parts.count] < 0)  # between the pixels that were looked at
+    if lost.size:
+        flat = parts.labels.ravel()
+        first = np.empty(parts.count, np.int64)
+        first[flat[::-1]] = np.arange(flat.size - 1, -1, -1)
+        for number in lost.tolist():
+            row, column = divmod(int(first[number]), parts.labels.shape[1])
+            found[number] = column, row
+    return found
+
+
+def leave_files(opened: Opened, at: Path) -> None:
+    """Write what an editor fetches, whole or not at all."""
+
+    def write(part: Path) -> None:
+        (part / "labels.u16").write_bytes(opened.parts.labels.astype("<u2").data)
+        write_whole(opened.picture, part / "picture.jpg")
+
+    leave(at, "the parts", write)
+    (at / "labels.u16").touch()
+    left = sorted(at.parent.glob(f"{FOLDER}*/labels.u16"), key=lambda each: each.stat().st_mtime_ns)
+    for each in left[:-KEPT]:
+        shutil.rmtree(each.parent, ignore_errors=True)

@@ -1,0 +1,207 @@
+"""The job that proposes a part from a stroke: what looks like what the stroke lies on, up to the picture's edges."""
+
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float64, UInt8
+
+from tangible_core.errors import ConfigError
+
+Kind = Literal["grabcut", "watershed"]
+MOST_POINTS = 2000
+MOST_CELLS = 16_000
+"""Of the window that is looked at as a whole: GrabCut takes a tenth of a second for so many."""
+AROUND = 0.4
+"""How far the window reaches beyond the stroke, of the stroke's own length."""
+NEAR = 2.0
+"""So many widths of the stroke from it, a pixel is taken for the part's before anything is known."""
+ROUNDS = 3
+BLOCK = 12
+"""Cells of a side of what is looked at again at the picture's own size, where the border runs through it."""
+SMALL_HOLE = 0.01
+"""Of the part's area."""
+RIM = 2
+OUTSIDE, PART = 2, 1
+
+
+class Window(NamedTuple):
+    """The part of the picture that is looked at: first column and row, columns and rows."""
+
+    x: int
+    y: int
+    columns: int
+    rows: int
+
+    def of(self, picture: np.ndarray) -> np.ndarray:
+        """The picture there."""
+        return picture[self.y : self.y + self.rows, self.x : self.x + self.columns]
+
+
+def proposed(
+    picture: UInt8[np.ndarray, "h w 3"],
+    points: Float64[np.ndarray, "n 2"],
+    width_px: float,
+    kind: Kind,
+    within: Sequence[float] | None = None,
+) -> tuple[Window, Bool[np.ndarray, "r c"]]:
+    """The part in the picture as a box that just holds it, and where in that box it is.
+
+    Found in a reduced window round the stroke, by GrabCut (Rother, Kolmogorov and Blake 2004) or by a watershed
+    (Meyer 1992); then its border, and nothing else, is looked for again at the picture's own size.
+    """
+    import cv2
+
+    width_px = float(np.clip(width_px, 1, max(picture.shape)))
+    window = _window(picture.shape, points, width_px, within)
+    whole = window.of(picture)
+    factor = min(1.0, (MOST_CELLS / (window.rows * window.columns)) ** 0.5)
+    size = max(1, round(window.columns * factor)), max(1, round(window.rows * factor))
+    small = np.ascontiguousarray(cv2.resize(whole, size, interpolation=cv2.INTER_AREA) if factor < 1 else whole)
+    stroke = _drawn(points, width_px, window, size)
+    mask = _connected(_found(small, stroke, _rim(window, stroke, picture.shape), width_px * factor, kind), stroke)
+    if factor < 1:
+        mask = _refined(whole, mask)
+    mask |= _drawn(points, width_px, window, (window.columns, window.rows))
+    return _boxed(mask, window)
+
+
+def as_points(points: Sequence[Sequence[float]], shape: tuple[int, ...]) -> Float64[np.ndarray, "n 2"]:
+    """Points in the picture, columns and rows. Raises: ConfigError for what is none, or far too many."""
+    found = np.array([list(each) for each in points if len(each) == 2], np.float64).reshape(-1, 2)
+    if not 0 < len(found) == len(points) or not np.isfinite(found).all():
+        raise ConfigError("points: are [[column, row], ...] in pixels of the picture, at least one")
+    if len(found) > MOST_POINTS:
+        found = found[np.linspace(0, len(found) - 1, MOST_POINTS).round().astype(int)]
+    return np.clip(found, 0, [shape[1] - 1, shape[0] - 1])
+
+
+def runs(mask: Bool[np.ndarray, "r c"]) -> list[int]:
+    """How many pixels are outside, then inside, then outside again, row by row.
+
+    >>> runs(np.array([[False, True], [True, False]]))
+    [1, 2, 1]
+    """
+    flat = mask.ravel()
+    ends = np.flatnonzero(flat[1:] != flat[:-1]) + 1
+    found = np.diff(ends, prepend=0, append=flat.size).tolist()
+    return [0, *found] if flat[0] else found
+
+
+def _window(shape: tuple[int, ...], points: np.ndarray, width_px: float, within: Sequence[float] | None) -> Window:
+    low, high = points.min(0) - width_px / 2, points.max(0) + width_px / 2
+    reach = AROUND * float(max(high - low)) + 2 * width_px
+    bounds = np.array([0, 0, shape[1], shape[0]], np.float64)
+    if within is not None and len(within) == 4 and np.isfinite(within).all():
+        inner = np.clip(within, [0, 0, 0, 0], bounds[[2, 3, 2, 3]])
+        over = inner[:2].max() >= 0 and bool((points >= inner[:2]).all() and (points < inner[2:]).all())
+        bounds = inner if over else bounds  # a stroke that leaves the box is not held to it
+    x0, y0 = np.maximum(np.floor(low - reach), bounds[:2]).astype(int).tolist()
+    x1, y1 = np.minimum(np.ceil(high + reach), bounds[2:]).astype(int).tolist()
+    return Window(x0, y0, max(1, x1 - x0), max(1, y1 - y0))
+
+
+def _drawn(points: np.ndarray, width_px: float, window: Window, size: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
+    """The stroke, on a grid of so many columns and rows over the window."""
+    import cv2
+
+    scale = np.array(size) / [window.columns, window.rows]
+    places = np.floor((points - [window.x, window.y] + 0.5) * scale).astype(np.int32)
+    drawn = np.zeros(size[::-1], np.uint8)
+    cv2.polylines(drawn, [np.concatenate([places, places[-1:]])], False, 1, max(1, round(width_px * float(scale[0]))))
+    return drawn.astype(np.bool_)
+
+
+def _rim(window: Window, stroke: np.ndarray, shape: tuple[int, ...]) -> Bool[np.ndarray, "r c"]:
+    """Where the window ends and the picture goes on: that is outside the part."""
+    found = np.zeros(stroke.shape, np.bool_)
+    found[:RIM] |= window.y > 0
+    found[:, :RIM] |= window.x > 0
+    found[-RIM:] |= window.y + window.rows < shape[0]
+    found[:, -RIM:] |= window.x + window.columns < shape[1]
+    return found & ~stroke
+
+
+def _found(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: float, kind: Kind) -> np.ndarray:
+    import cv2
+
+    if stroke.all():
+        return stroke
+    if kind == "watershed":
+        return _flooded(cv2.bilateralFilter(small, 7, 30, 5), stroke, rim) if rim.any() else ~rim
+    state = np.full(stroke.shape, cv2.GC_PR_BGD, np.uint8)
+    far = cv2.distanceTransform((~stroke).astype(np.uint8), cv2.DIST_L2, 3)
+    state[far <= max(NEAR * width, 1)] = cv2.GC_PR_FGD
+    state[rim], state[stroke] = cv2.GC_BGD, cv2.GC_FGD
+    if (state == cv2.GC_PR_FGD).sum() + stroke.sum() == state.size:
+        return state != cv2.GC_BGD  # all of it is near: nothing tells what is outside
+    cv2.setRNGSeed(0)
+    lab = cv2.cvtColor(small, cv2.COLOR_RGB2Lab)
+    cv2.grabCut(lab, state, (0, 0, 0, 0), np.zeros((1, 65)), np.zeros((1, 65)), ROUNDS, cv2.GC_INIT_WITH_MASK)
+    return (state == cv2.GC_FGD) | (state == cv2.GC_PR_FGD)
+
+
+def _flooded(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> Bool[np.ndarray, "r c"]:
+    """What is nearer to the inside than to the outside, the picture's edges being steep."""
+    import cv2
+
+    markers = np.zeros(inside.shape, np.int32)
+    markers[outside], markers[inside] = OUTSIDE, PART
+    return np.asarray(cv2.watershed(np.ascontiguousarray(picture), markers)) == PART
+
+
+def _connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "r c"]:
+    """What hangs together with the stroke, without specks at its border and small holes."""
+    import cv2
+
+    smooth = np.asarray(cv2.medianBlur(mask.astype(np.uint8), 3)).astype(np.bool_) | stroke
+    _, pieces = cv2.connectedComponents(smooth.astype(np.uint8), connectivity=4)
+    found = np.isin(pieces, np.unique(pieces[stroke]))
+    _, holes, told, _ = cv2.connectedComponentsWithStats((~found).astype(np.uint8), connectivity=4)
+    small = told[:, cv2.CC_STAT_AREA] < SMALL_HOLE * found.sum()
+    return found | small[holes]
+
+
+def _refined(whole: np.ndarray, mask: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "h w"]:
+    """The mask at the picture's own size: along its border, a watershed between what is surely in and out."""
+    import cv2
+
+    rows, columns = whole.shape[:2]
+    cells = mask.astype(np.uint8)
+    sure, ring = cv2.erode(cells, np.ones((3, 3), np.uint8)), cv2.dilate(cells, np.ones((3, 3), np.uint8))
+    state = np.where(sure == 1, PART, np.where(ring == 0, OUTSIDE, 0)).astype(np.uint8)
+    found = np.asarray(cv2.resize(cells, (columns, rows), interpolation=cv2.INTER_NEAREST)).astype(np.bool_)
+    row_ends, column_ends = (
+        np.round(np.arange(n + 1) * (full / n)).astype(int) for n, full in zip(mask.shape, (rows, columns), strict=True)
+    )
+    for top in range(0, mask.shape[0], BLOCK):
+        for left in range(0, mask.shape[1], BLOCK):
+            if (state[top : top + BLOCK, left : left + BLOCK] == 0).any():
+                _refine(whole, state, found, (row_ends, column_ends), (top, left))
+    return found
+
+
+def _refine(
+    whole: np.ndarray,
+    state: np.ndarray,
+    found: np.ndarray,
+    ends: tuple[np.ndarray, np.ndarray],
+    block: tuple[int, int],
+) -> None:
+    """One block: looked at with a rim of cells about it, so that blocks fit together."""
+    import cv2
+
+    inner = [(at, min(at + BLOCK, n)) for at, n in zip(block, state.shape, strict=True)]
+    outer = [(max(0, low - 2), min(n, high + 2)) for (low, high), n in zip(inner, state.shape, strict=True)]
+    (y0, y1), (x0, x1) = ((int(e[low]), int(e[high])) for e, (low, high) in zip(ends, outer, strict=True))
+    (v0, v1), (u0, u1) = ((int(e[low]), int(e[high])) for e, (low, high) in zip(ends, inner, strict=True))
+    near = state[outer[0][0] : outer[0][1], outer[1][0] : outer[1][1]]
+    markers = np.asarray(cv2.resize(near, (x1 - x0, y1 - y0), interpolation=cv2.INTER_NEAREST))
+    if (markers == PART).any() and (markers == OUTSIDE).any():
+        part = _flooded(cv2.GaussianBlur(whole[y0:y1, x0:x1], (0, 0), 1.0), markers == PART, markers == OUTSIDE)
+        found[v0:v1, u0:u1] = part[v0 - y0 : v1 - y0, u0 - x0 : u1 - x0]
+
+
+def _boxed(mask: Bool[np.ndarray, "r c"], window: Window) -> tuple[Window, Bool[np.ndarray, "R C"]]:
+    (y0, y1), (x0, x1) = (np.flatnonzero(mask.any(axis))[[0, -1]].tolist() for axis in (1, 0))
+    return Window(window.x + x0, window.y + y0, x1 + 1 - x0, y1 + 1 - y0), mask[y0 : y1 + 1, x0 : x1 + 1]

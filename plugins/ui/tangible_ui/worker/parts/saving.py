@@ -1,0 +1,209 @@
+"""The job that keeps parts which were drawn: `parts.png`, and what the document says of them."""
+
+import hashlib
+import itertools
+import logging
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+from jaxtyping import Int32, Shaped, UInt16
+
+from tangible_core.data import PartMap
+from tangible_core.errors import ConfigError, quoted
+from tangible_core.files.parts_block import with_parts
+from tangible_core.files.source import read_text
+from tangible_core.files.writing import atomic_write, write_text
+from tangible_core.pipeline.config.editing import REMOVE, edited, said
+from tangible_core.pipeline.config.model import PipelineConfig
+from tangible_core.scene.scene import Scene, builtin_files
+from tangible_core.scene.scene_files import BUILTINS, SceneFiles
+
+from .label_files import NAME, is_ours
+from .opening import Opened
+
+log = logging.getLogger(__name__)
+MOST_EDITED = 200
+"""Keys that are changed one by one, each in its place; of more, the whole block is written anew."""
+SAID = ("name", "height_m", "material")
+
+
+def warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> None:
+    """Say whose materials are others now: those that are for a segment or a part by a number that lies elsewhere."""
+    rules, by = config.materials.rules, config.materials.by
+    segments = {each.segment for each in rules if each.segment is not None} | set(by if isinstance(by, dict) else ())
+    named = {each.part for each in rules if isinstance(each.part, int)}
+    labels = np.array(before.parts.segments)[before.parts.labels]
+    there = before.scene.segments is not None  # else a method found others
+
+    def is_elsewhere(number: int, before: Int32[np.ndarray, "h w"]) -> bool:
+        now = found.labels[before == number]  # a border that was moved a little makes no other part of it
+        return not now.size or int(np.bincount(now).argmax()) != number
+
+    moved = {each for each in segments if not there or is_elsewhere(each, labels)}
+    moved |= {each for each in named if is_elsewhere(each, before.parts.labels)}
+    if moved:
+        log.warning(
+            "materials: are chosen by number for %s, which is now another part or none; name the parts, and choose by "
+            "name ({part: NAME, material: ...})",
+            ", ".join(map(str, sorted(moved))),
+        )
+
+
+def numbered(
+    parts: Sequence[Mapping[str, Any]], labels: Sequence[int], numbers: Int32[np.ndarray, "h w"]
+) -> tuple[dict[int, dict[str, Any]], dict[str, list[int]]]:
+    """What is said of each part by its number, and the numbers that each label became.
+
+    labels: the label of each part. A label whose pixels do not hang together is several parts: the largest keeps the
+    name, the others are called after it. Raises: ConfigError if a label is told of twice, or has no pixel.
+    """
+    if not all(type(each.get("label")) is int for each in parts):
+        raise ConfigError("parts: each is told of with the number of its label")
+    told = {each["label"]: each for each in parts}
+    if len(told) < len(parts):
+        raise ConfigError("a label is told of twice; tell of each once")
+    of_label: dict[int, list[int]] = {}
+    for number, label in enumerate(labels):
+        of_label.setdefault(label, []).append(number)
+    if gone := sorted(told.keys() - of_label.keys()):
+        raise ConfigError(f"label {gone[0]}: has a name or a height, and no pixel; leave it out, or paint it")
+    sizes = np.bincount(numbers.ravel(), minlength=len(labels))
+    taken = {str(each.get("name") or "").strip().casefold() for each in parts}
+    choices: dict[int, dict[str, Any]] = {}
+    for label, each in told.items():
+        largest_first = sorted(of_label[label], key=lambda number: (-sizes[number], number))
+        for place, number in enumerate(largest_first):
+            choices[number] = {key: each[key] for key in SAID if each.get(key) not in (None, "")}
+            if place and (name := choices[number].get("name")):
+                choices[number]["name"] = _another(name, taken)
+    return choices, {str(label): found for label, found in of_label.items()}
+
+
+def said_of_parts(
+    text: str,
+    path: Path,
+    place: Path,
+    choices: Mapping[int, Mapping[str, Any]],
+    heights: Mapping[str, Any] | None,
+    words: Mapping[str, str | None],
+) -> str:
+    """The document's text with these parts; comments elsewhere, and the order, stay. Raises: ConfigError."""
+    now = said(text, path)
+    changes: dict[Any, Any] = dict(_scene(now, path, place))
+    changes |= {("heights", key): value for key, value in (heights or {}).items()}
+    changes |= {(key,): value or REMOVE for key, value in words.items() if value is not None}
+    short = {number: _short(each) for number, each in sorted(choices.items()) if each}
+    before = now.get("parts")
+    before = before if isinstance(before, dict) else {}
+    if not before or len(short.keys() | before.keys()) > MOST_EDITED:
+        return _with_block(edited(text, path, changes), path, short)
+    changes |= {("parts", key): REMOVE for key in before if key not in map(str, short)}
+    changes |= {("parts", str(key)): value for key, value in short.items() if before.get(str(key)) != value}
+    return edited(text, path, changes)
+
+
+def _with_block(text: str, path: Path, parts: Mapping[int, Any]) -> str:
+    """Return the text with a line for each part; on one line, in a document that is written so."""
+    if not parts:
+        return edited(text, path, {("parts",): REMOVE})
+    try:
+        return with_parts(text, path, parts)
+    except ConfigError:
+        bare = edited(text, path, {("parts",): REMOVE})
+        return edited(bare, path, {("parts", str(number)): value for number, value in parts.items()})
+
+
+def _short(each: Mapping[str, Any]) -> Any:
+    """A name alone is enough where nothing else is said."""
+    return each["name"] if set(each) == {"name"} else dict(each)
+
+
+def _another(name: str, taken: set[str]) -> str:
+    """A name after this one that no part has."""
+    others = (f"{name.strip()} {number}" for number in itertools.count(2))
+    found = next(each for each in others if each.casefold() not in taken)
+    taken.add(found.casefold())
+    return found
+
+
+def compact(labels: UInt16[np.ndarray, "h w"]) -> tuple[np.ndarray, Int32[np.ndarray, "h w"]]:
+    """The labels that there are, and which of them each pixel has."""
+    known = np.flatnonzero(np.bincount(labels.ravel(), minlength=1))
+    places = np.zeros(int(known[-1]) + 1, np.int32)
+    places[known] = np.arange(known.size, dtype=np.int32)
+    return known, places[labels]
+
+
+def _scene(now: Mapping[str, Any], path: Path, place: Path) -> dict[tuple[str, ...], Any]:
+    """What the scene says from now on: a built-in one becomes its files."""
+    named = place.name if place.parent == path.parent else str(place)
+    scene = now.get("scene")
+    if isinstance(scene, dict):
+        return {("scene", "segments"): named}
+    if not isinstance(scene, str) or scene not in BUILTINS:
+        raise ConfigError(f"scene: {quoted(scene)}: parts can be drawn in files and in built-in scenes alone")
+    files = builtin_files(scene).model_dump(mode="json", exclude_defaults=True)
+    return {("scene",): {**files, "segments": named}}
+
+
+def unframed(labels: Int32[np.ndarray, "h w"], config: PipelineConfig) -> Shaped[np.ndarray, "H W"]:
+    """Labels as the scene's files have them: turned back, and what was cut off gets the label that is nearest."""
+    files = config.scene
+    if not isinstance(files, SceneFiles) or (files.crop is None and not files.rotate):
+        return labels
+    labels = np.rot90(labels, files.rotate // 90)
+    if files.crop is None:
+        return labels
+    alone = {"crop": None, "rotate": 0, "segments": None, "disparity": None, "truth": None}
+    rows, columns = Scene.read(files.model_copy(update=alone), config.folder).shape
+    x, y, width, height = files.crop
+    return np.pad(labels, ((y, rows - y - height), (x, columns - x - width)), mode="edge")
+
+
+def stands(path: Path, opened: str) -> bool:
+    """Whether the document's file is there, and says what was read from it or written to it last."""
+    try:
+        return path.is_file() and read_text(path) == opened
+    except ConfigError:
+        return False
+
+
+def beside(path: Path) -> Path:
+    """Where the labels go beside a pipeline file: where there is nothing, or what was written for that very file."""
+    names = itertools.chain([NAME], (f"{Path(NAME).stem}-{number}.png" for number in itertools.count(2)))
+    places = (path.parent / name for name in names)
+    return next(each for each in places if not os.path.lexists(each) or is_ours(each, path.name))
+
+
+def on_shelf(shelf: Path, picture: bytes) -> Path:
+    """Where a label picture lies on the shelf: by its content."""
+    return shelf / hashlib.sha256(picture).hexdigest()[:16] / NAME
+
+
+def kept_before(place: Path, picture: bytes, shelf: Path, texts: Sequence[str], path: Path) -> dict[str, str]:
+    """Keep what another picture is to take the place of, for the texts that name it: a step back finds it there."""
+    before = place.read_bytes() if place.is_file() else picture
+    if before == picture:
+        return {}
+    kept = on_shelf(shelf, before)
+    moved: dict[str, str] = {}
+    for text in dict.fromkeys(texts):
+        scene = said(text, path).get("scene") if place.name in text else None
+        if isinstance(scene, dict) and path.parent / str(cast("dict[str, Any]", scene).get("segments")) == place:
+            moved[text] = edited(text, path, {("scene", "segments"): str(kept)})
+    if moved:
+        with atomic_write(kept) as file:
+            file.write(before)
+    return moved
+
+
+def write(place: Path, picture: bytes, document: Path | None, text: str) -> None:
+    """The labels and the document; neither without the other. Raises: OutputError."""
+    with atomic_write(place) as file:
+        file.write(picture)
+        file.flush()  # what there is no room for shows before the document is touched
+        if document is not None:
+            write_text(document, text)

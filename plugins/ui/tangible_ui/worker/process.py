@@ -1,0 +1,107 @@
+"""The maker's process: quick jobs and long ones, each kind in a thread of its own, one job after the other.
+
+A long job may hold Python's lock for seconds, or be killed: neither the page's server nor the force loop notices.
+"""
+
+import errno
+import os
+import queue
+import signal
+import threading
+from contextlib import suppress
+from pathlib import Path
+from typing import IO, Any, final
+
+from tangible_core.errors import OutputError
+from tangible_core.servo.wire import receive, send, sendable
+
+from .messages import Answer, Ask, Event, Refused
+
+FULL = {getattr(errno, name, -1) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EROFS")}
+NICENESS = 10
+"""After the first long job: pictures can then wait, the loop and the page cannot. Before it, nothing is felt."""
+_keep_precedence: set[int] = set()
+
+
+@final
+class Voice:
+    """Says what happens to the server; any thread may."""
+
+    def __init__(self, replies: IO[bytes]) -> None:
+        self._replies, self._lock = replies, threading.Lock()
+
+    def say(self, message: Answer | Refused | Event) -> None:
+        """Ends the process if nobody listens any more."""
+        try:
+            with self._lock:
+                send(self._replies, message)
+        except OSError:
+            os._exit(0)
+
+
+def main() -> None:
+    """Until the pipe closes."""
+    replies = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what a plugin prints goes to standard error
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the server, which ends this
+    commands, voice = open(0, "rb", buffering=0), Voice(replies)  # noqa: SIM115 - a buffer's lock outlives its thread
+    lanes: dict[bool, queue.SimpleQueue[Ask]] = {quick: queue.SimpleQueue() for quick in (True, False)}
+    from ..logs import tell_pages
+    from .jobs import JOBS
+    from .state import Bench
+
+    folder: Path = receive(commands)
+    tell_pages(lambda **told: voice.say(Event("log", told)), information=True)
+    bench = Bench(folder, lambda event, **told: voice.say(Event(event, told)))
+    for quick, lane in lanes.items():
+        threading.Thread(target=_work, args=(bench, lane, voice, quick), daemon=True).start()
+    voice.say(Event("maker", {}))
+    while (ask := receive(commands)) is not None:
+        lanes[JOBS[ask.job].quick].put(ask)
+    os._exit(0)  # no thread is waited for: the server is gone
+
+
+def _work(bench: Any, asks: "queue.SimpleQueue[Ask]", voice: Voice, quick: bool) -> None:
+    if quick:
+        _keep_precedence.add(threading.get_native_id())
+    while True:
+        voice.say(answer(bench, asks.get()))
+        if not quick:
+            give_precedence()
+
+
+def give_precedence() -> None:
+    """Let others go first, with every thread but that of the quick jobs, for which somebody waits.
+
+    In Linux each thread has a niceness of its own.
+    """
+    tasks = Path("/proc/self/task")
+    threads = {int(each.name) for each in tasks.iterdir()} if tasks.is_dir() else {0}
+    for thread in threads - _keep_precedence:
+        with suppress(OSError, AttributeError):  # a thread that has ended; a system that knows no niceness
+            os.setpriority(os.PRIO_PROCESS, thread, NICENESS)
+
+
+def answer(bench: Any, ask: Ask) -> Answer | Refused:
+    """Do a job; whatever becomes of it, the next one can be done."""
+    from .jobs import JOBS
+
+    try:
+        keep_folder(bench)
+        return Answer(ask.number, JOBS[ask.job].do(bench, **ask.told))
+    except BaseException as error:  # noqa: BLE001 - whatever a plugin raises is for the page to say
+        return Refused(ask.number, full(error) or sendable(error))
+
+
+def keep_folder(bench: Any) -> None:
+    """What pages fetch lies in a temporary folder: a system that cleans up may have taken it away."""
+    if not bench.folder.is_dir():
+        bench.folder.mkdir(parents=True, exist_ok=True)
+        bench.shown = ""
+
+
+def full(error: BaseException) -> OutputError | None:
+    """A disk that takes no more: what a person can do about it; None for any other error."""
+    if not isinstance(error, OSError) or error.errno not in FULL:
+        return None
+    return OutputError(f"{error.filename or 'a temporary folder'}: {error.strerror or error}; free some space")

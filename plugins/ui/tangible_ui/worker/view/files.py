@@ -1,0 +1,183 @@
+"""What is seen as pages fetch it: raw arrays in files, in a folder named by content."""
+
+import json
+import shutil
+from collections.abc import Callable
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from tangible_core.data import Material
+from tangible_core.data.pictures import to_grey
+from tangible_core.errors import OutputError
+
+from . import levels
+from .surface_view import Seen
+
+KEPT = 3
+"""Folders that stay: tabs may still fetch from the one before."""
+ABOUT = "about.json"
+MOST_PREVIEW = 1_000_000
+"""Pixels of the picture that is drawn first."""
+MOST_FINE_SIDE = 16_384
+"""Browsers decode no larger ones."""
+
+
+def show(seen: Seen, folder: Path) -> dict[str, Any]:
+    """Write what pages draw, whole or not at all, and return what they need to know of it.
+
+    Heights are float32 as they are felt, not rounded: their slopes are drawn. Level 0 is the finest.
+    Raises: OutputError if it cannot be written.
+    """
+    at = folder / seen.digest
+    about = _about(seen)
+    leave(at, "what is to be drawn", partial(_write, seen, about))
+    (at / ABOUT).touch()
+    _sweep(folder)
+    return about
+
+
+def leave(at: Path, what: str, write: Callable[[Path], None]) -> None:
+    """Have a folder filled that pages fetch from: it is there whole or not at all, and one that is there stays.
+
+    what: it holds, for people. Raises: OutputError if it cannot be written.
+    """
+    if at.exists():
+        return
+    part = None
+    try:
+        part = Path(mkdtemp(prefix=".part-", dir=at.parent))
+        write(part)
+        _put(part, at)
+    except OSError as error:
+        why = error.strerror or error
+        raise OutputError(f"{at.parent}: {what} cannot be written: {why}; free some space") from error
+    finally:
+        if part is not None:
+            shutil.rmtree(part, ignore_errors=True)
+
+
+def material_of(materials: tuple[Material, ...]) -> tuple[list[Material], np.ndarray]:
+    """The materials, each once, and which of them each label has."""
+    places = {each: place for place, each in enumerate(dict.fromkeys(materials))}
+    return list(places), np.array([places[each] for each in materials], "<u2")
+
+
+def label_type(labels: np.ndarray) -> str:
+    """The smallest type that holds them."""
+    return "<u2" if int(labels.max(initial=0)) < 2**16 else "<u4"
+
+
+def _about(seen: Seen) -> dict[str, Any]:
+    rows, columns = seen.relief.height_m.shape
+    steps = [2**level for level in range(levels.count((rows, columns)))]
+    return {
+        "digest": seen.digest,
+        "name": seen.name,
+        "shows": seen.shows,
+        "rows": rows,
+        "columns": columns,
+        "extent_m": list(seen.relief.extent_m),
+        "height_m": [float(seen.relief.height_m.min()), float(seen.relief.height_m.max())],
+        "levels": [{"step": step, "rows": -(-rows // step), "columns": -(-columns // step)} for step in steps],
+        "labels": 0 if seen.labels is None else int(seen.labels.max()) + 1,
+        "label_bytes": 2 if seen.labels is None else np.dtype(label_type(seen.labels)).itemsize,
+        "materials": [asdict(each) for each in material_of(seen.materials)[0]],
+        "parts": None if seen.names is None else list(seen.names),
+        "photo": seen.picture is not None,
+        "fine_photo": None if seen.picture is None else _fine_size(seen.picture),
+        "layers": {
+            name: {
+                "unit": each.unit,
+                "low": each.low,
+                "high": each.high,
+                "rows": each.values.shape[0],
+                "columns": each.values.shape[1],
+            }
+            for name, each in seen.layers.items()
+        },
+    }
+
+
+def _write(seen: Seen, about: dict[str, Any], part: Path) -> None:
+    _write_arrays(seen, len(about["levels"]), part)
+    if seen.picture is not None:
+        _write_picture(seen.picture, part)
+    (part / ABOUT).write_text(json.dumps(about))
+
+
+def _put(part: Path, at: Path) -> None:
+    """In its place; if another thread put the same there first, that stays."""
+    try:
+        part.rename(at)
+    except OSError:
+        if not all((at / each.name).is_file() for each in part.iterdir()):
+            raise
+
+
+def _write_arrays(seen: Seen, count: int, part: Path) -> None:
+    for level, height_m in enumerate(levels.means(seen.relief.height_m, count)):
+        _raw(part / f"height-{level}.f32", height_m, "<f4")
+    if seen.labels is not None:
+        kind = label_type(seen.labels)
+        for level, labels in enumerate(levels.middles(seen.labels, count)):
+            _raw(part / f"labels-{level}.u", labels, kind)
+    _raw(part / "materials.u16", material_of(seen.materials)[1], "<u2")
+    for name, layer in seen.layers.items():
+        _raw(part / f"{name}.f32", layer.values, "<f4")
+
+
+def _raw(path: Path, values: np.ndarray, kind: str) -> None:
+    path.write_bytes(np.ascontiguousarray(values, kind).data)
+
+
+def _fine_size(picture: np.ndarray) -> tuple[int, int] | None:
+    """Width and height of the picture that is kept beside the one that is drawn first, where that is smaller."""
+    rows, columns = picture.shape[:2]
+    if rows * columns <= MOST_PREVIEW and max(rows, columns) <= levels.MOST_SIDE:
+        return None
+    return _size((columns, rows), rows * columns, MOST_FINE_SIDE)
+
+
+def _size(size: tuple[int, int], most_pixels: int, most_side: int) -> tuple[int, int]:
+    width, height = size
+    share = min(1.0, (most_pixels / (width * height)) ** 0.5, most_side / max(size))
+    return max(1, round(share * width)), max(1, round(share * height))
+
+
+def _write_picture(picture: np.ndarray, part: Path) -> None:
+    """At a size that is drawn at once, and as it is where that is larger."""
+    whole = image_of(picture)
+    if (fine := _fine_size(picture)) is not None:
+        _save(whole, fine, part / "photo-fine.jpg")
+    _save(whole, _size(whole.size, MOST_PREVIEW, levels.MOST_SIDE), part / "photo.jpg")
+
+
+def image_of(picture: np.ndarray) -> Image.Image:
+    """A picture as a browser shows it."""
+    if picture.dtype != np.uint8:
+        picture = np.round(255 * np.clip(to_grey(picture), 0, 1)).astype(np.uint8)
+    return Image.fromarray(picture).convert("RGB")
+
+
+def write_whole(picture: np.ndarray, path: Path) -> None:
+    """A picture as it is, as far as a browser decodes it."""
+    whole = image_of(picture)
+    _save(whole, _size(whole.size, whole.width * whole.height, MOST_FINE_SIDE), path)
+
+
+def _save(whole: Image.Image, size: tuple[int, int], path: Path) -> None:
+    small = whole if size == whole.size else whole.resize(size, Image.Resampling.BOX, reducing_gap=2.0)
+    small.save(path, quality=88)
+
+
+def _sweep(folder: Path) -> None:
+    """Surfaces that were shown long ago go: a large one is a hundred megabytes."""
+    shown = sorted(folder.glob(f"*/{ABOUT}"), key=lambda path: path.stat().st_mtime_ns)
+    for path in shown[:-KEPT]:
+        shutil.rmtree(path.parent, ignore_errors=True)

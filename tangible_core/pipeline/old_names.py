@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any
 
 from ..plugins.interfaces import HapticDevice
+from .config.model import PipelineConfig
 from .feeling import Feeling
 from .output.parts_text import part_heights, to_correct
 
@@ -26,8 +27,13 @@ def _on(verb: str) -> Callable[[Any], Any]:
     return verb_of
 
 
+def _with_config(pipeline: Any) -> Callable[[PipelineConfig], Any]:
+    """Return the old `changed`: `from_config`, like this pipeline."""
+    return lambda config: pipeline.from_config(config, like=pipeline)
+
+
 OLD_NAMES: Mapping[str, Callable[[Any], Any]] = {
-    "changed": lambda pipeline: partial(type(pipeline).from_config, like=pipeline),
+    "changed": _with_config,
     "views": lambda pipeline: pipeline.scene.views,
     "parts": lambda pipeline: pipeline.make("parts"),
     "simplified": lambda pipeline: pipeline.make("simplified"),

@@ -15,6 +15,7 @@ from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine import part_validation, working_grid
 from tangible_core.pipeline.engine.part_validation import check_parts
 from tangible_core.pipeline.engine.stages.touch import fit_to_device
+from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.notes import silently
 
 from ..loop_input import parcel_of

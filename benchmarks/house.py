@@ -1,4 +1,4 @@
-"""How fast the house itself is: the start of the command line, and what the engine adds to the stages."""
+"""The house itself: its structure and words, the start of the command line, and the time that the engine adds."""
 
 import json
 import os
@@ -18,6 +18,7 @@ from tangible_core.data import SegmentMap, Views
 from tangible_core.pipeline.engine.cache import Cache
 
 from .figures import Figure, judged, table
+from .house_structure import structure_rows
 
 ROOT = Path(__file__).parents[1]
 START_BOUNDS = {"tangible --help": 2.0, "tangible plugins": 2.2}
@@ -26,7 +27,7 @@ PRODUCTS = ("disparity", "segments", "materials", "surface", "touch")
 
 def section() -> str:
     """The section of RESULTS.md, as Markdown."""
-    return "\n".join([*start_rows(), "", *overhead_rows(), "", *cache_rows(), "", *demo_rows()])
+    return "\n".join([*structure_rows(), "", *start_rows(), "", *overhead_rows(), "", *cache_rows(), "", *demo_rows()])
 
 
 def start_rows(runs: int = 15) -> list[str]:

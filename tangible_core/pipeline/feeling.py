@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from os import PathLike
 from threading import Event
-from typing import Any, Protocol, TypedDict, TypeVar, final, get_args
+from typing import Any, Protocol, TypedDict, TypeVar, final, get_args, runtime_checkable
 
 import numpy as np
 
@@ -46,6 +46,7 @@ NO_ROWS = np.empty((0, len(TICK_COLUMNS)))
 """The rows of a recording without ticks."""
 
 
+@runtime_checkable
 class Felt(Protocol):
     """A pipeline, as far as a session needs it."""
 

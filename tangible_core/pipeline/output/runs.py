@@ -10,7 +10,7 @@ from typing import Any, Literal, NamedTuple
 
 from ...data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Record, ServoReport, Work
 from ...data.products import IN_REPORT
-from ...errors import ConfigError
+from ...errors import ConfigError, OutputError
 from ...files.json_text import write_figures
 from ...files.writing import write_text
 from ...metrics import disparity_errors
@@ -23,7 +23,7 @@ from .following import felt_device, how_followed
 from .notebook import png_html
 from .parts_text import part_heights, to_correct
 from .run_folder import CONFIG, GUESSED, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
-from .showing import drawing
+from .showing import can_draw, drawing
 
 Sheet = Literal["png", "svg", "pdf"]
 """What a sheet can be drawn as."""
@@ -51,8 +51,11 @@ class Run:
 
     @property
     def sheet(self) -> Path:
-        """The picture of all of it."""
-        return next(path for path in self.files if path.stem == SHEET)
+        """The picture of all of it. Raises: OutputError where no exporter draws sheets."""
+        for path in self.files:
+            if path.stem == SHEET:
+                return path
+        raise OutputError(f"{self.scene}: has no sheet, as no exporter named {SHEET!r} is installed")
 
     def _repr_html_(self) -> str:
         if self.sheet.suffix == ".png":
@@ -94,15 +97,16 @@ def make_run(
         recording = _felt(engine, value, seconds, on_report) if want == "touch" else None
     figures, config = _figures(engine, products, recording), _configuration(engine)
     kept = {f"{name}.npz": record for name, record in products.items() if isinstance(record, Record)}
-    felt, drawn = [RECORDING] if recording is not None else [], f"{SHEET}.{sheet}"
+    felt = [RECORDING] if recording is not None else []
+    drawn = [f"{SHEET}.{sheet}"] if can_draw(engine.registry) else []
     texts = {config.name: config.text, **_guessed(engine, products)}
-    files = tuple(out / name for name in (*texts, *kept, *felt, drawn, OUTCOMES))
+    files = tuple(out / name for name in (*texts, *kept, *felt, *drawn, OUTCOMES))
     with rewritten(out, engine.config.path) as place:
         for name, record in kept.items():
             write_record(place(name), record)
         if recording is not None:
             recording.save(place(RECORDING))
-        says = _draw(engine, products, recording, place(drawn))
+        says = "".join(_draw(engine, products, recording, place(name)) for name in drawn)
         said = engine.config.title, engine.config.language
         run = Run(engine.scene.name, products, recording, figures, engine.outcomes, _versions(), *said, files, says)
         for name, text in texts.items():

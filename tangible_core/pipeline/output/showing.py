@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
+import logging
 from typing import TYPE_CHECKING, Any, cast
 
 from ...errors import BrokenMethod
 from ...plugins.interfaces import Drawing, Exporter
-from ...plugins.registry import default_registry
+from ...plugins.notes import note
+from ...plugins.registry import Registry, default_registry
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ...data import Record
 
+log = logging.getLogger(__name__)
+
 SHEET = "sheet"
 """The exporter that draws runs and products."""
+
+
+def can_draw(registry: Registry) -> bool:
+    """Tell whether the exporter that draws is installed; without it, a run has no sheet, and a note says so."""
+    if SHEET in registry.names("export"):
+        return True
+    note(log, f"no sheet is drawn: no exporter named {SHEET!r} is installed")
+    return False
 
 
 def drawing(**options: Any) -> Drawing:

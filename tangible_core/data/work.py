@@ -11,9 +11,6 @@ from .parts import PartMap
 from .records import Record
 from .surface import HapticSurface, MaterialMap, Relief
 
-EXPORTABLE = ("disparity", "relief", "segments", "parts", "simplified", "materials", "surface")
-"""Products that an exporter may need: all that are records."""
-
 
 @dataclass(frozen=True, eq=False)
 class Work:

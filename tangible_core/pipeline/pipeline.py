@@ -22,6 +22,7 @@ from ..data import (
     ServoReport,
     Views,
 )
+from ..data.products import Product
 from ..errors import ConfigError, did_you_mean, quoted, wrong_argument
 from ..files.paths import as_path
 from ..files.writing import write_text
@@ -63,12 +64,12 @@ from ..session import (
 from ..session.film import ByClock, Reliefs
 from .config.material_choice import MaterialChoice
 from .config.methods import check_kind, named_method
-from .config.model import PipelineConfig, Product
+from .config.model import PipelineConfig
 from .config.parsing import config_of, load_config
 from .engine.cache import Cache
 from .engine.engine import Engine, Progress
 from .engine.film import film_of, reliefs_of
-from .engine.rules import fitted
+from .engine.stages.touch import fit_to_device
 from .engine.warm_up import rehearsal
 from .output.exporting import Export, chosen_exporters, export
 from .output.following import felt_device, how_followed
@@ -514,7 +515,7 @@ class Pipeline:
         felt, law = self._device(device), self.config.render
         if law is None:
             raise self.config.missing("render")
-        touch, surface = self._touch(device), fitted(self.surface, self.config, felt)[0]
+        touch, surface = self._touch(device), fit_to_device(self.surface, self.config, felt)[0]
         return survey(
             law.method.felt(surface) if isinstance(law.method, Reshaping) else surface,
             touch,

@@ -13,7 +13,7 @@ from unittest.mock import patch
 import numpy as np
 
 from ..data import Record, Work, digest_of
-from ..data.work import EXPORTABLE
+from ..data.products import EXPORTABLE
 from ..errors import BrokenMethod, TangibleError
 from ..plugins.interfaces import Exporter
 from .checks import Check, CheckFailure, demand

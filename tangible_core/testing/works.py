@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..data import DisparityMap, HapticSurface, Material, MaterialMap, PartMap, Record, Relief, SegmentMap, Work
-from ..data.work import EXPORTABLE
+from ..data.products import EXPORTABLE
 from ..plugins.interfaces import Exporter
 
 ROWS, COLUMNS = 48, 64

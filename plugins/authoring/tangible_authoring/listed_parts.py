@@ -10,7 +10,7 @@ from tangible_core.parts.words.places import place_in_words
 from tangible_core.pipeline.config.material_choice import MaterialChoice
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.engine.part_heights import heights_of
-from tangible_core.pipeline.engine.part_validation import check_found, parts_of
+from tangible_core.pipeline.engine.part_validation import check_parts, parts_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_report.numbered_parts import numbered_parts
 
@@ -105,7 +105,7 @@ def list_parts(pipeline: Pipeline) -> ListedParts:
 
 def _wrong(config: PipelineConfig, parts: PartMap) -> ConfigError | None:
     try:
-        check_found(config, parts, parts.labels.shape[1])
+        check_parts(config, parts, parts.labels.shape[1])
     except ConfigError as error:
         return error
     return None

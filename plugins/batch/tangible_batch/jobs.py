@@ -10,7 +10,7 @@ from typing import Any, cast
 from tangible_core.errors import ConfigError, TangibleError
 from tangible_core.pipeline.config.editing import REMOVE, edited, said
 from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.engine.rules import method_identities
+from tangible_core.pipeline.engine.keys import method_identities
 from tangible_core.plugins.registry import default_registry
 
 from .farm import LONGEST_S

@@ -9,11 +9,12 @@ from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 from re import match
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from ruamel.yaml import YAML
 
+from ...data.products import Product
 from ...errors import ConfigError
 from ...files.source import Source
 from ...legibility.choice import SimplifyChoice
@@ -39,9 +40,6 @@ from .keys.key import keys_of
 from .material_choice import MaterialChoice, check_material_names
 from .methods import NamedMethod
 from .part_names import Wrong
-
-Product = Literal["disparity", "relief", "segments", "parts", "simplified", "materials", "surface", "touch"]
-PRODUCTS: tuple[Product, ...] = get_args(Product)
 
 MOST_TITLE = 200
 """The most characters of a title: what a person reads at a glance, and what fits a line of braille or two."""

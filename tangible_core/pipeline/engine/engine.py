@@ -1,7 +1,7 @@
-"""Pull: ask for a product, and only what it needs is made; each product says what became of it."""
+"""The engine: it makes a requested product and only what that needs, and reports the outcome of each product."""
 
 import logging
-from collections.abc import Callable, Generator, Iterable, Mapping
+from collections.abc import Callable, Container, Generator, Iterable, Mapping
 from contextlib import contextmanager
 from copy import copy
 from functools import cached_property
@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from ...compiled.beside import Beside
 from ...data import Note, Outcome, Outcomes, Plan, Record
+from ...data.products import PRODUCTS
 from ...errors import TangibleError, UnknownMethod
 from ...plugins import hooks
 from ...plugins.interfaces import HapticDevice
@@ -20,51 +21,54 @@ from ...runtime.stopping import check_stopped, stoppable
 from ...runtime.threads import limited_threads
 from ...scene.scene import Scene
 from ..config.methods import NamedMethod
-from ..config.model import PRODUCTS, PipelineConfig
+from ..config.model import PipelineConfig
 from .cache import Cache, Notes
-from .rules import Rule, given_key, made_key, rules
+from .keys import product_key
+from .stage import Context, Stage, stage_class
 
 log = logging.getLogger(__name__)
 
 
-class Stage(NamedTuple):
-    """A product that is being made, or what became of it."""
+class StageEvent(NamedTuple):
+    """The begin of a stage, or its outcome."""
 
     product: str
     method: str
     outcome: Outcome | None = None
-    """None when it begins."""
+    """None at the begin."""
 
 
-Progress = Callable[[Stage], None]
-"""Hears of every stage when it begins and when it ends, in the thread that makes it."""
+Progress = Callable[[StageEvent], None]
+"""A listener, called at the begin and the end of every stage in the thread that makes it."""
 
 
 class Engine:
-    """One scene, one configuration, and what was made of them so far."""
+    """A scene, a configuration, and the products that were made of them so far."""
 
     def __init__(self, config: PipelineConfig, registry: Registry, cache: Cache | None = None) -> None:
         self.config = config
         self.registry = registry
         self.cache = cache
         self.threads: int | None = None
-        """The most that work at once; None for no limit but that of `TANGIBLE_THREADS`."""
+        """The most threads that work at once; None for no limit but that of `TANGIBLE_THREADS`."""
         self.beside: Beside | None = None
-        """What compiles meanwhile; a stage waits for what it compiles for it."""
+        """A process that compiles in the background; a stage waits for what is compiled for it."""
         self.begun: set[str] = set()
-        """Products that were begun to be made."""
+        """The products whose making has begun."""
         self._made: dict[str, Any] = {}
         self._finished: dict[str, Any] = {}
-        self._whole: dict[str, Any] = {}
+        self._full_size: dict[str, Any] = {}
         self._keys: dict[str, str] = {}
         self._outcomes: dict[str, Outcome] = {}
         self._notes: dict[str, tuple[Note, ...]] = {}
-        """What was noticed of each product when it was made, in this process or before."""
-        self._progress: Progress = _unheard
+        """The notes on each product from when it was made, in this process or before."""
+        self._substituted: frozenset[str] = frozenset()
+        """The products that another engine handed over, and all that is made of them: they are not kept or reported."""
+        self._progress: Progress = _ignore
 
     @contextmanager
     def watched(self, progress: Progress | None = None, stop: Event | None = None) -> Generator[None]:
-        """What is made in this block is told to `progress`, and ends with `Stopped` soon after `stop` is set."""
+        """Report what is made in this block to `progress`; it ends with `Stopped` soon after `stop` is set."""
         before, self._progress = self._progress, progress or self._progress
         try:
             with stoppable(stop):
@@ -74,15 +78,14 @@ class Engine:
 
     @property
     def outcomes(self) -> Outcomes:
-        """What became of each product, in the order of making; last those that nothing needed."""
-        left = (rule for product, rule in self._rules.items() if product not in self._outcomes and rule.usual)
-        unasked = [self._unasked(rule) for rule in left]
-        return Outcomes([*self._outcomes.values(), *unasked])
+        """The outcome of each product, in the order of making; last the products that nothing needed."""
+        left = (stage for product, stage in self._stages.items() if product not in self._outcomes and stage.listed)
+        return Outcomes([*self._outcomes.values(), *map(self._not_needed, left)])
 
-    def _unasked(self, rule: Rule) -> Outcome:
-        notes = self._notes.get(rule.product, ())
-        why = _with(notes, EARLIER) if notes else "nothing that was asked for needs it"
-        return Outcome(rule.product, "skipped", why, rule.method, notes=notes)
+    def _not_needed(self, stage: Stage) -> Outcome:
+        notes = self._notes.get(stage.product, ())
+        why = _with(notes, WITHIN_CACHED) if notes else NOT_NEEDED
+        return Outcome(stage.product, "skipped", why, stage.method, notes=notes)
 
     @cached_property
     def scene(self) -> Scene:
@@ -91,7 +94,7 @@ class Engine:
 
     @cached_property
     def _read(self) -> tuple[Scene, tuple[Note, ...]]:
-        """The scene, and what was noticed when it was read."""
+        """The scene, and the notes from reading it."""
         if isinstance(self.config.scene, Scene):
             return self.config.scene, tuple(map(Note, self.config.scene.notes))
         with noted() as notes:
@@ -100,64 +103,92 @@ class Engine:
 
     @cached_property
     def brought(self) -> Mapping[str, Record]:
-        """The products that the scene brings, by name."""
+        """The products that the scene provides, by name."""
         start, size = perf_counter(), self.config.size
-        found = self.scene.brings(size.width_m, size.relief_m, size.holes, size.finest_m)
-        for product in found:
-            why, notes = self._bringing(product)
+        products = self.scene.brings(size.width_m, size.relief_m, size.holes, size.finest_m)
+        for product in products:
+            why, notes = self._provided(product)
             self._note(Outcome(product, "given", why, "", perf_counter() - start, notes))
             start = perf_counter()
-        self._made |= found
-        return found
+        self._made |= products
+        return products
 
     def plan(self, want: str | None = None) -> Plan:
-        """What asking for a product will do; nothing is run.
+        """Return what making a product would do; nothing runs.
 
         Raises: TangibleError for a scene that cannot be read; UnknownMethod for a product that nothing makes.
         """
         want = self._product(want)
-        plan = Plan(want, tuple(self._foresee(want, ASKED, {}).values()))
+        plan = Plan(want, tuple(self._foresee(want, REQUESTED, {}).values()))
         hooks.tell(self.registry.plugins, "tangible_plan_made", plan=plan)
         return plan
 
     def check(self, want: str | None = None) -> None:
-        """Plan, and raise what the plan says is refused."""
+        """Plan, and raise the plan's refusal, if any."""
         for step in self.plan(want).steps:
-            refusal = self._rules[step.product].refusal if step.outcome == "refused" else None
+            refusal = self._stages[step.product].refusal if step.outcome == "refused" else None
             if refusal is not None:
                 raise refusal
 
     def make(self, want: str | None = None) -> Any:
-        """The product, made from what it needs and no more; None if this scene does not need it.
+        """Make a product from what it needs and no more; None if this scene does not need it.
 
-        Disparity, segments and parts are told for every pixel of the pictures, even where they were made smaller
-        (`felt`).
-        Raises: TangibleError for what a user can put right; whatever a plugin raises.
+        Disparity, segments and parts have a value for every pixel of the pictures, even where they were made smaller
+        (`on_grid`).
+        Raises: TangibleError for what a user can correct; whatever a plugin raises.
         """
         product = self._product(want)
-        found, rule = self._pull(product, ASKED), self._rules.get(product)
-        if found is None or rule is None or rule.whole is None:
-            return found
-        if product not in self._whole:
-            self._whole[product] = rule.whole(found)
-        return self._whole[product]
+        value, stage = self._pull(product, REQUESTED), self._stages.get(product)
+        if value is None or stage is None:
+            return value
+        if product not in self._full_size:
+            self._full_size[product] = stage.full_size(value)
+        return self._full_size[product]
 
     def felt(self, product: str) -> Any:
-        """The product as `make` gives it, but as finely as it is felt; that of a scene is as the scene brings it."""
-        return self._pull(product, ASKED)
+        """Make a product as `make` does, but on the working grid; a scene's own product keeps its size."""
+        return self._pull(product, REQUESTED)
+
+    def with_products(self, **products: Record) -> "Engine":
+        """Return a copy in which these products are as given, whatever makes them here.
+
+        Whatever does not depend on them is shared: it is not made again. What does is made anew when it is requested,
+        neither cached nor reported to hooks, so that a copy a frame or a step of a slider costs nothing else.
+        """
+        other = copy(self)
+        other.brought = {**self.brought, **products}
+        context = Context(self.config, self.scene, other.brought)
+        anew = {name for name in self._stages if self._depends_on(name, products)}
+        other._stages = {
+            name: stage_class(name)(context) if name in anew else stage
+            for name, stage in self._stages.items()
+            if name not in products
+        }
+        other._substituted = self._substituted | anew | products.keys()
+        other.begun, other.beside, other._progress = set(), None, _ignore
+        for each in ("_made", "_finished", "_full_size", "_keys", "_outcomes", "_notes"):
+            kept = {name: value for name, value in getattr(self, each).items() if name not in other._substituted}
+            setattr(other, each, kept)
+        other._made |= products
+        return other
+
+    def _depends_on(self, name: str, products: Container[str]) -> bool:
+        """Return True for these products and for all that is made of them."""
+        stage = self._stages.get(name)
+        return name in products or (stage is not None and any(self._depends_on(each, products) for each in stage.needs))
 
     def touch_on(self, device: HapticDevice) -> Any:
-        """A touch for a device that the configuration does not name; all else is shared. Raises: as `make`."""
+        """Make a touch for a device that the configuration does not name; all else is shared. Raises: as `make`."""
         other = copy(self)
         other.config = self.config.changed(device=NamedMethod("", "", device))
-        other.__dict__.pop("_rules", None)
+        other.__dict__.pop("_stages", None)
         other._made = {product: made for product, made in self._made.items() if product != "touch"}
         touch = other.make("touch")
         self._made |= {product: made for product, made in other._made.items() if product != "touch"}
         return touch
 
     def changed(self, config: PipelineConfig) -> "Engine":
-        """Another configuration of the same; products that it makes alike are those of this one."""
+        """Return an engine of another configuration, which takes over the products that it would make alike."""
         other = Engine(config, self.registry, self.cache)
         other.threads = self.threads
         if config.scene == self.config.scene:
@@ -166,96 +197,100 @@ class Engine:
         return other
 
     def adopt(self, other: "Engine") -> None:
-        """Products that another configuration of the same scene made alike need not be made again."""
-        if other.config.scene == self.config.scene and "_rules" in other.__dict__:
-            alike = [name for name in other._made if name in other._rules and other._rules[name].cached]
+        """Take over the products that another configuration of the same scene made alike."""
+        if other.config.scene == self.config.scene and "_stages" in other.__dict__:
+            alike = [name for name in other._made if name in other._stages and other._stages[name].cached]
             new = (name for name in alike if name not in self._made)
             self._made |= {name: other._made[name] for name in new if self.key(name) == other.key(name)}
 
     def needed(self, want: str) -> set[str]:
-        """The product and everything that it is made from, by the rules."""
-        rule = self._rules.get(want)
-        return {want}.union(*(self.needed(name) for name in rule.needs)) if rule and not rule.skip else {want}
+        """Return the product and everything that it is made from."""
+        stage = self._stages.get(want)
+        return {want}.union(*map(self.needed, stage.needs)) if stage and not stage.skip else {want}
 
     def key(self, product: str) -> str:
-        """What stands for the product's content: known before it is made."""
+        """Return a text that stands for the product's content, and is known before it is made."""
         if product not in self._keys:
             self._keys[product] = self._key(product)
         return self._keys[product]
 
     def _key(self, product: str) -> str:
-        rule = self._rules.get(product)
-        if rule is None:
+        stage = self._stages.get(product)
+        if stage is None:
             value = self.brought.get(product)
-            return "nothing" if value is None else given_key(value)
-        if rule.skip:
+            return "nothing" if value is None else value.digest()
+        if stage.skip:
             return "skipped"
-        return made_key(rule, {name: self.key(name) for name in rule.needs})
+        return product_key(product, stage.key, {name: self.key(name) for name in stage.needs})
 
     def _pull(self, product: str, why: str) -> Any:
-        if product not in self._made and product in self._rules:
-            self._made[product] = self._make(self._rules[product], why)
+        if product not in self._made and product in self._stages:
+            self._made[product] = self._make(self._stages[product], why)
         return self._finish(product)
 
     def _finish(self, product: str) -> Any:
-        """What was made, with what its rule adds to it."""
-        found, rule = self._made.get(product), self._rules.get(product)
-        if found is None or rule is None or rule.finish is None:
-            return found
+        """Return what was made, finished by its stage."""
+        value, stage = self._made.get(product), self._stages.get(product)
+        if value is None or stage is None:
+            return value
         if product not in self._finished:
             try:
-                self._finished[product] = rule.finish(found)
+                self._finished[product] = stage.finish(value)
             except TangibleError as error:
-                self._note(Outcome(product, "failed", str(error), rule.method))
+                self._note(Outcome(product, "failed", str(error), stage.method))
                 raise
         return self._finished[product]
 
-    def _make(self, rule: Rule, why: str) -> Any:
-        if rule.skip:
-            self._note(Outcome(rule.product, "skipped", rule.skip, rule.method))
+    def _make(self, stage: Stage, why: str) -> Any:
+        if stage.skip:
+            self._note(Outcome(stage.product, "skipped", stage.skip, stage.method))
             return None
-        if (found := self._from_cache(rule)) is not None:
+        if (found := self._from_cache(stage)) is not None:
             return found
-        if rule.refusal is not None:
-            self._note(Outcome(rule.product, "refused", str(rule.refusal), rule.method))
-            raise rule.refusal
-        inputs = {name: self._pull(name, f"{rule.product} is made from it") for name in rule.needs}
+        if stage.refusal is not None:
+            self._note(Outcome(stage.product, "refused", str(stage.refusal), stage.method))
+            raise stage.refusal
+        inputs = {name: self._pull(name, f"{NEEDED} {stage.product}") for name in stage.needs}
         check_stopped()
-        self._progress(Stage(rule.product, rule.method))
-        hooks.tell(self.registry.plugins, "tangible_stage_started", product=rule.product, method=rule.method)
-        self.begun.add(rule.product)
+        self._progress(StageEvent(stage.product, stage.method))
+        if stage.product not in self._substituted:
+            hooks.tell(self.registry.plugins, "tangible_stage_started", product=stage.product, method=stage.method)
+        self.begun.add(stage.product)
         if self.beside is not None:
-            self.beside.wait(rule.product)
+            self.beside.wait(stage.product)
         start = perf_counter()
         try:
             with noted() as notes, limited_threads(self.threads):
-                value = rule.make(inputs)
+                value = stage.make(inputs)
         except BaseException as error:
             failure = f"{type(error).__name__}: {error}"
-            self._note(Outcome(rule.product, "failed", failure, rule.method, perf_counter() - start))
+            self._note(Outcome(stage.product, "failed", failure, stage.method, perf_counter() - start))
             raise
         seconds = perf_counter() - start
-        self._notes[rule.product] = found = (*_foreseen(rule), *notes)
-        self._note(Outcome(rule.product, "ran", _with(found, why), rule.method, seconds, found))
-        if self.cache is not None and rule.cached:
-            within = {name: self._notes[name] for name in sorted(self.needed(rule.product)) if self._notes.get(name)}
-            self.cache.put(self.key(rule.product), value, within)
+        self._notes[stage.product] = all_notes = (*_notes_ahead(stage), *notes)
+        self._note(Outcome(stage.product, "ran", _with(all_notes, why), stage.method, seconds, all_notes))
+        if self.cache is not None and self._is_cached(stage):
+            within = {name: self._notes[name] for name in sorted(self.needed(stage.product)) if self._notes.get(name)}
+            self.cache.put(self.key(stage.product), value, within)
         return value
 
-    def _from_cache(self, rule: Rule) -> Record | None:
-        if self.cache is None or not rule.cached:
+    def _from_cache(self, stage: Stage) -> Record | None:
+        if self.cache is None or not self._is_cached(stage):
             return None
         start = perf_counter()
-        entry = self.cache.entry(self.key(rule.product))
+        entry = self.cache.entry(self.key(stage.product))
         if entry is None:
             return None
-        self._tell_again(entry.notes)
-        notes = self._notes.get(rule.product, ())
-        self._note(Outcome(rule.product, "cached", _with(notes, SAME), rule.method, perf_counter() - start, notes))
+        self._repeat_notes(entry.notes)
+        notes = self._notes.get(stage.product, ())
+        self._note(Outcome(stage.product, "cached", _with(notes, SAME), stage.method, perf_counter() - start, notes))
         return entry.record
 
-    def _tell_again(self, kept: Notes) -> None:
-        """Notes of products that come from the cache, or are within one that does; warnings are logged as at first."""
+    def _is_cached(self, stage: Stage) -> bool:
+        return stage.cached and stage.product not in self._substituted
+
+    def _repeat_notes(self, kept: Notes) -> None:
+        """Take over the notes on products that come from the cache or are within one that does; log warnings again."""
         for product in kept.keys() - self._notes.keys():
             self._notes[product] = kept[product]
             for each in kept[product]:
@@ -263,39 +298,41 @@ class Engine:
                     log.warning("%s", each.text)
 
     def _foresee(self, product: str, why: str, steps: dict[str, Outcome]) -> dict[str, Outcome]:
-        """Outcomes of a product and, before it, of what it needs."""
-        rule = self._rules.get(product)
+        """Add the outcomes of a product and, before it, of what it needs."""
+        stage = self._stages.get(product)
         if product in steps:
             return steps
-        if rule is None:
+        if stage is None:
             if product in self.brought:
-                why, notes = self._bringing(product)
+                why, notes = self._provided(product)
                 steps[product] = Outcome(product, "given", why, notes=notes)
-        elif rule.skip:
-            steps[product] = Outcome(product, "skipped", rule.skip, rule.method)
-        elif self.cache is not None and rule.cached and self.key(product) in self.cache:
-            notes = _foretold(self.cache.notes(self.key(product)), product)
-            steps[product] = Outcome(product, "cached", _with(notes, SAME), rule.method, notes=notes)
-        elif rule.refusal is not None:
-            steps[product] = Outcome(product, "refused", str(rule.refusal), rule.method)
+        elif stage.skip:
+            steps[product] = Outcome(product, "skipped", stage.skip, stage.method)
+        elif self.cache is not None and self._is_cached(stage) and self.key(product) in self.cache:
+            notes = _notes_within(self.cache.notes(self.key(product)), product)
+            steps[product] = Outcome(product, "cached", _with(notes, SAME), stage.method, notes=notes)
+        elif stage.refusal is not None:
+            steps[product] = Outcome(product, "refused", str(stage.refusal), stage.method)
         else:
-            for name in rule.needs:
-                self._foresee(name, f"{product} is made from it", steps)
+            for name in stage.needs:
+                self._foresee(name, f"{NEEDED} {product}", steps)
                 if any(each.outcome == "refused" for each in steps.values()):
                     return steps
-            notes = _foreseen(rule)
-            steps[product] = Outcome(product, "ran", _with(notes, why), rule.method, notes=notes)
+            notes = _notes_ahead(stage)
+            steps[product] = Outcome(product, "ran", _with(notes, why), stage.method, notes=notes)
         return steps
 
-    def _bringing(self, product: str) -> tuple[str, tuple[Note, ...]]:
-        """Why it is given; with the pictures or the heights, what was noticed in their files."""
+    def _provided(self, product: str) -> tuple[str, tuple[Note, ...]]:
+        """Return why a product is given; with the pictures or the heights, the notes on their files too."""
         scene, noticed = self._read
         notes = noticed if product == ("relief" if scene.views is None else "views") else ()
-        return _with(notes, f"the scene {scene.name} brings it"), notes
+        return _with(notes, f"provided by the scene {scene.name}"), notes
 
     @cached_property
-    def _rules(self) -> dict[str, Rule]:
-        return rules(self.config, self.scene, self.brought)
+    def _stages(self) -> dict[str, Stage]:
+        """The stages of all products that the scene does not provide. Raises: ConfigError, MaterialError."""
+        context = Context(self.config, self.scene, self.brought)
+        return {name: stage_class(name)(context) for name in PRODUCTS if name not in self.brought}
 
     def _product(self, want: str | None) -> str:
         product = want or self.config.want
@@ -305,20 +342,21 @@ class Engine:
 
     def _note(self, outcome: Outcome) -> None:
         self._outcomes[outcome.product] = outcome
-        self._progress(Stage(outcome.product, outcome.method, outcome))
-        hooks.tell(self.registry.plugins, "tangible_stage_finished", outcome=outcome)
+        self._progress(StageEvent(outcome.product, outcome.method, outcome))
+        if outcome.product not in self._substituted:
+            hooks.tell(self.registry.plugins, "tangible_stage_finished", outcome=outcome)
 
 
-def _unheard(stage: Stage) -> None:
-    """Nobody listens."""
+def _ignore(event: StageEvent) -> None:
+    """Do nothing: there is no listener."""
 
 
-def _foreseen(rule: Rule) -> tuple[Note, ...]:
-    return (Note(rule.note),) if rule.note else ()
+def _notes_ahead(stage: Stage) -> tuple[Note, ...]:
+    return (Note(stage.note),) if stage.note else ()
 
 
-def _foretold(kept: Notes, product: str) -> tuple[Note, ...]:
-    """Notes of a product in the cache, and what is not only a decision of those that it was made from."""
+def _notes_within(kept: Notes, product: str) -> tuple[Note, ...]:
+    """Return the notes on a cached product, and the warnings and doubts on the products that it was made from."""
     within = (each for name in sorted(kept) if name != product for each in kept[name] if each.kind != "decision")
     return (*kept.get(product, ()), *within)
 
@@ -327,6 +365,8 @@ def _with(notes: Iterable[Note], why: str) -> str:
     return "; ".join([why, *(each.text for each in notes)])
 
 
-ASKED = "asked for"
-EARLIER = "within what comes from the cache"
+REQUESTED = "requested"
+NEEDED = "needed for"
+NOT_NEEDED = "not needed for what was requested"
+WITHIN_CACHED = "within a cached product"
 SAME = "same method, options and inputs as before"

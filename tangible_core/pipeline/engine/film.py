@@ -1,4 +1,4 @@
-"""A pipeline's scene as a film: what its rules make of each frame of a video."""
+"""Films: the stages of a pipeline, applied to each frame of a video."""
 
 import logging
 from collections.abc import Callable
@@ -11,25 +11,26 @@ from ...errors import BrokenMethod, ConfigError
 from ...plugins.interfaces import DepthEstimator, Film, Filming, Following, HapticDevice
 from ...plugins.notes import note
 from ...plugins.registry import Registry
-from ...scene import geometry, view_order
+from ...scene import geometry
 from ...scene.geometry import ValueRange
 from ...scene.scene import Scene
-from ...scene.scene_files import SceneFiles
 from ...session.film import FrameMaker, Reliefs
-from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from .engine import Engine
-from .rules import estimated, fitted, in_pictures_pixels, relief_of
-from .working_grid import WorkingGrid
+from .stage import Context
+from .stages.disparity import DisparityStage
+from .stages.relief import ReliefStage
+from .stages.touch import fit_to_device
 
 log = logging.getLogger(__name__)
 
 
 @final
 class PipelineFrames(FrameMaker):
-    """Frames by the rules of a pipeline: each as its first one is made, but for what is found once.
+    """The frames of a video, each made by the stages that make its first frame, except for what is found once.
 
-    Found once a scene: what the depth method says of the cameras (`Following`), and whether the views are exchanged.
+    Found once a scene: what the depth method finds out about the cameras (`Following`), and whether the views are
+    exchanged.
     """
 
     def __init__(self, config: PipelineConfig, scene: Scene) -> None:
@@ -37,47 +38,44 @@ class PipelineFrames(FrameMaker):
         if config.depth is None:
             raise config.missing("depth")
         self._config, self._scene = config, scene
-        self._depth: NamedMethod[DepthEstimator] = config.depth
-        self._estimate: Callable[[Views], DisparityMap] = config.depth.method.estimate
+        self._method: DepthEstimator = config.depth.method
+        self._estimate: Callable[[Views], DisparityMap] = self._method.estimate
         self._exchanged = False
-        self._still = WorkingGrid(scene, config.size)
+        self._relief = ReliefStage(Context(config, scene))
 
     def begin(self, views: Views) -> DisparityMap:
-        """Of the first frame, in pixels of the pictures; what is found once is found in it."""
-        grid, method = self._grid(views), self._depth.method
-        assert grid.views is not None
-        self._estimate = method.follow(grid.views) if isinstance(method, Following) else method.estimate
-        made = estimated(self._depth, self._estimate, grid.views)
-        files, calibration = self._scene.files, views.calibration
-        if views.right is not None and not (isinstance(files, SceneFiles) and files.order == "as-named"):
-            offset_px = calibration.offset_px / grid.factor if calibration else 0.0
-            self._exchanged = view_order.view_order(made, grid.views.left, offset_px).exchanged
-        return self._put_right(made, grid)
+        """Return the disparity of the first frame in pixels of the pictures, and find what is found once."""
+        stage = self._stage(views)
+        self._estimate = (
+            self._method.follow(stage.views) if isinstance(self._method, Following) else self._method.estimate
+        )
+        estimate = stage.estimate(self._estimate, stage.views)
+        order = stage.order(estimate, stage.views)
+        if order is not None:
+            self._exchanged = order.exchanged
+        return stage.in_picture_pixels(estimate, self._exchanged)
 
     def disparity(self, views: Views) -> DisparityMap:
-        """Of one frame, in pixels of the pictures."""
-        grid = self._grid(views)
-        assert grid.views is not None
-        return self._put_right(estimated(self._depth, self._estimate, grid.views), grid)
-
-    def _put_right(self, made: DisparityMap, grid: WorkingGrid) -> DisparityMap:
-        return in_pictures_pixels(view_order.put_right(made) if self._exchanged else made, grid)
+        """Return the disparity of a frame in pixels of the pictures."""
+        stage = self._stage(views)
+        return stage.in_picture_pixels(stage.estimate(self._estimate, stage.views), self._exchanged)
 
     def nearness(self, disparity: DisparityMap) -> ValueRange:
-        """Of what is known of a map."""
+        """Return the range of nearness of the known pixels of a map."""
         views = self._scene.views
         return geometry.nearness_range(disparity, views.calibration if views else None)
 
     def relief(self, disparity: DisparityMap, spans: ValueRange) -> Relief:
-        """As the relief of a scene that stands still is made, within this range."""
-        return relief_of(disparity, self._still, self._config.size, spans)
+        """Return the relief of a map within a range of nearness, made as that of a still scene."""
+        return self._relief.from_disparity(disparity, spans)
 
-    def _grid(self, views: Views) -> WorkingGrid:
-        return WorkingGrid(replace(self._scene, views=views), self._config.size)
+    def _stage(self, views: Views) -> DisparityStage:
+        """Return the stage that makes the disparity of these views."""
+        return DisparityStage(Context(self._config, replace(self._scene, views=views)))
 
 
 def reliefs_of(config: PipelineConfig, scene: Scene) -> Reliefs:
-    """The frames of a scene that is a video, as reliefs. Raises: ConfigError for a scene that does not move."""
+    """Return the frames of a video scene as reliefs. Raises: ConfigError for a scene that does not move."""
     if scene.video is None:
         raise ConfigError(f"the scene {scene.name} does not move; give it a `video:`")
     if config.heights is not None:
@@ -92,9 +90,9 @@ def reliefs_of(config: PipelineConfig, scene: Scene) -> Reliefs:
 
 
 def film_of(engine: Engine, device: HapticDevice | None, period_s: float) -> Film:
-    """The law on the surface of the first frame, which goes on from there. device: whose materials fit.
+    """Return the force law as a film that begins at the first frame. device: limits the materials; None does not.
 
-    Raises: ConfigError for a scene that does not move, or a law that feels no surface that does.
+    Raises: ConfigError for a scene that does not move, or a law that cannot render a moving surface.
     """
     config, scene = engine.config, engine.scene
     law = _filming(config, engine.registry)
@@ -102,14 +100,14 @@ def film_of(engine: Engine, device: HapticDevice | None, period_s: float) -> Fil
     assert scene.video is not None
     surface = engine.make("surface")
     if device is not None:
-        surface, said = fitted(surface, config, device)
-        if said:
-            note(log, said)
+        surface, limits = fit_to_device(surface, config, device)
+        if limits:
+            note(log, limits)
     return law.film(surface, period_s, 1 / scene.video.fps)
 
 
 def _filming(config: PipelineConfig, registry: Registry) -> Filming:
-    """The force law. Raises: ConfigError for one that feels no surface that moves."""
+    """Return the configured force law. Raises: ConfigError for a law that cannot render a moving surface."""
     if config.render is None:
         raise config.missing("render")
     law = config.render.method
@@ -127,10 +125,10 @@ def _filming(config: PipelineConfig, registry: Registry) -> Filming:
 
 
 def _laws_that_film(registry: Registry) -> list[str]:
-    """By name; one that cannot be imported has no say."""
-    found: list[str] = []
+    """Return the names of the force laws that can render a moving surface, without those that cannot be imported."""
+    names: list[str] = []
     for name in registry.names("render"):
         with suppress(BrokenMethod):
             if issubclass(registry.load("render", name), Filming):
-                found.append(name)
-    return found
+                names.append(name)
+    return names

@@ -9,6 +9,7 @@ from jaxtyping import Bool
 from ...data import DisparityMap, PartMap
 from ...parts import HeightChoice, PartHeights, depth_heights, guess_heights
 from ...plugins.notes import note
+from .working_grid import transparent_parts
 
 log = logging.getLogger(__name__)
 
@@ -35,7 +36,7 @@ def heights_of(
     said = dict(enumerate(zip(found.heights_m, found.reasons, strict=True)))
     heights_m = {number: min(round(height_m, FINEST_DIGITS), top_m) for number, (height_m, _) in said.items()}
     reasons = {number: why for number, (_, why) in said.items()}
-    for number in hidden(parts, shown):
+    for number in transparent_parts(parts, shown):
         heights_m[number], reasons[number] = 0.0, "transparent in the picture"
     for number, height_m in given_m.items():
         heights_m[number], reasons[number] = height_m, "given"
@@ -49,15 +50,6 @@ def _found(parts: PartMap, heights: HeightChoice, top_m: float, disparity: Dispa
         return depth_heights(parts, disparity, top_m)
     why = "no height is given, so it lies at 0" if heights.by == "given" else "the views show no depth, so it lies at 0"
     return PartHeights((0.0,) * parts.count, (why,) * parts.count)
-
-
-def hidden(parts: PartMap, shown: Bool[np.ndarray, "h w"] | None) -> list[int]:
-    """The parts that are all transparent. shown: of the parts' size; None for everywhere."""
-    if shown is None:
-        return []
-    opaque = np.bincount(parts.labels[shown], minlength=parts.count)
-    there = np.bincount(parts.labels.reshape(-1), minlength=parts.count)
-    return np.flatnonzero((opaque == 0) & (there > 0)).tolist()
 
 
 def warn_missing_heights(found: PartHeights, heights: HeightChoice, given_m: Mapping[int, float]) -> None:

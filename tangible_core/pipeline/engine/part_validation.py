@@ -38,7 +38,7 @@ def parts_of(segments: SegmentMap) -> PartMap:
     return found
 
 
-def tell_slips(parts: PartMap) -> None:
+def warn_small_parts(parts: PartMap) -> None:
     """Warn of parts of a few pixels. They stay parts, as the numbers of all others would change."""
     sizes = part_sizes(parts)
     small = np.flatnonzero(sizes < max(FEW_PIXELS, FEW_SHARE * parts.labels.size)).tolist()
@@ -69,7 +69,7 @@ def place_of(parts: PartMap, number: int, scale: float = 1.0) -> str:
     return f"[{x}, {y}]"
 
 
-def check_found(config: PipelineConfig, parts: PartMap, columns: int) -> None:
+def check_parts(config: PipelineConfig, parts: PartMap, columns: int) -> None:
     """What is said of parts must be of parts that are there, and fit the workspace.
 
     columns: of the picture, in whose pixels places are said. Raises: ConfigError with every complaint.
@@ -116,7 +116,7 @@ def _mm(length_m: float) -> str:
     return f"{float(f'{1e3 * length_m:.6g}'):g} mm"
 
 
-def numbered(config: PipelineConfig) -> tuple[MaterialRule, ...]:
+def number_rules(config: PipelineConfig) -> tuple[MaterialRule, ...]:
     """The rules for materials, with the numbers of parts in place of their names."""
     numbers = numbers_of(config.parts or {})
     return tuple(
@@ -130,7 +130,7 @@ def own_materials(config: PipelineConfig) -> dict[int, str]:
     return {number: each.material for number, each in (config.parts or {}).items() if each.material is not None}
 
 
-def reasons_with_names(config: PipelineConfig, found: MaterialMap) -> MaterialMap:
+def add_names_to_reasons(config: PipelineConfig, found: MaterialMap) -> MaterialMap:
     """With the names of the parts in the reasons."""
     reasons = list(found.reasons)
     for number, name in config.part_names.items():
@@ -139,7 +139,7 @@ def reasons_with_names(config: PipelineConfig, found: MaterialMap) -> MaterialMa
     return replace(found, reasons=tuple(reasons))
 
 
-def surface_with_names(config: PipelineConfig, found: HapticSurface) -> HapticSurface:
+def add_names_to_surface(config: PipelineConfig, found: HapticSurface) -> HapticSurface:
     """With the names of its parts. Raises: ConfigError for parts that are not there."""
     count = len(found.names or ())
     check_numbers(config, count)

@@ -1,4 +1,4 @@
-"""A scene at the size at which it is felt: what is finer than the workspace's `finest_m` is not made."""
+"""The grid on which products are made: the pictures, reduced where they are finer than the workspace's `finest_m`."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -18,7 +18,7 @@ from ...scene.workspace import FeltSize
 
 @final
 class WorkingGrid:
-    """What a scene has on the grid that is felt. Reduced when first asked for, and kept."""
+    """A scene on the working grid; each thing is reduced at its first use."""
 
     def __init__(self, scene: Scene, size: FeltSize) -> None:
         self.scene = scene
@@ -26,11 +26,11 @@ class WorkingGrid:
         self.shape = scaling.reduced_shape(scene.shape, self.factor)
         """(h, w) of the grid."""
         self.note = _note(self.factor, size.finest_m)
-        """What to say of it; nothing where it is the pictures' own."""
+        """A sentence about the reduction; "" for a grid of the pictures' size."""
 
     @property
     def key(self) -> str:
-        """What products depend on."""
+        """The part of a product's key that depends on the grid."""
         known = "" if self.scene.known is None else f"known {digest_of(self.scene.known)}"
         shown = "" if self.scene.shown is None else f"shown {digest_of(self.scene.shown)}"
         return f"1/{self.factor} {known} {shown}"
@@ -42,71 +42,85 @@ class WorkingGrid:
 
     @cached_property
     def known(self) -> Bool[np.ndarray, "h w"] | None:
-        """Where the pictures are; None for everywhere."""
+        """A mask, True where the pictures have values; None for everywhere."""
         return None if self.scene.known is None else scaling.reduced_mask(self.scene.known, self.shape)
 
     @cached_property
     def shown(self) -> Bool[np.ndarray, "h w"] | None:
-        """Where the pictures are opaque; None for everywhere."""
+        """A mask, True where the pictures are opaque; None for everywhere."""
         shown = None if self.scene.shown is None else scaling.reduced_mask(self.scene.shown, self.shape)
         return None if shown is None or shown.all() else shown
 
-    def whole_disparity(self, found: DisparityMap) -> DisparityMap:
-        """One that was found on this grid, for every pixel of the pictures."""
-        return known_disparity(scaling.on_grid(found, self.scene.shape), self.scene.known)
+    def full_disparity(self, disparity: DisparityMap) -> DisparityMap:
+        """Return a map on this grid for every pixel of the pictures."""
+        return known_disparity(scaling.on_grid(disparity, self.scene.shape), self.scene.known)
 
-    def whole_segments(self, found: SegmentMap) -> SegmentMap:
-        """Those that were found on this grid, for every pixel of the pictures."""
-        return known_segments(scaling.enlarged_segments(found, self.scene.shape), self.scene.known)
+    def full_segments(self, segments: SegmentMap) -> SegmentMap:
+        """Return segments on this grid for every pixel of the pictures."""
+        return known_segments(scaling.enlarged_segments(segments, self.scene.shape), self.scene.known)
 
-    def whole_parts(self, found: PartMap) -> PartMap:
-        """Those that were found on this grid, for every pixel of the pictures, with the same numbers."""
-        return scaling.enlarged_parts(found, self.scene.shape)
+    def full_parts(self, parts: PartMap) -> PartMap:
+        """Return parts on this grid for every pixel of the pictures, with the same numbers."""
+        return scaling.enlarged_parts(parts, self.scene.shape)
+
+    def parts(self, parts: PartMap, product: Literal["parts", "simplified"]) -> PartMap:
+        """Return parts of any size on this grid, as `parts_on_grid`."""
+        return parts_on_grid(parts, self.shape, product)
 
 
-def known_disparity(found: DisparityMap, known: Bool[np.ndarray, "h w"] | None) -> DisparityMap:
-    """Unknown where the pictures are."""
+def known_disparity(disparity: DisparityMap, known: Bool[np.ndarray, "h w"] | None) -> DisparityMap:
+    """Return the map with NaN and confidence 0 where `known` is False; None keeps it."""
     if known is None:
-        return found
-    return DisparityMap(np.where(known, found.disparity_px, np.float32(np.nan)), found.confidence * known, found.unit)
+        return disparity
+    values_px = np.where(known, disparity.disparity_px, np.float32(np.nan))
+    return DisparityMap(values_px, disparity.confidence * known, disparity.unit)
 
 
-def known_segments(found: SegmentMap, known: Bool[np.ndarray, "h w"] | None) -> SegmentMap:
-    """Of confidence 0 where the pictures are unknown."""
-    return found if known is None else SegmentMap(found.labels, found.confidence * known)
+def known_segments(segments: SegmentMap, known: Bool[np.ndarray, "h w"] | None) -> SegmentMap:
+    """Return the segments with confidence 0 where `known` is False; None keeps them."""
+    return segments if known is None else SegmentMap(segments.labels, segments.confidence * known)
 
 
-def grounded(relief: Relief, shown: Bool[np.ndarray, "h w"] | None) -> Relief:
-    """Flat, and at the bottom, where the picture is transparent."""
+def flatten_transparent(relief: Relief, shown: Bool[np.ndarray, "h w"] | None) -> Relief:
+    """Return the relief at height 0 where the picture is transparent."""
     return relief if shown is None else Relief(np.where(shown, relief.height_m, np.float32(0)), relief.extent_m)
 
 
-def layered(
+def relief_of_layers(
     layering: Layering, heights_m: Sequence[float], size: FeltSize, shown: Bool[np.ndarray, "h w"] | None = None
 ) -> Relief:
-    """The relief of parts of these heights, smoothed, and flat where the picture is transparent."""
-    return grounded(smooth(layering.relief(heights_m), size.smooth_m), shown)
+    """Return the relief of parts of these heights, smoothed, and at 0 where the picture is transparent."""
+    return flatten_transparent(smooth(layering.relief(heights_m), size.smooth_m), shown)
 
 
 def parts_on_grid(parts: PartMap, shape: tuple[int, int], product: Literal["parts", "simplified"]) -> PartMap:
-    """The parts as they are felt, with the same numbers.
+    """Return the parts on a grid of (h, w), with the same numbers.
 
-    Each of the picture's own parts has a cell at least; of one that was simplified away, none is left.
+    Each of the picture's own parts keeps at least one cell; a part that was simplified away has none.
     """
     return reduced_parts(parts, shape) if product == "parts" else scaling.enlarged_parts(parts, shape)
 
 
-def with_ground(found: SegmentMap, shown: Bool[np.ndarray, "h w"] | None) -> SegmentMap:
-    """What is transparent becomes a segment of its own, the last one."""
+def add_ground_segment(segments: SegmentMap, shown: Bool[np.ndarray, "h w"] | None) -> SegmentMap:
+    """Return the segments with all that is transparent as a segment of its own, the last one."""
     if shown is None:
-        return found
-    kept = np.unique(found.labels[shown])
-    labels = np.where(shown, np.searchsorted(kept, found.labels), kept.size)
-    return SegmentMap(labels.astype(np.int32), found.confidence)
+        return segments
+    opaque = np.unique(segments.labels[shown])
+    labels = np.where(shown, np.searchsorted(opaque, segments.labels), opaque.size)
+    return SegmentMap(labels.astype(np.int32), segments.confidence)
+
+
+def transparent_parts(parts: PartMap, shown: Bool[np.ndarray, "h w"] | None) -> list[int]:
+    """Return the parts that are all transparent. shown: of the parts' size; None for everywhere opaque."""
+    if shown is None:
+        return []
+    opaque = np.bincount(parts.labels[shown], minlength=parts.count)
+    total = np.bincount(parts.labels.reshape(-1), minlength=parts.count)
+    return np.flatnonzero((opaque == 0) & (total > 0)).tolist()
 
 
 def _note(factor: float, finest_m: float) -> str:
     if factor == 1:
         return ""
-    what = f"at 1/{factor:g} of the size, as finer than {1e3 * finest_m:g} mm is not felt"
+    what = f"at 1/{factor:g} of the size, as detail below {1e3 * finest_m:g} mm cannot be felt"
     return f"{what} (`workspace: {{finest_m: 0}}` keeps everything)"

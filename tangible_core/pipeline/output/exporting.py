@@ -13,7 +13,7 @@ from typing import Any, cast, final
 
 from ...data import Note, Outcome, Outcomes, Record, Work
 from ...data.outcome import HEADINGS, OutcomeKind, html_table, text_table
-from ...data.work import EXPORTABLE
+from ...data.products import EXPORTABLE
 from ...errors import BrokenMethod, ConfigError, Stopped, TangibleError, exited, quoted, wrong_argument
 from ...legibility import Legibility
 from ...plugins import failures, hooks
@@ -26,7 +26,7 @@ from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
-from ..engine.engine import Engine, Progress, Stage
+from ..engine.engine import Engine, Progress, StageEvent
 from .export_folder import check_writable, check_written, move, scratch
 from .legible import judged, names, of_width
 from .run_folder import default_name, relative_source
@@ -180,7 +180,7 @@ class _Desk:
         made, product, seconds = Outcomes(), f"{PREFIX}{name}", 0.0
         files, legible, notes = (), None, list[Note]()
 
-        def told(stage: Stage) -> None:
+        def told(stage: StageEvent) -> None:
             if stage.outcome is not None:
                 made.append(stage.outcome)
             self.progress(stage)
@@ -191,7 +191,7 @@ class _Desk:
                 work = work_for(engine, chosen.method)
                 legible = legible_for(engine, chosen.method)
             check_stopped()
-            self.progress(Stage(product, chosen.name))
+            self.progress(StageEvent(product, chosen.name))
             hooks.tell(self.engine.registry.plugins, "tangible_stage_started", product=product, method=chosen.name)
             start = perf_counter()
             with scratch(self.folder) as place, noted() as notes:
@@ -205,7 +205,7 @@ class _Desk:
         except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever a plugin raises, the others still write
             became, why = _fault(error, self.folder)
         outcome = Outcome(product, became, why, chosen.name, seconds, tuple(notes))
-        self.progress(Stage(product, chosen.name, outcome))
+        self.progress(StageEvent(product, chosen.name, outcome))
         hooks.tell(self.engine.registry.plugins, "tangible_stage_finished", outcome=outcome)
         return Exported(name, outcome, files, made, legible)
 
@@ -295,5 +295,5 @@ def _fault(error: BaseException, folder: Path) -> tuple[OutcomeKind, str]:
     return "failed", failures.sentence(error)
 
 
-def _unheard(stage: Stage) -> None:
+def _unheard(stage: StageEvent) -> None:
     """Nobody listens."""

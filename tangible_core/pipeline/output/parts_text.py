@@ -9,9 +9,9 @@ from ...files.editing import on_one_line
 from ...files.parts_block import with_parts
 from ...parts import PartChoice, PartHeights
 from ..config.model import PipelineConfig
-from ..engine import rules
 from ..engine.engine import Engine
-from ..engine.working_grid import WorkingGrid
+from ..engine.stage import Context
+from ..engine.stages.relief import ReliefStage
 
 MOST_REASON = 300
 """Characters of what is said behind a part."""
@@ -32,7 +32,7 @@ def part_heights(engine: Engine) -> PartHeights | None:
         return None
     found: PartMap = engine.felt(config.felt_parts)
     disparity: DisparityMap | None = engine.felt("disparity") if config.heights.by == "depth" else None
-    return rules.part_heights(config, WorkingGrid(engine.scene, config.size), found, disparity)
+    return ReliefStage(Context(config, engine.scene)).part_heights(found, disparity)
 
 
 def to_correct(engine: Engine) -> str:

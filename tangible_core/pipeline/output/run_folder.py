@@ -15,11 +15,11 @@ from itertools import count
 from pathlib import Path
 from typing import Any, cast
 
+from ...data.products import PRODUCTS
 from ...errors import OutputError
 from ...files.content import content_digest
 from ...files.reading import MOST_TEXT_BYTES, read_bytes
 from ...files.writing import write_text
-from ..config.model import PRODUCTS
 
 MANIFEST = "manifest.json"
 CONFIG, NO_CONFIG, OUTCOMES = "config.yaml", "config.txt", "outcomes.json"

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from ...data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Record, ServoReport, Work
+from ...data.products import IN_REPORT
 from ...errors import ConfigError
 from ...files.json_text import write_figures
 from ...files.writing import write_text
@@ -24,8 +25,6 @@ from .parts_text import part_heights, to_correct
 from .run_folder import CONFIG, GUESSED, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
 from .showing import drawing
 
-SHOWN = ("disparity", "segments", "parts", "materials", "surface")
-"""Products that the report draws, beside what is wanted."""
 Sheet = Literal["png", "svg", "pdf"]
 """What a sheet can be drawn as."""
 
@@ -90,7 +89,7 @@ def make_run(
     check_folder(out, engine.config.path)
     with rehearsal(engine, want) as engine.beside:
         value = engine.felt(want)
-        products = {name: engine.felt(name) for name in SHOWN if name in engine.needed(want)}
+        products = {name: engine.felt(name) for name in IN_REPORT if name in engine.needed(want)}
         products[want] = value
         recording = _felt(engine, value, seconds, on_report) if want == "touch" else None
     figures, config = _figures(engine, products, recording), _configuration(engine)
@@ -159,7 +158,7 @@ def _felt(
 
 def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | None, path: Path) -> str:
     scene, language = engine.scene, engine.config.language
-    shown: dict[str, Any] = {name: products.get(name) for name in (*SHOWN, "relief")}
+    shown: dict[str, Any] = {name: products.get(name) for name in (*IN_REPORT, "relief")}
     if scene.truth is not None and shown["disparity"] is not None:
         shown["disparity"] = engine.make("disparity")  # pixel by pixel beside its truth
     title = engine.config.title or (Path(scene.name).name if Path(scene.name).is_absolute() else scene.name)

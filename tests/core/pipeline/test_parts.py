@@ -124,7 +124,7 @@ class TestHeights:
         assert surface.names == ("wall", "", "", "chest")
         assert surface.extent_m == pytest.approx((0.08, 0.08 * ROWS / COLUMNS))
         assert [each.text for each in notes(made, "relief")] == [
-            "no depth is looked for: heights are given",
+            "no depth is needed: heights are given",
             "no height is given for parts 0 and 2, which lie at 0",
         ]
 
@@ -185,7 +185,7 @@ class TestWhatIsNotNeeded:
         made = pipeline(heights=by, depth=Ramp(), texture=Same())
         plan = {each.product: (each.outcome, each.why) for each in made.plan("surface").steps}
         assert "disparity" not in plan and plan["segments"][0] == "given"
-        assert "no depth is looked for: heights are" in plan["relief"][1]
+        assert "no depth is needed: heights are" in plan["relief"][1]
         assert ran == []
         made.make("surface")
         assert ran == []

@@ -21,7 +21,7 @@ from tangible_core import (
 )
 from tangible_core.data import HapticSurface, Plan
 from tangible_core.errors import ConfigError, DeviceError, OutputError, PictureError, Stopped, UnknownMethod
-from tangible_core.pipeline.engine.engine import Stage
+from tangible_core.pipeline.engine.engine import StageEvent
 from tangible_core.session import STOPPED, compared
 from tangible_depth import SemiGlobal, Zncc
 from tangible_devices import Mock
@@ -256,7 +256,7 @@ class TestThereAndBack:
 
 class TestWatching:
     def test_progress(self):
-        heard: list[Stage] = []
+        heard: list[StageEvent] = []
         Pipeline(Scene.of(height=np.eye(4)), cached=False).make("surface", progress=heard.append)
         assert [(each.product, each.outcome and each.outcome.outcome) for each in heard] == [
             ("relief", "given"),

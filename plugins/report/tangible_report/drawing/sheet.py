@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tangible_core.data import DisparityMap, HapticSurface, MaterialMap, PartMap, Relief, SegmentMap, Views
+from tangible_core.data import DisparityMap, HapticSurface, MaterialMap, PartMap, Record, Relief, SegmentMap, Views
 from tangible_core.errors import OutputError
 from tangible_core.files.writing import atomic_write
 from tangible_core.parts.words.languages import spoken_language
@@ -61,6 +61,7 @@ def draw_sheet(
     recording: Recording | None = None,
     title: str = "",
     language: str = "en",
+    **others: Record | None,
 ) -> str:
     """Draw what a run has as .png, .svg or .pdf, whole or not at all; panels without data are left out.
 
@@ -70,7 +71,7 @@ def draw_sheet(
     parts: drawn in place of the segments that they are of.
     relief: where there is no surface yet; a surface brings its own.
     recording: shown together with the relief that it was felt on. language: of the title and of names, as a tag; the
-    surface is described in it where there are words.
+    surface is described in it where there are words. others: further products by name, for panels of plugins.
     Raises: OutputError for another suffix or a place that cannot be written, PictureError if truth and disparity
     differ in size.
     """
@@ -87,6 +88,7 @@ def draw_sheet(
         "relief": relief if surface is None else surface.relief,
         "surface": surface,
         "recording": recording if recording is not None and len(recording.time_s) else None,
+        **others,
     }
     run = {name: value for name, value in given.items() if value is not None}
     panels = [panel for panel in PANELS if parts is None or panel.draw is not draw_segments]

@@ -6,7 +6,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tangible_core.data import DisparityMap, HapticSurface, PartMap, Record, Relief, SegmentMap, Views
+from tangible_core.data import HapticSurface, Record, Views
+from tangible_core.data.products import PRODUCTS
 from tangible_core.errors import OutputError
 from tangible_core.session import Recording
 
@@ -17,16 +18,12 @@ if TYPE_CHECKING:
 
     from ..panels import Panel
 
-PRODUCTS: Mapping[type[Record], str] = {
+PANEL_OF: Mapping[type[Record], str] = {
     Views: "views",
-    DisparityMap: "disparity",
-    SegmentMap: "segments",
-    PartMap: "parts",
-    Relief: "relief",
-    HapticSurface: "relief",
+    **{row.record: row.panel for row in PRODUCTS.values() if row.record is not None and row.panel},
     Recording: "recording",
 }
-"""What can be drawn, and what the sheet calls it."""
+"""The records that can be drawn, each with the product of its panel."""
 HEIGHT_IN = 3.5
 
 
@@ -43,9 +40,9 @@ def show(product: Record, axes: Axes | None = None, **beside: Any) -> Axes:
     from ..panels import PANELS
     from ..style import STYLE
 
-    name = PRODUCTS.get(type(product))
+    name = PANEL_OF.get(type(product))
     if name is None:
-        known = ", ".join(each.__name__ for each in PRODUCTS)
+        known = ", ".join(each.__name__ for each in PANEL_OF)
         raise OutputError(f"a {type(product).__name__} has no picture of its own; these have one: {known}")
     run = {**beside, name: product.relief if isinstance(product, HapticSurface) else product}
     panel = next(each for each in PANELS if set(each.needs) == {name})

@@ -11,7 +11,7 @@ from tangible_core.errors import Stopped
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
-from tangible_core.pipeline.engine.engine import Stage
+from tangible_core.pipeline.engine.engine import StageEvent
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.registry import Registry, default_registry
 from tangible_core.scene.scene_files import SceneFiles
@@ -54,7 +54,7 @@ class Work:
         self._product = ""
         self._after = False
 
-    def heard(self, stage: Stage) -> None:
+    def heard(self, stage: StageEvent) -> None:
         """A stage began or ended."""
         self._product = "" if stage.outcome else stage.product
         if stage.outcome and self._after:

@@ -1,12 +1,12 @@
 """Jobs that make heights and materials of parts felt while they are changed, and that show them.
 
 What does not depend on the heights is made once and kept. What is felt is, to the bit, what the document gives once it
-says these heights: the same steps make it (`working_grid.layered`, `fitted`, the law's own `touch`). Only where that
-has more than MOST_CELLS it is felt on a coarser grid until it is saved: a hand that drags a height waits for nothing.
+says these heights: the same stages make it (`Engine.with_products`). Only where that has more than MOST_CELLS it is
+felt on a coarser grid until it is saved: a hand that drags a height waits for nothing.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import ceil, sqrt
 from pathlib import Path
 from typing import Any, TypeVar
@@ -14,15 +14,18 @@ from typing import Any, TypeVar
 import numpy as np
 from pydantic import BaseModel, ValidationError
 
-from tangible_core.data import HapticSurface, Material, PartMap
+from tangible_core.data import HapticSurface, Material, MaterialMap, PartMap, Record
 from tangible_core.errors import ConfigError
 from tangible_core.materials.assignment import find, load_library
 from tangible_core.parts import HeightChoice, Layering, PartChoice
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.part_checks import wrong_of_parts
 from tangible_core.pipeline.engine import part_validation, working_grid
-from tangible_core.pipeline.engine.rules import fitted, part_heights
+from tangible_core.pipeline.engine.stage import Context
+from tangible_core.pipeline.engine.stages.relief import ReliefStage
+from tangible_core.pipeline.engine.stages.touch import fit_to_device
 from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.plugins.notes import silently
 from tangible_core.scene.scaling import felt_factor
 from tangible_core.scene.scene import Scene
 
@@ -48,7 +51,7 @@ class Kept:
     grid: working_grid.WorkingGrid
     parts: PartMap
     """On the grid that is felt."""
-    materials: tuple[Material, ...] | None
+    materials: MaterialMap | None
     """By part, of those that say none themselves; None where the law uses none."""
     layering: Layering
     found_m: dict[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
@@ -83,16 +86,21 @@ def parts_heights(
         raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
     kept = _kept(bench, pipeline.changed(config))
     said = {number: _checked(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
-    part_validation.check_found(config.changed(parts=said), kept.parts, kept.grid.scene.shape[1])
+    part_validation.check_parts(config.changed(parts=said), kept.parts, kept.grid.scene.shape[1])
+    part_validation.check_numbers(config, kept.parts.count)
     known = _known(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
-    relief = working_grid.layered(kept.layering, known, config.size, kept.grid.shown)
+    relief = working_grid.relief_of_layers(kept.layering, known, config.size, kept.grid.shown)
     own = part_validation.own_materials(config) if materials is None else dict(enumerate(materials))
-    made = None if kept.materials is None else _materials(kept.materials, own, config)
-    names = part_validation.surface_with_names
-    kept.surface = names(config, HapticSurface(relief, kept.parts.labels, made, ("",) * kept.parts.count))
-    device = config.felt_device
-    surface = kept.surface if device is None else fitted(kept.surface, config, device)[0]
-    return parcel_of(config.render.method.touch(surface), surface, config)
+    products: dict[str, Record] = {config.felt_parts: kept.parts, "relief": relief}
+    if kept.materials is not None:
+        products["materials"] = replace(kept.materials, materials=_materials(kept.materials.materials, own, config))
+    made = kept.pipeline.engine.with_products(**products)
+    surface: HapticSurface = made.make("surface")
+    kept.surface, device = surface, config.felt_device
+    if device is not None:
+        surface = fit_to_device(surface, config, device)[0]
+    with silently():  # what the device limits would be said at every step of a height
+        return parcel_of(made.make("touch"), surface, config)
 
 
 def parts_shown(bench: Bench) -> None:
@@ -141,7 +149,7 @@ def _known(kept: Kept, heights_m: Sequence[float | None], by: str) -> list[float
         if by == "depth" and disparity is None:
             raise ConfigError("the picture's depth is not made yet; make it, and heights by depth are felt")
         recipe = kept.config.changed(heights=_checked(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
-        kept.found_m[by] = part_heights(recipe, kept.grid, kept.parts, disparity).heights_m
+        kept.found_m[by] = ReliefStage(Context(recipe, kept.scene)).part_heights(kept.parts, disparity).heights_m
     found_m = kept.found_m.get(by, ())
     return [found_m[number] if each is None and number < len(found_m) else each or 0.0
             for number, each in enumerate(heights_m)]  # fmt: skip
@@ -165,8 +173,7 @@ def _kept(bench: Bench, pipeline: Pipeline) -> Kept:
     if layering is None:
         assert bare.heights is not None
         layering = Layering(parts, bare.size.width_m, bare.heights, grid.views.left if grid.views else None)
-    materials = None if chosen is None else chosen.materials
-    bench.kept = kept = Kept(made.scene, bare, made, grid, parts, materials, layering)
+    bench.kept = kept = Kept(made.scene, bare, made, grid, parts, chosen, layering)
     return kept
 
 

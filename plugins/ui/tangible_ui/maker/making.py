@@ -9,10 +9,11 @@ from typing import Any, cast
 import numpy as np
 
 from tangible_core.data import HapticSurface, Outcome, Plan
+from tangible_core.data.products import PRODUCTS
 from tangible_core.errors import TangibleError
 from tangible_core.mapping import over
-from tangible_core.pipeline.config.model import PRODUCTS, PipelineConfig
-from tangible_core.pipeline.engine.engine import Progress, Stage
+from tangible_core.pipeline.config.model import PipelineConfig
+from tangible_core.pipeline.engine.engine import Progress, StageEvent
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.runtime.child_process import dumps
@@ -80,7 +81,7 @@ def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want
 def telling(bench: Bench, work: Work) -> Progress:
     """Hears of stages, and tells pages."""
 
-    def heard(stage: Stage) -> None:
+    def heard(stage: StageEvent) -> None:
         done = {} if stage.outcome is None else asdict(stage.outcome)
         bench.tell("stage", product=stage.product, method=stage.method, done=done)
         work.heard(stage)

@@ -20,7 +20,7 @@ from tangible_core.parts import find_parts
 from tangible_core.pipeline.config.editing import REMOVE, edited, said
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.pipeline.engine.part_validation import check_found
+from tangible_core.pipeline.engine.part_validation import check_parts
 from tangible_core.scene.scene import Scene, builtin_files
 from tangible_core.scene.scene_files import BUILTINS, SceneFiles
 
@@ -69,7 +69,7 @@ def parts_save(
     place = _beside(path) if in_file else _on(shelf, picture)
     changed = said_of_parts(text, path, place, choices, heights, words)
     config = parse_config(changed, path, bench.registry, sets)
-    check_found(config, found, labels.shape[1])
+    check_parts(config, found, labels.shape[1])
     moved = _kept_before(place, picture, shelf, [*earlier, text], path)
     _write(place, picture, path if in_file else None, changed)
     _warn_of_numbers(config, opened_of(bench, pipeline), found)

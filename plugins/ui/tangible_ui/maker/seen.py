@@ -8,11 +8,12 @@ import numpy as np
 from jaxtyping import Float32, Int32
 
 from tangible_core.data import DisparityMap, HapticSurface, Material, PartMap, Relief, SegmentMap
+from tangible_core.data.products import Product
 from tangible_core.data.records import digest_of
 from tangible_core.metrics import absolute_error
-from tangible_core.pipeline.config.model import PipelineConfig, Product
+from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.part_names import names_of
-from tangible_core.pipeline.engine.rules import fitted
+from tangible_core.pipeline.engine.stages.touch import fit_to_device
 from tangible_core.pipeline.engine.working_grid import parts_on_grid
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.geometry import RANGE_PERCENT, flat_relief
@@ -94,7 +95,7 @@ def see_parts(pipeline: Pipeline, surface: HapticSurface, before: Seen | None) -
 
 def _of(seen: Seen, surface: HapticSurface, config: PipelineConfig) -> Seen:
     if config.felt_device is not None:
-        surface, _ = fitted(surface, config, config.felt_device)
+        surface, _ = fit_to_device(surface, config, config.felt_device)
     if surface.labels is None:
         return seen
     return replace(seen, labels=surface.labels, materials=surface.materials or (), names=surface.names)
@@ -110,7 +111,7 @@ def see_segments(pipeline: Pipeline) -> Seen:
     if is_there(pipeline, "relief"):
         relief = pipeline.relief
     else:
-        felt = pipeline.engine.working_grid("segments")
+        felt = pipeline.engine.felt("segments")
         shape = pipeline.scene.shape if felt is None else felt.labels.shape
         relief = flat_relief(shape, pipeline.config.size.width_m)
     return _seen(pipeline, "segments", relief)
@@ -153,7 +154,7 @@ def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h 
 
 def at_hand(pipeline: Pipeline, product: Product) -> Any:
     """The product on the grid that is felt; None where it would have to be made."""
-    return pipeline.engine.working_grid(product) if is_there(pipeline, product) else None
+    return pipeline.engine.felt(product) if is_there(pipeline, product) else None
 
 
 def _layers(pipeline: Pipeline) -> dict[str, Layer]:

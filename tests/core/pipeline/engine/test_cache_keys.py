@@ -8,10 +8,11 @@ import pytest
 
 from tangible_core import load_method
 from tangible_core.data import DisparityMap, SegmentMap, Views
+from tangible_core.data.products import PRODUCTS
 from tangible_core.materials.rules import MaterialRule
 from tangible_core.pipeline.config.material_choice import MaterialChoice
 from tangible_core.pipeline.config.methods import NamedMethod
-from tangible_core.pipeline.config.model import PRODUCTS, PipelineConfig
+from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.engine import Engine
 from tangible_core.plugins.interfaces import DepthEstimator, Segmenter
@@ -74,7 +75,7 @@ def pipeline(folder: Path, **parts) -> Engine:
 
 def keys(folder: Path, **parts) -> dict[str, str]:
     """Of what is made, each by itself: what it is made from is left out."""
-    return {product: rule.key for product, rule in pipeline(folder, **parts)._rules.items()}
+    return {product: stage.key for product, stage in pipeline(folder, **parts)._stages.items()}
 
 
 def forget() -> None:
@@ -216,7 +217,11 @@ class TestCode:
             ("tangible_core.scene.geometry", {"relief", "simplified"}),
             ("tangible_core.materials.rules", {"materials"}),
             ("tangible_core.data.surface", set(KEPT) - {"parts"}),
-            ("tangible_core.pipeline.engine.rules", set(KEPT)),
+            ("tangible_core.pipeline.engine.stage", set(KEPT)),
+            ("tangible_core.pipeline.engine.working_grid", set(KEPT)),
+            ("tangible_core.pipeline.engine.stages.disparity", {"disparity"}),
+            ("tangible_core.pipeline.engine.stages.relief", {"relief"}),
+            ("tangible_core.pipeline.engine.stages.surface", {"surface"}),
             ("tangible_core.pipeline.engine.cache", set(KEPT)),
             ("tangible_core.pipeline.engine.engine", set()),
             ("tangible_depth.semi_global", {"disparity"}),

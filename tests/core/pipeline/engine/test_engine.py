@@ -181,14 +181,14 @@ def test_what_nothing_asks_for_is_not_made(folder: Path):
     pipe.make("relief")
     assert ran == ["disparity"]
     left = {each.product: each.why for each in pipe.outcomes if each.outcome == "skipped"}
-    assert left == dict.fromkeys(("segments", "materials", "surface", "touch"), "nothing that was asked for needs it")
+    assert left == dict.fromkeys(("segments", "materials", "surface", "touch"), "not needed for what was requested")
 
 
 def test_what_a_method_notes_is_in_its_outcome(folder: Path):
     pipe = pipeline(folder, texture=chosen(Says()))
     pipe.make("segments")
     [outcome] = [each for each in pipe.outcomes if each.product == "segments"]
-    assert outcome.why == "asked for; skipped: everything"
+    assert outcome.why == "requested; skipped: everything"
 
 
 class Warns(Ramp):
@@ -218,7 +218,7 @@ def test_what_a_method_noticed_is_told_again_with_what_comes_from_the_cache(
         assert list(told["disparity"].notes) == noticed
         assert told["disparity"].why.endswith("; every row is strange; hardly worth it")
         assert [each.message for each in caplog.records] == ["every row is strange", "hardly worth it"]
-    assert told["segments"].why == "within what comes from the cache; skipped: everything"
+    assert told["segments"].why == "within a cached product; skipped: everything"
     again.make("disparity")
     assert len(caplog.records) == 2  # and not told twice
 
@@ -232,7 +232,8 @@ def test_what_was_noticed_in_reading_the_scene_is_told_with_the_views(folder: Pa
     pipe = pipeline(folder)
     pipe.make("segments")
     assert pipe.outcomes[0].notes == (Note("the first of 3 frames is taken", "warning"),)
-    assert pipe.outcomes[0].why.endswith(" brings it; the first of 3 frames is taken")
+    assert pipe.outcomes[0].why.startswith("provided by the scene ")
+    assert pipe.outcomes[0].why.endswith("; the first of 3 frames is taken")
 
 
 def test_left_and_right_that_are_named_in_order_are_not_exchanged(folder: Path):
@@ -328,7 +329,7 @@ def test_the_plan_is_what_then_happens(folder: Path, parts: dict):
     assert ran == []
     pipe = pipeline(folder, **parts)
     pipe.make()
-    happened = {each.product: each.outcome for each in pipe.outcomes if "nothing that was asked" not in each.why}
+    happened = {each.product: each.outcome for each in pipe.outcomes if "not needed" not in each.why}
     assert {name: foreseen.get(name, "skipped") for name in happened} == happened
     assert {each.product: each.outcome for each in pipeline(folder, **parts).plan().steps}["surface"] == "cached"
 
@@ -440,8 +441,8 @@ def test_pictures_finer_than_can_be_felt_are_matched_smaller_and_it_is_said(fold
     assert disparity.disparity_px.shape == (20, 30)
     assert disparity.disparity_px[0, 15] == pytest.approx(15, abs=1)
     (why,) = [each.why for each in pipe.outcomes if each.product == "disparity"]
-    reason = "at 1/2 of the size, as finer than 2 mm is not felt (`workspace: {finest_m: 0}` keeps everything)"
-    assert why == f"asked for; {reason}"
+    reason = "at 1/2 of the size, as detail below 2 mm cannot be felt (`workspace: {finest_m: 0}` keeps everything)"
+    assert why == f"requested; {reason}"
     whole = pipeline(folder, workspace=Workspace(width_m=0.03, finest_m=0))
     whole.make("disparity")
     assert "of the size" not in "".join(each.why for each in whole.outcomes)
@@ -453,7 +454,9 @@ def test_a_photo_finer_than_can_be_felt_is_segmented_smaller_and_it_is_said(fold
     segments = pipe.make("segments")
     assert segments.labels.tolist() == [[0] * 14 + [1] * 16] * 20  # half of 15 columns is 7
     (why,) = [each.why for each in pipe.outcomes if each.product == "segments"]
-    assert "at 1/2 of the size, as finer than 2 mm is not felt (`workspace: {finest_m: 0}` keeps everything)" in why
+    assert (
+        "at 1/2 of the size, as detail below 2 mm cannot be felt (`workspace: {finest_m: 0}` keeps everything)" in why
+    )
     whole = pipeline(folder, **parts, workspace=Workspace(width_m=0.03, finest_m=0))
     assert whole.make("segments").labels.tolist() == [[0] * 15 + [1] * 15] * 20
     assert "of the size" not in "".join(each.why for each in whole.outcomes)

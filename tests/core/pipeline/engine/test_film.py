@@ -10,8 +10,8 @@ from tangible_core import Pipeline, Scene
 from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import BrokenMethod, ConfigError
 from tangible_core.pipeline.engine.film import PipelineFrames
-from tangible_core.pipeline.engine.rules import relief_of
-from tangible_core.pipeline.engine.working_grid import WorkingGrid
+from tangible_core.pipeline.engine.stage import Context
+from tangible_core.pipeline.engine.stages.relief import ReliefStage
 from tangible_core.plugins.interfaces import DepthEstimator, Film
 from tangible_core.scene.geometry import nearness_range
 from tangible_depth import Luminance, SemiGlobal
@@ -61,7 +61,7 @@ def test_each_frame_is_what_the_still_makes_of_its_disparity_and_range(filmed, w
     assert np.array_equal(first.disparity_px, maker.disparity(pipeline.views).disparity_px)
     disparity = maker.disparity(later.views)
     assert np.array_equal(disparity.disparity_px, later.disparity.disparity_px)
-    still = relief_of(later.disparity, WorkingGrid(later.scene, pipeline.config.size), pipeline.config.size, spans)
+    still = ReliefStage(Context(pipeline.config, later.scene)).from_disparity(later.disparity, spans)
     assert np.array_equal(maker.relief(disparity, spans).height_m, still.height_m)
 
 

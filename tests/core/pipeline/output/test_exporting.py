@@ -25,9 +25,9 @@ from tangible_core import (
     Work,
 )
 from tangible_core.data import TICK_COLUMNS, PartMap
+from tangible_core.data.products import PRODUCTS
 from tangible_core.errors import ConfigError, OutputError, PictureError, Stopped, UnknownMethod
 from tangible_core.parts import reduced_parts
-from tangible_core.pipeline.config.model import PRODUCTS
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.working_grid import parts_on_grid

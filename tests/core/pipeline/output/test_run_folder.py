@@ -13,8 +13,8 @@ import pytest
 
 from command_line import tangible
 from tangible_core import Pipeline, Scene
+from tangible_core.data.products import Product
 from tangible_core.errors import OutputError
-from tangible_core.pipeline.config.model import Product
 from tangible_core.pipeline.output import runs
 from tangible_core.pipeline.output.run_folder import NAMES, default_folder, read_manifest, rewritten
 from tangible_devices import Mock

@@ -1,0 +1,186 @@
+"""The base of all stages: how one product is made of a scene by a configuration.
+
+A stage stands in `stages/PRODUCT.py`, as the class `ProductStage`; the table `tangible_core.data.products.PRODUCTS`
+names the product.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from importlib import import_module
+from typing import Any, ClassVar, final
+
+from ...data import Record, Views
+from ...errors import BrokenMethod, ConfigError, TangibleError
+from ...plugins.interfaces import Skippable
+from ...provenance.closure import closure
+from ...scene import scaling
+from ...scene.scene import Scene
+from ..config.methods import NamedMethod
+from ..config.model import PipelineConfig
+from . import working_grid
+from .cache import Cache
+from .keys import method_identity
+from .working_grid import WorkingGrid
+
+Inputs = Mapping[str, Any]
+"""Products by name; None for a product that was skipped."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Context:
+    """The configuration and the scene that the stages of one engine share."""
+
+    config: PipelineConfig
+    scene: Scene
+    brought: Mapping[str, Record] = field(default_factory=dict[str, Record])
+    """Products that need no stage, as the scene provides them."""
+
+    @cached_property
+    def grid(self) -> WorkingGrid:
+        """The grid on which products are made."""
+        return WorkingGrid(self.scene, self.config.size)
+
+    @cached_property
+    def no_segments(self) -> str | None:
+        """The reason why there are no segments; None if there are."""
+        return None if "segments" in self.brought else stage_class("segments")(self).skip
+
+
+class Stage(ABC):
+    """How one product is made: from which inputs, when it is skipped, and what its cached result depends on."""
+
+    product: ClassVar[str]
+    cached: ClassVar[bool] = True
+    """False for a product that cannot be kept between runs."""
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+        self.config = context.config
+        self.grid = context.grid
+
+    @property
+    def method(self) -> str:
+        """The method's name for people; "core" where the core makes the product."""
+        return "core"
+
+    @property
+    @abstractmethod
+    def needs(self) -> tuple[str, ...]:
+        """The products that it is made from, in the order in which they are made."""
+
+    @cached_property
+    @abstractmethod
+    def key(self) -> str:
+        """A text that differs wherever results of equal inputs may differ: code, options, grid."""
+
+    @abstractmethod
+    def make(self, inputs: Inputs) -> Any:
+        """Return the product on the working grid. Raises: TangibleError; whatever a plugin raises."""
+
+    def full_size(self, value: Any) -> Any:
+        """Return the product for every pixel of the pictures; as it is, if it has no pixels."""
+        return value
+
+    def finish(self, value: Any) -> Any:
+        """Return the product checked, and with names; done at each request, as no cached result depends on it."""
+        return value
+
+    @cached_property
+    def skip(self) -> str | None:
+        """The reason why this scene does not need the product; None if it does."""
+        return None
+
+    @property
+    def note(self) -> str:
+        """The part of the work that this scene does not need; "" for none."""
+        return ""
+
+    @cached_property
+    def refusal(self) -> TangibleError | None:
+        """The error that making would end with, as far as it is known before anything runs."""
+        return None
+
+    @property
+    def listed(self) -> bool:
+        """False for a product that outcomes leave out unless it was made."""
+        return True
+
+    def code(self, *modules: str) -> str:
+        """Return the digests of these modules, each with the text of the stage, this module, the grid and the cache."""
+        own = (type(self).__module__, __name__, working_grid.__name__, Cache.__module__)
+        return " ".join(closure(each, alone=own).digest for each in modules)
+
+    @property
+    def reduction(self) -> str:
+        """The part of the key that inputs of the pictures' size add, as they are brought to the working grid."""
+        plain = self.grid.factor == 1 and self.grid.scene.shown is None
+        return "" if plain else f" {self.code(scaling.__name__)} {self.grid.key}"
+
+    @property
+    def views(self) -> Views:
+        """The pictures on the working grid. Raises: ConfigError for a scene without."""
+        if self.grid.views is None:
+            raise no_picture(self.context.scene)
+        return self.grid.views
+
+
+class MethodStage(Stage):
+    """A stage whose product a plugin's method makes."""
+
+    kind: ClassVar[str]
+    """The key of the configuration that names the method."""
+
+    @property
+    def chosen(self) -> NamedMethod[Any] | None:
+        """The configured method, if any."""
+        return getattr(self.config, self.kind)
+
+    @property
+    def configured(self) -> NamedMethod[Any]:
+        """The configured method. Raises: ConfigError without one."""
+        if self.chosen is None:
+            raise self.config.missing(self.kind)
+        return self.chosen
+
+    @property
+    def method(self) -> str:
+        """The method's name in the configuration."""
+        return self.identity[0]
+
+    @cached_property
+    def identity(self) -> tuple[str, str]:
+        """The method's name, and all that its results depend on."""
+        return method_identity(self.chosen)
+
+    @cached_property
+    def skip(self) -> str | None:
+        """The method's own reason why this scene does not need it; None if it gives none."""
+        method, views = self.chosen and self.chosen.method, self.context.scene.views
+        return method.skip(views) if isinstance(method, Skippable) and views is not None else None
+
+    def check_shape(self, what: str, found: tuple[int, ...], wanted: tuple[int, ...]) -> None:
+        """Raise BrokenMethod for a result of another size: enlarged to the pictures' size it would pass unseen."""
+        if found != wanted:
+            name = self.configured.name
+            raise BrokenMethod(
+                f"{self.kind} method {name} ({self.configured.origin}) made {what} of {_size(found)} for a picture of "
+                f"{_size(wanted)}; `tangible check {self.kind} {name}` shows what it must keep"
+            )
+
+
+def stage_class(product: str) -> type[Stage]:
+    """Return the class `ProductStage` of `stages/product.py`."""
+    module = import_module(f"{__package__}.stages.{product}")
+    return getattr(module, f"{product.capitalize()}Stage")
+
+
+def no_picture(scene: Scene) -> ConfigError:
+    """Return the error of a scene without a picture where one is needed."""
+    return ConfigError(f"the scene {scene.name} has no picture; give one with `photo:` or `left:` and `right:`")
+
+
+def _size(shape: tuple[int, ...]) -> str:
+    return " x ".join(map(str, reversed(shape)))

@@ -1,0 +1,98 @@
+"""The disparity map: by a depth method, from the pictures."""
+
+import logging
+from collections.abc import Callable
+from functools import cached_property
+
+from ....data import DisparityMap, Views
+from ....errors import PictureError, TangibleError
+from ....plugins.notes import doubt, note
+from ....scene import scaling, unmatched, view_order
+from ....scene.scene_files import SceneFiles
+from ....scene.view_order import ViewOrder
+from ..stage import Inputs, MethodStage, no_picture
+from ..working_grid import known_disparity
+
+log = logging.getLogger(__name__)
+
+
+class DisparityStage(MethodStage):
+    """Estimate the disparity, and correct it where the views are exchanged."""
+
+    product = "disparity"
+    kind = "depth"
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        return ("views",)
+
+    @cached_property
+    def key(self) -> str:
+        code = " ".join(self.code(each.__name__) for each in (scaling, view_order, unmatched))
+        return f"{code} {self._order_is_given} {self.identity[1]} {self.grid.key}"
+
+    def make(self, inputs: Inputs) -> DisparityMap:
+        views = self.views
+        estimate = self.estimate(self.configured.method.estimate, views)
+        order = self.order(estimate, views)
+        if order is not None and order.said:
+            note(log, order.said, logging.WARNING if order.exchanged else logging.INFO)
+        disparity = self.in_picture_pixels(estimate, exchanged=order is not None and order.exchanged)
+        if views.right is not None:
+            reason = unmatched.same_twice(views, disparity) or unmatched.hardly_matched(disparity, self.grid.known)
+            if reason:
+                doubt(log, reason)
+        return disparity
+
+    def estimate(self, method: Callable[[Views], DisparityMap], views: Views) -> DisparityMap:
+        """Return the method's map of these views. Raises: BrokenMethod for another size; whatever the method raises."""
+        estimate = method(views)
+        self.check_shape("disparity", estimate.disparity_px.shape, views.shape)
+        return estimate
+
+    def order(self, estimate: DisparityMap, views: Views) -> ViewOrder | None:
+        """Return the order of the views as the map shows it; None for one view, or where the file gives the order."""
+        if self._order_is_given or views.right is None:
+            return None
+        original = self.context.scene.views
+        offset_px = original.calibration.offset_px if original and original.calibration else 0.0
+        return view_order.view_order(estimate, views.left, offset_px / self.grid.factor)
+
+    def in_picture_pixels(self, estimate: DisparityMap, exchanged: bool) -> DisparityMap:
+        """Return the map on the working grid in pixels of the pictures, unknown where the pictures are.
+
+        exchanged: True corrects a map of exchanged views.
+        """
+        ordered = view_order.put_right(estimate) if exchanged else estimate
+        return known_disparity(scaling.in_pixels_of(ordered, self.context.scene.shape[1]), self.grid.known)
+
+    def full_size(self, value: DisparityMap) -> DisparityMap:
+        return self.grid.full_disparity(value)
+
+    @property
+    def note(self) -> str:
+        return self.grid.note
+
+    @cached_property
+    def refusal(self) -> TangibleError | None:
+        scene, depth = self.context.scene, self.config.depth
+        if scene.views is None:
+            return no_picture(scene)
+        if depth is None:
+            return self.config.missing("depth")
+        if depth.method.needs_pair and scene.views.right is None:
+            give = (
+                "say how they lie in it, such as `layout: side-by-side`"
+                if scene.video
+                else "give both, `left:` and `right:`"
+            )
+            return PictureError(
+                f"depth method {depth.name} needs two views, and the scene {scene.name} has one: {give}, "
+                "or name a method for one picture (`tangible plugins` lists them)"
+            )
+        return None
+
+    @property
+    def _order_is_given(self) -> bool:
+        files = self.context.scene.files
+        return isinstance(files, SceneFiles) and files.order == "as-named"

@@ -1,0 +1,73 @@
+"""The relief: from the disparity, or with `heights:` from the parts."""
+
+from functools import cached_property
+
+from ....data import DisparityMap, PartMap, Relief
+from ....parts import Layering, PartHeights
+from ....scene import geometry, scaling
+from .. import part_heights
+from ..part_heights import warn_missing_heights
+from ..stage import Inputs, Stage
+from ..working_grid import flatten_transparent, relief_of_layers
+
+
+class ReliefStage(Stage):
+    """Make heights in metres of the disparity, or of the heights of parts."""
+
+    product = "relief"
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        heights = self.config.heights
+        if heights is None:
+            return "views", "disparity"
+        by_depth = ("disparity",) if heights.by == "depth" else ()
+        return "views", self.config.felt_parts, *by_depth
+
+    @cached_property
+    def key(self) -> str:
+        config, size = self.config, self.config.size
+        if config.heights is None:
+            return f"{self.code(geometry.__name__)} {size!r}{self.reduction}"
+        code = self.code(part_heights.__name__, Layering.__module__, geometry.__name__)
+        return f"{code} {size!r} {config.heights!r} {sorted(config.given_heights_m.items())}{self.reduction}"
+
+    @property
+    def note(self) -> str:
+        heights = self.config.heights
+        if heights is None or heights.by == "depth":
+            return ""
+        return f"no depth is needed: heights are {'given' if heights.by == 'given' else 'guessed'}"
+
+    def make(self, inputs: Inputs) -> Relief:
+        if self.config.heights is not None:
+            return self._from_parts(inputs[self.config.felt_parts], inputs.get("disparity"))
+        disparity: DisparityMap | None = inputs["disparity"]
+        if disparity is None:
+            return geometry.flat_relief(self.views.shape, self.config.size.width_m)
+        return self.from_disparity(scaling.reduced_disparity(disparity, self.grid.shape))
+
+    def from_disparity(self, disparity: DisparityMap, spans: geometry.ValueRange | None = None) -> Relief:
+        """Return the relief of a disparity map on the working grid. spans: as `geometry.make_relief`."""
+        views, size = self.context.scene.views, self.config.size
+        calibration = views.calibration if views else None
+        relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes, spans)
+        return flatten_transparent(geometry.smooth(relief, size.smooth_m), self.grid.shown)
+
+    def part_heights(self, parts: PartMap, disparity: DisparityMap | None) -> PartHeights:
+        """Return the height of each part, and why. parts, disparity: of any size; both are brought to the grid."""
+        config, grid = self.config, self.grid
+        assert config.heights is not None
+        if disparity is not None:
+            disparity = scaling.reduced_disparity(disparity, grid.shape)
+        on_grid, given_m = grid.parts(parts, config.felt_parts), config.given_heights_m
+        return part_heights.heights_of(on_grid, config.heights, config.top_m, given_m, disparity, grid.shown)
+
+    def _from_parts(self, parts: PartMap, disparity: DisparityMap | None) -> Relief:
+        config, grid = self.config, self.grid
+        assert config.heights is not None
+        views, heights = self.views, self.part_heights(parts, disparity)
+        warn_missing_heights(heights, config.heights, config.given_heights_m)
+        on_grid = grid.parts(parts, config.felt_parts)
+        layering = Layering(on_grid, config.size.width_m, config.heights, views.left)
+        return relief_of_layers(layering, heights.heights_m, config.size, grid.shown)

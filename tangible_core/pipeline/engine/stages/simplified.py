@@ -1,0 +1,48 @@
+"""The simplified parts: large enough for fingers, on a grid in millimetres, with the numbers of the parts."""
+
+from functools import cached_property
+
+from ....data import PartMap
+from ....legibility import SimplifyChoice, simplify
+from ...config.part_names import names_of
+from ..part_validation import check_parts
+from ..stage import Inputs, Stage
+from .parts import missing_segments
+
+
+class SimplifiedStage(Stage):
+    """Make the parts legible for fingers."""
+
+    product = "simplified"
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        return "views", "parts"
+
+    @property
+    def _choice(self) -> SimplifyChoice:
+        return self.config.simplify or SimplifyChoice()
+
+    @cached_property
+    def key(self) -> str:
+        names = sorted(self.config.part_names.items())
+        return f"{self.code(simplify.__module__)} {self.config.size.width_m} {self._choice!r} {names} {self.grid.key}"
+
+    def make(self, inputs: Inputs) -> PartMap:
+        parts: PartMap = inputs["parts"]
+        names = names_of(self.config.parts or {}, parts.count)
+        picture = self.grid.views.left if self.grid.views else None
+        return simplify(parts, self.config.size.width_m, self._choice, names, picture)
+
+    def finish(self, value: PartMap) -> PartMap:
+        if self.config.by_parts:
+            check_parts(self.config, value, self.context.scene.shape[1])
+        return value
+
+    @cached_property
+    def skip(self) -> str | None:
+        return missing_segments(self.context)
+
+    @property
+    def listed(self) -> bool:
+        return self.config.simplify is not None

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import tangible_core
+from benchmarks.house_words import count_words, share
 from checked_calls import OURS, UNCHECKED, CheckingLoader
 from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import (
@@ -237,3 +238,18 @@ def test_every_dependency_has_its_reason():
     for dependency in PROJECT["project"]["dependencies"]:
         name = re.split(r"[^\w.-]", dependency)[0]
         assert name in reasons, f"{name} is not explained"
+
+
+@pytest.mark.parametrize("house", ["plugins/authoring", "plugins/depth", "plugins/render", "plugins/texture"])
+def test_docstrings_open_with_a_verb_or_a_noun(house):
+    """The rest of the house follows; `python -m benchmarks.house_words --list` names what is left."""
+    words = count_words([ROOT / house])
+    assert words.docstrings > 50
+    assert share(words.openers, words.docstrings) < 5, words.openers
+
+
+@pytest.mark.parametrize("house", ["plugins/authoring", "plugins/depth", "plugins/texture"])
+def test_functions_are_not_named_by_a_bare_participle(house):
+    words = count_words([ROOT / house])
+    assert words.functions > 30
+    assert share(words.participles, words.functions) < 1, words.participles

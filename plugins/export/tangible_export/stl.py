@@ -57,7 +57,7 @@ _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute
 
 def write_stl(file: IO[bytes], solid: "Solid") -> None:
     """Some facets at a time: there may be millions."""
-    file.write(HEAD.ljust(80) + np.uint32(len(solid.triangles)).tobytes())
+    file.write(HEAD.ljust(79) + b"\0" + np.uint32(len(solid.triangles)).tobytes())
     for first in range(0, len(solid.triangles), FACETS_AT_ONCE):
         corners = solid.vertices_mm[solid.triangles[first : first + FACETS_AT_ONCE]]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

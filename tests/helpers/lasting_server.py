@@ -13,8 +13,8 @@ FORGETS = f"""
 import sys
 sys.path.insert(0, {str(Path(__file__).parent)!r})
 from lasting_server import forget
-from tangible_ui.asks import ASKS
-ASKS["forget"] = forget
+from tangible_ui.requests.table import REQUESTS
+REQUESTS["forget"] = forget
 {START}
 """
 

@@ -191,7 +191,8 @@ class Engine:
         other = copy(self)
         other.config = self.config.changed(device=NamedMethod("", "", device))
         other.__dict__.pop("_stages", None)
-        other._made = {product: made for product, made in self._made.items() if product != "touch"}
+        for each in ("_made", "_finished", "_full_size"):
+            setattr(other, each, {product: made for product, made in getattr(self, each).items() if product != "touch"})
         touch = other.make("touch")
         self._made |= {product: made for product, made in other._made.items() if product != "touch"}
         return touch

@@ -166,7 +166,7 @@ class TestMethods:
 
     def test_a_file_cannot_name_it(self, tmp_path: Path):
         pipeline = Pipeline(Scene.builtin("coins"), depth=Flat())
-        with pytest.raises(ConfigError, match=r"depth: Flat is no installed plugin.*tangible.depth"):
+        with pytest.raises(ConfigError, match=r"depth: Flat is not an installed plugin.*tangible.depth"):
             pipeline.to_yaml(tmp_path / "mine.yaml")
         assert not (tmp_path / "mine.yaml").exists()
 

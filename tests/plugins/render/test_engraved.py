@@ -115,7 +115,7 @@ class TestSection:
         with collected() as notes:
             GROOVE.felt(surface)
         (said,) = notes
-        assert "3 mm is 3.8 cells wide" in said and "from 4.8 mm on" in said
+        assert "3 mm is 3.8 cells wide" in said and "this grid holds 4.8 mm or more" in said
 
 
 class TestForces:

@@ -117,7 +117,7 @@ def test_any_other_error_is_a_failed_check_that_names_its_place(install, caplog)
     install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=SOURCE.replace("np.full(", "1 / 0 + np.full("))
     with caplog.at_level(logging.DEBUG, "tangible_core.testing"):
         results = {result.name: result for result in run_checks("depth", "mine", Registry())}
-    assert results["wall_is_found"].message.startswith("ZeroDivisionError: division by zero (acme.py:12; ")
+    assert results["wall_is_found"].message.startswith("ZeroDivisionError: division by zero (acme.py:13; ")
     assert results["options_are_frozen"].passed
     assert "ZeroDivisionError" in caplog.text
 

@@ -237,7 +237,7 @@ class TestMistakes:
         monkeypatch.setitem(__import__("sys").modules, "onnxruntime", None)
         from tangible_depth.network import runtimes
 
-        runtimes._loaded.cache_clear()
+        runtimes._load.cache_clear()
         with pytest.raises(BrokenMethod, match=r"pip install 'tangible-images\[onnx\]'"):
             Onnx(model=networks / "mono.onnx", runtime="onnxruntime").estimate(wall())
 

@@ -430,7 +430,7 @@ class TestEvidence:
         """Every other match belongs to an object that moved by itself."""
         left, right = (points.copy() for points in self.matches())
         right[1::2, 1] += np.random.default_rng(0).uniform(20, 200, len(right[1::2]))
-        assert "of the matches that had no part in it" in self.refused(Matches(left, right), caplog)
+        assert "of the held-out matches" in self.refused(Matches(left, right), caplog)
 
 
 @pytest.mark.parametrize("radial", [-0.15, -0.05, 0.1])

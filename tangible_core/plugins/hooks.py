@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from importlib.metadata import entry_points
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import pluggy
@@ -12,21 +12,41 @@ import pluggy
 from ..errors import did_you_mean, shown
 from ..runtime.failure_log import where_kept
 from ..runtime.slowness import said_if_slow
-from .origin import origin
+from .naming import origin
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
 
     from typer import Typer
 
     from ..data import Kind, Outcome, Plan, ServoReport
-    from .panel import Panel
 
 log = logging.getLogger(__name__)
 hookspec = pluggy.HookspecMarker("tangible")
 hookimpl = pluggy.HookimplMarker("tangible")
 _failed: WeakKeyDictionary[pluggy.PluginManager, set[tuple[str, str]]] = WeakKeyDictionary()
 """Observers that failed, and the moments: a moment may come ten times a second, and is complained of once."""
+
+
+class Panel(NamedTuple):
+    """How a panel is drawn, what of a run it shows, and the room that it takes."""
+
+    draw: Callable[..., str]
+    """Called with matplotlib's axes and, by name, what it needs and likes; draws into them and returns a headline."""
+    needs: Collection[str]
+    """Of views, truth, disparity, segments, parts, materials, relief, surface, recording; without all of these it is
+    left out."""
+    likes: Collection[str] = ()
+    """Given to it where the run has them."""
+    aspect: float | Callable[..., float] = 0.0
+    """Width over height; 0 is the scene's own. A function is called with what the panel needs and likes, by name."""
+    left_in: float = 0.15
+    right_in: float = 0.15
+    bottom_in: float = 0.4
+    least_in: float = 2.9
+    """Room for its headline, where its axes are narrower."""
+    least_aspect: float = 0.0
+    """Width over height beside panels that want to be high, if that is not fixed."""
 
 
 class Specs:

@@ -4,10 +4,10 @@ Methods are stateless; what keeps state is a session: `Touch` for a renderer, `L
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from functools import partial
+from collections.abc import Callable, Mapping
+from functools import partial, wraps
 from pathlib import Path
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from pydantic import ConfigDict
@@ -23,6 +23,8 @@ from ..data import (
 )
 from ..data.arguments import as_picture
 from ..data.quantities import Quantities
+from ..errors import wrong_argument
+from ..runtime.threads import limited_threads
 from .capabilities import Adjustable as Adjustable
 from .capabilities import Attended as Attended
 from .capabilities import Drawing as Drawing
@@ -31,13 +33,58 @@ from .capabilities import Reshaping as Reshaping
 from .capabilities import Scripted as Scripted
 from .capabilities import Serviceable as Serviceable
 from .capabilities import Skippable as Skippable
-from .film import Film as Film
-from .film import Filming as Filming
-from .film import touch_of as touch_of
 from .link import Link as Link
+from .naming import wrong_result
+from .touch import Film as Film
+from .touch import Filming as Filming
 from .touch import PlainTouch as PlainTouch
 from .touch import Touch as Touch
-from .verbs import Verb, guard_verb, taking
+from .touch import touch_of as touch_of
+
+Convert = Callable[[Any], Any]
+
+
+def taking(name: str, wanted: type, hint: str = "") -> Convert:
+    """What takes an argument of one type alone. hint: how to make one."""
+
+    def convert(value: Any) -> Any:
+        if not isinstance(value, wanted):
+            raise wrong_argument(name, value, f"a {wanted.__name__}{hint}")
+        return value
+
+    return convert
+
+
+class Verb(NamedTuple):
+    """A verb of a kind of plugin: what it takes and what it returns."""
+
+    kind: str
+    name: str
+    returns: type
+    take: Convert | None = None
+    """Converts each argument; None for a verb without arguments, or of any."""
+
+
+def guard_verb(cls: type, verb: Verb) -> None:
+    """Wrap a class's own verb, if it has one: arguments are converted, and the result is of the verb's type.
+
+    A caller gets a BrokenMethod that names the plugin in place of a result of another type.
+    """
+    own = cls.__dict__.get(verb.name)
+    if own is None or getattr(own, "__isabstractmethod__", False):
+        return
+
+    @wraps(own)
+    def guarded(self: Any, *given: Any, **by_name: Any) -> Any:
+        if verb.take is not None:
+            given, by_name = tuple(map(verb.take, given)), {name: verb.take(each) for name, each in by_name.items()}
+        with limited_threads():
+            result = own(self, *given, **by_name)
+        if not isinstance(result, verb.returns):
+            raise wrong_result(self, verb.kind, verb.name, result, verb.returns)
+        return result
+
+    setattr(cls, verb.name, guarded)
 
 
 class Method(Quantities, ABC):

@@ -17,7 +17,7 @@ from ..runtime.failure_log import where_kept
 from ..runtime.slowness import said_if_slow
 from . import hooks
 from .naming import KIND_NAMES as KIND_NAMES
-from .origin import origin
+from .naming import origin
 
 if TYPE_CHECKING:
     import pluggy

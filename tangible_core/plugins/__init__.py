@@ -1,6 +1,6 @@
-"""The interfaces of plugins, their registry, and the moments that observers hear of.
+"""The interfaces of plugins, the registry of installed ones, and the hooks.
 
-The names below are those that authors of plugins need; each is imported when first used.
+Authors of plugins need the names below; each is imported when first used.
 """
 
 from typing import TYPE_CHECKING

@@ -16,7 +16,7 @@ from ruamel.yaml import YAML
 
 from ...data.products import Product
 from ...errors import ConfigError
-from ...files.source import Source
+from ...files.yaml.source import Source
 from ...legibility.choice import SimplifyChoice
 from ...mapping import WorkspaceMapping, mapped
 from ...parts import HeightChoice, PartChoice

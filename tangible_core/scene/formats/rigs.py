@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from ...errors import ConfigError, GeometryError, quoted
-from ...files.source import parse_source, read_text
+from ...files.yaml.source import parse_source, read_text
 from ..rig import Camera, Distortion, StereoRig
 
 OPENCV = {

@@ -10,7 +10,7 @@ import pytest
 import typer
 
 from command_line import tangible
-from tangible_core.cli import devices as command
+from tangible_core.cli.commands import devices as command
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.mapping.device_calibrations import calibration_path
 from tangible_core.plugins.devices import examined, installed_devices

@@ -10,9 +10,9 @@ from typing import Any, Final, cast
 from ruamel.yaml import YAML
 from ruamel.yaml.nodes import MappingNode, ScalarNode
 
-from ..errors import ConfigError, quoted, wrong_argument
+from ...errors import ConfigError, quoted, wrong_argument
+from .bounds import MOST_DEPTH
 from .source import Location, Shorthand, key_of, no_shorthand, parse_source, parse_value, plain, spelt_out
-from .yaml_bounds import MOST_DEPTH
 
 Node = Any
 """A key or a value that knows where it stands in the text."""

@@ -6,10 +6,10 @@ import pytest
 
 from hostile import LAUGHS, YAML_BOMBS
 from tangible_core.errors import MOST_IN_LINE, MOST_LINES, ConfigError
-from tangible_core.files import yaml_bounds
 from tangible_core.files.reading import MOST_TEXT_BYTES
-from tangible_core.files.source import Source, parse_source
-from tangible_core.files.yaml_bounds import MOST_DEPTH, MOST_DIGITS, MOST_NODES
+from tangible_core.files.yaml import bounds
+from tangible_core.files.yaml.bounds import MOST_DEPTH, MOST_DIGITS, MOST_NODES
+from tangible_core.files.yaml.source import Source, parse_source
 from tangible_core.materials.files import parse_materials
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
@@ -60,7 +60,7 @@ def test_blocks_within_each_other_up_to_a_depth():
 
 def test_values_up_to_a_number(monkeypatch: pytest.MonkeyPatch):
     """The mapping, a key, the list, and its items."""
-    monkeypatch.setattr(yaml_bounds, "MOST_NODES", 100)
+    monkeypatch.setattr(bounds, "MOST_NODES", 100)
     assert parse(f"x: [{'1,' * 97}]").tree
     assert "more than 100 values" in complaint(f"x: [{'1,' * 98}]")
     assert "more than 100 values" in complaint("\n".join(f"x{number}: 1" for number in range(50)))
@@ -68,7 +68,7 @@ def test_values_up_to_a_number(monkeypatch: pytest.MonkeyPatch):
 
 def test_an_alias_counts_as_all_that_it_stands_for(monkeypatch: pytest.MonkeyPatch):
     """The mapping, two keys, a list of 9 in it, and another list of what is left."""
-    monkeypatch.setattr(yaml_bounds, "MOST_NODES", 100)
+    monkeypatch.setattr(bounds, "MOST_NODES", 100)
     text = f"a: &a [{'1,' * 9}]\nb: [{{}}]"
     assert len(parse(text.format("*a," * 8 + "1," * 6)).tree["b"]) == 14
     assert "values, aliases expanded" in complaint(text.format("*a," * 8 + "1," * 7))
@@ -125,7 +125,7 @@ def test_what_is_not_what_its_tag_says(text: str):
 
 
 def test_a_text_has_so_many_bytes(tmp_path: Path):
-    from tangible_core.files.source import read_text
+    from tangible_core.files.yaml.source import read_text
 
     (tmp_path / "a.yaml").write_text("x: 1\n" + "#" * (MOST_TEXT_BYTES - 5))
     assert parse(read_text(tmp_path / "a.yaml")).tree == {"x": 1}

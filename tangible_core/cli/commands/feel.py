@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .asking import ask_first
-from .loudness import is_quiet
-from .options import Json, NoCache, Record, Sets, Yes
+from ..asking import ask_first
+from ..options import Json, NoCache, Record, Sets, Yes
+from ..verbosity import is_quiet
 from .run import device_of, open_pipeline
 
 if TYPE_CHECKING:
-    from ..data import ServoReport
-    from ..plugins.interfaces import HapticDevice
-    from ..servo import Servo
+    from ...data import ServoReport
+    from ...plugins.interfaces import HapticDevice
+    from ...servo import Servo
 
 SECONDS = 8.0
 ALONE_S = 1.5
@@ -48,11 +48,11 @@ def feel(
     import time
     from dataclasses import asdict
 
-    from .. import session
-    from ..errors import check_positive
-    from ..pipeline.feeling import Feeling
-    from ..servo import OVER, TERMINATED
-    from . import sentences, show
+    from ... import session
+    from ...errors import check_positive
+    from ...pipeline.feeling import Feeling
+    from ...servo import OVER, TERMINATED
+    from .. import sentences, show
 
     check_positive("--each", each)
     pipeline, *then = (open_pipeline(config, sets or [], not no_cache) for config in configs)
@@ -120,8 +120,8 @@ def feel(
 
 
 def _say_if_alone(device: HapticDevice | None) -> None:
-    from ..plugins.interfaces import Attended
-    from . import show
+    from ...plugins.interfaces import Attended
+    from .. import show
 
     if isinstance(device, Attended) and (why := device.unattended()):
         show.note(why)

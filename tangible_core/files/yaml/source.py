@@ -12,10 +12,10 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.error import YAMLError
 
-from ..errors import Complaint, ConfigError, did_you_mean, quoted, shown
-from .paths import as_path
-from .reading import MOST_TEXT_BYTES, in_words, read_bytes
-from .yaml_bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, check_events
+from ...errors import Complaint, ConfigError, did_you_mean, quoted, shown
+from ..paths import as_path
+from ..reading import MOST_TEXT_BYTES, in_words, read_bytes
+from .bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, check_events
 
 Tree = dict[Any, Any]
 """The parser's own mapping: a dict that knows where its parts stand."""

@@ -27,7 +27,7 @@ class Command(NamedTuple):
     """The first line of its help."""
 
 
-ROOM = __package__
+ROOM = f"{__package__}.commands"
 COMMANDS = {
     "demo": Command(f"{ROOM}.run:demo", "Run the built-in example from picture to force."),
     "run": Command(f"{ROOM}.run:run", "Run a pipeline file, or a picture, and write a report."),

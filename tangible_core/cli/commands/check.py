@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..plugins.registry import KIND_NAMES
-from . import completing
-from .options import FAILED, Json
+from ...plugins.registry import KIND_NAMES
+from .. import completing
+from ..options import FAILED, Json
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..testing import CheckResult
+    from ...testing import CheckResult
 
 
 def check(
@@ -35,8 +35,8 @@ def check(
     """
     from rich.markup import escape
 
-    from ..testing import run_checks
-    from . import sentences, show
+    from ...testing import run_checks
+    from .. import sentences, show
 
     results = list(run_checks(kind, name))
     if as_json:

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..errors import ConfigError
-from ..plugins.registry import KIND_NAMES
-from . import completing
-from .options import Json
+from ...errors import ConfigError
+from ...plugins.registry import KIND_NAMES
+from .. import completing
+from ..options import Json
 
 if TYPE_CHECKING:
-    from ..metrics.measured import Measured
-    from ..plugins.registry import Listing
+    from ...metrics.measured import Measured
+    from ...plugins.registry import Listing
 
 COLUMNS = ("kind", "name", "origin", "summary")
 
@@ -32,8 +32,8 @@ def plugins(context: typer.Context, as_json: Json = False) -> None:
         return
     import json
 
-    from ..plugins.registry import default_registry
-    from ..runtime.standard_output import stream
+    from ...plugins.registry import default_registry
+    from ...runtime.standard_output import stream
 
     rows = [{column: getattr(each, column) for column in (*COLUMNS, "target")} for each in default_registry().listings]
     if as_json:
@@ -68,10 +68,10 @@ def show_one(
     """
     import inspect
 
-    from ..metrics.measured import measured
-    from ..pipeline.config.markdown import options_of
-    from ..plugins.registry import default_registry
-    from . import show
+    from ...metrics.measured import measured
+    from ...pipeline.config.markdown import options_of
+    from ...plugins.registry import default_registry
+    from .. import show
 
     registry = default_registry()
     listing, cls = registry.find(kind, name), registry.load(kind, name)
@@ -109,7 +109,7 @@ def _figures(found: Measured, name: str) -> dict[str, Any]:
 
 def _measured_in_words(listing: Listing, found: Measured | None) -> str:
     """How fast and how exact it was, and where."""
-    from ..metrics.measured import in_words
+    from ...metrics.measured import in_words
 
     if listing.kind == "device":
         return f"`tangible devices stress {listing.name}` measures how fast it can be read and written."

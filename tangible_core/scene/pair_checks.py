@@ -27,7 +27,7 @@ it may differ from it in width."""
 STEP_SHARE = 0.4
 CLEARER, LEAST_EDGE = 1.5, 0.01
 """An edge at one end of a strip counts if it is so many times the one at the other end, and this part of white more."""
-LEAST_MATCHED = 0.2
+LEAST_MATCHED_TO_JUDGE = 0.2
 """Part of the picture that must be matched before anything is said."""
 FEWEST, MAJORITY, MAJORITY_MIXED = 100, 1.8, 2.5
 """Strips that are heard, and how many times as many must speak against what the signs say; the signs of a pair with
@@ -63,7 +63,7 @@ def view_order(disparity: DisparityMap, left: np.ndarray, offset_px: float = 0.0
     rows = np.arange(count) * left.shape[0] // count
     values, confidence = disparity.disparity_px[rows], disparity.confidence[rows]
     matched = np.isfinite(values) & (confidence > MATCHED)
-    if matched.mean() < LEAST_MATCHED:
+    if matched.mean() < LEAST_MATCHED_TO_JUDGE:
         return IN_ORDER
     low, high = np.percentile(values[matched], [5, 95])
     if low > NEGATIVE_PX:

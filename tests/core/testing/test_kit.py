@@ -2,15 +2,18 @@
 
 import inspect
 import logging
+import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 import pytest
 from pydantic import ConfigDict, Field
 
+import loop_devices
 from tangible_core import DisparityMap, Views
 from tangible_core.errors import BrokenMethod, UnknownMethod
 from tangible_core.plugins import DepthEstimator
@@ -267,7 +270,7 @@ def test_options_that_keep_the_check(check):
 
 MOTOR = '''
     from tangible_core.data import DeviceSpec
-    from tangible_core.testing.loop_devices import Failing
+    from loop_devices import Failing
 
     class Motor(Failing):
         """A device that is real, as far as anybody can tell."""
@@ -286,7 +289,7 @@ def test_a_real_device_is_not_pushed_with_unless_that_is_asked_for(install, tmp_
     site = install("acme", {"tangible.device": {"motor": "acme:Motor"}}, acme=MOTOR)
     module = 'from tangible_core.testing import conforms\n\ntest_motor = conforms("device", "motor")\n'
     tmp_path.joinpath("test_motor.py").write_text(module)
-    monkeypatch.setenv("PYTHONPATH", str(site))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(site), str(Path(loop_devices.__file__).parent)]))
     monkeypatch.delenv("TANGIBLE_MOTORS", raising=False)
     if allowed:
         monkeypatch.setenv("TANGIBLE_MOTORS", allowed)

@@ -6,11 +6,11 @@ from itertools import product
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import NO_FORCE, DeviceSpec, HapticState, HapticSurface, Material
-from ..plugins.interfaces import ForceRenderer
-from ..servo.guard.stiffness import slopes
-from .checks import Check, demand
-from .synthetic.scenes import KnownSurface, plane, sphere_cap
+from ...data import NO_FORCE, DeviceSpec, HapticState, HapticSurface, Material
+from ...plugins.interfaces import ForceRenderer
+from ...servo.guard.stiffness import slopes
+from ..checks import Check, demand
+from ..synthetic.scenes import KnownSurface, plane, sphere_cap
 
 PERIOD_S = 0.001
 ROUNDING_N_PER_M = 0.1

@@ -4,7 +4,10 @@ import errno
 import math
 import stat
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
+
+import xxhash
 
 MOST_PIXELS = 89_000_000
 """Of a picture or an array in a file. A method may take a hundred bytes for each of them."""
@@ -15,6 +18,7 @@ MOST_TEXT_BYTES = 250_000
 TOO_MANY_PIXELS = f"is larger than {MOST_PIXELS // 1_000_000} megapixels"
 
 _UNSAID = 1 << 16
+_CHUNK = 1 << 20
 
 
 class TooLargeError(ValueError):
@@ -63,3 +67,24 @@ def in_words(count: int) -> str:
     ('1424 MB', '0.25 MB')
     """
     return f"{count / 1e6:g} MB"
+
+
+def content_digest(path: Path) -> str:
+    """XXH3-128 of a file's content; empty where there is no such file, or it cannot be read.
+
+    A file of the same size and the same time of its last change is not read again.
+    """
+    try:
+        found = path.stat()
+        return _digest(path, found.st_mtime_ns, found.st_size, found.st_ino) if path.is_file() else ""
+    except OSError:  # whoever needs the file says it
+        return ""
+
+
+@lru_cache(maxsize=64)
+def _digest(path: Path, changed_ns: int, size: int, inode: int) -> str:
+    state = xxhash.xxh3_128()
+    with path.open("rb") as file:
+        while chunk := file.read(_CHUNK):
+            state.update(chunk)
+    return state.hexdigest()

@@ -2,10 +2,10 @@
 
 import re
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any, cast
 
 from pydantic import BaseModel, ValidationError
 from ruamel.yaml import YAML
@@ -16,11 +16,11 @@ from ...errors import Complaint, ConfigError, did_you_mean, quoted, shown
 from ..paths import as_path
 from ..reading import MOST_TEXT_BYTES, in_words, read_bytes
 from .bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, check_events
+from .validation import Location as Location
+from .validation import deepest, has, joined, model_at
 
 Tree = dict[Any, Any]
 """The parser's own mapping: a dict that knows where its parts stand."""
-Location = tuple[Any, ...]
-"""Keys and indices from the top of the file."""
 Shorthand = Callable[[Location], str]
 """The option that a word alone stands for where a block may stand, by its place; empty for none."""
 
@@ -50,8 +50,8 @@ class Source:
         node: Any = self.tree
         for depth, part in enumerate(parts[:-1], 1):
             key = part if isinstance(node, list) else key_of(part, node)
-            below = cast(Any, node)[key] if _has(node, key) else None
-            if isinstance(below, list) and not _has(below, parts[depth]):
+            below = cast(Any, node)[key] if has(node, key) else None
+            if isinstance(below, list) and not has(below, parts[depth]):
                 raise _refused(text, keys, f"{part} is a list; set it as a whole: {part}=[...]")
             if not isinstance(below, dict | list):
                 cast(Any, node)[key] = CommentedMap(spelt_out(below, shorthand(parts[:depth])))
@@ -79,7 +79,7 @@ class Source:
         node: Any = self.tree
         line, column = 0, 0
         for part in location:
-            if not isinstance(node, dict | list) or not _has(node, part):
+            if not isinstance(node, dict | list) or not has(node, part):
                 continue
             marks = cast(Any, node).lc
             if marks.data and part in marks.data:
@@ -130,7 +130,7 @@ class Source:
             self.complain(location, str(error))
             return None
         except ValidationError as error:
-            for each in _joined(_deepest(error, plain(block))):
+            for each in joined(deepest(error, plain(block))):
                 self._complain_of(location, model, each)
             return None
 
@@ -138,7 +138,7 @@ class Source:
         where = (*location, *(part for part in error["loc"] if part != "[key]" and not str(part).startswith(":")))
         name = shown(".".join(str(part) for part in where))
         if error["type"] == "extra_forbidden":
-            options = list(_model_at(model, error["loc"][:-1]).model_fields)
+            options = list(model_at(model, error["loc"][:-1]).model_fields)
             known = f"; known: {', '.join(options)}" if options else "; there are no options"
             self.complain(where, f"{name}: unknown option{did_you_mean(str(where[-1]), options)}{known}")
         else:
@@ -147,55 +147,6 @@ class Source:
             if error["type"] == "literal_error":
                 given += did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
             self.complain(where, f"{name}: {error['msg']}{given}")
-
-
-PLAIN_WORDS = {
-    "dict_type": "Input should be a mapping, such as {key: value}",
-    "model_type": "Input should be a mapping, such as {key: value}",
-    "list_type": "Input should be a list, such as [1, 2]",
-    "tuple_type": "Input should be a list, such as [1, 2]",
-    "path_type": "Input should be the path of a file",
-    "int_parsing": "Input should be a valid integer",
-    "float_parsing": "Input should be a valid number",
-}
-"""What pydantic says in words of Python's, by the type of its error."""
-
-
-def _deepest(error: ValidationError, block: Any) -> list[Mapping[str, Any]]:
-    """What pydantic complains of, at places that the block has; of the forms of an option, that which fits farthest."""
-    found: list[dict[str, Any]] = [{**each, "loc": _place_in(block, each["loc"])} for each in error.errors()]
-    places: list[Location] = [each["loc"] for each in found]
-    return [each for each in found if not any(_is_within(place, each["loc"]) for place in places)]
-
-
-def _joined(found: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """The same in plain words; what is wanted at one place said once: `Input should be greater than 0, or 'auto'`."""
-    wanted = "Input should be "
-    joined = dict[tuple[Location, str], dict[str, Any]]()
-    for each in found:
-        said = str(PLAIN_WORDS.get(each["type"]) or each["msg"].removeprefix("Value error, "))
-        key = (each["loc"], "" if said.startswith(wanted) else said)
-        if key in joined and key[1] == "":
-            said = f"{joined[key]['msg']}, or {said.removeprefix(wanted)}"
-        joined[key] = {**each, "msg": said}
-    return list(joined.values())
-
-
-def _is_within(inner: Location, outer: Location) -> bool:
-    return len(inner) > len(outer) and inner[: len(outer)] == outer
-
-
-def _place_in(block: Any, location: Location) -> Location:
-    """A place as the block has it: without the names that pydantic gives the forms of an option that has several."""
-    node: Any = block
-    place = list[Any]()
-    for part in location:
-        if isinstance(part, str) and not isinstance(node, dict) and part != "[key]":
-            continue
-        place.append(part)
-        if isinstance(node, dict | list) and _has(node, part):
-            node = cast(Any, node)[part]
-    return tuple(place)
 
 
 def read_text(path: Path) -> str:
@@ -303,25 +254,6 @@ def key_of(part: Any, node: Mapping[Any, Any]) -> Any:
 def _word_or_number(part: Any) -> str | int:
     """A key as JSON can say it."""
     return int(part) if isinstance(part, int) and not isinstance(part, bool) else str(part)
-
-
-def _has(node: Any, part: Any) -> bool:
-    return part in node if isinstance(node, dict) else isinstance(part, int) and part < len(node)
-
-
-def _model_at(model: type[BaseModel], location: Iterable[Any]) -> type[BaseModel]:
-    """The innermost of a model's models on the way to a place in it."""
-    for part in location:
-        if isinstance(part, str) and part in model.model_fields:
-            model = next(_models_in(model.model_fields[part].annotation), model)
-    return model
-
-
-def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield annotation
-    for part in get_args(annotation):
-        yield from _models_in(part)
 
 
 def _relative_to(folder: Path, model: BaseModel) -> BaseModel:

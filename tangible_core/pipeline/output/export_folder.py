@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from ...errors import BrokenMethod, OutputError, quoted
-from ...files.content import content_digest
-from ...files.reading import read_bytes
+from ...files.reading import content_digest, read_bytes
 from ...files.writing import alone_in, write_text
 
 LISTED = ".exports.json"

@@ -99,7 +99,7 @@ def calibrate(name: Device, sets: DeviceSets = None) -> None:
 
     What was measured is kept for its serial number.
     """
-    from ...scene.calibrations import save_calibration
+    from ...mapping.device_calibrations import save_calibration
     from .. import show
 
     serial, values = _adjustable(name, sets or []).calibrate(_ask)

@@ -13,7 +13,7 @@ from tangible_core.files.yaml.source import Source, parse_source
 from tangible_core.materials.files import parse_materials
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
-from tangible_core.scene.picture_files import MAX_LABELS
+from tangible_core.scene.formats.pictures import MAX_LABELS
 
 PATH = Path("here/p.yaml")
 

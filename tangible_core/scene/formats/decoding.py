@@ -1,4 +1,4 @@
-"""Pictures, maps of numbers and label pictures in files. Whatever is wrong with a file is one PictureError."""
+"""The pixels of picture files, decoded within limits. Whatever is wrong with a file is one PictureError."""
 
 import logging
 import struct
@@ -7,23 +7,23 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar, cast
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
-from jaxtyping import Float32, Int32
 
-from ..data.pictures import check_finite, check_picture, opaque
-from ..errors import PictureError, did_you_mean, shown
-from ..files import arrays
-from ..files.reading import TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
-from ..runtime.opencv import silent_opencv
-from .frames import Say, count_pictures, unsaid
-from .tiff_tags import TIFF, Shape, stated_nodata, tiff_size
+from ...errors import PictureError, did_you_mean, shown
+from ...files import arrays
+from ...files.reading import TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
+from ...runtime.opencv import silent_opencv
+from .multi_picture import Say, count_pictures, unsaid
+from .tiff_tags import TIFF, Shape, tiff_size
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
 log = logging.getLogger(__name__)
+
+T = TypeVar("T")
 
 FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000")
 """What Pillow may read. Some that it also knows run other programs (EPS) or cannot be told from noise (TGA)."""
@@ -36,116 +36,7 @@ PICTURES = frozenset(
 VIDEOS = frozenset((".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".wmv", ".ogv", ".3gp", ".mts"))
 """And for a video's."""
 
-NonFinite = Literal["error", "mask"]
-T = TypeVar("T")
-
-MAX_LABELS = 4096
-"""More than this in a label picture, and it is a photo."""
-
 _ORIENTATION, _BITS_PER_SAMPLE = 0x0112, 0x0102  # tags of EXIF and of TIFF
-
-
-def read_picture(path: Path, non_finite: NonFinite = "error", say: Say = unsaid) -> np.ndarray:
-    """A picture file as (h, w[, 3|4]) RGB(A), upright as its EXIF orientation says: uint8, uint16, or what it holds.
-
-    A palette becomes colours, transparency a fourth channel. `.npy` and `.npz` files hold the array itself.
-    non_finite: what becomes of NaN and infinity: an error, or, for `mask`, nothing: they are in what is returned.
-    say: hears of more pictures in the file, of which the first is taken.
-    Raises: PictureError if the file is missing, no picture, damaged, cut short or too large.
-    """
-    return picture_of(_read(path, say), str(path), non_finite)
-
-
-def picture_of(values: np.ndarray, name: str, non_finite: NonFinite = "error") -> np.ndarray:
-    """An array as `read_picture` returns it. Raises: PictureError if it is no picture, or holds NaN or infinity."""
-    if non_finite == "error":
-        return check_picture(values, name)
-    check_picture(np.nan_to_num(values), name)
-    return values
-
-
-def read_map(path: Path, say: Say = unsaid) -> Float32[np.ndarray, "h w"]:
-    """A map of numbers (.npy, .npz, .pfm, .tif, or any grey picture as its raw values); infinities become NaN.
-
-    So does what is transparent, and what a GeoTIFF states to be no data (GDAL's tag).
-    Raises: PictureError as `read_picture`, or if there is more than one number a pixel.
-    """
-    data = bytes_of(path)
-    found = map_of(values_of(path, data, say), str(path))
-    nodata = stated_nodata(data) if data[:4] in TIFF else None
-    if nodata is None:
-        return found
-    known = without(found, nodata)
-    if missing := np.count_nonzero(np.isnan(known)) - np.count_nonzero(np.isnan(found)):
-        say(f"{100 * missing / known.size:.1f} % of {path.name} is {nodata:g}, which it states to be no data")
-    return known
-
-
-def map_of(values: np.ndarray, name: str) -> Float32[np.ndarray, "h w"]:
-    """An array as `read_map` returns it, NaN where it is masked.
-
-    Raises: PictureError if there is more than one number a pixel.
-    """
-    masked: Any = values if np.ma.isMaskedArray(values) and values.dtype.kind in "buif" else None
-    if masked is not None:
-        values = cast(np.ndarray, masked.astype(np.float64).filled(np.nan))
-    shown = opaque(values) if values.ndim == 3 and values.shape[2] == 4 else None
-    if values.ndim == 3 and values.shape[2] in (3, 4) and not np.any(values[..., :3] != values[..., :1]):
-        values = values[..., 0]
-    if values.ndim != 2 or values.size == 0 or values.dtype.kind not in "buif":
-        raise PictureError(
-            f"{name}: a map must have one number per pixel, (h, w), not {values.shape} of {values.dtype}"
-        )
-    with np.errstate(over="ignore"):
-        numbers = values.astype(np.float32)
-    known = np.isfinite(numbers) if shown is None else np.isfinite(numbers) & shown
-    return np.where(known, numbers, np.float32(np.nan))
-
-
-def without(values: Float32[np.ndarray, "h w"], *nodata: float) -> Float32[np.ndarray, "h w"]:
-    """NaN where a map holds one of these values, as 32 bits hold it."""
-    with np.errstate(over="ignore"):
-        marks = np.array(nodata, np.float64).astype(np.float32)
-    return np.where(np.isin(values, marks), np.float32(np.nan), values)
-
-
-def read_labels(path: Path, say: Say = unsaid) -> Int32[np.ndarray, "h w"]:
-    """A label picture as 0..n-1, each of them present, in the order of its grey values, palette indices or colours.
-
-    Raises: PictureError as `read_picture`, or if it holds too many labels to be a label picture.
-    """
-    return labels_of(_read(path, say, indices=True), str(path))
-
-
-def labels_of(values: np.ndarray, name: str) -> Int32[np.ndarray, "h w"]:
-    """An array as `read_labels` returns it. Raises: PictureError if it holds too many labels, or is no picture."""
-    if values.ndim == 3 and values.dtype.kind == "u" and values.shape[2] <= 4:
-        values = values.astype(np.uint64) @ (1 << 16 * np.arange(values.shape[2], dtype=np.uint64))
-    if values.ndim != 2 or values.size == 0 or values.dtype.kind not in "buif":
-        raise PictureError(
-            f"{name}: a label picture must have one label per pixel, not {values.shape} of {values.dtype}"
-        )
-    check_finite(values, name)
-    known, labels = _ranked(values)
-    if known.size > MAX_LABELS:
-        raise PictureError(
-            f"{name}: holds {known.size} labels, but at most {MAX_LABELS} are allowed; give each segment one flat "
-            "colour and save the picture losslessly, as PNG"
-        )
-    return labels.reshape(values.shape).astype(np.int32, copy=False)
-
-
-def _ranked(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The values that there are, in order, and which of them each is; sorting millions of small ones takes seconds."""
-    if values.dtype.kind != "u" or values.dtype.itemsize > 2:
-        return np.unique(values, return_inverse=True)
-    there = np.bincount(values.reshape(-1)) > 0
-    return np.flatnonzero(there), (np.cumsum(there, dtype=np.int32) - 1)[values]
-
-
-def _read(path: Path, say: Say, indices: bool = False) -> np.ndarray:
-    """The raw values of any file that holds an array; `indices` keeps those of a palette."""
-    return values_of(path, bytes_of(path), say, indices)
 
 
 def values_of(path: Path, data: bytes, say: Say, indices: bool = False) -> np.ndarray:

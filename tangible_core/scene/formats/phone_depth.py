@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from jaxtyping import Float32
 
-from ..data.pictures import size_in_words, to_grey
-from ..errors import PictureError, shown
-from ..runtime.opencv import plain_opencv
-from .frames import Say, multi_pictures, unsaid
-from .picture_files import bytes_of, decode, look_at, orientation, upright
+from ...data.pictures import size_in_words, to_grey
+from ...errors import PictureError, shown
+from ...runtime.opencv import plain_opencv
+from .decoding import bytes_of, decode, look_at, orientation, upright
+from .multi_picture import Say, multi_pictures, unsaid
 
 if TYPE_CHECKING:
     from PIL.Image import Image

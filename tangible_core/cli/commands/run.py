@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from .loudness import is_quiet
-from .options import Felt, Json, NoCache, Sets
+from ..options import Felt, Json, NoCache, Sets
+from ..verbosity import is_quiet
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from ..pipeline.config.methods import NamedMethod
-    from ..pipeline.output.runs import Run
-    from ..pipeline.pipeline import Pipeline
-    from ..plugins.interfaces import HapticDevice
+    from ...pipeline.config.methods import NamedMethod
+    from ...pipeline.output.runs import Run
+    from ...pipeline.pipeline import Pipeline
+    from ...plugins.interfaces import HapticDevice
 
 Seconds = Annotated[float, typer.Option(help="Simulated time for which the surface is felt, s.")]
 
@@ -34,11 +34,11 @@ def demo(
     """
     from importlib.resources import files
 
-    from ..pipeline.config.parsing import parse_config
-    from ..pipeline.engine.cache import Cache
-    from ..pipeline.pipeline import Pipeline
-    from ..plugins.registry import default_registry
-    from . import show
+    from ...pipeline.config.parsing import parse_config
+    from ...pipeline.engine.cache import Cache
+    from ...pipeline.pipeline import Pipeline
+    from ...plugins.registry import default_registry
+    from .. import show
 
     text = files("tangible_core").joinpath("demo.yaml").read_text(encoding="utf-8")
     config = parse_config(text, DEMO, default_registry())
@@ -87,8 +87,8 @@ def plan(config: Felt, sets: Sets = None, as_json: Json = False, no_cache: NoCac
 
     Exit 2 if `run` would refuse.
     """
-    from ..errors import ConfigError
-    from . import sentences, show
+    from ...errors import ConfigError
+    from .. import sentences, show
 
     plan = open_pipeline(config, sets or [], not no_cache).plan()
     if as_json:
@@ -104,10 +104,10 @@ def plan(config: Felt, sets: Sets = None, as_json: Json = False, no_cache: NoCac
 
 def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bool) -> Pipeline:
     """The pipeline of a file, or of pictures that have none; with or without the user's cache."""
-    from ..errors import ConfigError
-    from ..pipeline.pipeline import load_pipeline
-    from ..pipeline.starter import are_pictures, pipeline_of
-    from . import show
+    from ...errors import ConfigError
+    from ...pipeline.pipeline import load_pipeline
+    from ...pipeline.starter import are_pictures, pipeline_of
+    from .. import show
 
     files = [config] if isinstance(config, Path) else config
     if are_pictures(files):
@@ -138,8 +138,8 @@ def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
 
 def default_place(source: Path) -> Path:
     """Where results go that nobody named a folder for."""
-    from ..pipeline.output.run_folder import default_folder, default_name
-    from . import show
+    from ...pipeline.output.run_folder import default_folder, default_name
+    from .. import show
 
     folder = default_folder(source)
     if folder.name != (first := default_name(source)):
@@ -150,7 +150,7 @@ def default_place(source: Path) -> Path:
 
 
 def _print(run: Run, as_json: bool) -> None:
-    from . import sentences, show
+    from .. import sentences, show
 
     if as_json:
         show.print_json({**run.document(), "files": [str(path) for path in run.files]})
@@ -171,8 +171,8 @@ def _print(run: Run, as_json: bool) -> None:
 
 def _say_if_ended_early(run: Run) -> None:
     """Raises: KeyboardInterrupt if it was Ctrl-C that ended the feeling."""
-    from ..session import INTERRUPTED
-    from . import show
+    from ...session import INTERRUPTED
+    from .. import show
 
     if run.recording is None or not run.recording.stopped:
         return

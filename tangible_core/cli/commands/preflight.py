@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import FAILED, Config, Json, NoCache, Sets
+from ..options import FAILED, Config, Json, NoCache, Sets
 from .run import device_of, open_pipeline
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ..preflight import Flight, Hand, Loop, Preflight, Verdict
+    from ...preflight import Flight, Hand, Loop, Preflight, Verdict
 
 COLOURS = {"ok": "green", "warn": "yellow", "unsafe": "bold red"}
 
@@ -37,9 +37,9 @@ def preflight(
     Says what is ok, what is not, and its cure. Opens no device. Exit 1 if something is unsafe. With --fix, the cures
     are tried, and a file with what is needed of them is written; if that is not enough, none is, and the exit is 1.
     """
-    from ..errors import OutputError
-    from ..pipeline.feeling import Feeling
-    from ..preflight import Hand, Loop, judge
+    from ...errors import OutputError
+    from ...pipeline.feeling import Feeling
+    from ...preflight import Hand, Loop, judge
 
     hand, loop = Hand(speed, press), Loop(rate, seconds)
     if fix is not None and fix.exists() and not force:
@@ -60,8 +60,8 @@ def _fixed(
     config: Path, sets: Sequence[str], hand: Hand, loop: Loop, out: Path, cached: bool
 ) -> tuple[Flight, Preflight, dict[str, Any]]:
     """What is so after the cures, which are written where they are enough; with what there is to say of them."""
-    from ..files.writing import write_text
-    from ..pipeline.fixing import fix
+    from ...files.writing import write_text
+    from ...pipeline.fixing import fix
 
     found = fix(config, sets, hand, loop, out, cached)
     if found.verdicts.safe:
@@ -76,7 +76,7 @@ def _print(
 
     from rich.markup import escape
 
-    from . import show
+    from .. import show
 
     if as_json:
         said = {"scene": scene, "device": device, "sentence": verdicts.sentence, "grade": verdicts.grade}
@@ -99,7 +99,7 @@ def line(verdict: Verdict) -> str:
     """A verdict as text, its cure on a line of its own, with rich's marks."""
     from rich.markup import escape
 
-    from ..preflight import relation
+    from ...preflight import relation
 
     said = "; ".join(filter(None, (f"{verdict.of}: {relation(verdict)}", verdict.note, verdict.source)))
     cure = f"\n{'':>20}cure: {verdict.cure}" if verdict.cure else ""
@@ -109,7 +109,7 @@ def line(verdict: Verdict) -> str:
 def _figures(flight: Flight) -> dict[str, Any]:
     from dataclasses import asdict
 
-    from ..preflight import PERCENTILES
+    from ...preflight import PERCENTILES
 
     late, cost = flight.lateness, flight.cost
     return {

@@ -14,10 +14,10 @@ def schema(
 
     Editors complete and check files by it.
     """
-    from ..pipeline.config.markdown import markdown as as_markdown
-    from ..pipeline.config.schema import json_schema, materials_schema
-    from ..runtime.standard_output import stream
-    from .show import print_json
+    from ...pipeline.config.markdown import markdown as as_markdown
+    from ...pipeline.config.schema import json_schema, materials_schema
+    from ...runtime.standard_output import stream
+    from ..show import print_json
 
     if materials:
         print_json(materials_schema())

@@ -13,10 +13,10 @@ import numpy as np
 from jaxtyping import Float32, UInt16
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from ..data import Relief
-from ..data.pictures import size_in_words
-from ..errors import PictureError, quoted
-from ..files.reading import MOST_TEXT_BYTES, check_file, read_bytes
+from ...data import Relief
+from ...data.pictures import size_in_words
+from ...errors import PictureError, quoted
+from ...files.reading import MOST_TEXT_BYTES, check_file, read_bytes
 from .tiff_tags import TIFF, stated_description
 
 FORMATS = "tangible heights "

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..errors import ConfigError
-from . import completing
-from .options import FAILED, Json
+from ...errors import ConfigError
+from .. import completing
+from ..options import FAILED, Json
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..data import Finding
-    from ..plugins.interfaces import Adjustable
+    from ...data import Finding
+    from ...plugins.interfaces import Adjustable
 
 COLOURS = {"fine": "green", "failed": "red", "not asked": "dim"}
 Device = Annotated[
@@ -39,9 +39,9 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
 
     from rich.markup import escape
 
-    from ..plugins.devices import installed_devices
-    from ..plugins.registry import default_registry
-    from . import sentences, show
+    from ...plugins.devices import installed_devices
+    from ...plugins.registry import default_registry
+    from .. import sentences, show
 
     rows = [asdict(each) for each in installed_devices(default_registry())]
     if as_json:
@@ -67,8 +67,8 @@ def doctor(
     """
     from dataclasses import asdict
 
-    from ..plugins.registry import default_registry
-    from . import sentences, show
+    from ...plugins.registry import default_registry
+    from .. import sentences, show
 
     if name is None and sets:
         raise ConfigError("--set: name the device that has this option")
@@ -87,7 +87,7 @@ def doctor(
 @app.command()
 def home(name: Device, sets: DeviceSets = None) -> None:
     """Guide your hand until the device knows its position."""
-    from . import show
+    from .. import show
 
     _adjustable(name, sets or []).home(show.note)
     show.say(f"{name} is homed")
@@ -99,8 +99,8 @@ def calibrate(name: Device, sets: DeviceSets = None) -> None:
 
     What was measured is kept for its serial number.
     """
-    from ..scene.calibrations import save_calibration
-    from . import show
+    from ...mapping.device_calibrations import save_calibration
+    from .. import show
 
     serial, values = _adjustable(name, sets or []).calibrate(_ask)
     path = save_calibration(name, serial, values)
@@ -119,10 +119,10 @@ def stress(
 
     No force is given. Rate, and percentiles of the time of one cycle.
     """
-    from ..plugins.devices import make_device
-    from ..plugins.registry import default_registry
-    from ..session.stress import stressed
-    from . import sentences, show
+    from ...plugins.devices import make_device
+    from ...plugins.registry import default_registry
+    from ...session.stress import stressed
+    from .. import sentences, show
 
     if not 0 < seconds <= 3600:
         raise ConfigError(f"--seconds {seconds}: is above 0, and at most an hour")
@@ -136,10 +136,10 @@ def stress(
 
 
 def _adjustable(name: str, sets: Sequence[str]) -> Adjustable:
-    from ..errors import DeviceError
-    from ..plugins.devices import make_device
-    from ..plugins.interfaces import Adjustable
-    from ..plugins.registry import default_registry
+    from ...errors import DeviceError
+    from ...plugins.devices import make_device
+    from ...plugins.interfaces import Adjustable
+    from ...plugins.registry import default_registry
 
     device = make_device(default_registry(), name, sets)
     if not isinstance(device, Adjustable):
@@ -149,7 +149,7 @@ def _adjustable(name: str, sets: Sequence[str]) -> Adjustable:
 
 def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
     """What is shown of a device: a line a unit, or one that says why there is none."""
-    from ..data import Unit
+    from ...data import Unit
 
     units = [Unit(**unit) for unit in row["units"]]
     if units:
@@ -158,10 +158,10 @@ def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
 
 
 def _findings(name: str, sets: Sequence[str], named: bool) -> Sequence[Finding]:
-    from ..data import Finding
-    from ..errors import TangibleError
-    from ..plugins.devices import examined
-    from ..plugins.registry import default_registry
+    from ...data import Finding
+    from ...errors import TangibleError
+    from ...plugins.devices import examined
+    from ...plugins.registry import default_registry
 
     try:
         return examined(default_registry(), name, sets)
@@ -174,7 +174,7 @@ def _findings(name: str, sets: Sequence[str], named: bool) -> Sequence[Finding]:
 def _tell(found: dict[str, Sequence[Finding]]) -> None:
     from rich.markup import escape
 
-    from . import show
+    from .. import show
 
     rows = [
         (name, each.check, f"[{COLOURS[each.verdict]}]{each.verdict}[/]", escape(each.says))
@@ -190,8 +190,8 @@ def _tell(found: dict[str, Sequence[Finding]]) -> None:
 
 
 def _ask(text: str) -> str:
-    from ..errors import ConfigError
-    from . import show
+    from ...errors import ConfigError
+    from .. import show
 
     show.note(text)
     try:

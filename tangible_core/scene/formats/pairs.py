@@ -5,10 +5,11 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from ..data.pictures import size_in_words
-from ..errors import PictureError
-from .frames import Say, unsaid, view_numbers
-from .picture_files import NonFinite, bytes_of, decode, look_at, picture_of, values_of
+from ...data.pictures import size_in_words
+from ...errors import PictureError
+from .decoding import bytes_of, decode, look_at, values_of
+from .multi_picture import Say, unsaid, view_numbers
+from .pictures import NonFinite, picture_of
 
 Layout = Literal["side-by-side", "cross-eyed", "top-bottom"]
 

@@ -10,9 +10,9 @@ what lies in front.
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Bool, Float32
 
-from ..data import DisparityMap
+from ..data import DisparityMap, Views
 from ..data.pictures import to_grey
 
 MATCHED = 0.15
@@ -27,7 +27,7 @@ it may differ from it in width."""
 STEP_SHARE = 0.4
 CLEARER, LEAST_EDGE = 1.5, 0.01
 """An edge at one end of a strip counts if it is so many times the one at the other end, and this part of white more."""
-LEAST_MATCHED = 0.2
+LEAST_MATCHED_TO_JUDGE = 0.2
 """Part of the picture that must be matched before anything is said."""
 FEWEST, MAJORITY, MAJORITY_MIXED = 100, 1.8, 2.5
 """Strips that are heard, and how many times as many must speak against what the signs say; the signs of a pair with
@@ -63,7 +63,7 @@ def view_order(disparity: DisparityMap, left: np.ndarray, offset_px: float = 0.0
     rows = np.arange(count) * left.shape[0] // count
     values, confidence = disparity.disparity_px[rows], disparity.confidence[rows]
     matched = np.isfinite(values) & (confidence > MATCHED)
-    if matched.mean() < LEAST_MATCHED:
+    if matched.mean() < LEAST_MATCHED_TO_JUDGE:
         return IN_ORDER
     low, high = np.percentile(values[matched], [5, 95])
     if low > NEGATIVE_PX:
@@ -124,3 +124,34 @@ def _slope(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
     np.maximum(steepest[:, 1:], slope[:, :-1], out=steepest[:, 1:])
     np.maximum(steepest[:, :-1], slope[:, 1:], out=steepest[:, :-1])
     return steepest
+
+
+LEAST_MATCHED = 0.25
+"""Part of the picture below which hardly anything was matched: good pairs reach 0.5 to 0.9, noise 0.02 to 0.12."""
+
+
+def same_twice(views: Views, disparity: DisparityMap) -> str:
+    """What to say of a depth that was asked of one picture twice; empty of two pictures, or where one is enough."""
+    if disparity.unit != "px" or views.right is None or not np.array_equal(views.left, views.right):
+        return ""
+    return (
+        "left and right are one and the same picture: nothing has moved between them, so no depth can be seen and the "
+        "surface is flat. Name the two pictures of a pair, taken from side by side, or this one alone as a photo"
+    )
+
+
+def hardly_matched(disparity: DisparityMap, known: Bool[np.ndarray, "h w"] | None = None) -> str:
+    """What to say of a map that is mostly filled in, with likely causes and cures; empty where enough was matched.
+
+    known: where the picture shows anything.
+    """
+    matched = np.isfinite(disparity.disparity_px) & (disparity.confidence > MATCHED)
+    shown = matched if known is None else matched[known]
+    if disparity.unit != "px" or shown.size == 0 or (share := float(shown.mean())) >= LEAST_MATCHED:
+        return ""
+    return (
+        f"hardly anything matches in the two pictures: a depth was found for {share:.0%} of the left one, and the rest "
+        "is filled in. Check that both show the same scene at the same time, from side by side and equally sharp, and "
+        "that left and right are not exchanged; let pictures of cameras that did not look in parallel be turned "
+        "(`rectify: auto`); search a wider range (`max_disparity_px`); or try another depth method"
+    )

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from . import completing
-from .loudness import is_quiet
-from .options import FAILED, MISTAKE, Felt, Json, NoCache, Sets
+from .. import completing
+from ..options import FAILED, MISTAKE, Felt, Json, NoCache, Sets
+from ..verbosity import is_quiet
 from .run import default_place, open_pipeline
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..pipeline.output.exporting import Export, Exported
+    from ...pipeline.output.exporting import Export, Exported
 
 
 CSV = "csv"
@@ -45,7 +45,7 @@ def export(
     `--set export.NAME.OPTION=VALUE` sets an option of an exporter. A recording (.nc, .npz) is written with `--to csv`.
     Exit 2 if something cannot be written of this, 1 if an exporter failed; the others write all the same.
     """
-    from . import show
+    from .. import show
 
     names = [name.strip() for each in to or [] for name in each.split(",") if name.strip()]
     if names == [CSV]:
@@ -67,8 +67,8 @@ def export(
 
 def _as_csv(files: Sequence[Path], folder: Path, force: bool) -> Path:
     """A recording as text, a tick a line. Raises: ConfigError for several; OutputError for what is no recording."""
-    from ..errors import ConfigError, OutputError
-    from ..session import Recording
+    from ...errors import ConfigError, OutputError
+    from ...session import Recording
 
     if len(files) > 1:
         raise ConfigError(f"{', '.join(map(str, files))}: name one recording, which is written as CSV")
@@ -80,7 +80,7 @@ def _as_csv(files: Sequence[Path], folder: Path, force: bool) -> Path:
 
 
 def _print_recording(place: Path, as_json: bool) -> None:
-    from . import show
+    from .. import show
 
     if as_json:
         show.print_json({"files": [str(place)]})
@@ -95,7 +95,7 @@ def _code(exports: Sequence[Exported]) -> int:
 
 
 def _print(scene: str, done: Export) -> None:
-    from . import sentences, show
+    from .. import sentences, show
 
     show.sentence(sentences.exported(scene, done))
     show.outcomes(done.outcomes)

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from ..errors import ConfigError
-from .options import Json
+from ...errors import ConfigError
+from ..options import Json
 
 app = typer.Typer(name="cache", rich_markup_mode=None, add_completion=False)
 
@@ -22,8 +22,8 @@ def cache(context: typer.Context, as_json: Json = False) -> None:
         if as_json:
             raise ConfigError(f"cache: write --json after {context.invoked_subcommand!r}")
         return
-    from ..pipeline.engine.cache import Cache
-    from . import show
+    from ...pipeline.engine.cache import Cache
+    from .. import show
 
     kept = Cache()
     count, size = kept.size()
@@ -43,8 +43,8 @@ def clear(
 
     On a terminal it asks first; without one, --yes is needed.
     """
-    from ..pipeline.engine.cache import Cache
-    from . import show
+    from ...pipeline.engine.cache import Cache
+    from .. import show
 
     kept = Cache()
     count, size = kept.size()

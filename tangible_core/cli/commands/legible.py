@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import FAILED, Config, Json, NoCache, Sets
+from ..options import FAILED, Config, Json, NoCache, Sets
 from .run import open_pipeline
 
 if TYPE_CHECKING:
-    from ..legibility import Legibility
-    from ..preflight import Verdict
+    from ...legibility import Legibility
+    from ...preflight import Verdict
 
 COLOURS = {"ok": "green", "warn": "yellow", "illegible": "bold red"}
 
@@ -41,7 +41,7 @@ def legible(
     Says by the rules of tactile graphics what is ok, what is not and where, and its cure. Writes nothing. Exit 1 if
     something is illegible.
     """
-    from ..pipeline.feeling import Feeling
+    from ...pipeline.feeling import Feeling
 
     pipeline = open_pipeline(config, sets or [], not no_cache)
     verdicts = Feeling(pipeline).legible(medium.value, width_m)
@@ -54,9 +54,9 @@ def legible(
 def _print(scene: str, medium: str, width_m: float, verdicts: Legibility, as_json: bool) -> None:
     from rich.markup import escape
 
-    from ..legibility import PROFILES
-    from ..preflight.wording import quantity
-    from . import show
+    from ...legibility import PROFILES
+    from ...preflight.wording import quantity
+    from .. import show
 
     if as_json:
         show.print_json({"scene": scene, "medium": medium, "width_m": width_m, **verdicts.as_data()})
@@ -74,7 +74,7 @@ def line(verdict: Verdict) -> str:
     """A verdict as text, its cure on a line of its own, with rich's marks."""
     from rich.markup import escape
 
-    from ..preflight import relation
+    from ...preflight import relation
 
     said = "; ".join(filter(None, (f"{verdict.of}: {relation(verdict)}", verdict.note, verdict.source)))
     cure = f"\n{'':>26}cure: {verdict.cure}" if verdict.cure else ""

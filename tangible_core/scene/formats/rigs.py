@@ -8,9 +8,9 @@ from typing import Any, cast
 import numpy as np
 from jaxtyping import Float64
 
-from ..errors import ConfigError, GeometryError, quoted
-from ..files.source import parse_source, read_text
-from .rig import Camera, Distortion, StereoRig
+from ...errors import ConfigError, GeometryError, quoted
+from ...files.yaml.source import parse_source, read_text
+from ..rig import Camera, Distortion, StereoRig
 
 OPENCV = {
     "left matrix": ("M1", "K1", "cameraMatrix1", "camera_matrix_1", "left_camera_matrix"),

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .asking import ask_first
-from .loudness import is_quiet
-from .options import Json, NoCache, Record, Sets, Yes
+from ..options import FAILED, Json, NoCache, Record, Sets, Yes
+from ..verbosity import is_quiet
 from .run import device_of, open_pipeline
 
 if TYPE_CHECKING:
-    from ..data import ServoReport
-    from ..plugins.interfaces import HapticDevice
-    from ..servo import Servo
+    from ...data import ServoReport
+    from ...pipeline.pipeline import Pipeline
+    from ...plugins.interfaces import HapticDevice
+    from ...servo import Servo
 
 SECONDS = 8.0
 ALONE_S = 1.5
@@ -48,11 +49,11 @@ def feel(
     import time
     from dataclasses import asdict
 
-    from .. import session
-    from ..errors import check_positive
-    from ..pipeline.feeling import Feeling
-    from ..servo import OVER, TERMINATED
-    from . import sentences, show
+    from ... import session
+    from ...errors import check_positive
+    from ...pipeline.feeling import Feeling
+    from ...servo import OVER, TERMINATED
+    from .. import sentences, show
 
     check_positive("--each", each)
     pipeline, *then = (open_pipeline(config, sets or [], not no_cache) for config in configs)
@@ -120,8 +121,8 @@ def feel(
 
 
 def _say_if_alone(device: HapticDevice | None) -> None:
-    from ..plugins.interfaces import Attended
-    from . import show
+    from ...plugins.interfaces import Attended
+    from .. import show
 
     if isinstance(device, Attended) and (why := device.unattended()):
         show.note(why)
@@ -129,3 +130,20 @@ def _say_if_alone(device: HapticDevice | None) -> None:
 
 def _text(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def ask_first(pipeline: Pipeline, yes: bool) -> None:
+    """Make the touch, and go on if it is worth feeling, or if the user, asked at a terminal or by `--yes`, wants it.
+
+    Raises: Exit with 1 if the user does not; PictureError where nobody can be asked; TangibleError as `Pipeline.make`.
+    """
+    from ...errors import PictureError
+
+    pipeline.make("touch")
+    doubts = "; ".join(each.text.partition(":")[0] for each in pipeline.outcomes.doubts)
+    if yes or not doubts:
+        return
+    if sys.stdin is None or not sys.stdin.isatty():
+        raise PictureError(f"{doubts}; put it right as the warning says, or feel it all the same with --yes")
+    if not typer.confirm(f"{doubts[:1].upper()}{doubts[1:]}. Feel it all the same?", err=True):
+        raise typer.Exit(FAILED)

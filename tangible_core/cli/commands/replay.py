@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import Config, Json, NoCache, Record, Sets
+from ..options import Config, Json, NoCache, Record, Sets
 from .run import open_pipeline
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..session import BeaconFelt, PartFelt, Recording
+    from ...session import BeaconFelt, PartFelt, Recording
 
 
 def replay(
@@ -31,8 +31,8 @@ def replay(
     from dataclasses import replace
     from time import perf_counter
 
-    from .. import session
-    from ..pipeline.feeling import Feeling
+    from ... import session
+    from ...pipeline.feeling import Feeling
 
     if record is not None:
         session.check_record_path(record)
@@ -78,9 +78,9 @@ def _print(
     as_json: bool,
     law: str,
 ) -> None:
-    from .. import session
-    from ..errors import MOST_IN_LINE, shown
-    from . import sentences, show
+    from ... import session
+    from ...errors import MOST_IN_LINE, shown
+    from .. import sentences, show
 
     if as_json:
         said: dict[str, Any] = {"device": before.about.device, "renderer": before.about.renderer}

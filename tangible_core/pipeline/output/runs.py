@@ -18,7 +18,7 @@ from ...plugins.interfaces import Touch
 from ...session import EVERY, About, Recording, materials_text, names_text, run_simulated, telling_parts
 from ..engine.cache import write_record
 from ..engine.engine import Engine
-from ..engine.warm_up import FELT, rehearsal
+from ..engine.warm_up import FELT, warm_up
 from .following import felt_device, how_followed
 from .notebook import png_html
 from .parts_text import part_heights, to_correct
@@ -90,7 +90,7 @@ def make_run(
     """
     engine.check(want)
     check_folder(out, engine.config.path)
-    with rehearsal(engine, want) as engine.beside:
+    with warm_up(engine, want) as engine.beside:
         value = engine.make_on_grid(want)
         products = {name: engine.make_on_grid(name) for name in IN_REPORT if name in engine.inputs_of(want)}
         products[want] = value

@@ -33,7 +33,7 @@ class Record:
     def _repr_html_(self) -> str:
         """A small picture with units, for a notebook."""
         home = __name__.partition(".")[0]
-        return import_module(f"{home}.pipeline.output.notebook").as_html(self)  # what draws lies above what is drawn
+        return import_module(f"{home}.pipeline.output.showing").as_html(self)  # what draws lies above what is drawn
 
     def digest(self) -> str:
         """XXH3-128 of the content, the same in every process; records of equal content have equal digests."""

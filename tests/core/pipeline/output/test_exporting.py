@@ -316,9 +316,9 @@ class TestWhatGoesWrong:
     FAULTS: ClassVar[dict[str, tuple[Callable[[Path], Any], str, str]]] = {
         "raises": (lambda stem: 1 / 0, "failed", "Does failed in write: ZeroDivisionError"),
         "exits": (lambda stem: exit(3), "failed", "called sys.exit"),
-        "no tuple": (lambda stem: str(stem), "failed", "write gave the str"),
-        "nothing": (lambda stem: (), "failed", "write gave no path"),
-        "no path": (lambda stem: (7,), "failed", "write gave 7 for a path"),
+        "no tuple": (lambda stem: str(stem), "failed", "write returned the str"),
+        "nothing": (lambda stem: (), "failed", "write returned no path"),
+        "no path": (lambda stem: (7,), "failed", "write returned 7 for a path"),
         "no such file": (lambda stem: (stem.with_suffix(".txt"),), "failed", "there is no such file"),
         "outside": (lambda stem: written(stem.parent.parent / "x.txt"), "failed", "is not the stem"),
         "another name": (lambda stem: written(stem.with_name("x.txt")), "failed", "is not the stem"),
@@ -389,7 +389,7 @@ class TestWhatGoesWrong:
     @pytest.mark.parametrize("content", ["", "{}", '{"files": {"a": 1}}', "[[", '{"files": {"a": {"b": 1}}}'])
     def test_a_list_that_is_somebody_elses(self, tmp_path: Path, content: str):
         (tmp_path / ".exports.json").write_text(content)
-        with pytest.raises(OutputError, match="is no list of exports; take it away, or choose another folder"):
+        with pytest.raises(OutputError, match="is not a list of exports; move or delete it"):
             pipeline(**SAID).export(tmp_path, [Report()])
         assert (tmp_path / ".exports.json").read_text() == content
 

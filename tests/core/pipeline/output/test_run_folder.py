@@ -16,7 +16,7 @@ from tangible_core import Pipeline, Scene
 from tangible_core.data.products import Product
 from tangible_core.errors import OutputError
 from tangible_core.pipeline.output import runs
-from tangible_core.pipeline.output.run_folder import NAMES, default_folder, read_manifest, rewritten
+from tangible_core.pipeline.output.run_folder import NAMES, default_folder, read_manifest, rewriting
 from tangible_devices import Mock
 from tangible_render import Penalty
 
@@ -57,12 +57,12 @@ def test_what_an_earlier_run_made_and_this_one_did_not_is_gone_and_all_else_stay
 @pytest.mark.parametrize("name", ["surface.npz", "outcomes.json"])
 def test_a_file_that_no_run_left_so_stops_the_run_before_the_work(tmp_path: Path, name: str):
     (tmp_path / name).write_text("my own")
-    with pytest.raises(OutputError, match=f"{name}: no run left it so"):
+    with pytest.raises(OutputError, match=f"{name}: exists, and is not an unchanged file of a run"):
         run(tmp_path)
     assert digests(tmp_path) == {name: b"my own"}
     run(tmp_path / "x")
     (tmp_path / "x" / name).write_text("changed")
-    with pytest.raises(OutputError, match="no run left it so"):
+    with pytest.raises(OutputError, match="exists, and is not an unchanged file of a run"):
         run(tmp_path / "x", "relief")
 
 
@@ -79,7 +79,7 @@ def test_a_folder_whose_manifest_is_damaged_is_not_written_over(tmp_path: Path, 
     (tmp_path / "surface.npz").write_text("changed")
     (tmp_path / "manifest.json").write_text(text)
     before = digests(tmp_path)
-    with pytest.raises(OutputError, match="no run left it so"):
+    with pytest.raises(OutputError, match="exists, and is not an unchanged file of a run"):
         run(tmp_path)
     assert digests(tmp_path) == before
 
@@ -101,7 +101,7 @@ def test_a_run_that_is_killed_while_it_writes_leaves_nothing_that_is_described_w
 ):
     @contextmanager
     def killed(*words: Any) -> Iterator[Callable[[str], Path]]:
-        with rewritten(*words) as place:
+        with rewriting(*words) as place:
             yield lambda name: place(name) if len(names(tmp_path) & set(NAMES)) < written else end()
 
     def end() -> Path:
@@ -109,7 +109,7 @@ def test_a_run_that_is_killed_while_it_writes_leaves_nothing_that_is_described_w
 
     run(tmp_path)
     with monkeypatch.context() as patch:
-        patch.setattr(runs, "rewritten", killed)
+        patch.setattr(runs, "rewriting", killed)
         with pytest.raises(Killed):
             run(tmp_path, "surface", HEIGHTS[::-1])
     manifest = read_manifest(tmp_path)

@@ -137,7 +137,7 @@ def test_a_beacon_pulls_over_a_film(filmed):
 
 
 def test_a_law_that_feels_no_film_is_refused_in_one_line_that_names_those_that_do(filmed):
-    with pytest.raises(ConfigError, match=r"penalty feels no surface that moves.*proxy") as refused:
+    with pytest.raises(ConfigError, match=r"penalty does not support moving surfaces.*proxy") as refused:
         filmed(render=Penalty()).feel(Mock(), 0.1, in_real_time=False)
     assert "\n" not in str(refused.value)
 

@@ -12,7 +12,7 @@ from jaxtyping import Float32, UInt8
 from tangible_core.data import Work
 from tangible_core.plugins.interfaces import Exporter, Medium
 
-from .solid import options as said
+from .solid import exporter as said
 
 if TYPE_CHECKING:
     from .solid.closed import Solid

@@ -8,7 +8,7 @@ import numpy as np
 from tangible_core.data import Work
 from tangible_core.plugins.interfaces import Exporter, Medium
 
-from .solid import options as said
+from .solid import exporter as said
 
 if TYPE_CHECKING:
     from .solid.closed import Solid

@@ -39,10 +39,10 @@ class Swell(Exporter):
         BrailleError for a title or a name that has no braille; BrokenMethod without shapely.
         """
         try:
-            from .paper.figures import write_pdf
+            from .paper.marks.reading import read
+            from .paper.marks.rendering import write_pdf
+            from .paper.opening import parted
             from .paper.page import drawn_pages
-            from .paper.parting import parted
-            from .paper.reading import read
         except ImportError as error:
             raise BrokenMethod(f"pages need shapely ({error}); pip install 'tangible-images[export]'") from error
         if (parts := work.simplified) is None:

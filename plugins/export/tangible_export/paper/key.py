@@ -6,8 +6,8 @@ from typing import Any
 import shapely
 
 from ..braille import CELL_PITCH_M, Cells, height_m, translate, wrapped
-from .drawing import Area, Braille, Drawing
 from .fills import filled
+from .marks.svg import Area, Braille, Drawing
 from .sheet import CLEAR_MM, LINE_MM, MARGIN_MM, Page, Sheet, empty_sheet
 from .titles import MOST_LINES, lines_at, title_at
 from .words import words

@@ -20,15 +20,15 @@ from tangible_core.plugins.notes import note
 from ..braille import Cells, height_m, translate, written_by
 from ..labels import some
 from .colouring import coloured
-from .drawing import NO_DOTS, Area, Braille, Drawing, svg
 from .fills import BLANK, KINDS, filled
 from .key import Entry, key_pages
 from .letters import around, placed
-from .measuring import Near, narrow_places, too_near
-from .parting import opened_at
-from .reading import read
+from .marks.gaps import Near, narrow_places, too_near
+from .marks.reading import read
+from .marks.svg import NO_DOTS, Area, Braille, Drawing, svg
+from .named_parts import LETTERS, MOST_THINGS, Thing, key_letters, things_of
+from .opening import opened_at
 from .sheet import CLEAR_MM, GAP_MM, Page, Sheet
-from .things import LETTERS, MOST_THINGS, Thing, key_letters, things_of
 from .titles import title_at, title_lines
 from .words import words
 

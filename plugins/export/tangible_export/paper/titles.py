@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..braille import DOT_DIAMETER_M, LINE_PITCH_M, Cells, dots, wrapped
-from .drawing import Braille
+from .marks.svg import Braille
 from .sheet import MARGIN_MM, Sheet
 
 MOST_LINES = 4

@@ -9,7 +9,7 @@ from tangible_core.plugins.notes import note
 
 from ..braille import Cells, width_m, wrapped, written_by
 from .closed import Solid, closed
-from .options import SolidOptions
+from .exporter import SolidOptions
 from .plate import LEAST_RIM_M, Layout, plate
 from .printable import say_what_prints
 from .sampling import sampled

@@ -7,7 +7,7 @@ from scipy.spatial import Delaunay
 
 from tangible_export.paper.colouring import coloured
 from tangible_export.paper.fills import KINDS
-from tangible_export.paper.things import LETTERS, MOST_THINGS, key_letters
+from tangible_export.paper.named_parts import LETTERS, MOST_THINGS, key_letters
 
 NAMES = st.lists(st.text("abcxyz éü7Ж", max_size=6), max_size=MOST_THINGS)
 

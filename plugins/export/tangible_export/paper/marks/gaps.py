@@ -10,9 +10,9 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int32, Int64, UInt8
 from scipy.ndimage import distance_transform_edt, find_objects
 
-from .figures import black
+from ..sheet import GAP_MM
 from .reading import Mark, Marks
-from .sheet import GAP_MM
+from .rendering import black
 
 PIXELS_PER_MM = 10
 """254 to the inch."""

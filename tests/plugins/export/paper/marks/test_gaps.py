@@ -3,8 +3,8 @@
 import pytest
 
 from tangible_core.errors import BrokenMethod
-from tangible_export.paper.measuring import too_near
-from tangible_export.paper.reading import read
+from tangible_export.paper.marks.gaps import too_near
+from tangible_export.paper.marks.reading import read
 
 SIZE = 'width="80mm" height="60mm" viewBox="0 0 80 60"'
 

@@ -11,10 +11,10 @@ import numpy as np
 import shapely
 from jaxtyping import Float64
 
-from .fills import DOT_MM as FILL_DOT_MM
-from .fills import Fill
-from .letters import DOT_MM
-from .sheet import CORNER_MM, LINE_MM, MARGIN_MM, Sheet
+from ..fills import DOT_MM as FILL_DOT_MM
+from ..fills import Fill
+from ..letters import DOT_MM
+from ..sheet import CORNER_MM, LINE_MM, MARGIN_MM, Sheet
 
 NO_DOTS = np.zeros((0, 2))
 

@@ -1,4 +1,4 @@
-"""What a page tells of: things, each with its parts, its letter and its fill."""
+"""Parts grouped by name, and a letter for each name."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,56 +12,54 @@ from tangible_core.data import PartMap, Work
 from ..labels import label_of
 
 LETTERS = ascii_lowercase[1:] + ascii_lowercase[0]
-"""In the order in which they are given. The last is a single dot, which a finger takes for a stray one."""
-
-
-MOST_THINGS = 100
-"""On a page. Their key has nine pages; nobody keeps more apart. A convention of ours."""
+"""Letters in the order of their use. The last, `a`, is a single dot, which a finger takes for a stray one."""
+MOST_NAMES = 100
+"""Largest number of names on a page: their key has nine pages, and nobody remembers more. A convention of ours."""
 
 
 @dataclass(frozen=True)
-class Thing:
-    """One or several parts that have one name."""
+class NamedParts:
+    """All parts of one name."""
 
     name: str
     numbers: tuple[int, ...]
-    """Of its parts."""
+    """Numbers of the parts."""
 
 
-def things_of(work: Work, parts: PartMap) -> list[Thing]:
-    """Those that have a pixel, the largest first."""
+def group_by_name(work: Work, parts: PartMap) -> list[NamedParts]:
+    """Return the parts that have a pixel, by name, the largest first."""
     sizes = np.bincount(parts.labels.ravel(), minlength=parts.count)
-    found: dict[str, list[int]] = {}
+    numbers_of: dict[str, list[int]] = {}
     for number in np.flatnonzero(sizes).tolist():
-        found.setdefault(label_of(number, work), []).append(number)
-    things = [Thing(name, tuple(numbers)) for name, numbers in found.items()]
-    return sorted(things, key=lambda thing: -int(sizes[list(thing.numbers)].sum()))
+        numbers_of.setdefault(label_of(number, work), []).append(number)
+    groups = [NamedParts(name, tuple(numbers)) for name, numbers in numbers_of.items()]
+    return sorted(groups, key=lambda each: -int(sizes[list(each.numbers)].sum()))
 
 
 def key_letters(names: Sequence[str]) -> list[str]:
-    """A text for each name, of which no two are alike: its first letter, else another of its own, else any.
+    """Return a different letter for each name: its first letter, else another of its letters, else any.
 
-    One letter each where there are letters enough, else two: for no more than MOST_THINGS.
+    Pairs of letters if there are more names than letters; there are pairs for MOST_NAMES.
     """
     if len(names) <= len(LETTERS):
-        return _chosen([_letters_in(name) for name in names], list(LETTERS))
+        return _choose([_letters_in(name) for name in names], list(LETTERS))
     pairs = [first + second for first in LETTERS for second in LETTERS]
-    return _chosen([_pairs_in(name) for name in names], pairs)
+    return _choose([_pairs_in(name) for name in names], pairs)
 
 
-def _chosen(wishes: list[list[str]], others: list[str]) -> list[str]:
-    """To each its first wish where nobody before it has the same, then to the rest a later one, or else another."""
-    chosen = dict[int, str]()
+def _choose(wishes: list[list[str]], others: list[str]) -> list[str]:
+    """Return for each name its first wish, unless an earlier name has it; then a later wish, or one of the others."""
+    letters = dict[int, str]()
     for most in (1, None):
         for number, own in enumerate(wishes):
-            free = (each for each in (own[:most] if most else [*own, *others]) if each not in chosen.values())
-            if number not in chosen and (letter := next(free, None)):
-                chosen[number] = letter
-    return [chosen[number] for number in range(len(wishes))]
+            free = (each for each in (own[:most] if most else [*own, *others]) if each not in letters.values())
+            if number not in letters and (letter := next(free, None)):
+                letters[number] = letter
+    return [letters[number] for number in range(len(wishes))]
 
 
 def _letters_in(name: str) -> list[str]:
-    """Without their accents, and without the last of all."""
+    """Return the letters of a name without accents, and without the `a`."""
     return [each for each in normalize("NFD", name.lower()) if each in LETTERS[:-1]]
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from tangible_devices.falcon import framing, kinematics, packet, tick
+from tangible_devices.falcon.kernels import framing, kinematics, packet, tick
 
 from .figures import Figure, part
 from .tests_path import falcon_streams

@@ -19,8 +19,8 @@ from tangible_core.materials.assignment import library
 from tangible_core.servo import Ring, Safety, cycle
 from tangible_core.servo.loop import sections
 from tangible_core.servo.ring import PERIOD_NS
-from tangible_devices.falcon import framing, kinematics, packet, tick
 from tangible_devices.falcon.calibration import Calibration
+from tangible_devices.falcon.kernels import framing, kinematics, packet, tick
 
 from .figures import Figure
 

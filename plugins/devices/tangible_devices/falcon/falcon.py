@@ -11,8 +11,8 @@ from tangible_core.data import DeviceSpec, Finding, Unit
 from tangible_core.plugins.interfaces import Adjustable, HapticDevice, Link, Serviceable
 
 from .calibration import Calibration
-from .image import read_image
 from .settings import Settings
+from .usb.image import read_image
 
 
 class Falcon(HapticDevice, Serviceable, Adjustable):

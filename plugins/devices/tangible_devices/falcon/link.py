@@ -12,12 +12,12 @@ from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import DeviceError
 
-from . import tick
-from .firmware import NULL
-from .framing import ANSWERS, DROPPED, receive
-from .packet import GREEN, HOMED, HOMING, RED, SIZE
-from .port import READ_BYTES, Port
-from .usb_errors import REPLUG
+from .kernels import tick
+from .kernels.framing import ANSWERS, DROPPED, receive
+from .kernels.packet import GREEN, HOMED, HOMING, RED, SIZE
+from .usb.errors import REPLUG
+from .usb.firmware import NULL
+from .usb.port import READ_BYTES, Port
 
 log = logging.getLogger(__name__)
 FRAME_S = 0.0009

@@ -11,8 +11,8 @@ from tangible_core.data import NO_FORCE, Force, Vector
 from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import Link
 
-from . import kinematics
 from .calibration import Axis, Calibration
+from .kernels import kinematics
 
 Ask = Callable[[str], str]
 DIRECTIONS = ("to the right", "away from you", "up")

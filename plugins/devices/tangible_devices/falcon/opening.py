@@ -6,11 +6,11 @@ from typing import Any
 
 from tangible_core.mapping.device_calibrations import any_calibration
 
-from .firmware import running
 from .homing import home
 from .link import FalconLink
-from .port import open_port
 from .settings import Settings
+from .usb.firmware import running
+from .usb.port import open_port
 
 
 def open_falcon(settings: Settings, image: bytes | None, backend: Any, clock: Callable[[], float]) -> FalconLink:

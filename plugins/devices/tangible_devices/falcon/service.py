@@ -10,13 +10,13 @@ from tangible_core.data import Finding, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
 
 from .calibration import Calibration
-from .firmware import answers
-from .image import WHENCE, read_image
 from .link import FalconLink
 from .measuring import measure
 from .opening import open_falcon
-from .port import INTERFACE, Port, attached, chosen, place_of, run_time, serial_of
 from .settings import Settings
+from .usb.firmware import answers
+from .usb.image import WHENCE, read_image
+from .usb.port import INTERFACE, Port, attached, chosen, place_of, run_time, serial_of
 
 ENOUGH_HZ = 900.0
 PACKETS = 500

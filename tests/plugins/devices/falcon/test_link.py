@@ -10,10 +10,10 @@ import pytest
 from falcon_bus import held_bus, open_on
 from tangible_core.data import NO_FORCE, Force
 from tangible_core.errors import DeviceAbsent, DeviceError
-from tangible_devices.falcon.firmware import NULL
+from tangible_devices.falcon.kernels.packet import GREEN, HOMING, RED
 from tangible_devices.falcon.link import FalconLink
-from tangible_devices.falcon.packet import GREEN, HOMING, RED
 from tangible_devices.falcon.simulator.bus import Bus
+from tangible_devices.falcon.usb.firmware import NULL
 
 PUSH = Force(0.5, -0.25, 2.0)
 
@@ -89,7 +89,7 @@ class TestForce:
             link.write(PUSH)
             assert link.applied == pytest.approx(PUSH)
             body = bus.units[0].chip.processor.body
-            from tangible_devices.falcon import kinematics
+            from tangible_devices.falcon.kernels import kinematics
 
             x, y, z = body.tip[:3].tolist()
             rows = kinematics.jacobian(*kinematics.inverse(x, y, z), x, y, z)

@@ -12,9 +12,10 @@ from tangible_core.data import NO_FORCE, Finding, Force, HapticState, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_core.mapping.device_calibrations import save_calibration
 from tangible_core.plugins.interfaces import Link
-from tangible_devices.falcon import kinematics, measuring
+from tangible_devices.falcon import measuring
 from tangible_devices.falcon.calibration import Calibration
 from tangible_devices.falcon.falcon import Falcon
+from tangible_devices.falcon.kernels import kinematics
 from tangible_devices.falcon.service import calibrated, findings, units
 from tangible_devices.falcon.simulator.faults import Fault
 from tangible_devices.falcon.simulator.firmware_image import synthetic_image
@@ -76,7 +77,7 @@ class TestDoctor:
 
     def test_a_slow_line_is_the_latency_timer(self, monkeypatch: pytest.MonkeyPatch):
         """A chip that leaves its timer at 16 ms."""
-        from tangible_devices.falcon import port
+        from tangible_devices.falcon.usb import port
 
         run_time = port.run_time
 

@@ -14,7 +14,7 @@ from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.session import run_simulated
 from tangible_devices.falcon.falcon_simulated import FalconSimulated
-from tangible_devices.falcon.usb_errors import UDEV_FILE, UDEV_RULE
+from tangible_devices.falcon.usb.errors import UDEV_FILE, UDEV_RULE
 
 FLAT = HapticSurface.from_heights(np.full((8, 8), 0.002))
 

@@ -10,12 +10,12 @@ import pytest
 from websockets.sync.client import ClientConnection
 from websockets.sync.server import ServerConnection, serve
 
+from haply_service import MockService, circling
 from tangible_core.data import NO_FORCE, Finding, Force, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_core.testing import run_checks
 from tangible_devices.haply.haply import Haply
 from tangible_devices.haply.link import HaplyLink
-from tangible_devices.haply.mock_service import MockService, circling
 from tangible_devices.haply.service import Answer, Session
 
 ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}

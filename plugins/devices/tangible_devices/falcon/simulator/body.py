@@ -70,7 +70,7 @@ class Body:
         return counts, self._homed | self._hand.buttons & 15
 
     def _angles(self) -> tuple[float, ...]:
-        from ..kinematics import inverse
+        from ..kernels.kinematics import inverse
 
         return inverse(*self.tip[:3].tolist())
 

@@ -10,7 +10,7 @@ from typing import final
 from usb.backend import IBackend
 from usb.core import USBError, USBTimeoutError
 
-from ..port import IN, OUT, PRODUCT, VENDOR
+from ..usb.port import IN, OUT, PRODUCT, VENDOR
 from .chip import PACKET_BYTES, Chip, StallError
 from .faults import ERRORS, Fault, Step
 

@@ -4,7 +4,7 @@ import struct
 
 import numpy as np
 
-from ..image import KEY, RESERVED_WORDS
+from ..usb.image import KEY, RESERVED_WORDS
 
 BLOCKS = ((1821, 0x3F8002), (120, 0x3F8E3D), (168, 0x93A2), (2, 0x3F8000))
 """Length in words and destination; half as long as a real one."""

@@ -11,7 +11,7 @@ from numba import float64, int64, njit, void
 
 from tangible_core.compiled.compiling import KERNEL
 
-from ..kinematics import CENTRE_M, force, inverse, jacobian
+from ..kernels.kinematics import CENTRE_M, force, inverse, jacobian
 
 REACH_M = 0.055
 """The mechanics end on a ball of this radius about the centre."""

@@ -3,7 +3,7 @@
 import struct
 from typing import Literal, final
 
-from ..image import RESERVED_WORDS
+from ..usb.image import RESERVED_WORDS
 from .body import Body
 
 Mode = Literal["idle", "monitor", "autobaud", "load", "run"]

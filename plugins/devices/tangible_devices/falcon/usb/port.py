@@ -11,8 +11,8 @@ import usb.util
 
 from tangible_core.errors import DeviceAbsent, DeviceError
 
-from .framing import STATUS, USB_PACKET
-from .usb_errors import NO_LIBUSB, NO_PERMISSION, device_error, worded
+from ..kernels.framing import STATUS, USB_PACKET
+from .errors import NO_LIBUSB, NO_PERMISSION, device_error, worded
 
 log = logging.getLogger(__name__)
 VENDOR, PRODUCT = 0x0403, 0xCB48

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangible_devices.falcon import packet
+from tangible_devices.falcon.kernels import packet
 
 INT16 = st.integers(-32768, 32767)
 TORQUE = st.floats(allow_nan=True, allow_infinity=True)

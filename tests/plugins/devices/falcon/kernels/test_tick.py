@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from falcon_streams import buffers
-from tangible_devices.falcon import kinematics, packet, tick
 from tangible_devices.falcon.calibration import LEVER_M, Calibration
-from tangible_devices.falcon.framing import DOUBTFUL, FRESH, NEW
-from tangible_devices.falcon.velocity import rates
+from tangible_devices.falcon.kernels import kinematics, packet, tick
+from tangible_devices.falcon.kernels.framing import DOUBTFUL, FRESH, NEW
+from tangible_devices.falcon.kernels.velocity import rates
 
 
 class Falcon:

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from falcon_bus import Line, bus_of, opener_of
 from tangible_core.errors import DeviceError
-from tangible_devices.falcon import firmware
-from tangible_devices.falcon.image import complaint, read_image
 from tangible_devices.falcon.simulator.firmware_image import synthetic_image
+from tangible_devices.falcon.usb import firmware
+from tangible_devices.falcon.usb.image import complaint, read_image
 
 IMAGE = synthetic_image()
 

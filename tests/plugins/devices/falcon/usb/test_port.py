@@ -8,10 +8,10 @@ from usb.core import USBError
 
 from falcon_bus import held_bus
 from tangible_core.errors import DeviceError
-from tangible_devices.falcon.port import attached, open_port, run_time, serial_of
 from tangible_devices.falcon.simulator.bus import Bus
 from tangible_devices.falcon.simulator.faults import Fault
-from tangible_devices.falcon.usb_errors import UDEV_RULE, device_error
+from tangible_devices.falcon.usb.errors import UDEV_RULE, device_error
+from tangible_devices.falcon.usb.port import attached, open_port, run_time, serial_of
 
 LATENCY_1, BAUD, PURGES = (9, 1), (3, 0x0002), [(0, 1), (0, 2)]
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangible_devices.falcon import kinematics
+from tangible_devices.falcon.kernels import kinematics
 
 START = (0.0, 0.0, 0.11)
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from tangible_core.errors import DeviceError
 
+from ..kernels.framing import COUNTS, USB_PACKET, receive
+from ..kernels.packet import SIZE
 from . import port as ftdi
-from .framing import COUNTS, USB_PACKET, receive
 from .image import WHENCE
-from .packet import SIZE
 from .port import READ_BYTES, Port
 
 log = logging.getLogger(__name__)

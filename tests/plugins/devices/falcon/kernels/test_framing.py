@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from falcon_streams import GAINED, LOST, NOISE, SWAPPED, buffers, fuzz
-from tangible_devices.falcon import framing, packet, tick
+from tangible_devices.falcon.kernels import framing, packet, tick
 
 STREAMS = 30_000
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from jaxtyping import Float64
 
-from ..compiled.touch import CompiledTouch
+from tangible_core.compiled.touch import CompiledTouch
 
 Guard = tuple[np.ndarray, np.ndarray]
 """Settings and memory, as `Safety.arrays` gives them."""
@@ -60,13 +60,13 @@ def ride(
 
     The law is given the velocity of each step, as along a path.
     """
-    from . import handle_kernels
+    import simulated_handle_kernels
 
     count = round(seconds / handle.period_s)
     periods = handle.period_s * (1 + handle.jitter * np.random.default_rng(0).uniform(-1, 1, count))
     place, sent, (work, lost) = np.empty((count, 3)), np.empty((count, 3)), np.empty((2, count))
     end, body = np.array(state, np.float64), (handle.mass_kg, handle.damping_n_s_per_m)
-    cast(Any, handle_kernels).ride(
+    cast(Any, simulated_handle_kernels).ride(
         *(touch.address(), touch.fixed, touch.moving, *(guard or (np.empty(0), np.empty(0)))),
         *(periods, body, handle.push_n),
         *(handle.delay_ticks, handle.resolution_m, end, place, sent, work, lost),
@@ -112,6 +112,6 @@ def stiffest_stable_n_per_m(
 
 def wall(stiffness_n_per_m: float) -> CompiledTouch:
     """A spring below z = 0 that stretches without end."""
-    from . import handle_kernels
+    import simulated_handle_kernels
 
-    return CompiledTouch(cast(Any, handle_kernels).wall, (stiffness_n_per_m,), stiffness=stiffness_n_per_m)
+    return CompiledTouch(cast(Any, simulated_handle_kernels).wall, (stiffness_n_per_m,), stiffness=stiffness_n_per_m)

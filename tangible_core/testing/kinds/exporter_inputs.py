@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from ..data import DisparityMap, HapticSurface, Material, MaterialMap, PartMap, Record, Relief, SegmentMap, Work
-from ..data.products import EXPORTABLE
-from ..plugins.interfaces import Exporter
+from ...data import DisparityMap, HapticSurface, Material, MaterialMap, PartMap, Record, Relief, SegmentMap, Work
+from ...data.products import EXPORTABLE
+from ...plugins.interfaces import Exporter
 
 ROWS, COLUMNS = 48, 64
 NAMES = ("wall", "table", "")

@@ -6,15 +6,16 @@ from itertools import product
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import NO_FORCE, HapticState, HapticSurface, Material
-from ..plugins.interfaces import ForceRenderer
-from ..servo.guard.stiffness import slopes
-from .checks import Check, demand
-from .loop_devices import SPEC
-from .synthetic.scenes import KnownSurface, plane, sphere_cap
+from ...data import NO_FORCE, DeviceSpec, HapticState, HapticSurface, Material
+from ...plugins.interfaces import ForceRenderer
+from ...servo.guard.stiffness import slopes
+from ..checks import Check, demand
+from ..synthetic.scenes import KnownSurface, plane, sphere_cap
 
 PERIOD_S = 0.001
 ROUNDING_N_PER_M = 0.1
+DEVICE = DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.1, 0.1), 1e-6, simulated=True)
+"""The device of the size of a Novint Falcon, whose workspace the stiffness is measured in."""
 HOSTILE = (0.0, -0.0, 1e-310, 0.01, -0.03, 5.0, 1e30, -1e300, 1.7e308, np.inf, -np.inf, np.nan)
 
 
@@ -123,7 +124,7 @@ def stiffness_is_no_less_than_felt(method: ForceRenderer) -> None:
     for name, surface in (("a plane", plane().surface), ("a plane of two materials", _patchwork(rough=False))):
         touch = method.touch(surface)
         if (said := touch.stiffness_n_per_m) is not None:
-            felt = max(slopes(touch, SPEC), default=0.0)
+            felt = max(slopes(touch, DEVICE), default=0.0)
             demand(
                 felt <= 1.1 * said + ROUNDING_N_PER_M,
                 f"on {name} {felt:.4g} N/m are felt, and {said:.4g} said; say what it is, or None",

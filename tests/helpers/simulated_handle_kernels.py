@@ -1,15 +1,15 @@
-"""A handle under a law, tick by tick, compiled. Imports numba: `handle` imports this module inside its verbs."""
+"""A handle under a law, tick by tick, compiled. Imports numba: `simulated_handle` imports it late."""
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
+
 # pyright: basic
 
 import numpy as np
 from numba import float64, njit, types
 
-from ..compiled import compiling as compiling
-from ..compiled.touch import RISE_M
-from ..servo.guard import layout
-from ..servo.guard.guard import couple, guard
+from tangible_core.compiled import compiling as compiling
+from tangible_core.compiled.touch import RISE_M
+from tangible_core.servo.guard import layout
+from tangible_core.servo.guard.guard import couple, guard
 
 
 @njit(types.UniTuple(float64, 3)(float64, *[float64] * 6), cache=True, nogil=True, error_model="numpy")

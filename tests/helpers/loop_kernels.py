@@ -1,11 +1,11 @@
 """The kernels of `Circling`. Imports numba: what uses this module imports it inside its verb."""
 
-# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+
 # pyright: basic
 
 from numba import float64, int64, njit, void
 
-from ..compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL
 
 FIXED = (float64[:, ::1], float64, int64[::1], float64[::1])
 

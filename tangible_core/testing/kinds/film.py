@@ -11,11 +11,11 @@ import tracemalloc
 import numpy as np
 from jaxtyping import Float32
 
-from ..compiled.touch import FRAME, RISE_M, CompiledTouch
-from ..data import HapticState, HapticSurface, Relief
-from ..errors import ConfigError, GeometryError
-from ..plugins.interfaces import Film, Filming, ForceRenderer
-from .checks import Check, demand, refuses
+from ...compiled.touch import FRAME, RISE_M, CompiledTouch
+from ...data import HapticState, HapticSurface, Relief
+from ...errors import ConfigError, GeometryError
+from ...plugins.interfaces import Film, Filming, ForceRenderer
+from ..checks import Check, demand, refuses
 
 PERIOD_S, FRAME_S, TICKS = 0.001, 1 / 30, 33
 WIDTH_M, MIDDLE_M = 0.08, 0.008

@@ -1,12 +1,52 @@
-"""Checks that every method keeps, whatever its kind: it is its options, a small frozen value."""
+"""Checks that every method keeps, whatever its kind: of its listing, and of its options, a small frozen value."""
 
 import json
 import pickle
+import re
+import subprocess
 
 from pydantic import ValidationError
 
 from ..plugins.interfaces import Method
+from ..plugins.registry import Listing
+from ..runtime.child_process import python
 from .checks import Check, CheckFailure, demand
+
+HEAVY = ("torch", "kornia", "cv2", "skimage", "numba", "usb", "scipy", "matplotlib")
+"""Packages that take longer to import than a listing may last."""
+
+
+def name_is_plain(listing: Listing) -> None:
+    """The name is lower-case words joined by hyphens: it is typed in YAML and at the command line."""
+    word = r"([a-z]|[1-9][a-z]{2})[a-z0-9]*"  # a file format may be called 3mf; 1e3 and 0xff are numbers in YAML
+    demand(
+        re.fullmatch(rf"{word}(-[a-z0-9]+)*", listing.name),
+        f"the name is {listing.name!r}; write it as lower-case words joined by hyphens",
+    )
+
+
+def summary_is_there(listing: Listing) -> None:
+    """The class has a docstring whose first line tells, in `tangible plugins`, what the method does."""
+    demand(
+        listing.summary and not listing.summary.startswith("("),
+        f"no summary can be read for {listing.target}: {listing.summary or 'the first line is empty'}",
+    )
+    demand(len(listing.summary) <= 120, f"the summary is {len(listing.summary)} characters long; 120 fit a line")
+
+
+def import_is_light(listing: Listing) -> None:
+    """Importing the class's module pulls in nothing heavy: planning imports it, and only running may take time."""
+    module = listing.point.module
+    code = f"import {module}; print(*(name for name in {HEAVY} if name in sys.modules))"
+    ran = subprocess.run(python(code), capture_output=True, text=True, check=False)
+    demand(ran.returncode == 0, f"{module} cannot be imported: {(ran.stderr.strip() or '?').splitlines()[-1]}")
+    demand(
+        not ran.stdout.split(),
+        f"importing {module} imports {', '.join(ran.stdout.split())}; import these inside the function that needs them",
+    )
+
+
+LISTING_CHECKS: tuple[Check, ...] = (name_is_plain, summary_is_there, import_is_light)
 
 
 def every_option_has_a_default(method: Method) -> None:
@@ -60,7 +100,7 @@ def pickle_is_small(method: Method) -> None:
     demand(pickle.loads(data) == method, "the method is not equal to itself after a pickle round trip")
 
 
-CHECKS: tuple[Check, ...] = (
+OPTION_CHECKS: tuple[Check, ...] = (
     every_option_has_a_default,
     every_option_is_described,
     options_are_frozen,

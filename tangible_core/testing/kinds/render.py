@@ -9,10 +9,10 @@ from itertools import product
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import NO_FORCE, HapticState
-from ..plugins.interfaces import ForceRenderer
-from .checks import Check, demand
-from .synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
+from ...data import NO_FORCE, HapticState
+from ...plugins.interfaces import ForceRenderer
+from ..checks import Check, demand
+from ..synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
 
 PLACES_M = ((0.0, 0.0), (0.011, 0.007), (-0.017, 0.012), (0.006, -0.021), (-0.013, -0.009))
 """Points well inside the surfaces, on no line of symmetry but the first."""

@@ -3,8 +3,8 @@
 import numpy as np
 from jaxtyping import Float64
 
-from ...data import HapticSurface
-from .reliefs import ridge, waves
+from tangible_core.data import HapticSurface
+from tangible_core.testing.synthetic.reliefs import ridge, waves
 
 
 def rough_surfaces(count: int = 128) -> dict[str, HapticSurface]:

@@ -12,14 +12,14 @@ from unittest.mock import patch
 
 import numpy as np
 
-from ..data import Record, Work, digest_of
-from ..data.products import EXPORTABLE
-from ..errors import BrokenMethod, TangibleError
-from ..plugins.interfaces import Exporter
-from .checks import Check, CheckFailure, demand
-from .variants import coarse_variants, exact_variants
+from ...data import Record, Work, digest_of
+from ...data.products import EXPORTABLE
+from ...errors import BrokenMethod, TangibleError
+from ...plugins.interfaces import Exporter
+from ..checks import Check, CheckFailure, demand
+from ..variants import coarse_variants, exact_variants
+from .exporter_inputs import plain_work, works
 from .whole_files import demand_whole
-from .works import plain_work, works
 
 STEM = "still-life"
 ASPECTS = (1e-3, 0.7, 1.0, 4 / 3, 1e3)

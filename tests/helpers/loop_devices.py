@@ -10,10 +10,10 @@ from typing import Annotated, Any, Literal, cast, final
 import numpy as np
 from pydantic import Field
 
-from ..compiled.touch import CompiledLink, LinkKernels
-from ..data import NO_FORCE, DeviceSpec, Force, HapticState
-from ..errors import DeviceError
-from ..plugins.interfaces import HapticDevice, Link
+from tangible_core.compiled.touch import CompiledLink, LinkKernels
+from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
+from tangible_core.errors import DeviceError
+from tangible_core.plugins.interfaces import HapticDevice, Link
 
 SPEC = DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.1, 0.1), 1e-6, simulated=True)
 
@@ -50,7 +50,7 @@ class CirclingLink(CompiledLink):
 
     def kernels(self) -> LinkKernels:
         """See `loop_kernels`."""
-        from . import loop_kernels
+        import loop_kernels
 
         kernels = cast(Any, loop_kernels)
         return LinkKernels(kernels.read, kernels.write, self._fixed)

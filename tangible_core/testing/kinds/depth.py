@@ -4,12 +4,12 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ..data import DisparityMap, Views
-from ..errors import ModelAbsent, PictureError, TangibleError
-from ..plugins.interfaces import DepthEstimator
-from .checks import Check, demand, refuses
-from .synthetic.scenes import wall
-from .variants import TINY, coarse_variants, exact_variants
+from ...data import DisparityMap, Views
+from ...errors import ModelAbsent, PictureError, TangibleError
+from ...plugins.interfaces import DepthEstimator
+from ..checks import Check, demand, refuses
+from ..synthetic.scenes import wall
+from ..variants import TINY, coarse_variants, exact_variants
 
 WALL_PX = 6.0
 

@@ -1,6 +1,6 @@
-"""A hand that does whatever a hand and a failing device can do, compiled. Imports numba: `fuzz` does so in its verb."""
+"""A hand that does whatever a hand and a failing device can do, compiled. Imports numba: `random_hand` does it late."""
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
+
 # ruff: noqa: NPY002 -- a generator would have to be handed in
 # pyright: basic
 
@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numba import njit
 
-from ..compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL
 
 PERIOD_S = 0.001
 FASTEST_M = 0.0005

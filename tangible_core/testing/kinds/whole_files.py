@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
-from .checks import demand
+from ..checks import demand
 
 
 def demand_whole(path: Path) -> None:

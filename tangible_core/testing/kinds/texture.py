@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from ..data import SegmentMap
-from ..errors import PictureError
-from ..plugins.interfaces import Segmenter
-from .checks import Check, demand, refuses
-from .synthetic.scenes import two_textures
-from .variants import TINY, coarse_variants, exact_variants
+from ...data import SegmentMap
+from ...errors import PictureError
+from ...plugins.interfaces import Segmenter
+from ..checks import Check, demand, refuses
+from ..synthetic.scenes import two_textures
+from ..variants import TINY, coarse_variants, exact_variants
 
 
 def labels_are_well_formed(method: Segmenter) -> None:

@@ -4,8 +4,8 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from ..compiled.touch import CompiledTouch
-from ..data import HapticSurface
+from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.data import HapticSurface
 
 MARGIN_M = 0.002
 """How far under the base plane and over the highest place the hand goes."""
@@ -44,11 +44,11 @@ def fuzz(
     velocity is that of a clock that jitters fivefold. ball_m: radius and z of the centre of a ball that the surface is.
     Compiled on the first use of a law on a machine.
     """
-    from . import fuzz_kernels
+    import random_hand_kernels
 
     found, half_m = np.zeros(6), np.array(surface.extent_m) / 2
     low_m, high_m = float(surface.height_m.min()) - MARGIN_M, float(surface.height_m.max()) + MARGIN_M
-    cast(Any, fuzz_kernels).walk(
+    cast(Any, random_hand_kernels).walk(
         touch.fixed, touch.address(), ticks, seed, half_m, low_m, high_m, stiffness_n_per_m, ball_m,
         np.zeros((5, 6)), found,
     )  # fmt: skip

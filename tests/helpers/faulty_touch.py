@@ -7,8 +7,8 @@ from typing import Any, Literal, NoReturn, final
 
 import numpy as np
 
-from ..data import NO_FORCE, Force, HapticState
-from ..plugins.touch import PlainTouch
+from tangible_core.data import NO_FORCE, Force, HapticState
+from tangible_core.plugins.touch import PlainTouch
 
 Fault = Literal["none", "blocks", "exits", "odd error", "does not arrive", "begins slowly", "knows itself"]
 

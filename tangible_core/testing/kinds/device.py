@@ -4,10 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..data import NO_FORCE, Force
-from ..errors import DeviceAbsent, DeviceError
-from ..plugins.interfaces import HapticDevice
-from .checks import Check, CheckFailure, demand, refuses
+from ...data import NO_FORCE, Force
+from ...errors import DeviceAbsent, DeviceError
+from ...plugins.interfaces import HapticDevice
+from ..checks import Check, CheckFailure, demand, refuses
 
 
 class _Mishap(Exception):

@@ -189,7 +189,7 @@ class Engine:
     def touch_on(self, device: HapticDevice) -> Any:
         """Make a touch for a device that the configuration does not name; all else is shared. Raises: as `make`."""
         other = copy(self)
-        other.config = self.config.changed(device=NamedMethod("", "", device))
+        other.config = self.config.with_values(device=NamedMethod("", "", device))
         other.__dict__.pop("_stages", None)
         for each in ("_made", "_finished", "_full_size"):
             setattr(other, each, {product: made for product, made in getattr(self, each).items() if product != "touch"})
@@ -197,7 +197,7 @@ class Engine:
         self._made |= {product: made for product, made in other._made.items() if product != "touch"}
         return touch
 
-    def changed(self, config: PipelineConfig) -> "Engine":
+    def with_config(self, config: PipelineConfig) -> "Engine":
         """Return an engine of another configuration, which takes over the products that it would make alike."""
         other = Engine(config, self.registry, self.cache)
         other.threads = self.threads

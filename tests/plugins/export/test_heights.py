@@ -52,7 +52,7 @@ def test_a_pipeline_file_reads_them_too(tmp_path: Path, ending: str):
     relief = Pipeline.from_config(config, default_registry(), None).relief
     assert relief.extent_m[0] == pytest.approx(0.16)
     assert (relief.height_m.min(), relief.height_m.max()) == pytest.approx((0.0012, 0.01), abs=TENTH_UM)
-    assert config.completed()["workspace"]["width_m"] == pytest.approx(0.16)
+    assert config.as_data()["workspace"]["width_m"] == pytest.approx(0.16)
 
 
 def test_what_the_pipeline_says_of_its_size_goes_before(tmp_path: Path):

@@ -3,6 +3,8 @@
 
 # pyright: basic
 
+from inspect import unwrap
+
 import numpy as np
 from numba import float64, njit, types
 
@@ -12,7 +14,7 @@ from tangible_core.metrics.stability import advance
 from tangible_core.servo.guard import layout
 from tangible_core.servo.guard.guard import couple, guard
 
-_advance = njit(cache=True, nogil=True, error_model="numpy")(advance)
+_advance = njit(cache=True, nogil=True, error_model="numpy")(unwrap(advance))  # without the checks of tests
 
 
 @njit(types.UniTuple(float64, 3)(float64, *[float64] * 6), cache=True, nogil=True, error_model="numpy")

@@ -31,7 +31,7 @@ from tangible_core.plugins.interfaces import (
     Skippable,
 )
 from tangible_core.plugins.registry import KIND_NAMES, default_registry
-from tangible_core.testing.checks_listing import HEAVY
+from tangible_core.testing.every_method import HEAVY
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())

@@ -2,12 +2,11 @@
 
 from .device import NO_FORCE, DeviceSpec, Finding, Force, HapticState, Unit, Vector, limited
 from .outcome import Kind, Note, NoteKind, Outcome, OutcomeKind, Outcomes, Plan
-from .parts import PartMap
+from .products import Work
 from .records import Record, digest_of
 from .surface import TEXTURES, HapticSurface, Material, MaterialMap, Relief, Texture
 from .ticks import TICK_COLUMNS, UNTOUCHED, FilmFelt, ServoReport, Spread, TickFlag, beacon_part
-from .views import Calibration, DisparityMap, SegmentMap, Views
-from .work import Work
+from .views import Calibration, DisparityMap, PartMap, SegmentMap, Views
 
 __all__ = [
     "Calibration",

@@ -1,4 +1,4 @@
-"""Pictures as numpy arrays: what is accepted, and what is made of it (`picture_files` reads and writes them).
+"""Pictures as numpy arrays: what is accepted, and what is made of it (`scene.formats.pictures` reads them).
 
 A picture is (h, w), (h, w, 3) or (h, w, 4) RGB(A); uint8, uint16, bool, or floating point in 0..1.
 """

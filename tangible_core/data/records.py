@@ -1,14 +1,17 @@
 """What all records are: frozen, of read-only arrays, with a digest of their content."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import fields, is_dataclass
+from functools import cache
 from importlib import import_module
-from typing import Any, cast
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 import xxhash
 
-from .fields import settle
+from ..errors import wrong_argument
+from .arguments import as_array, as_number, as_picture
 
 
 class Record:
@@ -65,3 +68,99 @@ def _feed(state: Any, value: Any) -> None:
 def items_of(record: Any) -> Iterator[tuple[str, Any]]:
     """Names and values of a record's fields, in order."""
     return ((f.name, getattr(record, f.name)) for f in fields(record))
+
+
+Convert = Callable[[str, Any], Any]
+"""A field's name and what it was given, to what it holds. Raises: ArgumentError."""
+
+
+def settle(record: Any) -> None:
+    """Give each field of a frozen dataclass what its annotation asks for.
+
+    Raises: ArgumentError naming the field, what it was given and what it should be.
+    """
+    for name, convert in _converters(cast(Any, type(record))):
+        given = getattr(record, name)
+        if (found := convert(name, given)) is not given:
+            object.__setattr__(record, name, found)
+
+
+@cache
+def _converters(cls: type) -> tuple[tuple[str, Convert], ...]:
+    hints = get_type_hints(cls)
+    found = ((each.name, _converter(hints[each.name])) for each in fields(cast(Any, cls)))
+    return tuple((name, convert) for name, convert in found if convert is not None)
+
+
+def _converter(hint: Any) -> Convert | None:
+    """None where anything goes."""
+    if get_origin(hint) in (Union, UnionType) and len(_parts(hint)) == 1:
+        inner = [each for each in map(_converter, _parts(hint)) if each]
+        return _or_none(inner[0]) if inner else None
+    if get_origin(hint) is Literal:
+        return _one_of(get_args(hint))
+    if get_origin(hint) is tuple:
+        return _tuple_of(get_args(hint))
+    if hint is np.ndarray or hasattr(hint, "array_type"):
+        return _array_of(tuple(getattr(hint, "dtypes", ())))
+    if hint is float:
+        return as_number
+    return _instance_of(hint) if isinstance(hint, type) and (is_dataclass(hint) or hint is str) else None
+
+
+def _parts(union: Any) -> list[Any]:
+    """Of `X | None`, X."""
+    return [each for each in get_args(union) if each is not NoneType]
+
+
+def _or_none(convert: Convert) -> Convert:
+    return lambda name, value: None if value is None else convert(name, value)
+
+
+def _array_of(dtypes: tuple[str, ...]) -> Convert:
+    if len(dtypes) != 1:
+        return as_picture
+    return lambda name, value: as_array(name, value, dtypes[0])
+
+
+def _one_of(known: tuple[Any, ...]) -> Convert:
+    def convert(name: str, value: Any) -> Any:
+        if value not in known:
+            raise wrong_argument(name, value, f"one of {', '.join(map(str, known))}")
+        return value
+
+    return convert
+
+
+def _instance_of(cls: type) -> Convert:
+    def convert(name: str, value: Any) -> Any:
+        if not isinstance(value, cls):
+            raise wrong_argument(name, value, f"a {cls.__name__}")
+        return value
+
+    return convert
+
+
+def _tuple_of(parts: tuple[Any, ...]) -> Convert:
+    one = parts[0] if len(parts) == 2 and parts[1] is ... else None
+    each, count = _converter(one or parts[0]), "some" if one else str(len(parts))
+    wanted = f"{count} {'numbers' if parts[0] is float else f'objects of {parts[0].__name__}'}"
+
+    def convert(name: str, value: Any) -> Any:
+        items = _items(value)
+        if items is None or (not one and len(items) != len(parts)):
+            raise wrong_argument(name, value, wanted)
+        for i, item in enumerate(items if each else ()):
+            cast(Convert, each)(f"{name}[{i}]", item)
+        return items
+
+    return convert
+
+
+def _items(value: object) -> tuple[Any, ...] | None:
+    """Of a tuple, which is returned as it is, a list or an array; None for what is none of these."""
+    if isinstance(value, tuple):
+        return cast("tuple[Any, ...]", value)
+    if isinstance(value, list | np.ndarray):
+        return tuple(cast(Any, value).tolist() if isinstance(value, np.ndarray) else cast("list[Any]", value))
+    return None

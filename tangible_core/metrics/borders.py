@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from ..data import Relief
-from ..data.parts import beside_border
+from ..data.views import beside_border
 from ..errors import PictureError
 from ..runtime.opencv import plain_opencv
 from .segments import Labels

@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, UInt8
 
 from ..data import SegmentMap
-from ..data.parts import PartMap, beside_border
 from ..data.pictures import check_same_shape, to_rgb8
+from ..data.views import PartMap, beside_border
 from ..runtime.opencv import plain_opencv
 from .find import find_parts
 from .neighbours import neighbours

@@ -9,8 +9,8 @@ import numpy as np
 from jaxtyping import Float32
 
 from ..data import Relief, Views
-from ..data.parts import PartMap, beside_border
 from ..data.pictures import check_same_shape, to_grey
+from ..data.views import PartMap, beside_border
 from ..errors import GeometryError
 from ..runtime.opencv import plain_opencv
 from ..scene.scaling import felt_factor, reduced

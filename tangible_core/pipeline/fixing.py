@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from ..files.source import read_text
+from ..files.yaml.source import read_text
 from ..preflight import Flight, Hand, Loop, Preflight, judge
 from ..preflight.timing import Lateness
 from ..preflight.verdict import Change

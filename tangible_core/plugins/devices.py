@@ -7,7 +7,7 @@ from typing import cast
 
 from ..data import Finding, Unit
 from ..errors import TangibleError
-from ..files.source import parse_source
+from ..files.yaml.source import parse_source
 from .failures import sentence
 from .interfaces import HapticDevice, Serviceable
 from .registry import Listing, Registry

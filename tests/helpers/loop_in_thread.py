@@ -15,7 +15,6 @@ import pytest
 
 from tangible_core.servo import child, host, priority
 
-
 ENDING_S = 120.0
 """Longer than a loop takes to compile what it needs on a busy machine, before it hears that it is to end."""
 

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from faulty_touch import FaultyTouch
+from loop_devices import Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import TICK_COLUMNS, Vector
 from tangible_core.errors import DeviceError
@@ -16,8 +18,6 @@ from tangible_core.mapping import WorkspaceMapping, mapped
 from tangible_core.plugins.interfaces import HapticDevice, Touch
 from tangible_core.servo import Safety, Servo, packed
 from tangible_core.servo.ring import STOP, shared_folder
-from tangible_core.testing.loop_devices import Failing
-from tangible_core.testing.loop_laws import FaultyTouch
 from tangible_ui.feeling.feeling import Feeling, Felt
 from tangible_ui.framing import STATE_FRAME
 

@@ -18,7 +18,7 @@ from tangible_core import load_pipeline
 from tangible_core.data import SegmentMap
 from tangible_core.errors import ConfigError, OutputError, TangibleError
 from tangible_core.parts import find_parts
-from tangible_core.scene.picture_files import read_labels
+from tangible_core.scene.formats.pictures import read_labels
 from tangible_ui.requests import REQUESTS
 from tangible_ui.state.scheduling import Newest
 from tangible_ui.state.session import Desk

@@ -12,7 +12,7 @@ from tangible_core.data import Relief, Work
 from tangible_core.files.writing import atomic_write, write_text
 from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import note
-from tangible_core.scene.height_files import MM, HeightsSaid, levels
+from tangible_core.scene.formats.height_maps import MM, HeightsSaid, levels
 
 log = logging.getLogger(__name__)
 

@@ -9,9 +9,9 @@ from typing import Any, cast
 from pydantic import BaseModel
 
 from ...errors import ConfigError, quoted
-from ...files.editing import REMOVE, Changes, change_text
 from ...files.paths import as_path
-from ...files.source import Location, parse_override, parse_source, plain
+from ...files.yaml.editing import REMOVE, Changes, change_text
+from ...files.yaml.source import Location, parse_override, parse_source, plain
 from .keys import MethodBlock, MethodList
 from .keys.method import index_of
 from .model import KEYS, PipelineConfig

@@ -16,12 +16,12 @@ from ruamel.yaml import YAML
 
 from ...data.products import Product
 from ...errors import ConfigError
-from ...files.source import Source
+from ...files.yaml.source import Source
 from ...legibility.choice import SimplifyChoice
 from ...mapping import WorkspaceMapping, mapped
 from ...parts import HeightChoice, PartChoice
 from ...plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter
-from ...scene.height_files import Measured
+from ...scene.formats.height_maps import Measured
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
 from ...scene.workspace import FeltSize, Workspace, kind_of

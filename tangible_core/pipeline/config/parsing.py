@@ -7,7 +7,7 @@ from typing import Any, cast
 from ruamel.yaml.comments import CommentedSeq
 
 from ...errors import ArgumentError, PictureError, did_you_mean
-from ...files.source import Location, Source, parse_override, parse_source, read_text
+from ...files.yaml.source import Location, Source, parse_override, parse_source, read_text
 from ...plugins.registry import Registry
 from ...scene.framing import measured
 from ...scene.scene import Scene

@@ -5,8 +5,8 @@ from typing import Any
 
 from ...data import DisparityMap, PartMap
 from ...errors import ConfigError, shown
-from ...files.editing import on_one_line
-from ...files.parts_block import with_parts
+from ...files.yaml.editing import on_one_line
+from ...files.yaml.parts_block import with_parts
 from ...parts import PartChoice, PartHeights
 from ..config.model import PipelineConfig
 from ..engine.engine import Engine

@@ -10,10 +10,10 @@ import numpy as np
 from ...data import Views
 from ...data.pictures import filled, opaque
 from ...errors import PictureError
-from ..frames import Say, unsaid
+from ..formats.decoding import FORMATS
+from ..formats.multi_picture import Say, unsaid
+from ..formats.pairs import halves
 from ..framing import framed
-from ..pair_files import halves
-from ..picture_files import FORMATS
 from ..rig import StereoRig, Turning
 from ..scene_files import SceneFiles, VideoLayout
 from .camera import CameraFrames

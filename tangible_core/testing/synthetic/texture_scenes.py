@@ -12,7 +12,7 @@ from ...data import Record
 from ...data.pictures import is_one_colour, to_grey
 from ...errors import PictureError
 from ...runtime.opencv import plain_opencv
-from ...scene.picture_files import read_picture
+from ...scene.formats.pictures import read_picture
 from ...scene.scene import Scene
 from .textures import FAMILIES, Family, Shape, smooth_noise, without_grey
 

@@ -10,11 +10,11 @@ import pytest
 import typer
 
 from command_line import tangible
-from tangible_core.cli import devices as command
+from tangible_core.cli.commands import devices as command
 from tangible_core.errors import ConfigError, DeviceError
+from tangible_core.mapping.device_calibrations import calibration_path
 from tangible_core.plugins.devices import examined, installed_devices
 from tangible_core.plugins.registry import Registry
-from tangible_core.scene.calibrations import calibration_path
 from tangible_core.session.stress import stressed
 from tangible_devices.mock import Mock
 

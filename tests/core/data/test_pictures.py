@@ -15,7 +15,7 @@ from PIL import Image
 from hostile import SIDE, npy_header, npz_bomb, tiff
 from tangible_core.data.pictures import check_picture, fill_non_finite, full_scale, to_grey, to_rgb8
 from tangible_core.errors import PictureError, shown
-from tangible_core.scene.picture_files import MAX_LABELS, read_labels, read_map, read_picture
+from tangible_core.scene.formats.pictures import MAX_LABELS, read_labels, read_map, read_picture
 
 NAN = np.nan
 COLOURS = np.random.default_rng(0).integers(0, 256, (6, 9, 3), dtype=np.uint8)

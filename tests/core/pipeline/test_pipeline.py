@@ -324,7 +324,7 @@ class TestFeeling:
         assert 0 < after.peak_force_n < before.peak_force_n
 
     def test_a_device_that_fails(self, pipeline: Pipeline):
-        from tangible_core.testing.loop_devices import Failing
+        from loop_devices import Failing
 
         with pytest.raises(DeviceError):
             pipeline.feel(Failing(opens="never"), seconds=0.1, in_real_time=False)

@@ -11,6 +11,8 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from faulty_touch import FaultyTouch
+from loop_devices import SPEC, Circling, Failing
 from tangible_core.data import Force, HapticState, HapticSurface, Relief, ServoReport, TickFlag, beacon_part
 from tangible_core.errors import ConfigError, DeviceError, GeometryError
 from tangible_core.plugins.interfaces import PlainTouch
@@ -41,8 +43,6 @@ from tangible_core.session import (
     run_in_turn,
     run_simulated,
 )
-from tangible_core.testing.loop_devices import SPEC, Circling, Failing
-from tangible_core.testing.loop_laws import FaultyTouch
 from tangible_devices import Mock
 
 WIDTH_M, LENGTH_M = 0.08, 0.06

@@ -19,6 +19,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from faulty_touch import FaultyTouch, OddError
+from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.errors import BrokenMethod, DeviceError
 from tangible_core.plugins.interfaces import Touch
@@ -27,8 +29,6 @@ from tangible_core.servo.child import Child
 from tangible_core.servo.parcel import pack
 from tangible_core.servo.ring import COUNT, LAST, PERIOD_NS, STOP, SWAP, Ring, shared_folder
 from tangible_core.servo.wire import Start, StartReply, Swap, SwapReply, receive, send
-from tangible_core.testing.loop_devices import Circling, Failing
-from tangible_core.testing.loop_laws import FaultyTouch, OddError
 
 pytestmark = pytest.mark.usefixtures("own_memory")
 
@@ -158,8 +158,8 @@ import signal, time, numpy as np
 from pathlib import Path
 from tangible_core import HapticSurface, load_method
 from tangible_core.servo import Safety, Servo
-from tangible_core.testing.loop_devices import Failing
-from tangible_core.testing.loop_laws import FaultyTouch
+from loop_devices import Failing
+from faulty_touch import FaultyTouch
 signal.signal(signal.SIGINT, signal.default_int_handler)
 device = Failing(fault="none", record={record!r}, simulated=False)
 Path({ready!r}).touch()
@@ -302,7 +302,7 @@ class TestWhatAPluginRaises:
 
     @pytest.mark.parametrize(
         ("law", "fault", "name"),
-        [(FaultyTouch("exits"), "none", "loop_laws"), (FaultyTouch(), "exits", "loop_devices")],
+        [(FaultyTouch("exits"), "none", "faulty_touch"), (FaultyTouch(), "exits", "loop_devices")],
     )
     def test_sys_exit_is_an_error_that_names_the_plugin(self, tmp_path: Path, law, fault, name: str) -> None:
         record = tmp_path / "force"

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from loop_devices import Circling, Failing
 from moving_plane import MovingPlane, level
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
@@ -20,7 +21,6 @@ from tangible_core.servo import Packed, Ring, Safety, Servo, packed, parcel, sti
 from tangible_core.servo.guard.layout import GIVEN_J
 from tangible_core.servo.ring import shared_folder
 from tangible_core.session import run_simulated
-from tangible_core.testing.loop_devices import Circling, Failing
 
 pytestmark = pytest.mark.usefixtures("own_memory", "patient")
 
@@ -194,7 +194,7 @@ import sys, time
 sys.path[:] = {path}
 from moving_plane import MovingPlane, level
 from tangible_core.servo import Safety, Servo
-from tangible_core.testing.loop_devices import Failing
+from loop_devices import Failing
 if __name__ == "__main__":
     with Servo(MovingPlane(0.01, 100.0), Failing(fault="none", record={record!r}), Safety(ramp_s=0)) as servo:
         number = 0

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from faulty_touch import FaultyTouch
+from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, Force, HapticState
@@ -17,8 +19,6 @@ from tangible_core.plugins.interfaces import Touch
 from tangible_core.plugins.touch import PlainTouch
 from tangible_core.servo import Packed, Ring, Safety, Servo, packed, parcel, ring, still
 from tangible_core.servo.ring import shared_folder
-from tangible_core.testing.loop_devices import Circling, Failing
-from tangible_core.testing.loop_laws import FaultyTouch
 
 pytestmark = pytest.mark.usefixtures("own_memory")
 
@@ -159,7 +159,7 @@ SERVER = """
 import json, sys, time
 from tangible_core.data import TickFlag
 from tangible_core.servo import Packed, Safety, Servo, still
-from tangible_core.testing.loop_devices import Circling
+from loop_devices import Circling
 
 def wait(ticks):
     end, there = time.monotonic() + 60, servo.ring.count

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from ctrl_c import HEARING
+from faulty_touch import FaultyTouch
+from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import OVER, Safety, Servo
 from tangible_core.servo.ring import shared_folder
-from tangible_core.testing.loop_devices import Circling, Failing
-from tangible_core.testing.loop_laws import FaultyTouch
 
 FLAGS = TICK_COLUMNS.index("flags")
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
@@ -224,7 +224,7 @@ HOST = """
 import time, numpy as np
 from tangible_core import HapticSurface, load_method
 from tangible_core.servo import Safety, Servo
-from tangible_core.testing.loop_devices import Failing
+from loop_devices import Failing
 touch = load_method("render", "proxy")().touch(HapticSurface.from_heights(np.full((8, 8), 0.002, np.float32)))
 with Servo(touch, Failing(fault="none", record={record!r}), Safety(ramp_s=0)):
     time.sleep(60)

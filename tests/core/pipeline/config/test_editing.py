@@ -169,13 +169,13 @@ def test_alias_changed_in_one_place_leaves_the_other():
         ("scene: [\n", {"want": "touch"}, "p.yaml:2:1"),
         ("- a\n", {"want": "touch"}, "p.yaml:1:1"),
         ("materials: {rules: []}\n", {"materials.rules.0": "x"}, "rules is a list; set it as a whole"),
-        ("scene: a\n", {"": 1}, "is no key"),
-        ("scene: a\n", {"depth..use": 1}, "is no key"),
-        ("scene: a\n", {"x." * 30 + "x": 1}, "is no key"),
+        ("scene: a\n", {"": 1}, "is not a key"),
+        ("scene: a\n", {"depth..use": 1}, "is not a key"),
+        ("scene: a\n", {"x." * 30 + "x": 1}, "is not a key"),
         ("scene: a\n", {"workspace.width_m": 10**70}, "a number of more than 64 digits"),
         ("scene: a\n", {"scene": "x" * 300_000}, "holds more than"),
         ("scene: a\n", {"scene": json.loads("[" * 500 + "]" * 500)}, "more than 20 blocks are nested"),
-        ("scene: a\n", {"depth": {1, 2, PATH.open}}, "what JSON can say"),
+        ("scene: a\n", {"depth": {1, 2, PATH.open}}, "a value that JSON can express"),
     ],
 )
 def test_impossible_change_is_refused(text: str, changes: dict, says: str):

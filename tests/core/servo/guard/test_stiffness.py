@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from simulated_handle import wall
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, TICK_COLUMNS, DeviceSpec, Force, HapticState, TickFlag
@@ -21,7 +22,6 @@ from tangible_core.servo import Safety, Servo
 from tangible_core.servo.guard import stiffness
 from tangible_core.servo.guard.stiffness import DEPTHS_M, HALVINGS, LAYERS, PLACES, STEP_M, slopes, stiffness_of
 from tangible_core.session import run_simulated
-from tangible_core.testing.handle import wall
 from tangible_core.testing.synthetic.scenes import plane, ramp
 from tangible_devices.mock import Mock
 

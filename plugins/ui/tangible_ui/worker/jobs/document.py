@@ -8,8 +8,8 @@ from typing import Any, cast
 from ruamel.yaml.error import YAMLError
 
 from tangible_core.errors import Complaint, ConfigError, quoted
-from tangible_core.files.source import parse_value, plain, read_text
 from tangible_core.files.writing import write_text
+from tangible_core.files.yaml.source import parse_value, plain, read_text
 from tangible_core.materials.assignment import load_library
 from tangible_core.pipeline.config.editing import REMOVE, edited, moved, said, with_overrides
 from tangible_core.pipeline.config.parsing import parse_config

@@ -9,9 +9,9 @@ import numpy as np
 from jaxtyping import UInt8
 
 from tangible_core.data import SegmentMap
-from tangible_core.data.parts import PartMap, beside_border
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
+from tangible_core.data.views import PartMap, beside_border
 from tangible_core.parts import HeightChoice, PartChoice, find_parts, part_sizes
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.engine.part_validation import parts_of

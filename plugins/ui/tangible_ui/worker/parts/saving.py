@@ -13,9 +13,9 @@ from jaxtyping import Int32, Shaped, UInt16
 
 from tangible_core.data import PartMap
 from tangible_core.errors import ConfigError, quoted
-from tangible_core.files.parts_block import with_parts
-from tangible_core.files.source import read_text
 from tangible_core.files.writing import atomic_write, write_text
+from tangible_core.files.yaml.parts_block import with_parts
+from tangible_core.files.yaml.source import read_text
 from tangible_core.pipeline.config.editing import REMOVE, edited, said
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.scene.scene import Scene, builtin_files

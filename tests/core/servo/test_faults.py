@@ -246,7 +246,7 @@ class TestStandstill:
             until(lambda: held(record) > 0)
             os.kill(servo.process_id, number)
             until(lambda: not servo.running)
-            assert servo.report().stopped == "the process was asked to end"
+            assert servo.report().stopped == "the process received a signal to end"
             assert held(record) == 0
 
     def test_a_signal_that_the_program_ignores_ends_its_loop_neither(self, tmp_path: Path) -> None:
@@ -435,7 +435,7 @@ ENDS: list[Callable[[Session], None]] = [
 @pytest.fixture
 def in_this_process(monkeypatch: pytest.MonkeyPatch):
     """Neither real-time rights nor locked memory are asked for, and what is collected stays so."""
-    monkeypatch.setattr(priority, "ask", lambda: (False, "nothing asked"))
+    monkeypatch.setattr(priority, "request", lambda: (False, "nothing asked"))
     yield
     gc.unfreeze()
 
@@ -483,7 +483,7 @@ def test_no_sigterm_is_lost_among_swaps(round: int, tmp_path: Path) -> None:
     with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE) as servo:
         timer = threading.Timer(random.Random(round).uniform(0, 0.2), os.kill, [servo.process_id, signal.SIGTERM])
         timer.start()
-        with pytest.raises(DeviceError, match="asked to end"):
+        with pytest.raises(DeviceError, match="received a signal to end"):
             for _ in range(100_000):
                 servo.swap(FaultyTouch())
         timer.join()

@@ -40,7 +40,7 @@ COMMANDS = {
     "feel": Command(f"{ROOM}.feel:feel", "Feel the surface on the configured device, in real time."),
     "replay": Command(f"{ROOM}.replay:replay", "Feel a recording again with another law."),
     "plugins": Command(f"{ROOM}.plugins:app", "List the installed methods and devices; show one of them."),
-    "check": Command(f"{ROOM}.check:check", "Test an installed method with the conformance kit."),
+    "check": Command(f"{ROOM}.plugins:check", "Test an installed method with the conformance kit."),
     "devices": Command(f"{ROOM}.devices:app", "List devices; examine, home or calibrate one."),
     "cache": Command(f"{ROOM}.cache:app", "Say how much is kept of earlier results; clear it."),
     "schema": Command(f"{ROOM}.schema:schema", "Print the JSON Schema of pipeline files."),

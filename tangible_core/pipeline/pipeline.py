@@ -161,7 +161,7 @@ class Pipeline:
         if like is None:
             pipeline.engine = Engine(config, registry or default_registry(), cache)
         else:
-            pipeline.engine = like.engine.changed(config)
+            pipeline.engine = like.engine.with_config(config)
         return pipeline
 
     def to_yaml(self, path: str | PathLike[str]) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Bool, Float32
 
-from ..data.pictures import filled, luma, opaque, size_in_words
+from ..data.pictures import fill_from_nearest, luma, opaque, size_in_words
 from ..errors import PictureError
 from .formats.height_maps import MeasuredSize, read_heights_metadata
 from .formats.pictures import without
@@ -52,7 +52,7 @@ def cut_out(picture: np.ndarray, name: str) -> tuple[np.ndarray, Bool[np.ndarray
     if not shown.any():
         raise PictureError(f"{name}: all of the picture is transparent; there is nothing to feel")
     colours = np.ascontiguousarray(picture[..., :3])
-    return colours if shown.all() else filled(colours, shown), shown
+    return colours if shown.all() else fill_from_nearest(colours, shown), shown
 
 
 def _crop(values: np.ndarray, files: SceneFiles) -> np.ndarray:

@@ -1,6 +1,7 @@
 """The monotonic clock, and sleeping until a time on it, for compiled code. Imports numba.
 
-Only Linux sleeps until a time without holding Python's lock by what Python can reach; elsewhere a loop asks Python.
+Only on Linux can a function that Python can reach sleep until a time without Python's lock; elsewhere a loop calls
+Python to sleep.
 """
 
 # ruff: noqa: ANN001, ANN201 -- the types are those that numba infers
@@ -18,7 +19,7 @@ from ..compiled.compiling import KERNEL
 MONOTONIC, ABSOLUTE = 1, 1
 """CLOCK_MONOTONIC and TIMER_ABSTIME of Linux."""
 SLEEPS = sys.platform == "linux"
-"""Whether compiled code can sleep here."""
+"""True if compiled code can sleep on this system."""
 SECOND_NS = 1_000_000_000
 
 
@@ -38,7 +39,7 @@ class _ForeignFunction(types.WrapperAddressProtocol):
 
 
 def clock() -> tuple[np.ndarray, Any, Any]:
-    """What `now` and `wait` take: two words, and two functions of the C library that write and read them."""
+    """Return the clock for `now_ns` and `wait_ns`: two words, and two functions of the C library for them."""
     read = _ForeignFunction("clock_gettime", int32(int32, uintp))
     sleep = _ForeignFunction("clock_nanosleep", int32(int32, int32, uintp, uintp))
     return np.zeros(2, np.int64), read, sleep
@@ -46,7 +47,7 @@ def clock() -> tuple[np.ndarray, Any, Any]:
 
 @njit(**KERNEL)
 def now_ns(clock):
-    """Nanoseconds of the monotonic clock."""
+    """Return the time of the monotonic clock, nanoseconds."""
     words, read, _ = clock
     read(int32(MONOTONIC), words.ctypes.data)
     return words[0] * SECOND_NS + words[1]
@@ -54,9 +55,9 @@ def now_ns(clock):
 
 @njit(**KERNEL)
 def wait_ns(clock, deadline_ns, lead_ns):
-    """Sleep until lead_ns before the deadline, then wait awake; what the clock says at last.
+    """Sleep until lead_ns before the deadline, then spin; return the time of the clock, nanoseconds.
 
-    A signal may end the sleep early: then the rest is slept.
+    If a signal ends the sleep early, the rest is slept.
     """
     words, _, sleep = clock
     wake_ns = deadline_ns - lead_ns

@@ -1,6 +1,7 @@
-"""The tick of a force loop, and the loop that keeps its time, compiled. Imports numba.
+"""The tick of a force loop, and the loop that keeps time, compiled. Imports numba.
 
-A tick: where is the tip, what does the law say, what of it may pass, to the device with it, into the ring.
+A tick reads the tip's position, computes the law's force, limits it by the guard, writes it to the device, and records
+all of it in the ring.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
@@ -40,22 +41,24 @@ from .ring import (
 
 FLAGS = TICK_COLUMNS.index("flags")
 STATE = 7
-"""Length of a device's state, as `LinkKernels` says."""
+"""Length of a device's state, as in `LinkKernels`."""
 OVERRUN = int(TickFlag.OVERRUN)
 begin_tick, going = njit(**KERNEL)(schedule.begin_tick), njit(**KERNEL)(schedule.going)
 AT, LATE = 0, 1
+"""Indices in `now` of the generators below: when a tick began, and how late it was, nanoseconds."""
 NO_MORE = -1
+"""Value of `now[AT]` that ends a generator."""
 
 
 @intrinsic
 def _store(context, array, index, value):
-    """Write a number of an int64 array such that whoever sees it sees all that was written before."""
+    """Write a number of an int64 array with release order: a reader that sees it sees all that was written before."""
 
     def generate(context, builder, signature, arguments):
         data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
         at = builder.gep(data, [arguments[1]])
         builder.store_atomic(arguments[2], at, "release", 8)
-        builder.fence("release")  # nor is what comes after seen before it
+        builder.fence("release")  # so that no later write is visible before it
         return context.get_dummy_value()
 
     return types.void(array, types.int64, types.int64), generate
@@ -63,7 +66,7 @@ def _store(context, array, index, value):
 
 @njit(**KERNEL)
 def publish(header, sums, late, period, contact, stamps, ticks, row, at_ns, late_ns):
-    """Put a tick's row into the ring, and into the sums."""
+    """Write a tick's row to the ring, and add it to the sums."""
     count = header[COUNT]
     slot = count % stamps.shape[0]
     force_n = math.sqrt(row[11] * row[11] + row[12] * row[12] + row[13] * row[13])
@@ -87,27 +90,27 @@ def publish(header, sums, late, period, contact, stamps, ticks, row, at_ns, late
 
 
 @njit(**KERNEL)
-def allowed(law, limits, period_s, x, y, z, vx, vy, vz, buttons):
-    """What may leave of the law's force and the beacon's for a fresh state of the device, and flags."""
+def allow_force(law, limits, period_s, x, y, z, vx, vy, vz, buttons):
+    """Return the allowed part of the law's and the beacon's force for a fresh state of the device, and the flags."""
     of_law, tick, _, moving = law
     settings, memory, beacon = limits
-    felt = couple(settings, memory, period_s, x, y, z, vx, vy, vz)
-    force_n = tick(*of_law, *felt)
+    tool = couple(settings, memory, period_s, x, y, z, vx, vy, vz)
+    force_n = tick(*of_law, *tool)
     memory[RISE_M] = moving[RISE]
-    pulled = pull(*beacon, memory, period_s, felt[0], felt[1], felt[3], felt[4], int64(buttons))
+    pulled = pull(*beacon, memory, period_s, tool[0], tool[1], tool[3], tool[4], int64(buttons))
     fx, fy, fz, flags = guard(settings, memory, period_s, x, y, z, vx, vy, vz, *force_n)
     return fx, fy, fz, flags | pulled
 
 
 @njit(**KERNEL)
 def cycle(link, law, limits, state, row, time_s, late_s, period_s):
-    """One tick of a device and a law that are kernels; the row says what it was."""
+    """Do one tick of a device and a law that are kernels, and write it to the row."""
     of_link, read, write = link
     settings, memory, _ = limits
     fresh = read(*of_link, state) != 0
     x, y, z, vx, vy, vz = state[0], state[1], state[2], state[3], state[4], state[5]
     if fresh:
-        fx, fy, fz, flags = allowed(law, limits, period_s, x, y, z, vx, vy, vz, state[6])
+        fx, fy, fz, flags = allow_force(law, limits, period_s, x, y, z, vx, vy, vz, state[6])
     else:
         fx, fy, fz, flags = wait(settings, memory, period_s)
     write(*of_link, fx, fy, fz)
@@ -121,14 +124,14 @@ def cycle(link, law, limits, state, row, time_s, late_s, period_s):
 
 @njit(**KERNEL)
 def begin(clock, header):
-    """Wait for the next tick; when it began and how late it was, nanoseconds."""
+    """Wait for the next tick; return when it began and how late it was, nanoseconds."""
     at_ns = wait_ns(clock, header[NEXT_NS], header[LEAD_NS])
     return at_ns, begin_tick(header, at_ns)
 
 
 @njit(**KERNEL)
 def finish(shared, row, at_ns, late_ns):
-    """Add what the loop knows to a tick's flags, and put the tick into the ring and into the sums."""
+    """Add the loop's own flags to a tick, and write the tick to the ring and the sums."""
     header, sums, late, period, contact, stamps, ticks = shared
     flags = int(row[FLAGS]) | header[MARKS]
     header[MARKS] = 0
@@ -138,7 +141,7 @@ def finish(shared, row, at_ns, late_ns):
 
 @njit(**KERNEL)
 def step(link, law, limits, shared, state, row, at_ns, late_ns):
-    """A whole tick that began then and so late; none if the loop is to stop."""
+    """Do a whole tick that began at at_ns, late_ns late; nothing if the loop is to stop."""
     header = shared[0]
     if header[STOP] != 0:
         return
@@ -150,29 +153,29 @@ def step(link, law, limits, shared, state, row, at_ns, late_ns):
 
 @njit(**KERNEL)
 def run(clock, link, law, limits, shared, state, row):
-    """Tick after tick, as long as it is `going`; nothing of Python is needed meanwhile."""
+    """Do tick after tick while the loop is `going`; Python is not needed meanwhile."""
     header = shared[0]
     while going(header):
         at_ns, late_ns = begin(clock, header)
         step(link, law, limits, shared, state, row, at_ns, late_ns)
 
 
-# What Python calls once a tick is a generator: it keeps its arguments, and passing them takes the time of a hundred
-# ticks. AT and LATE of `now` say when the tick began; AT is NO_MORE for the last call. A generator that was begun must
-# be brought to its end: else numba keeps its arguments, a scene among them, for ever.
+# Python calls a generator once a tick: it keeps its arguments, as passing them takes the time of a hundred ticks. AT
+# and LATE of `now` give the time of the tick; AT is NO_MORE for the last call. A generator that was started must be run
+# to its end: otherwise numba keeps its arguments, a scene among them, for ever.
 
 
 @njit(cache=True, error_model="numpy")
 def ticks(link, law, limits, shared, state, row, now):
-    """A whole tick at each `next`."""
+    """Do a whole tick at each `next`."""
     while now[AT] != NO_MORE:
         step(link, law, limits, shared, state, row, now[AT], now[LATE])
         yield True
 
 
 @njit(cache=True, error_model="numpy")
-def finished(shared, row, now):
-    """A tick that Python did, put into the ring at each `next`."""
+def finish_ticks(shared, row, now):
+    """Write a tick that was done in Python to the ring, at each `next`."""
     while now[AT] != NO_MORE:
         finish(shared, row, now[AT], now[LATE])
         yield True

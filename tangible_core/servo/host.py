@@ -150,7 +150,7 @@ class Servo:
         memory.words[ASKED] = 0
         if beacon is None:
             return
-        self.ring.room_for_a_beacon()
+        self.ring.allocate_beacon()
         until_s = time.monotonic() + STOPPING_S
         while memory.words[SEEN]:  # until then, the loop may read the field of the one before
             if not self.running or time.monotonic() > until_s:
@@ -231,10 +231,10 @@ class Servo:
     def _pack(self, touch: Touch | Film) -> tuple[str, Film | None]:
         """The file of a parcel, and the film in it, in the memory that whoever unpacks it has too."""
         if isinstance(touch, Packed):
-            self._sent.append(touch.handed_on())
+            self._sent.append(touch.unused_parcel())
             return str(self._sent[-1]), touch.film
         self._sent.append(path := parcel.pack(touch))
-        return str(path), parcel.shared(path) if isinstance(touch, Film) else None
+        return str(path), parcel.share(path) if isinstance(touch, Film) else None
 
     def _remove_sent(self) -> None:
         """Scenes that were not taken out of their files; who stops and who swaps may do it at once."""

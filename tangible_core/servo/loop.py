@@ -1,4 +1,4 @@
-"""Which loop suits a device and a law: compiled as a whole, a compiled tick, or a tick of Python's."""
+"""The force loop for a device and a force law: all compiled, with a compiled tick, or with a tick in Python."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -28,30 +28,31 @@ from .schedule import begin_tick, going
 
 SECOND_NS = 1_000_000_000
 Sections = tuple[np.ndarray, ...]
-"""Of a ring, as the kernels take them: header, sums, late, period, contact, stamps, ticks."""
+"""The sections of a ring that kernels write to: header, sums, late, period, contact, stamps, ticks."""
 Limits = tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]
 """Settings and memory of a guard, and the arrays of a `BeaconMemory`."""
 Timed = Callable[[int, int], None]
-"""(at_ns, late_ns): one tick, which began then and so late."""
+"""(at_ns, late_ns): does one tick, which began at at_ns, late_ns late."""
 FAR = HapticState((0.0, 0.0, 1.0))
-"""Free air, over any surface."""
+"""A place in free air, above any surface."""
 
 
 class Loop(NamedTuple):
-    """A loop ready to run, once."""
+    """A loop that is ready to run, once."""
 
     run: Callable[[], None]
     how: str
+    """A sentence about the kind of loop."""
 
 
 class Kernel(NamedTuple):
-    """A generator of `cycle`, and the two numbers that it looks at."""
+    """A generator of `cycle`, and the two numbers that it reads."""
 
     ticks: Iterator[bool]
     now: np.ndarray
 
     def end(self) -> None:
-        """Bring it to its end, so that it lets go of its arguments."""
+        """Run the generator to its end, so that it releases its arguments."""
         from .cycle import NO_MORE
 
         self.now[:] = NO_MORE
@@ -59,7 +60,7 @@ class Kernel(NamedTuple):
 
 
 def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
-    """The fastest loop that this device and this law allow; what it needs is compiled or loaded before this returns."""
+    """Return the fastest loop for this device and force law, with all kernels compiled or loaded."""
     from . import clock, cycle
     from .guard import guard
 
@@ -68,37 +69,37 @@ def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
     row = np.full(len(TICK_COLUMNS), np.nan)
     shared, limits = sections(ring), (settings, ring.guard, ring.beacon.arrays)
     if not isinstance(link, CompiledLink) or not isinstance(touch, CompiledTouch):
-        return Loop(_timed(*_plain(link, touch, limits, shared, row), shared[0]), "the tick is Python's")
+        return Loop(_timed_loop(*_plain_tick(link, touch, limits, shared, row), shared[0]), "the tick is in Python")
     fixed = (*_kernels(link, touch), limits)
     state = np.zeros(cycle.STATE)
     if clock.SLEEPS and not link.exchanges:
         ticking = clock.clock()
-        kernels.run(ticking, *fixed, _stopped(shared), state, row)
+        kernels.run(ticking, *fixed, _stopped_sections(shared), state, row)
         return Loop(lambda: kernels.run(ticking, *fixed, shared, state, row), "the whole loop is compiled")
-    kernel = _begun(kernels.ticks, *fixed, shared, state, row)
+    kernel = _start_generator(kernels.ticks, *fixed, shared, state, row)
 
     def exchange_then_tick(at_ns: int, late_ns: int) -> None:
         link.exchange()
         kernel.now[:] = at_ns, late_ns
         next(kernel.ticks)
 
-    return Loop(_timed(exchange_then_tick, kernel, shared[0]), "the tick is compiled, Python asks the device")
+    return Loop(_timed_loop(exchange_then_tick, kernel, shared[0]), "the tick is compiled, Python calls the device")
 
 
 def sections(ring: Ring) -> Sections:
-    """What the kernels write to."""
+    """Return the sections of a ring that kernels write to."""
     return ring.header, ring.sums, ring.late, ring.period, ring.contact, ring.stamps, ring.ticks
 
 
 def start_clock(header: np.ndarray, real_time: bool) -> None:
-    """The first tick is due a period from now."""
+    """Schedule the first tick a period from now."""
     header[START_NS] = time.monotonic_ns() + header[PERIOD_NS]
     header[NEXT_NS] = header[START_NS]
     header[SPINS] = real_time
 
 
 def take_over(ring: Ring) -> None:
-    """Go on with a new scene, whose force fades in; a beacon was to a part of the one before."""
+    """Go on with a new scene, whose force fades in; this ends a beacon, which pulled to a part of the scene before."""
     from .guard import guard
 
     cast(Any, guard).restart(ring.guard)
@@ -119,35 +120,38 @@ def _kernels(link: CompiledLink, touch: CompiledTouch) -> tuple[Any, Any]:
     )
 
 
-def _stopped(shared: Sections) -> Sections:
-    """The same with a header that lets no tick happen."""
+def _stopped_sections(shared: Sections) -> Sections:
+    """Return the sections with a header that stops a loop before its first tick."""
     header = np.zeros_like(shared[0])
     header[STOP] = 1
     return header, *shared[1:]
 
 
-def _begun(generator: Callable[..., Iterator[bool]], *arguments: Any) -> Kernel:
-    """This generator of `cycle`, compiled or loaded now, not in the first tick."""
+def _start_generator(generator: Callable[..., Iterator[bool]], *arguments: Any) -> Kernel:
+    """Start a generator of `cycle`, so that it is compiled or loaded now, not in the first tick."""
     first, kernel = (Kernel(generator(*arguments, now), now) for now in np.zeros((2, 2), np.int64))
     first.end()
     return kernel
 
 
-def _plain(
+def _plain_tick(
     link: Link,
     touch: Touch,
     limits: Limits,
     shared: Sections,
     row: np.ndarray,
 ) -> tuple[Timed, Kernel]:
-    """A tick for a device or a law that is no kernel. A law that compiles something does so now, asked in free air."""
+    """Return a tick for a device or a force law that is not a kernel.
+
+    The law computes one force in free air now, so that whatever it compiles is compiled before the first tick.
+    """
     from . import cycle
 
     proxy, moving = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan), moving_of(touch)
     settings, memory, beacon = limits
     header, allowed = shared[0], guarded(touch, settings, memory, pulling(beacon, memory))
     touch.force(FAR)
-    kernel = _begun(cast(Any, cycle).finished, shared, row)
+    kernel = _start_generator(cast(Any, cycle).finish_ticks, shared, row)
 
     def tick(at_ns: int, late_ns: int) -> None:
         period_s = (at_ns - header[PREVIOUS_NS] if header[COUNT] else header[PERIOD_NS]) / SECOND_NS
@@ -155,16 +159,16 @@ def _plain(
         force, flags = allowed(state, period_s)
         link.write(force)
         began = (at_ns - header[START_NS]) / SECOND_NS, late_ns / SECOND_NS
-        felt = *state.position_m, *state.velocity_m_per_s, *proxy, *link.applied
-        row[:] = (*began, *felt, flags, state.buttons, moving[FRAME])
+        motion = *state.position_m, *state.velocity_m_per_s, *proxy, *link.applied
+        row[:] = (*began, *motion, flags, state.buttons, moving[FRAME])
         kernel.now[:] = at_ns, late_ns
         next(kernel.ticks)
 
     return tick, kernel
 
 
-def _timed(tick: Timed, kernel: Kernel, header: np.ndarray) -> Callable[[], None]:
-    """A loop of Python's around a tick, whose kernel ends with it."""
+def _timed_loop(tick: Timed, kernel: Kernel, header: np.ndarray) -> Callable[[], None]:
+    """Return a loop in Python around a tick, at whose end the kernel ends too."""
 
     def run() -> None:
         try:
@@ -177,7 +181,7 @@ def _timed(tick: Timed, kernel: Kernel, header: np.ndarray) -> Callable[[], None
 
 
 def _begin(header: np.ndarray) -> tuple[int, int]:
-    """`cycle.begin` for a loop of Python's."""
+    """Wait for the next tick, as `cycle.begin`, in a loop in Python."""
     due_ns, lead_ns = header[[NEXT_NS, LEAD_NS]].tolist()
     at_ns = time.monotonic_ns()
     if at_ns < due_ns - lead_ns:

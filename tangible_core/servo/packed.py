@@ -1,7 +1,7 @@
-"""A touch that one process makes, another has felt, and only the loop's own process reads.
+"""A packed touch: made in one process, passed on by the host, and read only in the loop's process.
 
-The one that makes it may take long and be ended at any moment, the one in the middle imports no kernels and so neither
-takes time nor memory for them. Of the touch, it holds a file's name and a stiffness.
+The process that makes the touch may take long, and may end at any moment. The host imports no kernels, and so spends
+neither time nor memory on them: of the touch it has the name of a file and a stiffness.
 """
 
 from pathlib import Path
@@ -16,56 +16,57 @@ from .guard.stiffness import stiffness_of
 
 @final
 class Packed(Touch):
-    """A touch in a parcel (`parcel.pack`), for `Servo` to pass on: in the loop's process it is the touch itself.
+    """A touch in a parcel (`parcel.pack`) for a `Servo`; it becomes the touch itself in the loop's process.
 
-    The parcel is this process's own from here on: while this process lives, nobody takes it away, whatever becomes of
-    the process that packed it, and once this process is gone, whoever starts a loop next does. It is felt once: a loop
-    that is given it, by `Servo` or by its `swap`, takes it, and where that fails it is gone too. One that is given to
-    no loop is to be discarded.
+    The parcel belongs to this process from now on: while this process lives, it is not deleted, even if the process
+    that packed it ends; once this process is gone, the next start of a loop deletes it. It can be used once: a loop,
+    by `Servo` or by its `swap`, consumes the parcel, even if that fails. A parcel that is given to no loop must be
+    discarded.
     """
 
     def __init__(self, path: Path | str, stiffness_n_per_m: float) -> None:
-        """path, stiffness_n_per_m: those of the `Packed` that `packed` gave in the process that made the touch.
+        """Adopt a parcel.
 
-        Raises: DeviceError if the parcel is not there any more, or is none.
+        path, stiffness_n_per_m: those of the `Packed` that `pack_touch` returned in the process that made the touch.
+        Raises: DeviceError if the parcel does not exist any more, or is not a parcel.
         """
         self.stiffness_n_per_m = float(stiffness_n_per_m)
-        self.parcel = parcel.adopted(Path(path))
-        """The file; its name is another one than was given."""
+        self.parcel = parcel.adopt(Path(path))
+        """The file, renamed to this process."""
         self.film: Film | None = None
-        """Of a film, in the process that packed it: what is shown here is felt there."""
+        """The film, if the touch is one, in the process that packed it: reliefs shown here move the surface there."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         return parcel.unpack, (self.parcel,)
 
     def force(self, state: HapticState) -> NoReturn:
-        """Raises: DeviceError, always."""
-        raise DeviceError("a packed touch is felt in the loop's process alone; ask the touch it was made of for forces")
+        """Raise DeviceError, always."""
+        raise DeviceError("a packed touch has forces only in the loop's process; ask the touch that was packed")
 
     def path(self, positions_m: Any, period_s: float = 0.001) -> NoReturn:
-        """Raises: DeviceError, always."""
-        raise DeviceError("a packed touch is felt in the loop's process alone; ask the touch it was made of for a path")
+        """Raise DeviceError, always."""
+        raise DeviceError("a packed touch has a path only in the loop's process; ask the touch that was packed")
 
-    def handed_on(self) -> Path:
-        """The parcel, for a loop that takes it away. Raises: DeviceError if one has, or it was discarded."""
+    def unused_parcel(self) -> Path:
+        """Return the parcel, for a loop. Raises: DeviceError if a loop has consumed it, or it was discarded."""
         if not self.parcel.exists():
-            raise DeviceError("a packed touch is felt once, and this one was, or was discarded; pack it again")
+            raise DeviceError("this packed touch was already used or discarded; pack a new one")
         return self.parcel
 
     def discard(self) -> None:
-        """Take the parcel away, if no loop has; a second call does nothing."""
+        """Delete the parcel, if no loop has; a second call does nothing."""
         self.parcel.unlink(missing_ok=True)
 
 
-def packed(touch: Touch | Film, spec: DeviceSpec) -> Packed:
-    """A touch in a parcel, and its stiffness: what it says of it, or what is felt of it; takes some seconds at most.
+def pack_touch(touch: Touch | Film, spec: DeviceSpec) -> Packed:
+    """Pack a touch into a parcel, with its stated or measured stiffness; takes some seconds at most.
 
-    What another process makes a `Packed` of are its `str(parcel)` and `stiffness_n_per_m`. Until it has, the parcel
-    goes with this process. Of a film, `Packed.film` stays here to be shown pictures, whichever process feels it.
-    spec: of the device that it will be felt with.
-    Raises: DeviceError if there is no room, or the touch cannot be sent; BrokenMethod for a stiffness that is none.
+    Another process makes its own `Packed` of `str(parcel)` and `stiffness_n_per_m`; until then, the parcel is deleted
+    if this process ends. If the touch is a film, `Packed.film` shows reliefs from here, whichever process feels it.
+    spec: of the device on which the touch will act.
+    Raises: DeviceError if there is no room, or the touch cannot be sent; BrokenMethod for an invalid stiffness.
     """
     stiffness = stiffness_of(touch_of(touch), spec).n_per_m
-    made = Packed(parcel.pack(touch), stiffness)
-    made.film = parcel.shared(made.parcel) if isinstance(touch, Film) else None
-    return made
+    packed = Packed(parcel.pack(touch), stiffness)
+    packed.film = parcel.share(packed.parcel) if isinstance(touch, Film) else None
+    return packed

@@ -1,4 +1,4 @@
-"""What the operating system can be asked for so that a loop is woken on time."""
+"""Requests to the operating system for a loop that wakes on time."""
 
 import ctypes
 import os
@@ -9,19 +9,19 @@ from collections.abc import Callable
 from typing import Any
 
 PRIORITY = 50
-"""Of SCHED_FIFO, 1 to 99: over everything that is not real time, under the kernel's own threads."""
+"""Priority of SCHED_FIFO, 1 to 99: above everything that is not real time, below the kernel's own threads."""
 CURRENT_AND_FUTURE, SET_TIMER_SLACK = 3, 29
 """MCL_CURRENT | MCL_FUTURE of mlockall, and PR_SET_TIMERSLACK of prctl; Linux."""
 SLICE_NS = 100_000
-"""The shortest time slice that may be asked for (Linux 6.12): whoever asks for less at once is let in sooner."""
+"""The shortest time slice that may be requested (Linux 6.12): threads with shorter slices are scheduled sooner."""
 SET_ATTRIBUTES = {"x86_64": 314, "aarch64": 274, "riscv64": 274}
-"""Number of the system call sched_setattr in a 64-bit process; most C libraries have no function for it."""
+"""Number of the system call sched_setattr in a 64-bit process, by machine; most C libraries have no function for it."""
 
 
-def ask() -> tuple[bool, str]:
-    """Ask for all that there is for the calling thread; whether it is real time now, and what was granted, in words."""
+def request() -> tuple[bool, str]:
+    """Request real time for the calling thread; return whether it was granted, and a sentence about it."""
     if sys.platform != "linux":
-        return False, f"plain sleeping: {sys.platform} is asked for nothing"
+        return False, f"plain sleeping: no real-time rights are requested on {sys.platform}"
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
     except OSError as error:
@@ -29,14 +29,14 @@ def ask() -> tuple[bool, str]:
         shorten_slice()
         refused = f"SCHED_FIFO is not permitted ({error.strerror})"
         return False, f"plain sleeping: {refused}, so busy programs make ticks late; give the user an rtprio limit"
-    kept = "memory locked" if _c("mlockall")(CURRENT_AND_FUTURE) == 0 else "memory not locked"
-    return True, f"SCHED_FIFO {PRIORITY}, {kept}"
+    memory = "memory locked" if _c("mlockall")(CURRENT_AND_FUTURE) == 0 else "memory not locked"
+    return True, f"SCHED_FIFO {PRIORITY}, {memory}"
 
 
 def shorten_slice() -> None:
-    """Ask for the shortest time slice for the calling thread, which needs no rights; its niceness stays.
+    """Request the shortest time slice for the calling thread, which needs no rights; the niceness stays.
 
-    Older kernels take no notice. Who put the program in another class, such as SCHED_IDLE, wants it there.
+    Older kernels ignore the request. A thread in another class, such as SCHED_IDLE, stays as it is, as its user chose.
     """
     call = SET_ATTRIBUTES.get(platform.machine())
     if call is None or sys.maxsize < 2**32 or os.sched_getscheduler(0) != os.SCHED_OTHER:

@@ -1,4 +1,4 @@
-"""A beacon's tick, for loops that are Python's."""
+"""A beacon's tick, for loops in Python."""
 
 from collections.abc import Callable
 from typing import Any, cast
@@ -6,11 +6,11 @@ from typing import Any, cast
 import numpy as np
 
 Pulling = Callable[[float, float, float, float, float, int], int]
-"""(period_s, x, y, vx, vy, buttons) -> the tick's flags. The force is left to the guard, in its memory."""
+"""(period_s, x, y, vx, vy, buttons) -> the tick's flags; the force is in the guard's memory."""
 
 
 def pulling(beacon: tuple[np.ndarray, ...], memory: np.ndarray) -> Pulling:
-    """The pull of a `BeaconMemory`, whose `arrays` these are, for a guard with this memory."""
+    """Return the pull of a `BeaconMemory` with these `arrays`, for a guard with this memory."""
     from . import beacon_kernels
 
     kernel = cast(Any, beacon_kernels).pull

@@ -1,25 +1,25 @@
-"""When the next tick is due, and how long before it a loop should wake: the same for compiled loops and Python's."""
+"""The schedule of ticks: when the next one is due, and how long before a loop wakes, in compiled code and Python."""
 
 import numpy as np
 
 from .ring import COUNT, LAST, LEAD_NS, NEXT_NS, OVERRUNS, PERIOD_NS, SPINS, STOP, SWAP
 
 MOST_LEAD_NS = 150_000
-"""A loop waits awake for no longer than this; 15 % of a period of 1 ms."""
+"""Longest time for which a loop spins before a tick: 15 % of a period of 1 ms."""
 
 
 def going(header: np.ndarray) -> bool:
-    """Whether the scene that is felt now has another tick to come."""
+    """Return True if the current scene has another tick."""
     return header[STOP] == 0 and header[SWAP] == 0 and header[COUNT] < header[LAST]
 
 
 def begin_tick(header: np.ndarray, at_ns: int) -> int:
-    """Begin the tick that was due: count what was missed, and set when the next is due. Returns nanoseconds late.
+    """Begin the tick that was due, count missed periods, and schedule the next one; return how late it is, nanoseconds.
 
-    Periods that went by without a tick are counted and not made up for: the next tick is due in step with the first.
+    Missed periods are not made up for: the next tick is due in step with the first.
 
-    The lead grows by much after a late tick, and shrinks by a thousandth of that after one that was not. So about one
-    tick in a thousand is late: the lead follows that quantile of the time that waking takes.
+    After a late tick the lead grows; after a punctual one it shrinks by a thousandth of that. So about one tick in a
+    thousand is late: the lead follows that quantile of the time that waking takes.
     """
     late_ns = at_ns - header[NEXT_NS]
     if header[SPINS] != 0:

@@ -1,4 +1,4 @@
-"""No force anywhere: what a loop begins with before there is a scene, so that it runs when the scene is made."""
+"""The null force law, with which a loop can start before its scene is made."""
 
 from typing import Any, cast, final
 
@@ -7,27 +7,27 @@ from ..plugins.interfaces import Touch
 from ..plugins.touch import PlainTouch
 
 
-def still() -> Touch:
-    """A touch of no force, to start a `Servo` with and `swap` a scene in later. It imports no numba here.
+def null_touch() -> Touch:
+    """Return a touch without force, to start a `Servo` with and `swap` a scene in later; imports no numba.
 
-    In the loop's process it is a kernel: while the scene is made ready there, no tick waits for Python.
+    In the loop's process it is a kernel, so that no tick waits for Python while the scene is prepared there.
     """
-    return _Still()
+    return _NullTouch()
 
 
 @final
-class _Still(PlainTouch):
+class _NullTouch(PlainTouch):
     stiffness_n_per_m = 0.0
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return compiled, ()
+        return compile_null_touch, ()
 
     def force(self, state: HapticState) -> Force:
         return NO_FORCE
 
 
-def compiled() -> Touch:
-    """The same as a kernel."""
+def compile_null_touch() -> Touch:
+    """Return the null touch as a kernel."""
     from ..compiled.touch import CompiledTouch
     from . import still_kernels
 

@@ -1,4 +1,4 @@
-"""The kernel of `still`. Imports numba: what uses this module imports it inside its verb."""
+"""The kernel of the null force law. Imports numba: its users import this module inside their verbs."""
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 # pyright: basic
@@ -10,5 +10,5 @@ from ..compiled.compiling import KERNEL
 
 @njit(types.UniTuple(float64, 3)(*[float64] * 6), **KERNEL)
 def tick(x, y, z, vx, vy, vz):
-    """Nothing."""
+    """Return zero force."""
     return 0.0, 0.0, 0.0

@@ -1,6 +1,7 @@
-"""Messages between the host and the loop's process: pickles, each after its length, over a pipe.
+"""Messages between the host and the loop's process, and their framing: pickles, each after its length, over a pipe.
 
-That a loop is to end is no message, but a word in the ring: it is heard whatever else is on its way.
+The request to end a loop is not a message but a word in the ring, which the loop reads at every tick, whatever messages
+are under way.
 """
 
 import pickle
@@ -16,7 +17,7 @@ from ..runtime.child_process import dumps
 
 
 class Start(NamedTuple):
-    """What the loop's process is told first."""
+    """The first message to the loop's process: start."""
 
     ring: str
     """File of the ring."""
@@ -24,47 +25,47 @@ class Start(NamedTuple):
     """File of the parcel with the touch."""
     device: HapticDevice
     settings: np.ndarray
-    """Of the guard."""
+    """Settings of the guard."""
 
 
 class Swap(NamedTuple):
-    """Feel another scene from the next tick on."""
+    """The request to go on with another scene from the next tick on."""
 
     scene: str
     settings: np.ndarray
 
 
 class StartReply(NamedTuple):
-    """The device is open, everything is compiled, the first tick is due."""
+    """The reply to `Start`: the device is open, everything is compiled, the first tick is due."""
 
     how: str
-    """What the operating system granted, and who ticks."""
+    """The rights that the operating system granted, and the kind of loop."""
 
 
 class SwapReply(NamedTuple):
-    """The scene sent last is felt."""
+    """The reply to `Swap`: the loop has gone on with the new scene."""
 
     how: str
-    """As of `StartReply`, of this scene."""
+    """As in `StartReply`, for this scene."""
 
 
 class Refusal(NamedTuple):
-    """The scene sent last cannot be felt; the one before it still is."""
+    """The reply to `Swap` if the new scene cannot be used; the loop goes on with the scene before."""
 
     error: Exception
 
 
 class End(NamedTuple):
-    """The loop is over and the device has no force."""
+    """The last message of the loop's process: the loop is over and the device has no force."""
 
     stopped: str
-    """Why it ended early, where its process knows; else empty."""
+    """The reason for an early end, if the process knows it; else empty."""
     error: Exception | None = None
-    """What a plugin raised, if that was the reason."""
+    """The error of a plugin that ended the loop."""
 
 
 def sendable(error: BaseException) -> Exception:
-    """The error, if it arrives as it is at the other end; else one that says whose it is, its name and its text."""
+    """Return the error if it can be pickled as it is, or else a `BrokenMethod` with its origin, name and text."""
     if isinstance(error, SystemExit):
         return exited(error)
     try:
@@ -78,22 +79,22 @@ def sendable(error: BaseException) -> Exception:
 
 
 def send(file: IO[bytes], message: Any) -> None:
-    """Raises: OSError if nobody listens."""
+    """Send a message. Raises: OSError if the other side is gone."""
     data = dumps(message)
     file.write(len(data).to_bytes(8, "little") + data)
     file.flush()
 
 
 def receive(file: IO[bytes]) -> Any:
-    """The next message; None when the other side is gone."""
-    size = _exactly(file, 8)
+    """Return the next message; None when the other side is gone."""
+    size = _read(file, 8)
     length = int.from_bytes(size, "little")
-    data = _exactly(file, length)
+    data = _read(file, length)
     return pickle.loads(data) if size and len(data) == length else None
 
 
-def _exactly(file: IO[bytes], length: int) -> bytes:
-    """So many bytes of an unbuffered file, or fewer if it ends."""
+def _read(file: IO[bytes], length: int) -> bytes:
+    """Read this number of bytes from an unbuffered file, or fewer if the file ends."""
     data = b""
     while len(data) < length and (more := file.read(length - len(data))):
         data += more

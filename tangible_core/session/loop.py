@@ -19,7 +19,7 @@ from ..servo.beacon import BeaconMemory
 from ..servo.guard.guarded import Guarded, guarded
 from ..servo.guard.stiffness import stiffness_of
 from ..servo.pulling import pulling
-from ..servo.reports import so_far
+from ..servo.reports import brief_report
 from .recording import INTERRUPTED, STOPPED, Recording
 from .replay import proxy_of
 
@@ -139,7 +139,7 @@ class _Tape:
     def report(self, stopped: str) -> None:
         """Say how it goes."""
         last = np.array(self._numbers[-len(TICK_COLUMNS) :]).reshape(-1, len(TICK_COLUMNS))
-        self._on_report(so_far(last, self.ticks, self._peak_n, self._work_j, stopped))
+        self._on_report(brief_report(last, self.ticks, self._peak_n, self._work_j, stopped))
 
     def recording(self) -> Recording:
         """All of it."""

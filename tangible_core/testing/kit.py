@@ -10,27 +10,18 @@ from typing import Any, NamedTuple, cast
 from ..errors import BrokenMethod, DeviceAbsent, ModelAbsent, TangibleError, UnknownMethod, did_you_mean
 from ..plugins.interfaces import HapticDevice
 from ..plugins.registry import Registry, default_registry
-from . import (
-    checks_depth,
-    checks_device,
-    checks_export,
-    checks_film,
-    checks_listing,
-    checks_options,
-    checks_render,
-    checks_texture,
-    checks_touch,
-)
 from .checks import Check, CheckFailure
+from .every_method import LISTING_CHECKS, OPTION_CHECKS
+from .kinds import depth, device, export, film, render, texture, touch
 
 log = logging.getLogger(__name__)
 
 FAMILIES: dict[str, tuple[Check, ...]] = {
-    "depth": checks_depth.CHECKS,
-    "texture": checks_texture.CHECKS,
-    "render": (*checks_render.CHECKS, *checks_touch.CHECKS, *checks_film.CHECKS),
-    "device": checks_device.CHECKS,
-    "export": checks_export.CHECKS,
+    "depth": depth.CHECKS,
+    "texture": texture.CHECKS,
+    "render": (*render.CHECKS, *touch.CHECKS, *film.CHECKS),
+    "device": device.CHECKS,
+    "export": export.CHECKS,
 }
 """What each kind is asked on top of what every method is asked."""
 
@@ -65,7 +56,7 @@ def checks(kind: str) -> tuple[Check, ...]:
     """
     if kind not in FAMILIES:
         raise UnknownMethod("plugin", kind, FAMILIES)
-    return (*checks_listing.CHECKS, *checks_options.CHECKS, *FAMILIES[kind])
+    return (*LISTING_CHECKS, *OPTION_CHECKS, *FAMILIES[kind])
 
 
 def conforms(
@@ -88,7 +79,7 @@ def conforms(
     def test_conforms(check: Check) -> None:
         declared = {**_declared(default_registry(), kind, name), **reasons}.get(check.__name__, "")
         try:
-            if check in checks_device.WITH_MOTORS and _would_push(name, options):
+            if check in device.WITH_MOTORS and _would_push(name, options):
                 pytest.skip(f"a real device is there, and this pushes: let its grip hang free, and set {MOTORS}=1")
             _run(default_registry(), check, kind, name, options)
         except (DeviceAbsent, ModelAbsent) as absent:  # that it is said is a check of its own, and passes
@@ -156,7 +147,7 @@ def _demand(check: Check) -> str:
 
 def _run(registry: Registry, check: Check, kind: str, name: str, options: dict[str, Any]) -> None:
     """What is seen before use is checked of the listing, the rest of the method, made anew for each check."""
-    if check in checks_listing.CHECKS:
+    if check in LISTING_CHECKS:
         check(registry.find(kind, name))
     else:
         check(registry.load(kind, name)(**options))

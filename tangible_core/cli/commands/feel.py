@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..asking import ask_first
-from ..options import Json, NoCache, Record, Sets, Yes
+from ..options import FAILED, Json, NoCache, Record, Sets, Yes
 from ..verbosity import is_quiet
 from .run import device_of, open_pipeline
 
 if TYPE_CHECKING:
     from ...data import ServoReport
+    from ...pipeline.pipeline import Pipeline
     from ...plugins.interfaces import HapticDevice
     from ...servo import Servo
 
@@ -129,3 +130,20 @@ def _say_if_alone(device: HapticDevice | None) -> None:
 
 def _text(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def ask_first(pipeline: Pipeline, yes: bool) -> None:
+    """Make the touch, and go on if it is worth feeling, or if the user, asked at a terminal or by `--yes`, wants it.
+
+    Raises: Exit with 1 if the user does not; PictureError where nobody can be asked; TangibleError as `Pipeline.make`.
+    """
+    from ...errors import PictureError
+
+    pipeline.make("touch")
+    doubts = "; ".join(each.text.partition(":")[0] for each in pipeline.outcomes.doubts)
+    if yes or not doubts:
+        return
+    if sys.stdin is None or not sys.stdin.isatty():
+        raise PictureError(f"{doubts}; put it right as the warning says, or feel it all the same with --yes")
+    if not typer.confirm(f"{doubts[:1].upper()}{doubts[1:]}. Feel it all the same?", err=True):
+        raise typer.Exit(FAILED)

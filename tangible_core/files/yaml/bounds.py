@@ -1,4 +1,4 @@
-"""What a YAML text may hold: how deep, how much once its aliases are followed, and which numbers."""
+"""Limits on a YAML text: its depth, its size with aliases expanded, and the length of its numbers."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -8,11 +8,11 @@ from ruamel.yaml.constructor import RoundTripConstructor
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
 MOST_DEPTH = 20
-"""Of blocks in blocks; what is written for this program needs six."""
+"""The most levels of nested blocks; files for this program need six."""
 MOST_NODES = 40_000
-"""Of keys, values and blocks, an alias counted as all that it stands for: a rule for each of 4,096 segments."""
+"""The most keys, values and blocks with aliases expanded: enough for a rule for each of 4,096 segments."""
 MOST_DIGITS = 64
-"""Of a number, with its sign, point and exponent."""
+"""The most characters of a number, with its sign, point and exponent."""
 
 _NUMBERS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
 
@@ -30,18 +30,18 @@ class _Block:
 @final
 @dataclass
 class _Count:
-    """What there was so far."""
+    """The nodes that were counted so far."""
 
     open: list[_Block] = field(default_factory=list[_Block])
     nodes_of: dict[str, int] = field(default_factory=dict[str, int])
-    """Anchors that are closed, and what an alias to each stands for."""
+    """The number of nodes that an alias to each closed anchor stands for."""
 
 
 def check_events(events: Iterable[Any]) -> None:
-    """Look at what a parser finds, one after the other, before anything is made of it.
+    """Check the events of a parser one after the other, before a tree is built from them.
 
-    Raises: MarkedYAMLError with the place of what is too deep, too much, an alias inside of what it stands for, or a
-    block for a key, whose hash takes time that doubles with each level.
+    Raises: MarkedYAMLError with the place of a block that is too deep or too large, of an alias inside its own anchor,
+    or of a block as a key, whose hash takes time that doubles with each level.
     """
     count = _Count()
     for event in events:
@@ -68,14 +68,14 @@ def _open(count: _Count, event: Any, is_mapping: bool) -> None:
 def _alias(count: _Count, event: Any) -> None:
     if any(block.anchor == event.anchor for block in count.open):
         raise _refusal(event, "an alias refers to a block that contains it")
-    nodes = count.nodes_of.get(event.anchor, 1)  # of one that is not known, the parser complains
+    nodes = count.nodes_of.get(event.anchor, 1)  # the parser reports an unknown anchor
     if nodes > 1 and count.open and _is_key(count.open[-1]):
         raise _refusal(event, "a key must be a word or a number, not a list or a mapping")
     _add(count, event, nodes, None)
 
 
 def _add(count: _Count, event: Any, nodes: int, anchor: str | None) -> None:
-    """A node that is whole: a part of what is open around it."""
+    """Add a complete node to the open blocks around it."""
     if anchor is not None:
         count.nodes_of[anchor] = nodes
     if not count.open:
@@ -96,10 +96,10 @@ def _refusal(event: Any, problem: str) -> MarkedYAMLError:
 
 @final
 class BoundedConstructor(RoundTripConstructor):
-    """Numbers of a bounded length; dates are text; whatever else cannot be made of a text says where it stands."""
+    """A constructor that limits the length of numbers, keeps dates as text, and gives the place of other errors."""
 
     def construct_non_recursive_object(self, node: Any, tag: str | None = None) -> Any:
-        """The value of a node."""
+        """Return the value of a node."""
         if node.tag in _NUMBERS and len(node.value) > MOST_DIGITS:
             raise MarkedYAMLError(None, None, f"a number of more than {MOST_DIGITS} digits", node.start_mark)
         try:
@@ -111,4 +111,4 @@ class BoundedConstructor(RoundTripConstructor):
 
 
 _bounded: Any = BoundedConstructor
-_bounded.add_constructor("tag:yaml.org,2002:timestamp", _bounded.construct_yaml_str)  # YAML 1.2 knows no dates
+_bounded.add_constructor("tag:yaml.org,2002:timestamp", _bounded.construct_yaml_str)  # YAML 1.2 has no dates

@@ -1,4 +1,4 @@
-"""The block `parts:` of a pipeline file, a line for each part."""
+"""The block `parts:` of a pipeline file, one line for each part."""
 
 import re
 from collections.abc import Mapping
@@ -7,7 +7,7 @@ from typing import Any
 
 from ...errors import ConfigError
 from .editing import on_one_line
-from .source import parse_source, plain
+from .source import plain_tree
 
 BLOCK = re.compile(r"^parts:.*\n(?:(?:[ \t]*\n)*[ \t]+\S.*\n)*", re.MULTILINE)
 """The key with the lines below it, up to the next key at the top."""
@@ -36,10 +36,6 @@ def with_parts(text: str, path: Path, parts: Mapping[int, Any], comments: Mappin
     before = f"{text}\n" if text and not text.endswith("\n") else text
     after, times = BLOCK.subn(lambda _: block, before, count=1)
     after = after if times else f"{before}{block}"
-    if _plain(after, path) != {**_plain(text, path), "parts": dict(parts)}:
+    if plain_tree(after, path) != {**plain_tree(text, path), "parts": dict(parts)}:
         raise ConfigError(f"{path}: `parts:` is not a block of lines, one for each part")
     return after
-
-
-def _plain(text: str, path: Path) -> dict[Any, Any]:
-    return dict(plain(parse_source(text, path, "it is a mapping", empty=True).tree))

@@ -1,11 +1,11 @@
-"""YAML that knows where everything stands: every complaint at once, each with file:line:column."""
+"""YAML parsed with the place of each key and value: all complaints at once, each with file:line:column."""
 
 import re
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any, cast
 
 from pydantic import BaseModel, ValidationError
 from ruamel.yaml import YAML
@@ -16,45 +16,46 @@ from ...errors import Complaint, ConfigError, did_you_mean, quoted, shown
 from ..paths import as_path
 from ..reading import MOST_TEXT_BYTES, in_words, read_bytes
 from .bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, check_events
+from .validation import Location as Location
+from .validation import has, model_at, plain_errors
 
 Tree = dict[Any, Any]
-"""The parser's own mapping: a dict that knows where its parts stand."""
-Location = tuple[Any, ...]
-"""Keys and indices from the top of the file."""
+"""The parser's own mapping: a dict with the line and column of its parts."""
 Shorthand = Callable[[Location], str]
-"""The option that a word alone stands for where a block may stand, by its place; empty for none."""
+"""The option that a bare word stands for where a block is expected, by location; "" for none."""
 
 
 def no_shorthand(place: Location) -> str:
-    """Of a file in which a word is never short for a block."""
+    """Return "": in this file a bare word never stands for a block."""
     return ""
 
 
 @dataclass
 class Source:
-    """A parsed file while it is being checked, and the complaints so far."""
+    """A parsed file that is being checked, and the complaints so far."""
 
     path: Path
     tree: Tree
     complaints: list[tuple[str, Complaint]] = field(default_factory=list[tuple[str, Complaint]])
-    """Each as a sentence that begins with its place, and for a program."""
+    """Each complaint as a sentence that begins with its place, and as a record for programs."""
     overridden: dict[tuple[str, ...], str] = field(default_factory=dict[tuple[str, ...], str])
+    """The texts of overrides, by location."""
 
     def override(self, text: str, shorthand: Shorthand = no_shorthand, place: Location = ()) -> None:
         """Apply `key.key=value`; a block with another `use` starts without the options of the method before.
 
-        place: where that is, if it leads through an entry of a list, whose number is then an int.
+        place: the location, if it leads through an entry of a list; the index of the entry is then an int.
         """
         keys, loaded = parse_override(text)
         parts: Location = place or keys
         node: Any = self.tree
         for depth, part in enumerate(parts[:-1], 1):
             key = part if isinstance(node, list) else key_of(part, node)
-            below = cast(Any, node)[key] if _has(node, key) else None
-            if isinstance(below, list) and not _has(below, parts[depth]):
-                raise _refused(text, keys, f"{part} is a list; set it as a whole: {part}=[...]")
+            below = cast(Any, node)[key] if has(node, key) else None
+            if isinstance(below, list) and not has(below, parts[depth]):
+                raise _override_error(text, keys, f"{part} is a list; set it as a whole: {part}=[...]")
             if not isinstance(below, dict | list):
-                cast(Any, node)[key] = CommentedMap(spelt_out(below, shorthand(parts[:depth])))
+                cast(Any, node)[key] = CommentedMap(expand_shorthand(below, shorthand(parts[:depth])))
             node = cast(Any, node)[key]
         if parts[-1] == "use" and node.get("use") != loaded:
             node.clear()
@@ -62,24 +63,24 @@ class Source:
         self.overridden[tuple(map(str, parts))] = text
 
     def place(self, location: Location) -> str:
-        """file:line:column of the deepest part of the location that the file has."""
+        """Return file:line:column of the deepest part of a location that the file has; for an override, its text."""
         if text := self._override_of(location):
-            return _named(text)
+            return _as_typed(text)
         line, column = self._mark(location)
         return f"{self.path}:{line}:{column}"
 
     def _override_of(self, location: Location) -> str | None:
-        """What set the location, or what contains it."""
+        """Return the override that set this location or a block around it."""
         ends = range(len(location), 0, -1)
-        found = (self.overridden.get(tuple(str(part) for part in location[:end])) for end in ends)
-        return next(filter(None, found), None)
+        texts = (self.overridden.get(tuple(str(part) for part in location[:end])) for end in ends)
+        return next(filter(None, texts), None)
 
     def _mark(self, location: Location) -> tuple[int, int]:
-        """Line and column, from 1, of the deepest part of the location that the file has."""
+        """Return line and column, from 1, of the deepest part of a location that the file has."""
         node: Any = self.tree
         line, column = 0, 0
         for part in location:
-            if not isinstance(node, dict | list) or not _has(node, part):
+            if not isinstance(node, dict | list) or not has(node, part):
                 continue
             marks = cast(Any, node).lc
             if marks.data and part in marks.data:
@@ -88,25 +89,25 @@ class Source:
         return line + 1, column + 1
 
     def complain(self, location: Location, text: str) -> None:
-        """Note a complaint with its place."""
+        """Add a complaint at a location."""
         mark = (None, None) if self._override_of(location) else self._mark(location)
         complaint = Complaint(tuple(map(_word_or_number, location)), text, *mark)
         self.complaints.append((f"{self.place(location)}: {text}", complaint))
 
     def settle(self) -> None:
-        """Raises: ConfigError with every complaint, one a line, if there are any."""
+        """Raise a ConfigError with every complaint, one a line, if there are any."""
         if self.complaints:
             raise self.error
 
     @property
     def error(self) -> ConfigError:
-        """Every complaint, one a line."""
+        """The error with every complaint, one a line."""
         return ConfigError(
             *(sentence for sentence, _ in self.complaints), complaints=(each for _, each in self.complaints)
         )
 
     def check_keys(self, known: Iterable[str]) -> None:
-        """Complain of every key of the file that is not known."""
+        """Complain about every key of the file that is not known."""
         names = list(known)
         for key in self.tree:
             if key not in names:
@@ -114,7 +115,7 @@ class Source:
                 self.complain((key,), f"unknown key {quoted(key)}{hint}; known: {', '.join(names)}")
 
     def items(self, key: str) -> list[Any]:
-        """A list of at least one under this key of the file; a complaint and an empty one otherwise."""
+        """Return the list under a key of the file; [] after a complaint if it is not a list of at least one."""
         block = self.tree.get(key)
         if isinstance(block, list) and block:
             return cast("list[Any]", block)
@@ -123,83 +124,34 @@ class Source:
         return []
 
     def model(self, location: Location, model: type[BaseModel], block: Any) -> Any:
-        """A block as a model, its files relative to this one; None after a complaint for each thing that is wrong."""
+        """Return a block as a model, its paths relative to this file; None after complaints if it does not fit."""
         try:
             return _relative_to(self.path.parent, model.model_validate(plain(block)))
         except ConfigError as error:
             self.complain(location, str(error))
             return None
         except ValidationError as error:
-            for each in _joined(_deepest(error, plain(block))):
-                self._complain_of(location, model, each)
+            for each in plain_errors(error, plain(block)):
+                self._complain_about(location, model, each)
             return None
 
-    def _complain_of(self, location: Location, model: type[BaseModel], error: Mapping[str, Any]) -> None:
+    def _complain_about(self, location: Location, model: type[BaseModel], error: Mapping[str, Any]) -> None:
         where = (*location, *(part for part in error["loc"] if part != "[key]" and not str(part).startswith(":")))
         name = shown(".".join(str(part) for part in where))
         if error["type"] == "extra_forbidden":
-            options = list(_model_at(model, error["loc"][:-1]).model_fields)
+            options = list(model_at(model, error["loc"][:-1]).model_fields)
             known = f"; known: {', '.join(options)}" if options else "; there are no options"
             self.complain(where, f"{name}: unknown option{did_you_mean(str(where[-1]), options)}{known}")
         else:
-            told = isinstance(error["input"], dict) or error["type"] == "missing"
-            given = "" if told else f", not {quoted(error['input'])}"
+            is_clear = isinstance(error["input"], dict) or error["type"] == "missing"
+            given = "" if is_clear else f", not {quoted(error['input'])}"
             if error["type"] == "literal_error":
                 given += did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
             self.complain(where, f"{name}: {error['msg']}{given}")
 
 
-PLAIN_WORDS = {
-    "dict_type": "Input should be a mapping, such as {key: value}",
-    "model_type": "Input should be a mapping, such as {key: value}",
-    "list_type": "Input should be a list, such as [1, 2]",
-    "tuple_type": "Input should be a list, such as [1, 2]",
-    "path_type": "Input should be the path of a file",
-    "int_parsing": "Input should be a valid integer",
-    "float_parsing": "Input should be a valid number",
-}
-"""What pydantic says in words of Python's, by the type of its error."""
-
-
-def _deepest(error: ValidationError, block: Any) -> list[Mapping[str, Any]]:
-    """What pydantic complains of, at places that the block has; of the forms of an option, that which fits farthest."""
-    found: list[dict[str, Any]] = [{**each, "loc": _place_in(block, each["loc"])} for each in error.errors()]
-    places: list[Location] = [each["loc"] for each in found]
-    return [each for each in found if not any(_is_within(place, each["loc"]) for place in places)]
-
-
-def _joined(found: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """The same in plain words; what is wanted at one place said once: `Input should be greater than 0, or 'auto'`."""
-    wanted = "Input should be "
-    joined = dict[tuple[Location, str], dict[str, Any]]()
-    for each in found:
-        said = str(PLAIN_WORDS.get(each["type"]) or each["msg"].removeprefix("Value error, "))
-        key = (each["loc"], "" if said.startswith(wanted) else said)
-        if key in joined and key[1] == "":
-            said = f"{joined[key]['msg']}, or {said.removeprefix(wanted)}"
-        joined[key] = {**each, "msg": said}
-    return list(joined.values())
-
-
-def _is_within(inner: Location, outer: Location) -> bool:
-    return len(inner) > len(outer) and inner[: len(outer)] == outer
-
-
-def _place_in(block: Any, location: Location) -> Location:
-    """A place as the block has it: without the names that pydantic gives the forms of an option that has several."""
-    node: Any = block
-    place = list[Any]()
-    for part in location:
-        if isinstance(part, str) and not isinstance(node, dict) and part != "[key]":
-            continue
-        place.append(part)
-        if isinstance(node, dict | list) and _has(node, part):
-            node = cast(Any, node)[part]
-    return tuple(place)
-
-
 def read_text(path: Path) -> str:
-    """A YAML file's text. Raises: ConfigError, with what is there when the file is not."""
+    """Read the text of a YAML file. Raises: ConfigError; if there is no such file, with a similar name that exists."""
     try:
         return read_bytes(path, MOST_TEXT_BYTES).decode()
     except FileNotFoundError as error:
@@ -218,11 +170,11 @@ def parse_source(
     empty: bool = False,
     shorthand: Shorthand = no_shorthand,
 ) -> Source:
-    """A YAML text whose parts know their places, for whoever checks it.
+    """Parse a YAML text into a source that is ready to be checked.
 
-    what: what the file is, for the complaint about one that is no mapping. empty: one that says nothing is one too.
-    shorthand: of what overrides lead into.
-    Raises: ConfigError if it is no YAML, or no mapping.
+    what: the complaint if the text is not a mapping. empty: accept an empty text as an empty mapping.
+    shorthand: for the blocks that overrides lead into.
+    Raises: ConfigError if the text is not YAML, or not a mapping.
     """
     try:
         tree = parse_value(text)
@@ -241,30 +193,30 @@ def parse_source(
 
 
 def parse_override(text: str) -> tuple[tuple[str, ...], Any]:
-    """The keys and the value of `key.key=value`. Raises: ConfigError if it is none."""
+    """Return the keys and the value of `key.key=value`. Raises: ConfigError if the text has another form."""
     keys, equals, value = text.partition("=")
     parts = tuple(keys.strip().split("."))
     if not equals or not all(parts) or len(parts) > MOST_DEPTH:
-        raise _refused(text, (), "write key.key=value, such as render.stiffness_n_per_m=500")
+        raise _override_error(text, (), "write key.key=value, such as render.stiffness_n_per_m=500")
     try:
         return parts, parse_value(value)
     except YAMLError as error:
-        raise _refused(text, parts, f"{quoted(value)} is not a YAML value: {_problem(error)}") from error
+        raise _override_error(text, parts, f"{quoted(value)} is not a YAML value: {_problem(error)}") from error
 
 
 def parse_value(text: str) -> Any:
-    """What a YAML text says, as the parser's own values. Raises: YAMLError."""
+    """Parse a YAML text into the parser's own values. Raises: YAMLError."""
     if len(text) > MOST_TEXT_BYTES:
         raise YAMLError(f"it holds more than {in_words(MOST_TEXT_BYTES)}")
-    yaml: Any = YAML(typ="rt")  # of ruamel's loaders, the one that knows places
+    yaml: Any = YAML(typ="rt")  # the one loader of ruamel that keeps lines and columns
     yaml.Constructor = BoundedConstructor
-    with warnings.catch_warnings(action="ignore"):  # of anchors that are there twice
+    with warnings.catch_warnings(action="ignore"):  # about anchors that occur twice
         check_events(cast(Any, YAML(typ="rt")).parse(text))
         try:
             return yaml.load(text)
         except YAMLError:
             raise
-        except Exception as error:  # its parser was not written for what is wrong on purpose
+        except Exception as error:  # the parser is not made for hostile input
             raise YAMLError(f"it cannot be parsed: {error}") from error
 
 
@@ -275,53 +227,34 @@ def _problem(error: YAMLError) -> str:
 
 
 def _mark_of(error: YAMLError) -> tuple[int, int] | tuple[()]:
-    """Line and column, from 1, of what a parser complains of; nothing where it does not say."""
+    """Return line and column, from 1, of a parser's error; () if it has none."""
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     return (mark.line + 1, mark.column + 1) if mark else ()
 
 
-def _refused(override: str, location: Location, problem: str) -> ConfigError:
-    return ConfigError(f"{_named(override)}: {problem}", complaints=[Complaint(location, problem)])
+def _override_error(override: str, location: Location, problem: str) -> ConfigError:
+    return ConfigError(f"{_as_typed(override)}: {problem}", complaints=[Complaint(location, problem)])
 
 
-def _named(override: str) -> str:
+def _as_typed(override: str) -> str:
     return f"--set {shown(override)}"
 
 
-def spelt_out(value: Any, option: str) -> dict[str, Any]:
-    """What stands in for a value that is to become a block, where a word alone stands for this option of it."""
+def expand_shorthand(value: Any, option: str) -> dict[str, Any]:
+    """Return the block that replaces a value: with the value as this option, if a bare word may stand for it."""
     return {option: value} if option and isinstance(value, str) else {}
 
 
 def key_of(part: Any, node: Mapping[Any, Any]) -> Any:
-    """Keys are words; labels of a material map are whole numbers."""
+    """Return a key as the tree has it: a word, or a whole number for the labels of a material map."""
     if not isinstance(part, str) or part in node:
         return part
     return int(part) if part.isdecimal() and len(part) <= MOST_DIGITS else part
 
 
 def _word_or_number(part: Any) -> str | int:
-    """A key as JSON can say it."""
+    """Return a key as JSON can express it."""
     return int(part) if isinstance(part, int) and not isinstance(part, bool) else str(part)
-
-
-def _has(node: Any, part: Any) -> bool:
-    return part in node if isinstance(node, dict) else isinstance(part, int) and part < len(node)
-
-
-def _model_at(model: type[BaseModel], location: Iterable[Any]) -> type[BaseModel]:
-    """The innermost of a model's models on the way to a place in it."""
-    for part in location:
-        if isinstance(part, str) and part in model.model_fields:
-            model = next(_models_in(model.model_fields[part].annotation), model)
-    return model
-
-
-def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield annotation
-    for part in get_args(annotation):
-        yield from _models_in(part)
 
 
 def _relative_to(folder: Path, model: BaseModel) -> BaseModel:
@@ -330,7 +263,7 @@ def _relative_to(folder: Path, model: BaseModel) -> BaseModel:
 
 
 def plain(node: Any) -> Any:
-    """Plain Python values, without the parser's own types."""
+    """Return plain Python values in place of the parser's own types."""
     if isinstance(node, dict):
         return {key: plain(value) for key, value in cast("dict[Any, Any]", node).items()}
     if isinstance(node, list):
@@ -339,3 +272,11 @@ def plain(node: Any) -> Any:
         if isinstance(node, kind):
             return kind(node)
     return node
+
+
+def plain_tree(text: str, path: Path) -> dict[Any, Any]:
+    """Return a YAML text as plain values; an empty text is an empty mapping.
+
+    path: the file's name in complaints. Raises: ConfigError if the text is not YAML, or not a mapping.
+    """
+    return plain(parse_source(text, path, "it is a mapping", empty=True).tree)

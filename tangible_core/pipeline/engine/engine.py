@@ -15,7 +15,7 @@ from ...data.products import PRODUCTS
 from ...errors import TangibleError, UnknownMethod
 from ...plugins import hooks
 from ...plugins.interfaces import HapticDevice
-from ...plugins.notes import noted
+from ...plugins.notes import collect_notes
 from ...plugins.registry import Registry
 from ...runtime.stopping import check_stopped, stoppable
 from ...runtime.threads import check_threads, limited_threads
@@ -106,7 +106,7 @@ class Engine:
         """The scene, and the notes from reading it."""
         if isinstance(self.config.scene, Scene):
             return self.config.scene, tuple(map(Note, self.config.scene.notes))
-        with noted() as notes:
+        with collect_notes() as notes:
             scene = Scene.read(self.config.scene, self.config.folder)
         return scene, (*notes, *map(Note, scene.notes))
 
@@ -189,7 +189,7 @@ class Engine:
     def touch_on(self, device: HapticDevice) -> Any:
         """Make a touch for a device that the configuration does not name; all else is shared. Raises: as `make`."""
         other = copy(self)
-        other.config = self.config.changed(device=NamedMethod("", "", device))
+        other.config = self.config.with_values(device=NamedMethod("", "", device))
         other.__dict__.pop("_stages", None)
         for each in ("_made", "_finished", "_full_size"):
             setattr(other, each, {product: made for product, made in getattr(self, each).items() if product != "touch"})
@@ -197,7 +197,7 @@ class Engine:
         self._made |= {product: made for product, made in other._made.items() if product != "touch"}
         return touch
 
-    def changed(self, config: PipelineConfig) -> "Engine":
+    def with_config(self, config: PipelineConfig) -> "Engine":
         """Return an engine of another configuration, which takes over the products that it would make alike."""
         other = Engine(config, self.registry, self.cache)
         other.threads = self.threads
@@ -270,7 +270,7 @@ class Engine:
             self.beside.wait(stage.product)
         start = perf_counter()
         try:
-            with noted() as notes, limited_threads(self.threads):
+            with collect_notes() as notes, limited_threads(self.threads):
                 value = stage.make(inputs)
         except BaseException as error:
             failure = f"{type(error).__name__}: {error}"

@@ -18,8 +18,8 @@ from ...errors import BrokenMethod, ConfigError, Stopped, TangibleError, exited,
 from ...legibility import Legibility
 from ...plugins import failures, hooks
 from ...plugins.interfaces import Exporter
-from ...plugins.naming import named
-from ...plugins.notes import noted
+from ...plugins.naming import plugin_name
+from ...plugins.notes import collect_notes
 from ...plugins.registry import Registry
 from ...runtime.stopping import check_stopped, stoppable
 from ...scene.scene import Scene
@@ -194,7 +194,7 @@ class _Desk:
             self.progress(StageEvent(product, chosen.name))
             hooks.tell(self.engine.registry.plugins, "tangible_stage_started", product=product, method=chosen.name)
             start = perf_counter()
-            with scratch(self.folder) as place, noted() as notes:
+            with scratch(self.folder) as place, collect_notes() as notes:
                 files = self._written(chosen, work, place / stem)
             seconds = perf_counter() - start
             became: OutcomeKind = "ran"
@@ -224,7 +224,7 @@ class _Desk:
         cls = type(chosen.method)
         written = chosen.method.write(work, stem)
         check_stopped()
-        found = check_written(written, stem, named("export", cls.__module__, cls.__qualname__))
+        found = check_written(written, stem, plugin_name("export", cls.__module__, cls.__qualname__))
         return move(found, self.folder, self.source, chosen.name, self.force)
 
 
@@ -234,7 +234,7 @@ def work_for(engine: Engine, exporter: Exporter) -> Work:
     Raises: BrokenMethod for a product that nothing makes; TangibleError as `Engine.make`.
     """
     if odd := [each for each in exporter.needs if each not in EXPORTABLE]:
-        who = named("export", type(exporter).__module__, type(exporter).__qualname__)
+        who = plugin_name("export", type(exporter).__module__, type(exporter).__qualname__)
         raise BrokenMethod(f"{who}: needs {quoted(odd[0])}; an exporter may need {', '.join(EXPORTABLE)}")
     products: dict[str, Record | None] = {name: engine.felt(name) for name in exporter.needs}
     views = engine.scene.views

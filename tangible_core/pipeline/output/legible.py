@@ -47,7 +47,7 @@ def of_width(engine: Engine, width_m: float | None) -> Engine:
         workspace = Workspace.model_validate({**dict(config.workspace), "width_m": width_m, "finest_m": finest_m})
     except ValueError as error:
         raise ConfigError(f"width_m: is {quoted(width_m)}; a width is from 1e-6 to 10 m") from error
-    return engine.changed(config.changed(workspace=workspace))
+    return engine.with_config(config.with_values(workspace=workspace))
 
 
 def names(config: PipelineConfig, products: Mapping[str, Record | None]) -> tuple[str, ...]:

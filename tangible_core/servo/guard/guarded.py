@@ -1,4 +1,4 @@
-"""A law and its guard, for loops that are Python's."""
+"""A force law behind its guard, for loops in Python."""
 
 from collections.abc import Callable
 from typing import Any, cast
@@ -11,7 +11,7 @@ from ...plugins.interfaces import Touch
 from . import layout
 
 Guarded = Callable[[HapticState, float], tuple[Force, int]]
-"""(state, seconds since the one before) -> the force that may leave, and the sum of its `TickFlag`s."""
+"""(state, seconds since the state before) -> the allowed force, and the sum of its `TickFlag`s."""
 
 
 def guarded(
@@ -20,9 +20,10 @@ def guarded(
     memory: np.ndarray,
     pull: Callable[[float, float, float, float, float, int], int] | None = None,
 ) -> Guarded:
-    """What asks a law for its force and lets through what its guard, with the arrays of `Safety.arrays`, allows.
+    """Return a function that asks the force law for its force and passes on what the guard allows.
 
-    pull: what a beacon does in a tick (`pulling`), whose force joins the law's.
+    settings, memory: the arrays of `Safety.arrays`. pull: a beacon's tick (`pulling`), whose force is added to the
+    law's.
     """
     from . import guard
 

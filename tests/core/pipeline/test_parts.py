@@ -234,7 +234,7 @@ class TestCached:
         first = load_pipeline(written(folder, f"{SAID}heights: given\n"))
         first.engine.cache = None
         first.make("surface")
-        config = first.config.changed(parts={**(first.config.parts or {}), 0: PartChoice(name="sky")})
+        config = first.config.with_values(parts={**(first.config.parts or {}), 0: PartChoice(name="sky")})
         again = first.changed(config)
         assert again.surface.names is not None and again.surface.names[0] == "sky"
         assert again.materials is not None and "part 0 (sky)" in again.materials.reasons[0]

@@ -41,7 +41,7 @@ from tangible_core import DisparityMap, Force
 from tangible_core.plugins import DepthEstimator, ForceRenderer, HapticDevice
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.plugins.interfaces import PlainTouch
-from tangible_core.testing.loop_devices import SPEC
+from loop_devices import SPEC
 
 FELT = pathlib.Path(__file__).with_suffix(f".{os.getpid()}.felt")
 

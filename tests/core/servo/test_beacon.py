@@ -11,11 +11,13 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from faulty_touch import FaultyTouch
+from loop_devices import SPEC, Circling, Failing
 from tangible_core.data import Force, HapticState, HapticSurface, Relief, ServoReport, TickFlag, beacon_part
 from tangible_core.errors import ConfigError, DeviceError, GeometryError
 from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.plugins.registry import load_method
-from tangible_core.servo import Beacon, Safety, Servo, beacon_kernels, beacon_to, still
+from tangible_core.servo import Beacon, Safety, Servo, beacon_kernels, beacon_to, null_touch
 from tangible_core.servo.beacon import (
     ASKED,
     LET_GO,
@@ -41,8 +43,6 @@ from tangible_core.session import (
     run_in_turn,
     run_simulated,
 )
-from tangible_core.testing.loop_devices import SPEC, Circling, Failing
-from tangible_core.testing.loop_laws import FaultyTouch
 from tangible_devices import Mock
 
 WIDTH_M, LENGTH_M = 0.08, 0.06
@@ -300,7 +300,7 @@ class TestThroughTheGuard:
         allowed = guarded(Wall(), settings, memory, pulling(asked.arrays, memory))
         for _ in range(900):
             allowed(HapticState((-0.03, -0.02, 0.01)), T)
-        assert memory[layout.SOFTNESS] == pytest.approx(2400 / 2460, abs=0.002)
+        assert memory[layout.GAIN] == pytest.approx(2400 / 2460, abs=0.002)
 
 
 class TestNames:
@@ -411,7 +411,7 @@ def test_in_the_loop_s_own_process_it_is_switched_while_feeling_and_released_by_
 @pytest.mark.usefixtures("patient")
 @pytest.mark.usefixtures("loop_in_thread")
 def test_scenes_in_turn_pull_each_to_its_own_until_a_button_is_pressed():
-    turns = [Turn(still(), AT_ONCE, SURFACE, beacon_to(SURFACE, part)) for part in (1, 4)]
+    turns = [Turn(null_touch(), AT_ONCE, SURFACE, beacon_to(SURFACE, part)) for part in (1, 4)]
     rows: list[np.ndarray] = []
     stop = Event()
 
@@ -431,7 +431,7 @@ def test_scenes_in_turn_pull_each_to_its_own_until_a_button_is_pressed():
         if report.beacon == 1:
             stop.set()
 
-    one = run_in_real_time(still(), Circling(), IN_TIME_S, AT_ONCE, heard, beacon=turns[0].beacon, stop=stop)
+    one = run_in_real_time(null_touch(), Circling(), IN_TIME_S, AT_ONCE, heard, beacon=turns[0].beacon, stop=stop)
     assert one.beacon == 1
 
 
@@ -467,10 +467,10 @@ class TestSessionsAndRecordings:
 
         ring = Ring.create(64)
         try:
-            ring.room_for_a_beacon()
+            ring.allocate_beacon()
             monkeypatch.setattr("os.posix_fallocate", full, raising=False)
             with pytest.raises(DeviceError, match="no room for a beacon: No space left"):
-                ring.room_for_a_beacon()
+                ring.allocate_beacon()
         finally:
             ring.remove()
 

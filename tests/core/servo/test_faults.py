@@ -18,6 +18,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from faulty_touch import FaultyTouch
+from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.errors import BrokenMethod, DeviceError
 from tangible_core.plugins.interfaces import Touch
@@ -26,8 +28,6 @@ from tangible_core.servo.child import Child
 from tangible_core.servo.parcel import pack
 from tangible_core.servo.ring import COUNT, LAST, PERIOD_NS, STOP, SWAP, Ring, shared_folder
 from tangible_core.servo.wire import Start, StartReply, Swap, SwapReply, receive, send
-from tangible_core.testing.loop_devices import Circling, Failing
-from tangible_core.testing.loop_laws import FaultyTouch
 
 pytestmark = pytest.mark.usefixtures("own_memory")
 
@@ -157,8 +157,8 @@ import signal, time, numpy as np
 from pathlib import Path
 from tangible_core import HapticSurface, load_method
 from tangible_core.servo import Safety, Servo
-from tangible_core.testing.loop_devices import Failing
-from tangible_core.testing.loop_laws import FaultyTouch
+from loop_devices import Failing
+from faulty_touch import FaultyTouch
 signal.signal(signal.SIGINT, signal.default_int_handler)
 device = Failing(fault="none", record={record!r}, simulated=False)
 Path({ready!r}).touch()
@@ -245,7 +245,7 @@ class TestStandstill:
             until(lambda: held(record) > 0)
             os.kill(servo.process_id, number)
             until(lambda: not servo.running)
-            assert servo.report().stopped == "the process was asked to end"
+            assert servo.report().stopped == "the process received a signal to end"
             assert held(record) == 0
 
     def test_a_signal_that_the_program_ignores_ends_its_loop_neither(self, tmp_path: Path) -> None:
@@ -297,7 +297,7 @@ class TestWhatAPluginRaises:
 
     @pytest.mark.parametrize(
         ("law", "fault", "name"),
-        [(FaultyTouch("exits"), "none", "loop_laws"), (FaultyTouch(), "exits", "loop_devices")],
+        [(FaultyTouch("exits"), "none", "faulty_touch"), (FaultyTouch(), "exits", "loop_devices")],
     )
     def test_sys_exit_is_an_error_that_names_the_plugin(self, tmp_path: Path, law, fault, name: str) -> None:
         record = tmp_path / "force"
@@ -430,7 +430,7 @@ ENDS: list[Callable[[Session], None]] = [
 @pytest.fixture
 def in_this_process(monkeypatch: pytest.MonkeyPatch):
     """Neither real-time rights nor locked memory are asked for, and what is collected stays so."""
-    monkeypatch.setattr(priority, "ask", lambda: (False, "nothing asked"))
+    monkeypatch.setattr(priority, "request", lambda: (False, "nothing asked"))
     yield
     gc.unfreeze()
 
@@ -478,7 +478,7 @@ def test_no_sigterm_is_lost_among_swaps(round: int, tmp_path: Path) -> None:
     with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE) as servo:
         timer = threading.Timer(random.Random(round).uniform(0, 0.2), os.kill, [servo.process_id, signal.SIGTERM])
         timer.start()
-        with pytest.raises(DeviceError, match="asked to end"):
+        with pytest.raises(DeviceError, match="received a signal to end"):
             for _ in range(100_000):
                 servo.swap(FaultyTouch())
         timer.join()

@@ -12,6 +12,7 @@ import pytest
 
 from ctrl_c import hearing
 from full_disk import files_up_to
+from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import ServoReport
 from tangible_core.errors import OutputError
@@ -21,7 +22,6 @@ from tangible_core.servo.loop import sections
 from tangible_core.servo.ring import STOP
 from tangible_core.session import INTERRUPTED, Keeper, Recording, figures, keeping, run_in_real_time
 from tangible_core.session.tick_file import About
-from tangible_core.testing.loop_devices import Circling, Failing
 
 pytestmark = pytest.mark.usefixtures("patient")
 

@@ -12,7 +12,7 @@ from tangible_core.errors import DeviceError
 from tangible_core.servo import Ring, cycle, parcel, ring
 from tangible_core.servo.guard.layout import COUNTS
 from tangible_core.servo.loop import sections
-from tangible_core.servo.reports import Counted, report, spread
+from tangible_core.servo.reports import LoopTotals, report, spread
 from tangible_core.servo.ring import (
     COUNT,
     IS_LAYOUT,
@@ -381,7 +381,7 @@ class TestReport:
         small.guard[COUNTS + 2] = 8
         small.header[OVERRUNS] = 3
         one = report(small)
-        both = report(small, "over", Counted.of(small), 100.0)
+        both = report(small, "over", LoopTotals.of(small), 100.0)
         assert (both.ticks, both.overruns, both.flagged) == (40, 6, {"SLEW_LIMITED": 16})
         assert (both.time_s, both.work_j) == (one.time_s + 100, 2 * one.work_j)
         same = ("peak_force_n", "period_us", "late_us", "contact_share", "median_contact_force_n")

@@ -2,15 +2,18 @@
 
 import inspect
 import logging
+import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 import pytest
 from pydantic import ConfigDict, Field
 
+import loop_devices
 from tangible_core import DisparityMap, Views
 from tangible_core.errors import BrokenMethod, UnknownMethod
 from tangible_core.plugins import DepthEstimator
@@ -19,9 +22,8 @@ from tangible_core.testing import (
     CheckFailure,
     CheckResult,
     checks,
-    checks_listing,
-    checks_options,
     conforms,
+    every_method,
     run_checks,
 )
 
@@ -167,7 +169,7 @@ LISTINGS = {
 }
 
 
-@pytest.mark.parametrize("check", checks_listing.CHECKS)
+@pytest.mark.parametrize("check", every_method.LISTING_CHECKS)
 def test_a_listing_that_fails_the_check(install, check):
     name, source, complaint = LISTINGS[check.__name__]
     install("acme", {"tangible.depth": {name: "acme:Mine"}}, acme=source)
@@ -175,7 +177,7 @@ def test_a_listing_that_fails_the_check(install, check):
         check(Registry().find("depth", name))
 
 
-@pytest.mark.parametrize("check", checks_listing.CHECKS)
+@pytest.mark.parametrize("check", every_method.LISTING_CHECKS)
 def test_a_listing_that_keeps_the_check(registry, check):
     check(registry.find("depth", "mine"))
 
@@ -183,20 +185,20 @@ def test_a_listing_that_keeps_the_check(registry, check):
 def test_a_module_that_cannot_be_imported_is_not_light(install):
     install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme="import nothing_there")
     with pytest.raises(CheckFailure, match="acme cannot be imported: ModuleNotFoundError: No module named 'nothing"):
-        checks_listing.import_is_light(Registry().find("depth", "mine"))
+        every_method.import_is_light(Registry().find("depth", "mine"))
 
 
 @pytest.mark.parametrize("name", ["gabor", "opencv-sgbm", "zncc-7x7", "a1", "3mf"])
 def test_names_that_are_plain(install, name):
     install("acme", {"tangible.depth": {name: "acme:Mine"}}, acme=SOURCE)
-    checks_listing.name_is_plain(Registry().find("depth", name))
+    every_method.name_is_plain(Registry().find("depth", name))
 
 
 @pytest.mark.parametrize("name", ["Gabor", "two words", "a_b", "-a", "a-", "a--b", "1a", "1e3", "0xff", "a.b"])
 def test_names_that_are_not(install, name):
     install("acme", {"tangible.depth": {name: "acme:Mine"}}, acme=SOURCE)
     with pytest.raises(CheckFailure, match="lower-case words joined by hyphens"):
-        checks_listing.name_is_plain(Registry().find("depth", name))
+        every_method.name_is_plain(Registry().find("depth", name))
 
 
 class Six(DepthEstimator):
@@ -253,21 +255,21 @@ OPTIONS: dict[str, Any] = {
 }
 
 
-@pytest.mark.parametrize("check", checks_options.CHECKS)
+@pytest.mark.parametrize("check", every_method.OPTION_CHECKS)
 def test_options_that_fail_the_check(check):
     with pytest.raises(Exception) as caught:
         check(OPTIONS[check.__name__])
     assert isinstance(caught.value, CheckFailure) or check.__name__ == "schema_can_be_made"
 
 
-@pytest.mark.parametrize("check", checks_options.CHECKS)
+@pytest.mark.parametrize("check", every_method.OPTION_CHECKS)
 def test_options_that_keep_the_check(check):
     check(Six(shift_px=3.0))
 
 
 MOTOR = '''
     from tangible_core.data import DeviceSpec
-    from tangible_core.testing.loop_devices import Failing
+    from loop_devices import Failing
 
     class Motor(Failing):
         """A device that is real, as far as anybody can tell."""
@@ -286,7 +288,7 @@ def test_a_real_device_is_not_pushed_with_unless_that_is_asked_for(install, tmp_
     site = install("acme", {"tangible.device": {"motor": "acme:Motor"}}, acme=MOTOR)
     module = 'from tangible_core.testing import conforms\n\ntest_motor = conforms("device", "motor")\n'
     tmp_path.joinpath("test_motor.py").write_text(module)
-    monkeypatch.setenv("PYTHONPATH", str(site))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(site), str(Path(loop_devices.__file__).parent)]))
     monkeypatch.delenv("TANGIBLE_MOTORS", raising=False)
     if allowed:
         monkeypatch.setenv("TANGIBLE_MOTORS", allowed)

@@ -24,16 +24,8 @@ from tangible_core.plugins import (
     Touch,
     Work,
 )
-from tangible_core.testing import (
-    CheckFailure,
-    checks_depth,
-    checks_device,
-    checks_export,
-    checks_render,
-    checks_texture,
-    checks_touch,
-)
-from tangible_core.testing.whole_files import demand_whole
+from tangible_core.testing import CheckFailure, kinds
+from tangible_core.testing.kinds.whole_files import demand_whole
 
 ticket = count()
 """What a method must not have: a memory of its own."""
@@ -290,25 +282,25 @@ class NeedsATouch(Note):
 
 
 EXPORT: dict[str, Exporter] = {
-    **{check.__name__: Note(fault=check.__name__) for check in checks_export.CHECKS},
+    **{check.__name__: Note(fault=check.__name__) for check in kinds.export.CHECKS},
     "needs_are_products": NeedsATouch(),
     "plain_scene_is_written": Note(fault="reads_more"),
 }
 
 
 FAMILIES: list[tuple[Any, Any, dict[str, Any]]] = [
-    (checks_depth.CHECKS, Depth(), {name: Depth(twist=twist) for name, twist in DEPTH.items()}),
-    (checks_texture.CHECKS, Texture(), {name: Texture(twist=twist) for name, twist in TEXTURE.items()}),
-    ((*checks_render.CHECKS, *checks_touch.CHECKS), Render(), RENDER),
-    (checks_device.CHECKS, Gadget(), {check.__name__: Gadget(fault=check.__name__) for check in checks_device.CHECKS}),
-    (checks_export.CHECKS, Note(), EXPORT),
+    (kinds.depth.CHECKS, Depth(), {name: Depth(twist=twist) for name, twist in DEPTH.items()}),
+    (kinds.texture.CHECKS, Texture(), {name: Texture(twist=twist) for name, twist in TEXTURE.items()}),
+    ((*kinds.render.CHECKS, *kinds.touch.CHECKS), Render(), RENDER),
+    (kinds.device.CHECKS, Gadget(), {check.__name__: Gadget(fault=check.__name__) for check in kinds.device.CHECKS}),
+    (kinds.export.CHECKS, Note(), EXPORT),
 ]
 RIGHT = [pytest.param(check, right, id=check.__name__) for checks, right, _ in FAMILIES for check in checks]
 WRONG = [
     pytest.param(check, wrong.get(check.__name__), id=check.__name__)
     for checks, _, wrong in FAMILIES
     for check in checks
-    if check is not checks_depth.nan_is_refused  # no method can fail it: Views lets no NaN through
+    if check is not kinds.depth.nan_is_refused  # no method can fail it: Views lets no NaN through
 ]
 
 
@@ -330,7 +322,7 @@ def test_a_method_that_raises_without_a_right_view_says_so_in_its_class():
 
     for method, says in ((Silent(), "write `needs_pair"), (Boasts(), "leave that out")):
         with pytest.raises(CheckFailure, match=says):
-            checks_depth.one_view_is_answered(method)
+            kinds.depth.one_view_is_answered(method)
 
 
 @pytest.mark.parametrize(("check", "method"), WRONG)
@@ -343,10 +335,10 @@ def test_a_method_that_is_wrong(check, method):
 @pytest.mark.parametrize(
     ("fault", "check"),
     [
-        ("is_empty", checks_export.plain_scene_is_written),
-        ("leaves_a_draft", checks_export.nothing_else_is_left),
-        ("says_the_day", checks_export.same_work_same_files),
-        ("ascii", checks_export.every_work_is_answered),
+        ("is_empty", kinds.export.plain_scene_is_written),
+        ("leaves_a_draft", kinds.export.nothing_else_is_left),
+        ("says_the_day", kinds.export.same_work_same_files),
+        ("ascii", kinds.export.every_work_is_answered),
     ],
 )
 def test_an_exporter_that_is_wrong_in_another_way(fault, check):

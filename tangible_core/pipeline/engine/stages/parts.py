@@ -55,7 +55,7 @@ class PartsStage(Stage):
         cure = (
             "give it a label picture, `segments:` under `scene:`, or name a method under `texture:` that finds segments"
         )
-        return config.complained(((key,), f"parts are pieces of segments, and the scene has none; {cure}"))
+        return config.error_at(((key,), f"parts are pieces of segments, and the scene has none; {cure}"))
 
     @property
     def listed(self) -> bool:

@@ -1,4 +1,4 @@
-"""YAML that costs more than it looks: each is one complaint with its place, soon."""
+"""Hostile YAML: each text gives one complaint with its place, quickly."""
 
 from pathlib import Path
 
@@ -32,7 +32,7 @@ def complaint(text: str) -> str:
 
 @pytest.mark.timeout(60)
 @pytest.mark.parametrize("name", YAML_BOMBS)
-def test_a_bomb_is_a_few_lines_of_complaint(name: str):
+def test_yaml_bomb_as_a_pipeline_gives_few_short_complaints(name: str):
     with pytest.raises(ConfigError) as error:
         parse_config(YAML_BOMBS[name], PATH, default_registry())
     lines = str(error.value).splitlines()
@@ -43,7 +43,7 @@ def test_a_bomb_is_a_few_lines_of_complaint(name: str):
 
 @pytest.mark.timeout(60)
 @pytest.mark.parametrize("name", YAML_BOMBS)
-def test_a_bomb_among_materials(name: str):
+def test_yaml_bomb_as_materials_gives_few_short_complaints(name: str):
     with pytest.raises(ConfigError) as error:
         parse_materials(YAML_BOMBS[name], PATH, {})
     assert len(str(error.value)) <= (MOST_LINES + 1) * (MOST_IN_LINE + 1)
@@ -53,12 +53,12 @@ def deep(levels: int) -> str:
     return "x: " + "[" * (levels - 1) + "1" + "]" * (levels - 1)
 
 
-def test_blocks_within_each_other_up_to_a_depth():
+def test_nested_blocks_beyond_the_depth_limit_are_refused():
     assert parse(deep(MOST_DEPTH)).tree
     assert complaint(deep(MOST_DEPTH + 1)) == f"here/p.yaml:1:23: more than {MOST_DEPTH} blocks are nested"
 
 
-def test_values_up_to_a_number(monkeypatch: pytest.MonkeyPatch):
+def test_values_beyond_the_count_limit_are_refused(monkeypatch: pytest.MonkeyPatch):
     """The mapping, a key, the list, and its items."""
     monkeypatch.setattr(bounds, "MOST_NODES", 100)
     assert parse(f"x: [{'1,' * 97}]").tree
@@ -66,7 +66,7 @@ def test_values_up_to_a_number(monkeypatch: pytest.MonkeyPatch):
     assert "more than 100 values" in complaint("\n".join(f"x{number}: 1" for number in range(50)))
 
 
-def test_an_alias_counts_as_all_that_it_stands_for(monkeypatch: pytest.MonkeyPatch):
+def test_alias_counts_as_all_nodes_that_it_stands_for(monkeypatch: pytest.MonkeyPatch):
     """The mapping, two keys, a list of 9 in it, and another list of what is left."""
     monkeypatch.setattr(bounds, "MOST_NODES", 100)
     text = f"a: &a [{'1,' * 9}]\nb: [{{}}]"
@@ -75,18 +75,18 @@ def test_an_alias_counts_as_all_that_it_stands_for(monkeypatch: pytest.MonkeyPat
     assert "values, aliases expanded" in complaint(text.format("*a," * 9))
 
 
-def test_a_rule_for_each_of_as_many_segments_as_there_may_be_is_no_bomb():
+def test_rules_for_the_most_segments_stay_within_the_limits():
     text = "rules:\n" + "".join(f"- {{segment: {label}, material: ice}}\n" for label in range(MAX_LABELS))
     assert len(text) < MOST_TEXT_BYTES
     assert 5 * MAX_LABELS + 3 < MOST_NODES
 
 
-def test_an_anchor_that_is_there_twice_is_the_last_one():
+def test_anchor_defined_twice_means_the_last_definition():
     text = f"a: &a [{'1,' * 300}]\nb: &a [1]\nc: [{'*a,' * 1000}]"
     assert len(parse(text).tree["c"]) == 1000
 
 
-def test_aliases_are_followed():
+def test_aliases_are_expanded():
     tree = parse("a: &a {b: 1}\nc: *a\nd: {<<: *a, e: 2}\nf: &f word\n*f : 3\n").tree
     assert (tree["c"]["b"], tree["d"]["b"], tree["d"]["e"], tree["word"]) == (1, 1, 2, 3)
 
@@ -95,16 +95,16 @@ def test_aliases_are_followed():
     ("text", "place"),
     [("a: &a [*a]", "1:8"), ("a: &a {b: [1, *a]}", "1:15"), ("a: &a {<<: *a}", "1:12"), ("&a\nb: *a", "2:4")],
 )
-def test_an_alias_within_itself_has_a_place(text: str, place: str):
+def test_alias_inside_its_own_anchor_is_refused_with_its_place(text: str, place: str):
     assert complaint(text) == f"here/p.yaml:{place}: an alias refers to a block that contains it"
 
 
 @pytest.mark.parametrize("text", ["? [a]\n: b", "{[a]: b}", "? {a: b}\n: c", "a: &a [1]\n*a : c", "? " * 20])
-def test_a_key_is_a_word(text: str):
+def test_key_that_is_a_block_is_refused(text: str):
     assert "a key must be a word or a number" in complaint(text)
 
 
-def test_a_number_has_so_many_digits():
+def test_number_with_too_many_digits_is_refused():
     assert parse("x: " + "9" * MOST_DIGITS).tree["x"] == int("9" * MOST_DIGITS)
     assert complaint("x: " + "9" * (MOST_DIGITS + 1)) == f"here/p.yaml:1:4: a number of more than {MOST_DIGITS} digits"
     assert "digits" in complaint("x: 0." + "9" * MOST_DIGITS)
@@ -112,19 +112,19 @@ def test_a_number_has_so_many_digits():
 
 
 @pytest.mark.parametrize("text", ["2024-01-01", "2024-13-45", "2024-02-30T99:99:99Z", "0000-00-00"])
-def test_a_date_is_a_word(text: str):
+def test_date_is_read_as_text(text: str):
     assert parse(f"photo: {text}").tree["photo"] == text
 
 
 @pytest.mark.parametrize("text", ["!!int word", "!!float word", "!!binary zzz", "!!bool 7", "!!null x"])
-def test_what_is_not_what_its_tag_says(text: str):
+def test_value_that_contradicts_its_tag_is_refused_with_its_place(text: str):
     try:
         parse(f"x: {text}")
     except ConfigError as error:
         assert str(error).startswith("here/p.yaml:1:4: ")
 
 
-def test_a_text_has_so_many_bytes(tmp_path: Path):
+def test_text_with_too_many_bytes_is_refused(tmp_path: Path):
     from tangible_core.files.yaml.source import read_text
 
     (tmp_path / "a.yaml").write_text("x: 1\n" + "#" * (MOST_TEXT_BYTES - 5))
@@ -135,12 +135,12 @@ def test_a_text_has_so_many_bytes(tmp_path: Path):
     assert complaint("#" * (MOST_TEXT_BYTES + 1)) == "here/p.yaml: it holds more than 0.25 MB"
 
 
-def test_the_nine_lines_are_nine():
+def test_billion_laughs_has_nine_lines():
     assert len(LAUGHS.splitlines()) == 9
 
 
 @pytest.mark.parametrize(
-    ("override", "says"),
+    ("override", "reason"),
     [
         ("scene=" + "[" * 500, "blocks are nested"),
         ("scene=*a", "undefined alias"),
@@ -151,10 +151,10 @@ def test_the_nine_lines_are_nine():
         ("²=1", ""),
     ],
 )
-def test_an_override_is_bounded_too(override: str, says: str):
+def test_hostile_override_gives_one_short_complaint(override: str, reason: str):
     with pytest.raises(ConfigError) as error:
         parse_config("scene: builtin/brick", PATH, default_registry(), [override])
     (line,) = str(error.value).splitlines()
     assert line.startswith("--set ")
-    assert says in line
+    assert reason in line
     assert len(line) < 500

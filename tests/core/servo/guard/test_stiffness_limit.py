@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from simulated_handle import Handle, comes_to_rest, ride, stiffest_stable_n_per_m, wall
 from tangible_core.data import DeviceSpec, HapticSurface
 from tangible_core.plugins.registry import load_method
 from tangible_core.servo.guard.safety import Safety, stiffness_limit_n_per_m
-from tangible_core.testing.handle import Handle, comes_to_rest, ride, stiffest_stable_n_per_m, wall
 
 DAMPING = 2.0
 SPEC = DeviceSpec(100.0, 1e7, DAMPING, (0.08, 0.08, 0.08), 1e-6)

@@ -131,7 +131,7 @@ class TestAccount:
         for _ in range(20):
             felt.tick(0.009, 5e-5)
         restart(felt.memory)
-        assert felt.memory[[at.GIVEN_J, at.LIFT_N, at.ROSE_M]].tolist() == [0, 0, 0]
+        assert felt.memory[[at.GIVEN_J, at.SURFACE_FORCE_N, at.LAST_RISE_M]].tolist() == [0, 0, 0]
 
     def test_of_a_surface_that_stands_still_nothing_of_this_has_a_say(self):
         """To the last bit."""
@@ -193,7 +193,7 @@ class TestCoupling:
             felt.tick(hand_m)
         wanted_n = stiffness_n_per_m * (0.01 - hand_m)
         assert 0.1 < felt.force_n < 0.3 * wanted_n
-        assert felt.memory[at.LIFT_N] == pytest.approx(felt.force_n, rel=0.01)
+        assert felt.memory[at.SURFACE_FORCE_N] == pytest.approx(felt.force_n, rel=0.01)
 
 
 def damped_share(

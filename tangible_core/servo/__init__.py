@@ -3,10 +3,11 @@
 from .beacon import Beacon, BeaconState, beacon_to
 from .child import TERMINATED
 from .guard.safety import Safety
-from .host import OVER, Servo
+from .host import Servo
 from .packed import Packed, pack_touch
 from .ring import Ring
 from .still import null_touch
+from .supervisor import OVER
 
 packed, still = pack_touch, null_touch
 """Former names of these two functions."""

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from tangible_core.servo import child, host, priority
+from tangible_core.servo import child, priority, supervisor
 
 
 class LoopThread(subprocess.Popen[bytes]):
@@ -65,7 +65,7 @@ class _Commands(io.FileIO):
 def loops_in_threads(patch: pytest.MonkeyPatch) -> None:
     """Start each loop in a thread from now on; it locks no memory, and leaves collecting garbage alone."""
     popen: dict[str, Any] = {**vars(subprocess), "Popen": LoopThread}
-    patch.setattr(host, "subprocess", SimpleNamespace(**popen))
+    patch.setattr(supervisor, "subprocess", SimpleNamespace(**popen))
     patch.setattr(child, "gc", SimpleNamespace(freeze=lambda: None, collect=lambda: None))
     asked = priority._c
     patch.setattr(priority, "_c", lambda name: (lambda *_: -1) if name == "mlockall" else asked(name))

@@ -11,13 +11,13 @@ from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import Film, HapticDevice, Touch, touch_of
 from . import parcel
 from .beacon import ALL_BUTTONS, ASKED, SEEN, Beacon, BeaconState
+from .framing import Start, StartReply, Swap, SwapReply
 from .guard.safety import Safety
 from .guard.stiffness import stiffness_of
-from .packed import Packed
+from .packed_touch import Packed
 from .reports import report
 from .ring import LAST, PERIOD_NS, STOP, Ring
 from .supervisor import NOT_STARTED, OVER, STOOD_STILL, STOPPING_S, LoopProcess
-from .wire import Start, StartReply, Swap, SwapReply
 
 FOREVER = 2**62
 """Number of ticks of a loop without end."""

@@ -13,8 +13,8 @@ import numpy as np
 from ..errors import DeviceError
 from ..plugins.interfaces import HapticDevice
 from ..runtime.child_process import command
+from .framing import End, Refusal, Start, receive, send, sendable
 from .ring import COUNT, LAST, STOP, Ring
-from .wire import End, Refusal, Start, receive, send, sendable
 
 log = logging.getLogger(__name__)
 COMPILING_S = 300.0

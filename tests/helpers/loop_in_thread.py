@@ -13,7 +13,8 @@ from typing import Any
 
 import pytest
 
-from tangible_core.servo import child, priority, supervisor
+from tangible_core.servo import child, supervisor
+from tangible_core.servo.ticks import priority
 
 
 class LoopThread(subprocess.Popen[bytes]):

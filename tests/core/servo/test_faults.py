@@ -23,11 +23,12 @@ from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.errors import BrokenMethod, DeviceError
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.servo import Safety, Servo, host, loop, priority, supervisor
+from tangible_core.servo import Safety, Servo, host, supervisor
 from tangible_core.servo.child import Child
+from tangible_core.servo.framing import Start, StartReply, Swap, SwapReply, receive, send
 from tangible_core.servo.parcel import pack
 from tangible_core.servo.ring import COUNT, LAST, PERIOD_NS, STOP, SWAP, Ring, shared_folder
-from tangible_core.servo.wire import Start, StartReply, Swap, SwapReply, receive, send
+from tangible_core.servo.ticks import loop, priority
 
 pytestmark = pytest.mark.usefixtures("own_memory")
 

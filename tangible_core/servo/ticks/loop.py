@@ -6,12 +6,12 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from ..compiled.touch import FRAME, CompiledLink, CompiledTouch, moving_of
-from ..data import TICK_COLUMNS, HapticState, TickFlag
-from ..plugins.interfaces import Link, Touch
-from .guard.guarded import guarded
-from .pulling import pulling
-from .ring import (
+from ...compiled.touch import FRAME, CompiledLink, CompiledTouch, moving_of
+from ...data import TICK_COLUMNS, HapticState, TickFlag
+from ...plugins.interfaces import Link, Touch
+from ..guard.guarded import guarded
+from ..pulling import pulling
+from ..ring import (
     COUNT,
     LEAD_NS,
     MARKS,
@@ -61,8 +61,8 @@ class Kernel(NamedTuple):
 
 def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
     """Return the fastest loop for this device and force law, with all kernels compiled or loaded."""
+    from ..guard import guard
     from . import clock, cycle
-    from .guard import guard
 
     cast(Any, guard).restart(np.zeros_like(ring.guard))  # `take_over` needs it between two ticks
     kernels = cast(Any, cycle)
@@ -100,7 +100,7 @@ def start_clock(header: np.ndarray, real_time: bool) -> None:
 
 def take_over(ring: Ring) -> None:
     """Go on with a new scene, whose force fades in; this ends a beacon, which pulled to a part of the scene before."""
-    from .guard import guard
+    from ..guard import guard
 
     cast(Any, guard).restart(ring.guard)
     ring.beacon.leave()
@@ -109,7 +109,7 @@ def take_over(ring: Ring) -> None:
 
 
 def _kernels(link: CompiledLink, touch: CompiledTouch) -> tuple[Any, Any]:
-    from ..compiled.kernels import Address
+    from ...compiled.kernels import Address
 
     read, write, of_link = link.kernels()
     return (of_link, Address(read), Address(write)), (

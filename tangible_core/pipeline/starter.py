@@ -83,7 +83,7 @@ def pipeline_of(pictures: Sequence[Path], overrides: Sequence[str] = ()) -> Pipe
     made = starter(pictures, path)
     config = parse_config(made.text, path, registry, overrides)
     if not any(each.lstrip().startswith("scene") for each in overrides):
-        config = config.changed(scene=made.scene)  # it need not be read again
+        config = config.with_values(scene=made.scene)  # it need not be read again
     return Pipeline.from_config(config, registry, Cache())
 
 

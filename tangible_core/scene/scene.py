@@ -14,7 +14,7 @@ from pydantic import ValidationError
 
 from ..data import Calibration, DisparityMap, Record, Relief, SegmentMap, Views
 from ..data.arguments import as_picture
-from ..data.pictures import fill_non_finite, filled, opaque
+from ..data.pictures import fill_from_nearest, fill_non_finite, opaque
 from ..errors import ConfigError, PictureError, wrong_argument
 from ..files.paths import as_path
 from .formats.height_maps import Measured, in_metres, picture_said, said_of
@@ -413,7 +413,7 @@ def _cut_out(held: dict[str, np.ndarray], files: SceneFiles, say: Say) -> np.nda
             raise PictureError(f"{getattr(files, name)}: all of the picture is transparent; there is nothing to feel")
         held[name] = np.ascontiguousarray(held[name][..., :3])
         if not shown[name].all():
-            held[name] = filled(held[name], shown[name])
+            held[name] = fill_from_nearest(held[name], shown[name])
     main = shown.get(files.main)
     if main is None or main.all():
         return None

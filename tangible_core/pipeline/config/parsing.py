@@ -67,7 +67,7 @@ def config_of(scene: Scene, registry: Registry, **arguments: Any) -> PipelineCon
         raise without_places(source)
     config = PipelineConfig(scene=scene, measured=scene.measured, **taken)
     if wrong := list(wrong_of_parts(config)):
-        raise config.complained(*wrong)
+        raise config.error_at(*wrong)
     return config
 
 

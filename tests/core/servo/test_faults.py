@@ -1,5 +1,6 @@
 """What goes wrong around a force loop: each fault ends with no force, in a time that is bounded, and is said."""
 
+import copyreg
 import gc
 import io
 import os
@@ -18,7 +19,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from faulty_touch import FaultyTouch
+from faulty_touch import FaultyTouch, OddError
 from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.errors import BrokenMethod, DeviceError
@@ -287,7 +288,11 @@ def answered(number: int, how: signal.Handlers) -> Iterator[None]:
 @pytest.mark.usefixtures("patient")
 @pytest.mark.usefixtures("loop_in_thread")
 class TestWhatAPluginRaises:
-    def test_an_error_that_cannot_be_unpickled_ends_the_session_with_its_text(self, tmp_path: Path) -> None:
+    def test_an_error_that_cannot_be_unpickled_ends_the_session_with_its_text(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        # distributed, which other tests of this process may have imported, teaches pickle every error that there is.
+        monkeypatch.delitem(copyreg.dispatch_table, OddError, raising=False)
         record = tmp_path / "force"
         with (
             pytest.raises(BrokenMethod, match="OddError: a fault in the law"),

@@ -1,4 +1,4 @@
-"""What is drawn on a page, as the text of an SVG: explicit black shapes alone."""
+"""The SVG of a page: explicit black shapes alone."""
 # shapely has no types.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
@@ -11,17 +11,18 @@ import numpy as np
 import shapely
 from jaxtyping import Float64
 
-from .fills import DOT_MM as FILL_DOT_MM
-from .fills import Fill
-from .letters import DOT_MM
-from .sheet import CORNER_MM, LINE_MM, MARGIN_MM, Sheet
+from ...braille import DOT_DIAMETER_M
+from ..fills import DOT_MM as FILL_DOT_MM
+from ..fills import Fill
+from ..sheet import CORNER_MM, LINE_MM, MARGIN_MM, Sheet
 
+BRAILLE_DOT_MM = 1000 * DOT_DIAMETER_M
 NO_DOTS = np.zeros((0, 2))
 
 
 @dataclass(frozen=True)
 class Braille:
-    """A text, and its dots in millimetres on the page."""
+    """A text in braille: its dots in millimetres on the page."""
 
     text: str
     dots_mm: Float64[np.ndarray, "n 2"]
@@ -29,31 +30,31 @@ class Braille:
 
 @dataclass(frozen=True)
 class Area:
-    """What has an outline, and may have a fill and a letter."""
+    """A shape with an outline, perhaps with a fill and a letter."""
 
     label: str
     outline: Any
-    """A polygon of shapely, or several."""
+    """A polygon or multi-polygon of shapely."""
     fill: Fill = field(default_factory=Fill)
     letter: Braille | None = None
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A page. Its corner mark is drawn with it."""
+    """A page; its corner mark is drawn with it."""
 
     sheet: Sheet
     title: str
     description: str
     language: str
     corner: str
-    """What the corner mark says."""
+    """The text alternative of the corner mark."""
     areas: tuple[Area, ...]
     texts: tuple[Braille, ...]
 
 
 def svg(drawing: Drawing) -> str:
-    """The text of the file. Elements that say what they are for have `data-mark`: outline, fill, braille or corner."""
+    """Return the text of the file. The attribute `data-mark` has a mark's role: outline, fill, braille or corner."""
     sheet = drawing.sheet
     width, length = f"{sheet.width_mm:g}", f"{sheet.length_mm:g}"
     lines = [
@@ -99,7 +100,8 @@ def _fill(fill: Fill) -> str:
 
 
 def _braille(text: Braille) -> str:
-    return f'<g data-mark="braille" role="img" aria-label={quoteattr(text.text)}>{_discs(text.dots_mm, DOT_MM)}</g>'
+    discs = _discs(text.dots_mm, BRAILLE_DOT_MM)
+    return f'<g data-mark="braille" role="img" aria-label={quoteattr(text.text)}>{discs}</g>'
 
 
 def _discs(at_mm: Iterable[Float64[np.ndarray, " 2"]], diameter_mm: float) -> str:

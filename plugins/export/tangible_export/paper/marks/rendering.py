@@ -1,4 +1,4 @@
-"""Marks as figures of matplotlib: for PDF, and for the pixels in which a page is measured."""
+"""Marks as figures of matplotlib: for the PDF, and for the pixels by which a page is measured."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,7 +19,7 @@ POINTS_PER_MM = 72 / MM_PER_INCH
 
 
 def write_pdf(path: Path, pages: Sequence[Marks]) -> None:
-    """One file of all pages: lines and areas alone, no picture and no font; the same bytes for the same pages."""
+    """Write all pages as lines and areas, without pictures and fonts; the same pages give the same bytes."""
     about = {"Title": pages[0].title, "Creator": "Tangible Images", "CreationDate": None}
     with PdfPages(path, metadata=about) as file:
         for page in pages:
@@ -27,7 +27,7 @@ def write_pdf(path: Path, pages: Sequence[Marks]) -> None:
 
 
 def black(page: Marks, pixels_per_mm: int) -> Bool[np.ndarray, "r c"]:
-    """The pixels of which ink covers half."""
+    """Return the pixels that ink covers by half or more."""
     figure = _figure(page, page.marks, pixels_per_mm * MM_PER_INCH)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()

@@ -1,4 +1,4 @@
-"""A drawn page measured in pixels: what lies nearer to what than a finger can part."""
+"""Gaps between the marks of a drawn page, measured in pixels: which are too narrow for a finger."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
@@ -10,19 +10,19 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int32, Int64, UInt8
 from scipy.ndimage import distance_transform_edt, find_objects
 
-from .figures import black
+from ..sheet import GAP_MM
 from .reading import Mark, Marks
-from .sheet import GAP_MM
+from .rendering import black
 
 PIXELS_PER_MM = 10
-"""254 to the inch."""
+"""Resolution of the measurement: 254 dpi."""
 _INEXACT = 1.04
-"""OpenCV's distances to the nearest mark are off by 2 % at most, and each gap is the sum of two."""
+"""Tolerance of the first search: OpenCV's distances are off by 2 % at most, and each gap is the sum of two."""
 
 
 @dataclass(frozen=True, eq=False)
 class Near:
-    """Two marks with less between them than GAP_MM; 0 where they touch."""
+    """Two marks with a gap below GAP_MM; 0 where they touch."""
 
     marks: tuple[Mark, Mark]
     gap_mm: float
@@ -30,7 +30,7 @@ class Near:
 
     @property
     def between_outlines(self) -> bool:
-        """Whether only outlines are too near: neither moving a letter nor leaving out a part of a fill helps."""
+        """True if both are outlines, so that neither moving a letter nor thinning out a fill helps."""
         return all(mark.what == "outline" for mark in self.marks)
 
     def __str__(self) -> str:
@@ -40,57 +40,56 @@ class Near:
 
 
 def too_near(page: Marks) -> list[Near]:
-    """Every two marks that are too near to each other, but for the dots of one text.
+    """Return all pairs of marks that are too near to each other, except dots of one text.
 
-    Outlines touch each other, and what touches is one; those that do not, such as one around a part within another,
-    are marks of their own.
+    Outlines that touch each other count as one mark; an outline that touches none, such as that of an enclosed part,
+    is a mark by itself.
     """
-    ink = _down_to_the_last(black(page, PIXELS_PER_MM))
+    ink = _without_empty_end(black(page, PIXELS_PER_MM))
     measured = cv2.distanceTransformWithLabels(
         (~ink).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_CCOMP
     )
     far, nearest = np.asarray(measured[0], np.float32), np.asarray(measured[1], np.int32)
-    of = _marks_of(page, nearest)
+    blots = _marks_of_blots(page, nearest)
     touching = [
         Near(pair, 0.0, pair[0].place_mm)
-        for marks in of.values()
-        for pair in combinations(_apart(marks), 2)
-        if not _belong(*pair)
+        for marks in blots.values()
+        for pair in combinations(_with_one_outline(marks), 2)
+        if not _may_be_near(*pair)
     ]
     is_line = np.zeros(int(nearest.max()) + 1, np.bool_)
-    is_line[[number for number, marks in of.items() if marks[0].what == "outline"]] = True
+    is_line[[number for number, marks in blots.items() if marks[0].what == "outline"]] = True
     lines = is_line[nearest[::2, ::2]] & ink[::2, ::2]
-    return touching + list(_gaps(ink, far, nearest, of)) + list(_narrow(page, lines))
+    return touching + list(_gaps(ink, far, nearest, blots)) + list(_narrow(page, lines))
 
 
 def narrow_places(page: Marks) -> list[Near]:
-    """Where outlines run too near to each other, of a page of nothing else: seen on half as many pixels, and sooner."""
+    """Return the places where outlines run too near to each other, on a page of outlines alone, at half resolution."""
     return list(_narrow(page, black(page, PIXELS_PER_MM // 2)))
 
 
-def _down_to_the_last(ink: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "k c"]:
-    """Without the empty rows at the end."""
+def _without_empty_end(ink: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "k c"]:
     rows = np.flatnonzero(ink.any(axis=1))
     return ink[: rows[-1] + 1] if rows.size else ink
 
 
-def _marks_of(page: Marks, nearest: Int32[np.ndarray, "r c"]) -> dict[int, list[Mark]]:
-    """The marks that each blot is made of."""
-    of = defaultdict[int, list[Mark]](list)
+def _marks_of_blots(page: Marks, nearest: Int32[np.ndarray, "r c"]) -> dict[int, list[Mark]]:
+    """Return the marks of each connected blot of ink, by its number."""
+    blots = defaultdict[int, list[Mark]](list)
     for mark in page.marks:
         x, y = (int(PIXELS_PER_MM * at) for at in mark.place_mm)
         if 0 <= y < nearest.shape[0] and 0 <= x < nearest.shape[1]:
-            of[int(nearest[y, x])].append(mark)
-    return dict(of)
+            blots[int(nearest[y, x])].append(mark)
+    return dict(blots)
 
 
-def _apart(marks: list[Mark]) -> list[Mark]:
-    """One for all that may touch each other."""
+def _with_one_outline(marks: list[Mark]) -> list[Mark]:
+    """Return the marks with one outline for all, as outlines may touch each other."""
     return list({("outline" if mark.what == "outline" else id(mark)): mark for mark in marks}.values())
 
 
-def _belong(one: Mark, other: Mark) -> bool:
-    """Dots of one text; outlines of parts that touch."""
+def _may_be_near(one: Mark, other: Mark) -> bool:
+    """Tell whether two marks are dots of one text, or outlines of parts that touch."""
     return one.what == other.what and (one.what == "outline" or (one.what == "braille" and one.group == other.group))
 
 
@@ -98,9 +97,9 @@ def _gaps(
     ink: Bool[np.ndarray, "r c"],
     far: Float32[np.ndarray, "r c"],
     nearest: Int32[np.ndarray, "r c"],
-    of: Mapping[int, list[Mark]],
+    blots: Mapping[int, list[Mark]],
 ) -> Iterator[Near]:
-    """Those that do not touch. `far` and `nearest` say how far the nearest blot is from a pixel, and which it is."""
+    """Yield the pairs that are too near but do not touch. far, nearest: distance and number of the nearest blot."""
     places = dict[tuple[int, int], tuple[float, int, int]]()
     for down, right in ((0, 1), (1, 0)):
         rows, columns = ink.shape[0] - down, ink.shape[1] - right
@@ -112,8 +111,8 @@ def _gaps(
         one, other = nearest[row, column], nearest[row + down, column + right]
         _keep_least(places, (row, column), one, other, between[close])
     for (one, other), (_, row, column) in places.items():
-        pair = of[one][0], of[other][0]
-        if pair[0].what == "braille" and _belong(*pair):
+        pair = blots[one][0], blots[other][0]
+        if pair[0].what == "braille" and _may_be_near(*pair):
             continue
         if (gap_mm := _gap_mm(ink, nearest, one, other, row, column)) < GAP_MM - 1e-6:
             yield Near(pair, gap_mm, (column / PIXELS_PER_MM, row / PIXELS_PER_MM))
@@ -136,7 +135,7 @@ def _keep_least(
 def _gap_mm(
     ink: Bool[np.ndarray, "r c"], nearest: Int32[np.ndarray, "r c"], one: int, other: int, row: int, column: int
 ) -> float:
-    """Between the edges of two blots, exactly, around this place."""
+    """Return the exact gap between the edges of two blots around this place; infinite where one is missing."""
     reach = 2 * int(GAP_MM * PIXELS_PER_MM)
     window = slice(max(0, row - reach), row + reach), slice(max(0, column - reach), column + reach)
     here, there = (ink[window] & (nearest[window] == number) for number in (one, other))
@@ -146,15 +145,15 @@ def _gap_mm(
 
 
 def _narrow(page: Marks, lines: Bool[np.ndarray, "r c"]) -> Iterator[Near]:
-    """Where two lines of one net run too near to each other: what no disc GAP_MM wide reaches between them.
+    """Yield the places where two lines of one net run too near: the space that no disc GAP_MM wide reaches.
 
-    The tip of a corner is let be: it hangs together with the rest on one side alone, and is no longer than GAP_MM.
-    lines: in pixels twice as large; two of them are let be.
+    The tip of a corner is accepted: it is connected with the open space on one side alone, and not longer than GAP_MM.
+    lines: the outlines at half resolution.
     """
     pixel_mm = 2 / PIXELS_PER_MM
     free = (~lines).astype(np.uint8)
     far = pixel_mm * (cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) - 0.5)
-    beyond = pixel_mm * _to_middles(free, far >= GAP_MM / 2 - pixel_mm) - GAP_MM / 2
+    beyond = pixel_mm * _distance_to_centres(free, far >= GAP_MM / 2 - pixel_mm) - GAP_MM / 2
     left = (free > 0) & (beyond > pixel_mm)
     count, places = cv2.connectedComponents(left.astype(np.uint8), connectivity=4)
     if count == 1:
@@ -169,19 +168,21 @@ def _narrow(page: Marks, lines: Bool[np.ndarray, "r c"]) -> Iterator[Near]:
         yield Near((mark, mark), max(0.0, 2 * float(far[row, column])), place)
 
 
-def _to_middles(free: UInt8[np.ndarray, "r c"], middles: Bool[np.ndarray, "r c"]) -> Float32[np.ndarray, "r c"]:
-    """How far each pixel is from the nearest middle of a disc that is in the same room as it, in pixels."""
-    rooms = cv2.connectedComponents(free, connectivity=4)[1]
-    found = np.zeros(free.shape, np.float32)
-    for number, box in enumerate(find_objects(rooms), 1):
-        room = rooms[box] == number
-        outside = (~(middles[box] & room)).view(np.uint8)
-        found[box][room] = cv2.distanceTransform(outside, cv2.DIST_L2, 5)[room]
-    return found
+def _distance_to_centres(
+    free: UInt8[np.ndarray, "r c"], centres: Bool[np.ndarray, "r c"]
+) -> Float32[np.ndarray, "r c"]:
+    """Return the distance in pixels from each pixel to the nearest centre of a disc in the same connected region."""
+    regions = cv2.connectedComponents(free, connectivity=4)[1]
+    distance = np.zeros(free.shape, np.float32)
+    for number, box in enumerate(find_objects(regions), 1):
+        region = regions[box] == number
+        outside = (~(centres[box] & region)).view(np.uint8)
+        distance[box][region] = cv2.distanceTransform(outside, cv2.DIST_L2, 5)[region]
+    return distance
 
 
 def _sides(places: Int32[np.ndarray, "r c"], rest: Bool[np.ndarray, "r c"], count: int) -> Int64[np.ndarray, " n"]:
-    """On how many sides each of the places hangs together with the rest."""
+    """Return the number of sides on which each place is connected with the rest."""
     beside = np.where(rest, cv2.dilate(places.astype(np.float32), np.ones((3, 3), np.uint8)), 0).astype(np.int32)
     _, sides = cv2.connectedComponents((beside > 0).astype(np.uint8), connectivity=8)
     pairs = np.unique(np.stack([sides[beside > 0], beside[beside > 0]]), axis=1)
@@ -189,7 +190,7 @@ def _sides(places: Int32[np.ndarray, "r c"], rest: Bool[np.ndarray, "r c"], coun
 
 
 def _outline_around(page: Marks, place_mm: tuple[float, float]) -> Mark:
-    """Of those that go around a place, the one of the least extent."""
+    """Return the smallest outline around a place."""
     outlines = [mark for mark in page.marks if mark.what == "outline"]
     around = [mark for mark in outlines if mark.shape.contains_point(place_mm)] or outlines
     return min(around, key=lambda mark: float(np.prod(np.ptp(mark.shape.vertices, axis=0))))

@@ -1,4 +1,4 @@
-"""The marks of a page, read from the text of its SVG by code that did not draw it."""
+"""The marks of a page, read from the text of its SVG, independently of the code that drew it."""
 
 import re
 from collections.abc import Iterator
@@ -16,18 +16,18 @@ _WRITTEN = re.compile(rf"(?:\s*{_STEP.pattern})*\s*")
 
 @dataclass(frozen=True, eq=False)
 class Mark:
-    """One black shape: a disc, a line or an area."""
+    """A black shape: a disc, a line or an area."""
 
     what: str
-    """What it is for: outline, fill, braille or corner."""
+    """Role: outline, fill, braille or corner."""
     label: str
-    """Of what it is drawn."""
+    """Label of the part, or text of the braille."""
     group: int
-    """Of the element that it stands in; the dots of one text have one group."""
+    """Number of the element that has the mark; the dots of one text have one group."""
     shape: Shape
-    """In millimetres, y down."""
+    """Path in millimetres, y down."""
     stroke_mm: float
-    """Width of the line; 0 for what is filled."""
+    """Width of the line; 0 for a filled shape."""
 
     @property
     def place_mm(self) -> tuple[float, float]:
@@ -39,7 +39,7 @@ class Mark:
 
 @dataclass(frozen=True, eq=False)
 class Marks:
-    """All of a page, in the order in which they are drawn."""
+    """All marks of a page, in the order in which they are drawn."""
 
     size_mm: tuple[float, float]
     title: str
@@ -47,7 +47,7 @@ class Marks:
 
 
 def read(text: str) -> Marks:
-    """Raises: BrokenMethod for what swell paper cannot show or this does not know, such as a pattern or a font."""
+    """Read the marks of an SVG. Raises: BrokenMethod for elements other than plain shapes, such as a pattern."""
     root = ElementTree.fromstring(text)
     size = _length(root.get("width")), _length(root.get("height"))
     if root.get("viewBox") != f"0 0 {size[0]:g} {size[1]:g}":

@@ -8,18 +8,18 @@ from typing import NamedTuple
 
 from tangible_core.errors import ResultsError
 
-from . import against as verdicts
-from .config import Comparison
-from .errors_only import run_side_by_side
-from .plan import measurements
-from .plot import draw_plot
-from .rows import Row, read_rows
-from .run import Outlook, look, run
-from .set_tables import write_set_tables
-from .summary import cells
-from .table import Results
-from .task import TASKS, load_task
-from .writing import write_tables
+from .config.reading import Comparison
+from .measuring.plan import measurements
+from .measuring.rows import Row, read_rows
+from .measuring.run import Outlook, look, run
+from .measuring.side_by_side import run_side_by_side
+from .results import regressions as verdicts
+from .results.files import write_tables
+from .results.plot import draw_plot
+from .results.set_tables import write_set_tables
+from .results.summary import cells
+from .results.table import Results
+from .tasks.task import TASKS, load_task
 
 ROWS, PLOT = "results.jsonl", "plot.png"
 

@@ -10,11 +10,11 @@ import numpy as np
 from tangible_core.errors import ConfigError, OutputError, PictureError, TangibleError
 from tangible_core.plugins.failures import sentence
 
-from .config import Comparison
+from .config.methods import Entry
+from .config.reading import Comparison
 from .datasets.submissions import WRITERS, write_submission
-from .depth import Pair, estimate
-from .depth_scenes import DepthScene
-from .entries import Entry
+from .tasks.depth import Pair, estimate
+from .tasks.depth_scenes import DepthScene
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from tangible_bench.against import compare
-from tangible_bench.rows import Row
+from tangible_bench.measuring.rows import Row
+from tangible_bench.results.regressions import compare
 from tangible_core.errors import ResultsError
 
 ROW = Row("k", "depth", "m", "m", {}, "d 1", "s", "digest", "none", (), 0, {}, {"processor": "p"})

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tangible_bench.config import Comparison, load_comparison, parse_comparison
+from tangible_bench.config.reading import Comparison, load_comparison, parse_comparison
 from tangible_core.errors import ConfigError
 from tangible_core.plugins.registry import Registry
 
@@ -183,7 +183,7 @@ def test_a_folder_without_truth(registry: Registry, tmp_path: Path):
     write_pair(tmp_path / "a", np.ones((8, 9), np.float32), "npy")
     (tmp_path / "a" / "disparity.npy").unlink()
     (tmp_path / "c.yaml").write_text(GOOD.replace("synthetic/steps", "{folder: a}"))
-    from tangible_bench.plan import measurements
+    from tangible_bench.measuring.plan import measurements
 
     with pytest.raises(ConfigError, match=r"a: has no true disparity; put disparity\.npz"):
         measurements(load_comparison(tmp_path / "c.yaml", registry))

@@ -7,9 +7,9 @@ import pytest
 import dask_imported  # noqa: F401
 from command_line import tangible
 from tangible_bench.comparing import ComparisonOutcome, Step, compare
-from tangible_bench.config import parse_comparison
-from tangible_bench.errors_only import errors_only
-from tangible_bench.rows import read_rows
+from tangible_bench.config.reading import parse_comparison
+from tangible_bench.measuring.rows import read_rows
+from tangible_bench.measuring.side_by_side import errors_only
 from tangible_core.plugins.registry import Registry
 
 FILE = """

@@ -10,11 +10,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from tangible_bench import plan
-from tangible_bench.config import Comparison, parse_comparison
-from tangible_bench.plan import measurements
-from tangible_bench.rows import Row, append, mend, read_rows
-from tangible_bench.run import look, run
+from tangible_bench.config.reading import Comparison, parse_comparison
+from tangible_bench.measuring import plan
+from tangible_bench.measuring.plan import measurements
+from tangible_bench.measuring.rows import Row, append, mend, read_rows
+from tangible_bench.measuring.run import look, run
 from tangible_core.errors import ConfigError, OutputError, ResultsError
 from tangible_core.plugins.registry import Registry
 

@@ -11,17 +11,17 @@ import pytest
 
 from command_line import tangible
 from standard_sets import LAYOUTS, known, put
-from tangible_bench import set_tables
-from tangible_bench.config import Comparison, parse_comparison
+from tangible_bench.config.reading import Comparison, parse_comparison
 from tangible_bench.datasets import MarkedPair, StandardPair
 from tangible_bench.datasets.submissions import write_pfm, write_png16, write_submission
-from tangible_bench.depth import TASK, measure, range_px
-from tangible_bench.depth_scenes import DepthScene
-from tangible_bench.rows import Row, append
+from tangible_bench.measuring.rows import Row, append
+from tangible_bench.results import set_tables
+from tangible_bench.results.summary import cells
+from tangible_bench.results.table import Results, tables
 from tangible_bench.submitting import submit
-from tangible_bench.summary import cells
-from tangible_bench.table import Results, tables
-from tangible_bench.texture_scenes import TextureScene
+from tangible_bench.tasks.depth import TASK, measure, range_px
+from tangible_bench.tasks.depth_scenes import DepthScene
+from tangible_bench.tasks.texture_scenes import TextureScene
 from tangible_core.data import DisparityMap
 from tangible_core.errors import ConfigError, OutputError, PictureError
 from tangible_core.plugins.registry import Registry

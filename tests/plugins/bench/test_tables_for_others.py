@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from tangible_bench.comparing import compare, read_comparison
-from tangible_bench.config import Comparison, Damage, parse_comparison, quick
-from tangible_bench.forecast import Forecast, forecast
-from tangible_bench.plan import measurements
-from tangible_bench.run import look
+from tangible_bench.config.reading import Comparison, Damage, parse_comparison, quick
+from tangible_bench.measuring.forecast import Forecast, forecast
+from tangible_bench.measuring.plan import measurements
+from tangible_bench.measuring.run import look
 from tangible_core.metrics.measured import measured
 from tangible_core.plugins.registry import Registry, default_registry
 

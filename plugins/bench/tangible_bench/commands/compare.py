@@ -15,13 +15,13 @@ from tangible_core.cli.options import FAILED, Json, Sets
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from .. import against as verdicts
     from ..comparing import Step
-    from ..config import Comparison
-    from ..forecast import Forecast
-    from ..run import Outlook
+    from ..config.reading import Comparison
+    from ..measuring.forecast import Forecast
+    from ..measuring.run import Outlook
+    from ..results import regressions as verdicts
+    from ..results.table import Results, Table
     from ..submitting import Submitted
-    from ..table import Results, Table
 
 
 def _sets(incomplete: str) -> list[tuple[str, str]]:
@@ -79,9 +79,9 @@ def compare(
 
     from ..comparing import ROWS, read_comparison
     from ..comparing import compare as measured
-    from ..config import quick as shortened
-    from ..errors_only import errors_only
-    from ..rows import read_rows
+    from ..config.reading import quick as shortened
+    from ..measuring.rows import read_rows
+    from ..measuring.side_by_side import errors_only
 
     if workers is not None and not errors:
         raise ArgumentError("--workers: goes with --errors-only; side by side, methods would spoil each other's times")
@@ -140,8 +140,8 @@ def _comparison(config: Path, folder: Path | None, sets: Sequence[str]) -> Compa
     """Of a file, or of a standard set that has none."""
     from tangible_core.plugins.registry import default_registry
 
-    from ..config import load_comparison, parse_comparison
-    from ..of_set import comparison_of_set
+    from ..config.reading import load_comparison, parse_comparison
+    from ..config.standard_set import comparison_of_set
 
     if not _is_set(config):
         return load_comparison(config, default_registry(), sets)
@@ -189,7 +189,8 @@ def _print_for_papers(results: Results, form: str) -> None:
     """The tables of the sets, or, of scenes that are of none, the means."""
     from tangible_core.cli import show
 
-    from .. import set_tables, writing
+    from ..results import files as writing
+    from ..results import set_tables
 
     ways = {"latex": (set_tables.as_latex, writing.as_latex), "csv": (set_tables.as_csv, writing.as_csv)}
     of_set, of_all = ways[form]
@@ -211,7 +212,7 @@ class _Watch:
         from tangible_core.cli import show
         from tangible_core.cli.sentences import approximately
 
-        from ..forecast import forecast
+        from ..measuring.forecast import forecast
 
         self._forecast, self._since_s = forecast(outlook.waiting), monotonic()
         if is_quiet():
@@ -266,9 +267,9 @@ def _document(results: Results, files: Sequence[Path], verdict: verdicts.Verdict
 def _print(results: Results, files: Sequence[Path], verdict: verdicts.Verdict | None, detail: bool) -> None:
     from tangible_core.cli import show
 
-    from .. import sentences
-    from ..set_tables import set_tables, shown
-    from ..table import FRONT, tables
+    from ..results import sentences
+    from ..results.set_tables import set_tables, shown
+    from ..results.table import FRONT, tables
 
     show.sentence(sentences.compared(results))
 
@@ -292,7 +293,7 @@ def _print(results: Results, files: Sequence[Path], verdict: verdicts.Verdict | 
 def _print_verdict(verdict: verdicts.Verdict) -> None:
     from tangible_core.cli import show
 
-    from ..table import Table
+    from ..results.table import Table
 
     rows = [(each.method, f"{each.scene}, {each.perturb}", each.what, *_change(each)) for each in verdict.worse]
     if rows:
@@ -316,7 +317,7 @@ def _print_table(table: Table) -> None:
 
     from tangible_core.cli import show
 
-    from ..table import FRONT
+    from ..results.table import FRONT
 
     words = {*WORDS, FRONT}
     drawn = Drawn(title=table.title, title_justify="left", box=None, pad_edge=False, header_style="bold")

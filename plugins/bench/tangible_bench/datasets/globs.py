@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath
 from tangible_core.errors import ConfigError, PictureError, quoted
 from tangible_core.files.paths import as_path
 
-from .walking import folders
+from .folders import folders
 
 _WILD = re.compile(r"\*\*/?|\*|\?|\[[^\]]+\]")
 

@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import middlebury
-from .booster import booster
-from .eth3d import eth3d
-from .kitti import kitti_2012, kitti_2015
-from .sintel import sintel
+from .kits import middlebury
+from .kits.booster import booster
+from .kits.eth3d import eth3d
+from .kits.kitti import kitti_2012, kitti_2015
+from .kits.sintel import sintel
 from .standard_pair import Resolution, StandardPair
 
 Read = Callable[[Path], Iterator[StandardPair]]

@@ -17,7 +17,7 @@ from tangible_core.scene.scene_files import SceneFiles
 from tangible_core.scene.truth_files import TruthScale
 
 from .cameras import Cameras, ReadCameras, unknown_cameras
-from .smaller import smaller_mask, smaller_truth, smaller_views
+from .shrinking import smaller_mask, smaller_truth, smaller_views
 
 Resolution = Literal["F", "H", "T", "Q"]
 FULL_PX: dict[Resolution | None, int] = {None: 1, "F": 1, "H": 2, "T": 3, "Q": 4}

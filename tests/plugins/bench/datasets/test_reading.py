@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from standard_sets import LAYOUTS, Known, Layout, known, put, put_views
-from tangible_bench.datasets import SETS, pairs, walking
+from tangible_bench.datasets import SETS, folders, pairs
 from tangible_bench.datasets.choosing import SetName
 from tangible_bench.datasets.standard_pair import StandardPair
 from tangible_core.data import Calibration
@@ -166,7 +166,7 @@ def test_no_folder_is_listed_twice(tmp_path: Path):
     for folder in (tmp_path, tmp_path / "a", tmp_path / "a" / "b"):
         for number in range(3):
             (folder / f"back{number}").symlink_to(tmp_path, target_is_directory=True)
-    found = [each.path for each in walking.folders(tmp_path)]
+    found = [each.path for each in folders.folders(tmp_path)]
     assert found == [tmp_path, tmp_path / "a", tmp_path / "a" / "b"]
 
 
@@ -196,7 +196,7 @@ def test_ten_thousand_files_in_one_folder(tmp_path: Path):
 
 def test_a_folder_without_end_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, k: Known):
     made("kitti-2015", tmp_path, k)
-    monkeypatch.setattr(walking, "MOST_ENTRIES", 5)
+    monkeypatch.setattr(folders, "MOST_ENTRIES", 5)
     with pytest.raises(PictureError, match="more than 5 files; name the folder of the set alone"):
         pairs("kitti-2015", tmp_path)
 
@@ -208,7 +208,7 @@ def test_a_folder_that_may_not_be_listed_is_said(tmp_path: Path, monkeypatch: py
     def denied(path: str) -> None:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(walking.os, "scandir", denied)  # root may list anything
+    monkeypatch.setattr(folders.os, "scandir", denied)  # root may list anything
     with pytest.raises(PictureError, match="cannot be listed: Permission denied; check its permissions"):
         pairs("kitti-2015", tmp_path)
 

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from .standard_pair import Mask, StandardPair
-from .walking import folders
+from ..folders import folders
+from ..standard_pair import Mask, StandardPair
 
 LEFT, RIGHT, TRUTH, NOC = "camera_00", "camera_02", "disp_00.npy", "mask_00.png"
 

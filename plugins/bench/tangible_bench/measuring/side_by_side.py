@@ -11,7 +11,7 @@ from tangible_batch.running import Workforce
 from tangible_core.files.json_lines import JsonLines
 from tangible_core.runtime.stopping import check_stopped, stoppable
 
-from .config import Comparison
+from ..config.reading import Comparison
 from .plan import Measurement
 from .rows import Row
 from .run import Outlook

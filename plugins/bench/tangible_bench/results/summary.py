@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 
-from .rows import Row
+from ..measuring.rows import Row
 
 NAN = float("nan")
 Key = tuple[str, str, str]

@@ -13,7 +13,7 @@ from tangible_core.metrics.stability import Law
 from tangible_core.plugins.interfaces import ForceRenderer, Touch
 from tangible_core.testing.synthetic.strokes import KnownStroke
 
-from .memory import held_bytes
+from ..memory import held_bytes
 from .render_scenes import RenderScene
 from .task import Clock, Measure, Perturbation, Task
 

@@ -17,8 +17,8 @@ from .table import Results
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from ..tasks.task import Curve
     from .summary import Line
-    from .task import Curve
 
 MARKERS = "osD^vPX*"
 """Shapes beside colours: eight of each tell 64 methods apart, in grey print too."""

@@ -4,10 +4,10 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from .config import NONE
+from ..config.reading import NONE
+from ..tasks.task import Task
 from .pareto import front
 from .summary import Cell, Line, lines
-from .task import Task
 
 FRONT = "*"
 """Marks a method that no other one beats in time and error at once."""

@@ -12,7 +12,7 @@ from tangible_core.provenance.closure import closure
 from tangible_core.provenance.versions import versions
 from tangible_core.runtime.child_process import Place, place
 
-from .config import Comparison, Damage, Entry
+from ..config.reading import Comparison, Damage, Entry
 from .machine import machine
 from .rows import Row
 from .worker import Job

@@ -15,9 +15,9 @@ from tangible_core.scene.truth_files import TruthScale
 from tangible_core.scene.workspace import Section
 from tangible_core.testing.synthetic.stereo_scenes import KnownPair, synthetic_pair
 
-from .datasets import SETS, MarkedPair, StandardPair, matched, pairs
-from .datasets.choosing import SetName, Split, with_folder
-from .datasets.standard_pair import Mask, Resolution
+from ..datasets import SETS, MarkedPair, StandardPair, matched, pairs
+from ..datasets.choosing import SetName, Split, with_folder
+from ..datasets.standard_pair import Mask, Resolution
 from .task import SceneSpec
 
 TRUTHS = ("disparity.npz", "disparity.npy", "disparity.pfm", "disparity.png")

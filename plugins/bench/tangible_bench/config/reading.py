@@ -13,8 +13,8 @@ from tangible_core.files.source import Source, parse_source, read_text
 from tangible_core.plugins.registry import Registry
 from tangible_core.scene.workspace import Section
 
-from .entries import Entry, read_methods
-from .task import TASKS, SceneSpec, Task, load_task
+from ..tasks.task import TASKS, SceneSpec, Task, load_task
+from .methods import Entry, read_methods
 
 NONE = "none"
 UNCOMPARED = {

@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 from tangible_core.files.writing import write_text
 
-from .config import NONE
-from .datasets import SETS
+from ..config.reading import NONE
+from ..datasets import SETS
+from .files import escaped
 from .summary import Cell
 from .table import Results, Table
-from .writing import escaped
 
 
 class Column(NamedTuple):

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
-from .cameras import if_there, middlebury_cameras, old_middlebury_cameras
-from .standard_pair import FULL_PX, Mask, Resolution, StandardPair
-from .walking import Folder, folders
+from ..cameras import if_there, middlebury_cameras, old_middlebury_cameras
+from ..folders import Folder, folders
+from ..standard_pair import FULL_PX, Mask, Resolution, StandardPair
 
 FORMATS = (".png", ".ppm", ".pgm")
 _TRAINING: dict[str, Resolution] = {"trainingF": "F", "trainingH": "H", "trainingQ": "Q"}

@@ -17,7 +17,7 @@ from tangible_core.testing.synthetic.texture_scenes import (
     texture_mosaic,
 )
 
-from .datasets import matched
+from ..datasets import matched
 from .task import SceneSpec
 
 PICTURE, LABELS = "picture.png", "labels.png"

@@ -14,8 +14,8 @@ from tangible_core.plugins.interfaces import DepthEstimator
 from tangible_core.scene.geometry import fill_rows
 from tangible_core.testing.synthetic.stereo_scenes import KnownPair
 
+from ..datasets import MarkedPair
 from . import damage
-from .datasets import MarkedPair
 from .depth_scenes import DepthScene, size_of
 from .task import Curve, Measure, Perturbation, Task
 

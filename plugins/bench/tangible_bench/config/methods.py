@@ -13,7 +13,7 @@ from tangible_core.pipeline.config.methods import NamedMethod, choose
 from tangible_core.plugins.interfaces import Method
 from tangible_core.plugins.registry import Registry
 
-from .task import Task
+from ..tasks.task import Task
 
 
 @dataclass(frozen=True)

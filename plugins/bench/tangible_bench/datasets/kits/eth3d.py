@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
-from .cameras import if_there, middlebury_cameras
-from .standard_pair import Mask, StandardPair
-from .walking import folders
+from ..cameras import if_there, middlebury_cameras
+from ..folders import folders
+from ..standard_pair import Mask, StandardPair
 
 TRUTH, NOC = "disp0GT.pfm", "mask0nocc.png"
 

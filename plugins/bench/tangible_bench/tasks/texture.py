@@ -10,7 +10,7 @@ from tangible_core.metrics import segment_errors
 from tangible_core.plugins.interfaces import Segmenter
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 
-from . import damage, turning
+from . import damage, transforms
 from .task import Measure, Perturbation, Task
 from .texture_scenes import TextureScene
 
@@ -50,15 +50,15 @@ PERTURBATIONS: Mapping[str, Perturbation] = {
         _light(damage.light),
     ),
     "quarter": Perturbation(
-        "turns by 90 degrees to the left: 1, 2 or 3", lambda turns: turns in (1, 2, 3), turning.quarter
+        "turns by 90 degrees to the left: 1, 2 or 3", lambda turns: turns in (1, 2, 3), transforms.quarter
     ),
     "rotate": Perturbation(
         "degrees to the left, within 45; the largest part without empty corners",
         lambda degrees: 0 < abs(degrees) <= 45,
-        turning.rotate,
+        transforms.rotate,
     ),
-    "flip": Perturbation("1 left for right, 0 top for bottom", lambda axis: axis in (0, 1), turning.flip),
-    "scale": Perturbation("factor on both sides, 0.1 to 10", lambda factor: 0.1 <= factor <= 10, turning.scale),
+    "flip": Perturbation("1 left for right, 0 top for bottom", lambda axis: axis in (0, 1), transforms.flip),
+    "scale": Perturbation("factor on both sides, 0.1 to 10", lambda factor: 0.1 <= factor <= 10, transforms.scale),
 }
 
 MEASURES = {

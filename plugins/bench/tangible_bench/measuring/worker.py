@@ -23,8 +23,8 @@ from tangible_core.plugins.registry import load_method
 from tangible_core.runtime.child_process import Place, imported
 from tangible_core.runtime.failure_log import where_kept
 
-from .memory import start_peak
-from .task import Task, load_task
+from ..memory import start_peak
+from ..tasks.task import Task, load_task
 
 
 @dataclass(frozen=True)

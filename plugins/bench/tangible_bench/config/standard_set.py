@@ -5,8 +5,8 @@ from pathlib import Path
 
 from tangible_core.errors import ConfigError
 
-from .datasets import pairs
-from .depth_scenes import named_set
+from ..datasets import pairs
+from ..tasks.depth_scenes import named_set
 
 TEXT = """\
 compare: depth

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from tangible_core.errors import ResultsError, shown
 
-from .rows import Row
+from ..measuring.rows import Row
+from ..tasks.task import Measure, load_task
 from .summary import Cell, cells, median, spread
-from .task import Measure, load_task
 
 SPREADS = 3.0
 """Medians that differ by no more than this many standard deviations are the same."""

@@ -5,9 +5,9 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from .cameras import if_there, kitti_cameras
-from .standard_pair import Mask, StandardPair
-from .walking import folders
+from ..cameras import if_there, kitti_cameras
+from ..folders import folders
+from ..standard_pair import Mask, StandardPair
 
 SCALE = 256.0
 END = "_10.png"

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Literal
 
-from .standard_pair import Mask, StandardPair
-from .walking import folders
+from ..folders import folders
+from ..standard_pair import Mask, StandardPair
 
 Variant = Literal["final", "clean"]
 

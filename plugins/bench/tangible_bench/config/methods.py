@@ -18,37 +18,37 @@ from ..tasks.task import Task
 
 @dataclass(frozen=True)
 class Entry:
-    """A method with its options, under the name that tables give it."""
+    """A method with its options, and its label in tables."""
 
     label: str
     chosen: NamedMethod[Method]
     given: tuple[str, ...] = ()
-    """Options that it is told for each scene, from what is known of that."""
+    """Options that are set for each scene, from known facts of the scene."""
 
     def method_for(self, facts: Mapping[str, Any]) -> Method:
-        """The method as it runs on a scene of which this is known. Raises: ConfigError if it does not take that."""
+        """Return the method with the options that the facts of a scene give. Raises: ConfigError for a bad value."""
         method = self.chosen.method
-        told = {name: facts[name] for name in self.given}
+        options = {name: facts[name] for name in self.given}
         try:
-            return type(method).model_validate({**method.model_dump(), **told}) if told else method
+            return type(method).model_validate({**method.model_dump(), **options}) if options else method
         except ValidationError as error:
             why = error.errors()[0]["msg"].removeprefix("Value error, ")
-            raise ConfigError(f"{self.label} cannot be told {told}: {why}; leave out its `given:`") from error
+            raise ConfigError(f"{self.label} cannot be given {options}: {why}; leave out its `given:`") from error
 
 
 def read_methods(source: Source, task: Task, registry: Registry) -> tuple[Entry, ...]:
-    """The file's `methods:`; what is wrong with them is noted in the source."""
-    found: dict[str, Entry] = {}
+    """Read the file's `methods:`; mistakes are collected in the source."""
+    entries: dict[str, Entry] = {}
     for index, block in enumerate(source.items("methods")):
         for entry in _entries(source, ("methods", index), block, task, registry):
-            if entry.label in found:
+            if entry.label in entries:
                 source.complain(("methods", index), f"two methods are called {entry.label!r}; give one a `label:`")
-            found[entry.label] = entry
-    return tuple(found.values())
+            entries[entry.label] = entry
+    return tuple(entries.values())
 
 
 def _entries(source: Source, place: Location, block: Any, task: Task, registry: Registry) -> Iterable[Entry]:
-    """One method, or one for each point of the grid that `sweep:` spans."""
+    """Yield one method, or one for each point of the grid that `sweep:` spans."""
     options: dict[str, Any] = dict(cast("dict[str, Any]", block)) if isinstance(block, dict) else {"use": block}
     label, given, sweep = options.pop("label", None), options.pop("given", []), options.pop("sweep", None)
     if label is not None and not isinstance(label, str):
@@ -80,10 +80,8 @@ def _can_be_given(source: Source, place: Location, given: Any, task: Task, metho
         if name not in options:
             hint = did_you_mean(str(name), options)
             source.complain(
-                place, f"given: no scene tells {quoted(name)} to this method{hint}; it can be told: {_words(options)}"
+                place,
+                f"given: no scene gives {quoted(name)} to this method{hint}; known: "
+                + (", ".join(sorted(options)) or "nothing"),
             )
     return isinstance(given, list) and options.issuperset(names)
-
-
-def _words(names: Iterable[str]) -> str:
-    return ", ".join(sorted(names)) or "nothing"

@@ -1,5 +1,6 @@
-"""A comparison file: which methods, on which scenes, damaged how; every complaint at once, each with its place."""
+"""Comparison files: methods, scenes and perturbations; all mistakes are reported at once, each with its place."""
 
+import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from os.path import normpath
@@ -8,51 +9,64 @@ from typing import Annotated, Any, cast
 
 from pydantic import Field
 
-from tangible_core.errors import TangibleError, did_you_mean, quoted
+from tangible_core.errors import ConfigError, TangibleError, did_you_mean, quoted
 from tangible_core.files.source import Source, parse_source, read_text
 from tangible_core.plugins.registry import Registry
 from tangible_core.scene.workspace import Section
 
+from ..datasets import pairs
+from ..tasks.depth_scenes import named_set
 from ..tasks.task import TASKS, SceneSpec, Task, load_task
 from .methods import Entry, read_methods
 
+SET_TEMPLATE = """\
+compare: depth
+methods: [semi-global, {{use: opencv-sgbm, given: [max_disparity_px]}}, zncc, ssd]
+scenes: [{scene}]
+repeats: 1
+calls: 1
+"""
+
+"""The comparison file of a standard set for which the user has none."""
 NONE = "none"
+"""The name of the perturbation that leaves scenes as they are."""
 UNCOMPARED = {
     "device": "devices are not compared; `tangible devices stress NAME` measures how fast one is",
-    "export": "exporters are not compared, as there is no truth that files could be held against",
+    "export": "exporters are not compared, as there is no truth that files could be compared with",
 }
+"""Kinds of methods that cannot be compared, and why."""
 Place = tuple[Any, ...]
 
 
 class Protocol(Section):
-    """How often and how long each method is measured."""
+    """The number of rounds and calls, and the time limit."""
 
     repeats: Annotated[int, Field(ge=1, le=1000)] = 5
-    """Rounds; in each, every method runs once on every scene, in a process of its own."""
+    """Number of rounds; in each round, every method runs once on every scene, in a new process."""
     warmups: Annotated[int, Field(ge=0, le=100)] = 1
-    """Calls before the clock starts: imports, compilation, caches."""
+    """Number of calls before the timed ones, for imports, compilation and caches."""
     calls: Annotated[int, Field(ge=1, le=1000)] = 3
-    """Timed calls in a process; its time is their median."""
+    """Number of timed calls in a process; its time is their median."""
     timeout_s: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 600.0
-    """A process that takes longer is ended, and its row says so."""
+    """Time limit of a process, seconds; a process that takes longer is ended, and its row reports it."""
 
 
 @dataclass(frozen=True)
 class Damage:
-    """A perturbation with its strength, or none."""
+    """A perturbation with its strength, or `none`."""
 
     kind: str = NONE
     value: float = 0.0
 
     @property
     def name(self) -> str:
-        """`none`, or such as `noise 5`."""
+        """The name in tables: `none`, or for example `noise 5`."""
         return NONE if self.kind == NONE else f"{self.kind} {self.value:g}"
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """A comparison file that was checked."""
+    """A comparison file after all checks."""
 
     path: Path
     task: Task
@@ -61,40 +75,61 @@ class Comparison:
     damages: tuple[Damage, ...]
     protocol: Protocol
     finishes: Mapping[str, frozenset[str]]
-    """Step -> labels of the methods whose results it is done to."""
+    """Finishing step -> labels of the methods whose results it is applied to."""
     baseline: str | None
-    """Label of the method that times are compared with."""
+    """The label of the method that times are compared with."""
     out: Path
 
 
-def quick(comparison: Comparison) -> Comparison:
-    """The same in a fraction of the time, for a first look: one round, one call, no perturbations; in a folder beside.
+def shorten(comparison: Comparison) -> Comparison:
+    """Return the comparison for a first look: one round, one call, no perturbations; its folder ends with `-quick`.
 
-    Times of it are rough; errors are those of the whole comparison, for methods are deterministic.
+    Its times are rough. Its errors are those of the whole comparison, as methods are deterministic.
     """
     protocol = comparison.protocol.model_copy(update={"repeats": 1, "calls": 1})
     out = comparison.out.with_name(f"{comparison.out.name}-quick")
     return replace(comparison, protocol=protocol, damages=(Damage(),), out=out)
 
 
-def load_comparison(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> Comparison:
-    """Read and check a comparison file; relative paths start at the file.
+def errors_only(comparison: Comparison) -> Comparison:
+    """Return the comparison without times: one round, no timed call, no baseline; its folder ends with `-errors`."""
+    protocol = comparison.protocol.model_copy(update={"repeats": 1, "warmups": 0, "calls": 0})
+    out = comparison.out.with_name(f"{comparison.out.name}-errors")
+    return replace(comparison, protocol=protocol, baseline=None, out=out)
 
-    Raises: ConfigError with every complaint, one a line.
+
+def comparison_of_set(name: str, folder: Path | None = None) -> str:
+    """Return the text of a comparison file for a standard set: the methods for pairs, with their defaults, once a pair.
+
+    name: of the set, with a size such as `@Q`, or `@test` for the pairs without truth. folder: the folder of the set;
+    by default a folder of its name in the current one.
+    Raises: ConfigError, PictureError as `datasets.pairs`, with the archive to fetch.
+    """
+    options = named_set(name)
+    if options is None:
+        raise ConfigError(f"{name}: is not a standard set")
+    folder = (folder or Path(options["set"])).absolute()
+    pairs(options["set"], folder, **{key: value for key, value in options.items() if key != "set"})
+    return SET_TEMPLATE.format(scene=json.dumps({**options, "folder": str(folder)}))
+
+
+def load_comparison(path: Path, registry: Registry, overrides: Iterable[str] = ()) -> Comparison:
+    """Read and check a comparison file; relative paths are relative to its folder.
+
+    Raises: ConfigError with all mistakes, one a line.
     """
     return parse_comparison(read_text(path), path, registry, overrides)
 
 
 def parse_comparison(text: str, path: Path, registry: Registry, overrides: Iterable[str] = ()) -> Comparison:
-    """`load_comparison` for a text; `path` is what complaints name."""
+    """Check the text of a comparison file, as `load_comparison` does. path: the file that error messages name."""
     source = parse_source(text, path, "a comparison is a mapping that starts with `compare:`", overrides)
     task = _task(source)
     source.check_keys(
         ("compare", "methods", "scenes", "perturb", *Protocol.model_fields, *task.finishes, "baseline", "out")
     )
-    protocol = source.model(
-        (), Protocol, {key: source.tree[key] for key in Protocol.model_fields if key in source.tree}
-    )
+    given = {key: source.tree[key] for key in Protocol.model_fields if key in source.tree}
+    protocol = source.model((), Protocol, given)
     methods = read_methods(source, task, registry)
     labels = [each.label for each in methods]
     scenes = _scenes(source, task)
@@ -103,71 +138,70 @@ def parse_comparison(text: str, path: Path, registry: Registry, overrides: Itera
     baseline = _baseline(source, labels)
     out = source.tree.get("out", f"out/{path.stem}")
     if not isinstance(out, str):
-        source.complain(("out",), f"out: a folder is wanted, not {quoted(out)}")
+        source.complain(("out",), f"out: must be a folder, not {quoted(out)}")
     source.settle()
     folder = path.parent if "out" in source.tree else Path()
     return Comparison(path, task, methods, scenes, damages, protocol, finishes, baseline, Path(normpath(folder / out)))
 
 
 def _task(source: Source) -> Task:
-    """Without it, nothing else can be checked."""
+    """Return the task of the file. Raises: ConfigError at once, as nothing else can be checked without the task."""
     kind = source.tree.get("compare")
     if kind in TASKS:
         return load_task(kind)
     if kind in UNCOMPARED:
-        said = f"{UNCOMPARED[kind]}; what is compared are methods for {', '.join(TASKS)}"
+        message = f"{UNCOMPARED[kind]}; methods that can be compared are those for {', '.join(TASKS)}"
     else:
         hint = did_you_mean(str(kind), TASKS) if "compare" in source.tree else ""
-        said = f"`compare:` names what kind of method to compare{hint}; known: {', '.join(TASKS)}"
-    source.complain(("compare",), said)
+        message = f"`compare:` names what kind of method to compare{hint}; known: {', '.join(TASKS)}"
+    source.complain(("compare",), message)
     source.settle()
     raise AssertionError("a complaint was settled")
 
 
 def _scenes(source: Source, task: Task) -> dict[str, SceneSpec]:
-    found: dict[str, SceneSpec] = {}
+    scenes: dict[str, SceneSpec] = {}
     for index, block in enumerate(source.items("scenes")):
         place = ("scenes", index)
         try:
-            options = task.scene.named(block) if isinstance(block, str) else block
+            options = task.scene.parse_name(block) if isinstance(block, str) else block
             spec: SceneSpec | None = source.model(place, task.scene, options)
             several: Mapping[str, SceneSpec] = {} if spec is None else spec.expand()
         except (TangibleError, ValueError) as error:
             source.complain(place, str(error))
             continue
         for name, each in several.items():
-            if name in found:
+            if name in scenes:
                 source.complain(place, f"two scenes are called {quoted(name)}; name other folders")
-            found[name] = each
-    return found
+            scenes[name] = each
+    return scenes
 
 
 def _damages(source: Source, task: Task) -> tuple[Damage, ...]:
     if "perturb" not in source.tree:
         return (Damage(),)
-    found: list[Damage] = []
+    damages: list[Damage] = []
     for index, block in enumerate(source.items("perturb")):
         if block == NONE:
-            found.append(Damage())
+            damages.append(Damage())
         elif isinstance(block, dict):
             for kind, values in cast("dict[Any, Any]", block).items():
-                found += _strengths(source, ("perturb", index, kind), task, kind, values)
+                damages += _strengths(source, ("perturb", index, kind), task, kind, values)
         else:
-            source.complain(("perturb", index), f"write none, or such as {{noise: [2, 5]}}, not {quoted(block)}")
-    return tuple(dict.fromkeys(found))
+            source.complain(("perturb", index), f"write none, or for example {{noise: [2, 5]}}, not {quoted(block)}")
+    return tuple(dict.fromkeys(damages))
 
 
 def _strengths(source: Source, place: Place, task: Task, kind: Any, values: Any) -> Iterable[Damage]:
     if kind not in task.perturbations:
         hint = did_you_mean(str(kind), task.perturbations)
-        source.complain(
-            place, f"nothing perturbs by {quoted(kind)}{hint}; known: none, {', '.join(task.perturbations)}"
-        )
+        known = ", ".join(task.perturbations)
+        source.complain(place, f"no perturbation is called {quoted(kind)}{hint}; known: none, {known}")
         return
-    known = task.perturbations[kind]
+    perturbation = task.perturbations[kind]
     for value in cast("list[Any]", values if isinstance(values, list) else [values]):
-        if isinstance(value, bool) or not isinstance(value, int | float) or not known.allowed(float(value)):
-            source.complain(place, f"{kind}: {known.meaning}, not {quoted(value)}")
+        if isinstance(value, bool) or not isinstance(value, int | float) or not perturbation.allowed(float(value)):
+            source.complain(place, f"{kind}: {perturbation.meaning}, not {quoted(value)}")
         else:
             yield Damage(kind, float(value))
 
@@ -177,15 +211,15 @@ def _labels(source: Source, key: str, labels: list[str]) -> Iterable[str]:
         if label in labels:
             yield label
         else:
-            source.complain((key, index), _no_label(label, labels))
+            source.complain((key, index), _unknown_label(label, labels))
 
 
 def _baseline(source: Source, labels: list[str]) -> str | None:
     label = source.tree.get("baseline")
     if label is not None and label not in labels:
-        source.complain(("baseline",), _no_label(label, labels))
+        source.complain(("baseline",), _unknown_label(label, labels))
     return label
 
 
-def _no_label(label: Any, labels: list[str]) -> str:
+def _unknown_label(label: Any, labels: list[str]) -> str:
     return f"no method here is called {quoted(label)}{did_you_mean(str(label), labels)}; there are: {', '.join(labels)}"

@@ -1,4 +1,4 @@
-"""The machine that a measurement is of."""
+"""The machine on which measurements are made."""
 
 import platform
 import re
@@ -8,7 +8,7 @@ from pathlib import Path
 
 @cache
 def machine() -> dict[str, str | int]:
-    """Processor, how many of its cores this process may use, and system."""
+    """Return the processor, the number of cores that this process may use, and the system."""
     from tangible_core.compiled.threads import thread_count
 
     return {"processor": _processor(), "cores": thread_count(), "system": f"{platform.system()} {platform.machine()}"}
@@ -16,7 +16,7 @@ def machine() -> dict[str, str | int]:
 
 def _processor() -> str:
     try:
-        found = re.search(r"model name\s*: (.+)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
+        model = re.search(r"model name\s*: (.+)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
     except OSError:
-        found = None
-    return found[1] if found else platform.processor() or platform.machine()
+        model = None
+    return model[1] if model else platform.processor() or platform.machine()

@@ -1,4 +1,4 @@
-"""What a comparison measures, in which order: rounds over all scenes and perturbations, methods side by side."""
+"""The measurements of a comparison, in order: rounds over all scenes and perturbations, methods side by side."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -20,42 +20,42 @@ from .worker import Job
 
 @dataclass(frozen=True)
 class Measurement:
-    """One process to start, and the row it fills."""
+    """A process to start, and the row that it fills."""
 
     job: Job
     row: Row
     place: Place
-    """Where the method's class is from: the process must have the same."""
+    """The place of the method's class: the process must import it from the same place."""
 
 
 def measurements(comparison: Comparison) -> list[Measurement]:
-    """Every process of a comparison, in order.
+    """Return every measurement of a comparison, in order.
 
-    A round runs every method on a scene before it goes on to the next one, so that a drift of the machine hits all
-    alike and pairs of times can be compared; each round starts with another method.
+    A round runs every method on a scene before the next scene, so that a drift of the machine affects all methods
+    alike and times can be compared within the round; each round starts with another method.
     Raises: ConfigError naming every scene that cannot be read, before hours are spent on the others.
     """
-    known = _scenes(comparison)
-    found: list[Measurement] = []
+    scenes = _known_scenes(comparison)
+    planned: list[Measurement] = []
     for repeat in range(comparison.protocol.repeats):
         turn = repeat % len(comparison.methods)
         methods = (*comparison.methods[turn:], *comparison.methods[:turn])
         for scene in comparison.scenes:
             for damage in comparison.damages:
-                found += _side_by_side(comparison, methods, scene, known[scene], damage, repeat)
-    return found
+                planned += _side_by_side(comparison, methods, scene, scenes[scene], damage, repeat)
+    return planned
 
 
 @dataclass(frozen=True)
 class KnownScene:
-    """What must be known of a scene before it is measured on."""
+    """The digest of a scene, and facts that methods may be given."""
 
     digest: str
     facts: Mapping[str, Any]
-    """Options that methods may be told."""
+    """Option of a method -> value for this scene."""
 
 
-def _scenes(comparison: Comparison) -> dict[str, KnownScene]:
+def _known_scenes(comparison: Comparison) -> dict[str, KnownScene]:
     known: dict[str, KnownScene] = {}
     complaints: list[str] = []
     for name, spec in comparison.scenes.items():
@@ -64,7 +64,8 @@ def _scenes(comparison: Comparison) -> dict[str, KnownScene]:
         except TangibleError as error:
             complaints.append(f"{comparison.path}: scene {name}: {error}")
         else:
-            known[name] = KnownScene(scene.digest(), {key: tell(scene) for key, tell in comparison.task.given.items()})
+            facts = {key: fact_of(scene) for key, fact_of in comparison.task.given.items()}
+            known[name] = KnownScene(scene.digest(), facts)
     if complaints:
         raise ConfigError(*complaints)
     return known
@@ -81,7 +82,7 @@ def _side_by_side(
             task.kind, entry.chosen.name, options, comparison.scenes[scene].model_dump(mode="json"),
             damage.kind, damage.value, finishes, protocol.warmups, protocol.calls,
         )  # fmt: skip
-        installed = versions(_distribution(entry.chosen))
+        installed = versions(entry.chosen.origin.partition(" ")[0])
         code = f"v{task.version} {_code(entry.chosen)} {installed} {machine()}"
         plain = repr((asdict(replace(job, scene={})), entry.label, known.digest, damage.name, repeat, code))
         row = Row(
@@ -95,7 +96,3 @@ def _side_by_side(
 def _code(chosen: NamedMethod[Method]) -> str:
     cls = type(chosen.method)
     return f"{cls.__module__}:{cls.__qualname__} v{cls.version} {closure(cls.__module__).digest}"
-
-
-def _distribution(chosen: NamedMethod[Method]) -> str:
-    return chosen.origin.partition(" ")[0]

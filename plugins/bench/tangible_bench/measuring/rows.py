@@ -1,4 +1,4 @@
-"""Results as JSON Lines: one row a process, whole or not there at all."""
+"""Results as JSON Lines: a row for each measurement, complete or absent."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -14,12 +14,12 @@ from tangible_core.files.json_lines import JsonLines, read_lines
 
 @dataclass(frozen=True)
 class Row:
-    """What one process found out."""
+    """The result of one measurement."""
 
-    __pydantic_config__: ClassVar = ConfigDict(extra="forbid", strict=True)  # for what is read
+    __pydantic_config__: ClassVar = ConfigDict(extra="forbid", strict=True)  # for rows that are read from files
 
     key: str
-    """Content hash of what was measured: the same key need not be measured again."""
+    """The hash of all that the result depends on: a measurement with the same key need not be repeated."""
     compare: str
     method: str
     """The method's label."""
@@ -34,24 +34,24 @@ class Row:
     versions: Mapping[str, str]
     machine: Mapping[str, str | int]
     baseline: str | None = None
-    """Label of the method that times are compared with; no part of the key."""
+    """The label of the method that times are compared with; not part of the key."""
     seconds: float | None = None
-    """Median of the timed calls, of one piece of work where a call does several; None after an error."""
+    """The median of the timed calls; if a call does several pieces of work, the time of one. None after an error."""
     first_seconds: float | None = None
-    """The very first call: with imports, and compilation if there is any."""
+    """The time of the very first call, with imports and compilation."""
     peak_memory_bytes: int | None = None
     measures: Mapping[str, float | None] = field(default_factory=dict[str, float | None])
     error: str | None = None
-    """Why there is no result."""
+    """The reason why there is no result."""
 
     @property
     def cell(self) -> tuple[str, str, str]:
-        """What its repeats share: method, scene, perturbation."""
+        """Method, scene and perturbation, which all repeats share."""
         return self.method, self.scene, self.perturb
 
 
 def read_rows(path: Path) -> dict[str, Row]:
-    """Rows of a file by key, the last one of each; a torn last line, as a kill leaves it, is passed over.
+    """Return the rows of a file by key, the last row of each key; a torn last line, as a kill leaves it, is ignored.
 
     Raises: ResultsError for a file that cannot be read, or a damaged line within it.
     """
@@ -59,15 +59,14 @@ def read_rows(path: Path) -> dict[str, Row]:
         lines = list(read_lines(path))
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", None) or error
-        raise ResultsError(
-            f"{path}: cannot be read as results: {why}; name a .jsonl file of `tangible compare`"
-        ) from error
+        message = f"{path}: cannot be read as results: {why}; name a .jsonl file of `tangible compare`"
+        raise ResultsError(message) from error
     rows = (_row(path, number, line) for number, line in lines)
     return {row.key: row for row in rows}
 
 
 def mend(path: Path) -> None:
-    """Make sure that rows can be added: the folder is there, and a torn last line is not.
+    """Make the file ready for more rows: create its folder, remove a torn last line.
 
     Raises: OutputError if the file cannot be written.
     """
@@ -75,7 +74,7 @@ def mend(path: Path) -> None:
 
 
 def append(path: Path, row: Row) -> None:
-    """Add a row in one write, on the disk when this returns.
+    """Add a row in one write; it is on the disk when this returns.
 
     Raises: OutputError if the file cannot be written.
     """

@@ -1,8 +1,8 @@
-"""One measurement in a process of its own: a job in, a result out, both JSON.
+"""The worker: a process for one measurement. A job comes in and a result goes out, both as JSON.
 
-The job, and where its method is from, is one line on standard input, which stays open while somebody waits: when it
-ends, so does the process. The result is one line on what was standard output; whatever a method prints goes to standard
-error.
+The job, with the place of its method, is one line on standard input. The process ends when standard input is closed,
+that is, when nobody waits any more. The result is one line on the original standard output; whatever a method prints
+goes to standard error.
 """
 
 import gc
@@ -29,59 +29,59 @@ from ..tasks.task import Task, load_task
 
 @dataclass(frozen=True)
 class Job:
-    """Everything that a process needs to know: plain values."""
+    """The description of a measurement, in plain values."""
 
     kind: Kind
     use: str
     options: Mapping[str, Any]
     scene: Mapping[str, Any]
-    """Options of the task's scene."""
+    """The options of the task's scene."""
     perturb: str
-    """Name of a perturbation, or `none`."""
+    """The name of a perturbation, or `none`."""
     value: float
     finishes: tuple[str, ...]
     warmups: int
     calls: int
-    """Timed ones; 0 where errors alone are wanted."""
+    """The number of timed calls; 0 to measure errors alone."""
 
 
 @dataclass(frozen=True)
 class Result:
-    """Fields of a row, as far as the process knows them."""
+    """The fields of a row that the process measures."""
 
     seconds: float | None
-    """Of one piece of work; None where nothing was timed."""
+    """The time of one piece of work; None if nothing was timed."""
     first_seconds: float | None
     peak_memory_bytes: int | None
     measures: dict[str, float | None]
-    """None where a measure is not finite: JSON has no NaN."""
+    """The measures; None for a value that is not finite, as JSON has no NaN."""
 
 
 def measure(job: Job) -> Result:
-    """Run a job here. Raises: whatever the method raises."""
+    """Run a job in this process. Raises: any error of the method."""
     task = load_task(job.kind)
     method = load_method(job.kind, job.use).model_validate(job.options)
-    scene = _damaged(task, job)
+    scene = _open_scene(task, job)
     if not job.calls:
         return Result(None, None, None, _errors(task, job, scene, task.work(task.prepare(method, scene), scene)))
-    warm = [_timed(task, method, scene).whole_s for _ in range(job.warmups)]
+    warm = [_time(task, method, scene).whole_s for _ in range(job.warmups)]
     gc.collect()
-    gc.freeze()  # imports and compiled code are no garbage: each collection would look through them again
+    gc.freeze()  # imports and compiled code are not garbage: each collection would look through them again
     growth = start_peak()
-    first = _timed(task, method, scene)
+    first = _time(task, method, scene)
     peak = growth()
-    times = [first.piece_s, *(_timed(task, method, scene).piece_s for _ in range(job.calls - 1))]
+    times = [first.piece_s, *(_time(task, method, scene).piece_s for _ in range(job.calls - 1))]
     return Result(statistics.median(times), [*warm, first.whole_s][0], peak, _errors(task, job, scene, first.result))
 
 
 def _errors(task: Task, job: Job, scene: Any, result: Any) -> dict[str, float | None]:
     for name in job.finishes:
         result = task.finishes[name](result)
-    found = task.measure(result, scene)
-    return {name: float(value) if math.isfinite(value) else None for name, value in found.items()}
+    measures = task.measure(result, scene)
+    return {name: float(value) if math.isfinite(value) else None for name, value in measures.items()}
 
 
-def _damaged(task: Task, job: Job) -> Any:
+def _open_scene(task: Task, job: Job) -> Any:
     scene = task.scene.model_validate(job.scene).open()
     return task.perturbations[job.perturb].apply(scene, job.value) if job.perturb in task.perturbations else scene
 
@@ -89,32 +89,32 @@ def _damaged(task: Task, job: Job) -> Any:
 class _Timing(NamedTuple):
     piece_s: float
     whole_s: float
-    """With what comes before the work."""
+    """The time of preparation and work together."""
     result: Any
 
 
-def _timed(task: Task, method: Any, scene: Any) -> _Timing:
+def _time(task: Task, method: Any, scene: Any) -> _Timing:
     gc.collect()
-    start = perf_counter()
+    start_s = perf_counter()
     prepared = task.prepare(method, scene)
-    ready = perf_counter()
+    ready_s = perf_counter()
     result = task.work(prepared, scene)
-    end = perf_counter()
-    return _Timing((end - ready) / task.clock.pieces(scene), end - start, result)
+    end_s = perf_counter()
+    return _Timing((end_s - ready_s) / task.clock.pieces(scene), end_s - start_s, result)
 
 
 def main() -> None:
-    """The process."""
+    """Run the process."""
     answers = os.dup(1)
     os.dup2(2, 1)
     place, job = json.loads(sys.stdin.buffer.readline())
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    found = answer(Place(*place), Job(**job))
-    os.write(answers, (json.dumps(found, allow_nan=False) + "\n").encode())
+    fields = answer(Place(*place), Job(**job))
+    os.write(answers, (json.dumps(fields, allow_nan=False) + "\n").encode())
 
 
 def answer(place: Place, job: Job) -> dict[str, Any]:
-    """Fields of the job's row. place: where its method is from. Raises: nothing."""
+    """Return the fields of the job's row, with `error` if anything fails. place: where to import its method from."""
     try:
         imported(*place)
         return asdict(measure(job))
@@ -124,7 +124,7 @@ def answer(place: Place, job: Job) -> dict[str, Any]:
 
 
 def _end_with_parent() -> None:
-    """A method that nobody waits for any more would disturb the next measurement."""
+    """End this process when its input is closed: a method without a waiting parent would disturb later measurements."""
     while os.read(0, 1):
         pass
     os._exit(1)

@@ -52,7 +52,7 @@ def test_scenes_by_name(registry: Registry):
         ("tiles/4", "no scene is named 'tiles/4'"),
         ("mosaic/0", "greater than or equal to 1"),
         ("{mosaic: 2, smooth: 3}", "one of mosaic, smooth, folder and pairs; this one is mosaic and smooth"),
-        ("{smooth: 3, textures: here}", "textures are what a mosaic is made of; leave them out of smooth"),
+        ("{smooth: 3, textures: here}", "textures: only a mosaic is made of them; leave them out of smooth"),
         ("{folder: nowhere}", "neither it nor a folder in it holds picture.png and labels.png"),
     ],
 )

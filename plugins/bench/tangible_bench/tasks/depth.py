@@ -1,4 +1,4 @@
-"""How depth methods are compared: disparity against the truth, over all pixels and over those that both views show."""
+"""The task for depth methods: errors of disparity, over all pixels and over the pixels that both views show."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -21,46 +21,48 @@ from .task import Curve, Measure, Perturbation, Task
 
 NOC, FULL = "_noc", "_full"
 STEP_PX = 16
-UNTOLD_PX = 256
-"""Of a pair whose truth and range nobody tells: what KITTI's pictures can hold."""
+UNKNOWN_RANGE_PX = 256
+"""The range for a pair without known truth and range: the largest disparity in KITTI's files, pixels."""
 Pair = KnownPair | MarkedPair
 QUANTILES = (50, 90, 95, 99)
 IN_PIXELS = (
     *(f"bad{bound:g}" for bound in (0.5, 1, 2, 4)), "average_px", "rms_px", *(f"a{share}_px" for share in QUANTILES),
 )  # fmt: skip
-"""Measures that depend on what a pixel is: a set that comes in several sizes counts those of the largest."""
+"""Measures that depend on the size of a pixel; sets in several sizes count pixels of the largest."""
 
 
 def estimate(method: DepthEstimator, pair: Pair) -> DisparityMap:
-    """What is timed."""
+    """Run the timed call."""
     return method.estimate(pair.views)
 
 
-def measure(found: DisparityMap, pair: Pair) -> dict[str, float]:
-    """Errors over all pixels with truth, and (`_noc`) over those of them that the right view shows too.
+def measure(disparity: DisparityMap, pair: Pair) -> dict[str, float]:
+    """Return the errors over all pixels with truth, and (`_noc`) over those that the right view shows too.
 
-    And how well the confidence sorts wrong pixels from right ones.
-
-    Of a pair of a standard set, what its benchmark measures besides; nothing of one without truth.
-    Raises: PictureError if the disparity is relative: it has no unit to compare.
+    Builtin and synthetic pairs have measures of the confidence too: how well it sorts wrong pixels from right ones.
+    Pairs of standard sets have the measures of their benchmarks instead; a pair without truth has none.
+    Raises: PictureError if the disparity is relative, as it has no unit to compare.
     """
-    if found.unit != "px":
-        raise PictureError(f"the disparity is {found.unit}, not in px; it cannot be compared with the ground truth")
+    if disparity.unit != "px":
+        raise PictureError(f"the disparity is {disparity.unit}, not in px; it cannot be compared with the ground truth")
     if isinstance(pair, MarkedPair):
-        return _as_benchmarks_do(found.disparity_px, pair)
-    everywhere = disparity_errors(found.disparity_px, pair.truth_px)
-    both = disparity_errors(found.disparity_px, np.where(pair.visible, pair.truth_px, np.float32(np.nan)))
-    sorted_out = sparsification_errors(found.disparity_px, found.confidence, pair.truth_px)
+        return _benchmark_measures(disparity.disparity_px, pair)
+    everywhere = disparity_errors(disparity.disparity_px, pair.truth_px)
+    both = disparity_errors(disparity.disparity_px, np.where(pair.visible, pair.truth_px, np.float32(np.nan)))
+    sorted_out = sparsification_errors(disparity.disparity_px, disparity.confidence, pair.truth_px)
     return everywhere | {f"{name}{NOC}": value for name, value in both.items()} | sorted_out
 
 
-def _as_benchmarks_do(disparity_px: np.ndarray, pair: MarkedPair) -> dict[str, float]:
-    """Within the range that a set tells, as Middlebury's kit has it; a set without a mask for them has no noc."""
+def _benchmark_measures(disparity_px: np.ndarray, pair: MarkedPair) -> dict[str, float]:
+    """Return the measures of a benchmark, with estimates clipped to the range of its set, as Middlebury's kit does.
+
+    There are no `_noc` measures without a mask of the pixels that both views show.
+    """
     if pair.truth_px is None:
         return {}
     if pair.most_px is not None:
         disparity_px = np.clip(disparity_px, 0, pair.most_px)
-    found: dict[str, float] = {}
+    measures: dict[str, float] = {}
     for end, part in (("", None), (NOC, pair.noc)):
         if part is None and end:
             continue
@@ -71,31 +73,31 @@ def _as_benchmarks_do(disparity_px: np.ndarray, pair: MarkedPair) -> dict[str, f
             whole = disparity_errors(by * disparity_px, by * truth_px)
             whole |= benchmark_errors(by * disparity_px, by * truth_px)
             figures |= {f"{name}{FULL}": whole[name] for name in IN_PIXELS}
-        found |= {f"{name}{end}": value for name, value in figures.items()}
-    return found
+        measures |= {f"{name}{end}": value for name, value in figures.items()}
+    return measures
 
 
 def range_px(pair: Pair) -> int:
-    """The smallest multiple of 16 above every disparity, as OpenCV and most matchers count their range.
+    """Return the smallest multiple of 16 above every disparity, as OpenCV and most matchers count their range.
 
-    Of a standard set, what it tells; else by the truth.
+    The range comes from the standard set if that has one, else from the truth.
     """
     if isinstance(pair, MarkedPair) and pair.most_px is not None:
         return STEP_PX * math.ceil(pair.most_px / STEP_PX)
     if pair.truth_px is None or not np.isfinite(pair.truth_px).any():
-        return UNTOLD_PX
+        return UNKNOWN_RANGE_PX
     return STEP_PX * (int(np.nanmax(pair.truth_px)) // STEP_PX + 1)
 
 
-def fill(found: DisparityMap) -> DisparityMap:
-    """Holes filled from the background in their row (`geometry.fill_rows`); a map without any value stays as it is."""
-    if np.isnan(found.disparity_px).all():
-        return found
-    return replace(found, disparity_px=fill_rows(found.disparity_px))
+def fill(disparity: DisparityMap) -> DisparityMap:
+    """Fill holes from the background in their row (`geometry.fill_rows`); a map without any value stays as it is."""
+    if np.isnan(disparity.disparity_px).all():
+        return disparity
+    return replace(disparity, disparity_px=fill_rows(disparity.disparity_px))
 
 
 def _both(change: Callable[[np.ndarray, float, int], np.ndarray]) -> Callable[[Pair, float], Pair]:
-    """The same damage to both views, with another seed for each."""
+    """Return a perturbation that damages both views in the same way, with another seed for each."""
 
     def apply(pair: Pair, value: float) -> Pair:
         left, right = (change(view, value, seed) for seed, view in enumerate(_views(pair)))
@@ -105,7 +107,7 @@ def _both(change: Callable[[np.ndarray, float, int], np.ndarray]) -> Callable[[P
 
 
 def _right(change: Callable[[np.ndarray, float], np.ndarray]) -> Callable[[Pair, float], Pair]:
-    """A damage to the right view alone: the two cameras disagree."""
+    """Return a perturbation that damages the right view alone, as if the two cameras disagreed."""
 
     def apply(pair: Pair, value: float) -> Pair:
         left, right = _views(pair)
@@ -150,21 +152,22 @@ def _measures() -> dict[str, Measure]:
         "ausc": Measure("sparsification %", 3, tolerance=0.0005),
         "ausc_by_oracle": Measure("sparsification / oracle"),
     }
-    return _with_noc(errors) | sorted_out | _with_noc(_of_benchmarks() | _at_full_size(errors | _of_benchmarks()))
+    of_sets = _benchmark_titles()
+    return _with_noc(errors) | sorted_out | _with_noc(of_sets | _at_full_size(errors | of_sets))
 
 
-def _of_benchmarks() -> dict[str, Measure]:
+def _benchmark_titles() -> dict[str, Measure]:
     quantiles = {f"a{share}_px": Measure(f"A{share} px", 3, tolerance=0.0005, of_sets=True) for share in QUANTILES}
     titles = {"invalid": "invalid", "bad3": "bad3", "d1": "D1-all", "d1_bg": "D1-bg", "d1_fg": "D1-fg"}
     return quantiles | {name: Measure(f"{title} %", of_sets=True) for name, title in titles.items()}
 
 
 def _at_full_size(known: Mapping[str, Measure]) -> dict[str, Measure]:
-    found: dict[str, Measure] = {}
+    measures: dict[str, Measure] = {}
     for name in IN_PIXELS:
         what, _, unit = known[name].title.partition(" ")
-        found[f"{name}{FULL}"] = replace(known[name], title=f"{what}@F {unit}", at_size=False, of_sets=True)
-    return found
+        measures[f"{name}{FULL}"] = replace(known[name], title=f"{what}@F {unit}", at_size=False, of_sets=True)
+    return measures
 
 
 def _with_noc(measures: Mapping[str, Measure]) -> dict[str, Measure]:
@@ -181,12 +184,7 @@ TASK = Task(
     measures=_measures(),
     columns=("bad2", "bad2_noc", "bad1", "average_px", "density"),
     plotted=("bad2", "bad2_noc", "ausc"),
-    curve=Curve(
-        "wrong among those left (bad2), %",
-        "least confident pixels removed, %",
-        LEFT,
-        LEFT_BY_ORACLE,
-    ),
+    curve=Curve("wrong among those left (bad2), %", "least confident pixels removed, %", LEFT, LEFT_BY_ORACLE),
     perturbations=PERTURBATIONS,
     given={"max_disparity_px": range_px},
     finishes={"fill": fill},

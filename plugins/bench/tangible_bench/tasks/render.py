@@ -1,4 +1,4 @@
-"""How force renderers are compared: forces along a hand's way against a spring to the surface's nearest point."""
+"""The task for force laws: forces along a path of the hand, compared with a spring to the nearest surface point."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -19,50 +19,55 @@ from .task import Clock, Measure, Perturbation, Task
 
 STIFFNESS = "stiffness_n_per_m"
 STIFFNESS_N_PER_M = 800.0
-"""Of the true spring, for a law that has no such option."""
+"""The stiffness of the true spring for force laws without such an option."""
 DELAYS = (0, 1, 2)
+"""The delays of a simulated device, in ticks, for which stiffness limits are measured."""
 
 
 @dataclass(frozen=True, eq=False)
 class PathForces:
-    """The forces of a law along a way."""
+    """The forces of a force law along a path."""
 
     method: ForceRenderer
     force_n: Float64[np.ndarray, "n 3"]
 
 
 def prepare(method: ForceRenderer, scene: KnownStroke) -> tuple[ForceRenderer, Touch]:
-    """A new touch."""
+    """Make a new touch."""
     return method, method.touch(scene.surface)
 
 
 def feel(prepared: tuple[ForceRenderer, Touch], scene: KnownStroke) -> PathForces:
-    """What is timed: all ticks in one call."""
+    """Run the timed call: all ticks at once."""
     method, touch = prepared
     return PathForces(method, touch.path(scene.position_m, scene.period_s))
 
 
-def measure(felt: PathForces, scene: KnownStroke) -> dict[str, float]:
-    """All of MEASURES; against F = k (p - q), p the nearest point, k the law's own stiffness if it has that option."""
-    stiffness = float(felt.method.model_dump().get(STIFFNESS, STIFFNESS_N_PER_M))
+def measure(result: PathForces, scene: KnownStroke) -> dict[str, float]:
+    """Return all of MEASURES, against the force F = k (p - q).
+
+    p is the nearest point, and k the stiffness option of the force law, or STIFFNESS_N_PER_M if it has none.
+    """
+    method, force_n = result.method, result.force_n
+    stiffness = float(method.model_dump().get(STIFFNESS, STIFFNESS_N_PER_M))
     truth_n = stiffness * (scene.nearest_m - scene.position_m)
-    proxy_m = scene.position_m + felt.force_n / stiffness
-    free = (scene.position_m[:, 2] > scene.surface.height_m.max()) & ~felt.force_n.any(axis=1)
-    works = loop_works(felt.force_n, scene.position_m, free)
+    proxy_m = scene.position_m + force_n / stiffness
+    free = (scene.position_m[:, 2] > scene.surface.height_m.max()) & ~force_n.any(axis=1)
+    works = loop_works(force_n, scene.position_m, free)
     return {
-        **force_errors(felt.force_n, truth_n),
+        **force_errors(force_n, truth_n),
         "lag_mm": 1e3 * proxy_lag(scene.position_m, proxy_m, scene.nearest_m),
-        **force_steps(felt.force_n),
+        **force_steps(force_n),
         "loop_work_j": float(works.max()) if works.size else float("nan"),
-        **limits(felt.method, scene.surface),
-        "held_kb": held_bytes(lambda: felt.method.touch(scene.surface)) / 1e3,
+        **limits(method, scene.surface),
+        "held_kb": held_bytes(lambda: method.touch(scene.surface)) / 1e3,
     }
 
 
 def limits(method: ForceRenderer, surface: HapticSurface) -> dict[str, float]:
-    """`limit0`, `limit1`, `limit2`: stiffness at which a simulated handle starts to shake, with so many ticks' delay.
+    """Return `limit0`, `limit1`, `limit2`: the stiffness at which a simulated handle starts to shake, for each delay.
 
-    NaN unless the surface is level and the law is a spring on it whose stiffness is an option.
+    NaN unless the surface is level and the force law is a spring on it whose stiffness is an option.
     """
     unknown = {f"limit{delay}": float("nan") for delay in DELAYS}
     if STIFFNESS not in type(method).model_fields or np.ptp(surface.height_m) > 0:
@@ -79,13 +84,13 @@ def limits(method: ForceRenderer, surface: HapticSurface) -> dict[str, float]:
 
 
 def faster(scene: KnownStroke, times: float) -> KnownStroke:
-    """The same way at a multiple of the speed: every so many-th position."""
+    """Return the same path at a multiple of the speed: every n-th position."""
     every = int(times)
     return replace(scene, position_m=scene.position_m[::every], nearest_m=scene.nearest_m[::every])
 
 
-def stepped(scene: KnownStroke, bits: float) -> KnownStroke:
-    """Heights as a picture of so many bits holds them, white the highest; the truth stays."""
+def quantize(scene: KnownStroke, bits: float) -> KnownStroke:
+    """Round heights to n bits, the highest to white; the truth stays as it is."""
     heights = scene.surface.height_m
     step_m = float(heights.max()) / (2 ** int(bits) - 1)
     rounded = np.rint(heights / step_m) * step_m if step_m else heights
@@ -98,7 +103,7 @@ PERTURBATIONS: Mapping[str, Perturbation] = {
         "how many times as fast the hand is, a whole number above 1", lambda times: times > 1 and times % 1 == 0, faster
     ),
     "bits": Perturbation(
-        "bits of the heights, a whole number from 1 to 16", lambda bits: 1 <= bits <= 16 and bits % 1 == 0, stepped
+        "bits of the heights, a whole number from 1 to 16", lambda bits: 1 <= bits <= 16 and bits % 1 == 0, quantize
     ),
 }
 

@@ -1,4 +1,4 @@
-"""Surfaces to touch, and the hand's way over them: analytic ones with exact answers, or the relief of a picture."""
+"""Surfaces with a path of the hand: analytic surfaces with exact nearest points, or the relief of a picture."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -23,14 +23,14 @@ Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
 class RenderScene(SceneSpec):
-    """A surface and a hand's way over it; the surface is one of analytic, builtin and height."""
+    """A surface and a path of the hand over it; the surface is one of analytic, builtin and height."""
 
     analytic: Literal["plane", "ramp", "sphere", "sine", "cone", "ridge", "step"] | None = None
     """A surface given by a formula, 80 mm wide, whose nearest points are exact."""
     builtin: str | None = None
-    """A builtin scene: its true disparity, or its grey levels, are the heights. No force on it is known to be true."""
+    """A builtin scene; its true disparity or its grey levels are the heights. True forces on it are unknown."""
     height: Path | None = None
-    """A height map in any unit: a grey picture, .npy, .pfm or .tif. No force on it is known to be true."""
+    """A height map in any unit: a grey picture, .npy, .pfm or .tif. True forces on it are unknown."""
     cells: Annotated[int, Field(ge=16, le=4096)] = 256
     """Cells along each side of an analytic surface."""
     width_m: Length = 0.08
@@ -38,9 +38,9 @@ class RenderScene(SceneSpec):
     relief_m: Length = 0.01
     """Height of a picture's relief."""
     depth_m: Length = 0.001
-    """How deep under the surface the scripted hand goes."""
+    """Depth of the scripted path below the surface."""
     recording: Path | None = None
-    """A recording, .nc, .npz or .csv, whose positions are the hand's way in place of the scripted one."""
+    """A recording, .nc, .npz or .csv, whose positions are the path in place of the scripted one."""
 
     @model_validator(mode="after")
     def _one_surface(self) -> Self:
@@ -51,13 +51,13 @@ class RenderScene(SceneSpec):
             )
         idle = ("width_m", "relief_m") if self.analytic else ("cells",)
         idle += ("depth_m",) if self.recording else ()
-        if told := [name for name in idle if getattr(self, name) != type(self).model_fields[name].default]:
-            raise ValueError(f"{' and '.join(told)} has no effect here; leave it out")
+        if set_idle := [name for name in idle if getattr(self, name) != type(self).model_fields[name].default]:
+            raise ValueError(f"{' and '.join(set_idle)} has no effect here; leave it out")
         return self
 
     @classmethod
-    def named(cls, name: str) -> Mapping[str, Any]:
-        """`analytic/NAME` or `builtin/NAME`."""
+    def parse_name(cls, name: str) -> Mapping[str, Any]:
+        """Return the options of `analytic/NAME` or `builtin/NAME`."""
         kind, _, rest = name.partition("/")
         if kind not in ("analytic", "builtin"):
             raise ValueError(
@@ -66,15 +66,15 @@ class RenderScene(SceneSpec):
         return {kind: rest}
 
     def expand(self) -> "Mapping[str, RenderScene]":
-        """Itself."""
+        """Return this scene alone."""
         return {self._name(): self}
 
     def open(self) -> KnownStroke:
-        """The surface, the way, and the nearest points as far as they are known.
+        """Read or make the surface, the path, and the nearest points as far as they are known.
 
-        Raises: ConfigError, PictureError, GeometryError, OutputError if a file cannot be read or does not hold that.
+        Raises: ConfigError, PictureError, GeometryError, OutputError if a file cannot be read or has other content.
         """
-        path_m, period_s = (None, PERIOD_S) if self.recording is None else _recorded(self.recording)
+        path_m, period_s = (None, PERIOD_S) if self.recording is None else _read_path(self.recording)
         if self.analytic is not None:
             return analytic_stroke(self.analytic, self.cells, self.depth_m, path_m, period_s)
         return relief_stroke(HapticSurface(self._relief()), self.depth_m, path_m, period_s)
@@ -96,8 +96,8 @@ class RenderScene(SceneSpec):
         return f"{name}, {self.recording.name if self.recording else f'{1000 * self.depth_m:g} mm deep'}"
 
 
-def _recorded(file: Path) -> tuple[Float64[np.ndarray, "n 3"], float]:
-    """Positions, and the period between them: the median one."""
+def _read_path(file: Path) -> tuple[Float64[np.ndarray, "n 3"], float]:
+    """Return the positions of a recording and the median period between them."""
     recording = Recording.load(file)
     periods_s = np.diff(recording.time_s)
     if not (np.isfinite(recording.position_m).all() and periods_s.size and np.median(periods_s) > 0):

@@ -1,66 +1,100 @@
-"""What it takes to compare methods of one kind: scenes, perturbations, the call to time, the measures of its result.
+"""The `Task`: all that the bench must know about a kind of method in order to compare its methods.
 
-Everything else in this room knows no kind: it plans, runs, keeps, sums up and draws what a `Task` measures.
+A task has scenes, perturbations, the call to time, and the measures of its result. The other rooms of the bench know
+no kind: they plan, run, save, sum up and draw what a task measures.
 """
 
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
-from typing import Any, Literal
+from pathlib import Path
+from typing import Any, Literal, TypeVar, cast
 
 from pydantic import ConfigDict
 
 from tangible_core.data import Kind, Record
 from tangible_core.data.quantities import Quantities
+from tangible_core.errors import PictureError, quoted
 
 Apply = Callable[[Any, float], Any]
 
 
 class SceneSpec(Quantities):
-    """Which scene, as the file says it: a few plain options, the same in every process."""
+    """The options of a scene in a comparison file: plain values, which open the same scene in every process."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     @classmethod
     @abstractmethod
-    def named(cls, name: str) -> Mapping[str, Any]:
-        """The options that a plain name stands for. Raises: ValueError for a name that stands for none."""
+    def parse_name(cls, name: str) -> Mapping[str, Any]:
+        """Return the options that a plain name stands for. Raises: ValueError for an unknown name."""
 
     @abstractmethod
     def expand(self) -> "Mapping[str, SceneSpec]":
-        """The scenes that this one stands for, by name: itself, or each sub-folder's. Raises: TangibleError."""
+        """Return the scenes that this one stands for, by name: itself, or each sub-folder's. Raises: TangibleError."""
 
     @abstractmethod
     def open(self) -> Record:
-        """Inputs and truth. Raises: TangibleError for a scene that cannot be read."""
+        """Read the inputs and the truth. Raises: TangibleError for a scene that cannot be read."""
+
+
+Spec = TypeVar("Spec", bound=SceneSpec)
+Item = TypeVar("Item")
+
+
+def expand_folder(spec: Spec, folder: Path, first: str, contents: str) -> dict[str, Spec]:
+    """Return a scene for each sub-folder that has the file `first`. contents: all files of a scene, in words.
+
+    Raises: PictureError if no sub-folder has the file.
+    """
+    folders = sorted(each.parent for each in folder.glob(f"*/{first}"))
+    if not folders:
+        raise PictureError(f"{folder}: neither it nor a folder in it holds {contents}")
+    return {each.name: spec.model_copy(update={"folder": each}) for each in folders}
+
+
+def with_folder_of_file(block: Any) -> Any:
+    """Return the options of a scene; patterns (`pairs`) without a folder get that of the comparison file."""
+    has_pairs = isinstance(block, dict) and "pairs" in block
+    return {"folder": Path(), **cast("dict[str, Any]", block)} if has_pairs else cast(Any, block)
+
+
+def pick_pairs(matched: dict[str, Item], only: tuple[str | int, ...], folder: Path) -> dict[str, Item]:
+    """Return the named pairs, in the order of their names in `only`; all pairs if that is empty.
+
+    Raises: PictureError for a name that no pair has.
+    """
+    if missing := next((name for name in only if str(name) not in matched), None):
+        raise PictureError(f"{folder}: no pair in it is named {quoted(missing)}; there are {', '.join(matched)}")
+    return {str(name): matched[str(name)] for name in only} if only else matched
 
 
 @dataclass(frozen=True)
 class Measure:
-    """A figure of a result."""
+    """A figure that is measured of each result."""
 
     title: str
-    """Column heading, with the unit."""
+    """The column heading, with the unit."""
     digits: int = 2
     best: Literal["low", "high"] = "low"
     tolerance: float = 0.005
-    """The most by which it may get worse between two files and count as the same."""
+    """The largest difference between two files that counts as the same."""
     at_size: bool = False
-    """Whether it counts pixels, so that a heading says of which size they are where that is not the full one."""
+    """True if the measure counts pixels: its heading then names their size, unless that is the full one."""
     of_sets: bool = False
-    """Whether scenes of standard sets alone have it: a table of others leaves it out."""
+    """True if only scenes of standard sets have the measure; tables of other scenes leave it out."""
 
 
 @dataclass(frozen=True)
 class Clock:
-    """How times are told."""
+    """The unit of times."""
 
     unit: str = "ms"
-    """Column heading."""
+    """The column heading."""
     per_second: float = 1e3
     pieces: Callable[[Any], int] = lambda scene: 1
-    """(scene) -> how many pieces of work a call does on it: its time is that of one."""
+    """(scene) -> number of pieces of work in a call; times are those of one piece."""
 
 
 @dataclass(frozen=True)
@@ -68,62 +102,62 @@ class Perturbation:
     """A controlled damage to a scene, the same for every method."""
 
     meaning: str
-    """What its values are, with the unit and the range."""
+    """The meaning of its values, with the unit and the range."""
     allowed: Callable[[float], bool]
     apply: Apply
 
 
 @dataclass(frozen=True)
 class Curve:
-    """A measure that is drawn over something else than time, of each method and of the best there could be."""
+    """A curve that is drawn of each method, next to its ideal one."""
 
     title: str
-    """Of the upright axis, with the unit."""
+    """The label of the vertical axis, with the unit."""
     over: str
-    """What the level axis tells, with the unit."""
+    """The label of the horizontal axis, with the unit."""
     points: Mapping[int, str]
-    """Names of what `Task.measure` gives at each place; no column of a table shows them."""
+    """Horizontal position -> name of a value of `Task.measure`; no table shows these values."""
     ideal: Mapping[int, str]
-    """The same of what the method would have if it were perfect in this."""
+    """Horizontal position -> name of the value for the ideal curve."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """Everything that a comparison must know about one kind of method."""
+    """A kind of method that can be compared."""
 
     kind: Kind
     version: int
-    """Raise it when a measure changes its meaning: rows of another version are measured again."""
+    """The version of the measures; raise it when one changes its meaning: rows of other versions are measured again."""
     scene: type[SceneSpec]
     work: Callable[[Any, Any], Any]
-    """(what `prepare` gives, scene) -> result: what is timed."""
+    """The timed call: (result of `prepare`, scene) -> result."""
     measure: Callable[[Any, Any], Mapping[str, float]]
-    """(result, scene) -> a value for each of `measures` and each point of `curve`, NaN where there is none.
+    """(result, scene) -> a value for each of `measures` and each point of `curve`, NaN if unknown.
     Raises: TangibleError."""
     measures: Mapping[str, Measure]
     columns: tuple[str, ...]
-    """Measures that the table shows, the first one being what methods are judged by."""
+    """The measures that the table shows; the first one ranks the methods."""
     plotted: tuple[str, ...]
-    """Measures drawn against time, one panel each."""
+    """The measures that are drawn over time, one panel each."""
     curve: Curve | None = None
-    """Drawn in a panel of its own."""
+    """A curve that is drawn in its own panel."""
     prepare: Callable[[Any, Any], Any] = lambda method, scene: method
-    """(method, scene) -> what `work` takes, the method itself if not said; made anew for each call. Untimed, but it
-    counts for memory and for the very first call."""
+    """(method, scene) -> argument of `work`; called before each call. Untimed, but it counts for memory and for the
+    very first call."""
     clock: Clock = Clock()
     perturbations: Mapping[str, Perturbation] = field(default_factory=dict[str, Perturbation])
     given: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict[str, Callable[[Any], Any]])
-    """Options that a method may be told from what is known of a scene: name -> (scene) -> value."""
+    """Options of methods whose values follow from a scene: name -> (scene) -> value."""
     finishes: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict[str, Callable[[Any], Any]])
-    """Steps that a comparison may add to the results of chosen methods, untimed, under these keys of its file."""
+    """Untimed steps that a comparison may apply to the results of chosen methods, by their keys in its file."""
     size_of: Callable[[str], str] = lambda scene: ""
-    """(name of a scene) -> such as Q, where its pixels are not those of the full size; empty where they are."""
+    """(name of a scene) -> its size, such as Q; empty for the full size."""
 
 
 TASKS = {"depth": "depth", "texture": "texture", "render": "render"}
-"""Kinds that can be compared, and the module of this room whose `TASK` says how."""
+"""Kinds that can be compared -> the module of this room that has their `TASK`."""
 
 
 def load_task(kind: str) -> Task:
-    """The task of a kind in TASKS, imported on first use."""
+    """Return the task of a kind in TASKS, imported on first use."""
     return import_module(f"{__package__}.{TASKS[kind]}").TASK

@@ -1,4 +1,4 @@
-"""How texture methods are compared: segments against the true ones, whatever their numbers."""
+"""The task for texture methods: segments compared with the true ones, whatever their numbers."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -16,23 +16,18 @@ from .texture_scenes import TextureScene
 
 
 def segment(method: Segmenter, scene: KnownSegments) -> SegmentMap:
-    """What is timed."""
+    """Run the timed call."""
     return method.segment(scene.picture)
 
 
-def measure(found: SegmentMap, scene: KnownSegments) -> dict[str, float]:
-    """`segment_errors`, with the distance between the number of segments and the true one in place of the number."""
-    errors = segment_errors(found.labels, scene.labels)
+def measure(segments: SegmentMap, scene: KnownSegments) -> dict[str, float]:
+    """Return `segment_errors`, where `segments` is the difference between the number of segments and the true one."""
+    errors = segment_errors(segments.labels, scene.labels)
     return errors | {"segments": abs(errors["segments"] - scene.count)}
 
 
-def count(scene: KnownSegments) -> int:
-    """How many segments there truly are: no method finds that out by itself with certainty."""
-    return scene.count
-
-
 def _light(change: Callable[[np.ndarray, float], np.ndarray]) -> Callable[[KnownSegments, float], KnownSegments]:
-    """Damage that moves nothing."""
+    """Return a perturbation of the picture that moves no pixel."""
     return lambda scene, value: replace(scene, picture=change(scene.picture, value))
 
 
@@ -78,5 +73,5 @@ TASK = Task(
     columns=tuple(MEASURES),
     plotted=("ari", "boundary_px"),
     perturbations=PERTURBATIONS,
-    given={"segments": count},
+    given={"segments": lambda scene: scene.count},
 )

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Self, cast
+from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
@@ -18,36 +18,36 @@ from tangible_core.testing.synthetic.texture_scenes import (
 )
 
 from ..datasets import matched
-from .task import SceneSpec
+from .task import SceneSpec, expand_folder, pick_pairs, with_folder_of_file
 
 PICTURE, LABELS = "picture.png", "labels.png"
 
 
 class LabelGlobs(Section):
-    """Files of one's own that belong together by what the stars of their patterns match."""
+    """Patterns of custom files; files belong together if the stars of their patterns match the same."""
 
     picture: str
-    """Pictures, such as `images/*.jpg`, from `folder` on."""
+    """Pattern of the pictures, such as `images/*.jpg`, relative to `folder`."""
     labels: str
-    """Their labels, a flat colour or grey for each segment: a pattern of as many stars."""
+    """Pattern of their labels, a flat colour or grey for each segment, with as many stars."""
 
 
 class TextureScene(SceneSpec):
     """A picture with true segments: one of mosaic, smooth, folder and pairs."""
 
     mosaic: Annotated[int, Field(ge=1)] | None = None
-    """So many textures in curvy regions; grey alone tells nothing about them."""
+    """The number of textures in curvy regions, which grey alone does not tell apart."""
     smooth: Annotated[int, Field(ge=1)] | None = None
-    """So many regions of one grey each, under a slope of light and noise."""
+    """The number of regions of one grey each, under a slope of light and noise."""
     folder: Path | None = None
-    """picture.png and labels.png, a flat colour or grey for each segment; or sub-folders with these. With `pairs`,
-    where they lie."""
+    """A folder with picture.png and labels.png, a flat colour or grey for each segment; or with sub-folders that have
+    these. With `pairs`, the folder of the patterns."""
     pairs: LabelGlobs | None = None
-    """Files of your own, matched by patterns."""
+    """Custom files, matched by patterns."""
     only: tuple[str, ...] = ()
     """Names of such pairs; all of them if left out."""
     textures: Path | None = None
-    """A folder of pictures of one texture each that a mosaic is made of, in place of the builtin ones."""
+    """A folder of pictures of one texture each, for a mosaic of these in place of the builtin ones."""
     width_px: Annotated[int, Field(ge=16, le=20_000)] = 512
     """Width of a mosaic or a smooth scene."""
     height_px: Annotated[int, Field(ge=16, le=20_000)] = 512
@@ -57,11 +57,8 @@ class TextureScene(SceneSpec):
 
     @model_validator(mode="before")
     @classmethod
-    def _beside_the_file(cls, said: Any) -> Any:
-        """Patterns without a folder start at the file."""
-        if isinstance(said, dict) and "pairs" in said:
-            return {"folder": Path(), **cast("dict[str, Any]", said)}
-        return cast(Any, said)
+    def _complete_folder(cls, block: Any) -> Any:
+        return with_folder_of_file(block)
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
@@ -72,49 +69,46 @@ class TextureScene(SceneSpec):
                 f"a scene is one of mosaic, smooth, folder and pairs; this one is {' and '.join(given) or 'none'}"
             )
         if self.textures is not None and self.mosaic is None:
-            raise ValueError(f"textures are what a mosaic is made of; leave them out of {given[0]}")
+            raise ValueError(f"textures: only a mosaic is made of them; leave them out of {given[0]}")
         return self
 
     @classmethod
-    def named(cls, name: str) -> Mapping[str, Any]:
-        """`mosaic/SEGMENTS` or `smooth/SEGMENTS`."""
+    def parse_name(cls, name: str) -> Mapping[str, Any]:
+        """Return the options of `mosaic/SEGMENTS` or `smooth/SEGMENTS`."""
         kind, _, segments = name.partition("/")
         if kind not in ("mosaic", "smooth") or not segments.isdecimal():
             raise ValueError(f"no scene is named {quoted(name)}; write mosaic/4, smooth/14 or {{folder: ...}}")
         return {kind: int(segments)}
 
     def expand(self) -> "Mapping[str, TextureScene]":
-        """Itself, or one for each sub-folder that holds a picture with its labels."""
+        """Return this scene, or one for each pair, or for each sub-folder that holds a picture with its labels."""
         if self.pairs is not None:
-            return {name: self.model_copy(update={"only": (name,)}) for name in self._matched()}
+            return {name: self.model_copy(update={"only": (name,)}) for name in self._matching_pairs()}
         if self.folder is None or (self.folder / PICTURE).exists():
             return {self._name(): self}
-        found = sorted(each.parent for each in self.folder.glob(f"*/{PICTURE}"))
-        if not found:
-            raise PictureError(f"{self.folder}: neither it nor a folder in it holds {PICTURE} and {LABELS}")
-        return {str(each.name): self.model_copy(update={"folder": each}) for each in found}
+        return expand_folder(self, self.folder, PICTURE, f"{PICTURE} and {LABELS}")
 
     def open(self) -> KnownSegments:
-        """The picture and its labels. Raises: PictureError if they cannot be read, or there are too few textures."""
+        """Read or make the picture and its labels.
+
+        Raises: PictureError if they cannot be read, or there are too few textures.
+        """
         shape = (self.height_px, self.width_px)
         if self.pairs is not None:
-            (files,) = self._matched().values()
+            (files,) = self._matching_pairs().values()
             return _read(files["picture"], files["labels"])
         if self.folder is not None:
             return _read(self.folder / PICTURE, self.folder / LABELS)
         if self.smooth is not None:
             return smooth_scene(self.smooth, shape, self.seed)
-        assert self.mosaic is not None  # held by _one_kind
+        assert self.mosaic is not None  # by _one_kind
         textures = None if self.textures is None else folder_textures(self.textures)
         return texture_mosaic(self.mosaic, shape, self.seed, textures)
 
-    def _matched(self) -> dict[str, dict[str, Path]]:
-        assert self.folder is not None and self.pairs is not None  # held by _beside_the_file
-        wanted = {"picture": self.pairs.picture, "labels": self.pairs.labels}
-        found = matched(self.folder, wanted, ("picture", "labels"))
-        if missing := next((name for name in self.only if name not in found), None):
-            raise PictureError(f"{self.folder}: no pair in it is named {quoted(missing)}; there are {', '.join(found)}")
-        return {name: found[name] for name in self.only} if self.only else found
+    def _matching_pairs(self) -> dict[str, dict[str, Path]]:
+        assert self.folder is not None and self.pairs is not None  # by _complete_folder
+        patterns = {"picture": self.pairs.picture, "labels": self.pairs.labels}
+        return pick_pairs(matched(self.folder, patterns, ("picture", "labels")), self.only, self.folder)
 
     def _name(self) -> str:
         if self.folder is not None:
@@ -127,8 +121,6 @@ class TextureScene(SceneSpec):
 def _read(picture_path: Path, labels_path: Path) -> KnownSegments:
     picture, labels = read_picture(picture_path), read_labels(labels_path)
     if picture.shape[:2] != labels.shape:
-        raise PictureError(
-            f"{picture_path} is {size_in_words(picture)} and {labels_path} {size_in_words(labels)}; they must be "
-            "of one size"
-        )
+        sizes = f"{picture_path} is {size_in_words(picture)} and {labels_path} {size_in_words(labels)}"
+        raise PictureError(f"{sizes}; they must be of the same size")
     return KnownSegments(picture, labels)

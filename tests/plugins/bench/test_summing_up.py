@@ -8,9 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_bench.measuring.rows import Row
-from tangible_bench.results.pareto import front
 from tangible_bench.results.summary import cells, lines, spread
-from tangible_bench.results.table import Results, tables
+from tangible_bench.results.table import Results, front, tables
 from tangible_bench.tasks.task import load_task
 
 ROW = Row("k", "depth", "m", "m", {}, "d 1", "s", "digest", "none", (), 0, {}, {"processor": "p"}, seconds=1.0)

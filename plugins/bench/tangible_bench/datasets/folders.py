@@ -1,4 +1,4 @@
-"""A folder of a set with all that is in it, by names alone: no file is opened."""
+"""The folders of a set and the names of their files; no file is opened."""
 
 import os
 from collections.abc import Iterator
@@ -8,28 +8,28 @@ from typing import NamedTuple
 from tangible_core.errors import PictureError
 
 MOST_DEPTH = 10
-"""Folders in folders; no kit has more than six."""
+"""The number of levels of folders that are searched; no kit has more than six."""
 MOST_ENTRIES = 500_000
-"""Names, which take some seconds; the largest kit has 60,000."""
+"""The number of names at which a search is refused, after some seconds; the largest kit has 60,000."""
 
 
 class Folder(NamedTuple):
-    """A folder, and the files in it."""
+    """A folder with the names of its files."""
 
     path: Path
     within: tuple[str, ...]
-    """Its name, after those of the folders that it lies in, from the first one on."""
+    """The names of the folders from the first one to this one."""
     files: frozenset[str]
 
     def has(self, *names: str) -> bool:
-        """Whether all of these files are in it."""
+        """Return True if all of these files are in the folder."""
         return self.files.issuperset(names)
 
 
 def folders(root: Path) -> Iterator[Folder]:
-    """The folder and all folders in it, by name; links are followed, but into no folder twice.
+    """Yield the folder and all folders in it, by name; links are followed, but no folder is listed twice.
 
-    Raises: PictureError if one cannot be listed, or there are too many entries.
+    Raises: PictureError if a folder cannot be listed, or there are too many entries.
     """
     seen = set[tuple[int, int]]()
     waiting, count = [(str(root), (root.absolute().name,))], 0
@@ -37,15 +37,15 @@ def folders(root: Path) -> Iterator[Folder]:
         path, within = waiting.pop()
         below, files = list[str](), list[str]()
         try:
-            found = os.stat(path)  # noqa: PTH116 - pathlib would take most of the time
-            if (found.st_dev, found.st_ino) in seen:
+            state = os.stat(path)  # noqa: PTH116 - pathlib would take most of the time
+            if (state.st_dev, state.st_ino) in seen:
                 continue
-            seen.add((found.st_dev, found.st_ino))
+            seen.add((state.st_dev, state.st_ino))
             with os.scandir(path) as entries:
                 for each in entries:
                     if each.is_dir():
                         below.append(each.name)
-                    elif each.is_file():  # a link to nothing is none
+                    elif each.is_file():  # a broken link is not a file
                         files.append(each.name)
         except OSError as error:
             raise PictureError(f"{path}: cannot be listed: {error.strerror}; check its permissions") from error

@@ -1,4 +1,4 @@
-"""A pair at a half, a third or a quarter of its size."""
+"""Shrinking of pairs to a half, a third or a quarter of their size."""
 
 import numpy as np
 from jaxtyping import Bool, Float32
@@ -7,8 +7,8 @@ from tangible_core.data import Calibration, Views
 from tangible_core.runtime.opencv import plain_opencv
 
 
-def smaller_views(views: Views, by: int) -> Views:
-    """Each pixel the mean of `by` x `by`; rows and columns that are left over at the end fall away."""
+def shrink_views(views: Views, by: int) -> Views:
+    """Replace blocks of `by` x `by` pixels by their mean; rows and columns that are left over at the end are cut."""
     if by == 1:
         return views
     old = views.calibration
@@ -16,10 +16,10 @@ def smaller_views(views: Views, by: int) -> Views:
     return Views(_mean(views.left, by), None if views.right is None else _mean(views.right, by), cameras)
 
 
-def smaller_truth(truth_px: Float32[np.ndarray, "h w"], by: int) -> Float32[np.ndarray, "r c"]:
-    """The upper median of the known values of `by` x `by`, in pixels of the smaller size; NaN if most are unknown.
+def shrink_truth(truth_px: Float32[np.ndarray, "h w"], by: int) -> Float32[np.ndarray, "r c"]:
+    """Return the upper median of the known values of blocks, in pixels of the smaller size; NaN if most are unknown.
 
-    A mean would lie between the two surfaces of an edge, where there is nothing.
+    A mean would lie between the two surfaces at an edge, where there is nothing.
     """
     if by == 1:
         return truth_px
@@ -29,8 +29,8 @@ def smaller_truth(truth_px: Float32[np.ndarray, "h w"], by: int) -> Float32[np.n
     return np.where(2 * known >= by * by, middle / np.float32(by), np.float32(np.nan))
 
 
-def smaller_mask(mask: Bool[np.ndarray, "h w"], by: int) -> Bool[np.ndarray, "r c"]:
-    """Marked where most of `by` x `by` are."""
+def shrink_mask(mask: Bool[np.ndarray, "h w"], by: int) -> Bool[np.ndarray, "r c"]:
+    """Return a mask of the blocks of which most pixels are marked."""
     return mask if by == 1 else 2 * _blocks(mask, by).sum(axis=-1) > by * by
 
 
@@ -44,7 +44,7 @@ def _mean(picture: np.ndarray, by: int) -> np.ndarray:
 
 
 def _blocks(values: np.ndarray, by: int) -> np.ndarray:
-    """(rows, columns, by * by). A side below `by` is repeated at its end."""
+    """Return the blocks, (rows, columns, by * by). A side shorter than `by` is repeated at its end."""
     rows, columns = (max(1, side // by) for side in values.shape)
     short = [(0, max(0, by - side)) for side in values.shape]
     whole = np.pad(values, short, mode="edge")[: rows * by, : columns * by]

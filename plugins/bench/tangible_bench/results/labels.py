@@ -1,4 +1,4 @@
-"""Names beside points such that none covers another name or a point."""
+"""Labels for the points of a plot, placed so that none covers another label or a point."""
 # matplotlib keywords have no types.
 # pyright: reportUnknownMemberType=false
 
@@ -15,23 +15,24 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 RINGS_PT = (8, 18, 30, 44, 60, 80)
-"""Distances from the point that are tried, near ones first."""
+"""The distances from a point at which a label is tried, the nearest first, points (1/72 inch)."""
 TURNS = 16
+"""The number of directions that are tried at each distance."""
 POINT_PT = 5
-"""Half the side of the square round a point that stays free."""
+"""Half the side of the free square around a point, points."""
 
 Point = tuple[float, float]
 Box = tuple[float, float, float, float]
-"""Left, bottom, right, top, in the canvas's own pixels."""
+"""A rectangle: left, bottom, right, top, pixels of the canvas."""
 
 
 def place_labels(
     axes: Axes, named: Sequence[tuple[str, float, float]], steps: Sequence[tuple[float, float]] = ()
 ) -> None:
-    """Write each point's name beside it, inside of the axes, with a thin line to it where it stands far off.
+    """Write each point's name next to the point, inside the axes, with a thin line between them if they are far apart.
 
-    named: name, x, y. steps: corners of a stepped line (`where="post"`) that names keep off as well.
-    A name for which there is no free place takes the one that covers the least. The axes must have been drawn.
+    named: name, x, y. steps: corners of a stepped line (`where="post"`) that labels avoid as well.
+    A label without a free place takes the place that covers the least. The axes must have been drawn before.
     """
     from matplotlib import patheffects
 
@@ -40,13 +41,13 @@ def place_labels(
     per_point = axes.figure.dpi / 72
     left, bottom, right, top = axes.bbox.extents
     points = [_on_canvas(axes, x, y) for _, x, y in named]
-    taken: list[Box] = [_around(point, POINT_PT * per_point) for point in points]
-    taken += _along([_on_canvas(axes, x, y) for x, y in steps], per_point)
+    taken: list[Box] = [_square(point, POINT_PT * per_point) for point in points]
+    taken += _step_boxes([_on_canvas(axes, x, y) for x, y in steps], per_point)
     for (name, x, y), point in sorted(zip(named, points, strict=True), key=lambda pair: -pair[1][1]):
         size = _size(axes, name)
-        places = [_shifted(point, offset, size) for offset in _offsets(per_point, size)]
-        box = min(places, key=lambda place: _covered(place, taken, (left, bottom, right, top)))
-        far = _gap(point, box) > 1.5 * RINGS_PT[0] * per_point
+        places = [_box_at(point, offset, size) for offset in _offsets(per_point, size)]
+        box = min(places, key=lambda place: _overlap(place, taken, (left, bottom, right, top)))
+        far = _distance(point, box) > 1.5 * RINGS_PT[0] * per_point
         taken.append(box)
         axes.annotate(
             name,
@@ -76,7 +77,7 @@ def _size(axes: Axes, name: str) -> tuple[float, float]:
 
 
 def _offsets(per_point: float, size: tuple[float, float]) -> list[tuple[float, float]]:
-    """Where the name's lower left corner may lie, seen from the point: rings about it, the nearest first."""
+    """Return the offsets from a point to the lower left corner of its label, in rings, the nearest first."""
     angles = 2 * np.pi * np.arange(TURNS) / TURNS
     return [
         (
@@ -87,35 +88,35 @@ def _offsets(per_point: float, size: tuple[float, float]) -> list[tuple[float, f
     ]
 
 
-def _covered(box: Box, taken: Sequence[Box], frame: Box) -> float:
-    """Area that a box shares with taken ones, and that it has outside of the frame."""
-    outside = (box[2] - box[0]) * (box[3] - box[1]) - _shared(box, frame)
-    return outside + sum(_shared(box, each) for each in taken)
+def _overlap(box: Box, taken: Sequence[Box], frame: Box) -> float:
+    """Return the area of a box that other boxes cover, plus the area outside of the frame."""
+    outside = (box[2] - box[0]) * (box[3] - box[1]) - _intersection(box, frame)
+    return outside + sum(_intersection(box, each) for each in taken)
 
 
-def _shared(one: Box, other: Box) -> float:
+def _intersection(one: Box, other: Box) -> float:
     width = min(one[2], other[2]) - max(one[0], other[0])
     height = min(one[3], other[3]) - max(one[1], other[1])
     return max(0.0, width) * max(0.0, height)
 
 
-def _along(corners: Sequence[Point], half: float) -> list[Box]:
-    """Boxes round the level and the upright piece of each step."""
-    found: list[Box] = []
+def _step_boxes(corners: Sequence[Point], half: float) -> list[Box]:
+    """Return boxes around the level and the upright piece of each step."""
+    boxes: list[Box] = []
     for (left, high), (right, low) in pairwise(corners):
-        found += [(left, high - half, right, high + half), (right - half, low, right + half, high)]
-    return found
+        boxes += [(left, high - half, right, high + half), (right - half, low, right + half, high)]
+    return boxes
 
 
-def _gap(point: Point, box: Box) -> float:
+def _distance(point: Point, box: Box) -> float:
     across = max(box[0] - point[0], point[0] - box[2], 0.0)
     return math.hypot(across, max(box[1] - point[1], point[1] - box[3], 0.0))
 
 
-def _around(point: Point, half: float) -> Box:
+def _square(point: Point, half: float) -> Box:
     return point[0] - half, point[1] - half, point[0] + half, point[1] + half
 
 
-def _shifted(point: Point, offset: tuple[float, float], size: tuple[float, float]) -> Box:
+def _box_at(point: Point, offset: tuple[float, float], size: tuple[float, float]) -> Box:
     left, bottom = point[0] + offset[0], point[1] + offset[1]
     return left, bottom, left + size[0], bottom + size[1]

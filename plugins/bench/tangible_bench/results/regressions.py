@@ -1,4 +1,4 @@
-"""What got worse between two files of results, beyond the noise of their repeats."""
+"""Regressions: the figures that got worse between two files of results, beyond the noise of their repeats."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -11,10 +11,11 @@ from ..tasks.task import Measure, load_task
 from .summary import Cell, cells, median, spread
 
 SPREADS = 3.0
-"""Medians that differ by no more than this many standard deviations are the same."""
+"""The number of standard deviations by which medians may differ and still count as the same."""
 TIME_FLOOR, MEMORY_FLOOR = 0.1, 0.05
-"""Nor do they differ by less than this share, however quiet the repeats were."""
+"""The shares by which time and memory may differ in any case, even where the repeats have no noise."""
 MEMORY_FLOOR_BYTES = 2**20
+"""The difference of memory that always counts as the same, bytes."""
 
 
 @dataclass(frozen=True)
@@ -34,25 +35,25 @@ class Regression:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What two files have in common, and what got worse in it."""
+    """The result of a comparison of two files."""
 
     compared: int
-    """Cells that both files hold."""
+    """The number of cells that both files hold."""
     missing: tuple[str, ...]
-    """Cells that only one of them holds, or whose scene has other content now."""
+    """Cells that only one file holds, or whose scene has other content now."""
     time: str
-    """How times were compared."""
+    """A few words on how times were compared."""
     worse: tuple[Regression, ...]
 
 
-def compare(before: Sequence[Row], after: Sequence[Row]) -> Verdict:
+def find_regressions(before: Sequence[Row], after: Sequence[Row]) -> Verdict:
     """Compare two sets of rows cell by cell: method (by label), scene, perturbation.
 
     A time is worse if its median over the repeats rose by more than max(3 s, 10 %), where s is the root of the sum of
-    both squared standard deviations, each from the median of the absolute deviations. It is the ratio to the baseline
-    where both files name the same one, else seconds. Memory alike, with max(3 s, 5 %, 1 MiB). Errors are exact, for
+    both squared standard deviations, each from the median of the absolute deviations. Times are ratios to the baseline
+    where both files name the same one, else seconds. Memory likewise, with max(3 s, 5 %, 1 MiB). Errors are exact, as
     methods are deterministic: worse if they rose by more than the measure's tolerance, half a unit of the last digit
-    that is shown. A method that fails now and did not is worse.
+    that is shown. A method that fails now and did not fail before is worse.
     Raises: ResultsError if the files have no cell in common, compare different kinds, or times are seconds of two
     different machines.
     """
@@ -67,7 +68,7 @@ def compare(before: Sequence[Row], after: Sequence[Row]) -> Verdict:
     if not shared:
         raise ResultsError("the files have no method on a scene in common: labels, scenes or pictures all differ")
     measures = load_task(kinds.pop()).measures
-    worse = [found for key in shared for found in _worse(old[key], new[key], measures, baseline is not None)]
+    worse = [each for key in shared for each in _regressions(old[key], new[key], measures, baseline is not None)]
     missing = [" | ".join(key) for key in {**old, **new} if key not in shared]
     time = f"times as ratios to {baseline}" if baseline else "times in seconds, on the same machine"
     return Verdict(len(shared), tuple(missing), time, tuple(worse))
@@ -85,7 +86,7 @@ def _common_baseline(before: Sequence[Row], after: Sequence[Row]) -> str | None:
     return None
 
 
-def _worse(old: Cell, new: Cell, measures: Mapping[str, Measure], by_ratio: bool) -> Iterator[Regression]:
+def _regressions(old: Cell, new: Cell, measures: Mapping[str, Measure], by_ratio: bool) -> Iterator[Regression]:
     if new.error and not old.error:
         yield Regression(*new.key, "fails", math.nan, math.nan, 0.0, new.error)
     if old.error or new.error:

@@ -1,7 +1,5 @@
-"""The tables that papers print of a benchmark: its own columns, a line a method, for LaTeX and as CSV."""
+"""The tables that papers print of a benchmark: its own columns, a row for each method, for LaTeX and as CSV."""
 
-import csv
-import io
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,19 +10,19 @@ from tangible_core.files.writing import write_text
 
 from ..config.reading import NONE
 from ..datasets import SETS
-from .files import escaped
+from .files import csv_text, escape, exact_text, latex_text
 from .summary import Cell
 from .table import Results, Table
 
 
 class Column(NamedTuple):
-    """A measure as a benchmark's table has it."""
+    """A measure in a benchmark's table."""
 
     heading: str
     measure: str
     digits: int = 2
     weight: str = ""
-    """What a pair counts by: a number of pixels; empty where each counts alike."""
+    """The measure by which a pair is weighted, a number of pixels; empty for equal weights."""
 
 
 _FULL = (
@@ -52,9 +50,9 @@ COLUMNS: Mapping[str, Sequence[Column]] = {
     "kitti-2012": _2012,
     "kitti-2015": (*_2015, Column("Density", "density", weight="pixels")),
 }
-"""Name of a set -> its columns, the one that methods are ranked by first."""
+"""Name of a set -> its columns; methods are ranked by the first, unless RANKED names another."""
 RANKED = {"kitti-2015": "d1", "kitti-2012": "bad3_noc", "eth3d": "bad1_noc"}
-"""Where another one than the first is the benchmark's own order; of Middlebury and others, bad 2 noc."""
+"""Measures that rank methods on the benchmark's own page, where these are not bad 2 noc."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +60,7 @@ class SetTable:
     """A benchmark's table: its methods from the best to the worst."""
 
     label: str
-    """The set with its size, as names of scenes have it."""
+    """The set with its size, as in names of scenes."""
     scenes: int
     columns: tuple[Column, ...]
     rows: Mapping[str, tuple[float, ...]]
@@ -70,13 +68,13 @@ class SetTable:
 
     @property
     def title(self) -> str:
-        """In words."""
+        """The name of the set, its size and the number of pairs."""
         known, *marks = self.label.split("@")
         return " ".join((SETS[known].title, *marks)) + f", {self.scenes} pair{'s' if self.scenes > 1 else ''}"
 
     @property
     def best(self) -> tuple[float, ...]:
-        """Of each column."""
+        """The best value of each column."""
         values = zip(*self.rows.values(), strict=True)
         best = (max if each.measure == "density" else min for each in self.columns)
         return tuple(
@@ -86,7 +84,7 @@ class SetTable:
 
 
 def set_tables(results: Results) -> list[SetTable]:
-    """One for each set that the undamaged scenes are of, if any of them has truth."""
+    """Return a table for each standard set among the undamaged scenes, if any of its pairs has truth."""
     scenes: dict[str, list[str]] = {}
     for scene in results.scenes:
         label, inside, _ = scene.partition("/")
@@ -100,8 +98,8 @@ def set_tables(results: Results) -> list[SetTable]:
 def _table(results: Results, label: str, scenes: Sequence[str]) -> SetTable:
     name = label.partition("@")[0]
     methods = dict.fromkeys(cell.method for cell in results.cells.values())
-    found = {method: [results.cells.get((method, scene, NONE)) for scene in scenes] for method in methods}
-    rows = {method: tuple(_mean(cells, each) for each in COLUMNS[name]) for method, cells in found.items()}
+    cells = {method: [results.cells.get((method, scene, NONE)) for scene in scenes] for method in methods}
+    rows = {method: tuple(_mean(each, column) for column in COLUMNS[name]) for method, each in cells.items()}
     rows = {method: values for method, values in rows.items() if not all(map(math.isnan, values))}
     first = RANKED.get(name, "bad2_full_noc" if COLUMNS[name] is _FULL else "bad2_noc")
     order = next(index for index, each in enumerate(COLUMNS[name]) if each.measure == first)
@@ -110,56 +108,46 @@ def _table(results: Results, label: str, scenes: Sequence[str]) -> SetTable:
 
 
 def _mean(cells: Sequence[Cell | None], column: Column) -> float:
-    """Over the pairs that have it, such as a foreground; NaN if a pair has no result at all."""
+    """Return the mean over the pairs that have the measure, such as a foreground; NaN if a pair has no result."""
     if any(cell is None or cell.error is not None or not cell.seconds for cell in cells):
         return math.nan
     measures = [cell.measures for cell in cells if cell is not None]
-    said = [(each.get(column.measure, math.nan), each.get(column.weight, 1.0)) for each in measures]
-    known = [(value, weight) for value, weight in said if not math.isnan(value)]
+    pairs = [(each.get(column.measure, math.nan), each.get(column.weight, 1.0)) for each in measures]
+    known = [(value, weight) for value, weight in pairs if not math.isnan(value)]
     whole = sum(weight for _, weight in known)
     return sum(value * weight for value, weight in known) / whole if whole else math.nan
 
 
-def shown(table: SetTable) -> Table:
-    """As the terminal prints it."""
-    headings = ("method", *(each.heading for each in table.columns))
+def as_table(table: SetTable) -> Table:
+    """Return the table as the terminal prints it."""
     rows = tuple((method, *_texts(table, values)) for method, values in table.rows.items())
-    return Table(table.title, headings, rows)
+    return Table(table.title, _headings(table), rows)
 
 
 def as_csv(table: SetTable) -> str:
-    """Unrounded; empty where there is none."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(("method", *(each.heading for each in table.columns)))
-    for method, values in table.rows.items():
-        writer.writerow((method, *("" if math.isnan(value) else repr(float(value)) for value in values)))
-    return text.getvalue()
+    """Return the table with unrounded figures; empty where there is none."""
+    rows = ((method, *map(exact_text, values)) for method, values in table.rows.items())
+    return csv_text(_headings(table), rows)
 
 
 def as_latex(table: SetTable) -> str:
-    r"""For `\usepackage{booktabs}` and `\input`; the best of each column is bold."""
-    lines = [
-        f"% {table.title}. Needs \\usepackage{{booktabs}}.",
-        rf"\begin{{tabular}}{{l{'r' * len(table.columns)}}}",
-        r"\toprule",
-        _row("method", (escaped(each.heading) for each in table.columns)),
-        r"\midrule",
-        *(_row(method, _bold(table, values)) for method, values in table.rows.items()),
-        r"\bottomrule",
-        r"\end{tabular}",
-    ]
-    return "\n".join(lines) + "\n"
+    r"""Return the table for `\usepackage{booktabs}` and `\input`; the best figure of each column is bold."""
+    rows = ((escape(method), *_bold(table, values)) for method, values in table.rows.items())
+    return latex_text(table.title, 1, _headings(table), rows)
 
 
 def write_set_tables(folder: Path, results: Results) -> tuple[Path, ...]:
-    """Both files of each set, whole or not at all. Raises: OutputError if the folder cannot be written."""
+    """Write both files of each set, whole or not at all. Raises: OutputError if the folder cannot be written."""
     files: list[Path] = []
     for table in set_tables(results):
         for end, text in ((".csv", as_csv(table)), (".tex", as_latex(table))):
             files.append(folder / f"{table.label}{end}")
             write_text(files[-1], text)
     return tuple(files)
+
+
+def _headings(table: SetTable) -> tuple[str, ...]:
+    return ("method", *(each.heading for each in table.columns))
 
 
 def _texts(table: SetTable, values: Sequence[float]) -> Iterator[str]:
@@ -170,7 +158,3 @@ def _texts(table: SetTable, values: Sequence[float]) -> Iterator[str]:
 def _bold(table: SetTable, values: Sequence[float]) -> Iterator[str]:
     for text, value, best in zip(_texts(table, values), values, table.best, strict=True):
         yield rf"\textbf{{{text}}}" if value == best else text
-
-
-def _row(first: str, cells: Iterator[str]) -> str:
-    return " & ".join((escaped(first), *cells)) + r" \\"

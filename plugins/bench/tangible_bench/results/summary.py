@@ -1,4 +1,4 @@
-"""From rows to figures: medians over repeats, means over scenes, ratios to a baseline pair by pair."""
+"""Figures of rows: medians over repeats, means over scenes, ratios to a baseline within each round."""
 
 import math
 import statistics
@@ -15,7 +15,7 @@ Key = tuple[str, str, str]
 
 @dataclass(frozen=True)
 class Cell:
-    """What is known of a method on a scene with a perturbation; lists hold one value for each repeat."""
+    """The results of a method on a scene with a perturbation; lists hold one value for each repeat."""
 
     method: str
     scene: str
@@ -24,45 +24,45 @@ class Cell:
     seconds: Sequence[float] = ()
     first_seconds: Sequence[float] = ()
     ratios: Sequence[float] = ()
-    """Time over the baseline's in the same round; empty without a baseline."""
+    """Times divided by the baseline's time in the same round; empty without a baseline."""
     memory_bytes: Sequence[float] = ()
     measures: Mapping[str, float] = field(default_factory=dict[str, float])
-    """Median over the repeats: methods are deterministic, so it is the value of each."""
+    """Medians over the repeats. (Methods are deterministic, so each repeat has the same value.)"""
     error: str | None = None
 
     @property
     def is_measured(self) -> bool:
-        """Whether any repeat has a result; one without a time has errors alone."""
+        """True if any repeat has a result; after `errors_only`, results have no times."""
         return bool(self.seconds or self.measures)
 
     @property
     def key(self) -> Key:
-        """What tells it from the other cells."""
+        """The method, scene and perturbation."""
         return self.method, self.scene, self.perturb
 
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A method's figures over several scenes; NaN where it lacks what another method has."""
+    """A method's figures over several scenes; NaN where the method lacks a result that another method has."""
 
     method: str
     perturb: str
     seconds: float
-    """Mean of the scenes' medians."""
+    """The mean of the scenes' medians."""
     first_seconds: float
     ratio: float
-    """Geometric mean of the scenes' median ratios: no scene counts for more because it is larger."""
+    """The geometric mean of the scenes' median ratios, so that large scenes do not count for more."""
     memory_bytes: float
-    """The scene that took the most."""
+    """The largest memory of any scene."""
     measures: Mapping[str, float]
-    """Mean over the scenes, each counting alike."""
+    """The means over the scenes, with equal weights."""
     done: int
-    """How many scenes have a result."""
+    """The number of scenes with a result."""
     scenes: int
 
 
 def cells(rows: Iterable[Row], baseline: str | None) -> dict[Key, Cell]:
-    """Rows put together by method, scene and perturbation, in the order of their first appearance."""
+    """Group rows by method, scene and perturbation, in the order of their first appearance."""
     grouped: dict[Key, list[Row]] = defaultdict(list)
     for row in rows:
         grouped[row.cell].append(row)
@@ -71,28 +71,32 @@ def cells(rows: Iterable[Row], baseline: str | None) -> dict[Key, Cell]:
     }
 
 
-def lines(found: Mapping[Key, Cell], perturb: str, scenes: Sequence[str]) -> list[Line]:
-    """One line a method, over these scenes under one perturbation.
+def lines(all_cells: Mapping[Key, Cell], perturb: str, scenes: Sequence[str]) -> list[Line]:
+    """Return a line for each method, over these scenes under one perturbation.
 
-    A scene on which no method has a measure, such as one without truth, does not count in its mean.
+    The mean of a measure leaves out scenes on which no method has that measure, such as scenes without truth.
     """
-    methods = dict.fromkeys(cell.method for cell in found.values())
-    told = {
-        (cell.scene, name) for cell in found.values() for name, value in cell.measures.items() if not math.isnan(value)
+    methods = dict.fromkeys(cell.method for cell in all_cells.values())
+    known = {
+        (cell.scene, name)
+        for cell in all_cells.values()
+        for name, value in cell.measures.items()
+        if not math.isnan(value)
     }
     return [
-        _line(method, perturb, [found.get((method, scene, perturb)) for scene in scenes], told) for method in methods
+        _line(method, perturb, [all_cells.get((method, scene, perturb)) for scene in scenes], known)
+        for method in methods
     ]
 
 
 def median(values: Iterable[float]) -> float:
-    """NaN of nothing."""
+    """Return the median; NaN of an empty list."""
     known = list(values)
     return statistics.median(known) if known else NAN
 
 
 def spread(values: Sequence[float]) -> float:
-    """Standard deviation of one value, from the median of the absolute deviations; 0 of nothing.
+    """Return the standard deviation of a value, from the median of the absolute deviations; 0 of an empty list.
 
     Source: Rousseeuw & Croux, Alternatives to the Median Absolute Deviation, JASA 88 (1993): 1.4826 for a Gaussian.
     """
@@ -114,32 +118,31 @@ def _cell(rows: Sequence[Row], baseline: Mapping[int, float]) -> Cell:
         first_seconds=[row.first_seconds for row in good if row.first_seconds is not None],
         ratios=[row.seconds / baseline[row.repeat] for row in good if row.seconds and baseline.get(row.repeat)],
         memory_bytes=[row.peak_memory_bytes for row in good if row.peak_memory_bytes is not None],
-        measures={name: median(_known(row.measures.get(name) for row in good)) for name in names},
+        measures={name: median(_present(row.measures.get(name) for row in good)) for name in names},
         error=errors[-1] if errors else None,
     )
 
 
-def _known(values: Iterable[float | None]) -> list[float]:
+def _present(values: Iterable[float | None]) -> list[float]:
     return [value for value in values if value is not None]
 
 
-def _line(method: str, perturb: str, found: Sequence[Cell | None], told: Set[tuple[str, str]]) -> Line:
-    done = [cell for cell in found if cell is not None and cell.error is None and cell.is_measured]
-    whole = done if len(done) == len(found) else []
+def _line(method: str, perturb: str, of_scenes: Sequence[Cell | None], known: Set[tuple[str, str]]) -> Line:
+    done = [cell for cell in of_scenes if cell is not None and cell.error is None and cell.is_measured]
+    whole = done if len(done) == len(of_scenes) else []
     names = dict.fromkeys(name for cell in whole for name in cell.measures)
-    ratios = [median(cell.ratios) for cell in whole]
     return Line(
         method,
         perturb,
         seconds=_mean(median(cell.seconds) for cell in whole),
         first_seconds=_mean(median(cell.first_seconds) for cell in whole),
-        ratio=math.exp(_mean(math.log(ratio) for ratio in ratios)),
+        ratio=math.exp(_mean(math.log(median(cell.ratios)) for cell in whole)),
         memory_bytes=max((median(cell.memory_bytes) for cell in whole), default=NAN),
         measures={
-            name: _mean(cell.measures.get(name, NAN) for cell in whole if (cell.scene, name) in told) for name in names
+            name: _mean(cell.measures.get(name, NAN) for cell in whole if (cell.scene, name) in known) for name in names
         },
         done=len(done),
-        scenes=len(found),
+        scenes=len(of_scenes),
     )
 
 

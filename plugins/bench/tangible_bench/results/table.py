@@ -1,21 +1,39 @@
-"""Results as tables: headings and rows of text, for whoever prints them."""
+"""Results as tables of text: means, perturbations, details and failures."""
 
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 from ..config.reading import NONE
 from ..tasks.task import Task
-from .pareto import front
 from .summary import Cell, Line, lines
 
 FRONT = "*"
-"""Marks a method that no other one beats in time and error at once."""
+"""The mark of a Pareto-optimal method: no other method beats it in time and error at once."""
+
+
+def front(points: Sequence[tuple[float, ...]]) -> list[int]:
+    """Return the indices of the Pareto-optimal points, in the order of their first coordinate; low is good.
+
+    A point beats another if it is as low in every coordinate, and lower in one. A point with a NaN is never on the
+    front, and beats none; equal points are on it together.
+
+    >>> front([(1, 9), (2, 5), (3, 6), (4, 1)])
+    [0, 1, 3]
+    """
+    known = [index for index, point in enumerate(points) if not any(map(math.isnan, point))]
+    unbeaten = [index for index in known if not any(_beats(points[other], points[index]) for other in known)]
+    return sorted(unbeaten, key=lambda index: points[index])
+
+
+def _beats(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    return one != other and all(low <= high for low, high in zip(one, other, strict=True))
 
 
 @dataclass(frozen=True)
 class Results:
-    """Everything that was found out, ready to be shown."""
+    """All cells of a comparison, with its task and baseline."""
 
     task: Task
     cells: dict[tuple[str, str, str], Cell]
@@ -23,64 +41,64 @@ class Results:
 
     @property
     def scenes(self) -> list[str]:
-        """Names, in order."""
+        """The names of the scenes, in the order of their first cell."""
         return list(dict.fromkeys(cell.scene for cell in self.cells.values()))
 
     @property
     def perturbs(self) -> list[str]:
-        """Names, in order, the undamaged scenes first if there are any."""
-        found = dict.fromkeys(cell.perturb for cell in self.cells.values())
-        return sorted(found, key=lambda name: name != NONE)
+        """The names of the perturbations, in the order of their first cell, but `none` first."""
+        names = dict.fromkeys(cell.perturb for cell in self.cells.values())
+        return sorted(names, key=lambda name: name != NONE)
 
     def means(self, perturb: str | None = None) -> list[Line]:
-        """One line a method over all scenes, undamaged unless said otherwise; the best first, the unknown last."""
-        return self.ranked(lines(self.cells, perturb or self.perturbs[0], self.scenes))
+        """Return a line for each method over all scenes, by default undamaged; the best first, the unknown last."""
+        return self.rank(lines(self.cells, perturb or self.perturbs[0], self.scenes))
 
-    def ranked(self, found: Iterable[Line]) -> list[Line]:
-        """Lines by the measure that methods are judged by."""
-        losses = {line: self.loss(line, self.judged) for line in found}
+    def rank(self, unranked: Iterable[Line]) -> list[Line]:
+        """Return the lines in the order of the judged measure."""
+        losses = {line: self.loss(line, self.main_measure) for line in unranked}
         return sorted(losses, key=lambda line: (math.isnan(losses[line]), losses[line]))
 
     def loss(self, line: Line, measure: str) -> float:
-        """A measure turned so that less is better; NaN where there is none."""
+        """Return a measure with such a sign that less is better; NaN if it is unknown."""
         value = line.measures.get(measure, math.nan)
         return value if self.task.measures[measure].best == "low" else -value
 
-    def measured(self, scene: str) -> tuple[str, ...]:
-        """The measures of a scene, in order: all of them, but for those of standard sets that no method has there."""
-        there = {name for cell in self.cells.values() if cell.scene == scene for name in cell.measures}
-        return tuple(name for name, each in self.task.measures.items() if not each.of_sets or name in there)
+    def measures_of(self, scene: str) -> tuple[str, ...]:
+        """Return the measures of a scene, in order; those of standard sets only if a method has them there."""
+        known = {name for cell in self.cells.values() if cell.scene == scene for name in cell.measures}
+        return tuple(name for name, each in self.task.measures.items() if not each.of_sets or name in known)
 
     def heading(self, measure: str, scenes: Sequence[str] | None = None) -> str:
-        """Of a column: bad2 of scenes at a quarter of their size is `bad2@Q`, for tables of the full size call it bad8.
+        """Return the heading of a column, such as `bad2@Q` for scenes at a quarter of their size.
 
-        scenes: those that the column is of; all of them if left out.
+        scenes: the scenes of the column; all of them if left out. (Tables of the full size call this measure bad8.)
         """
-        known = self.task.measures[measure]
-        name, _, unit = known.title.partition(" ")
+        title, at_size = self.task.measures[measure].title, self.task.measures[measure].at_size
+        name, _, unit = title.partition(" ")
         sizes = {self.task.size_of(scene) for scene in scenes or self.scenes}
         size = sizes.pop() if len(sizes) == 1 else ""
-        return f"{name}@{size} {unit}" if known.at_size and size else known.title
+        return f"{name}@{size} {unit}" if at_size and size else title
 
     @property
-    def failed(self) -> list[str]:
-        """Methods without a result on any scene, in order."""
-        done = {cell.method for cell in self.cells.values() if cell.is_measured}
-        return [name for name in dict.fromkeys(cell.method for cell in self.cells.values()) if name not in done]
+    def methods_without_result(self) -> list[str]:
+        """The methods without a result on any scene, in order."""
+        measured = {cell.method for cell in self.cells.values() if cell.is_measured}
+        return [name for name in dict.fromkeys(cell.method for cell in self.cells.values()) if name not in measured]
 
     @property
-    def judged(self) -> str:
+    def main_measure(self) -> str:
         """The measure that methods are judged by."""
         return self.task.columns[0]
 
-    def on_front(self, found: Sequence[Line], measure: str) -> list[int]:
-        """Indices of the lines that none beats in time and in a measure."""
-        return front([(line.seconds, self.loss(line, measure)) for line in found])
+    def on_front(self, means: Sequence[Line], measure: str) -> list[int]:
+        """Return the indices of the lines that no other beats in time and in a measure."""
+        return front([(line.seconds, self.loss(line, measure)) for line in means])
 
 
 @dataclass(frozen=True)
 class Table:
-    """Headings and rows; the first column is text, the others are numbers."""
+    """Headings and rows of text."""
 
     title: str
     headings: tuple[str, ...]
@@ -88,37 +106,32 @@ class Table:
 
 
 def tables(results: Results, detail: bool = False) -> list[Table]:
-    """The mean over the scenes; what perturbations do; with `detail`, each scene and every measure; what failed."""
+    """Return the means over the scenes, the effects of perturbations and the failures.
+
+    detail: return a table of every measure for each scene and perturbation too.
+    """
     count = len(results.scenes)
-    title = (f"mean of {count} scenes" if count > 1 else results.scenes[0]) + _damaged(results.perturbs[0])
-    found = [_figures(results, results.means(), title, results.task.columns, results.scenes)]
+    title = (f"mean of {count} scenes" if count > 1 else results.scenes[0]) + _suffix(results.perturbs[0])
+    all_tables = [_figures(results, results.means(), title, results.task.columns, results.scenes)]
     if len(results.perturbs) > 1:
-        found.append(_perturbed(results))
-    if detail:
-        found += [
-            _figures(
-                results,
-                results.ranked(lines(results.cells, perturb, [scene])),
-                scene + _damaged(perturb),
-                results.measured(scene),
-                [scene],
-            )
-            for scene in results.scenes
-            for perturb in results.perturbs
-        ]
+        all_tables.append(_perturbations(results))
+    for scene, perturb in product(results.scenes, results.perturbs) if detail else ():
+        of_scene = results.rank(lines(results.cells, perturb, [scene]))
+        title = scene + _suffix(perturb)
+        all_tables.append(_figures(results, of_scene, title, results.measures_of(scene), [scene]))
     failures = _failures(results)
-    return [*found, failures] if failures.rows else found
+    return [*all_tables, failures] if failures.rows else all_tables
 
 
-def _damaged(perturb: str) -> str:
+def _suffix(perturb: str) -> str:
     return "" if perturb == NONE else f", {perturb}"
 
 
 def _figures(
-    results: Results, found: Sequence[Line], title: str, measures: Sequence[str], scenes: Sequence[str]
+    results: Results, means: Sequence[Line], title: str, measures: Sequence[str], scenes: Sequence[str]
 ) -> Table:
     known, clock = results.task.measures, results.task.clock
-    best = results.on_front(found, results.judged)
+    best = results.on_front(means, results.main_measure)
     ratio = ("time / baseline",) if results.baseline else ()
     rows = [
         (
@@ -129,43 +142,36 @@ def _figures(
             _number(line.memory_bytes / 1e6, 1),
             *(_number(line.measures.get(name, math.nan), known[name].digits) for name in measures),
         )
-        for index, line in enumerate(found)
+        for index, line in enumerate(means)
     ]
-    measured = (results.heading(name, scenes) for name in measures)
-    return Table(title, ("method", FRONT, clock.unit, *ratio, "peak MB", *measured), tuple(rows))
+    headings = (results.heading(name, scenes) for name in measures)
+    return Table(title, ("method", FRONT, clock.unit, *ratio, "peak MB", *headings), tuple(rows))
 
 
-def _perturbed(results: Results) -> Table:
-    measure, heading = results.task.measures[results.judged], results.heading(results.judged)
-    by_name = {name: {line.method: line for line in results.means(name)} for name in results.perturbs}
-    rows = [
-        (
-            line.method,
-            *(
-                _number(by_name[name][line.method].measures.get(results.judged, math.nan), measure.digits)
-                for name in by_name
-            ),
-        )
+def _perturbations(results: Results) -> Table:
+    judged, digits = results.main_measure, results.task.measures[results.main_measure].digits
+    by_name = {
+        name: {line.method: line.measures.get(judged, math.nan) for line in results.means(name)}
+        for name in results.perturbs
+    }
+    rows = tuple(
+        (line.method, *(_number(values[line.method], digits) for values in by_name.values()))
         for line in results.means()
-    ]
-    return Table(
-        f"{heading} under perturbations, mean of {len(results.scenes)} scenes",
-        ("method", *by_name),
-        tuple(rows),
     )
+    title = f"{results.heading(judged)} under perturbations, mean of {len(results.scenes)} scenes"
+    return Table(title, ("method", *by_name), rows)
 
 
 def _failures(results: Results) -> Table:
     failed: dict[tuple[str, str], list[str]] = {}
     for cell in results.cells.values():
         if cell.error:
-            failed.setdefault((cell.method, cell.error), []).append(cell.scene + _damaged(cell.perturb))
-    rows = [(method, _first_of(places), why) for (method, why), places in failed.items()]
-    return Table("no result", ("method", "where", "why"), tuple(rows))
-
-
-def _first_of(places: Sequence[str]) -> str:
-    return places[0] if len(places) == 1 else f"{places[0]} and {len(places) - 1} more"
+            failed.setdefault((cell.method, cell.error), []).append(cell.scene + _suffix(cell.perturb))
+    rows = tuple(
+        (method, places[0] + (f" and {len(places) - 1} more" if len(places) > 1 else ""), why)
+        for (method, why), places in failed.items()
+    )
+    return Table("no result", ("method", "where", "why"), rows)
 
 
 def _number(value: float, digits: int) -> str:

@@ -98,7 +98,7 @@ def test_a_missing_and_an_empty_folder_say_what_to_fetch(name: str, tmp_path: Pa
         with pytest.raises(PictureError) as error:
             pairs(name, folder)
         assert "\n" not in str(error.value)
-        for word in (str(folder), SETS[name].archive, SETS[name].page, SETS[name].lies):
+        for word in (str(folder), SETS[name].archive, SETS[name].page, SETS[name].contents):
             assert word in str(error.value)
 
 
@@ -266,7 +266,7 @@ def test_grey_cameras_stand_in_for_colour_ones(tmp_path: Path, k: Known):
         (tmp_path / "training" / colour).rename(tmp_path / "training" / grey)
     pair = only("kitti-2012", tmp_path)
     assert pair.left.parent.name == "image_0"
-    with pytest.raises(PictureError, match=r"000000\.txt: is no calibration of a pair: P0 has 1 numbers, not 12"):
+    with pytest.raises(PictureError, match=r"000000\.txt: is not a calibration of a pair: P0 has 1 numbers, not 12"):
         pair.open()
 
 
@@ -324,12 +324,12 @@ class TestSizes:
 
     def test_a_larger_one_cannot_be_made(self, tmp_path: Path, k: Known):
         made("middlebury-eval3", tmp_path, k)
-        with pytest.raises(PictureError, match=r"lies there at Q, of which H cannot be made; fetch .*, at H"):
+        with pytest.raises(PictureError, match=r"holds Adirondack at Q, from which H cannot be made; fetch .*, at H"):
             pairs("middlebury-eval3", tmp_path, resolution="H")
 
     def test_a_pipeline_takes_files_as_they_are(self, tmp_path: Path, k: Known):
         made("middlebury-2014", tmp_path, k)
-        with pytest.raises(ConfigError, match="does not lie there at Q; fetch that size, or leave `resolution:` out"):
+        with pytest.raises(ConfigError, match="is not in its folder at Q; fetch that size, or leave `resolution:` out"):
             only("middlebury-2014", tmp_path, resolution="Q").files()
 
     @pytest.mark.parametrize("shape", [(1, 1), (3, 2), (4, 4), (5, 9)])

@@ -1,4 +1,4 @@
-"""Booster's balanced pairs, as its archives unpack: both views of one size."""
+"""The reader of Booster's balanced pairs, whose views have the same size, as its archives unpack."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,13 +10,16 @@ LEFT, RIGHT, TRUTH, NOC = "camera_00", "camera_02", "disp_00.npy", "mask_00.png"
 
 
 def booster(root: Path) -> Iterator[StandardPair]:
-    """SCENE/camera_00/im0.png and its like in camera_02 (one a lamp); disp_00.npy, 0 unknown; mask_00.png, 0 hidden."""
-    found = list(folders(root))
-    held = {each.path: each.files for each in found}
-    for scene, within, files in found:
-        if "unbalanced" in within or scene / LEFT not in held:
+    """Yield the pairs of SCENE/camera_00/im0.png (an image for each lamp), with the same name in camera_02.
+
+    The truth is disp_00.npy (0: unknown), the mask mask_00.png (0: hidden).
+    """
+    listed = list(folders(root))
+    files_in = {each.path: each.files for each in listed}
+    for scene, within, files in listed:
+        if "unbalanced" in within or scene / LEFT not in files_in:
             continue
-        lit = held[scene / LEFT] & held.get(scene / RIGHT, frozenset[str]())
+        lit = files_in[scene / LEFT] & files_in.get(scene / RIGHT, frozenset[str]())
         for name in sorted(each for each in lit if each.endswith(".png")):
             yield StandardPair(
                 name=f"{scene.name}/{Path(name).stem}",

@@ -1,4 +1,4 @@
-"""ETH3D's pairs, as their archives unpack: truth beside the pictures, or in a folder of its own."""
+"""The reader of ETH3D's pairs, as its archives unpack: the truth next to the pictures, or in its own folder."""
 
 from collections.abc import Iterator
 from functools import partial
@@ -12,10 +12,13 @@ TRUTH, NOC = "disp0GT.pfm", "mask0nocc.png"
 
 
 def eth3d(root: Path) -> Iterator[StandardPair]:
-    """NAME/im0.png, im1.png, calib.txt; of the same NAME, disp0GT.pfm (infinite: unknown) and mask0nocc.png (255)."""
-    held = list(folders(root))
-    truths = {each.path.name: each for each in reversed(held) if TRUTH in each.files}
-    for each in held:
+    """Yield the pairs of NAME/im0.png, im1.png, calib.txt.
+
+    The truth is NAME/disp0GT.pfm (infinite: unknown), the mask NAME/mask0nocc.png (255: both views).
+    """
+    listed = list(folders(root))
+    truths = {each.path.name: each for each in reversed(listed) if TRUTH in each.files}
+    for each in listed:
         if not each.has("im0.png", "im1.png"):
             continue
         truth = truths.get(each.path.name)

@@ -1,4 +1,4 @@
-"""Middlebury's sets, as their archives unpack."""
+"""The readers of Middlebury's sets, as their archives unpack."""
 
 from collections.abc import Iterator
 from functools import partial
@@ -18,13 +18,14 @@ _OF_2003: dict[str, Resolution] = {
     **{"teddyF": "F", "teddyH": "H", "teddyQ": "Q"},
 }
 _LIT = ("Illum2", "Exp1")
-"""Of three lamps and three exposures, those that the archives of two views hold."""
+"""The folder of the lamp and exposure, out of three each, that the archives of two views have."""
 
 
 def since_2014(root: Path) -> Iterator[StandardPair]:
-    """2014, 2021 and MiddEval3: im0.png, im1.png, calib.txt, disp0.pfm or disp0GT.pfm, mask0nocc.png (255: both).
+    """Yield the pairs of 2014, 2021 and MiddEval3: im0.png, im1.png, calib.txt.
 
-    MiddEval3 has a folder for each size and part, such as trainingQ; the others are at full size.
+    The truth is disp0.pfm or disp0GT.pfm, the mask mask0nocc.png (255: both views). MiddEval3 has a folder for each
+    size and part, such as trainingQ; the others are at full size.
     """
     for each in folders(root):
         if not each.has("im0.png", "im1.png"):
@@ -45,9 +46,10 @@ def since_2014(root: Path) -> Iterator[StandardPair]:
 
 
 def of_2005_and_2006(root: Path) -> Iterator[StandardPair]:
-    """view1.png, view5.png, disp1.png: grey levels of disparity, times 1, 2 or 3 at FullSize, HalfSize, ThirdSize.
+    """Yield the pairs of view1.png, view5.png, with the truth disp1.png.
 
-    0 is unknown; dmin.txt is what the disparities lack to be those of a metric pair.
+    Its grey levels are disparities times 1, 2 or 3 at FullSize, HalfSize, ThirdSize; 0 is unknown. dmin.txt has the
+    offset that is added to disparities of a metric pair.
     """
     for each in folders(root):
         own = each.has("view1.png", "view5.png")
@@ -55,7 +57,7 @@ def of_2005_and_2006(root: Path) -> Iterator[StandardPair]:
         lit = any(name.startswith("Illum") for name in each.within)
         if lit or not (own or ("disp1.png" in each.files and (views / "view1.png").exists())):
             continue
-        size = _stated_size(each)
+        size = _size_of(each)
         by = FULL_PX[size]
         yield StandardPair(
             name=each.path.name,
@@ -69,7 +71,7 @@ def of_2005_and_2006(root: Path) -> Iterator[StandardPair]:
         )
 
 
-def _stated_size(folder: Folder) -> Resolution:
+def _size_of(folder: Folder) -> Resolution:
     for name in reversed(folder.within):
         if size := _SIZES.get(name.lower()):
             return size
@@ -77,9 +79,10 @@ def _stated_size(folder: Folder) -> Resolution:
 
 
 def of_2003(root: Path) -> Iterator[StandardPair]:
-    """im2, im6, disp2: grey levels of disparity, times 4 at a quarter of the size, 2 at the half (conesH), 1 (conesF).
+    """Yield the pairs of im2, im6, with the truth disp2.
 
-    0 is unknown.
+    Its grey levels are disparities times 4 at a quarter of the size, 2 at half (conesH), 1 at full size (conesF); 0 is
+    unknown.
     """
     for each in folders(root):
         size = _OF_2003.get(each.path.name)
@@ -88,12 +91,15 @@ def of_2003(root: Path) -> Iterator[StandardPair]:
 
 
 def of_2001(root: Path) -> Iterator[StandardPair]:
-    """im2, im6, disp2: grey levels of 8 times the disparity; and, named otherwise, Tsukuba (16 times) and map."""
+    """Yield the pairs of im2, im6, with the truth disp2: grey levels of 8 times the disparity.
+
+    Tsukuba (16 times the disparity) and map have other file names.
+    """
     for each in folders(root):
         tsukuba = ("scene1.row3.col3", "scene1.row3.col4", "truedisp.row3.col3")
         for names, scale in ((("im2", "im6", "disp2"), 8.0), (tsukuba, 16.0), (("im0", "im1", "disp0"), 8.0)):
-            if found := list(_old(each, each.path.name, names, scale, None)):
-                yield found[0]
+            if named := list(_old(each, each.path.name, names, scale, None)):
+                yield named[0]
                 break
 
 

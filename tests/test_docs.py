@@ -9,7 +9,7 @@ import pytest
 from tangible_core import load_method
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.plugins import hooks
-from tangible_core.plugins.film import Filming
+from tangible_core.plugins.touch import Filming
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.joinpath("docs").rglob("*.md"), *ROOT.joinpath("examples").rglob("*.md")])

@@ -45,7 +45,7 @@ ORDERED_BY_THE_PROCESSOR = {"histogram"}
 """Sorts, and values that are equal come in an order that differs."""
 MAY = {
     "matches.py": "adds whole numbers that a float holds, exact in any order",
-    "picture_files.py": "adds whole numbers",
+    "pictures.py": "adds whole numbers",
     "kornia_gabor_kernels.py": "is torch's, compared within a tolerance",
     "calibration.py": "has one term",
     "scripted_hand.py": "is a simulated hand, and no result",

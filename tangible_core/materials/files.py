@@ -11,7 +11,7 @@ from pydantic import AfterValidator, ConfigDict, Discriminator, Field, Tag
 from ..data import Material, Texture
 from ..data.quantities import Quantities
 from ..errors import MaterialError, did_you_mean, quoted, shown
-from ..files.source import Source, Tree, parse_source, read_text
+from ..files.yaml.source import Source, Tree, parse_source, read_text
 
 VALUES = tuple(each.name for each in fields(Material) if each.name not in ("name", "source"))
 REQUIRED = ("stiffness_n_per_m", "damping_n_s_per_m", "static_friction", "dynamic_friction")

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Int
 
 from ..data import SegmentMap
-from ..data.parts import PartMap
+from ..data.views import PartMap
 
 
 def find_parts(segments: SegmentMap) -> PartMap:

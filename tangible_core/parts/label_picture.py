@@ -18,10 +18,10 @@ DARKEST, LIGHTEST, MOST_CHROMA = 30.0, 92.0, 85.0
 
 
 def label_picture(labels: Int32[np.ndarray, "h w"]) -> bytes:
-    """A PNG with a colour for each label, which is read back as the same segments (`picture_files.read_labels`).
+    """A PNG with a colour for each label, which is read back as the same segments (`formats.pictures.read_labels`).
 
-    Labels are from 0 on, at most `picture_files.MAX_LABELS`. It has a palette, in which no brush can mix two colours at
-    a border; with more than 256 labels it has red, green and blue.
+    Labels are from 0 on, at most `formats.pictures.MAX_LABELS`. It has a palette, in which no brush can mix two colours
+    at a border; with more than 256 labels it has red, green and blue.
     """
     from PIL import Image
 

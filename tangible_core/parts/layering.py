@@ -9,8 +9,8 @@ import numpy as np
 from jaxtyping import Float32
 
 from ..data import Relief, Views
-from ..data.parts import PartMap, beside_border
 from ..data.pictures import check_same_shape, to_grey
+from ..data.views import PartMap, border_pixels
 from ..errors import GeometryError
 from ..runtime.opencv import plain_opencv
 from ..scene.scaling import felt_factor, reduced
@@ -81,7 +81,7 @@ def border_distance(parts: PartMap) -> Float32[np.ndarray, "h w"]:
     """Pixels from each pixel's centre to the nearest border of two parts; infinite where there is none."""
     from scipy.ndimage import distance_transform_edt
 
-    beside = beside_border(parts.labels)
+    beside = border_pixels(parts.labels)
     if not beside.any():
         return np.full(beside.shape, np.float32(np.inf))
     return (np.asarray(distance_transform_edt(~beside)) + 0.5).astype(np.float32)

@@ -7,8 +7,8 @@ from jaxtyping import Float32
 
 from ..data.pictures import luma, opaque, size_in_words
 from ..errors import PictureError
-from .height_files import Measured, said_of
-from .picture_files import without
+from .formats.height_maps import Measured, said_of
+from .formats.pictures import without
 from .scene_files import SceneFiles
 
 SAMPLED = 4_000_000

@@ -14,21 +14,31 @@ from pydantic import ValidationError
 
 from ..data import Calibration, DisparityMap, Record, Relief, SegmentMap, Views
 from ..data.arguments import as_picture
-from ..data.pictures import fill_non_finite, filled, opaque
+from ..data.pictures import fill_from_nearest, fill_non_finite, opaque
 from ..errors import ConfigError, PictureError, wrong_argument
 from ..files.paths import as_path
-from .frames import Say, unsaid
+from .formats.height_maps import Measured, in_metres, picture_said, said_of
+from .formats.multi_picture import Say, unsaid
+from .formats.pairs import Layout, halves, read_pair
+from .formats.phone_depth import read_phone_depth
+from .formats.pictures import (
+    NonFinite,
+    TruthScale,
+    labels_of,
+    map_of,
+    picture_of,
+    read_labels,
+    read_map,
+    read_picture,
+    read_truth,
+    truth_of,
+)
+from .formats.rigs import read_rig
 from .framing import framed, measured
 from .geometry import Holes, fill_rows, scale_heights
-from .height_files import Measured, in_metres, picture_said, said_of
-from .pair_files import Layout, halves, read_pair
-from .phone_depth import read_phone_depth
-from .picture_files import NonFinite, labels_of, map_of, picture_of, read_labels, read_map, read_picture
 from .rig import StereoRig, turned
-from .rig_files import read_rig
 from .scaling import felt_factor, reduced_map, reduced_shape
 from .scene_files import BUILTINS, SceneFiles, VideoLayout, unknown_scene
-from .truth_files import TruthScale, read_truth, truth_of
 from .video.files import FirstFrame, Video, parts_of, read_video, still
 
 log = logging.getLogger(__name__)
@@ -403,7 +413,7 @@ def _cut_out(held: dict[str, np.ndarray], files: SceneFiles, say: Say) -> np.nda
             raise PictureError(f"{getattr(files, name)}: all of the picture is transparent; there is nothing to feel")
         held[name] = np.ascontiguousarray(held[name][..., :3])
         if not shown[name].all():
-            held[name] = filled(held[name], shown[name])
+            held[name] = fill_from_nearest(held[name], shown[name])
     main = shown.get(files.main)
     if main is None or main.all():
         return None

@@ -10,8 +10,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from ..data import Calibration
 from ..data.quantities import Quantities
 from ..errors import did_you_mean, quoted
-from .picture_files import NonFinite
-from .truth_files import TruthScale
+from .formats.pictures import NonFinite, TruthScale
 
 Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Start = Annotated[int, Field(ge=0)]

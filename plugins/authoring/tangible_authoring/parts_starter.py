@@ -7,7 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 from string import Template
 
-from tangible_core.files.parts_block import part_lines
+from tangible_core.files.yaml.parts_block import part_lines
 from tangible_core.parts import HeightChoice
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.starter import SIDE_MM, in_yaml

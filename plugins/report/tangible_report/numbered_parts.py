@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from jaxtyping import Bool, Int32, UInt8
 
-from tangible_core.data.parts import PartMap
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
+from tangible_core.data.views import PartMap
 from tangible_core.runtime.opencv import plain_opencv
 
 if TYPE_CHECKING:

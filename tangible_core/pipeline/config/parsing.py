@@ -7,7 +7,7 @@ from typing import Any, cast
 from ruamel.yaml.comments import CommentedSeq
 
 from ...errors import ArgumentError, PictureError, did_you_mean
-from ...files.source import Location, Source, parse_override, parse_source, read_text
+from ...files.yaml.source import Location, Source, parse_override, parse_source, read_text
 from ...plugins.registry import Registry
 from ...scene.framing import measured
 from ...scene.scene import Scene
@@ -67,7 +67,7 @@ def config_of(scene: Scene, registry: Registry, **arguments: Any) -> PipelineCon
         raise without_places(source)
     config = PipelineConfig(scene=scene, measured=scene.measured, **taken)
     if wrong := list(wrong_of_parts(config)):
-        raise config.complained(*wrong)
+        raise config.error_at(*wrong)
     return config
 
 

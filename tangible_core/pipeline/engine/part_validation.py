@@ -75,13 +75,13 @@ def check_parts(config: PipelineConfig, parts: PartMap, columns: int) -> None:
     columns: of the picture, in whose pixels places are said. Raises: ConfigError with every complaint.
     """
     if wrong := [*_wrong_numbers(config, parts.count), *_wrong_heights(config, parts, columns)]:
-        raise config.complained(*wrong)
+        raise config.error_at(*wrong)
 
 
 def check_numbers(config: PipelineConfig, count: int) -> None:
     """Raises: ConfigError for what is said of parts beyond so many."""
     if wrong := list(_wrong_numbers(config, count)):
-        raise config.complained(*wrong)
+        raise config.error_at(*wrong)
 
 
 def _wrong_numbers(config: PipelineConfig, count: int) -> Iterator[Wrong]:

@@ -33,14 +33,14 @@ def _work(engine: Engine, want: str) -> Work | None:
     from ...compiled.threads import thread_count  # imports numba, which is there by now
 
     views, config = engine.scene.views, engine.config
-    segments = config.texture is not None and "segments" not in {*engine.begun, *engine.brought}
+    segments = config.texture is not None and "segments" not in {*engine.begun, *engine.scene_products}
     touch = want == "touch" and config.render is not None and "touch" not in engine.begun
     if views is None or min(thread_count(), engine.threads or 2) < 2 or not (segments or touch):
         return None
     rows, columns = (slice(max(0, (size - MOST_PX) // 2), (size + MOST_PX) // 2) for size in views.shape)
     part = Views(np.ascontiguousarray(views.left[rows, columns]))
     names = frozenset(["segments"] * segments + ["touch", FELT] * touch)
-    said = config.changed(scene=Scene("rehearsal", part), simplify=None)
+    said = config.with_values(scene=Scene("rehearsal", part), simplify=None)
     return Work(names, rehearse, (said, part, segments, touch))
 
 
@@ -55,7 +55,7 @@ def rehearse(config: PipelineConfig, views: Views, segments: bool, touch: bool) 
     ramp, stripes = np.empty(views.shape, np.float32), np.empty(views.shape, np.int32)
     ramp[:], stripes[:] = columns + 1, columns * STRIPES // columns.size
     scene = Scene("rehearsal", views, DisparityMap(ramp), SegmentMap(stripes))
-    made = Engine(config.changed(scene=scene), default_registry()).make("touch")
+    made = Engine(config.with_values(scene=scene), default_registry()).make("touch")
     yield "touch"
     device = config.felt_device
     if device is not None and device.spec().simulated:

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple, cast, final
 import numpy as np
 
 from ...data import Views
-from ...data.pictures import filled, opaque
+from ...data.pictures import fill_from_nearest, opaque
 from ...errors import PictureError
-from ..frames import Say, unsaid
+from ..formats.decoding import FORMATS
+from ..formats.multi_picture import Say, unsaid
+from ..formats.pairs import halves
 from ..framing import framed
-from ..pair_files import halves
-from ..picture_files import FORMATS
 from ..rig import StereoRig, Turning
 from ..scene_files import SceneFiles, VideoLayout
 from .camera import CameraFrames
@@ -163,4 +163,4 @@ def _solid(picture: np.ndarray, name: str) -> np.ndarray:
     if not shown.any():
         raise PictureError(f"{name}: all of the picture is transparent; there is nothing to feel")
     solid = np.ascontiguousarray(picture[..., :3])
-    return solid if shown.all() else filled(solid, shown)
+    return solid if shown.all() else fill_from_nearest(solid, shown)

@@ -12,7 +12,8 @@ from jaxtyping import UInt8
 
 from ...data.pictures import opaque, to_rgb8
 from ...errors import PictureError
-from ..picture_files import PICTURES, read_picture
+from ..formats.decoding import PICTURES
+from ..formats.pictures import read_picture
 from .capture import USUAL_FPS, Capture, grabbed, open_file, position_s, retrieved, stated_count, stated_fps
 from .frames import VideoFrame, VideoFrames, ViewsOf
 

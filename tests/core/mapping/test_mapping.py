@@ -15,7 +15,7 @@ from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
 from tangible_core.mapping import MappedDevice, Placement, WorkspaceMapping, mapped, placement_of
 from tangible_core.mapping.placement import turn
 from tangible_core.plugins.interfaces import HapticDevice, Link
-from tangible_core.testing import checks_device
+from tangible_core.testing.kinds.device import CHECKS as DEVICE_CHECKS
 from tangible_devices.mock import Mock
 
 SPEC = Mock().spec()
@@ -348,7 +348,7 @@ class TestDevice:
         mock = Mock()
         assert mapped(mock, WorkspaceMapping(**nothing)) is mock
 
-    @pytest.mark.parametrize("check", checks_device.CHECKS)
+    @pytest.mark.parametrize("check", DEVICE_CHECKS)
     def test_a_mapped_device_is_a_device(self, check):
         mapping = WorkspaceMapping(scale=2.5, rotation_deg=37.0, offset_m=(0.01, -0.01, 0.0), clutch_button=3)
         check(MappedDevice(device=Mock(), mapping=mapping))

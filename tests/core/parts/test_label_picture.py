@@ -10,7 +10,7 @@ from PIL import Image
 from tangible_core.data import SegmentMap
 from tangible_core.parts import find_parts
 from tangible_core.parts.label_picture import SPARE, distinct_colours, label_picture
-from tangible_core.scene.picture_files import read_labels
+from tangible_core.scene.formats.pictures import read_labels
 
 
 @pytest.mark.parametrize("count", [1, 2, 12, 255, 256, 257, 1000])

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from tangible_core.data import Views
 from tangible_core.errors import ConfigError, GeometryError, PictureError
+from tangible_core.scene.formats.rigs import read_rig
 from tangible_core.scene.rig import Camera, StereoRig, turned, undistorted
-from tangible_core.scene.rig_files import read_rig
 from tangible_core.scene.scene import Scene
 
 SHAPE = 90, 120

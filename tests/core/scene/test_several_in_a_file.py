@@ -11,8 +11,8 @@ from PIL import Image, TiffImagePlugin
 
 from tangible_core import Scene
 from tangible_core.errors import PictureError
-from tangible_core.scene.picture_files import read_map
-from tangible_core.scene.tiff_tags import stated_nodata
+from tangible_core.scene.formats.pictures import read_map
+from tangible_core.scene.formats.tiff_tags import stated_nodata
 
 RNG = np.random.default_rng(0)
 LEFT = np.repeat(RNG.integers(0, 255, (6, 8, 1), dtype=np.uint8), 3, axis=2)

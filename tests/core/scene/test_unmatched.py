@@ -10,7 +10,7 @@ import pytest
 from tangible_core import Pipeline, Scene
 from tangible_core.data import DisparityMap, Views
 from tangible_core.plugins import DepthEstimator
-from tangible_core.scene.unmatched import hardly_matched, same_twice
+from tangible_core.scene.pair_checks import hardly_matched, same_twice
 
 SHAPE = 10, 20
 

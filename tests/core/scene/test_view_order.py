@@ -5,7 +5,7 @@ import pytest
 
 from tangible_core import Pipeline, Scene
 from tangible_core.data import DisparityMap
-from tangible_core.scene.view_order import put_right, view_order
+from tangible_core.scene.pair_checks import put_right, view_order
 from tangible_depth import SemiGlobal
 
 SHAPE = 120, 200

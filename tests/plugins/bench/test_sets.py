@@ -25,8 +25,7 @@ from tangible_bench.tasks.texture_scenes import TextureScene
 from tangible_core.data import DisparityMap
 from tangible_core.errors import ConfigError, OutputError, PictureError
 from tangible_core.plugins.registry import Registry
-from tangible_core.scene.picture_files import read_map
-from tangible_core.scene.truth_files import read_truth
+from tangible_core.scene.formats.pictures import read_map, read_truth
 
 
 @pytest.fixture

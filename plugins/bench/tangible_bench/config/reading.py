@@ -10,7 +10,7 @@ from typing import Annotated, Any, cast
 from pydantic import Field
 
 from tangible_core.errors import ConfigError, TangibleError, did_you_mean, quoted
-from tangible_core.files.source import Source, parse_source, read_text
+from tangible_core.files.yaml.source import Source, parse_source, read_text
 from tangible_core.plugins.registry import Registry
 from tangible_core.scene.workspace import Section
 

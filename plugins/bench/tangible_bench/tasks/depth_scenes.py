@@ -9,9 +9,9 @@ from pydantic import Field, model_validator
 
 from tangible_core.errors import PictureError, quoted
 from tangible_core.metrics import visible_pixels
+from tangible_core.scene.formats.pictures import TruthScale
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import SceneFiles
-from tangible_core.scene.truth_files import TruthScale
 from tangible_core.scene.workspace import Section
 from tangible_core.testing.synthetic.stereo_scenes import KnownPair, synthetic_pair
 

@@ -11,8 +11,8 @@ from pydantic import Field, model_validator
 from tangible_core.data import HapticSurface, Relief
 from tangible_core.data.pictures import to_grey
 from tangible_core.errors import OutputError, quoted
+from tangible_core.scene.formats.pictures import read_map
 from tangible_core.scene.geometry import scale_heights
-from tangible_core.scene.picture_files import read_map
 from tangible_core.scene.scene import Scene
 from tangible_core.session.recording import Recording
 from tangible_core.testing.synthetic.strokes import PERIOD_S, KnownStroke, analytic_stroke, relief_stroke

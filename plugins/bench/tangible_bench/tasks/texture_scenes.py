@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from tangible_core.data.pictures import size_in_words
 from tangible_core.errors import PictureError, quoted
-from tangible_core.scene.picture_files import read_labels, read_picture
+from tangible_core.scene.formats.pictures import read_labels, read_picture
 from tangible_core.scene.workspace import Section
 from tangible_core.testing.synthetic.texture_scenes import (
     KnownSegments,

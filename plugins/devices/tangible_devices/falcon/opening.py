@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from tangible_core.scene.calibrations import any_calibration
+from tangible_core.mapping.device_calibrations import any_calibration
 
 from .firmware import running
 from .homing import home

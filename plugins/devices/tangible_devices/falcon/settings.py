@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from tangible_core.scene.calibrations import load_calibration
+from tangible_core.mapping.device_calibrations import load_calibration
 
 from .calibration import Calibration
 

@@ -47,7 +47,7 @@ Dispatcher.add_overload = told
 views = engine.scene.views
 rows, columns = np.indices(views.shape, np.float32)
 scene = replace(engine.scene, disparity=DisparityMap(6 + 40 * (rows / rows.max()) * (columns / columns.max())))
-real = Engine(config.changed(scene=scene), default_registry())
+real = Engine(config.with_values(scene=scene), default_registry())
 touch = real.make("touch")
 recording = run_simulated(touch, config.felt_device, 1.0, limits=config.safety)
 print(json.dumps([said, added, bool(np.any(recording.force_n))]))

@@ -176,7 +176,7 @@ def test_ten_thousand_pairs_are_listed_at_once_and_none_is_opened(tmp_path: Path
         folder.mkdir(parents=True)
         for file in ("im0.png", "im1.png", "calib.txt"):
             (folder / file).touch()
-    monkeypatch.setattr("tangible_core.scene.picture_files.read_bytes", None)
+    monkeypatch.setattr("tangible_core.scene.formats.decoding.read_bytes", None)
     began = time.process_time()
     found = pairs("middlebury-eval3", tmp_path)
     taken_s = time.process_time() - began

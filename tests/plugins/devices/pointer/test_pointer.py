@@ -23,7 +23,7 @@ from tangible_core.data import NO_FORCE, TICK_COLUMNS, Force, HapticState
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.mapping import WorkspaceMapping, mapped
 from tangible_core.plugins.interfaces import Link
-from tangible_core.servo import Safety, Servo, still
+from tangible_core.servo import Safety, Servo, null_touch
 from tangible_core.servo.guard import guard
 from tangible_core.session import About, Recording, keeping
 from tangible_devices.pointer import PointerClient, channel, kernels
@@ -274,7 +274,7 @@ def test_a_clutch_looks_at_its_own_button_whatever_number_is_above(tag: int):
 def test_a_number_of_the_client_s_own_comes_back_with_its_tick_and_is_kept(tmp_path: Path):
     device = mapped(Pointer(follow_s=FOLLOW_S), WorkspaceMapping(scale=2.0, clutch_button=1))
     sent = [tag << 8 | 5 for tag in TAGS]
-    with Servo(still(), device) as servo, PointerClient() as client:
+    with Servo(null_touch(), device) as servo, PointerClient() as client:
         for buttons in sent:
             end = time.monotonic() + 30
             while (row := servo.ring.latest()) is None or row[BUTTONS] != buttons:

@@ -33,7 +33,7 @@ def _work(engine: Engine, want: str) -> Work | None:
     from ...compiled.threads import thread_count  # imports numba, which is there by now
 
     views, config = engine.scene.views, engine.config
-    segments = config.texture is not None and "segments" not in {*engine.begun, *engine.brought}
+    segments = config.texture is not None and "segments" not in {*engine.begun, *engine.scene_products}
     touch = want == "touch" and config.render is not None and "touch" not in engine.begun
     if views is None or min(thread_count(), engine.threads or 2) < 2 or not (segments or touch):
         return None

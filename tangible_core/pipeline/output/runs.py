@@ -91,8 +91,8 @@ def make_run(
     engine.check(want)
     check_folder(out, engine.config.path)
     with rehearsal(engine, want) as engine.beside:
-        value = engine.felt(want)
-        products = {name: engine.felt(name) for name in IN_REPORT if name in engine.needed(want)}
+        value = engine.make_on_grid(want)
+        products = {name: engine.make_on_grid(name) for name in IN_REPORT if name in engine.inputs_of(want)}
         products[want] = value
         recording = _felt(engine, value, seconds, on_report) if want == "touch" else None
     figures, config = _figures(engine, products, recording), _configuration(engine)
@@ -142,7 +142,7 @@ def about(engine: Engine) -> About:
         text = engine.config.as_yaml()
     except ConfigError as error:
         text = f"# {error}"
-    parts, materials = names_text(engine.config.part_names), materials_text(engine.felt("surface"))
+    parts, materials = names_text(engine.config.part_names), materials_text(engine.make_on_grid("surface"))
     return About(names["device"], names["render"], text, parts=parts, materials=materials)
 
 
@@ -155,7 +155,7 @@ def _felt(
     said = about(engine).stamped()
     if engine.beside is not None:
         engine.beside.wait(FELT)
-    told = telling_parts(engine.felt("surface"), on_report) if on_report else None
+    told = telling_parts(engine.make_on_grid("surface"), on_report) if on_report else None
     recording = run_simulated(touch, device, seconds, told, engine.config.safety)
     return replace(recording, about=said)
 

@@ -515,9 +515,9 @@ class TestSizes:
         made = Pipeline(
             scene(None, picture), heights="guess", texture=Same(), workspace={"finest_m": 0.08 / COLUMNS}, cached=False
         )
-        assert made.parts is not None and made.engine.felt("parts").labels.shape == (ROWS, COLUMNS)
+        assert made.parts is not None and made.engine.make_on_grid("parts").labels.shape == (ROWS, COLUMNS)
         np.testing.assert_array_equal(
-            made.parts.labels, np.kron(made.engine.felt("parts").labels, np.ones((2, 2), int))
+            made.parts.labels, np.kron(made.engine.make_on_grid("parts").labels, np.ones((2, 2), int))
         )
 
     def test_twelve_megapixels(self):

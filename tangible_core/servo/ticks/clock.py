@@ -14,7 +14,7 @@ from typing import Any, final
 import numpy as np
 from numba import int32, njit, types, uintp
 
-from ..compiled.compiling import KERNEL
+from ...compiled.compiling import KERNEL
 
 MONOTONIC, ABSOLUTE = 1, 1
 """CLOCK_MONOTONIC and TIMER_ABSTIME of Linux."""

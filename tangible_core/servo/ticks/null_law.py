@@ -2,9 +2,9 @@
 
 from typing import Any, cast, final
 
-from ..data import NO_FORCE, Force, HapticState
-from ..plugins.interfaces import Touch
-from ..plugins.touch import PlainTouch
+from ...data import NO_FORCE, Force, HapticState
+from ...plugins.interfaces import Touch
+from ...plugins.touch import PlainTouch
 
 
 def null_touch() -> Touch:
@@ -28,7 +28,7 @@ class _NullTouch(PlainTouch):
 
 def compile_null_touch() -> Touch:
     """Return the null touch as a kernel."""
-    from ..compiled.touch import CompiledTouch
-    from . import still_kernels
+    from ...compiled.touch import CompiledTouch
+    from . import null_law_kernels
 
-    return CompiledTouch(cast(Any, still_kernels).tick, (), stiffness=0.0)
+    return CompiledTouch(cast(Any, null_law_kernels).tick, (), stiffness=0.0)

@@ -5,7 +5,7 @@
 
 from numba import float64, njit, types
 
-from ..compiled.compiling import KERNEL
+from ...compiled.compiling import KERNEL
 
 
 @njit(types.UniTuple(float64, 3)(*[float64] * 6), **KERNEL)

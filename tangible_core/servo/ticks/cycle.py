@@ -12,17 +12,15 @@ import math
 from numba import int64, njit, types
 from numba.extending import intrinsic
 
-from ..compiled.compiling import KERNEL
-from ..compiled.touch import FRAME
-from ..compiled.touch import RISE_M as RISE
-from ..data import TICK_COLUMNS, TickFlag
-from . import schedule
-from .beacon_kernels import pull
-from .clock import SECOND_NS, wait_ns
-from .guard.coupling import couple
-from .guard.guard import guard, wait
-from .guard.layout import RISE_M
-from .ring import (
+from ...compiled.compiling import KERNEL
+from ...compiled.touch import FRAME
+from ...compiled.touch import RISE_M as RISE
+from ...data import TICK_COLUMNS, TickFlag
+from ..beacon_kernels import pull
+from ..guard.coupling import couple
+from ..guard.guard import guard, wait
+from ..guard.layout import RISE_M
+from ..ring import (
     COUNT,
     LEAD_NS,
     LONGEST_S,
@@ -38,6 +36,8 @@ from .ring import (
     WIDEST_US,
     WORK_J,
 )
+from . import schedule
+from .clock import SECOND_NS, wait_ns
 
 FLAGS = TICK_COLUMNS.index("flags")
 STATE = 7

@@ -6,12 +6,10 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from ..compiled.touch import FRAME, CompiledLink, CompiledTouch, moving_of
-from ..data import TICK_COLUMNS, HapticState, TickFlag
-from ..plugins.interfaces import Link, Touch
-from .guard.guarded import guarded
-from .pulling import pulling
-from .ring import (
+from ...compiled.touch import FRAME, CompiledLink, CompiledTouch, moving_of
+from ...data import TICK_COLUMNS, HapticState, TickFlag
+from ...plugins.interfaces import Link, Touch
+from ..ring import (
     COUNT,
     LEAD_NS,
     MARKS,
@@ -24,6 +22,7 @@ from .ring import (
     SWAP,
     Ring,
 )
+from .python_tick import guard_touch
 from .schedule import begin_tick, going
 
 SECOND_NS = 1_000_000_000
@@ -61,8 +60,8 @@ class Kernel(NamedTuple):
 
 def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
     """Return the fastest loop for this device and force law, with all kernels compiled or loaded."""
+    from ..guard import guard
     from . import clock, cycle
-    from .guard import guard
 
     cast(Any, guard).restart(np.zeros_like(ring.guard))  # `take_over` needs it between two ticks
     kernels = cast(Any, cycle)
@@ -100,7 +99,7 @@ def start_clock(header: np.ndarray, real_time: bool) -> None:
 
 def take_over(ring: Ring) -> None:
     """Go on with a new scene, whose force fades in; this ends a beacon, which pulled to a part of the scene before."""
-    from .guard import guard
+    from ..guard import guard
 
     cast(Any, guard).restart(ring.guard)
     ring.beacon.leave()
@@ -109,7 +108,7 @@ def take_over(ring: Ring) -> None:
 
 
 def _kernels(link: CompiledLink, touch: CompiledTouch) -> tuple[Any, Any]:
-    from ..compiled.kernels import Address
+    from ...compiled.kernels import Address
 
     read, write, of_link = link.kernels()
     return (of_link, Address(read), Address(write)), (
@@ -149,14 +148,14 @@ def _plain_tick(
 
     proxy, moving = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan), moving_of(touch)
     settings, memory, beacon = limits
-    header, allowed = shared[0], guarded(touch, settings, memory, pulling(beacon, memory))
+    header, allowed_force = shared[0], guard_touch(touch, settings, memory, beacon)
     touch.force(FAR)
     kernel = _start_generator(cast(Any, cycle).finish_ticks, shared, row)
 
     def tick(at_ns: int, late_ns: int) -> None:
         period_s = (at_ns - header[PREVIOUS_NS] if header[COUNT] else header[PERIOD_NS]) / SECOND_NS
         state = link.read()
-        force, flags = allowed(state, period_s)
+        force, flags = allowed_force(state, period_s)
         link.write(force)
         began = (at_ns - header[START_NS]) / SECOND_NS, late_ns / SECOND_NS
         motion = *state.position_m, *state.velocity_m_per_s, *proxy, *link.applied

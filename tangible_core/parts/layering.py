@@ -13,7 +13,7 @@ from ..data.pictures import check_same_shape, to_grey
 from ..data.views import PartMap, border_pixels
 from ..errors import GeometryError
 from ..runtime.opencv import plain_opencv
-from ..scene.scaling import felt_factor, reduced
+from ..scene.scaling import felt_factor, reduce_views
 from .heights import HeightChoice
 
 QUIET_M = np.float32(0.0016)
@@ -103,7 +103,7 @@ def _detail(picture: np.ndarray, width_m: float) -> Float32[np.ndarray, "h w"]:
     import cv2
 
     rows, columns = picture.shape[:2]
-    grey = to_grey(reduced(Views(picture), felt_factor(columns, width_m, FINEST_M / 3)).left)
+    grey = to_grey(reduce_views(Views(picture), felt_factor(columns, width_m, FINEST_M / 3)).left)
     pitch_m = width_m / grey.shape[1]
     with plain_opencv():
         fine, coarse = (

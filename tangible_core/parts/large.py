@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float, Int, UInt8
 
 from ..data import SegmentMap
 from ..data.pictures import check_same_shape, to_rgb8
-from ..data.views import PartMap, beside_border
+from ..data.views import PartMap, border_pixels
 from ..runtime.opencv import plain_opencv
 from .find import find_parts
 from .neighbours import neighbours
@@ -38,7 +38,7 @@ def disc_widths(parts: PartMap) -> Each:
     """Diameter of the largest disc within each part, in pixels; the picture's rim is a border."""
     import cv2
 
-    inside = ~beside_border(np.pad(parts.labels, 1, constant_values=-1))
+    inside = ~border_pixels(np.pad(parts.labels, 1, constant_values=-1))
     with plain_opencv():
         depth = cv2.distanceTransform(inside.view(np.uint8), cv2.DIST_L2, 5)[1:-1, 1:-1]
     deepest = np.zeros(parts.count, np.float32)

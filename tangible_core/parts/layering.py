@@ -10,10 +10,10 @@ from jaxtyping import Float32
 
 from ..data import Relief, Views
 from ..data.pictures import check_same_shape, to_grey
-from ..data.views import PartMap, beside_border
+from ..data.views import PartMap, border_pixels
 from ..errors import GeometryError
 from ..runtime.opencv import plain_opencv
-from ..scene.scaling import felt_factor, reduced
+from ..scene.scaling import felt_factor, reduce_views
 from .heights import HeightChoice
 
 QUIET_M = np.float32(0.0016)
@@ -81,7 +81,7 @@ def border_distance(parts: PartMap) -> Float32[np.ndarray, "h w"]:
     """Pixels from each pixel's centre to the nearest border of two parts; infinite where there is none."""
     from scipy.ndimage import distance_transform_edt
 
-    beside = beside_border(parts.labels)
+    beside = border_pixels(parts.labels)
     if not beside.any():
         return np.full(beside.shape, np.float32(np.inf))
     return (np.asarray(distance_transform_edt(~beside)) + 0.5).astype(np.float32)
@@ -103,7 +103,7 @@ def _detail(picture: np.ndarray, width_m: float) -> Float32[np.ndarray, "h w"]:
     import cv2
 
     rows, columns = picture.shape[:2]
-    grey = to_grey(reduced(Views(picture), felt_factor(columns, width_m, FINEST_M / 3)).left)
+    grey = to_grey(reduce_views(Views(picture), felt_factor(columns, width_m, FINEST_M / 3)).left)
     pitch_m = width_m / grey.shape[1]
     with plain_opencv():
         fine, coarse = (

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from tangible_core.errors import ConfigError, TangibleError
-from tangible_core.pipeline.config.editing import REMOVE, edited, said
+from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.keys import method_identities
 from tangible_core.plugins.registry import default_registry
@@ -111,7 +111,7 @@ def _code(text: str, path: Path) -> str:
 
 def _scene(text: str, path: Path) -> dict[str, Any]:
     """What the file says of its own scene's files and options; nothing of one that has a name alone."""
-    scene = said(text, path).get("scene")
+    scene = read_values(text, path).get("scene")
     return cast("dict[str, Any]", scene) if isinstance(scene, dict) else {}
 
 
@@ -123,8 +123,8 @@ def _own_files(text: str, path: Path) -> list[Path]:
 def _without_files(text: str, path: Path) -> str:
     """The pipeline file without its own scene's files, in place of which a row names others; other options stay."""
     if options := _scene(text, path):
-        return edited(text, path, {key: REMOVE for name in options if (key := f"scene.{name}") in FILES})
-    return edited(text, path, {"scene": REMOVE}) if "scene" in said(text, path) else text
+        return edit_text(text, path, {key: REMOVE for name in options if (key := f"scene.{name}") in FILES})
+    return edit_text(text, path, {"scene": REMOVE}) if "scene" in read_values(text, path) else text
 
 
 def _state(file: Path | None) -> str:

@@ -160,11 +160,11 @@ def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
 def _findings(name: str, sets: Sequence[str], named: bool) -> Sequence[Finding]:
     from ...data import Finding
     from ...errors import TangibleError
-    from ...plugins.devices import examined
+    from ...plugins.devices import examine_device
     from ...plugins.registry import default_registry
 
     try:
-        return examined(default_registry(), name, sets)
+        return examine_device(default_registry(), name, sets)
     except TangibleError as error:
         if named:
             raise

@@ -52,7 +52,7 @@ def test_heights_are_read_by_a_pipeline_file(tmp_path: Path, ending: str):
     relief = Pipeline.from_config(config, default_registry(), None).relief
     assert relief.extent_m[0] == pytest.approx(0.16)
     assert (relief.height_m.min(), relief.height_m.max()) == pytest.approx((0.0012, 0.01), abs=TENTH_UM)
-    assert config.completed()["workspace"]["width_m"] == pytest.approx(0.16)
+    assert config.as_data()["workspace"]["width_m"] == pytest.approx(0.16)
 
 
 def test_heights_size_in_the_pipeline_overrides_the_file(tmp_path: Path):
@@ -124,7 +124,7 @@ def test_heights_json_of_another_picture_is_ignored(tmp_path: Path):
         ({"width_mm": 0}, r"hills-heights.json: width_mm: Input should be greater than 0; export the heights again"),
         ({"step_mm": -1}, "step_mm"),
         ({"format": "tangible heights 9"}, "format"),
-        ({"rows": 5}, "is 53 x 37, and is said to be 53 x 5"),
+        ({"rows": 5}, "is 53 x 37, but its metadata state 53 x 5"),
         ({"file": "../hills.png", "exact": ""}, "it must be a file beside this one"),
         ({"file": "gone.png", "exact": ""}, "gone.png: there is no such file"),
     ],

@@ -39,9 +39,8 @@ from tangible_core.haptic_textures import peak_wavelength_m
 from tangible_core.materials.assignment import library
 from tangible_core.metrics import disparity_errors
 from tangible_core.plugins import hooks
-from tangible_core.plugins.hooks import hookimpl
+from tangible_core.plugins.hooks import Panel, hookimpl
 from tangible_core.plugins.notes import collected
-from tangible_core.plugins.panel import Panel
 from tangible_core.plugins.registry import Registry
 from tangible_core.session import Recording
 from tangible_report import block

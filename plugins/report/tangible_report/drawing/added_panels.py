@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from tangible_core.errors import shown
 from tangible_core.plugins import hooks
-from tangible_core.plugins.panel import Panel
+from tangible_core.plugins.hooks import Panel
 from tangible_core.plugins.registry import default_registry
 
 if TYPE_CHECKING:

@@ -26,7 +26,7 @@ from .layout import Cell, arrange
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from tangible_core.plugins.panel import Panel
+    from tangible_core.plugins.hooks import Panel
     from tangible_core.session import Recording
 
     from .layout import Box

@@ -1,6 +1,6 @@
 """Every panel of the sheet: one function each, which draws into its axes and returns its headline."""
 
-from tangible_core.plugins.panel import Panel as Panel
+from tangible_core.plugins.hooks import Panel as Panel
 
 from .disparity import draw_disparity, draw_disparity_error
 from .force import draw_force_map

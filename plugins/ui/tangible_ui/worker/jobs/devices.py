@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.plugins.devices import examined, installed_devices
+from tangible_core.plugins.devices import examine_device, installed_devices
 
 from ..state import Bench
 from .table import job
@@ -20,7 +20,7 @@ def devices(bench: Bench) -> list[dict[str, Any]]:
 @job(quick=True)
 def examine(bench: Bench, name: str) -> list[dict[str, Any]]:
     """What keeps a device from working, and the cure."""
-    return [asdict(each) for each in examined(bench.registry, name)]
+    return [asdict(each) for each in examine_device(bench.registry, name)]
 
 
 @job(quick=True)

@@ -1,4 +1,4 @@
-"""What travels between stages: frozen records of read-only arrays, and the servo's tuples."""
+"""The data that travels between stages: frozen records of read-only arrays, and the tuples of the force loop."""
 
 from .device import NO_FORCE, DeviceSpec, Finding, Force, HapticState, Unit, Vector, limited
 from .outcome import Kind, Note, NoteKind, Outcome, OutcomeKind, Outcomes, Plan

@@ -1,4 +1,4 @@
-"""The table of the pipeline's products: whatever lists products reads it here."""
+"""The table of the pipeline's products, and the products as an exporter gets them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -44,24 +44,24 @@ IN_REPORT = tuple(name for name, row in PRODUCTS.items() if row.in_report)
 
 @dataclass(frozen=True, eq=False)
 class Work:
-    """The products that an exporter needs, and what the pipeline says of the whole.
+    """The products that an exporter needs, and the title and language of the whole.
 
-    Products are there if the exporter `needs` them, and None where the scene does not need them.
+    A product is there if the exporter `needs` it, and None where the scene does not need it.
     """
 
     title: str
-    """What it is called: the title of the pipeline, or else the name of its scene."""
+    """The title of the pipeline, or else the name of its scene."""
     language: str
-    """A language tag, such as `en` or `de-AT`, of the title and of the names."""
+    """A language tag, such as `en` or `de-AT`, for the title and the names."""
     products: Mapping[str, Record | None] = field(default_factory=dict[str, Record | None])
-    """What was made, by the product's name."""
+    """The records by the product's name."""
     picture: np.ndarray | None = None
     """The left view, as in `Views`; None for a scene of heights alone."""
     names: tuple[str, ...] = ()
-    """Of parts, by number; empty for one that has none. Empty where nothing is said of parts."""
+    """The names of parts, by number, "" for a part without a name; () if the pipeline has no parts."""
     extras: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    """What a sheet shows next to products: `views`, the `truth` of the disparity (h, w) in px, and the `recording` of a
-    run; without those that there are not."""
+    """Further things that a sheet shows, where they exist: `views`, the `truth` of the disparity (h, w) in px, and the
+    `recording` of a run."""
 
     @property
     def relief(self) -> Relief:
@@ -70,22 +70,22 @@ class Work:
 
     @property
     def surface(self) -> HapticSurface:
-        """What is touched, with names and, where the law uses them, materials. Raises: BrokenMethod as `relief`."""
+        """The surface, with names and, if the force law uses them, materials. Raises: BrokenMethod as `relief`."""
         return cast(HapticSurface, self._product("surface"))
 
     @property
     def parts(self) -> PartMap | None:
-        """The connected parts of the picture; None where it has no segments. Raises: BrokenMethod as `relief`."""
+        """The connected parts of the picture; None if it has no segments. Raises: BrokenMethod as `relief`."""
         return cast("PartMap | None", self._product("parts"))
 
     @property
     def simplified(self) -> PartMap | None:
-        """The parts as fingers can read them, with the numbers of `parts`. Raises: BrokenMethod as `relief`."""
+        """The parts in a form that fingers can read, numbered as `parts`. Raises: BrokenMethod as `relief`."""
         return cast("PartMap | None", self._product("simplified"))
 
     @property
     def materials(self) -> MaterialMap | None:
-        """One material a part or a segment. Raises: BrokenMethod as `relief`."""
+        """The material of each part or segment. Raises: BrokenMethod as `relief`."""
         return cast("MaterialMap | None", self._product("materials"))
 
     def _product(self, name: str) -> Record | None:

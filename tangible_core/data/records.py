@@ -1,4 +1,4 @@
-"""What all records are: frozen, of read-only arrays, with a digest of their content."""
+"""The base of all records: frozen, with read-only arrays, fields of the annotated types, and a content digest."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import fields, is_dataclass
@@ -15,11 +15,11 @@ from .arguments import as_array, as_number, as_picture
 
 
 class Record:
-    """Base of the frozen records: read-only arrays and a digest of the content.
+    """The base of the frozen records: read-only arrays and a digest of the content.
 
-    A record keeps read-only views of the arrays it is given, not copies: whoever made them leaves them alone. What is
-    not of a field's type is converted (a list to an array, float64 to float32).
-    Raises: ArgumentError for what nothing can be made of.
+    A record keeps read-only views of the arrays that it is given, not copies: do not change them afterwards. A value
+    of another type than its field's is converted (a list to an array, float64 to float32).
+    Raises: ArgumentError for a value that cannot be converted.
     """
 
     def __post_init__(self) -> None:
@@ -31,17 +31,17 @@ class Record:
                 object.__setattr__(self, name, view)
 
     def _repr_html_(self) -> str:
-        """A small picture with units, for a notebook."""
+        """Return a small picture with units, for a notebook."""
         home = __name__.partition(".")[0]
-        return import_module(f"{home}.pipeline.output.showing").as_html(self)  # what draws lies above what is drawn
+        return import_module(f"{home}.pipeline.output.showing").as_html(self)  # the drawing lies on a higher floor
 
     def digest(self) -> str:
-        """XXH3-128 of the content, the same in every process; records of equal content have equal digests."""
+        """Return the XXH3-128 of the content: the same in every process, and equal for equal content."""
         return digest_of(self)
 
 
 def digest_of(value: Any) -> str:
-    """XXH3-128 of a record, an array, or plain values and tuples of these; far faster than a cryptographic hash."""
+    """Return the XXH3-128 of a record, an array, a plain value or a tuple of these; cryptographic hashes are slower."""
     state = xxhash.xxh3_128()
     _feed(state, value)
     return state.hexdigest()
@@ -66,34 +66,34 @@ def _feed(state: Any, value: Any) -> None:
 
 
 def items_of(record: Any) -> Iterator[tuple[str, Any]]:
-    """Names and values of a record's fields, in order."""
+    """Return the names and values of a record's fields, in order."""
     return ((f.name, getattr(record, f.name)) for f in fields(record))
 
 
 Convert = Callable[[str, Any], Any]
-"""A field's name and what it was given, to what it holds. Raises: ArgumentError."""
+"""A function from a field's name and a given value to the value that the field holds. Raises: ArgumentError."""
 
 
 def settle(record: Any) -> None:
-    """Give each field of a frozen dataclass what its annotation asks for.
+    """Convert each field of a frozen dataclass to the type of its annotation.
 
-    Raises: ArgumentError naming the field, what it was given and what it should be.
+    Raises: ArgumentError with the field, the value it was given and the value it needs.
     """
     for name, convert in _converters(cast(Any, type(record))):
         given = getattr(record, name)
-        if (found := convert(name, given)) is not given:
-            object.__setattr__(record, name, found)
+        if (value := convert(name, given)) is not given:
+            object.__setattr__(record, name, value)
 
 
 @cache
 def _converters(cls: type) -> tuple[tuple[str, Convert], ...]:
     hints = get_type_hints(cls)
-    found = ((each.name, _converter(hints[each.name])) for each in fields(cast(Any, cls)))
-    return tuple((name, convert) for name, convert in found if convert is not None)
+    converters = ((each.name, _converter(hints[each.name])) for each in fields(cast(Any, cls)))
+    return tuple((name, convert) for name, convert in converters if convert is not None)
 
 
 def _converter(hint: Any) -> Convert | None:
-    """None where anything goes."""
+    """Return the converter for an annotation; None if it accepts any value."""
     if get_origin(hint) in (Union, UnionType) and len(_parts(hint)) == 1:
         inner = [each for each in map(_converter, _parts(hint)) if each]
         return _or_none(inner[0]) if inner else None
@@ -109,7 +109,7 @@ def _converter(hint: Any) -> Convert | None:
 
 
 def _parts(union: Any) -> list[Any]:
-    """Of `X | None`, X."""
+    """Return the parts of a union other than None."""
     return [each for each in get_args(union) if each is not NoneType]
 
 
@@ -158,7 +158,7 @@ def _tuple_of(parts: tuple[Any, ...]) -> Convert:
 
 
 def _items(value: object) -> tuple[Any, ...] | None:
-    """Of a tuple, which is returned as it is, a list or an array; None for what is none of these."""
+    """Return the items of a tuple (itself), a list or an array; None for any other value."""
     if isinstance(value, tuple):
         return cast("tuple[Any, ...]", value)
     if isinstance(value, list | np.ndarray):

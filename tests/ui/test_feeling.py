@@ -16,7 +16,7 @@ from tangible_core.data import TICK_COLUMNS, Vector
 from tangible_core.errors import DeviceError
 from tangible_core.mapping import WorkspaceMapping, mapped
 from tangible_core.plugins.interfaces import HapticDevice, Touch
-from tangible_core.servo import Safety, Servo, packed
+from tangible_core.servo import Safety, Servo, pack_touch
 from tangible_core.servo.ring import STOP, shared_folder
 from tangible_ui.feeling.feeling import Feeling, Felt
 from tangible_ui.framing import STATE_FRAME
@@ -53,7 +53,7 @@ def felt(
     """A scene for a device, the page's own without one."""
     options = {name: value for name, value in feeling.own_device.items() if name != "use"}
     seen = mapped(device or load_method("device", "pointer")(**options), mapping)
-    return Felt(packed(touch or law(), seen.spec()), "proxy", "it", seen, device is None, mapping, AT_ONCE)
+    return Felt(pack_touch(touch or law(), seen.spec()), "proxy", "it", seen, device is None, mapping, AT_ONCE)
 
 
 def newest(feeling: Feeling) -> np.ndarray:
@@ -167,10 +167,10 @@ class TestSwaps:
         first = feeling.servo
         feeling.feel(felt(feeling, touch=FaultyTouch()))
         assert feeling.servo is first
-        assert "the tick is Python's" in feeling.how
+        assert "the tick is in Python" in feeling.how
         feeling.feel(felt(feeling))
         assert feeling.servo is first
-        assert "the tick is Python's" not in feeling.how
+        assert "the tick is in Python" not in feeling.how
 
     def test_another_device_is_another_loop(self, feeling: Feeling, server: Server) -> None:
         feeling.start()

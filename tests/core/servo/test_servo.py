@@ -50,8 +50,8 @@ class TestTicks:
         ("device", "how"),
         [
             (Circling(z_m=0.001), "Python" if sys.platform != "linux" else "the whole loop is compiled"),
-            (Circling(z_m=0.001, exchanges=True), "Python asks the device"),
-            (Failing(fault="none"), "the tick is Python's"),
+            (Circling(z_m=0.001, exchanges=True), "Python calls the device"),
+            (Failing(fault="none"), "the tick is in Python"),
         ],
     )
     def test_each_loop_feels_the_surface(self, device, how: str) -> None:
@@ -138,11 +138,11 @@ class TestSwap:
 
     def test_another_law(self) -> None:
         with Servo(proxy(), Circling()) as servo:
-            assert "the tick is Python's" not in servo.how
+            assert "the tick is in Python" not in servo.how
             servo.swap(FaultyTouch())
-            assert "the tick is Python's" in servo.how
+            assert "the tick is in Python" in servo.how
             servo.swap(load_method("render", "penalty")().touch(LEVEL))
-            assert "the tick is Python's" not in servo.how
+            assert "the tick is in Python" not in servo.how
             there = servo.report().ticks
             until(lambda: servo.report().ticks > there + 20)
 

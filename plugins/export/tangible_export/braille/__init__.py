@@ -13,5 +13,5 @@ from .cells import dots as dots
 from .cells import height_m as height_m
 from .cells import width_m as width_m
 from .translation import translate as translate
+from .translation import wrapped as wrapped
 from .translation import written_by as written_by
-from .wrapping import wrapped as wrapped

@@ -1,4 +1,4 @@
-"""How far results are from the truth: disparity maps, segments and forces; which borders of parts are felt."""
+"""Errors of disparity maps, segments and forces against the truth; borders of parts as steps; the stable stiffness."""
 
 from .borders import border_steps as border_steps
 from .borders import felt_steps as felt_steps

@@ -72,7 +72,7 @@ def show_one(
     """
     import inspect
 
-    from ...metrics.measured import measured
+    from ...metrics.measured import load_measured
     from ...pipeline.config.markdown import options_of
     from ...plugins.registry import default_registry
     from .. import show
@@ -80,7 +80,7 @@ def show_one(
     registry = default_registry()
     listing, cls = registry.find(kind, name), registry.load(kind, name)
     text, options = inspect.getdoc(cls) or "", options_of(cls)
-    found = measured().get(kind) if listing.distribution == OURS else None
+    found = load_measured().get(kind) if listing.distribution == OURS else None
     if as_json:
         figures = None if found is None else _figures(found, listing.name)
         said = {column: getattr(listing, column) for column in (*COLUMNS, "target")}

@@ -153,7 +153,7 @@ class TestHeights:
         made = pipeline(heights="guess")
         made.make("relief")
         (warning,) = [each for each in notes(made, "relief") if each.kind == "warning"]
-        assert warning.text.startswith("the heights of all 4 parts are guessed, as a picture does not tell")
+        assert warning.text.startswith("the heights of all 4 parts are guessed, as a picture does not show")
         assert [each.levelname for each in caplog.records if "guessed" in each.message] == ["WARNING"]
         made = pipeline(heights="guess", parts={0: {"height_m": 0}, 2: {"height_m": 0}})
         made.make("relief")

@@ -44,14 +44,14 @@ def filmed(walk):
     return made
 
 
-def test_the_first_frame_is_the_relief_of_the_still(filmed):
+def test_first_frame_equals_the_relief_of_the_still(filmed):
     pipeline = filmed()
     with pipeline.reliefs as reliefs:
         first = next(iter(reliefs))
     assert np.array_equal(first.relief.height_m, pipeline.relief.height_m)
 
 
-def test_each_frame_is_what_the_still_makes_of_its_disparity_and_range(filmed, walk):
+def test_each_frame_equals_the_still_of_its_disparity_and_range(filmed, walk):
     """Where nothing is averaged: a still of a later frame, its range that of the first."""
     pipeline = filmed()
     later = Pipeline(Scene.of(stereo=walk / "004.png", layout="side-by-side"), depth=pipeline.config.depth.method)
@@ -65,7 +65,7 @@ def test_each_frame_is_what_the_still_makes_of_its_disparity_and_range(filmed, w
     assert np.array_equal(maker.relief(disparity, spans).height_m, still.height_m)
 
 
-def test_the_box_walks(filmed):
+def test_box_of_the_video_walks_in_the_reliefs(filmed):
     pipeline = filmed(workspace={"smooth_m": 0})
     with pipeline.reliefs as reliefs:
         film = [each.relief.height_m for each in reliefs]
@@ -76,7 +76,7 @@ def test_the_box_walks(filmed):
         assert (film[number] > 0.008)[~box].mean() < 0.1
 
 
-def test_exchanged_views_stay_exchanged(walk, tmp_path):
+def test_exchanged_views_stay_exchanged_in_later_frames(walk, tmp_path):
     for path in walk.iterdir():
         left, right = np.split(cv2.imread(str(path)), 2, axis=1)
         cv2.imwrite(str(tmp_path / path.name), np.hstack([right, left]))
@@ -88,7 +88,7 @@ def test_exchanged_views_stay_exchanged(walk, tmp_path):
     assert all(each.max() > 0.009 for each in film)
 
 
-def test_it_is_felt_by_the_clock_of_a_simulated_device(filmed):
+def test_film_runs_by_the_clock_of_a_simulated_device(filmed):
     reports = []
     recording = filmed().feel(Mock(path="circle"), 0.6, in_real_time=False, on_report=reports.append)
     frames = recording.frame
@@ -98,13 +98,13 @@ def test_it_is_felt_by_the_clock_of_a_simulated_device(filmed):
     assert reports[-1].film.shown == COUNT and reports[-1].film.skipped == 0
 
 
-def test_the_same_film_is_the_same_recording(filmed):
+def test_film_gives_the_same_recording_again(filmed):
     first, again = (filmed().feel(Mock(path="circle"), 0.3, in_real_time=False) for _ in range(2))
     assert np.array_equal(first.rows, again.rows, equal_nan=True)
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_it_is_felt_in_real_time_and_recorded(filmed, tmp_path):
+def test_film_in_real_time_is_recorded(filmed, tmp_path):
     reports, file = [], tmp_path / "hand.nc"
     recording = filmed().feel(Mock(path="circle"), 1.5, on_report=reports.append, record=file)
     film = reports[-1].film
@@ -116,7 +116,7 @@ def test_it_is_felt_in_real_time_and_recorded(filmed, tmp_path):
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_films_and_stills_are_felt_in_turn_and_a_film_begins_anew(filmed, walk):
+def test_films_and_stills_in_turn_start_each_film_again(filmed, walk):
     still = Pipeline(Scene.of(photo=walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
     reports = []
     recording = filmed().feel(Mock(path="circle"), 2.4, then=[still], each_s=0.6, on_report=reports.append)
@@ -129,26 +129,26 @@ def test_films_and_stills_are_felt_in_turn_and_a_film_begins_anew(filmed, walk):
     assert any(each.film is None for each in reports) and any(each.film is not None for each in reports)
 
 
-def test_a_beacon_pulls_over_a_film(filmed):
+def test_beacon_pulls_over_a_film(filmed):
     pipeline = filmed(texture=Histogram(segments=2), parts={0: "ground"})
     reports = []
     pipeline.feel(Mock(path="circle"), 0.3, in_real_time=False, beacon="ground", on_report=reports.append)
     assert reports[-1].ticks == 300
 
 
-def test_a_law_that_feels_no_film_is_refused_in_one_line_that_names_those_that_do(filmed):
+def test_law_without_films_is_refused_and_others_are_named(filmed):
     with pytest.raises(ConfigError, match=r"penalty does not support moving surfaces.*proxy") as refused:
         filmed(render=Penalty()).feel(Mock(), 0.1, in_real_time=False)
     assert "\n" not in str(refused.value)
 
 
-def test_a_relief_of_parts_is_refused(filmed):
+def test_film_of_a_relief_of_parts_is_refused(filmed):
     pipeline = filmed(texture=Histogram(segments=2), heights="guess")
     with pytest.raises(ConfigError, match="leave `heights:` out"):
         pipeline.feel(Mock(), 0.1, in_real_time=False)
 
 
-def test_a_scene_that_stands_still_is_no_film(walk):
+def test_film_of_a_still_scene_is_refused(walk):
     still = Pipeline(Scene.of(photo=walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
     with pytest.raises(ConfigError, match="does not move"):
         _ = still.reliefs
@@ -156,7 +156,7 @@ def test_a_scene_that_stands_still_is_no_film(walk):
         still.film()
 
 
-def test_a_film_is_had_in_python(filmed):
+def test_film_is_made_in_python(filmed):
     pipeline = filmed()
     film = pipeline.film()
     assert isinstance(film, Film)
@@ -180,7 +180,7 @@ FIRST_MEAN = 0.0
 
 @pytest.mark.parametrize("in_real_time", [True, False])
 @pytest.mark.usefixtures("loop_in_thread")
-def test_a_plugins_fault_ends_the_session(filmed, monkeypatch, in_real_time):
+def test_film_with_a_plugin_fault_ends_the_session(filmed, monkeypatch, in_real_time):
     pipeline = filmed(depth=Shrinks())
     monkeypatch.setitem(globals(), "FIRST_MEAN", pipeline.views.left.mean())
     began = time.monotonic()
@@ -191,7 +191,7 @@ def test_a_plugins_fault_ends_the_session(filmed, monkeypatch, in_real_time):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_stop_ends_it_soon_and_leaves_no_thread(filmed):
+def test_film_is_stopped_soon_and_leaves_no_thread(filmed):
     stop, began = threading.Event(), time.monotonic()
 
     def heard(report):

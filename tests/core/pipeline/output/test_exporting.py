@@ -316,13 +316,13 @@ class TestWhatGoesWrong:
     FAULTS: ClassVar[dict[str, tuple[Callable[[Path], Any], str, str]]] = {
         "raises": (lambda stem: 1 / 0, "failed", "Does failed in write: ZeroDivisionError"),
         "exits": (lambda stem: exit(3), "failed", "called sys.exit"),
-        "no tuple": (lambda stem: str(stem), "failed", "write returned the str"),
+        "no tuple": (lambda stem: str(stem), "failed", "write gave the str"),
         "nothing": (lambda stem: (), "failed", "write returned no path"),
         "no path": (lambda stem: (7,), "failed", "write returned 7 for a path"),
         "no such file": (lambda stem: (stem.with_suffix(".txt"),), "failed", "there is no such file"),
-        "outside": (lambda stem: written(stem.parent.parent / "x.txt"), "failed", "is not the stem"),
-        "another name": (lambda stem: written(stem.with_name("x.txt")), "failed", "is not the stem"),
-        "a way out": (lambda stem: (stem.parent / f"{stem.name}/../../etc",), "failed", "is not the stem"),
+        "outside": (lambda stem: written(stem.parent.parent / "x.txt"), "failed", "is not the given stem"),
+        "another name": (lambda stem: written(stem.with_name("x.txt")), "failed", "is not the given stem"),
+        "a way out": (lambda stem: (stem.parent / f"{stem.name}/../../etc",), "failed", "is not the given stem"),
         "refuses": (lambda stem: (_ for _ in ()).throw(PictureError("no part is big enough; take A3")), "refused",
                     "no part is big enough; take A3"),
     }  # fmt: skip

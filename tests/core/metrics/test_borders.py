@@ -1,4 +1,4 @@
-"""Which borders are felt as steps: against answers that are known exactly."""
+"""Borders that can be felt as steps, against answers that are known exactly."""
 
 from math import isnan
 from statistics import NormalDist
@@ -29,7 +29,7 @@ def halves(relief: Relief, at_m: float) -> np.ndarray:
 
 
 def half_width_m(height_m: float) -> float:
-    """How far from a step it is felt: where the blurred step rises by 0.5 mm from 1 mm left to 1 mm right of there."""
+    """Return the distance from a step within which it is found: the blurred step rises by 0.5 mm within 2 mm there."""
     skin = NormalDist(0, SKIN_M)
     x_m = np.linspace(0, 0.004, 4001)
     rise = [height_m * (skin.cdf(x + 0.001) - skin.cdf(x - 0.001)) for x in x_m]
@@ -76,7 +76,7 @@ def test_step_further_than_2_mm_from_a_border_does_not_belong_to_it():
 
 @pytest.mark.parametrize("tall", [1, 10])
 def test_borders_are_counted_by_their_length(tall):
-    """One around a step, 60 cells high and 200 wide, one without a step, 100 cells high; cells may be no squares."""
+    """A border at a step is 60 cells high and 200 wide, one without a step 100 cells high; cells are not squares."""
     height_m = np.zeros((100, 400), np.float32)
     height_m[:60, 200:] = 0.002
     labels = np.zeros(height_m.shape, np.int32)

@@ -47,7 +47,7 @@ def test_maps_of_different_size_are_refused():
 
 @given(st.integers(1, 12), st.integers(0, 12))
 def test_strip_behind_a_step_is_hidden_as_wide_as_the_jump(jump: int, far: int):
-    """Left of a nearer surface, and at the left border."""
+    """The strip is left of a nearer surface, and at the left border."""
     edge, width = 40, 64
     truth = np.full((3, width), far, np.float64)
     truth[:, edge:] = far + jump

@@ -93,7 +93,7 @@ def test_force_steps_are_the_largest_and_the_99th_percentile():
 
 
 def test_delay_of_some_ticks_is_a_lag():
-    """At 50 mm/s a proxy that is 4 ticks late is 0.2 mm behind, whichever way the hand goes."""
+    """A proxy that is 4 ticks late at 50 mm/s is 0.2 mm behind in every direction of the hand."""
     turn = np.linspace(0, 2 * np.pi, 4001)
     hand = 0.05 * 4 / (2 * np.pi) * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(4001)])
     nearest = hand + 0.001 * UP
@@ -124,7 +124,7 @@ def test_lag_ignores_ticks_in_free_air_and_at_rest():
 
 
 def loops(count: int = 3, ticks: int = 500) -> tuple[np.ndarray, np.ndarray]:
-    """In and out at other places: hands, and whether each is over the level z = 0."""
+    """Make paths in and out at different places, with masks of the ticks over the level z = 0."""
     t = np.arange(count * ticks + 1) / ticks
     z = 0.001 * np.cos(2 * np.pi * t)
     return np.column_stack([0.02 * np.sin(t), 0.01 * t, z]), z > 0.0009

@@ -94,7 +94,7 @@ def test_boundary_distance_of_a_moved_border_is_the_move(shift: int):
 
 
 def test_boundary_distance_of_an_extra_border_counts_in_one_direction():
-    """Its points are 6 px from the true border; the true border's are at 0."""
+    """The extra points are 6 px from the true border; those of the true border are at 0."""
     extra = halves(16) + halves(22)
     assert boundary_distance(extra, halves(16)) == pytest.approx((6 / 2 + 0) / 2)
     assert boundary_distance(halves(16), extra) == pytest.approx((0 + 6 / 2) / 2)

@@ -1,4 +1,4 @@
-"""What is left of the wrong pixels as the least confident ones are removed."""
+"""Sparsification: the share of wrong pixels as the least confident ones are removed."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def test_curve_equals_that_computed_by_hand():
 
 
 def test_curve_of_equal_confidence_is_the_mean_over_all_orders():
-    """Of the three at .5, one is wrong: a third of a wrong pixel comes with each."""
+    """A wrong pixel among the three at .5 counts as a third with each."""
     wrong = np.array([False, True, False, False])
     curve = sparsification_curve(np.array([0.9, 0.5, 0.5, 0.5]), wrong)
     np.testing.assert_allclose(curve, [0, (1 / 3) / 2, (2 / 3) / 3, 1 / 4])
@@ -45,7 +45,7 @@ def test_areas_of_best_worst_and_constant_order_are_exact():
 
 
 def test_curve_of_the_best_order_falls_to_zero():
-    """Of 100 pixels 20 are wrong: of the 100 - r that are left, 20 - r, and then none."""
+    """Twenty of 100 pixels are wrong: 20 - r of the 100 - r that are left, and then none."""
     truth = np.zeros((10, 10), np.float32)
     found = np.zeros((10, 10), np.float32)
     found[:2] = 3

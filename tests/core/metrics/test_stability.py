@@ -21,14 +21,14 @@ def spring(stiffness: float, damping: float = 0.0) -> Law:
     return law
 
 
-def bound(delay_ticks: int) -> float:
+def literature_bound(delay_ticks: int) -> float:
     return stiffness_limit_n_per_m(HANDLE.damping_n_s_per_m, HANDLE.period_s, delay_ticks)
 
 
 @pytest.mark.parametrize("delay", [0, 1, 2])
 def test_limit_equals_the_bound_of_the_literature(delay: int):
     """K < 2 b / (T (1 + 2 d)), within 5 %."""
-    assert stiffness_limit(spring, GROUND_M, delay) == pytest.approx(bound(delay), rel=0.05)
+    assert stiffness_limit(spring, GROUND_M, delay) == pytest.approx(literature_bound(delay), rel=0.05)
 
 
 @pytest.mark.parametrize("delay", [0, 1, 2, 5])
@@ -41,7 +41,7 @@ def test_limit_is_where_eigenvalues_leave_the_unit_circle(delay: int, handle: Ha
 def test_limit_rises_with_the_damping_of_the_law():
     found = stiffness_limit(lambda stiffness: spring(stiffness, 2.0), GROUND_M, 0)
     assert found == pytest.approx(exact_stiffness_limit(HANDLE, 0, 2.0), rel=0.005)
-    assert found > 1.5 * bound(0)
+    assert found > 1.5 * literature_bound(0)
 
 
 @pytest.mark.parametrize(

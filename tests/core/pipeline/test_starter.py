@@ -16,7 +16,7 @@ from videos import greys
 
 
 def waves(columns: int, rows: int, across: float) -> np.ndarray:
-    """A grey picture of so many waves from left to right."""
+    """Make a grey picture of n waves from left to right."""
     wave = np.rint(127 + 120 * np.sin(np.linspace(0, 2 * np.pi * across, columns))).astype(np.uint8)
     return np.tile(wave, (rows, 1))
 
@@ -46,7 +46,7 @@ def test_starter_values_suit_the_picture(folder: Path):
     assert all(line.count("#") for line in made.text.splitlines() if " mm " in line), "each length is explained"
 
 
-def test_starter_of_heights_in_metres_keeps_their_size(folder: Path):
+def test_starter_of_heights_in_millimetres_keeps_their_size(folder: Path):
     tangible("export", "map.npy", "--to", "heights", "--out", ".", cwd=folder)
     for name in ("map-heights.json", "map-heights.tif", "map-heights.png"):
         assert are_pictures([Path(name)])

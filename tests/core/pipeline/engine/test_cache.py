@@ -167,7 +167,7 @@ def test_pruning_deletes_the_entries_used_longest_ago(tmp_path: Path):
 
 
 def test_pruning_of_many_entries_keeps_those_used_last(tmp_path: Path):
-    """In whatever order the folder lists them."""
+    """The order in which the folder lists the entries does not matter."""
     cache = Cache(tmp_path)
     ages = [7, 2, 9, 4, 0, 11, 5, 1, 10, 3, 8, 6]
     for age in ages:
@@ -189,14 +189,14 @@ def test_cache_that_is_just_full_keeps_all(tmp_path: Path):
 def test_pruning_survives_entries_deleted_by_another_process(
     tmp_path: Path, counted: bool, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ):
-    def used(path: Path) -> tuple[float, int]:
+    def use_and_delete(path: Path) -> tuple[float, int]:
         found = real(path) if counted else None
         path.unlink()
         return found or real(path)
 
     real = cache._use_and_size
     Cache(tmp_path).put("old", RECORDS[1])
-    monkeypatch.setattr(cache, "_use_and_size", used)
+    monkeypatch.setattr(cache, "_use_and_size", use_and_delete)
     Cache(tmp_path, max_bytes=0).put("new", RECORDS[1])
     assert not caplog.text
     assert not list(tmp_path.glob("*.npz"))
@@ -205,18 +205,16 @@ def test_pruning_survives_entries_deleted_by_another_process(
 def test_entries_that_cannot_be_deleted_give_a_warning(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ):
-    def denied(_: Path) -> tuple[float, int]:
+    def deny(_: Path) -> tuple[float, int]:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(cache, "_use_and_size", denied)
+    monkeypatch.setattr(cache, "_use_and_size", deny)
     Cache(tmp_path).put("k", RECORDS[1])
     assert "Permission denied" in caplog.text
 
 
 @pytest.mark.parametrize("place", ["file", "file/below", "loop"])
-def test_unwritable_folder_gives_one_warning(
-    tmp_path: Path, place: str, caplog: pytest.LogCaptureFixture
-):
+def test_unwritable_folder_gives_one_warning(tmp_path: Path, place: str, caplog: pytest.LogCaptureFixture):
     """A process has many results, and several caches of one folder."""
     (tmp_path / "file").write_text("")
     (tmp_path / "loop").symlink_to("loop")
@@ -261,7 +259,7 @@ def test_full_disk_leaves_no_files(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert list(tmp_path.iterdir()) == []
 
 
-def held(folder: Path) -> int:
+def size_of(folder: Path) -> int:
     return sum(path.stat().st_size for path in folder.glob("*.npz"))
 
 
@@ -277,7 +275,7 @@ def test_folder_is_listed_only_when_it_may_be_full(tmp_path: Path, monkeypatch: 
     full = Cache(tmp_path, max_bytes=32 * size)
     for number in range(40, 80):
         full.put(f"k{number}", RECORDS[1])
-        assert held(tmp_path) <= full.max_bytes
+        assert size_of(tmp_path) <= full.max_bytes
     looked_at.clear()
     for number in range(80, 120):
         full.put(f"k{number}", RECORDS[1])
@@ -298,7 +296,7 @@ def test_folder_with_a_damaged_tally_is_counted(tmp_path: Path, tally: bytes | N
         (tmp_path / ".tally").write_bytes(tally)
     Cache(tmp_path, max_bytes=3 * size).put("new", RECORDS[1])
     assert {path.stem for path in tmp_path.glob("*.npz")} == {"k3", "new"}
-    assert held(tmp_path) == int.from_bytes((tmp_path / ".tally").read_bytes(), "little")
+    assert size_of(tmp_path) == int.from_bytes((tmp_path / ".tally").read_bytes(), "little")
 
 
 USER = """
@@ -330,5 +328,5 @@ def test_folder_is_shared_by_four_processes(tmp_path: Path, max_bytes: int):
     assert said == [""] * 4
     assert [user.returncode for user in users] == [0] * 4
     assert [path.name for path in tmp_path.iterdir() if path.suffix != ".npz"] == [".tally"]
-    assert held(tmp_path) <= max_bytes + 4 * 2_000  # what each may have written while another one counted
+    assert size_of(tmp_path) <= max_bytes + 4 * 2_000  # what each may have written while another one counted
     assert (tmp_path / ".tally").stat().st_size % 8 == 0

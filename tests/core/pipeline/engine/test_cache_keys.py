@@ -1,4 +1,4 @@
-"""What a kept result depends on: each thing by itself, on methods and packages that are made up or real."""
+"""The keys of cached results: every dependency on its own, with made-up and real methods and packages."""
 
 from importlib import import_module
 from pathlib import Path
@@ -41,7 +41,7 @@ class Ramp(DepthEstimator):
 
 
 class Halves(Segmenter):
-    """Left and right."""
+    """A segmenter of a left and a right half."""
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         labels = np.zeros(picture.shape[:2], np.int32)
@@ -74,7 +74,7 @@ def pipeline(folder: Path, **parts) -> Engine:
 
 
 def keys(folder: Path, **parts) -> dict[str, str]:
-    """Of what is made, each by itself: what it is made from is left out."""
+    """Return the keys of the stages alone, without those of their inputs."""
     return {product: stage.key for product, stage in pipeline(folder, **parts).stages.items()}
 
 
@@ -86,7 +86,7 @@ def forget() -> None:
 
 
 @pytest.fixture(autouse=True)
-def _forgotten():
+def _forget():
     yield
     forget()
 
@@ -184,8 +184,8 @@ def outcome(pipe: Engine, product: str) -> str:
     return {each.product: each.outcome for each in pipe.outcomes}[product]
 
 
-def edited(monkeypatch: pytest.MonkeyPatch, module: str) -> None:
-    """As if this module said something else."""
+def edit_module(monkeypatch: pytest.MonkeyPatch, module: str) -> None:
+    """Pretend that the source of this module has changed."""
     read = closures._text.__wrapped__
 
     def text(here: places.Place):
@@ -234,7 +234,7 @@ class TestCode:
         self, folder: Path, monkeypatch: pytest.MonkeyPatch, module: str, products: set[str]
     ):
         before = keys(folder, **real())
-        edited(monkeypatch, module)
+        edit_module(monkeypatch, module)
         after = keys(folder, **real())
         assert {product for product in KEPT if before[product] != after[product]} == products
 

@@ -1,4 +1,4 @@
-"""What is rehearsed beside a pipeline: all that it compiles after its depth, and nothing that it has begun."""
+"""The warm-up of a pipeline: all kernels after its depth are compiled, and no stage that has begun is run again."""
 
 import json
 import subprocess
@@ -37,30 +37,30 @@ from dataclasses import replace
 config = load_config(Path(sys.argv[1]), default_registry(), ())
 engine = Engine(config, default_registry())
 work = _work(engine, "touch")
-said = list(work.function(*work.arguments))
+steps = list(work.function(*work.arguments))
 added = []
 add = Dispatcher.add_overload
-def told(self, result):
+def record_overload(self, result):
     added.append(f"{self.py_func.__module__}.{self.py_func.__qualname__}")
     add(self, result)
-Dispatcher.add_overload = told
+Dispatcher.add_overload = record_overload
 views = engine.scene.views
 rows, columns = np.indices(views.shape, np.float32)
 scene = replace(engine.scene, disparity=DisparityMap(6 + 40 * (rows / rows.max()) * (columns / columns.max())))
 real = Engine(config.with_values(scene=scene), default_registry())
 touch = real.make("touch")
 recording = run_simulated(touch, config.felt_device, 1.0, limits=config.safety)
-print(json.dumps([said, added, bool(np.any(recording.force_n))]))
+print(json.dumps([steps, added, bool(np.any(recording.force_n))]))
 """
 
 
 def test_warm_up_of_the_demo_compiles_every_kernel_after_depth():
     words = [sys.executable, "-c", COMPILED, str(ROOT / "configs" / "demo.yaml")]
     done = subprocess.run(words, capture_output=True, text=True, check=True)
-    said, added, felt = json.loads(done.stdout)
-    assert said == ["segments", "touch", FELT]
+    steps, added, has_force = json.loads(done.stdout)
+    assert steps == ["segments", "touch", FELT]
     assert added == []
-    assert felt
+    assert has_force
 
 
 def pipeline(**methods) -> Pipeline:

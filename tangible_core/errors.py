@@ -155,7 +155,7 @@ def check_positive(name: str, value: float) -> None:
         raise ConfigError(f"{name}: is {value}; it must be positive and finite")
 
 
-def exited(error: SystemExit) -> BrokenMethod:
+def exit_error(error: SystemExit) -> BrokenMethod:
     """What to say where a plugin called `sys.exit`: the program is not a plugin's to end, nor is its exit code."""
     modules = [str(frame.f_globals.get("__name__")) for frame, _ in walk_tb(error.__traceback__)]
     name = next((name for name in reversed(modules) if name.partition(".")[0] not in stdlib_module_names), "a plugin")

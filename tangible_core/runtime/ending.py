@@ -6,23 +6,23 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from types import FrameType
 
-ASKING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
+ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 """What `kill`, a system that shuts down and a terminal that is closed send."""
-_heard: list[signal.Signals] = []
+_received: list[signal.Signals] = []
 
 
 @contextmanager
-def as_ctrl_c() -> Generator[None]:
+def signals_as_ctrl_c() -> Generator[None]:
     """In this block the first of these signals raises KeyboardInterrupt, and the others find the program ending.
 
     One that was ignored before, as by nohup, or that somebody else answers, is left alone. Only the main thread of a
     process can hear signals: in another one nothing is changed.
     """
-    _heard.clear()
+    _received.clear()
     here = threading.current_thread() is threading.main_thread()
-    mine = [each for each in ASKING if here and signal.getsignal(each) == signal.SIG_DFL]
+    mine = [each for each in ENDING if here and signal.getsignal(each) == signal.SIG_DFL]
     for each in mine:
-        signal.signal(each, _hear)
+        signal.signal(each, _receive)
     try:
         yield
     finally:
@@ -30,12 +30,12 @@ def as_ctrl_c() -> Generator[None]:
             signal.signal(each, signal.SIG_DFL)
 
 
-def asked_by() -> signal.Signals | None:
+def received_signal() -> signal.Signals | None:
     """The signal that ended the program, if one did."""
-    return _heard[0] if _heard else None
+    return _received[0] if _received else None
 
 
-def _hear(number: int, _frame: FrameType | None) -> None:
-    _heard.append(signal.Signals(number))
-    if len(_heard) == 1:
+def _receive(number: int, _frame: FrameType | None) -> None:
+    _received.append(signal.Signals(number))
+    if len(_received) == 1:
         raise KeyboardInterrupt

@@ -14,7 +14,7 @@ from ..errors import OutputError
 
 OUT, ERR = 1, 2
 _own: list[TextIO] = []
-"""Where the program writes while `kept` is open."""
+"""Where the program writes while `protect` is open."""
 
 
 def stream() -> TextIO | None:
@@ -23,7 +23,7 @@ def stream() -> TextIO | None:
 
 
 @contextmanager
-def kept() -> Generator[None]:
+def protect() -> Generator[None]:
     """While this is open, only `stream()` leads to standard output; all else goes to standard error.
 
     Where `sys.stdout` is not the process's own, as in a notebook, it alone is changed. A reader that goes away is no
@@ -32,9 +32,9 @@ def kept() -> Generator[None]:
     if _own:
         yield
         return
-    _fill()
+    _fill_closed()
     with ExitStack() as undo:
-        _own.append(_aside(sys.stdout, undo) if _is_file_1(sys.stdout) else _instead(sys.stdout, undo))
+        _own.append(_move_aside(sys.stdout, undo) if _is_file_1(sys.stdout) else _replace(sys.stdout, undo))
         undo.callback(_own.clear)
         yield
         _own[-1].flush()
@@ -53,10 +53,10 @@ def leave() -> None:
 def give_up(error: OSError) -> OutputError:
     """After an error of `sys.stdout` itself: what it still holds goes nowhere, and this is to be said."""
     _lead_nowhere(OUT)
-    return OutputError(_refused(error))
+    return OutputError(_refusal(error))
 
 
-def _refused(error: OSError) -> str:
+def _refusal(error: OSError) -> str:
     return f"standard output cannot be written: {error.strerror}"
 
 
@@ -89,7 +89,7 @@ class _Output(io.RawIOBase):
             _lead_nowhere(self._number)
             return memoryview(data).nbytes
         except OSError as error:
-            raise OutputError(_refused(error)) from error
+            raise OutputError(_refusal(error)) from error
 
     def close(self) -> None:
         if not self.closed:
@@ -97,7 +97,7 @@ class _Output(io.RawIOBase):
             os.close(self._number)
 
 
-def _aside(stdout: io.TextIOWrapper, undo: ExitStack) -> TextIO:
+def _move_aside(stdout: io.TextIOWrapper, undo: ExitStack) -> TextIO:
     """Standard output by another number, and standard error in its place, until it is undone."""
     stdout.flush()
     raw = _Output(os.dup(OUT))
@@ -119,14 +119,14 @@ def _is_file_1(stdout: TextIO | None) -> TypeGuard[io.TextIOWrapper]:
         return False
 
 
-def _instead(stdout: TextIO | None, undo: ExitStack) -> TextIO:
+def _replace(stdout: TextIO | None, undo: ExitStack) -> TextIO:
     """Whatever stands for standard output, and `sys.stderr` in its place."""
     undo.callback(setattr, sys, "stdout", stdout)
     sys.stdout = sys.stderr
     return undo.enter_context(open(os.devnull, "w")) if stdout is None else stdout  # noqa: PTH123
 
 
-def _fill() -> None:
+def _fill_closed() -> None:
     """Lead standard streams that are closed to nowhere: a file that is opened next would have their number."""
     while (number := os.open(os.devnull, os.O_RDWR)) <= ERR:
         pass

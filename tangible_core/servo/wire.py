@@ -9,7 +9,7 @@ from typing import IO, Any, NamedTuple
 
 import numpy as np
 
-from ..errors import BrokenMethod, TangibleError, exited
+from ..errors import BrokenMethod, TangibleError, exit_error
 from ..plugins.failures import remember_place, sentence
 from ..plugins.interfaces import HapticDevice
 from ..runtime.child_process import dumps
@@ -66,7 +66,7 @@ class End(NamedTuple):
 def sendable(error: BaseException) -> Exception:
     """The error, if it arrives as it is at the other end; else one that says whose it is, its name and its text."""
     if isinstance(error, SystemExit):
-        return exited(error)
+        return exit_error(error)
     try:
         if not isinstance(error, TangibleError):
             remember_place(error, "".join(traceback.format_exception(error)))

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from distributions import distribution
-from tangible_core.runtime.ending import ASKING, as_ctrl_c, asked_by
+from tangible_core.runtime.ending import ENDING, received_signal, signals_as_ctrl_c
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 
@@ -18,31 +18,31 @@ TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 @pytest.fixture(autouse=True)
 def _as_at_first():
     """Whatever runs the tests may have chosen otherwise."""
-    before = {each: signal.signal(each, signal.SIG_DFL) for each in ASKING}
+    before = {each: signal.signal(each, signal.SIG_DFL) for each in ENDING}
     yield
     for each, handler in before.items():
         signal.signal(each, handler)
 
 
-@pytest.mark.parametrize("number", ASKING)
+@pytest.mark.parametrize("number", ENDING)
 def test_the_first_one_is_ctrl_c_and_the_others_wait_for_the_end(number: signal.Signals):
-    with as_ctrl_c():
+    with signals_as_ctrl_c():
         with pytest.raises(KeyboardInterrupt):
             os.kill(os.getpid(), number)
-        for each in ASKING:
+        for each in ENDING:
             os.kill(os.getpid(), each)
-        assert asked_by() == number
+        assert received_signal() == number
     assert signal.getsignal(number) == signal.SIG_DFL
-    with as_ctrl_c():
-        assert asked_by() is None
+    with signals_as_ctrl_c():
+        assert received_signal() is None
 
 
 def test_one_that_is_ignored_stays_so():
     """As under nohup."""
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    with as_ctrl_c():
+    with signals_as_ctrl_c():
         os.kill(os.getpid(), signal.SIGHUP)
-    assert asked_by() is None
+    assert received_signal() is None
     assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
 
 
@@ -50,7 +50,7 @@ def test_in_another_thread_nothing_changes():
     found: list[object] = []
 
     def look() -> None:
-        with as_ctrl_c():
+        with signals_as_ctrl_c():
             found.append(signal.getsignal(signal.SIGTERM))
 
     thread = threading.Thread(target=look)

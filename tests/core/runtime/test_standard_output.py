@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from distributions import distribution
-from tangible_core.runtime.standard_output import kept, stream
+from tangible_core.runtime.standard_output import protect, stream
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 NOISY = '''
@@ -185,8 +185,8 @@ class TestTheStreams:
 
     def test_encoding_and_its_errors_are_those_of_standard_output(self, folder: Path) -> None:
         code = (
-            "from tangible_core.runtime.standard_output import kept, stream\n"
-            "with kept(): print('\\u03bc', file=stream())"
+            "from tangible_core.runtime.standard_output import protect, stream\n"
+            "with protect(): print('\\u03bc', file=stream())"
         )
         env = {**quiet(), "PYTHONIOENCODING": "ascii:backslashreplace"}
         assert (
@@ -231,7 +231,7 @@ class TestKept:
         out, err = io.StringIO(), io.StringIO()
         monkeypatch.setattr(sys, "stdout", out)
         monkeypatch.setattr(sys, "stderr", err)
-        with kept(), kept():
+        with protect(), protect():
             print("a plugin")
             print("the program", file=stream())
         print("afterwards")
@@ -241,13 +241,13 @@ class TestKept:
     def test_it_is_undone_after_an_error(self, monkeypatch: pytest.MonkeyPatch) -> None:
         out = io.StringIO()
         monkeypatch.setattr(sys, "stdout", out)
-        with pytest.raises(ZeroDivisionError), kept():
+        with pytest.raises(ZeroDivisionError), protect():
             raise ZeroDivisionError
         assert sys.stdout is out and stream() is out
 
     def test_without_any(self, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
         monkeypatch.setattr(sys, "stdout", None)
-        with kept():
+        with protect():
             print("a plugin")
             print("the program", file=stream())
         assert sys.stdout is None
@@ -257,11 +257,11 @@ class TestKept:
         """In a process of its own: file 1 is its."""
         code = """
 import os, sys
-from tangible_core.runtime.standard_output import kept, stream
+from tangible_core.runtime.standard_output import protect, stream
 before = sys.stdout, sys.stdout.line_buffering, len(os.listdir("/proc/self/fd"))
 print("first")
 for _ in range(3):
-    with kept():
+    with protect():
         print("a plugin"); os.write(1, b"a library\\n"); print("the program", file=stream())
 print("last"); sys.stdout.flush(); os.write(1, b"file 1\\n")
 assert (sys.stdout, sys.stdout.line_buffering, len(os.listdir("/proc/self/fd"))) == before

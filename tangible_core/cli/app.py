@@ -12,7 +12,7 @@ import typer
 from ..errors import ConfigError, TangibleError, exit_error
 from ..plugins import hooks
 from ..plugins.registry import default_registry
-from ..runtime import ending, standard_output
+from ..runtime import signals, standard_output
 from .command_table import COMMANDS, LazyGroup
 from .options import DONE, FAILED, INTERRUPTED, MISTAKE
 from .verbosity import parse_verbosity
@@ -56,12 +56,12 @@ def options(
 
 def main() -> None:
     """Run the command line: one clear message for a user's mistake, and an exit code that tells whose fault it is."""
-    with ending.signals_as_ctrl_c():
+    with signals.end_as_ctrl_c():
         try:
             code = _exit_code(_run_and_leave)
         except KeyboardInterrupt:  # during the last message
             code = INTERRUPTED
-        signal = ending.received_signal()
+        signal = signals.received_signal()
     sys.exit(code if signal is None else ENDED_BY + signal)
 
 
@@ -122,7 +122,7 @@ def _exit_code(work: Callable[[], int]) -> int:
     except TangibleError as error:
         return _report(str(error), MISTAKE)
     except (KeyboardInterrupt, typer.Abort):
-        signal = ending.received_signal()
+        signal = signals.received_signal()
         cause = f"ended by {signal.name}" if signal else "interrupted"
         return _report(f"{cause}; what was finished is kept", INTERRUPTED)
     except BrokenPipeError:  # the reader went away: `tangible plugins | head`

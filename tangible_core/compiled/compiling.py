@@ -12,7 +12,7 @@ from typing import Any, cast
 from numba.core import event
 from numba.extending import overload, register_jitable
 
-from .beside import kernels_are_compiled
+from .background import kernels_are_compiled
 from .loading import load_kernels_alone
 
 log = logging.getLogger(__name__)

@@ -9,7 +9,7 @@ from threading import Event
 from time import perf_counter
 from typing import Any, NamedTuple
 
-from ...compiled.beside import Beside
+from ...compiled.background import Beside
 from ...data import Note, Outcome, Outcomes, Plan, Record
 from ...data.products import PRODUCTS
 from ...errors import TangibleError, UnknownMethod

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...compiled.beside import Beside, Work
+from ...compiled.background import Beside, Work
 from ...data import DisparityMap, SegmentMap, Views
 from ...plugins.registry import default_registry
 from ...scene.scene import Scene

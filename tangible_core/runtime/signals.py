@@ -12,7 +12,7 @@ _received: list[signal.Signals] = []
 
 
 @contextmanager
-def signals_as_ctrl_c() -> Generator[None]:
+def end_as_ctrl_c() -> Generator[None]:
     """In this block the first of these signals raises KeyboardInterrupt, and the others find the program ending.
 
     One that was ignored before, as by nohup, or that somebody else answers, is left alone. Only the main thread of a

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from distributions import distribution
-from tangible_core.runtime.ending import ENDING, received_signal, signals_as_ctrl_c
+from tangible_core.runtime.signals import ENDING, end_as_ctrl_c, received_signal
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 
@@ -26,21 +26,21 @@ def _as_at_first():
 
 @pytest.mark.parametrize("number", ENDING)
 def test_the_first_one_is_ctrl_c_and_the_others_wait_for_the_end(number: signal.Signals):
-    with signals_as_ctrl_c():
+    with end_as_ctrl_c():
         with pytest.raises(KeyboardInterrupt):
             os.kill(os.getpid(), number)
         for each in ENDING:
             os.kill(os.getpid(), each)
         assert received_signal() == number
     assert signal.getsignal(number) == signal.SIG_DFL
-    with signals_as_ctrl_c():
+    with end_as_ctrl_c():
         assert received_signal() is None
 
 
 def test_one_that_is_ignored_stays_so():
     """As under nohup."""
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    with signals_as_ctrl_c():
+    with end_as_ctrl_c():
         os.kill(os.getpid(), signal.SIGHUP)
     assert received_signal() is None
     assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN
@@ -50,7 +50,7 @@ def test_in_another_thread_nothing_changes():
     found: list[object] = []
 
     def look() -> None:
-        with signals_as_ctrl_c():
+        with end_as_ctrl_c():
             found.append(signal.getsignal(signal.SIGTERM))
 
     thread = threading.Thread(target=look)

@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 from ctrl_c import hearing
-from tangible_core.compiled import beside
-from tangible_core.compiled.beside import Beside, Work, kernels_are_compiled
+from tangible_core.compiled.background import Beside, Work, kernels_are_compiled
 from tangible_core.errors import Stopped
 from tangible_core.runtime.stopping import stoppable
 
@@ -21,8 +20,8 @@ SOON_S = 60.0
 PROGRAM = """
 import sys, threading
 sys.path[:0] = {paths!r}
-from test_beside import asleep
-from tangible_core.compiled.beside import Beside, Work, kernels_are_compiled
+from test_background import asleep
+from tangible_core.compiled.background import Beside, Work, kernels_are_compiled
 with Beside(lambda: Work(frozenset(["begun", "never"]), asleep, ())) as process:
     kernels_are_compiled()
     process.wait("begun")
@@ -76,7 +75,7 @@ def test_nothing_is_started_where_no_kernel_is_compiled():
         block.wait("begun")
     kernels_are_compiled()  # after the block, too
     assert block._child is None
-    assert not beside._waiting
+    assert not background._waiting
 
 
 def test_one_process_is_started_however_many_kernels_are_compiled(tmp_path: Path):
@@ -111,7 +110,7 @@ def test_a_process_that_fails_is_not_waited_for():
 
 
 def test_where_no_process_can_be_started_all_goes_on(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(beside, "command", lambda module: ["/nowhere/python"])
+    monkeypatch.setattr(background, "command", lambda module: ["/nowhere/python"])
     with Beside(lambda: Work(frozenset(["begun"]), named, ("begun",))) as block:
         kernels_are_compiled()
         block.wait("begun")

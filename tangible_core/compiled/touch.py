@@ -10,7 +10,7 @@ from jaxtyping import Float64
 from ..data import Force, HapticState
 from ..plugins.link import Link
 from ..plugins.touch import Touch, path_arrays
-from ..runtime.child_process import imported, place
+from ..runtime.child_process import import_from, place
 
 Tick = Callable[..., tuple[float, float, float]]
 RISE_M, FRAME = 0, 1
@@ -93,7 +93,7 @@ def _revive(
     stiffness: float | None,
     moving: np.ndarray,
 ) -> CompiledTouch:
-    return CompiledTouch(imported(module, name, file), fixed, memory, stiffness, moving)
+    return CompiledTouch(import_from(module, name, file), fixed, memory, stiffness, moving)
 
 
 class LinkKernels(NamedTuple):

@@ -1,4 +1,4 @@
-"""Being asked to end by a signal: SIGTERM and SIGHUP end a program as Ctrl-C does, with everything that follows it."""
+"""Signals that end the program: SIGTERM and SIGHUP act as Ctrl-C, so that everything is closed in order."""
 
 import signal
 import threading
@@ -7,16 +7,16 @@ from contextlib import contextmanager
 from types import FrameType
 
 ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
-"""What `kill`, a system that shuts down and a terminal that is closed send."""
+"""The signals sent by `kill`, by a system that shuts down and by a terminal that is closed."""
 _received: list[signal.Signals] = []
 
 
 @contextmanager
 def end_as_ctrl_c() -> Generator[None]:
-    """In this block the first of these signals raises KeyboardInterrupt, and the others find the program ending.
+    """Raise KeyboardInterrupt at the first of these signals in this block; further ones do nothing.
 
-    One that was ignored before, as by nohup, or that somebody else answers, is left alone. Only the main thread of a
-    process can hear signals: in another one nothing is changed.
+    A signal that was ignored before, as by nohup, or has another handler, is left alone. Only the main thread of a
+    process receives signals: in another thread nothing is changed.
     """
     _received.clear()
     here = threading.current_thread() is threading.main_thread()
@@ -31,7 +31,7 @@ def end_as_ctrl_c() -> Generator[None]:
 
 
 def received_signal() -> signal.Signals | None:
-    """The signal that ended the program, if one did."""
+    """Return the signal that ended the program, if one did."""
     return _received[0] if _received else None
 
 

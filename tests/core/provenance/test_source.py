@@ -43,7 +43,7 @@ def _no_cell_left(monkeypatch: pytest.MonkeyPatch):
 
 
 def run(text: str, kept: bool = True) -> type:
-    """Return the class of a cell, run as in a notebook: in a module without a file, with a made-up name for its lines."""
+    """Return the class of a cell, run as in a notebook: without a file, with a made-up name for its lines."""
     module, name = sys.modules["cell"], f"<cell {next(CELLS)}>"
     if kept:
         linecache.cache[name] = len(text), None, text.splitlines(True), name

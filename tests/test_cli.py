@@ -375,7 +375,7 @@ def test_ctrl_c_while_a_run_feels_ends_with_130_and_says_what_is_kept(folder: Pa
     done = tangible("run", "p.yaml", "--seconds", 600, cwd=folder)
     assert done.returncode == 130, done.stderr
     assert "stopped after 0.1 s (interrupted from the keyboard)" in done.stderr
-    assert "; recording.npz holds these" in done.stderr
+    assert "recording.npz has those 0.1 s" in done.stderr
     assert done.stderr.splitlines()[-1] == "interrupted; what was finished is kept"
     assert Recording.load(folder / "out/p/recording.npz").stopped == INTERRUPTED
     assert (folder / "out/p/sheet.png").exists()

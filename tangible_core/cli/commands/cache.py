@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ...errors import ConfigError
-from ..options import Json
+from ..options import Json, is_listing
 
 app = typer.Typer(name="cache", rich_markup_mode=None, add_completion=False)
 
@@ -18,9 +18,7 @@ def cache(context: typer.Context, as_json: Json = False) -> None:
 
     A run takes unchanged results from the cache. Nothing in it is needed: results that are gone are computed again.
     """
-    if context.invoked_subcommand is not None:
-        if as_json:
-            raise ConfigError(f"cache: write --json after {context.invoked_subcommand!r}")
+    if not is_listing("cache", context.invoked_subcommand, as_json):
         return
     from ...pipeline.engine.cache import Cache
     from .. import show

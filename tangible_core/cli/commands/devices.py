@@ -8,7 +8,7 @@ import typer
 
 from ...errors import ConfigError
 from .. import completing
-from ..options import FAILED, Json
+from ..options import FAILED, Json, is_listing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,9 +31,7 @@ app = typer.Typer(name="devices", rich_markup_mode=None, add_completion=False)
 @app.callback(invoke_without_command=True)
 def devices(context: typer.Context, as_json: Json = False) -> None:
     """List devices; examine, home or calibrate one."""
-    if context.invoked_subcommand is not None:
-        if as_json:
-            raise ConfigError(f"devices: write --json after {context.invoked_subcommand!r}")
+    if not is_listing("devices", context.invoked_subcommand, as_json):
         return
     from dataclasses import asdict
 

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ...errors import ConfigError
 from ...plugins.registry import KIND_NAMES
 from .. import completing
-from ..options import FAILED, Json
+from ..options import FAILED, Json, is_listing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,9 +29,7 @@ def plugins(context: typer.Context, as_json: Json = False) -> None:
 
     One line each, for people and for grep; none of them is imported.
     """
-    if context.invoked_subcommand is not None:
-        if as_json:
-            raise ConfigError(f"plugins: write --json after {context.invoked_subcommand!r}")
+    if not is_listing("plugins", context.invoked_subcommand, as_json):
         return
     import json
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from ctrl_c import hearing
+from tangible_core.compiled import background
 from tangible_core.compiled.background import BackgroundCompiler, Work, start_waiting
 from tangible_core.errors import Stopped
 from tangible_core.runtime.stopping import stoppable
@@ -21,6 +22,7 @@ PROGRAM = """
 import sys, threading
 sys.path[:0] = {paths!r}
 from test_background import yield_and_sleep
+from tangible_core.compiled import background
 from tangible_core.compiled.background import BackgroundCompiler, Work, start_waiting
 with BackgroundCompiler(lambda: Work(frozenset(["begun", "never"]), yield_and_sleep, ())) as process:
     start_waiting()

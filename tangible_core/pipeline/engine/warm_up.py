@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...compiled.beside import Beside, Work
+from ...compiled.background import BackgroundCompiler, Work
 from ...data import DisparityMap, SegmentMap, Views
 from ...plugins.registry import default_registry
 from ...scene.scene import Scene
@@ -24,9 +24,9 @@ FELT = "felt"
 SECONDS = 0.02
 
 
-def rehearsal(engine: Engine, want: str) -> Beside:
+def rehearsal(engine: Engine, want: str) -> BackgroundCompiler:
     """For a block in which the engine makes this product: what it compiles later is compiled beside it."""
-    return Beside(lambda: _work(engine, want))
+    return BackgroundCompiler(lambda: _work(engine, want))
 
 
 def _work(engine: Engine, want: str) -> Work | None:

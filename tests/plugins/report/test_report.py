@@ -358,7 +358,7 @@ def adding(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
         plugins = hooks.manager()
         for number, panel in enumerate(panels):
             plugins.register(Adds(panel), name=f"acme/{number}")
-        monkeypatch.setattr("tangible_report.drawing.added_panels.default_registry", lambda: Registry(plugins))
+        monkeypatch.setattr("tangible_report.drawing.sheet.default_registry", lambda: Registry(plugins))
 
     return add
 

@@ -6,24 +6,28 @@ from __future__ import annotations
 
 import logging
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import count, product
 from pathlib import Path
 from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from tangible_core.plugins.panel import Panel
 
 from tangible_core.data import DisparityMap, HapticSurface, MaterialMap, PartMap, Record, Relief, SegmentMap, Views
-from tangible_core.errors import OutputError
+from tangible_core.errors import OutputError, shown
 from tangible_core.files.writing import atomic_write
 from tangible_core.parts.words.languages import spoken_language
+from tangible_core.plugins import hooks
+from tangible_core.plugins.registry import default_registry
 
 from ..description import describe
 from .files import described, writer
 from .layout import Cell, arrange
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from tangible_core.plugins.hooks import Panel
@@ -76,7 +80,6 @@ def draw_sheet(
     differ in size.
     """
     from ..panels import PANELS, draw_segments
-    from .added_panels import added_panels
 
     given = {
         "views": views,
@@ -166,3 +169,28 @@ def _draw_panel(figure: Figure, panel: Panel, box: Box, run: Mapping[str, Any], 
     line = top + 0.1 / height_in
     figure.text(left, line, letter, fontsize=11, weight="bold")
     figure.text(left + 0.18 / width_in, line, headline, fontsize=10)
+
+
+def added_panels() -> Iterator[Panel]:
+    """What hook modules add by `tangible_panels`; what is no panel is logged and left out."""
+    for answer in hooks.tell(default_registry().plugins, "tangible_panels"):
+        for panel in answer if isinstance(answer, Iterable) else [answer]:  # pyright: ignore[reportUnknownVariableType]
+            if isinstance(panel, Panel):
+                yield panel._replace(draw=_guarded(panel.draw))
+            else:
+                log.warning("tangible_panels gave %s, which is no Panel; it is left out", shown(repr(panel)))  # pyright: ignore[reportUnknownArgumentType]
+
+
+def _guarded(draw: Callable[..., str]) -> Callable[..., str]:
+    """A panel that fails says so in its place: the others are worth drawing."""
+
+    def guarded(axes: Axes, **run: Any) -> str:
+        try:
+            return str(draw(axes, **run))
+        except Exception as error:
+            log.warning("a panel of a plugin could not be drawn", exc_info=True)
+            axes.clear()
+            axes.set_axis_off()
+            return shown(f"Not drawn, {type(error).__name__}: {error}", 60)
+
+    return guarded

@@ -9,10 +9,9 @@ from ..data import Material
 from ..metrics import border_steps
 from ..preflight.verdict import Change, Cure, Verdict, over
 from .cells import boxes
-from .looked import Found, Looked, deepest
-from .materials import apart
+from .legibility_input import Found, Looked, deepest
+from .neighbours import apart, sampled
 from .pins import PIN_PITCH_M, pins_of
-from .steps import sampled
 from .words import mm
 
 WIDEST_M = 2.0

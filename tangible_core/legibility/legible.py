@@ -11,7 +11,7 @@ from ..preflight.verdict import Grade, Verdict, held
 from ..preflight.wording import as_data
 from .checks import CHECKS, height
 from .grid import on_grid
-from .looked import Looked
+from .legibility_input import Looked
 from .rules import PROFILES, Rule
 from .words import mm
 

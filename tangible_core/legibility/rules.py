@@ -7,7 +7,17 @@ from typing import Literal, NamedTuple
 from ..plugins.interfaces import Medium
 from ..preflight.verdict import Grade, Unit
 from ..preflight.wording import quantity
-from .braille import CELL_PITCH_M, DOT_DIAMETER_M, DOT_HEIGHT_M, DOT_PITCH_M, LINE_PITCH_M
+
+DOT_DIAMETER_M = 0.00144
+"""The diameter of a dot at its base."""
+DOT_HEIGHT_M = 0.00048
+"""The height of a dot above the ground."""
+DOT_PITCH_M = 0.00234
+"""The distance from the centre of a dot to the next of its cell, down and across."""
+CELL_PITCH_M = 0.0062
+"""The distance from the centre of a dot to the same dot of the next cell."""
+LINE_PITCH_M = 0.010
+"""The distance from the centre of a dot to the same dot of the next line."""
 
 GRAPHICS = "tactilegraphics.org"
 ROUND_TABLE = "Round Table on Information Access for People with Print Disabilities"

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float64, Int32, Int64
 
-from ..data import PartMap
-from ..data.pictures import to_rgb8
-from ..runtime.opencv import plain_opencv
+from ...data import PartMap
+from ...data.pictures import to_rgb8
+from ...runtime.opencv import plain_opencv
 
 MOST_COMPARED = 256
 """Textures that are compared each with each: of more, the smallest go to the most alike of the largest."""

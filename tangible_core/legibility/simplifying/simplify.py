@@ -8,17 +8,16 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Int32
 
-from ..data import PartMap, SegmentMap
-from ..parts import find_parts
-from ..parts.large import large_parts
-from ..plugins.notes import note
-from .alike import kinds_of
-from .cells import Box, boxes
+from ...data import PartMap, SegmentMap
+from ...parts import find_parts
+from ...parts.large import large_parts
+from ...plugins.notes import note
+from ..cells import Box, boxes, filled, voted
+from ..grid import Grid, on_grid
+from ..widths import ROUND_OFF, Rims, Widths, around, connected, measure
+from ..words import called, listed, mm
 from .choice import SimplifyChoice
-from .grid import Grid, on_grid
-from .votes import filled, voted
-from .widths import ROUND_OFF, Rims, Widths, around, connected, measure
-from .words import called, listed, mm
+from .textures import kinds_of
 
 log = logging.getLogger(__name__)
 

@@ -9,9 +9,9 @@ from jaxtyping import Int64
 
 from ..data import Material, MaterialMap, PartMap, Relief
 from ..preflight.verdict import Cure, Verdict, held
+from .neighbours import Steps, sampled, steps_between
 from .rules import Profile
-from .simplify import textures_of
-from .steps import Steps, sampled, steps_between
+from .simplifying.simplify import textures_of
 from .widths import Widths, measure
 from .words import called, where
 

@@ -1,4 +1,4 @@
-"""Whether fingers can read it: the rules of tactile graphics, and parts that are simplified until they keep them."""
+"""Legibility for fingers: the rules of tactile graphics, and parts that are simplified until they meet them."""
 
 from .legible import Legibility as Legibility
 from .legible import legibility as legibility

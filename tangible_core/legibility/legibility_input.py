@@ -1,4 +1,4 @@
-"""What the checks look at: parts on a grid in metres, with what is known of them."""
+"""The input of the checks: parts on a grid in metres, with their relief, materials and names."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -9,91 +9,93 @@ from jaxtyping import Int64
 
 from ..data import Material, MaterialMap, PartMap, Relief
 from ..preflight.verdict import Cure, Verdict, held
-from .neighbours import Steps, sampled, steps_between
+from .neighbours import Steps, sample_relief, steps_between
 from .rules import Profile
-from .simplifying.simplify import textures_of
+from .simplifying.textures import count_textures
 from .widths import Widths, measure
-from .words import called, where
+from .words import describe_part, describe_place
 
 MOST_EACH = 4
-"""Verdicts of one kind that fail; the others are gathered into one."""
+"""Number of failing verdicts of one check; further ones are gathered into one."""
 MOST_PLACES = 64
+"""Number of places in such a gathered verdict."""
 
 
 @dataclass(frozen=True, eq=False)
-class Looked:
-    """One map of parts in one medium."""
+class LegibilityInput:
+    """A map of parts in one medium."""
 
     profile: Profile
     parts: PartMap
-    """On a grid in metres."""
+    """Parts on a grid in metres."""
     pitch_m: float
     width_m: float
     relief: Relief | None
-    given_materials: MaterialMap | None
+    material_map: MaterialMap | None
     names: Sequence[str]
-    given_textures: int | None
+    texture_count: int | None
+    """Number of textures; None for one a segment."""
 
     @cached_property
     def widths(self) -> Widths:
-        """By the gap of the medium."""
+        """Widths of the parts, by the gap of the medium."""
         return measure(self.parts.labels, self.pitch_m, self.profile.rules["gap"].bound)
 
     @cached_property
     def steps(self) -> Steps:
-        """Between neighbours."""
-        here = None if self.relief is None else sampled(self.relief, self.parts.labels.shape)
-        return steps_between(self.parts, self.pitch_m, here)
+        """Steps between neighbours."""
+        relief = None if self.relief is None else sample_relief(self.relief, self.parts.labels.shape)
+        return steps_between(self.parts, self.pitch_m, relief)
 
     @property
     def textures(self) -> int:
-        """How many are to be told apart."""
-        return textures_of(self.parts, self.names) if self.given_textures is None else self.given_textures
+        """Number of textures that a finger must tell apart."""
+        return count_textures(self.parts, self.names) if self.texture_count is None else self.texture_count
 
     def material(self, number: int) -> Material | None:
-        """Of a part, or of its segment."""
-        known = () if self.given_materials is None else self.given_materials.materials
-        at = number if len(known) == self.parts.count else self.parts.segments[number]
-        return known[at] if at < len(known) else None
+        """Return the material of a part, or of its segment."""
+        materials = () if self.material_map is None else self.material_map.materials
+        at = number if len(materials) == self.parts.count else self.parts.segments[number]
+        return materials[at] if at < len(materials) else None
 
-    def called(self, number: int) -> str:
-        """A part with its name."""
-        return called(number, self.names)
+    def describe_part(self, number: int) -> str:
+        """Return a part's number and name."""
+        return describe_part(number, self.names)
 
     def has_name(self, number: int) -> bool:
-        """Whether somebody named this part."""
+        """Test whether a part has a name."""
         return number < len(self.names) and bool(self.names[number])
 
-    def at(self, row: int, column: int) -> tuple[float, float]:
-        """A cell as shares of the picture: from the left, and from the top."""
+    def share_of_picture(self, row: int, column: int) -> tuple[float, float]:
+        """Return the place of a cell as shares of the picture, from the left and from the top."""
         rows, columns = self.parts.labels.shape
         return round((column + 0.5) / columns, 4), round((row + 0.5) / rows, 4)
 
-    def judged(
+    def judge(
         self,
         check: str,
-        found: "Sequence[Found]",
+        measurements: "Sequence[Measurement]",
         cure: Callable[[float], Cure],
         *,
         none: float,
         worse: str = "",
         of: str,
     ) -> list[Verdict]:
-        """One verdict where all keep the rule; else one for each of the worst that do not, and one for all others.
+        """Return one verdict if all meet the rule; else one for each of the worst that fail, and one for all others.
 
-        none: the value where there is nothing to look at. of: what all of them are. cure: by the value. worse: what is
-        wrong, after the name of a part.
+        none: the value without a measurement. of: noun for all of them. cure: value -> cure. worse: the fault, after
+        the name of a part.
         """
         rule = self.profile.rules[check]
-        wrong = [each for each in found if not _keeps(each.value, rule.relation, rule.bound)]
+        wrong = [each for each in measurements if not _meets(each.value, rule.relation, rule.bound)]
         wrong.sort(key=lambda each: each.value, reverse=rule.relation == "<=")
-        least = max if rule.relation == "<=" else min
+        worst = max if rule.relation == "<=" else min
         if not wrong:
-            value = least((each.value for each in found), default=none)
-            return [self._held(check, of, value, cure, "", ())]
+            value = worst((each.value for each in measurements), default=none)
+            return [self._verdict(check, of, value, cure, "", ())]
         single = wrong if len(wrong) <= MOST_EACH + 1 else wrong[:MOST_EACH]
         verdicts = [
-            self._held(
+            self._verdict(
                 *(check, ", ".join(filter(None, [each.of, each.place])), each.value, cure),
                 " ".join(filter(None, [each.of, worse, each.place])),
                 (each.at,) if each.at else (),
@@ -102,13 +104,13 @@ class Looked:
         ]
         if rest := wrong[len(single) :]:
             places = tuple(dict.fromkeys(each.at for each in rest if each.at))[:MOST_PLACES]
-            said = f"{len(rest)} more {of}"
+            others = f"{len(rest)} more {of}"
             verdicts.append(
-                self._held(check, said, rest[0].value, cure, f"{said} {worse.replace('is', 'are', 1)}", places)
+                self._verdict(check, others, rest[0].value, cure, f"{others} {worse.replace('is', 'are', 1)}", places)
             )
         return verdicts
 
-    def _held(
+    def _verdict(
         self,
         check: str,
         of: str,
@@ -118,18 +120,18 @@ class Looked:
         at: tuple[tuple[float, float], ...],
     ) -> Verdict:
         rule = self.profile.rules[check]
-        found = held(
-            *(check, of, float(value), rule.relation, rule.bound, rule.unit, rule.cited),
+        verdict = held(
+            *(check, of, float(value), rule.relation, rule.bound, rule.unit, rule.citation),
             cure=cure(float(value)),
             says=says,
             worse=rule.worse,
         )
-        return replace(found, at=at)
+        return replace(verdict, at=at)
 
 
 @dataclass(frozen=True)
-class Found:
-    """A value of one thing, and where that is."""
+class Measurement:
+    """A value of one thing, and its place."""
 
     of: str
     value: float
@@ -138,17 +140,17 @@ class Found:
 
     @property
     def place(self) -> str:
-        """Where it is, in words."""
-        return where(*self.at) if self.at else ""
+        """The place in words."""
+        return describe_place(*self.at) if self.at else ""
 
 
-def _keeps(value: float, relation: str, bound: float) -> bool:
+def _meets(value: float, relation: str, bound: float) -> bool:
     near = abs(value - bound) <= 1e-6 * bound
     return near or (value <= bound if relation == "<=" else value >= bound)
 
 
-def deepest(wide: Widths, pieces: Int64[np.ndarray, "k"]) -> dict[int, tuple[int, int]]:
-    """Of each of these pieces, row and column of a cell that is as far from its border as any of it."""
+def deepest_cells(wide: Widths, pieces: Int64[np.ndarray, "k"]) -> dict[int, tuple[int, int]]:
+    """Return row and column of the cell that is farthest from the border, of each of these pieces."""
     chosen = np.zeros(wide.part.size, np.bool_)
     chosen[pieces] = True
     on = np.flatnonzero(chosen[wide.pieces.reshape(-1)])

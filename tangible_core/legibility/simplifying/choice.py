@@ -1,4 +1,4 @@
-"""What `simplify:` may say."""
+"""The options of `simplify:`."""
 
 from typing import Annotated
 
@@ -8,12 +8,12 @@ from ...scene.workspace import Section
 
 
 class SimplifyChoice(Section):
-    """Parts made so large and so far apart that fingers can read them, before anything is made of them."""
+    """Parts simplified until fingers can read them, before relief, labels and materials are made of them."""
 
     gap_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 0.0032
-    """Where a part is narrower than this, that place goes to the parts beside it."""
+    """Smallest width of a part; a narrower place goes to the neighbouring parts."""
     part_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 0.0064
-    """Diameter of a disc that each part must hold; a part that holds none goes to the parts beside it."""
+    """Diameter of the disc that each part must hold; a part that holds none goes to its neighbours."""
     textures: Annotated[int, Field(ge=1, le=100)] = 5
-    """Most textures that a finger is to tell apart; beyond these, the most alike become one. Parts that have a name
-    stay parts of their own."""
+    """Largest number of textures that a finger must tell apart; of more, the most similar become one. Parts with a
+    name stay separate."""

@@ -201,5 +201,5 @@ def test_the_page_shows_the_table_of_rules():
 
 def test_every_rule_has_a_source_or_is_a_convention_of_ours():
     rules = [rule for profile in PROFILES.values() for rule in profile.rules.values()]
-    assert all(rule.cited and rule.bound > 0 for rule in rules)
+    assert all(rule.citation and rule.bound > 0 for rule in rules)
     assert all(check == rule.check for profile in PROFILES.values() for check, rule in profile.rules.items())

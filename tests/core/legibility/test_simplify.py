@@ -175,7 +175,7 @@ def test_simplify_picture_below_a_fingertip_notes_the_size_that_passes():
     with collected() as notes:
         found = simplify(PartMap(labels, (0, 1)), 0.005, CHOICE)
     assert len(np.unique(found.labels)) == 1
-    assert any("make the whole 7 mm wide" in note for note in notes)
+    assert any("make the whole 6.7 mm wide" in note for note in notes)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 300), (300, 1), (2, 2)])

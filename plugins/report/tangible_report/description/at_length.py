@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tangible_core.data import HapticSurface
-from tangible_core.parts.words.languages import Language, Words, written
+from tangible_core.parts.words.languages import Language, Words, one_line
 from tangible_core.parts.words.places import NOWHERE
 from tangible_core.scene.workspace import SceneKind
 
@@ -75,7 +75,7 @@ def tell(
     language: Language,
     parts: Sequence[PartFacts],
     kind: SceneKind | None,
-    given: Callable[[str], str] = written,
+    given: Callable[[str], str] = one_line,
 ) -> Told:
     """A description in words. given: writes what somebody named: the title, parts, materials of their own."""
     say = Words(language)
@@ -121,7 +121,7 @@ def _sentences(part: PartFacts, labels: dict[int, str], say: Words, given: Calla
     size = say("part size", share=share, percent=_percent(part.share, say), width=width, length=length, high=high)
     said = [_sentence(say(part.place)) if part.place != NOWHERE else "", size]
     if part.material:
-        said.append(say("part feels alone", material=say.felt(part.material, given)))
+        said.append(say("part feels alone", material=say.material_after_like(part.material, given)))
     if beside := [labels[each] for each in part.neighbours[:MOST_BESIDE]]:
         said.append(say("part beside", parts=", ".join(beside)))
     return tuple(filter(None, said))

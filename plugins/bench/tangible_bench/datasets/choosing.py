@@ -9,8 +9,7 @@ from pydantic import model_validator
 
 from tangible_core.errors import ConfigError, PictureError, TangibleError, did_you_mean, quoted, shown
 from tangible_core.files.paths import as_path
-from tangible_core.scene.scene_files import SceneFiles
-from tangible_core.scene.scene_reader import SceneReader
+from tangible_core.scene.scene_files import SceneFiles, SceneReader
 
 from .sets import SETS, StandardSet
 from .standard_pair import FULL_PX, Resolution, StandardPair

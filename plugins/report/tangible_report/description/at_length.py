@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tangible_core.data import HapticSurface
-from tangible_core.parts.words.languages import Language, Words, written
+from tangible_core.parts.words.languages import Language, Words, one_line
 from tangible_core.parts.words.places import NOWHERE
 from tangible_core.scene.workspace import SceneKind
 
@@ -77,7 +77,7 @@ def tell(
     language: Language,
     parts: Sequence[PartFacts],
     kind: SceneKind | None,
-    given: Callable[[str], str] = written,
+    given: Callable[[str], str] = one_line,
 ) -> Told:
     """Return a long description. given: formats custom names, which are those of the title, of parts and materials."""
     say = Words(language)
@@ -124,7 +124,7 @@ def _sentences(part: PartFacts, labels: dict[int, str], say: Words, given: Calla
     place = say(part.place) if part.place != NOWHERE else ""
     sentences = [end_sentence(f"{place[:1].upper()}{place[1:]}") if place else "", size]
     if part.material:
-        sentences.append(say("part feels alone", material=say.felt(part.material, given)))
+        sentences.append(say("part feels alone", material=say.material_after_like(part.material, given)))
     if neighbours := [labels[each] for each in part.neighbours[:MOST_NEIGHBOURS]]:
         sentences.append(say("part beside", parts=", ".join(neighbours)))
     return tuple(filter(None, sentences))

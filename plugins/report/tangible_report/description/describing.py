@@ -101,7 +101,7 @@ def materials_in_words(surface: HapticSurface, say: Words) -> str:
     }
     shares = {name: float(part.mean()) for name, part in parts.items() if part.any()}
     if len(shares) == 1:
-        return say("one material", material=say.felt(next(iter(shares))))
+        return say("one material", material=say.material_after_like(next(iter(shares))))
     ranked = sorted(shares, key=lambda name: (-shares[name], name))
     phrases = [
         say("part", material=say.material(name), share=percent(shares[name]), where=_place(parts[name], " ({})", say))
@@ -110,7 +110,7 @@ def materials_in_words(surface: HapticSurface, say: Words) -> str:
     if others := ranked[MOST_NAMED:]:
         key = "another" if len(others) == 1 else "others"
         phrases.append(say(key, count=len(others), share=percent(sum(shares[name] for name in others))))
-    return say("materials", count=len(shares), parts=say.together(phrases))
+    return say("materials", count=len(shares), parts=say.join(phrases))
 
 
 def _parts(surface: HapticSurface, say: Words) -> str:
@@ -125,14 +125,18 @@ def _parts(surface: HapticSurface, say: Words) -> str:
     left, unnamed = len(named) - len(phrases), len(present) - len(named)
     phrases += [say("part left" if left == 1 else "parts left", count=left)] if left else []
     phrases += [say("unnamed" if unnamed == 1 else "all unnamed", count=unnamed)] if unnamed else []
-    return say("one part" if len(phrases) == 1 else "parts", parts=say.together(phrases)) if phrases else ""
+    return say("one part" if len(phrases) == 1 else "parts", parts=say.join(phrases)) if phrases else ""
 
 
 def _part(surface: HapticSurface, cells: Bool[np.ndarray, "h w"], number: int, height_m: float, say: Words) -> str:
     assert surface.names is not None
     facts = [] if place_of(cells) == NOWHERE else [say(place_of(cells))]
     facts += [say("part high", height=say.number(1000 * height_m))] if height_m > FLAT_M else []
-    facts += [say("part feels", material=say.felt(surface.materials[number].name))] if surface.materials else []
+    facts += (
+        [say("part feels", material=say.material_after_like(surface.materials[number].name))]
+        if surface.materials
+        else []
+    )
     name = shown(surface.names[number])
     return say("of a part", name=name, facts=", ".join(facts)) if facts else name
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from html import escape
 
 from tangible_core.data import HapticSurface
-from tangible_core.parts.words.languages import Language, written
+from tangible_core.parts.words.languages import Language, one_line
 from tangible_core.scene.workspace import SceneKind
 
 from .at_length import end_sentence, tell
@@ -47,7 +47,7 @@ def page_of(
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
-<title>{escape(written(title)) or told.title}</title>
+<title>{escape(one_line(title)) or told.title}</title>
 <style>
 {_STYLE}
 </style>
@@ -64,5 +64,5 @@ def page_of(
 
 def _quote(text: str, language: str) -> str:
     """Return a custom name as HTML, marked with its language if that is not the page's."""
-    html = escape(written(text))
+    html = escape(one_line(text))
     return f'<span lang="{escape(language)}" dir="auto">{html}</span>' if language else html

@@ -251,7 +251,8 @@ def test_dependencies_have_their_reasons():
 
 
 @pytest.mark.parametrize(
-    "house", ["plugins/authoring", "plugins/depth", "plugins/export", "plugins/render", "plugins/texture"]
+    "house",
+    ["plugins/authoring", "plugins/depth", "plugins/devices", "plugins/export", "plugins/render", "plugins/texture"],
 )
 def test_docstrings_open_with_a_verb_or_a_noun(house):
     """The rest of the house follows; `python -m benchmarks.house_words --list` names what is left."""

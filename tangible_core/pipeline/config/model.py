@@ -17,7 +17,7 @@ from ruamel.yaml import YAML
 from ...data.products import Product
 from ...errors import ConfigError
 from ...files.yaml.source import Source
-from ...legibility.choice import SimplifyChoice
+from ...legibility import SimplifyChoice
 from ...mapping import WorkspaceMapping, map_device
 from ...parts import HeightChoice, PartChoice
 from ...plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter

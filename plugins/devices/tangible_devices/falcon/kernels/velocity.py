@@ -1,4 +1,4 @@
-"""How fast the encoders turn, out of whole counts; compiled.
+"""Velocity of the encoders, estimated from whole counts; compiled.
 
 Imports numba: a method imports this module inside its verb.
 """
@@ -11,12 +11,12 @@ from numba import boolean, float64, int64, njit, types
 from tangible_core.compiled.compiling import KERNEL
 
 BAND_COUNTS = 1.0
-"""A line may be so far from a sample: an encoder rounds."""
+"""Largest distance of a sample from the line, as an encoder rounds to whole counts."""
 
 
 @njit(types.Tuple((float64, float64, float64, boolean))(*[float64] * 4), **KERNEL)
-def _narrowed(low, high, per_second, rise):
-    """The slopes left when a sample is to be near the line; (low, high, slope to the sample, whether it was one)."""
+def _narrow(low, high, per_second, rise):
+    """Narrow the range of slopes by a sample; return (low, high, slope to the sample, True if it was in range)."""
     slope, band = rise * per_second, BAND_COUNTS * per_second
     if not low <= slope <= high:
         return low, high, slope, False
@@ -25,12 +25,12 @@ def _narrowed(low, high, per_second, rise):
 
 @njit(types.UniTuple(float64, 3)(float64[:, ::1], int64, int64), **KERNEL)
 def rates(history, head, samples):
-    """Counts per second at the newest sample, of three encoders: the slope over the longest window that is straight.
+    """Return the counts per second of three encoders at the newest sample: the slope over the longest straight window.
 
-    history: a ring of rows (time in seconds, counts of three encoders); head: the newest; samples: how many there are.
-    Slow motion is seen over many samples and so without the noise of single counts, fast motion over few and so
-    without delay. Every sample between the ends of the window is within one count of the line through them; the slopes
-    for which this is so are narrowed down sample by sample.
+    history: a ring of rows (time in seconds, counts of three encoders); head: the newest row; samples: their number.
+    Slow motion is averaged over many samples, which reduces the noise of single counts; fast motion over few, which
+    avoids delay. Every sample between the ends of the window is within one count of the line through them; the range
+    of slopes for which this holds is narrowed sample by sample.
     Source: Janabi-Sharifi, Hayward & Chen, Discrete-time adaptive windowing for velocity estimation, IEEE Trans.
     Control Systems Technology 8(6), 2000, sec. III (end-fit).
     """
@@ -46,12 +46,12 @@ def rates(history, head, samples):
             break
         per_second = 1.0 / since
         if going_0:
-            low_0, high_0, slope, going_0 = _narrowed(low_0, high_0, per_second, history[head, 1] - history[at, 1])
+            low_0, high_0, slope, going_0 = _narrow(low_0, high_0, per_second, history[head, 1] - history[at, 1])
             found_0 = slope if going_0 else found_0
         if going_1:
-            low_1, high_1, slope, going_1 = _narrowed(low_1, high_1, per_second, history[head, 2] - history[at, 2])
+            low_1, high_1, slope, going_1 = _narrow(low_1, high_1, per_second, history[head, 2] - history[at, 2])
             found_1 = slope if going_1 else found_1
         if going_2:
-            low_2, high_2, slope, going_2 = _narrowed(low_2, high_2, per_second, history[head, 3] - history[at, 3])
+            low_2, high_2, slope, going_2 = _narrow(low_2, high_2, per_second, history[head, 3] - history[at, 3])
             found_2 = slope if going_2 else found_2
     return found_0, found_1, found_2

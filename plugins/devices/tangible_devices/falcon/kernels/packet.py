@@ -1,7 +1,7 @@
 """The 16 bytes to and from a running Falcon; compiled.
 
 `<`, 14 bytes of 0x41 + value, `>`. Three signed 16-bit numbers as four nibbles each, the least significant one first;
-then what is to be lit or held, or what is pressed and homed; then one byte of unknown meaning.
+then lights and homing (out), or buttons and homed arms (in); then one byte of unknown meaning.
 Source: libnifalcon, FalconFirmwareNovintSDK.cpp. Imports numba: a method imports this module inside its verb.
 """
 
@@ -21,14 +21,14 @@ HOMING, GREEN, BLUE, RED = 0x01, 0x02, 0x04, 0x08
 BUTTONS, HOMED = 0x0F, 0x70
 """Bits of that byte, inwards: four buttons; the arms that found their zero: top, right, left."""
 MOST_COUNTS = 4095
-"""The greatest torque that the original driver sends; beyond 32767 the sign would wrap."""
+"""Greatest torque that the original driver sends; beyond 32767 the sign would wrap."""
 
 BYTES, FEW = uint8[::1], types.UniTuple(int64, 3)
 
 
 @njit(boolean(BYTES, int64), **KERNEL)
 def is_packet(stream, at):
-    """Whether the 16 bytes from here are an answer: frame and digits in their ranges. There is no checksum."""
+    """Tell whether the 16 bytes from here are an answer: frame and digits in their ranges. There is no checksum."""
     if stream[at] != START or stream[at + SIZE - 1] != END:
         return False
     for i in range(1, INFO):
@@ -39,7 +39,7 @@ def is_packet(stream, at):
 
 @njit(int64(BYTES, int64), **KERNEL)
 def number(packet, at):
-    """The signed 16-bit number of the four digits from here."""
+    """Return the signed 16-bit number of the four digits from here."""
     value = 0
     for i in range(4):
         value |= (int64(packet[at + i]) - ZERO & 15) << 4 * i
@@ -48,7 +48,7 @@ def number(packet, at):
 
 @njit(types.UniTuple(int64, 4)(BYTES), **KERNEL)
 def decode(packet):
-    """(encoder 1, encoder 2, encoder 3, buttons and homed arms) of an answer."""
+    """Return (encoder 1, encoder 2, encoder 3, buttons and homed arms) of an answer."""
     return number(packet, 1), number(packet, 5), number(packet, 9), int64(packet[INFO]) - ZERO & 0xFF
 
 
@@ -64,10 +64,10 @@ def encode(first, second, third, info, packet):
 
 
 @njit(types.Tuple((int64, int64, int64, float64))(float64, float64, float64), **KERNEL)
-def saturated(first, second, third):
-    """Torques in counts, rounded, and the factor that all three were scaled by so that none is over the most.
+def saturate(first, second, third):
+    """Return torques in whole counts, and the factor that scaled all three so that none exceeds MOST_COUNTS.
 
-    One factor for all keeps the direction of the force. What is not finite is no torque at all.
+    One factor for all keeps the direction of the force. Torques that are not finite become 0.
     """
     largest = max(abs(first), abs(second), abs(third))
     if not abs(first) + abs(second) + abs(third) < float("inf"):

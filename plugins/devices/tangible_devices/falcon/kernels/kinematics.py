@@ -1,4 +1,4 @@
-"""Where the tip of a Falcon is for three arm angles, and what torques give a force; compiled.
+"""Kinematics of a Falcon: the tip for three arm angles, and the torques for a force; compiled.
 
 Frame: metres, z along the device's axis out to the user (0.075 in, 0.175 out), x right, y up, right-handed. Angles are
 those of the three thighs, in radians. Source: Stamper, A three degree of freedom parallel manipulator with only
@@ -18,19 +18,20 @@ from tangible_core.compiled.compiling import KERNEL
 THIGH_M, SHIN_M, HINGE_M, ENDS_M = 0.060, 0.1025, 0.01443, 0.01125 + 0.01125
 """Stamper's a, b, c and d + e: thigh, shin parallelogram, offset of the tip's hinge, the two ends of the shin."""
 SIDEWAYS_M, RADIUS_M, SHIFT_M = -0.025, 0.0400, -0.02309
-"""f, r, s: where each arm stands."""
+"""Stamper's f, r, s: the place of each arm."""
 _TURN = np.radians(np.array([105.0, -15.0, -135.0]))
 COS, SIN = np.cos(_TURN), np.sin(_TURN)
-"""Of the directions of the arms: top, right, left, as seen from the front, all turned by 15 degrees."""
+"""Cosines and sines of the arms' directions: top, right, left, as seen from the front, all turned by 15 degrees."""
 CENTRE_M = 0.125
 """z in the middle of the workspace."""
 RAD_PER_COUNT = 2 * math.pi / (4 * 320) * 0.01425 / 0.110
-"""Four edges of 320 slots a turn; a drum of 14.25 mm drives the arm's sector of 110 mm."""
+"""Resolution of an encoder: four edges of 320 slots a turn; a drum of 14.25 mm drives the arm's sector of 110 mm."""
 
 LOW_RAD, HIGH_RAD = math.radians(-60.0), math.radians(135.0)
-"""No arm turns farther; within 50 mm of the centre they stay 27 degrees inside."""
+"""Range of an arm's angle; within 50 mm of the centre the arms stay 27 degrees inside."""
 STEPS, STEP_M, NEAR_M = 20, 0.010, 1e-6
-"""Newton steps at most; none is longer; one shorter is the last, as what is left is of its square."""
+"""Largest number of Newton steps; longest step; step after which the tip is found, as the remaining error is of the
+order of its square."""
 
 POINT = types.UniTuple(float64, 3)
 ROWS = types.UniTuple(POINT, 3)
@@ -39,7 +40,7 @@ LEG = types.UniTuple(float64, 5)
 
 @njit(LEG(types.int64, *[float64] * 5), **KERNEL)
 def _leg(i, cos, sin, x, y, z):
-    """How far arm i at this angle is from reaching the tip, its slopes along x, y and z, and its slope by the angle.
+    """Return the distance F by which arm i misses the tip at this angle, and its slopes along x, y, z and the angle.
 
     F = sqrt((u + c - a cos t)^2 + (w - a sin t)^2) - (d + e) - sqrt(b^2 - (v + f)^2), (u, v, w) the tip from the arm.
     """
@@ -59,7 +60,7 @@ def _leg(i, cos, sin, x, y, z):
 
 @njit(POINT(ROWS, POINT), **KERNEL)
 def solve(rows, right):
-    """The solution of three linear equations, by Cramer's rule; not finite where there is none."""
+    """Solve three linear equations by Cramer's rule; the result is not finite if there is no solution."""
     (a, b, c), (d, e, f), (g, h, i) = rows
     p, q, r = right
     ei, di, dh = e * i - f * h, d * i - f * g, d * h - e * g
@@ -74,9 +75,9 @@ def solve(rows, right):
 
 @njit(types.Tuple((float64, float64, float64, boolean))(*[float64] * 6), **KERNEL)
 def forward(first, second, third, x, y, z):
-    """Tip for three angles, by Newton's method from (x, y, z), the last tip; (x, y, z, whether it was found).
+    """Find the tip for three angles, by Newton's method from the last tip; return (x, y, z, True if it was found).
 
-    Angles that no tip has, and NaN, are not found, and the tip is where it was.
+    No tip is found for impossible angles and NaN; the last tip is returned then.
     """
     from_x, from_y, from_z = x, y, z
     if not (min(first, second, third) >= LOW_RAD and max(first, second, third) <= HIGH_RAD):
@@ -102,7 +103,7 @@ def forward(first, second, third, x, y, z):
 
 @njit(float64(types.int64, float64, float64, float64), **KERNEL)
 def angle(i, x, y, z):
-    """Angle of arm i for a tip; NaN where the arm does not reach."""
+    """Return the angle of arm i for a tip; NaN if the arm does not reach it."""
     along = COS[i] * x + SIN[i] * y - RADIUS_M + HINGE_M
     across = COS[i] * y - SIN[i] * x - SHIFT_M + SIDEWAYS_M
     reach = ENDS_M + math.sqrt(SHIN_M * SHIN_M - across * across)
@@ -113,7 +114,7 @@ def angle(i, x, y, z):
 
 @njit(POINT(float64, float64, float64), **KERNEL)
 def inverse(x, y, z):
-    """Angles of the three arms for a tip; NaN where one does not reach."""
+    """Return the angles of the three arms for a tip; NaN for an arm that does not reach it."""
     return angle(0, x, y, z), angle(1, x, y, z), angle(2, x, y, z)
 
 
@@ -126,24 +127,24 @@ def _row(i, turned, x, y, z):
 
 @njit(ROWS(*[float64] * 6), **KERNEL)
 def jacobian(first, second, third, x, y, z):
-    """d angle / d tip: a row an arm, a column an axis, rad/m, by implicit differentiation of the arm's equation.
+    """Return d angle / d tip: a row an arm, a column an axis, rad/m, by implicit differentiation of the arm's equation.
 
-    Its last column is sin t2 / (a sin(t2 - t1)); libnifalcon has sin(t2)^2 for sin(t2) sin(t3) there, which
-    turns forces by 5 degrees at the median and makes them a third too strong along the axis.
+    The last column is sin t2 / (a sin(t2 - t1)); libnifalcon has sin(t2)^2 for sin(t2) sin(t3) there, which turns
+    forces by 5 degrees at the median and makes them a third too strong along the axis.
     """
     return _row(0, first, x, y, z), _row(1, second, x, y, z), _row(2, third, x, y, z)
 
 
 @njit(POINT(ROWS, POINT), **KERNEL)
 def torques(rows, force):
-    """Torques in newton metres that give a force: J^T F with J = d tip / d angle, the inverse of these rows."""
+    """Return the torques in N m that give a force: J^T F with J = d tip / d angle, the inverse of these rows."""
     (a, b, c), (d, e, f), (g, h, i) = rows
     return solve(((a, d, g), (b, e, h), (c, f, i)), force)
 
 
 @njit(POINT(ROWS, POINT), **KERNEL)
 def force(rows, torque):
-    """Force in newtons that three torques give: the transpose of these rows times the torques."""
+    """Return the force in newtons that three torques give: the transpose of these rows times the torques."""
     (a, b, c), (d, e, f), (g, h, i) = rows
     p, q, r = torque
     return a * p + d * q + g * r, b * p + e * q + h * r, c * p + f * q + i * r

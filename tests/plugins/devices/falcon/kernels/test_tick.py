@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from falcon_streams import buffers
-from tangible_devices.falcon import kinematics, packet, tick
 from tangible_devices.falcon.calibration import LEVER_M, Calibration
-from tangible_devices.falcon.framing import DOUBTFUL, FRESH, NEW
-from tangible_devices.falcon.velocity import rates
+from tangible_devices.falcon.kernels import kinematics, packet, tick
+from tangible_devices.falcon.kernels.framing import DOUBTFUL, FRESH, NEW
+from tangible_devices.falcon.kernels.velocity import rates
 
 
 class Falcon:
@@ -46,26 +46,26 @@ def counts_at(x: float, y: float, z: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("place", [(0.0, 0.0, 0.0), (0.02, 0.01, -0.03), (-0.01, -0.03, 0.02)])
-def test_the_frame_is_ours(place: tuple[float, float, float]):
+def test_read_position_is_in_the_workspace_frame(place: tuple[float, float, float]):
     falcon = Falcon()
     falcon.settle(counts_at(*place), 0.01)
     assert falcon.state[:3] == pytest.approx(place, abs=6e-5)
     assert falcon.state[3:6] == pytest.approx((0, 0, 0))
 
 
-def test_the_first_position_waits_for_a_second():
+def test_read_first_position_waits_for_a_second():
     falcon, counts = Falcon(), counts_at(0, 0, 0)
     assert [falcon.tell(counts) for _ in range(3)] == [0, 1, 1]
 
 
-def test_nothing_is_trusted_before_every_arm_is_homed():
+def test_read_before_homing_gives_nothing():
     falcon, counts = Falcon(), counts_at(0, 0, 0)
     for info in (0, 0x10, 0x30, 0x60):
         assert not falcon.tell(counts, info=info)
         assert falcon.push(0, 0, 5)[0][:3] == [0, 0, 0]
 
 
-def test_homing_lost_takes_the_force_at_once_and_force_fades_in_again():
+def test_homing_lost_removes_force_and_fades_in_again():
     falcon, counts = Falcon(), counts_at(0, 0, 0)
     falcon.settle(counts)
     whole, _ = falcon.push(0, 0, 5)
@@ -95,7 +95,7 @@ def in_packet(falcon: Falcon) -> list[int]:
     return list(packet.decode(falcon.buffers.packet)[:3])
 
 
-def test_the_packet_that_is_ready_lets_go_by_itself():
+def test_packet_ready_after_fault_holds_no_force():
     """A loop that gets no position may send it once more."""
     here, there = counts_at(0, 0, 0), counts_at(0.02, 0, 0)
     for unknown in ("homing", "angles", "leaps"):
@@ -116,7 +116,7 @@ def test_the_packet_that_is_ready_lets_go_by_itself():
         assert tuple(falcon.held[tick.APPLIED : tick.APPLIED + 3]) == (0, 0, 0)
 
 
-def test_the_lights_say_whether_it_is_homed():
+def test_lights_show_homing():
     falcon, counts = Falcon(), counts_at(0, 0, 0)
     falcon.counts[tick.SEEKING], falcon.counts[tick.RUNNING] = packet.HOMING | packet.RED, packet.HOMING | packet.GREEN
     assert falcon.push(0, 0, 0)[0][3] == packet.HOMING | packet.RED
@@ -124,14 +124,14 @@ def test_the_lights_say_whether_it_is_homed():
     assert falcon.push(0, 0, 0)[0][3] == packet.HOMING | packet.GREEN
 
 
-def test_buttons_are_told():
+def test_read_gives_buttons():
     falcon, counts = Falcon(), counts_at(0, 0, 0)
     falcon.settle(counts, 0.01)
     falcon.tell(counts, info=packet.HOMED | 0b0110)
     assert falcon.state[6] == 0b0110
 
 
-def test_a_leap_waits_for_the_next_answer():
+def test_leap_waits_for_the_next_answer():
     falcon, here, there = Falcon(), counts_at(0, 0, 0), counts_at(0.02, 0, 0)
     falcon.settle(here)
     assert [falcon.tell(each) for each in (there, here, there, there, there)] == [0, 1, 0, 1, 1]
@@ -145,7 +145,7 @@ SIGN = pytest.mark.parametrize("sign", [1, -1])
 @ARM
 @SIGN
 @pytest.mark.parametrize(("after_s", "most"), [(0.001, 18), (0.0005, 10), (0.01, 24), (0.1, 24)])
-def test_how_far_an_answer_may_be_from_where_the_arms_were_going(arm: int, sign: int, after_s: float, most: int):
+def test_leap_limit_grows_with_time(arm: int, sign: int, after_s: float, most: int):
     """Of arms at rest: 8 counts, and 1e7 a second squared, up to 24."""
     for away, taken in ((most, 1), (most + 1, 0)):
         falcon, here = Falcon(), counts_at(0, 0, 0)
@@ -158,7 +158,7 @@ def test_how_far_an_answer_may_be_from_where_the_arms_were_going(arm: int, sign:
 @ARM
 @SIGN
 @pytest.mark.parametrize(("after_s", "most"), [(0.001, 50), (0.0001, 50), (0.002, 100), (0.01, 128), (1.0, 128)])
-def test_how_far_the_next_answer_may_be_to_confirm_it(arm: int, sign: int, after_s: float, most: int):
+def test_leap_confirmation_limit_grows_with_time(arm: int, sign: int, after_s: float, most: int):
     for away, taken in ((most, 1), (most + 1, 0)):
         falcon, here = Falcon(), counts_at(0, 0, 0)
         falcon.settle(here, 0.05)
@@ -168,7 +168,7 @@ def test_how_far_the_next_answer_may_be_to_confirm_it(arm: int, sign: int, after
         assert falcon.tell(leapt, after_s=after_s) == taken
 
 
-def test_a_doubtful_answer_waits_though_it_is_near():
+def test_doubtful_answer_waits_though_it_is_near():
     falcon, here = Falcon(), counts_at(0, 0, 0)
     falcon.settle(here)
 
@@ -183,7 +183,7 @@ def test_a_doubtful_answer_waits_though_it_is_near():
     assert falcon.push(0, 0, 5)[1][2] == 5, "where it goes on, no force is lost"
 
 
-def test_angles_that_no_tip_has_give_no_force():
+def test_impossible_angles_give_no_force():
     falcon, counts = Falcon(), counts_at(0, 0, 0)
     falcon.settle(counts)
     impossible = np.array([1600, -2300, 1600])
@@ -193,7 +193,7 @@ def test_angles_that_no_tip_has_give_no_force():
 
 
 @pytest.mark.parametrize("arm", [1, 2, 3])
-def test_a_rate_is_that_of_the_longest_straight_stretch(arm: int):
+def test_rate_is_that_of_the_longest_straight_window(arm: int):
     """Counts of an arm, a millisecond each: at rest and then three a tick; and slow, so that they are rounded."""
 
     def rate(counts: list[int]) -> float:
@@ -212,7 +212,7 @@ def test_a_rate_is_that_of_the_longest_straight_stretch(arm: int):
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
 @pytest.mark.parametrize("speed", [0.002, 0.05, 0.5])
-def test_velocity_is_that_of_the_motion(axis: int, speed: float):
+def test_velocity_matches_the_motion(axis: int, speed: float):
     falcon = Falcon()
     for i in range(80):
         falcon.tell(counts_at(*((i - 40) * 0.001 * min(speed, 0.5) * np.eye(3)[axis])))
@@ -220,7 +220,7 @@ def test_velocity_is_that_of_the_motion(axis: int, speed: float):
     assert np.linalg.norm(falcon.state[3:6] - wanted) <= max(0.05 * speed, 0.005)
 
 
-def test_velocity_of_a_still_tip_is_quiet():
+def test_velocity_of_still_tip_is_quiet():
     """An encoder that trembles between two counts, differenced plainly, moves at 34 mm/s."""
     falcon, counts = Falcon(), counts_at(0, 0, 0)
     speeds = []
@@ -234,7 +234,7 @@ def test_velocity_of_a_still_tip_is_quiet():
     st.tuples(*[st.floats(-0.025, 0.025)] * 3),
     st.tuples(*[st.floats(allow_nan=True, allow_infinity=True)] * 3),
 )
-def test_no_force_ever_pulls_where_it_should_push(place: tuple[float, float, float], force: tuple[float, float, float]):
+def test_force_never_reverses(place: tuple[float, float, float], force: tuple[float, float, float]):
     """Whatever is asked for, the torques on the wire are those of a force along it, to half a count."""
     falcon = Falcon()
     falcon.settle(counts_at(*place), 0.6)
@@ -253,7 +253,7 @@ def test_no_force_ever_pulls_where_it_should_push(place: tuple[float, float, flo
 
 
 @given(st.tuples(*[st.floats(-100, 100)] * 3))
-def test_what_is_applied_is_what_the_motors_give(force: tuple[float, float, float]):
+def test_applied_force_is_what_motors_give(force: tuple[float, float, float]):
     falcon = Falcon()
     falcon.settle(counts_at(0.01, 0.0, 0.01), 0.6)
     [*counts, _info], applied = falcon.push(*force)
@@ -264,14 +264,14 @@ def test_what_is_applied_is_what_the_motors_give(force: tuple[float, float, floa
         assert applied == pytest.approx(force, abs=0.005)
 
 
-def test_the_stated_force_can_be_given_in_every_direction_at_the_centre():
+def test_spec_force_is_possible_in_every_direction():
     rows = kinematics.jacobian(*kinematics.inverse(0.0, 0.0, kinematics.CENTRE_M), 0.0, 0.0, kinematics.CENTRE_M)
     assert np.linalg.norm(np.linalg.inv(rows), axis=0).max() == pytest.approx(LEVER_M, rel=1e-3)
     assert Calibration().spec().max_force_n == pytest.approx(6.09)
     assert Calibration(counts_per_newton_metre=5000).spec().max_force_n == 8.0
 
 
-def test_calibration_moves_what_it_says():
+def test_calibration_changes_offset_strength_and_axes():
     axes = Falcon(Calibration(axes=("-x", "z", "y")))
     axes.settle(counts_at(0.01, 0.02, 0.0), 0.01)
     assert axes.state[:3] == pytest.approx((-0.01, -0.02, 0.0), abs=6e-5)
@@ -285,7 +285,7 @@ def test_calibration_moves_what_it_says():
     assert offset.state[1] < -0.0005, "the arms are farther out, and so the tip nearer to the user"
 
 
-def test_each_arm_has_its_own_zero_and_each_motor_its_own_gain():
+def test_calibration_has_zero_and_gain_of_each_arm():
     offsets, gains = (34.0, 35.0, 36.5), (0.5, 1.0, 2.0)
     falcon = Falcon(Calibration(encoder_offset_deg=offsets, motor_gain=gains))
     place = (0.01, -0.02, 0.015)
@@ -298,11 +298,11 @@ def test_each_arm_has_its_own_zero_and_each_motor_its_own_gain():
     assert counts == pytest.approx(-1e4 * np.multiply(gains, torques), abs=3)
 
 
-def test_the_strongest_motor_bounds_the_stated_force():
+def test_calibration_strongest_motor_bounds_spec_force():
     assert Calibration(motor_gain=(0.5, 1.0, 2.0)).spec().max_force_n == pytest.approx(3.04)
     assert Calibration(motor_gain=(0.5, 0.5, 0.5)).spec().max_force_n == 8.0
 
 
-def test_axes_name_each_axis_once():
+def test_calibration_with_repeated_axis_is_refused():
     with pytest.raises(ValueError, match="name an axis twice"):
         Calibration(axes=("x", "-x", "y"))

@@ -1,4 +1,4 @@
-"""Answers out of a stream of bytes that may lose some and gain others; compiled.
+"""Answers extracted from a stream of bytes that may lose bytes and gain others; compiled.
 
 Imports numba: a method imports this module inside its verb.
 """
@@ -12,18 +12,18 @@ from tangible_core.compiled.compiling import KERNEL
 from .packet import BYTES, SIZE, START, is_packet
 
 USB_PACKET, STATUS = 64, 2
-"""Bytes of a full-speed packet, and how many at its start are the FTDI chip's own."""
+"""Bytes of a full-speed packet, and of the FTDI chip's status at its start."""
 
 FILL, ANSWERS, DROPPED, SEEN, FRESH = range(5)
 COUNTS = 5
 NEW, DOUBTFUL = 1, 2
-"""In `counts`: bytes of an answer begun; answers so far; bytes so far that belong to none, and those before the newest
-answer; whether that one was not read yet: 0, NEW, or DOUBTFUL if other bytes came before it or with it."""
+"""Elements of `counts`: bytes of an incomplete answer; answers so far; stray bytes so far, and before the newest
+answer; state of the newest answer: 0 if it was read, NEW, or DOUBTFUL if stray bytes came before it or with it."""
 
 
 @njit(void(BYTES, int64[::1]), **KERNEL)
 def resume(begun, counts):
-    """Drop what comes before the next `<` after the first byte."""
+    """Drop the bytes before the next `<` after the first byte."""
     start = 1
     while start < SIZE and begun[start] != START:
         start += 1
@@ -35,12 +35,12 @@ def resume(begun, counts):
 
 @njit(int64(BYTES, int64, BYTES, int64[::1], BYTES), **KERNEL)
 def receive(chunk, size, begun, counts, answer):
-    """Take in an IN transfer of so many bytes; how many whole answers it completed, the newest of which is in `answer`.
+    """Take in an IN transfer of `size` bytes, copy its newest answer to `answer`, and return the number of its answers.
 
-    `begun` holds the bytes since the last `<` that may begin an answer. Where 16 of them are none, the search goes on
-    from the next `<` among them, so that a byte too few or too many costs its own answer and no other.
+    `begun` holds the bytes since the last `<` that may begin an answer. If 16 of them are not an answer, the search
+    goes on from the next `<` among them, so that a byte too few or too many costs one answer only.
     """
-    found = 0
+    completed = 0
     for i in range(size):
         if i % USB_PACKET < STATUS:
             continue
@@ -53,12 +53,12 @@ def receive(chunk, size, begun, counts, answer):
             if is_packet(begun, 0):
                 for k in range(SIZE):
                     answer[k] = begun[k]
-                found += 1
+                completed += 1
                 counts[FILL] = 0
             else:
                 resume(begun, counts)
-    if found:
-        counts[ANSWERS] += found
+    if completed:
+        counts[ANSWERS] += completed
         counts[FRESH] = NEW if counts[DROPPED] == counts[SEEN] and not counts[FILL] else DOUBTFUL
         counts[SEEN] = counts[DROPPED]
-    return found
+    return completed

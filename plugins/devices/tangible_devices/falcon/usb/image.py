@@ -1,4 +1,4 @@
-"""A Falcon's firmware as a file: the stream that the boot loader of its TI C28x processor takes.
+"""A Falcon's firmware as a file: the stream for the boot loader of its TI C28x processor.
 
 Little-endian 16-bit words: the key 0x08AA, 8 reserved words of 0, the entry point (high word, low word), then blocks
 of {length in words, destination high, destination low, data}, ended by a length of 0.
@@ -14,7 +14,7 @@ from tangible_core.files.reading import check_file
 KEY = 0x08AA
 RESERVED_WORDS = 8
 MOST_BYTES = 1 << 18
-"""Larger than all memory of the processor."""
+"""Largest file that is read: more than the processor's memory."""
 WHENCE = (
     "it comes with Novint's driver and in the folder `firmware` of libnifalcon (nvent_firmware.bin), "
     "under Novint's licence, so that it cannot be shipped here"
@@ -22,20 +22,20 @@ WHENCE = (
 
 
 def read_image(path: Path) -> bytes:
-    """The whole file. Raises: DeviceError if it cannot be read, or is no such stream, whole to its last byte."""
+    """Read the whole file. Raises: DeviceError if it cannot be read, or is not a complete stream."""
     try:
         check_file(path.expanduser())
         with path.expanduser().open("rb") as file:
             image = file.read(MOST_BYTES + 1)
     except OSError as error:
         raise DeviceError(f"{path}: cannot be read: {error.strerror}; give the option firmware; {WHENCE}") from error
-    if wrong := complaint(image):
-        raise DeviceError(f"{path}: is not a Falcon firmware: {wrong}; {WHENCE}")
+    if fault := fault_of(image):
+        raise DeviceError(f"{path}: is not a Falcon firmware: {fault}; {WHENCE}")
     return image
 
 
-def complaint(image: bytes) -> str:
-    """What is wrong with an image; empty if nothing is."""
+def fault_of(image: bytes) -> str:
+    """Return the fault of an image; empty if it has none."""
     if not image or len(image) % 2 or len(image) > MOST_BYTES:
         return f"it has {len(image)} bytes; an even number up to {MOST_BYTES} is needed"
     words = struct.unpack(f"<{len(image) // 2}H", image)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangible_devices.falcon import kinematics
+from tangible_devices.falcon.kernels import kinematics
 
 START = (0.0, 0.0, 0.11)
 
@@ -31,12 +31,14 @@ def tips(draw: st.DrawFn, radius_m: float = 0.05) -> tuple[float, float, float]:
         ((-0.04, 0.02, 0.15), (39.004, 75.536, 50.537)),
     ],
 )
-def test_documented_angles(tip: tuple[float, float, float], angles_deg: tuple[float, float, float]):
+def test_inverse_of_documented_tips_gives_angles(
+    tip: tuple[float, float, float], angles_deg: tuple[float, float, float]
+):
     assert np.degrees(kinematics.inverse(*tip)) == pytest.approx(angles_deg, abs=6e-3)
 
 
 @pytest.mark.parametrize(("z", "counts"), [(0.08, -1284), (0.11, -516), (0.125, -200), (0.17, 872)])
-def test_documented_counts(z: float, counts: int):
+def test_inverse_of_documented_tips_gives_counts(z: float, counts: int):
     turned = kinematics.inverse(0.0, 0.0, z)[0] - math.radians(35)
     assert round(turned / kinematics.RAD_PER_COUNT) == counts
 
@@ -49,14 +51,14 @@ def test_forward_undoes_inverse(tip: tuple[float, float, float]):
 
 
 @given(tips(), tips())
-def test_the_start_does_not_matter(tip: tuple[float, float, float], start: tuple[float, float, float]):
+def test_forward_from_any_start_finds_the_tip(tip: tuple[float, float, float], start: tuple[float, float, float]):
     *found, ok = kinematics.forward(*kinematics.inverse(*tip), *start)
     assert ok
     assert np.linalg.norm(np.subtract(found, tip)) <= 1e-9
 
 
 @given(tips())
-def test_jacobian_is_that_of_central_differences(tip: tuple[float, float, float]):
+def test_jacobian_matches_central_differences(tip: tuple[float, float, float]):
     angles, step = kinematics.inverse(*tip), 1e-5
 
     def moved(axis: int, steps: int) -> np.ndarray:
@@ -82,7 +84,7 @@ def test_torques_do_the_work_of_the_force(tip: tuple[float, float, float], force
         ((10, 0, 0), 0.11, (-1549, 5272, -3724)),
     ],
 )
-def test_documented_torques(force: tuple[float, float, float], z: float, counts: tuple[int, int, int]):
+def test_torques_match_documented_counts(force: tuple[float, float, float], z: float, counts: tuple[int, int, int]):
     rows = kinematics.jacobian(*kinematics.inverse(0.0, 0.0, z), 0.0, 0.0, z)
     newtons = (float(force[0]), float(force[1]), float(force[2]))
     assert np.round(-1e4 * np.array(kinematics.torques(rows, newtons))) == pytest.approx(counts, abs=1)
@@ -92,16 +94,16 @@ def test_documented_torques(force: tuple[float, float, float], z: float, counts:
     "angles",
     [(2.0, -1.0, 2.0), (3.0, 3.0, 3.0), (0.5 + 2 * math.pi, 0.5, 0.5), (math.nan, 0.5, 0.5), (math.inf, 0.5, 0.5)],
 )
-def test_angles_that_no_tip_has_leave_it_where_it_was(angles: tuple[float, float, float]):
+def test_forward_of_impossible_angles_returns_the_last_tip(angles: tuple[float, float, float]):
     assert kinematics.forward(*angles, *START) == (*START, False)
 
 
 @given(st.tuples(*[st.floats()] * 6))
-def test_whatever_comes_forward_ends_and_is_finite_where_found(six: tuple[float, ...]):
+def test_forward_of_any_numbers_ends_and_is_finite_if_found(six: tuple[float, ...]):
     *found, ok = kinematics.forward(*six)
     assert not ok or np.isfinite(found).all()
 
 
 @pytest.mark.parametrize("far", [(0.0, 0.0, 0.3), (0.3, 0.0, 0.1), (0.0, 0.0, 0.0)])
-def test_out_of_reach_is_not_a_number(far: tuple[float, float, float]):
+def test_inverse_out_of_reach_is_nan(far: tuple[float, float, float]):
     assert not np.isfinite(kinematics.inverse(*far)).all()

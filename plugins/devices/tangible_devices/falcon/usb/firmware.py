@@ -1,4 +1,4 @@
-"""Firmware into a Falcon: the boot loader echoes every byte, and every echo is compared. Imports pyusb by its port."""
+"""Loading a Falcon's firmware: the boot loader echoes every byte, and every echo is compared. Imports pyusb."""
 
 import logging
 from array import array
@@ -8,31 +8,31 @@ import numpy as np
 
 from tangible_core.errors import DeviceError
 
+from ..kernels.framing import COUNTS, USB_PACKET, receive
+from ..kernels.packet import SIZE
 from . import port as ftdi
-from .framing import COUNTS, USB_PACKET, receive
 from .image import WHENCE
-from .packet import SIZE
 from .port import READ_BYTES, Port
 
 log = logging.getLogger(__name__)
 TRIES = 10
-"""Loads that fail the first time are usual."""
+"""Attempts to load; the first one often fails."""
 GREETINGS, PROBES = 100, 10
 HELLO, READY, AUTOBAUD = b"\x0aC\x0d", b"\x0aD,\x0d", b"A"
 CHUNK = 62
-"""With the chip's 2 status bytes its echo fills a USB packet, which is then sent without waiting for the timer."""
+"""Bytes sent at a time: with the chip's 2 status bytes, their echo fills a USB packet, which the chip sends at once."""
 QUIET = 64
-"""Reads without a byte after which nothing more is expected; each lasts as long as the chip's latency timer."""
+"""Reads without a byte after which no more is expected; each lasts as long as the chip's latency timer."""
 NULL = b"<AAAAAAAAAAAAAA>"
-"""The packet of no torque, no light, no homing."""
+"""Packet without torque, light and homing."""
 
 
 class LoadError(Exception):
-    """An attempt to load that may be repeated."""
+    """An attempt to load that failed and may be repeated."""
 
 
-def running(opener: Callable[[], Port], image: bytes | None, event_character: bool = False) -> Port:
-    """A port to a Falcon whose firmware answers: loaded if need be, and again, on a port opened anew, if that fails.
+def open_running(opener: Callable[[], Port], image: bytes | None, event_character: bool = False) -> Port:
+    """Open a port to a Falcon whose firmware answers; load the firmware if needed, on a new port for each attempt.
 
     Raises: DeviceError if there is no image to load, or no attempt succeeds, or USB fails.
     """
@@ -56,9 +56,9 @@ def running(opener: Callable[[], Port], image: bytes | None, event_character: bo
 
 
 def _start(port: Port, image: bytes | None, event_character: bool) -> str:
-    """Load the firmware unless it answers; why this failed, empty if it did not."""
+    """Load the firmware unless it answers; return the reason for a failure, empty on success."""
     ftdi.run_time(port, event_character)
-    if answers(port):
+    if firmware_answers(port):
         return ""
     if image is None:
         raise DeviceError(f"{port.place}: has no firmware since power-on; give the option firmware; {WHENCE}")
@@ -67,11 +67,11 @@ def _start(port: Port, image: bytes | None, event_character: bool) -> str:
     except LoadError as error:
         return str(error)
     ftdi.run_time(port, event_character)
-    return "" if answers(port) else "the firmware does not answer"
+    return "" if firmware_answers(port) else "the firmware does not answer"
 
 
-def answers(port: Port) -> bool:
-    """Whether firmware is there: it answers a null packet."""
+def firmware_answers(port: Port) -> bool:
+    """Tell whether firmware is running: it answers a null packet."""
     chunk = array("B", bytes(READ_BYTES))
     begun, answer, counts = np.zeros(SIZE, np.uint8), np.zeros(SIZE, np.uint8), np.zeros(COUNTS, np.int64)
     for _ in range(PROBES):
@@ -83,14 +83,14 @@ def answers(port: Port) -> bool:
 
 
 def load(port: Port, image: bytes) -> None:
-    """One attempt. Raises: LoadError if the boot loader is not there or an echo differs, DeviceError if USB fails."""
+    """Try to load once. Raises: LoadError if there is no boot loader or an echo differs, DeviceError if USB fails."""
     _boot_mode(port)
     _greet(port)
     port.request(ftdi.MODEM, 0x0100)
     port.request(ftdi.BAUD, ftdi.BAUD_142857)
-    _echoed(port, AUTOBAUD)
+    _send_echoed(port, AUTOBAUD)
     for at in range(0, len(image), CHUNK):
-        _echoed(port, image[at : at + CHUNK])
+        _send_echoed(port, image[at : at + CHUNK])
 
 
 def _boot_mode(port: Port) -> None:
@@ -117,11 +117,11 @@ def _greet(port: Port) -> None:
     raise LoadError("the boot loader does not answer")
 
 
-def _echoed(port: Port, sent: bytes) -> None:
+def _send_echoed(port: Port, sent: bytes) -> None:
     port.write(array("B", sent))
     heard, quiet = b"", 0
     while len(heard) < len(sent) and quiet < QUIET:
         more = port.payload()
         heard, quiet = heard + more, 0 if more else quiet + 1
     if heard != sent:
-        raise LoadError(f"{len(sent)} bytes came back as {len(heard)} others" if heard else "an echo did not come")
+        raise LoadError(f"{len(sent)} bytes came back as {len(heard)} others" if heard else "there was no echo")

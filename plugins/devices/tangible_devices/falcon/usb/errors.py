@@ -1,4 +1,4 @@
-"""What USB says when it fails, in words that name the cure."""
+"""Errors of USB as messages that name the cure."""
 
 from tangible_core.errors import DeviceError
 
@@ -6,7 +6,7 @@ UDEV_FILE = "/etc/udev/rules.d/70-novint-falcon.rules"
 UDEV_RULE = (
     'SUBSYSTEM=="usb", ATTR{idVendor}=="0403", ATTR{idProduct}=="cb48", MODE="0660", GROUP="plugdev", TAG+="uaccess"'
 )
-"""For Linux: whoever sits at the machine, and the group plugdev, may use a Falcon."""
+"""Rule for Linux: the user at the machine and the group plugdev may use a Falcon."""
 
 REPLUG = "check its plug and its power supply, then open it again"
 NO_PERMISSION = (
@@ -25,21 +25,21 @@ CAUSES = {
     16: "another program is using it; close that one, or give the serial or the index of another Falcon",
     19: f"it was unplugged; {REPLUG}",
     32: f"it refused the request (stall); {REPLUG}",
-    **dict.fromkeys((75, 84, 132), f"it sent more than was asked for (overflow); {REPLUG}"),
+    **dict.fromkeys((75, 84, 132), f"it sent more than was requested (overflow); {REPLUG}"),
     **dict.fromkeys((60, 110, 138, 10060), f"it does not answer (time-out); {REPLUG}"),
 }
-"""By the number of the system's error; two of them have others on macOS and on Windows."""
+"""Causes by the number of the system's error; two errors have other numbers on macOS and on Windows."""
 
 
 def device_error(error: Exception, place: str, doing: str) -> DeviceError:
-    """The DeviceError to raise for an error of pyusb: where, while doing what, why, and what to do."""
+    """Return the DeviceError for an error of pyusb: the place, the activity, the cause and the cure."""
     if isinstance(error, NotImplementedError):
-        return worded(place, doing, NO_DRIVER)
+        return error_of_cause(place, doing, NO_DRIVER)
     number = error.errno if isinstance(error, OSError) else None
     cause = CAUSES.get(number or 0, f"{error}; {REPLUG}")
-    return worded(place, doing, cause)
+    return error_of_cause(place, doing, cause)
 
 
-def worded(place: str, doing: str, cause: str) -> DeviceError:
-    """The DeviceError of a cause, whose lines stay lines: one of them is to be copied."""
+def error_of_cause(place: str, doing: str, cause: str) -> DeviceError:
+    """Return the DeviceError for a cause; its lines are kept, as one of them is to be copied."""
     return DeviceError(*f"{place}, {doing}: {cause}".splitlines())

@@ -6,20 +6,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from falcon_streams import GAINED, LOST, NOISE, SWAPPED, buffers, fuzz
-from tangible_devices.falcon import framing, packet, tick
+from tangible_devices.falcon.kernels import framing, packet, tick
 
 STREAMS = 30_000
 
 
 @pytest.mark.parametrize(("kinds", "damage"), [(LOST, 0.02), (GAINED, 0.02), (LOST, 0.5), (GAINED, 0.5), (NOISE, 0.0)])
-def test_no_damage_makes_a_position_that_was_not_sent(kinds: int, damage: float):
+def test_receive_of_damaged_stream_gives_only_sent_positions(kinds: int, damage: float):
     taken, wrong, _, late = fuzz(STREAMS, kinds, damage, 1, tuple(buffers()))
     assert taken >= 2 * STREAMS
     assert (wrong, late) == (0, 0)
 
 
 @pytest.mark.parametrize("kinds", [SWAPPED, LOST | GAINED, LOST | GAINED | SWAPPED])
-def test_a_digit_in_place_of_another_cannot_be_seen_but_its_harm_is_bounded(kinds: int):
+def test_receive_of_swapped_digits_gives_bounded_errors(kinds: int):
     taken, wrong, worst_counts, late = fuzz(STREAMS, kinds, 0.02, 2, tuple(buffers()))
     assert wrong <= 0.005 * taken and late <= 1e-3 * STREAMS
     assert worst_counts <= 2 * tick.FAR_COUNTS
@@ -44,7 +44,7 @@ class Receiver:
 
 
 @given(st.lists(st.integers(1, 62), min_size=1, max_size=30))
-def test_answers_may_come_in_any_pieces(sizes: list[int]):
+def test_receive_joins_answers_from_any_pieces(sizes: list[int]):
     stream, receiver, found = b"".join(answer(n, -n, 2 * n) for n in range(20)), Receiver(), 0
     for size in sizes:
         found += receiver(stream[:size])
@@ -55,14 +55,14 @@ def test_answers_may_come_in_any_pieces(sizes: list[int]):
     assert receiver.counts[framing.DROPPED] == 0
 
 
-def test_an_empty_transfer_brings_nothing():
+def test_receive_of_empty_transfer_gives_nothing():
     receiver = Receiver()
     assert receiver(b"") == 0
     assert receiver.counts[framing.FRESH] == 0
 
 
 @given(st.binary(max_size=100))
-def test_what_comes_before_an_answer_costs_no_answer(noise: bytes):
+def test_receive_with_noise_before_answer_keeps_the_answer(noise: bytes):
     """Unless it is itself the beginning of a right one, which chance does not write."""
     receiver = Receiver()
     receiver(noise)
@@ -73,7 +73,7 @@ def test_what_comes_before_an_answer_costs_no_answer(noise: bytes):
         assert receiver.counts[framing.DROPPED] == len(noise)
 
 
-def test_an_answer_after_strange_bytes_is_doubted():
+def test_receive_after_stray_bytes_marks_answer_doubtful():
     receiver = Receiver()
     receiver(answer(1, 2, 3))
     assert receiver.counts[framing.FRESH] == framing.NEW

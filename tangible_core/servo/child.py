@@ -15,9 +15,10 @@ from typing import IO, final
 
 from ..errors import DeviceError
 from ..plugins.interfaces import Link, Touch, touch_of
-from . import loop, parcel, priority
+from . import parcel
+from .framing import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
 from .ring import STOP, SWAP, Ring
-from .wire import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
+from .ticks import loop, priority
 
 TERMINATED = "the process received a signal to end"
 ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT")

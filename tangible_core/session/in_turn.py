@@ -129,12 +129,12 @@ class _Session:
             try:
                 attended(servo, partial(self._tell, servo), self._keep, self._started, look)
             except DeviceError as error:
-                if self._on_wait is None or not servo.lost:
+                if self._on_wait is None or not servo.device_lost:
                     raise
                 return str(error)
             finally:
                 self._stand()
-        if self._on_wait is None or not servo.lost:
+        if self._on_wait is None or not servo.device_lost:
             return None
         self._let_go(servo)
         return self._last.stopped

@@ -13,11 +13,11 @@ from ..runtime.child_process import python
 from .checks import Check, CheckFailure, demand
 
 HEAVY = ("torch", "kornia", "cv2", "skimage", "numba", "usb", "scipy", "matplotlib")
-"""Packages that take longer to import than a listing may last."""
+"""Packages that take longer to import than a listing of plugins may take."""
 
 
 def name_is_plain(listing: Listing) -> None:
-    """The name is lower-case words joined by hyphens: it is typed in YAML and at the command line."""
+    """Check that the name is lower-case words joined by hyphens: it is typed in YAML and at the command line."""
     word = r"([a-z]|[1-9][a-z]{2})[a-z0-9]*"  # a file format may be called 3mf; 1e3 and 0xff are numbers in YAML
     demand(
         re.fullmatch(rf"{word}(-[a-z0-9]+)*", listing.name),
@@ -26,7 +26,7 @@ def name_is_plain(listing: Listing) -> None:
 
 
 def summary_is_there(listing: Listing) -> None:
-    """The class has a docstring whose first line tells, in `tangible plugins`, what the method does."""
+    """Check that the class has a docstring, whose first line `tangible plugins` shows as the method's summary."""
     demand(
         listing.summary and not listing.summary.startswith("("),
         f"no summary can be read for {listing.target}: {listing.summary or 'the first line is empty'}",
@@ -35,7 +35,7 @@ def summary_is_there(listing: Listing) -> None:
 
 
 def import_is_light(listing: Listing) -> None:
-    """Importing the class's module pulls in nothing heavy: planning imports it, and only running may take time."""
+    """Check that the class's module imports no heavy package: a plan imports the module, and must be quick."""
     module = listing.point.module
     code = f"import {module}; print(*(name for name in {HEAVY} if name in sys.modules))"
     ran = subprocess.run(python(code), capture_output=True, text=True, check=False)
@@ -50,31 +50,31 @@ LISTING_CHECKS: tuple[Check, ...] = (name_is_plain, summary_is_there, import_is_
 
 
 def every_option_has_a_default(method: Method) -> None:
-    """The method can be made with no options at all, so that anyone can try it by its name."""
+    """Check that the method can be created without options, so that its name is enough to try it."""
     required = [name for name, field in type(method).model_fields.items() if field.is_required()]
     demand(not required, f"{', '.join(required)} must be given; give every option a default")
     type(method)()
 
 
 def every_option_is_described(method: Method) -> None:
-    """Each option has a docstring under it: it is the help that `tangible schema` and editors show."""
+    """Check that each option has a docstring below it: the help that `tangible schema` and editors show."""
     bare = [name for name, field in type(method).model_fields.items() if not field.description]
     demand(not bare, f"{', '.join(bare)} has no docstring; write one under the field")
 
 
 def options_are_frozen(method: Method) -> None:
-    """A method never changes after it was made: it may be shared, hashed into cache keys and sent to a process."""
+    """Check that a method cannot be changed: it is shared, hashed into cache keys and sent to other processes."""
     demand(type(method).model_config.get("frozen"), "model_config has lost frozen=True")
     for name in type(method).model_fields:
         try:
             setattr(method, name, getattr(method, name))
         except ValidationError:
             continue
-        raise CheckFailure(f"{name} can be set after the method was made")
+        raise CheckFailure(f"{name} can be set after the method was created")
 
 
 def unknown_options_are_refused(method: Method) -> None:
-    """A misspelt option is an error, never passed over in silence."""
+    """Check that a misspelt option is an error and not ignored."""
     try:
         type(method)(**{"no_such_option": 1})
     except ValidationError:
@@ -83,18 +83,18 @@ def unknown_options_are_refused(method: Method) -> None:
 
 
 def options_survive_json(method: Method) -> None:
-    """Written as JSON and read back, the method is equal: this is how a run saves its completed configuration."""
+    """Check that the method is equal after it was written as JSON and read: a run saves its configuration so."""
     back = type(method).model_validate_json(method.model_dump_json())
     demand(back == method, f"{method!r} comes back from JSON as {back!r}")
 
 
 def schema_can_be_made(method: Method) -> None:
-    """The options have a JSON Schema: editors complete and check configurations with it."""
+    """Check that the options have a JSON Schema: editors complete and check configurations with it."""
     json.dumps(type(method).model_json_schema())
 
 
 def pickle_is_small(method: Method) -> None:
-    """A method goes to another process as less than 4 kB and arrives equal: options only, no arrays, no models."""
+    """Check that the method is equal after a pickle of less than 4 kB: options only, no arrays, no models."""
     data = pickle.dumps(method)
     demand(len(data) < 4096, f"the pickle is {len(data)} bytes; keep what is large out of the fields")
     demand(pickle.loads(data) == method, "the method is not equal to itself after a pickle round trip")

@@ -33,7 +33,7 @@ UNCHECKED = {
     "tangible_report.commands.materials": "likewise",
     "tangible_core.cli.commands.plugins": "likewise",
     "tangible_core.provenance.watching": "Python calls it with what is no Sequence, though its stubs say so",
-    "tangible_core.servo.schedule": "its functions are compiled into the loop, as they stand",
+    "tangible_core.servo.ticks.schedule": "its functions are compiled into the loop, as they stand",
 }
 """Modules whose calls are not checked, and why."""
 CALLS = 1_000

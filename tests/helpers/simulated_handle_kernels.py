@@ -1,35 +1,42 @@
-"""A handle under a law, tick by tick, compiled. Imports numba: `simulated_handle` imports it late."""
+"""A handle under a force law, tick by tick, compiled. Imports numba: `simulated_handle` imports it late."""
 
 
 # pyright: basic
+
+from inspect import unwrap
 
 import numpy as np
 from numba import float64, njit, types
 
 from tangible_core.compiled import compiling as compiling
 from tangible_core.compiled.touch import RISE_M
+from tangible_core.metrics.stability import advance
 from tangible_core.servo.guard import layout
 from tangible_core.servo.guard.guard import couple, guard
+
+_advance = njit(cache=True, nogil=True, error_model="numpy")(unwrap(advance))  # without the checks of tests
 
 
 @njit(types.UniTuple(float64, 3)(float64, *[float64] * 6), cache=True, nogil=True, error_model="numpy")
 def wall(stiffness_n_per_m, x, y, z, vx, vy, vz):
-    """A spring below z = 0, nothing above it."""
+    """Return the force of a spring below z = 0, and none above it."""
     return 0.0, 0.0, -stiffness_n_per_m * min(z, 0.0)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _moved(at, speed, force, mass, damping, period_s):
-    """Place, speed, and the energy lost in the damper, one period on under a constant force; exact."""
-    rate, last = damping / mass, force / damping
-    fading, twice = -np.expm1(-rate * period_s) / rate, -np.expm1(-2.0 * rate * period_s) / (2.0 * rate)
-    off = speed - last
-    lost = damping * (last * last * period_s + 2.0 * last * off * fading + off * off * twice)
-    return at + last * period_s + off * fading, speed - rate * fading * off, lost
+def _move(at, speed, force, mass, damping, period_s):
+    """Return place and speed after a period under a constant force, and the energy lost in the damper; exact."""
+    steady, decay = force / damping, np.exp(-damping * period_s / mass)
+    settling_s, off = (1.0 - decay) * mass / damping, speed - steady
+    lost = damping * (
+        steady * steady * period_s + 2.0 * steady * off * settling_s + off * off * settling_s * (1.0 + decay) / 2.0
+    )
+    place, later = _advance(at, speed, force, damping, period_s, decay, settling_s)
+    return place, later, lost
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _measured(resolution_m, at):
+def _measure(resolution_m, at):
     return np.rint(at / resolution_m) * resolution_m if resolution_m > 0.0 else at
 
 
@@ -51,15 +58,15 @@ def ride(
     work_j,
     lost_j,
 ):
-    """Fills a row a tick: where the encoder says the handle is, the force sent, the energies until then.
+    """Fill a row a tick: the place that the encoder reports, the force sent, and the energies until then.
 
-    body: mass and damping. state: (6,), position and velocity, from the first to after the last. settings: empty for no
-    guard. The force of a tick acts from `delay` ticks later on, the first one at once as well.
+    body: mass and damping. state: (6,), position and velocity at the start, overwritten by those at the end. settings:
+    empty for no guard. The force of a tick acts from `delay` ticks later on, the first one at once as well.
     """
     work = lost = 0.0
     for i in range(periods_s.size):
         for axis in range(3):
-            place[i, axis] = _measured(resolution_m, state[axis])
+            place[i, axis] = _measure(resolution_m, state[axis])
         before, period_s = max(i - 1, 0), periods_s[max(i - 1, 0)]
         x, y, z = place[i, 0], place[i, 1], place[i, 2]
         vx, vy, vz = (
@@ -78,7 +85,7 @@ def ride(
         work_j[i], lost_j[i] = work, lost
         for axis in range(3):
             acting = sent[max(i - delay, 0), axis]
-            at_axis, speed, taken = _moved(
+            at_axis, speed, taken = _move(
                 state[axis], state[3 + axis], acting + push_n[axis], body[0], body[1], periods_s[i]
             )
             work += acting * (at_axis - state[axis])

@@ -62,7 +62,7 @@ def _print(scene: str, medium: str, width_m: float, verdicts: Legibility, as_jso
     if as_json:
         show.print_json({"scene": scene, "medium": medium, "width_m": width_m, **verdicts.as_data()})
         return
-    where = next(profile.said for name, profile in PROFILES.items() if name == medium)
+    where = next(profile.text for name, profile in PROFILES.items() if name == medium)
     sentence = f"[{COLOURS[verdicts.grade]}]{escape(verdicts.sentence)}[/]"
     heading = f"{escape(scene)}, {quantity(width_m, 'm')} wide, on {where}: {sentence}"
     show.verdicts(heading, verdicts, COLOURS, WIDTHS)

@@ -26,7 +26,8 @@ from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
-from ..engine.engine import Engine, Progress, StageEvent
+from ..engine.engine import Engine
+from ..engine.stage import Progress, StageEvent
 from .export_folder import check_writable, check_written, move, scratch
 from .legible import judged, names, of_width
 from .run_folder import default_name, relative_source
@@ -187,7 +188,7 @@ class _Desk:
 
         try:
             engine = self._engine(chosen)
-            with engine.watched(told):
+            with engine.watching(told):
                 work = work_for(engine, chosen.method)
                 legible = legible_for(engine, chosen.method)
             check_stopped()
@@ -236,7 +237,7 @@ def work_for(engine: Engine, exporter: Exporter) -> Work:
     if odd := [each for each in exporter.needs if each not in EXPORTABLE]:
         who = plugin_name("export", type(exporter).__module__, type(exporter).__qualname__)
         raise BrokenMethod(f"{who}: needs {quoted(odd[0])}; an exporter may need {', '.join(EXPORTABLE)}")
-    products: dict[str, Record | None] = {name: engine.felt(name) for name in exporter.needs}
+    products: dict[str, Record | None] = {name: engine.make_on_grid(name) for name in exporter.needs}
     views = engine.scene.views
     return Work(
         title_of(engine.config, engine.scene),
@@ -253,7 +254,7 @@ def legible_for(engine: Engine, exporter: Exporter) -> Legibility | None:
     if exporter.medium is None:
         return None
     parts = "simplified" if "simplified" in exporter.needs else engine.config.felt_parts
-    return judged(engine, exporter.medium, parts, set[str]().union(*map(engine.needed, exporter.needs)))
+    return judged(engine, exporter.medium, parts, set[str]().union(*map(engine.inputs_of, exporter.needs)))
 
 
 def _illegible(legible: Legibility | None) -> list[Note]:

@@ -15,7 +15,7 @@ WALL_PX = 6.0
 
 
 def map_is_well_formed(method: DepthEstimator) -> None:
-    """Disparity and confidence are float32 (h, w) of the left view's size, read-only, confidence within 0..1."""
+    """Check that disparity and confidence are read-only float32 (h, w) of the left view's size, confidence in 0..1."""
     views = wall(WALL_PX)
     found = method.estimate(views)
     demand(type(found) is DisparityMap, f"estimate returns {type(found).__name__}, not DisparityMap")
@@ -29,14 +29,14 @@ def map_is_well_formed(method: DepthEstimator) -> None:
 
 
 def wall_is_found(method: DepthEstimator) -> None:
-    """A textured wall shifted by 6 px is found: known on half of it or more, with a median error of 0.5 px or less.
+    """Check that a textured wall shifted by 6 px is found: half of it is known, with a median error of 0.5 px at most.
 
-    A method for one picture cannot see the shift: its map is to lie within 0..1, 1 the nearest.
+    A method for one picture cannot see the shift: its map must lie within 0..1, where 1 is nearest.
     """
     found = method.estimate(wall(WALL_PX))
     known = found.disparity_px[np.isfinite(found.disparity_px)]
     share = known.size / found.disparity_px.size
-    demand(share >= 0.5, f"{share:.0%} of the wall is known; a texture this clear allows half and more")
+    demand(share >= 0.5, f"{share:.0%} of the wall is known; a texture this clear allows at least half")
     if found.unit == "relative":
         demand(
             known.min() >= 0 and known.max() <= 1, f"nearness runs from {known.min():g} to {known.max():g}, not 0..1"
@@ -47,13 +47,13 @@ def wall_is_found(method: DepthEstimator) -> None:
 
 
 def same_views_same_map(method: DepthEstimator) -> None:
-    """Two runs on equal views agree to the last bit: results are cached, compared and repeated."""
+    """Check that two runs on equal views agree to the last bit: results are cached, compared and repeated."""
     first, second = method.estimate(wall()), type(method)(**dict(method)).estimate(wall())
     demand(first.digest() == second.digest(), "two runs on equal views differ; seed what is random")
 
 
 def views_are_not_written_to(method: DepthEstimator) -> None:
-    """The pictures that come in are the same bytes afterwards: other stages read them too."""
+    """Check that the input pictures are not changed: other stages read them too."""
     views = wall()
     pair = np.array(views.left), np.array(views.right)
     before = views.digest()
@@ -62,7 +62,10 @@ def views_are_not_written_to(method: DepthEstimator) -> None:
 
 
 def every_picture_type_is_taken(method: DepthEstimator) -> None:
-    """8 and 16 bits, floats, RGBA and any memory layout give nearly the same map; poorer ones one of the right size."""
+    """Check that 8 and 16 bits, floats, RGBA and any memory layout give nearly the same map.
+
+    Pictures with less information must give a map of the right size.
+    """
     views = wall(WALL_PX)
     expected = method.estimate(views)
     for name, pair in _variants(views, exact_variants):
@@ -73,7 +76,10 @@ def every_picture_type_is_taken(method: DepthEstimator) -> None:
 
 
 def any_size_is_taken(method: DepthEstimator) -> None:
-    """From a single pixel on: a map of the views' size, all NaN if need be, or a TangibleError that says why not."""
+    """Check that views of any size, even one pixel, give a map of their size, or a TangibleError with the reason.
+
+    The map may be all NaN.
+    """
     for shape in TINY:
         try:
             found = method.estimate(wall(1.0, shape))
@@ -83,9 +89,9 @@ def any_size_is_taken(method: DepthEstimator) -> None:
 
 
 def flat_pair_claims_nothing(method: DepthEstimator) -> None:
-    """Two pictures of one colour match at any shift: 5 % or less may be known with a confidence above 0.
+    """Check that at most 5 % of a pair of one colour, which matches at any shift, is known with a confidence above 0.
 
-    A method for one picture claims no shift; it only has to give finite values or NaN.
+    A method for one picture claims no shift; it must only give finite values or NaN.
     """
     flat = np.full((64, 160, 3), 128, np.uint8)
     found = method.estimate(Views(flat, flat.copy()))
@@ -98,7 +104,10 @@ def flat_pair_claims_nothing(method: DepthEstimator) -> None:
 
 
 def one_view_is_answered(method: DepthEstimator) -> None:
-    """Without a right view there is a relative map; or a TangibleError, which `needs_pair` foretells to a plan."""
+    """Check that one view gives a relative map, or else a TangibleError, and that `needs_pair` is true for the latter.
+
+    A plan reads `needs_pair`.
+    """
     try:
         found = method.estimate(Views(wall().left))
     except ModelAbsent:
@@ -113,17 +122,17 @@ def one_view_is_answered(method: DepthEstimator) -> None:
 
 
 def nan_is_refused(method: DepthEstimator) -> None:
-    """A picture with NaN raises PictureError, and nothing else, before or in the method."""
+    """Check that a picture with NaN raises PictureError and nothing else, before or in the method."""
     left = np.asarray(wall().left / 255, np.float32)
     left[3, 5] = np.nan
     refuses(PictureError, "a picture with NaN", lambda: method.estimate(Views(left, wall().right)))
 
 
 def _variants(
-    views: Views, of: Callable[[np.ndarray], Iterator[tuple[str, np.ndarray]]]
+    views: Views, variants: Callable[[np.ndarray], Iterator[tuple[str, np.ndarray]]]
 ) -> Iterator[tuple[str, Views]]:
     right = views.left if views.right is None else views.right
-    for (name, one), (_, other) in zip(of(views.left), of(right), strict=True):
+    for (name, one), (_, other) in zip(variants(views.left), variants(right), strict=True):
         yield name, Views(one, other)
 
 

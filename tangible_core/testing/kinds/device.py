@@ -1,4 +1,4 @@
-"""Checks of a haptic device. On a real one they push, for a moment, as hard as it can: let its grip hang free."""
+"""Checks of a haptic device. A real device pushes for a moment, as hard as it can: let its grip hang free."""
 
 from itertools import pairwise
 
@@ -11,11 +11,11 @@ from ..checks import Check, CheckFailure, demand, refuses
 
 
 class _Mishap(Exception):
-    """What the program of a user might raise while it holds a device."""
+    """An exception that a user's program might raise while it holds a device."""
 
 
 def spec_makes_sense(method: HapticDevice) -> None:
-    """Force, stiffness, workspace and resolution are above 0, damping is not below, and 1 to 6 axes are driven."""
+    """Check that force, stiffness, workspace and resolution are above 0, damping is 0 or more, and axes are 1 to 6."""
     spec = method.spec()
     positive = {
         "max_force_n": spec.max_force_n,
@@ -30,7 +30,7 @@ def spec_makes_sense(method: HapticDevice) -> None:
 
 
 def absence_is_said(method: HapticDevice) -> None:
-    """It opens; or it is not there, and DeviceAbsent says what to do. The other checks then have nothing to ask."""
+    """Check that the device opens, or raises DeviceAbsent with a cure in its message; other checks then do not run."""
     try:
         method.open().close()
     except DeviceAbsent as error:
@@ -38,18 +38,18 @@ def absence_is_said(method: HapticDevice) -> None:
 
 
 def force_is_applied(method: HapticDevice) -> None:
-    """What is written is what the device holds: none after opening, then each force within 2 % of the largest."""
+    """Check that the device applies the force written, within 2 % of its largest force, and none after opening."""
     most = method.spec().max_force_n
     with method.open() as link:
-        demand(tuple(link.applied) == NO_FORCE, f"a link just opened holds {link.applied}")
+        demand(tuple(link.applied) == NO_FORCE, f"a link just opened applies {link.applied}")
         for force in (Force(0.0, 0.0, most / 4), Force(-most / 8, most / 16, 0.0), NO_FORCE):
             link.write(force)
             apart = float(np.linalg.norm(np.subtract(link.applied, force)))
-            demand(apart <= 0.02 * most, f"{force} was written, {link.applied} is held")
+            demand(apart <= 0.02 * most, f"{force} was written, {link.applied} is applied")
 
 
 def forces_are_limited(method: HapticDevice) -> None:
-    """A force too strong is scaled down to the device's largest and keeps its direction; one axis never wraps round."""
+    """Check that a force too strong is scaled to the device's largest and keeps its direction; no axis wraps around."""
     most = method.spec().max_force_n
     with method.open() as link:
         for wanted in (Force(0.0, 0.0, 2 * most), Force(1e3, 2e3, -1e3), Force(-1e308, 1e308, 1e308)):
@@ -65,51 +65,51 @@ def forces_are_limited(method: HapticDevice) -> None:
 
 
 def broken_force_is_none(method: HapticDevice) -> None:
-    """A force that is NaN or infinite in any part becomes zero, also after a good one: an error must not push."""
+    """Check that a force with a NaN or infinite part becomes zero, also after a good one: an error must not push."""
     good = Force(0.0, 0.0, method.spec().max_force_n / 4)
     with method.open() as link:
         for bad in (Force(np.nan, 0.0, 0.0), Force(0.1, np.inf, 0.0), Force(0.1, 0.1, -np.inf)):
             link.write(good)
             link.write(bad)
-            demand(tuple(link.applied) == NO_FORCE, f"{bad} was written, {link.applied} is held")
+            demand(tuple(link.applied) == NO_FORCE, f"{bad} was written, {link.applied} is applied")
 
 
 def no_force_is_left_behind(method: HapticDevice) -> None:
-    """After the block, and after an exception out of it, the device holds no force: motors must not go on pushing."""
+    """Check that no force is applied after the `with` block, also after an exception: motors must not go on pushing."""
     push = Force(0.0, 0.0, method.spec().max_force_n / 4)
     with method.open() as link:
         link.write(push)
-    demand(tuple(link.applied) == NO_FORCE, f"after the block the device holds {link.applied}")
+    demand(tuple(link.applied) == NO_FORCE, f"after the block the device applies {link.applied}")
     try:
         with method.open() as link:
             link.write(push)
             raise _Mishap
     except _Mishap:
-        demand(tuple(link.applied) == NO_FORCE, f"after an exception in the block the device holds {link.applied}")
+        demand(tuple(link.applied) == NO_FORCE, f"after an exception in the block the device applies {link.applied}")
     else:
         raise CheckFailure("an exception in the block is swallowed")
 
 
 def close_is_final(method: HapticDevice) -> None:
-    """Closing leaves no force, a second close does nothing, and a closed link raises DeviceError."""
+    """Check that closing leaves no force, a second close does nothing, and a closed link raises DeviceError."""
     link = method.open()
     link.write(Force(0.0, 0.0, method.spec().max_force_n / 4))
     link.close()
     link.close()
-    demand(tuple(link.applied) == NO_FORCE, f"a closed link holds {link.applied}")
+    demand(tuple(link.applied) == NO_FORCE, f"a closed link applies {link.applied}")
     refuses(DeviceError, "reading a closed link", link.read)
     refuses(DeviceError, "writing to a closed link", lambda: link.write(NO_FORCE))
 
 
 def device_can_be_opened_again(method: HapticDevice) -> None:
-    """Once closed the device can be opened again, by the same method and by an equal one."""
+    """Check that a closed device can be opened again, by the same method and by an equal one."""
     for again in (method, method, type(method)(**dict(method))):
         with again.open() as link:
             link.read()
 
 
 def openers_do_not_share(method: HapticDevice) -> None:
-    """Who opens it while it is open is refused, or gets a device of its own; the first one feels nothing of it."""
+    """Check that a second opener is refused or gets another device, without any effect on the first one's force."""
     push = Force(0.0, 0.0, method.spec().max_force_n / 4)
     with method.open() as first:
         first.write(push)
@@ -123,7 +123,7 @@ def openers_do_not_share(method: HapticDevice) -> None:
 
 
 def velocity_is_that_of_the_positions(method: HapticDevice) -> None:
-    """Velocities are metres per second of the device's clock: over 200 reads they add up to the way of the tip."""
+    """Check that velocities are in m/s of the device's clock: over 200 reads they sum to the way of the tip."""
     spec = method.spec()
     with method.open() as link:
         states = [link.read() for _ in range(200)]
@@ -132,11 +132,11 @@ def velocity_is_that_of_the_positions(method: HapticDevice) -> None:
     way = np.subtract(states[-1].position_m, states[0].position_m)
     summed = (0.5 * (speeds[1:] + speeds[:-1]) * steps_s[:, None]).sum(axis=0)
     apart, length = float(np.linalg.norm(summed - way)), float((np.linalg.norm(speeds[1:], axis=1) * steps_s).sum())
-    demand(apart <= 0.1 * length + 10 * spec.resolution_m, f"velocities add up to {summed} m, the tip went {way} m")
+    demand(apart <= 0.1 * length + 10 * spec.resolution_m, f"velocities sum to {summed} m, the tip moved by {way} m")
 
 
 def states_make_sense(method: HapticDevice) -> None:
-    """Time only goes forward; positions and velocities are finite, positions within twice the workspace."""
+    """Check that time only increases, states are finite, and positions lie within twice the workspace."""
     reach = np.array(method.spec().workspace_m)  # from the centre: half of it is the workspace itself
     with method.open() as link:
         states = [link.read() for _ in range(50)]
@@ -162,4 +162,4 @@ CHECKS: tuple[Check, ...] = (
     states_make_sense,
 )
 WITH_MOTORS = CHECKS[2:]
-"""Those that open the device, most of them to push."""
+"""The checks that open the device, most of them to push."""

@@ -1,7 +1,7 @@
-"""Checks of a law that is felt on a surface that moves; others pass.
+"""Checks of a force law that supports surfaces that move; other force laws pass.
 
-Films are of small reliefs, felt by a hand that is led: where it begins, that nothing jumps at the change from one
-frame to the next, where it arrives, and what it tells of its rise.
+A film of small reliefs is felt by a hand on a given path: at its start, at its end, at the change from one frame to
+the next, where nothing may jump, and with the surface velocity that it reports.
 """
 
 import gc
@@ -21,23 +21,23 @@ PERIOD_S, FRAME_S, TICKS = 0.001, 1 / 30, 33
 WIDTH_M, MIDDLE_M = 0.08, 0.008
 STEP_N = 0.08
 HAND_M = (0.0031, -0.0052, 0.006)
-"""A hand that is two millimetres under the surfaces, about."""
+"""Position of a hand about two millimetres under the surfaces."""
 
 
 def film_begins_as_a_touch(method: ForceRenderer) -> None:
-    """A film that nothing was shown to feels as a touch on the same surface does, and tells no rise."""
+    """Check that a film without a frame feels like a touch on the same surface, and reports no rise."""
     if not isinstance(method, Filming):
         return
     surface = _surface(0)
     film, path = method.film(surface, PERIOD_S, FRAME_S), _circle()
     apart = np.abs(film.touch.path(path) - method.touch(surface).path(path)).max()
-    demand(apart <= 1e-2, f"before anything is shown, film and touch are {apart:.3g} N apart")
-    demand(film.arrived and film.dropped == 0, "before anything is shown, it has not arrived, or dropped frames")
-    demand(_told(film)[RISE_M] == 0.0, "before anything is shown, it tells a rise")
+    demand(apart <= 1e-2, f"before the first frame, film and touch are {apart:.3g} N apart")
+    demand(film.arrived and film.dropped == 0, "before the first frame, it has not arrived, or dropped frames")
+    demand(_moving(film)[RISE_M] == 0.0, "before the first frame, it reports a rise")
 
 
 def film_arrives_where_a_touch_is(method: ForceRenderer) -> None:
-    """What was shown is reached within a frame, and then feels as a touch on it does; its number is told meanwhile."""
+    """Check that a relief shown is reached within a frame, feels like a touch on it, and has its number reported."""
     if not isinstance(method, Filming):
         return
     film, path = method.film(_surface(0), PERIOD_S, FRAME_S), _circle()
@@ -45,14 +45,14 @@ def film_arrives_where_a_touch_is(method: ForceRenderer) -> None:
         film.show(_relief(frame), frame)
         _hold(film, TICKS + 1)
         demand(film.arrived, f"frame {frame} is not reached within a frame, though it is near")
-        demand(_told(film)[FRAME] == frame, f"going to frame {frame}, it tells {_told(film)[FRAME]}")
+        demand(_moving(film)[FRAME] == frame, f"on the way to frame {frame}, it reports {_moving(film)[FRAME]}")
     wanted = HapticSurface(_relief(3))
     apart = np.abs(film.touch.path(path) - method.touch(wanted).path(path))[len(path) // 2 :].max()
     demand(apart <= 1e-2, f"once arrived, film and touch are {apart:.3g} N apart")
 
 
 def film_does_not_jump(method: ForceRenderer) -> None:
-    """On a hand at rest no force changes by more than 0.08 N in a tick, over cuts, at any phase of a frame."""
+    """Check that the force on a hand at rest changes by 0.08 N a tick at most, over cuts, at any phase of a frame."""
     if not isinstance(method, Filming):
         return
     random = np.random.default_rng(0)
@@ -68,7 +68,7 @@ def film_does_not_jump(method: ForceRenderer) -> None:
 
 
 def film_tells_its_rise(method: ForceRenderer) -> None:
-    """What it says that level ground rose under a hand is what a touch finds that it rose, tick by tick."""
+    """Check that the rise of level ground that the film reports, tick by tick, is that of the ground."""
     if not isinstance(method, Filming):
         return
     film = method.film(_level(MIDDLE_M), PERIOD_S, FRAME_S)
@@ -78,13 +78,13 @@ def film_tells_its_rise(method: ForceRenderer) -> None:
         film.show(_level(height_m).relief, frame)
         for _ in range(TICKS):
             pushes.append(_hold(film, 1)[0, 2])
-            rose_m += float(_told(film)[RISE_M])
-        demand(abs(MIDDLE_M + rose_m - height_m) <= 1e-7, f"at {height_m} m it says that it rose by {rose_m} m")
+            rose_m += float(_moving(film)[RISE_M])
+        demand(abs(MIDDLE_M + rose_m - height_m) <= 1e-7, f"at {height_m} m it reports a rise of {rose_m} m")
     demand(np.ptp(pushes) > 0, "ground that rises and falls does not change the force")
 
 
 def film_takes_odd_reliefs(method: ForceRenderer) -> None:
-    """One cell, one row, one column, level ground, a spike, steps as high as there are: forces stay finite."""
+    """Check that forces stay finite for one cell, row or column, level ground, a spike and steps of any height."""
     if not isinstance(method, Filming):
         return
     for shape in ((1, 1), (1, 30), (30, 1), (2, 2), (20, 20)):
@@ -99,25 +99,27 @@ def film_takes_odd_reliefs(method: ForceRenderer) -> None:
 
 
 def film_refuses_what_does_not_fit(method: ForceRenderer) -> None:
-    """Another grid, another extent, a period or a frame of no time are refused in words, and nothing has changed."""
+    """Check that another grid or extent, and an invalid period or frame, are refused without a change of the film."""
     if not isinstance(method, Filming):
         return
     film = method.film(_surface(0), PERIOD_S, FRAME_S)
     before = _hold(film, 100)[-1]
-    for what, heights, width_m in (
+    for name, heights, width_m in (
         ("another grid", np.zeros((24, 31), np.float32), WIDTH_M),
         ("another extent", np.zeros((24, 32), np.float32), 0.1),
     ):
         relief = Relief(heights, (width_m, 0.06))
-        refuses(GeometryError, what, lambda relief=relief: film.show(relief, 1))
+        refuses(GeometryError, name, lambda relief=relief: film.show(relief, 1))
     for bad in (0.0, -1.0, np.nan, np.inf):
         refuses(ConfigError, f"a period of {bad} s", lambda bad=bad: method.film(_surface(0), bad, FRAME_S))
         refuses(ConfigError, f"a frame of {bad} s", lambda bad=bad: method.film(_surface(0), PERIOD_S, bad))
-    demand(np.allclose(_hold(film, TICKS)[-1], before, rtol=0, atol=1e-6), "what was refused is felt")
+    demand(
+        np.allclose(_hold(film, TICKS)[-1], before, rtol=0, atol=1e-6), "a relief that was refused changes the force"
+    )
 
 
 def film_can_be_handed_over(method: ForceRenderer) -> None:
-    """Pickled, with its arrays in memory that two have: what the one shows is what the other's touch feels."""
+    """Check that two unpickled films with shared arrays act as one: one is shown a relief, the other feels it."""
     if not isinstance(method, Filming):
         return
     film, buffers = method.film(_surface(0), PERIOD_S, FRAME_S), list[pickle.PickleBuffer]()
@@ -126,14 +128,15 @@ def film_can_be_handed_over(method: ForceRenderer) -> None:
     felt, shown = (pickle.loads(small, buffers=shared) for _ in range(2))
     before = _hold(felt, 100)[-1]
     shown.show(_relief(2), 7)
-    demand(np.abs(_hold(felt, TICKS)[-1] - before).max() > 0.1, "what is shown in one process is not felt in the other")
-    demand(_told(felt)[FRAME] == 7, f"it was shown frame 7, and tells {_told(felt)[FRAME]}")
+    change = np.abs(_hold(felt, TICKS)[-1] - before).max()
+    demand(change > 0.1, "a relief shown in one process does not change the force in the other")
+    demand(_moving(felt)[FRAME] == 7, f"it was shown frame 7, and reports {_moving(felt)[FRAME]}")
     same = np.allclose(_hold(film, TICKS)[-1], before, rtol=0, atol=1e-6)
-    demand(same, "what is shown to a copy that was handed over is felt in the one that it is a copy of")
+    demand(same, "a relief shown to a copy changes the force of the original")
 
 
 def film_needs_no_more_memory(method: ForceRenderer) -> None:
-    """Frame after frame, whether gone to or dropped, takes no more memory; dropped ones are counted."""
+    """Check that frames, reached or dropped, take no more and more memory, and that dropped ones are counted."""
     if not isinstance(method, Filming):
         return
     film, reliefs = method.film(_surface(0), PERIOD_S, FRAME_S), [_relief(frame) for frame in range(4)]
@@ -152,7 +155,7 @@ def film_needs_no_more_memory(method: ForceRenderer) -> None:
         tracemalloc.stop()
     demand(held[-1] - held[-2] < 20_000, f"100 frames leave {held[-1] - held[-2]} bytes behind")
     dropped = film.dropped - dropped
-    demand(299 <= dropped <= 300, f"of 300 frames at once it says that {dropped} were dropped")
+    demand(299 <= dropped <= 300, f"of 300 frames at once it reports {dropped} as dropped")
 
 
 def _surface(frame: int) -> HapticSurface:
@@ -164,11 +167,11 @@ def _level(height_m: float) -> HapticSurface:
 
 
 def _relief(frame: int, heights: np.ndarray | None = None) -> Relief:
-    """Waves that move a little from frame to frame, or these heights."""
+    """Return waves that move a little from frame to frame, or these heights."""
     row, column = np.indices((24, 32))
     waves = MIDDLE_M + 0.001 * np.sin(column / 4 + 0.3 * frame) * np.cos(row / 5)
-    found: Float32[np.ndarray, "h w"] = np.asarray(waves if heights is None else heights, np.float32)
-    return Relief(found, (WIDTH_M, 0.06))
+    height_m: Float32[np.ndarray, "h w"] = np.asarray(waves if heights is None else heights, np.float32)
+    return Relief(height_m, (WIDTH_M, 0.06))
 
 
 def _circle() -> np.ndarray:
@@ -177,12 +180,13 @@ def _circle() -> np.ndarray:
 
 
 def _hold(film: Film, ticks: int) -> np.ndarray:
-    """Forces on a hand at rest."""
+    """Return the forces on a hand at rest, a row a tick."""
     return np.array([film.touch.force(HapticState(HAND_M)) for _ in range(ticks)])
 
 
-def _told(film: Film) -> np.ndarray:
-    demand(isinstance(film.touch, CompiledTouch), "the touch of a film is no CompiledTouch: it can tell no rise")
+def _moving(film: Film) -> np.ndarray:
+    """Return the array in which the film's touch reports its frame and its rise."""
+    demand(isinstance(film.touch, CompiledTouch), "the touch of a film is not a CompiledTouch: it cannot report a rise")
     assert isinstance(film.touch, CompiledTouch)
     return film.touch.moving
 

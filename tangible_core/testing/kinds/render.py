@@ -1,7 +1,7 @@
-"""Checks of a force renderer's law: what it pushes, and where.
+"""Checks of a force law: the size and direction of its force, and where it pushes.
 
-Exact figures are demanded where every sound law agrees: on a plane, down a slope, in free air. A law whose force on a
-plane grows in proportion to the depth is a spring, and of a spring the direction and the size are demanded as well.
+Exact figures are demanded where every sound force law agrees: on a plane, down a slope, in free air. A force law whose
+force on a plane grows in proportion to the depth is a spring, whose direction and size are checked as well.
 """
 
 from itertools import product
@@ -20,7 +20,7 @@ DEPTHS_M = (0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005)
 
 
 def free_air_is_free(method: ForceRenderer) -> None:
-    """Above the surface there is no force at all, near it or far, moving or still."""
+    """Check that there is no force above the surface, near it or far, moving or at rest."""
     for name, known in _scenes():
         touch = method.touch(known.surface)
         for (x, y), up, speed in product(PLACES_M, (1e-4, 0.01, 1.0), (0.0, -0.5)):
@@ -29,7 +29,7 @@ def free_air_is_free(method: ForceRenderer) -> None:
 
 
 def plane_pushes_straight_up(method: ForceRenderer) -> None:
-    """At rest on a level plane, force has no sideways part, never pulls, and never falls as the tip goes deeper."""
+    """Check that on a level plane a force at rest has no sideways part, never pulls and never falls with depth."""
     known = plane()
     for x, y in PLACES_M:
         forces = np.array([_press(method, known, x, y, depth) for depth in DEPTHS_M])
@@ -41,21 +41,21 @@ def plane_pushes_straight_up(method: ForceRenderer) -> None:
 
 
 def what_it_says_of_itself_is_felt(method: ForceRenderer) -> None:
-    """A law that says `is_lateral` never pushes along z, and one that does not pushes up from level ground.
+    """Check that a force law with `is_lateral` never pushes along z, and that one without does.
 
-    `with-materials` goes by it. Of what is around another law nothing is demanded.
+    `with-materials` relies on it. A force law that wraps another one passes.
     """
     if type(method).renders_materials:
         return
     up = [_press(method, known, x, y, depth)[2] for _, known in _scenes() for x, y in PLACES_M for depth in DEPTHS_M]
     if type(method).is_lateral:
-        demand(not np.any(up), f"it says `is_lateral`, and pushes along z with up to {np.abs(up).max():.3g} N")
+        demand(not np.any(up), f"it has `is_lateral`, but pushes along z with up to {np.abs(up).max():.3g} N")
     else:
-        demand(np.any(up), "it gives no force along z; say `is_lateral: ClassVar[bool] = True`")
+        demand(np.any(up), "it gives no force along z; write `is_lateral: ClassVar[bool] = True` in its class")
 
 
 def surface_lies_where_it_is_drawn(method: ForceRenderer) -> None:
-    """A ramp is felt just under its true height, and not just over it: x is right, y far, z up, all in metres."""
+    """Check that a ramp pushes just under its true height and not just over it: x is right, y far, z up, in metres."""
     known = ramp()
     touch = method.touch(known.surface)
     for x, y in PLACES_M:
@@ -66,7 +66,7 @@ def surface_lies_where_it_is_drawn(method: ForceRenderer) -> None:
 
 
 def slopes_push_downhill(method: ForceRenderer) -> None:
-    """On a ramp and on a sphere the sideways part of a force, where a law has one, points down the slope."""
+    """Check that on a ramp and on a sphere the sideways part of a force, if there is one, points down the slope."""
     for name, known in (("ramp", ramp()), ("sphere", sphere_cap())):
         for x, y in PLACES_M[1:]:
             force = _press(method, known, x, y, 5e-4)
@@ -80,10 +80,10 @@ def slopes_push_downhill(method: ForceRenderer) -> None:
 
 
 def springs_are_exact(method: ForceRenderer) -> None:
-    """A law that is a spring on the plane pushes along the normal on a ramp and a sphere, within 5 degrees.
+    """Check that a spring pushes along the normal of a ramp and of a sphere, within 5 degrees.
 
-    Its size lies between a spring to the nearest point, k times the distance, and one along the gradient,
-    k d sqrt(1 + slope^2), within 5 %. Other laws pass.
+    Its size lies between that of a spring to the nearest point, k times the distance, and that of a spring along the
+    gradient, k d sqrt(1 + slope^2), within 5 %. Force laws that are not springs on a plane pass.
     """
     stiffness = _stiffness(method)
     if stiffness is None:
@@ -103,7 +103,7 @@ def springs_are_exact(method: ForceRenderer) -> None:
 
 
 def resampling_feels_the_same(method: ForceRenderer) -> None:
-    """A sphere sampled twice as finely feels the same within 10 %: nothing in a law is per pixel."""
+    """Check that a sphere sampled twice as finely feels the same within 10 %: no quantity is per pixel."""
     coarse, fine = sphere_cap(shape=(65, 65)), sphere_cap(shape=(130, 130))
     forces = [np.array([_press(method, known, x, y, 1e-3) for x, y in PLACES_M]) for known in (coarse, fine)]
     largest = float(np.abs(forces[1]).max())
@@ -116,12 +116,12 @@ def _scenes() -> tuple[tuple[str, KnownSurface], ...]:
 
 
 def _press(method: ForceRenderer, known: KnownSurface, x: float, y: float, depth_m: float) -> Float64[np.ndarray, "3"]:
-    """Force at rest this deep under (x, y), as a new touch feels it first."""
+    """Return the first force of a new touch at rest, this deep under (x, y)."""
     return np.array(method.touch(known.surface).force(HapticState(known.at(x, y, depth_m))), np.float64)
 
 
 def _stiffness(method: ForceRenderer) -> float | None:
-    """Newtons per metre where force on a plane is proportional to depth, otherwise None."""
+    """Return the stiffness, N/m, if the force on a plane is proportional to the depth, otherwise None."""
     depths = np.array((2e-4, 4e-4, 8e-4))
     pushes = np.array([_press(method, plane(), 0.011, 0.007, float(depth))[2] for depth in depths])
     stiffness = pushes / depths

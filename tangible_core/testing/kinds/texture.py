@@ -11,7 +11,7 @@ from ..variants import TINY, coarse_variants, exact_variants
 
 
 def labels_are_well_formed(method: Segmenter) -> None:
-    """Labels are int32 of the picture's own size, read-only, 0..n-1 with none left out; confidence lies in 0..1."""
+    """Check that labels are read-only int32 of the picture's size, 0..n-1 without a gap, and confidence in 0..1."""
     picture, _ = two_textures()
     found = method.segment(picture)
     demand(type(found) is SegmentMap, f"segment returns {type(found).__name__}, not SegmentMap")
@@ -24,24 +24,24 @@ def labels_are_well_formed(method: Segmenter) -> None:
 
 
 def two_textures_are_told_apart(method: Segmenter) -> None:
-    """Two halves that differ in brightness and in texture are told apart: 95 % of the pixels or more.
+    """Check that 95 % of the pixels of two halves, which differ in brightness and texture, are separated.
 
-    A half may come in several segments; one smaller than a hundredth of the picture counts as wrong.
+    A half may have several segments; one smaller than a hundredth of the picture counts as wrong.
     """
     picture, truth = two_textures()
     right = _accuracy(method.segment(picture).labels, truth)
-    demand(right >= 0.95, f"{right:.1%} of the pixels are in a segment of their own half; 95 % are asked for")
+    demand(right >= 0.95, f"{right:.1%} of the pixels are in a segment of their own half; 95 % are required")
 
 
 def same_picture_same_labels(method: Segmenter) -> None:
-    """Two runs on equal pictures agree to the last bit: results are cached, compared and repeated."""
+    """Check that two runs on equal pictures agree to the last bit: results are cached, compared and repeated."""
     picture, _ = two_textures()
     first, second = method.segment(picture), type(method)(**dict(method)).segment(picture.copy())
     demand(first.digest() == second.digest(), "two runs on equal pictures differ; seed what is random")
 
 
 def picture_is_not_written_to(method: Segmenter) -> None:
-    """The picture that comes in is the same bytes afterwards, and may be read-only: other stages read it too."""
+    """Check that the input picture is not changed, and may be read-only: other stages read it too."""
     picture, _ = two_textures()
     before = picture.tobytes()
     method.segment(picture)
@@ -51,14 +51,17 @@ def picture_is_not_written_to(method: Segmenter) -> None:
 
 
 def one_colour_is_one_segment(method: Segmenter) -> None:
-    """A picture of one colour is one segment, whatever number of segments was asked for."""
+    """Check that a picture of one colour is one segment, whatever the number of segments requested."""
     for name, colour in (("black", (0, 0, 0)), ("grey", (128, 128, 128)), ("blue", (20, 40, 250))):
         found = method.segment(np.full((48, 64, 3), colour, np.uint8))
         demand(found.count == 1, f"a picture all {name} is divided into {found.count} segments")
 
 
 def every_picture_type_is_segmented(method: Segmenter) -> None:
-    """8 and 16 bits, floats, RGBA and any memory layout give nearly the same segments; poorer ones good labels."""
+    """Check that 8 and 16 bits, floats, RGBA and any memory layout give nearly the same segments.
+
+    Pictures with less information must give well-formed labels.
+    """
     picture, _ = two_textures()
     expected = method.segment(picture).labels
     for name, variant in exact_variants(picture):
@@ -69,14 +72,14 @@ def every_picture_type_is_segmented(method: Segmenter) -> None:
 
 
 def any_size_is_segmented(method: Segmenter) -> None:
-    """From a single pixel on, every size has labels of its own size, and never more segments than pixels."""
+    """Check that a picture of any size, even one pixel, gets labels of its size, and no more segments than pixels."""
     for shape in TINY:
         picture = two_textures(shape)[0]
         _demand_labels(method.segment(picture).labels, shape, f"a picture of {shape}")
 
 
 def what_is_no_picture_is_refused(method: Segmenter) -> None:
-    """NaN, infinity, an empty picture and a wrong number of channels raise PictureError, and nothing else."""
+    """Check that NaN, infinity, an empty picture and a wrong number of channels raise PictureError and nothing else."""
     for bad in (np.nan, np.inf):
         picture = np.asarray(two_textures()[0] / 255, np.float32)
         picture[3, 5] = bad
@@ -96,7 +99,7 @@ def _demand_labels(labels: np.ndarray, shape: tuple[int, ...], name: str) -> Non
 
 
 def _accuracy(labels: np.ndarray, truth: np.ndarray) -> float:
-    """Share of pixels right when each segment of a hundredth and more stands for the truth that it covers most."""
+    """Return the share of pixels that are right if each segment of 1 % or more stands for the class it covers most."""
     table = np.zeros((int(labels.max()) + 1, int(truth.max()) + 1), np.int64)
     np.add.at(table, (labels.ravel(), truth.ravel()), 1)
     large = table.sum(axis=1) * 100 >= labels.size

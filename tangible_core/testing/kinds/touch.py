@@ -1,4 +1,4 @@
-"""Checks of a touch as a piece of machinery: paths, repetition, hostile states, odd surfaces, materials."""
+"""Checks of a touch as software: paths, repetition, hostile states, unusual surfaces, materials."""
 
 from dataclasses import replace
 from itertools import product
@@ -14,13 +14,14 @@ from ..synthetic.scenes import KnownSurface, plane, sphere_cap
 
 PERIOD_S = 0.001
 ROUNDING_N_PER_M = 0.1
+"""Error of a stiffness that is measured by differences of forces."""
 DEVICE = DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.1, 0.1), 1e-6, simulated=True)
-"""The device of the size of a Novint Falcon, whose workspace the stiffness is measured in."""
+"""A device like the Novint Falcon, in whose workspace the stiffness is measured."""
 HOSTILE = (0.0, -0.0, 1e-310, 0.01, -0.03, 5.0, 1e30, -1e300, 1.7e308, np.inf, -np.inf, np.nan)
 
 
 def broken_state_gives_no_force(method: ForceRenderer) -> None:
-    """A position that is NaN or infinite gives zero force: a device that fails must not push."""
+    """Check that a position that is NaN or infinite gives zero force: a device that fails must not push."""
     known = plane()
     x, y, z = known.at(0, 0, 0.001)
     for bad in (np.nan, np.inf, -np.inf):
@@ -30,9 +31,9 @@ def broken_state_gives_no_force(method: ForceRenderer) -> None:
 
 
 def path_is_force_by_force(method: ForceRenderer) -> None:
-    """`path` gives what `force` gives one position at a time: a study of a path is a study of the device.
+    """Check that `path` gives the same forces as `force` for each position: a study of a path holds for a device.
 
-    The velocity is the step from the position before over the period; 0 at the first and where it is not finite.
+    The velocity is the step from the previous position over the period; 0 at the first and where it is not finite.
     """
     known = sphere_cap()
     path = _path(known)
@@ -51,27 +52,27 @@ def path_is_force_by_force(method: ForceRenderer) -> None:
 
 
 def same_path_same_forces(method: ForceRenderer) -> None:
-    """Two touches of one surface along one path agree to the last bit: what is random is seeded."""
+    """Check that two touches of a surface along one path agree to the last bit: random numbers must be seeded."""
     known = sphere_cap()
     first, second = (method.touch(known.surface).path(_path(known), PERIOD_S) for _ in range(2))
     demand(first.tobytes() == second.tobytes(), "the same path gives different forces the second time")
 
 
 def touches_are_apart(method: ForceRenderer) -> None:
-    """A touch knows nothing of another one: a new one starts free of contact, and two do not disturb each other."""
+    """Check that touches are independent: a new one starts without contact, and two do not affect each other."""
     known = sphere_cap()
     states = _states(_path(known))
     alone, busy, quiet = (method.touch(known.surface) for _ in range(3))
     for state in states:
         busy.force(HapticState(known.at(0.02, -0.02, 0.004), (0.1, 0.1, -0.1), state.time_s))
         expected, found = alone.force(state), quiet.force(state)
-        demand(tuple(found) == tuple(expected), f"beside another touch {state} gives {found}, alone {expected}")
+        demand(tuple(found) == tuple(expected), f"next to another touch {state} gives {found}, alone {expected}")
     new, first = method.touch(known.surface).force(states[0]), method.touch(known.surface).path(_path(known)[:1])
-    demand(tuple(new) == tuple(first[0].tolist()), f"a new touch feels {new}, one before it felt {first[0].tolist()}")
+    demand(tuple(new) == tuple(first[0].tolist()), f"a new touch gives {new}, an earlier one gave {first[0].tolist()}")
 
 
 def surface_is_not_written_to(method: ForceRenderer) -> None:
-    """The surface is the same bytes after a touch: the device, the report and the cache read it too."""
+    """Check that a touch does not change its surface: the device, the report and the cache read it too."""
     surface = _patchwork()
     before = surface.digest()
     method.touch(surface).path(_path(plane()), PERIOD_S)
@@ -79,7 +80,7 @@ def surface_is_not_written_to(method: ForceRenderer) -> None:
 
 
 def forces_are_always_finite(method: ForceRenderer) -> None:
-    """Huge, tiny, infinite and NaN positions, velocities and times, and leaps between them, give finite forces."""
+    """Check that huge, tiny, infinite and NaN positions, velocities and times, and leaps, give finite forces."""
     random = np.random.default_rng(0)
     known = sphere_cap()
     touch = method.touch(known.surface)
@@ -93,7 +94,7 @@ def forces_are_always_finite(method: ForceRenderer) -> None:
 
 
 def any_surface_is_taken(method: ForceRenderer) -> None:
-    """One cell, one row, one column, a plane at height 0, a single spike: forces are finite, and free air is free."""
+    """Check that forces are finite, and 0 above the surface, for one cell, row or column, a plane at 0 and a spike."""
     spike = np.zeros((9, 9), np.float32)
     spike[4, 4] = 0.01
     flat = [np.full(shape, height, np.float32) for shape in ((1, 1), (1, 9), (9, 1), (5, 7)) for height in (0.0, 0.01)]
@@ -108,7 +109,7 @@ def any_surface_is_taken(method: ForceRenderer) -> None:
 
 
 def materials_are_taken(method: ForceRenderer) -> None:
-    """On a plane of two materials, soft and frictionless beside hard and rough, forces are finite and never pull."""
+    """Check that forces are finite and never pull on two materials, one soft and frictionless, one hard and rough."""
     touch = method.touch(_patchwork())
     rest = np.array([touch.force(HapticState((x, 0.0, 0.009))) for x in (-0.02, 0.02)])
     demand(np.isfinite(rest).all() and (rest[:, 2] >= 0).all(), f"resting on two materials gives {rest.tolist()} N")
@@ -117,22 +118,22 @@ def materials_are_taken(method: ForceRenderer) -> None:
 
 
 def stiffness_is_no_less_than_felt(method: ForceRenderer) -> None:
-    """A law that says how stiff it is says no less than is felt, within 10 %, on level ground and of its materials.
+    """Check that the stiffness which a force law states is at least the measured one, within 10 %, on level ground.
 
-    The guard softens a law that is stiffer than the device holds by what it says; one that says nothing is felt.
+    By the stated stiffness the guard softens a force law that is too stiff for a device; without one, it measures.
     """
     for name, surface in (("a plane", plane().surface), ("a plane of two materials", _patchwork(rough=False))):
         touch = method.touch(surface)
-        if (said := touch.stiffness_n_per_m) is not None:
-            felt = max(slopes(touch, DEVICE), default=0.0)
+        if (stated := touch.stiffness_n_per_m) is not None:
+            measured = max(slopes(touch, DEVICE), default=0.0)
             demand(
-                felt <= 1.1 * said + ROUNDING_N_PER_M,
-                f"on {name} {felt:.4g} N/m are felt, and {said:.4g} said; say what it is, or None",
+                measured <= 1.1 * stated + ROUNDING_N_PER_M,
+                f"on {name} {measured:.4g} N/m are measured, but {stated:.4g} stated; state the true value, or None",
             )
 
 
 def _path(known: KnownSurface) -> Float64[np.ndarray, "n 3"]:
-    """A wavering stroke in and out of contact, with a leap, a NaN and a standstill in it."""
+    """Return a wavy stroke in and out of contact, with a leap, a NaN and a standstill in it."""
     turns = np.linspace(0, 6 * np.pi, 300)
     places = zip(0.02 * np.cos(turns / 3), 0.02 * np.sin(turns / 2), 0.001 * np.sin(turns), strict=True)
     path = np.array([known.at(float(x), float(y), float(depth)) for x, y, depth in places])

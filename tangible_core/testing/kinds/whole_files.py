@@ -1,4 +1,4 @@
-"""Whether a file is whole, by what its kind of file says of itself."""
+"""Tests that a file is whole, by the structure of its format."""
 
 import json
 import struct
@@ -11,15 +11,18 @@ from ..checks import demand
 
 
 def demand_whole(path: Path) -> None:
-    """Raises: CheckFailure, or what reading it raises, for a file that is empty, cut short or not of its kind."""
+    """Demand that a file is neither empty nor truncated, and of the format that its ending names.
+
+    Raises: CheckFailure, or the exception of the reader.
+    """
     demand(path.stat().st_size > 0, f"{path.name} is empty")
-    if (look := KINDS.get(path.suffix.lower())) is not None:
-        look(path)
+    if (read := READERS.get(path.suffix.lower())) is not None:
+        read(path)
 
 
 def _json(path: Path) -> None:
     def refuse(word: str) -> None:
-        raise ValueError(f"{path.name} holds {word}, which JSON has not")
+        raise ValueError(f"{path.name} contains {word}, which is not JSON")
 
     json.loads(path.read_text(encoding="utf-8"), parse_constant=refuse)
 
@@ -41,17 +44,17 @@ def _zip(path: Path) -> None:
 
 
 def _stl(path: Path) -> None:
-    """A binary one says how many triangles it has."""
+    """Compare the size of a binary STL with the number of triangles that it states."""
     data = path.read_bytes()
     (count,) = struct.unpack_from("<I", data, 80)
-    demand(len(data) == 84 + 50 * count, f"{path.name} says it has {count} triangles, and has {len(data)} bytes")
+    demand(len(data) == 84 + 50 * count, f"{path.name} states {count} triangles, but has {len(data)} bytes")
 
 
 def _glb(path: Path) -> None:
     data = path.read_bytes()
     magic, _, length = struct.unpack_from("<4sII", data)
     demand(magic == b"glTF", f"{path.name} does not begin as a GLB does")
-    demand(length == len(data), f"{path.name} says it has {length} bytes, and has {len(data)}")
+    demand(length == len(data), f"{path.name} states {length} bytes, but has {len(data)}")
 
 
 def _pdf(path: Path) -> None:
@@ -64,7 +67,7 @@ def _text(path: Path) -> None:
     path.read_text(encoding="utf-8")
 
 
-KINDS: dict[str, Callable[[Path], None]] = {
+READERS: dict[str, Callable[[Path], None]] = {
     ".json": _json, ".svg": _xml, ".xml": _xml, ".png": _picture, ".tif": _picture, ".tiff": _picture, ".jpg": _picture,
     ".zip": _zip, ".3mf": _zip, ".stl": _stl, ".glb": _glb, ".pdf": _pdf, ".txt": _text, ".html": _text, ".csv": _text,
 }  # fmt: skip

@@ -10,7 +10,7 @@ import pytest
 from tangible_core import Calibration, DisparityMap, Pipeline, Recording, Scene, Views, Workspace, load_pipeline, show
 from tangible_core.data import HapticSurface, Plan
 from tangible_core.errors import ConfigError, DeviceError, OutputError, PictureError, Stopped, UnknownMethod
-from tangible_core.pipeline.engine.engine import StageEvent
+from tangible_core.pipeline.engine.stage import StageEvent
 from tangible_core.plugins import DepthEstimator
 from tangible_core.session import STOPPED, compared
 from tangible_depth import SemiGlobal, Zncc

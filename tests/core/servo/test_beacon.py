@@ -31,9 +31,8 @@ from tangible_core.servo.beacon import (
     beacon_flags,
 )
 from tangible_core.servo.guard import layout
-from tangible_core.servo.guard.guarded import Guarded, guarded
-from tangible_core.servo.pulling import pulling
 from tangible_core.servo.ring import Ring
+from tangible_core.servo.ticks.python_tick import GuardedForce, guard_touch
 from tangible_core.session import (
     Recording,
     Turn,
@@ -223,13 +222,13 @@ class Wall(PlainTouch):
         return Force(0.0, 0.0, 500.0 * max(0.002 - state.position_m[2], 0.0))
 
 
-def loop_of(beacon: Beacon | None, limits: Safety) -> tuple[Guarded, np.ndarray, BeaconMemory]:
+def loop_of(beacon: Beacon | None, limits: Safety) -> tuple[GuardedForce, np.ndarray, BeaconMemory]:
     settings, memory = limits.arrays(SPEC, 500.0)
     asked = BeaconMemory.of(beacon)
-    return guarded(Wall(), settings, memory, pulling(asked.arrays, memory)), memory, asked
+    return guard_touch(Wall(), settings, memory, asked.arrays), memory, asked
 
 
-def drift(allowed: Guarded, seconds: float, at: np.ndarray, mass_kg: float = 0.3, b: float = 0.0) -> np.ndarray:
+def drift(allowed: GuardedForce, seconds: float, at: np.ndarray, mass_kg: float = 0.3, b: float = 0.0) -> np.ndarray:
     """A hand that only the force moves: position, velocity, force, flags, a row a tick; exact under a held force."""
     place, speed, rows = np.array(at, float), np.zeros(3), []
     for _ in range(round(seconds / T)):
@@ -280,8 +279,8 @@ class TestThroughTheGuard:
         def felt(with_one: bool) -> np.ndarray:
             touch = load_method("render", law)().touch(SURFACE) if law else Wall()
             settings, memory = Safety().arrays(SPEC, 800.0)
-            pull = pulling(BeaconMemory.ready().arrays, memory) if with_one else None
-            allowed = guarded(touch, settings, memory, pull)
+            pull = BeaconMemory.ready().arrays if with_one else None
+            allowed = guard_touch(touch, settings, memory, pull)
             return np.array([[*force, flags] for force, flags in (allowed(HapticState(tuple(p)), T) for p in path)])
 
         assert felt(True).tobytes() == felt(False).tobytes()
@@ -297,7 +296,7 @@ class TestThroughTheGuard:
     def test_its_stiffness_counts_with_the_law_s(self):
         settings, memory = Safety(**{"ramp_s": 0, "passivity": "off"}).arrays(SPEC, 2300.0)
         asked = BeaconMemory.of(beacon_to(SURFACE, 1))
-        allowed = guarded(Wall(), settings, memory, pulling(asked.arrays, memory))
+        allowed = guard_touch(Wall(), settings, memory, asked.arrays)
         for _ in range(900):
             allowed(HapticState((-0.03, -0.02, 0.01)), T)
         assert memory[layout.GAIN] == pytest.approx(2400 / 2460, abs=0.002)

@@ -17,9 +17,10 @@ from tangible_core import HapticSurface, load_method
 from tangible_core.data import ServoReport
 from tangible_core.errors import OutputError
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.servo import OVER, Ring, Safety, Servo, cycle
-from tangible_core.servo.loop import sections
+from tangible_core.servo import OVER, Ring, Safety, Servo
 from tangible_core.servo.ring import STOP
+from tangible_core.servo.ticks import cycle
+from tangible_core.servo.ticks.loop import sections
 from tangible_core.session import INTERRUPTED, Keeper, Recording, figures, keeping, run_in_real_time
 from tangible_core.session.tick_file import About
 

@@ -9,9 +9,8 @@ import pytest
 
 from tangible_core.data import TICK_COLUMNS, Force, HapticState, TickFlag
 from tangible_core.errors import DeviceError
-from tangible_core.servo import Ring, cycle, parcel, ring
+from tangible_core.servo import Ring, parcel, ring
 from tangible_core.servo.guard.layout import COUNTS
-from tangible_core.servo.loop import sections
 from tangible_core.servo.reports import LoopTotals, report, spread
 from tangible_core.servo.ring import (
     COUNT,
@@ -26,6 +25,8 @@ from tangible_core.servo.ring import (
     WIDEST_US,
     shared_folder,
 )
+from tangible_core.servo.ticks import cycle
+from tangible_core.servo.ticks.loop import sections
 from tangible_core.session import Recording, figures
 
 

@@ -229,7 +229,7 @@ class Feeling:
         if servo is None or servo.running or servo is self._told:
             return None
         self._told = servo
-        return None if self.stopped else Ended(_end(servo), servo.lost)
+        return None if self.stopped else Ended(_end(servo), servo.device_lost)
 
     def frame(self, seq: int, status: int, beside: Beside = ALONE) -> bytes | None:
         """The newest tick as a STATE; a hand that is nowhere without a loop; None for a tick that was overwritten."""

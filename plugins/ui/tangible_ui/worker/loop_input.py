@@ -6,7 +6,7 @@ from typing import Any
 from tangible_core.data import HapticSurface
 from tangible_core.mapping import over
 from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.pipeline.engine.engine import Progress
+from tangible_core.pipeline.engine.stage import Progress
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.runtime.child_process import dumps

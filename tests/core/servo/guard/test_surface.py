@@ -10,8 +10,8 @@ from tangible_core import load_method
 from tangible_core.data import DeviceSpec, HapticState, TickFlag
 from tangible_core.servo.guard import layout as at
 from tangible_core.servo.guard.guard import guard, restart
-from tangible_core.servo.guard.guarded import guarded
 from tangible_core.servo.guard.safety import SURFACE_M_PER_S, Coupling, Safety
+from tangible_core.servo.ticks.python_tick import guard_touch
 from tangible_core.session import run_simulated
 
 SPEC = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
@@ -25,7 +25,7 @@ class Felt:
     def __init__(self, safety: Safety = STRICT, stiffness_n_per_m: float = STIFF) -> None:
         self.film = MovingPlane(0.01, stiffness_n_per_m)
         self.settings, self.memory = safety.arrays(SPEC, stiffness_n_per_m)
-        self._allowed = guarded(self.film.touch, self.settings, self.memory)
+        self._allowed = guard_touch(self.film.touch, self.settings, self.memory)
         self._at_m = self.force_n = None
         self.work_j, self.damped, self.time_s = 0.0, 0, 0.0
 

@@ -173,7 +173,7 @@ def parts_heights(
     part_validation.check_parts(config.with_values(parts=said), kept.parts, kept.grid.scene.shape[1])
     part_validation.check_numbers(config, kept.parts.count)
     known = known_heights(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
-    relief = working_grid.relief_of_layers(kept.layering, known, config.size, kept.grid.shown)
+    relief = working_grid.relief_of_layers(kept.layering, known, config.size, kept.grid.opaque_mask)
     own = part_validation.own_materials(config) if materials is None else dict(enumerate(materials))
     products: dict[str, Record] = {config.felt_parts: kept.parts, "relief": relief}
     if kept.materials is not None:

@@ -107,7 +107,7 @@ def kept_of(bench: Bench, pipeline: Pipeline) -> Kept:
         raise config.error_at(*wrong)
     made = Pipeline.from_config(bare, like=pipeline)
     grid = working_grid.WorkingGrid(made.scene, bare.size)
-    parts = working_grid.parts_on_grid(made.engine.felt(bare.felt_parts), grid.shape, bare.felt_parts)
+    parts = working_grid.parts_on_grid(made.engine.make_on_grid(bare.felt_parts), grid.shape, bare.felt_parts)
     uses = bare.render is None or bare.render.method.uses_materials
     chosen = made.make("materials") if uses else None
     layering = None if before is None else _same_layering(before, bare, parts, grid)

@@ -18,8 +18,8 @@ from tangible_core.files.yaml.parts_block import with_parts
 from tangible_core.files.yaml.source import read_text
 from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values
 from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.scene.scene import Scene, builtin_files
-from tangible_core.scene.scene_files import BUILTINS, SceneFiles
+from tangible_core.scene.scene import Scene
+from tangible_core.scene.scene_files import BUILTINS, SceneFiles, builtin_files
 
 from .label_files import NAME, is_ours
 from .opening import Opened

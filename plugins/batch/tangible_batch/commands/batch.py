@@ -62,7 +62,7 @@ def batch(
     from tangible_core.pipeline.output.run_folder import default_name
 
     from ..farm import LONGEST_S
-    from ..jobs import BatchOptions
+    from ..job_maker import BatchOptions
     from ..manifest import rows_of
     from ..results import ROWS, write_gallery, write_index
     from ..running import Tally, Workforce, run_batch

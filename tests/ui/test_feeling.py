@@ -14,7 +14,7 @@ from loop_devices import Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import TICK_COLUMNS, Vector
 from tangible_core.errors import DeviceError
-from tangible_core.mapping import WorkspaceMapping, mapped
+from tangible_core.mapping import WorkspaceMapping, map_device
 from tangible_core.plugins.interfaces import HapticDevice, Touch
 from tangible_core.servo import Safety, Servo, pack_touch
 from tangible_core.servo.ring import STOP, shared_folder
@@ -52,7 +52,7 @@ def felt(
 ) -> Felt:
     """A scene for a device, the page's own without one."""
     options = {name: value for name, value in feeling.own_device.items() if name != "use"}
-    seen = mapped(device or load_method("device", "pointer")(**options), mapping)
+    seen = map_device(device or load_method("device", "pointer")(**options), mapping)
     return Felt(pack_touch(touch or law(), seen.spec()), "proxy", "it", seen, device is None, mapping, AT_ONCE)
 
 

@@ -21,7 +21,7 @@ from tangible_core.compiled.kernels import Address
 from tangible_core.compiled.touch import CompiledLink
 from tangible_core.data import NO_FORCE, TICK_COLUMNS, Force, HapticState
 from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.mapping import WorkspaceMapping, mapped
+from tangible_core.mapping import WorkspaceMapping, map_device
 from tangible_core.plugins.interfaces import Link
 from tangible_core.servo import Safety, Servo, null_touch
 from tangible_core.servo.guard import guard
@@ -81,7 +81,7 @@ class TestExchange:
             assert run_tick(link)[1][3:6] == pytest.approx([0.04, -0.08, 0.0])
 
     def test_link_through_mapping_stays_compiled(self):
-        with mapped(Pointer(), WorkspaceMapping(scale=2.0)).open() as link, PointerClient() as client:
+        with map_device(Pointer(), WorkspaceMapping(scale=2.0)).open() as link, PointerClient() as client:
             assert isinstance(link, CompiledLink) and not link.exchanges
             client.send((0.02, 0.0, 0.01))
             assert run_tick(link)[1][:3].tolist() == [0.01, 0.0, 0.005]
@@ -262,7 +262,7 @@ TAGS = [0, 1, 0x2AAAAA, 0x555555, 0x7FFFFF]
 
 @pytest.mark.parametrize("tag", TAGS)
 def test_clutch_ignores_client_number_in_buttons(tag: int):
-    with mapped(Pointer(), WorkspaceMapping(scale=2.0, clutch_button=1)).open() as link, PointerClient() as client:
+    with map_device(Pointer(), WorkspaceMapping(scale=2.0, clutch_button=1)).open() as link, PointerClient() as client:
         for x, buttons, seen in ((0.02, 0, 0.01), (0.04, 1, 0.02), (0.06, 2, 0.02), (0.06, 3, 0.02), (0.08, 5, 0.03)):
             client.send((x, 0.0, 0.01), tag << 8 | buttons)
             state = run_tick(as_compiled(link))[1]
@@ -270,7 +270,7 @@ def test_clutch_ignores_client_number_in_buttons(tag: int):
 
 
 def test_client_number_in_buttons_returns_with_its_tick(tmp_path: Path):
-    device = mapped(Pointer(follow_s=FOLLOW_S), WorkspaceMapping(scale=2.0, clutch_button=1))
+    device = map_device(Pointer(follow_s=FOLLOW_S), WorkspaceMapping(scale=2.0, clutch_button=1))
     sent = [tag << 8 | 5 for tag in TAGS]
     with Servo(null_touch(), device) as servo, PointerClient() as client:
         for buttons in sent:

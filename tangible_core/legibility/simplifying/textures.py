@@ -1,33 +1,41 @@
-"""Textures that are alike made one, until a finger can tell those apart that are left."""
+"""Merging of similar textures, until a finger can tell the remaining ones apart."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from jaxtyping import Float64, Int32, Int64
 
-from ..data import PartMap
-from ..data.pictures import to_rgb8
-from ..runtime.opencv import plain_opencv
+from ...data import PartMap
+from ...data.pictures import to_rgb8
+from ...runtime.opencv import plain_opencv
 
 MOST_COMPARED = 256
-"""Textures that are compared each with each: of more, the smallest go to the most alike of the largest."""
+"""Textures that are compared pairwise; the smallest of more go to the most similar of these."""
 
 
-def kinds_of(parts: PartMap, names: Sequence[str], textures: int, picture: np.ndarray | None) -> Int32[np.ndarray, "n"]:
-    """The kind of each part, from 0 on: a kind of its own for each that has a name, and for the others at most so many.
+def count_textures(parts: PartMap, names: Sequence[str] = ()) -> int:
+    """Count the textures of the parts that have a pixel: one a segment, without parts that a name distinguishes."""
+    present = np.flatnonzero(np.bincount(parts.labels.reshape(-1), minlength=parts.count))
+    return len({parts.segments[n] for n in present.tolist() if n >= len(names) or not names[n]})
 
-    Those are the segments that they are of; while there are too many, those two become one that add least to the spread
-    of the colours within textures (Ward 1963), in CIELAB; without a picture, the smallest ones.
+
+def texture_kinds(
+    parts: PartMap, names: Sequence[str], textures: int, picture: np.ndarray | None
+) -> Int32[np.ndarray, "n"]:
+    """Return the kind of each part, from 0 on: a separate one for each named part, at most `textures` for the others.
+
+    Kinds of unnamed parts are their segments. While there are too many, the two kinds are merged that add least to the
+    spread of colours within textures (Ward 1963), in CIELAB; without a picture, the smallest kinds.
     """
-    said = [-1 - n if n < len(names) and names[n] else segment for n, segment in enumerate(parts.segments)]
-    order = {each: at for at, each in enumerate(dict.fromkeys(said))}
-    kinds = np.array([order[each] for each in said], np.int32)
+    keys = [-1 - n if n < len(names) and names[n] else segment for n, segment in enumerate(parts.segments)]
+    order = {each: at for at, each in enumerate(dict.fromkeys(keys))}
+    kinds = np.array([order[each] for each in keys], np.int32)
     size = np.bincount(kinds[parts.labels].reshape(-1), minlength=len(order))
     free = np.array([at for each, at in order.items() if each >= 0 and size[at]], np.int64)
     if free.size > textures:
         colour = np.zeros((len(order), 3)) if picture is None else _colours(picture, kinds[parts.labels], size)
         into = np.arange(len(order), dtype=np.int32)
-        into[free] = free[_merged(size[free].astype(np.float64), colour[free], textures, picture is not None)]
+        into[free] = free[_merge(size[free].astype(np.float64), colour[free], textures, picture is not None)]
         kinds = into[kinds]
     _, dense = np.unique(kinds, return_inverse=True)
     return dense.astype(np.int32)
@@ -36,7 +44,7 @@ def kinds_of(parts: PartMap, names: Sequence[str], textures: int, picture: np.nd
 def _colours(
     picture: np.ndarray, kinds: Int32[np.ndarray, "h w"], size: Int64[np.ndarray, "k"]
 ) -> Float64[np.ndarray, "k 3"]:
-    """The mean colour of each kind."""
+    """Return the mean colour of each kind, in CIELAB."""
     import cv2
 
     with plain_opencv():
@@ -47,17 +55,16 @@ def _colours(
     return np.stack(sums, axis=1) / np.maximum(size, 1)[:, None]
 
 
-def _merged(
+def _merge(
     size: Float64[np.ndarray, "k"], colour: Float64[np.ndarray, "k 3"], most: int, coloured: bool
 ) -> Int64[np.ndarray, "k"]:
-    """Into which each goes, once there are at most so many."""
+    """Merge kinds until at most `most` are left; return the kind that each goes into."""
     into = np.arange(size.size)
-    kept = np.sort(np.argsort(-size, kind="stable")[:MOST_COMPARED])
-    for each in np.setdiff1d(into, kept).tolist():
-        into[each] = kept[np.square(colour[kept] - colour[each]).sum(axis=1).argmin()]
+    alive = np.sort(np.argsort(-size, kind="stable")[:MOST_COMPARED])
+    for each in np.setdiff1d(into, alive).tolist():
+        into[each] = alive[np.square(colour[alive] - colour[each]).sum(axis=1).argmin()]
     size = np.bincount(into, size, into.size)
     colour = colour.copy()
-    alive = kept
     while alive.size > most:
         apart = np.square(colour[alive][:, None] - colour[alive]).sum(axis=2) if coloured else 1.0
         cost = apart * np.outer(size[alive], size[alive]) / np.add.outer(size[alive], size[alive])

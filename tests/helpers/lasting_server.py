@@ -47,7 +47,9 @@ class LastingServer(UiServer):
 
 
 async def forget(desk: Any, tab: Any) -> None:
-    """What has happened: no verdict, file, comparison or step back is left of the documents before."""
+    """Forget the documents before: no verdict, file, comparison or step back is left. The worker and the surface stay."""
+    for event in desk._latest.keys() - {"maker", "described"}:
+        del desk._latest[event]
     desk._history.clear()
     desk._logged.clear()
     desk.texts = type(desk.texts)()

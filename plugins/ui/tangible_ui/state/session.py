@@ -26,8 +26,10 @@ MOST_HISTORY, MOST_LOGGED = 500, 200
 """Events, and lines that were logged, that a tab which is opened later hears of."""
 DRAWN_PAUSE_S = 0.4
 """Between two surfaces that are drawn while a height is dragged: a browser draws one while the hand feels five."""
-LAST_ALONE = frozenset({"restored", "document", "plan", "materials", "preflight", "legible", "exported", "beacon"})
-"""Events of which only the last one counts."""
+LATEST_ONLY = frozenset(
+    {"restored", "document", "plan", "materials", "preflight", "legible", "exported", "beacon", "described"}
+) | {"maker", "maker_gone"}
+"""Events that describe a state: only the latest one counts, and it is kept however much else happens."""
 
 
 @runtime_checkable
@@ -67,6 +69,8 @@ class Desk:
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None
         """The tab whose hand is felt."""
+        self._latest: dict[str, dict[str, Any]] = {}
+        """The latest event of each kind in `LATEST_ONLY`."""
         self._history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
         self._logged: deque[dict[str, Any]] = deque(maxlen=MOST_LOGGED)
         self.maker = Maker(folder, self._hear)
@@ -124,21 +128,17 @@ class Desk:
         said = {"event": event, "at_s": round(time.time(), 3), **told}
         if event == "scene":
             self.scene = said
+        elif event in LATEST_ONLY:
+            self._latest[event] = said
         else:
-            if event in LAST_ALONE:
-                self._forget(event)
             (self._logged if event == "log" else self._history).append(said)
         for tab in list(self.tabs):
             tab.say(said)
 
-    def _forget(self, event: str) -> None:
-        if (before := next((each for each in self._history if each["event"] == event), None)) is not None:
-            self._history.remove(before)
-
     @property
     def history(self) -> list[dict[str, Any]]:
-        """What a tab that comes later hears of; however much is logged, the rest is there."""
-        return sorted([*self._history, *self._logged], key=lambda said: said["at_s"])
+        """The events that a tab opened now has missed, oldest first; however much is logged, the rest is there."""
+        return sorted([*self._latest.values(), *self._history, *self._logged], key=lambda said: said["at_s"])
 
     def enter(self, tab: Tab) -> None:
         """Another tab; it holds the hand if no other one does."""

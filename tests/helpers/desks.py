@@ -16,6 +16,7 @@ from tangible_ui.worker.handle import MakingStopped
 from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.messages import Event
 from tangible_ui.worker.state import Bench
+from waiting import happened
 
 TEXT = """\
 # a photograph of mine
@@ -130,9 +131,7 @@ class Heard:
 
     async def until(self, name: str, count: int = 1) -> dict[str, Any]:
         """The newest event of a name, as soon as there were so many."""
-        async with asyncio.timeout(30):
-            while self.names().count(name) < count:
-                await asyncio.sleep(0.005)
+        await happened(lambda: self.names().count(name) >= count, f"no {name}")
         return self.last(name)
 
 

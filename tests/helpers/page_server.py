@@ -17,9 +17,9 @@ from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.serving.routes import application
 from tangible_ui.serving.serve import Server, settings, watch
 from tangible_ui.state.session import Desk
+from waiting import LONGEST_S
 
 KEY = "key-of-a-test-0123456789"
-IN_TIME_S = 60.0
 
 
 class NoMaker:
@@ -75,12 +75,12 @@ class PageServer:
 
     def __enter__(self) -> Self:
         self._thread.start()
-        assert self._ready.wait(IN_TIME_S)
+        assert self._ready.wait(LONGEST_S)
         return self
 
     def __exit__(self, *_: object) -> None:
         self.server.should_exit = True
-        self._thread.join(IN_TIME_S)
+        self._thread.join(LONGEST_S)
         assert not self._thread.is_alive()
         assert not self.complaints, self.complaints
 
@@ -90,7 +90,7 @@ class PageServer:
         async def there() -> Any:
             return work()
 
-        return asyncio.run_coroutine_threadsafe(there(), self.loop).result(IN_TIME_S)
+        return asyncio.run_coroutine_threadsafe(there(), self.loop).result(LONGEST_S)
 
     def ask(
         self, path: str, method: str = "GET", body: bytes | None = None, **headers: str | None
@@ -98,7 +98,7 @@ class PageServer:
         """One request; headers are named with underscores, None leaves one out. The answer's text is its `text`."""
         said = {"host": self.host, "origin": f"http://{self.host}" if method not in ("GET", "HEAD") else None}
         said |= {name.replace("_", "-"): value for name, value in headers.items()}
-        connection = http.client.HTTPConnection(HOST, self.port, timeout=IN_TIME_S)
+        connection = http.client.HTTPConnection(HOST, self.port, timeout=LONGEST_S)
         connection.putrequest(method, path, skip_host=True, skip_accept_encoding=True)
         for name, value in said.items():
             if value is not None:
@@ -135,7 +135,7 @@ class TestTab:
         self.socket.send(json.dumps({"number": self._number, "ask": name, **told}))
         return self._number
 
-    def next(self, timeout: float = IN_TIME_S) -> dict[str, Any] | None:
+    def next(self, timeout: float = LONGEST_S) -> dict[str, Any] | None:
         """The next event; frames are counted. None if there is none in time. Raises: ConnectionClosed."""
         try:
             while isinstance(said := self.socket.recv(timeout), bytes):
@@ -155,7 +155,7 @@ class TestTab:
         """The code with which it is closed."""
         try:
             while True:
-                self.socket.recv(IN_TIME_S)
+                self.socket.recv(LONGEST_S)
         except ConnectionClosed as error:
             return error.rcvd.code if error.rcvd else 1006
 

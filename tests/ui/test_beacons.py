@@ -1,8 +1,6 @@
 """A beacon on the page: asked for by the number of a part, told of to all tabs, and released by a button."""
 
 import asyncio
-import time
-from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -24,16 +22,9 @@ from tangible_ui.requests.document import take
 from tangible_ui.requests.making import make
 from tangible_ui.serving.serve import watch
 from tangible_ui.state.texts import Text
+from waiting import happened, until
 
-IN_TIME_S = 20.0
 IN_PARTS = TEXT.replace("want: touch", "want: touch\nparts: {0: {name: wall}}")
-
-
-def until(condition: Callable[[], Any]) -> None:
-    end = time.monotonic() + IN_TIME_S
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.005)
 
 
 def test_a_tab_asks_for_a_part_and_all_tabs_hear_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -138,9 +129,7 @@ def test_the_server_tells_all_tabs_why_it_ended() -> None:
 
     async def watched() -> None:
         task = asyncio.ensure_future(watch(desk))
-        async with asyncio.timeout(IN_TIME_S):
-            while len(told) < 2:
-                await asyncio.sleep(0.005)
+        await happened(lambda: len(told) >= 2)
         task.cancel()
 
     asyncio.run(watched())

@@ -17,6 +17,7 @@ from tangible_core.pipeline.output.export_folder import LISTED
 from tangible_export.stl import Stl
 from tangible_ui.requests import REQUESTS
 from tangible_ui.worker.jobs.export import KEPT
+from waiting import LONGEST_S
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]
 STL = {"use": "stl", "longer_side_m": 0.06}
@@ -107,13 +108,13 @@ class TestExport:
 
         def waits(self: Stl, work: Any, stem: Path) -> Any:
             begun.set()
-            assert go_on.wait(30)
+            assert go_on.wait(LONGEST_S)
             return write(self, work, stem)
 
         async def check(small: SmallDesk, ask: Ask) -> None:
             monkeypatch.setattr(Stl, "write", waits)
             asked = asyncio.ensure_future(ask("export", exports=[STL]))
-            await asyncio.to_thread(begun.wait, 30)
+            await asyncio.to_thread(begun.wait, LONGEST_S)
             await ask("stop_making")
             assert await asked is None
             assert small.tab.last("made")["outcome"] == "stopped"

@@ -1,7 +1,6 @@
 """Who holds the page's hand, which device is felt, and that no motor starts unasked: the desk, with a maker made up."""
 
 import asyncio
-import time
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from pathlib import Path
@@ -23,9 +22,9 @@ from tangible_ui.requests import REQUESTS
 from tangible_ui.serving.serve import watch
 from tangible_ui.state import session as desk_module
 from tangible_ui.state.session import Desk
+from waiting import LONGEST_S, happened
 
 LEVEL = HapticSurface.from_heights(np.full((32, 32), 0.002, np.float32))
-IN_TIME_S = 20.0
 
 
 class Page:
@@ -85,19 +84,12 @@ def at_desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., No
         watching = asyncio.ensure_future(watch(desk))
         desk.enter(page)
         try:
-            await asyncio.wait_for(work(desk, page), 3 * IN_TIME_S)
+            await asyncio.wait_for(work(desk, page), 3 * LONGEST_S)
         finally:
             watching.cancel()
             await desk.close()
 
     return lambda work: asyncio.run(run(work))
-
-
-async def until(condition: Callable[[], Any]) -> None:
-    end = time.monotonic() + IN_TIME_S
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        await asyncio.sleep(0.01)
 
 
 class TestWhoHolds:
@@ -172,15 +164,15 @@ class TestDevices:
             FakeMaker.device = Failing(fault="unplugged", at=100)
             with suppress(DeviceError):  # where it is gone before the law is felt on it
                 await REQUESTS["choose_device"](desk, page, kind="document")
-            await until(lambda: not page.last("loop")["running"])
+            await happened(lambda: not page.last("loop")["running"])
             assert page.last("loop")["why"] == "the failing device does not answer; plug it in"
             assert page.last("loop")["lost"]
             assert await REQUESTS["doctor"](desk, page) is None
             FakeMaker.device = Failing(fault="none", opens="second", record=str(tmp_path / "held"))
             await REQUESTS["wait_for_device"](desk, page)
-            await until(lambda: page.last("loop").get("waiting"))
+            await happened(lambda: page.last("loop").get("waiting"))
             assert "in use by another program" in page.last("loop")["why"]
-            await until(lambda: page.last("loop")["running"])
+            await happened(lambda: page.last("loop")["running"])
             figures = await REQUESTS["doctor"](desk, page)
             assert figures is not None
             assert figures["how"] == desk.feeling.how
@@ -194,12 +186,12 @@ class TestDevices:
             with pytest.raises(DeviceError):
                 await REQUESTS["choose_device"](desk, page, kind="document")
             await REQUESTS["wait_for_device"](desk, page)
-            await until(lambda: page.last("loop").get("waiting"))
+            await happened(lambda: page.last("loop").get("waiting"))
             if ended_by == "stop":
                 await REQUESTS["stop"](desk, page)
             else:
                 await REQUESTS["choose_device"](desk, page, kind="hand")
-            await until(lambda: len(desk._tasks) == 0)
+            await happened(lambda: len(desk._tasks) == 0)
             assert desk.feeling.running == (ended_by != "stop")
 
         at_desk(work)

@@ -2,7 +2,6 @@
 
 import asyncio
 import os
-import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -19,6 +18,7 @@ from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.framing import STATE_FRAME
 from tangible_ui.requests import feeling as asks
 from tangible_ui.state.session import Desk
+from waiting import happened
 
 TEXT = """\
 scene: {height: flat.npy}
@@ -62,12 +62,13 @@ def forces(desk: Desk) -> tuple[float, float]:
 
 async def pressed(desk: Desk, until: Callable[[], bool]) -> None:
     """Press on the surface until something is so."""
-    end_s = time.monotonic() + 20
-    while not until():
-        assert time.monotonic() < end_s, forces(desk)
+
+    def pressed() -> bool:
         desk.feeling.hand.point((0.0, 0.0, -DEPTH_M), 1, 1)
         desk.laws.follow(desk.feeling)
-        await asyncio.sleep(0.01)
+        return until()
+
+    await happened(pressed)
 
 
 @pytest.mark.usefixtures("loop_in_thread")
@@ -81,11 +82,12 @@ def test_the_other_law_is_computed_on_the_same_hand(tmp_path: Path) -> None:
             assert told[-1]["named"] == ["penalty (a)", "penalty (b)"]
             assert told[-1]["felt"] == 1
             desk.feeling.hand.release()
-            desk.laws.follow(desk.feeling)
-            await asyncio.sleep(0.2)
-            desk.laws.follow(desk.feeling)
-            await asyncio.sleep(0.2)
-            assert forces(desk) == (0, 0)
+
+            def released() -> bool:
+                desk.laws.follow(desk.feeling)
+                return forces(desk) == (0, 0)
+
+            await happened(released)
             await asks.end_laws(desk, None)
             assert desk.laws.rival.force_n == NOTHING
             assert not desk.laws.rival.running

@@ -17,6 +17,7 @@ from tangible_ui.requests import making as asks_making
 from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.messages import Late
 from tangible_ui.worker.state import Bench
+from waiting import LONGEST_S, happened
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]
 DEVICE = ["device={use: mock}"]
@@ -149,11 +150,11 @@ def test_the_newer_waits_for_a_stage_that_it_needs_too_and_for_no_other(
     ended: list[BaseException | None] = []
     old = threading.Thread(target=_kept, args=(ended, lambda: make(bench, TEXT, scene, number=1)))
     old.start()
-    assert begun.wait(20)
+    assert begun.wait(LONGEST_S)
     newer = {"text": TEXT.replace(said, instead), "path": scene, "sets": DEVICE, "want": "touch"}
     assert JOBS["give_way"].do(bench, number=2, **newer) is at_once
     go.set()
-    old.join(20)
+    old.join(LONGEST_S)
     assert isinstance(ended[0], Stopped)
     assert [each["product"] for each in heard(bench, "stage") if each["done"]] == ["disparity"]
     with pytest.raises(Stopped):  # nor does one begin that waited in the queue
@@ -171,7 +172,7 @@ def _waits(begun: threading.Event, go: threading.Event) -> Any:
 
     def waits(self: Any, views: Any) -> Any:
         begun.set()
-        assert go.wait(20)
+        assert go.wait(LONGEST_S)
         return estimate(self, views)
 
     return waits
@@ -209,7 +210,7 @@ def test_what_is_edited_while_something_is_made_is_applied_after_it(small: Any, 
         monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
         await ask("set", changes={"depth.smoothing_px": 3})
         making = asyncio.ensure_future(ask("make"))
-        assert await asyncio.to_thread(begun.wait, 20)
+        assert await asyncio.to_thread(begun.wait, LONGEST_S)
         plans = small.tab.names().count("plan")
         await ask("set", changes={"render.stiffness_n_per_m": 900}, apply=True)
         plan = await small.tab.until("plan", plans + 1)
@@ -230,7 +231,7 @@ def test_stopping_kills_the_maker_only_while_it_makes(small: Any, monkeypatch: p
         monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
         await ask("set", changes={"depth.smoothing_px": 3})
         making = asyncio.ensure_future(ask("make"))
-        assert await asyncio.to_thread(begun.wait, 20)
+        assert await asyncio.to_thread(begun.wait, LONGEST_S)
         await ask("stop_making")
         go.set()
         assert await making is None  # who stops is not told of an error
@@ -250,11 +251,10 @@ def test_what_does_not_give_way_is_killed_and_the_newest_asked_again(small: Any,
         monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
         await ask("set", changes={"depth.smoothing_px": 3})
         old = asyncio.ensure_future(ask("make"))
-        assert await asyncio.to_thread(begun.wait, 20)
+        assert await asyncio.to_thread(begun.wait, LONGEST_S)
         await ask("set", changes={"depth.smoothing_px": 4})
         new = asyncio.ensure_future(ask("make"))
-        while not small.maker.kills:
-            await asyncio.sleep(0.01)
+        await happened(lambda: small.maker.kills)
         go.set()
         assert await old is None
         await new

@@ -27,6 +27,7 @@ from tangible_ui.worker.parts.label_files import as_png, is_ours, unpacked
 from tangible_ui.worker.parts.opening import _places
 from tangible_ui.worker.parts.saving import numbered, said_of_parts
 from tangible_ui.worker.state import Bench
+from waiting import happened
 
 SHAPE = (24, 32)
 Check = Callable[[SmallDesk, Any], Coroutine[Any, Any, None]]
@@ -586,9 +587,7 @@ class TestHeights:
             parts = [{"label": 7, "height_m": 0.0007}]
             await saved(small, ask, parts=parts, heights={**GIVEN, "by": by})
             await ask("parts_heights", heights_m=[None, 0.0007, None])
-            async with asyncio.timeout(30):
-                while (seen := small.maker.bench.kept.seen) is None:
-                    await asyncio.sleep(0.005)
+            seen = await happened(lambda: small.maker.bench.kept.seen)
             wanted = load_pipeline(tmp_path / "mine.yaml").relief.height_m
             np.testing.assert_array_equal(seen.relief.height_m, wanted)
 
@@ -676,9 +675,7 @@ class TestHeights:
             found = await asyncio.gather(*(ask("parts_heights", heights_m=[0.0, k / 1e4, 0.0]) for k in range(20)))
             assert found == [{}, *[None] * 18, {}]
             assert small.maker.asked.count("parts_heights") == 2
-            async with asyncio.timeout(30):
-                while small.tab.last("scene")["height_m"][1] < 19 / 1e4:
-                    await asyncio.sleep(0.005)
+            await happened(lambda: small.tab.last("scene")["height_m"][1] >= 19 / 1e4)
             assert small.maker.bench.kept.seen.relief.height_m.max() > 19 / 1e4
 
         small(check)

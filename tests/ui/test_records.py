@@ -2,7 +2,7 @@
 
 import asyncio
 import errno
-import time
+import os
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -19,6 +19,7 @@ from tangible_ui.feeling.recorder import BY_HAND, Recorder
 from tangible_ui.requests.records import record
 from tangible_ui.worker.jobs import records
 from tangible_ui.worker.state import Bench
+from waiting import LONGEST_S, until
 
 
 @pytest.fixture
@@ -30,7 +31,7 @@ def bench(tmp_path: Path) -> Bench:
 def servo(loop_in_thread: None) -> Any:
     surface = HapticSurface.from_heights(np.zeros((8, 8), np.float32))
     touch = load_method("render", "penalty")().touch(surface)
-    with Servo(touch, load_method("device", "mock")(), seconds=20) as running:
+    with Servo(touch, load_method("device", "mock")(), seconds=LONGEST_S) as running:
         yield running
 
 
@@ -43,12 +44,19 @@ def some(ticks: int, force_n: float = 1.0) -> Recording:
     return Recording(rows, "", About("mock", "penalty", "scene: builtin/brick\n"))
 
 
+def felt(servo: Servo, ticks: int) -> None:
+    """Wait for this many ticks more."""
+    before = servo.ring.count
+    until(lambda: servo.ring.count >= before + ticks)
+
+
 class TestRecorder:
     def test_every_tick_from_now_on_is_kept_once(self, servo: Servo, tmp_path: Path) -> None:
         ended: list[tuple[Path, int, str]] = []
         recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: ended.append(told))
-        first = servo.ring.count
-        time.sleep(0.3)
+        felt(servo, 1)
+        first_s = servo.ring.since(servo.ring.count - 1)[0][-1, 0]
+        felt(servo, 300)
         recorder.stop()
         found = Recording.load(tmp_path / "a.nc")
         assert ended == [(tmp_path / "a.nc", len(found.rows), BY_HAND)]
@@ -57,13 +65,13 @@ class TestRecorder:
         steps = np.diff(found.time_s)
         assert steps.min() > 0
         assert servo.running
-        assert found.time_s[0] <= first / 1000 + 0.5
+        assert found.time_s[0] <= first_s
 
     def test_it_ends_with_its_loop(self, servo: Servo, tmp_path: Path) -> None:
         recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: None)
-        time.sleep(0.1)
+        felt(servo, 100)
         servo.stop("the device was pulled out")
-        recorder._thread.join(5)  # pyright: ignore[reportPrivateUsage]
+        recorder._thread.join(LONGEST_S)  # pyright: ignore[reportPrivateUsage]
         found = Recording.load(tmp_path / "a.nc")
         assert found.stopped == "the device was pulled out"
         assert len(found.rows) >= 50
@@ -78,7 +86,7 @@ class TestRecorder:
             raise OSError(errno.ENOSPC, "No space left on device")
 
         monkeypatch.setattr(Writer, "_put", full)
-        recorder._thread.join(5)  # pyright: ignore[reportPrivateUsage]
+        recorder._thread.join(LONGEST_S)  # pyright: ignore[reportPrivateUsage]
         assert len(ended) == 1
         assert "free some space" in ended[0]
         assert servo.running
@@ -113,7 +121,7 @@ class TestShown:
 
     def test_the_list_has_the_newest_first_and_what_cannot_be_read(self, bench: Bench, tmp_path: Path) -> None:
         some(5).save(tmp_path / "old.nc")
-        time.sleep(0.02)
+        os.utime(tmp_path / "old.nc", (0, 0))
         (tmp_path / "broken.nc").write_bytes(b"CDF nothing")
         found = records.records(bench, tmp_path)
         assert [each["name"] for each in found] == ["broken.nc", "old.nc"]

@@ -46,10 +46,10 @@ class LastingServer(UiServer):
         return self.url
 
 
-async def forget(desk: Any, tab: Any) -> None:
-    """Forget the documents before: no verdict, file, comparison or step back is left. The worker and the surface stay."""
-    for event in desk._latest.keys() - {"maker", "described"}:
-        del desk._latest[event]
-    desk._history.clear()
-    desk._logged.clear()
-    desk.texts = type(desk.texts)()
+async def forget(session: Any, tab: Any) -> None:
+    """Forget verdicts, files, comparisons and steps back of the documents before; the worker and the surface stay."""
+    for event in session._latest.keys() - {"maker", "described"}:
+        del session._latest[event]
+    session._history.clear()
+    session._logged.clear()
+    session.texts = type(session.texts)()

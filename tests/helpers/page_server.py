@@ -1,4 +1,4 @@
-"""The page's server in this process, in a thread of its own, with no maker and, unless asked for, no loop."""
+"""The page's server in this process, in a thread of its own, with no worker and, unless asked for, no loop."""
 
 import asyncio
 import http.client
@@ -16,13 +16,13 @@ from tangible_ui.address import HOST, Address
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.serving.routes import application
 from tangible_ui.serving.serve import Server, settings, watch
-from tangible_ui.state.session import Desk
+from tangible_ui.state.session import Session
 from waiting import LONGEST_S
 
 KEY = "key-of-a-test-0123456789"
 
 
-class NoMaker:
+class NoWorker:
     """Does nothing that it is asked."""
 
     def __init__(self, folder: Path, hear: Callable[[Any], None]) -> None:
@@ -48,7 +48,7 @@ class PageServer:
     """It listens in its `with`."""
 
     def __init__(self, folder: Path, monkeypatch: Any) -> None:
-        monkeypatch.setattr("tangible_ui.state.session.Maker", NoMaker)
+        monkeypatch.setattr("tangible_ui.state.session.Worker", NoWorker)
         self.folder = folder / "drawn"
         self.folder.mkdir()
         self.complaints: list[dict[str, Any]] = []
@@ -59,7 +59,7 @@ class PageServer:
         with Address.of(0) as address:
             self.port = address.port
             self.host = f"{HOST}:{self.port}"
-            app = application(lambda: self.desk, KEY, frozenset({self.host}), self._lifespan)
+            app = application(lambda: self.session, KEY, frozenset({self.host}), self._lifespan)
             self.server = Server(settings(app), lambda: None)
             self.server.run(sockets=[address.listening])
 
@@ -67,11 +67,11 @@ class PageServer:
     async def _lifespan(self, _: Any) -> AsyncGenerator[None]:
         self.loop = asyncio.get_running_loop()
         self.loop.set_exception_handler(lambda _, context: self.complaints.append(context))
-        self.desk = Desk(self.folder, Feeling("ui-test"), [])
-        self.desk.begin(watch(self.desk))
+        self.session = Session(self.folder, Feeling("ui-test"), [])
+        self.session.begin(watch(self.session))
         self._ready.set()
         yield
-        await self.desk.close()
+        await self.session.close()
 
     def __enter__(self) -> Self:
         self._thread.start()

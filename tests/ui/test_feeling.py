@@ -19,7 +19,7 @@ from tangible_core.servo import Safety, Servo, packed
 from tangible_core.servo.ring import STOP, shared_folder
 from tangible_core.testing.loop_devices import Failing
 from tangible_core.testing.loop_laws import FaultyTouch
-from tangible_ui.feeling.feeling import Feeling, Felt
+from tangible_ui.feeling.feeling import Feeling, LoopInput
 from tangible_ui.framing import STATE_FRAME
 from waiting import LONGEST_S, until
 
@@ -43,11 +43,11 @@ def felt(
     device: HapticDevice | None = None,
     touch: Touch | None = None,
     mapping: WorkspaceMapping = NO_MAPPING,
-) -> Felt:
+) -> LoopInput:
     """A scene for a device, the page's own without one."""
     options = {name: value for name, value in feeling.own_device.items() if name != "use"}
     seen = mapped(device or load_method("device", "pointer")(**options), mapping)
-    return Felt(packed(touch or law(), seen.spec()), "proxy", "it", seen, device is None, mapping, AT_ONCE)
+    return LoopInput(packed(touch or law(), seen.spec()), "proxy", "it", seen, device is None, mapping, AT_ONCE)
 
 
 def newest(feeling: Feeling) -> np.ndarray:
@@ -177,7 +177,7 @@ class TestSwaps:
         server.at = None
         feeling.feel(felt(feeling))
         until(lambda: newest(feeling)[PLACE][2] > 0.4)
-        assert feeling.ended() is None
+        assert feeling.loop_end() is None
 
     def test_a_device_that_is_not_there(self, feeling: Feeling, tmp_path: Path) -> None:
         """Says so; it is felt once it is there."""
@@ -208,11 +208,11 @@ class TestWhatEndsByItself:
         with suppress(DeviceError):  # the device may be gone before the scene is swapped
             feeling.feel(felt(feeling, device, touch))
         found = []
-        until(lambda: found.append(feeling.ended()) or found[-1] is not None)
+        until(lambda: found.append(feeling.loop_end()) or found[-1] is not None)
         assert why in found[-1].why
         assert found[-1].why
         assert found[-1].lost == lost
-        assert feeling.ended() is None
+        assert feeling.loop_end() is None
         assert state(feeling)[13:16] == (0, 0, 0)
         assert feeling.feel(felt(feeling)) is not None
         assert feeling.running
@@ -259,7 +259,7 @@ class TestStop:
         assert servo.ring.header[STOP] == 1
         assert state(feeling)[13:16] == (0, 0, 0)
         until(lambda: not servo.running)
-        assert feeling.ended() is None
+        assert feeling.loop_end() is None
         assert feeling.feel(felt(feeling)) is None  # what is made later is not felt
         assert not feeling.running
         feeling.allow()
@@ -274,7 +274,7 @@ class TestStop:
         assert feeling.feel(felt(feeling)) is not None
         ended()
         assert feeling.running
-        assert feeling.ended() is None
+        assert feeling.loop_end() is None
 
     def test_while_a_loop_starts(self, feeling: Feeling) -> None:
         assert self.stops(feeling, feeling.start) == [None]

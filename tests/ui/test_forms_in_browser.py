@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from browser_tabs import OpenPage
-from desks import TEXT, small_scene
 from page_files import built_page
+from sessions import TEXT, small_scene
 from waiting import until
 
 if TYPE_CHECKING:

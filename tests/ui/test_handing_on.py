@@ -13,8 +13,8 @@ import pytest
 import trimesh
 
 from browser_tabs import OpenPage
-from desks import small_scene, striped_scene
 from lasting_server import LastingServer
+from sessions import small_scene, striped_scene
 from tangible_core.errors import DeviceError
 from tangible_devices.pointer import PointerClient
 from waiting import until

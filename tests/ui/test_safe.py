@@ -49,7 +49,7 @@ class TestWhoIsLetIn:
     def test_every_route_but_the_built_page_needs_the_key(self, page: PageServer) -> None:
         """Of all that there are: a new one cannot forget it."""
         seen = set()
-        for route in routes.routes(lambda: page.desk, KEY):
+        for route in routes.routes(lambda: page.session, KEY):
             if isinstance(route, WebSocketRoute | Mount):
                 seen.add(route.path)
                 continue
@@ -105,7 +105,7 @@ class TestWhoIsLetIn:
         (page.folder / "abc").mkdir()
         (page.folder / "abc" / "a.f32").write_bytes(b"1")
         if status == 500:
-            monkeypatch.setattr(page.desk, "folder", None)
+            monkeypatch.setattr(page.session, "folder", None)
             path = keyed("/scene/abc/a.f32")
         answer = page.ask(path)
         assert answer.status == status
@@ -257,12 +257,12 @@ class TestFloods:
     def test_a_tab_that_reads_nothing_is_cut_off(self, page: PageServer) -> None:
         raw = handshake(page, page.host)
         with page.tab() as other:
-            until(lambda: page.done(lambda: len(page.desk.tabs)) == 2)
+            until(lambda: page.done(lambda: len(page.session.tabs)) == 2)
             said = 0
-            while page.done(lambda: len(page.desk.tabs)) == 2:
+            while page.done(lambda: len(page.session.tabs)) == 2:
                 said += 1
                 assert said < 100  # megabytes
-                page.done(lambda: page.desk.tell("log", text="x" * 1_000_000))
+                page.done(lambda: page.session.tell("log", text="x" * 1_000_000))
                 other.until(event="log")
         raw.close()
 
@@ -273,8 +273,8 @@ class TestFloods:
             assert raw.recv(4) == b"HTTP"
 
             def is_gone() -> bool:
-                page.done(lambda: page.desk.tell("log", text="x" * 1000))
-                return page.done(lambda: not page.desk.tabs)
+                page.done(lambda: page.session.tell("log", text="x" * 1000))
+                return page.done(lambda: not page.session.tabs)
 
             until(is_gone)
 
@@ -284,7 +284,7 @@ class TestFloods:
             tab.until(event="holding", holding=True)
             with flood(lambda: tab.socket.socket.sendall(pointers)):
                 for _ in range(20):
-                    until(lambda: page.done(lambda: page.desk.feeling.hand.holding))
+                    until(lambda: page.done(lambda: page.session.feeling.hand.holding))
             assert page.done(lambda: {each.transport.max_size for each in page.server.server_state.connections}) == {
                 AT_ONCE_BYTES
             }
@@ -296,17 +296,17 @@ class TestFloods:
             second.socket.send(pointer(0.01, 0, 0))
             second.ask("nothing")
             second.until(event="refused")
-            assert not page.done(lambda: page.desk.feeling.hand.holding)
+            assert not page.done(lambda: page.session.feeling.hand.holding)
             second.ask("hold")
             first.until(event="holding", holding=False)
             second.socket.send(pointer(0.01, 0, 0))
             second.ask("nothing")
             second.until(event="refused")
-            assert page.done(lambda: page.desk.feeling.hand.holding)
+            assert page.done(lambda: page.session.feeling.hand.holding)
             first.socket.send(b"\x04")  # and cannot let go of another's
             first.ask("nothing")
             first.until(event="refused")
-            assert page.done(lambda: page.desk.feeling.hand.holding)
+            assert page.done(lambda: page.session.feeling.hand.holding)
 
     @pytest.mark.parametrize("at", [(float("nan"), 0, 0), (0, float("inf"), 0), (0, 0, -float("inf")), (1e30, 0, 0)])
     def test_a_hand_is_somewhere(self, page: PageServer, at: tuple[float, float, float]) -> None:
@@ -315,11 +315,11 @@ class TestFloods:
             tab.socket.send(pointer(*at))
             tab.ask("nothing")
             tab.until(event="refused")
-            assert not page.done(lambda: page.desk.feeling.hand.holding)
+            assert not page.done(lambda: page.session.feeling.hand.holding)
 
     def test_asks_are_bounded_and_stop_is_not(self, page: PageServer) -> None:
-        maker: Any = page.desk.maker
-        page.done(lambda: setattr(maker, "wait", asyncio.Event()))
+        worker: Any = page.session.worker
+        page.done(lambda: setattr(worker, "wait", asyncio.Event()))
         with page.tab() as tab:
             for _ in range(MOST_ASKS):
                 tab.ask("examples")
@@ -328,7 +328,7 @@ class TestFloods:
             stop = tab.ask("stop")
             tab.until(event="loop", running=False)
             tab.until(event="answer", number=stop)
-            page.done(maker.wait.set)
+            page.done(worker.wait.set)
             tab.until(event="answer", number=MOST_ASKS)
             tab.until(event="answer", number=tab.ask("examples"))
 
@@ -336,7 +336,7 @@ class TestFloods:
         with page.tab() as tab:
             assert page.ask(keyed("/stop"), "POST", b"").status == 204
             tab.until(event="loop", running=False, stopped=True)
-            assert page.desk.feeling.stopped
+            assert page.session.feeling.stopped
 
     def test_connections_without_end_stop_nobody(self, page: PageServer) -> None:
         with page.tab() as tab:
@@ -347,7 +347,7 @@ class TestFloods:
             tab.socket.send(pointer(0.01, 0, 0))
             tab.ask("nothing")
             tab.until(event="refused")
-            assert page.done(lambda: page.desk.feeling.hand.holding)
+            assert page.done(lambda: page.session.feeling.hand.holding)
             for each in slow:
                 each.close()
         until(lambda: page.ask("/").status == 200)

@@ -1,4 +1,4 @@
-"""Whatever ends, a tab, a loop, the maker or the server: no force, one word, and nothing that is left behind."""
+"""Whatever ends, a tab, a loop, the worker or the server: no force, one word, and nothing that is left behind."""
 
 import os
 import signal
@@ -167,9 +167,9 @@ def test_what_ends_beside_the_server(home: Home) -> None:
     press.close()
 
     press = Press(home, server)
-    [maker] = children(server, "tangible_ui.worker")
+    [worker] = children(server, "tangible_ui.worker")
     press.press()
-    os.kill(maker, signal.SIGKILL)
+    os.kill(worker, signal.SIGKILL)
     press.tab.until(event="maker")
     press.press()  # what is felt goes on
     found["server stands still"] = press.let_go_s(lambda: os.kill(server.process.pid, signal.SIGSTOP))
@@ -313,19 +313,19 @@ def test_a_makers_end_under_work(home: Home) -> None:
     """It ends with its pipe, whatever it computes."""
     from tangible_core.runtime.child_process import command
     from tangible_core.servo.wire import send
-    from tangible_ui.worker.messages import Ask
+    from tangible_ui.worker.messages import JobRequest
 
     folder = home.folder / "drawn"
     folder.mkdir()
     env = {**os.environ, **home.env}
     with subprocess.Popen(
         command("tangible_ui.worker.process"), stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=env, cwd=home.folder
-    ) as maker:
-        assert maker.stdin and maker.stdout
-        send(maker.stdin, folder)
+    ) as worker:
+        assert worker.stdin and worker.stdout
+        send(worker.stdin, folder)
         told = {"text": "scene: builtin/motorcycle\n", "path": home.folder / "m.yaml", "sets": [], "want": "surface"}
-        send(maker.stdin, Ask(1, "make", {"number": 1, **told}))
-        assert maker.stdout.read(8)  # it has begun
-        assert maker.poll() is None
-        maker.stdin.close()
-        assert maker.wait(LONGEST_S) == 0
+        send(worker.stdin, JobRequest(1, "make", {"number": 1, **told}))
+        assert worker.stdout.read(8)  # it has begun
+        assert worker.poll() is None
+        worker.stdin.close()
+        assert worker.wait(LONGEST_S) == 0

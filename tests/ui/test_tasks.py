@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from browser_tabs import OpenPage
-from desks import small_scene
+from sessions import small_scene
 from waiting import until
 
 if TYPE_CHECKING:

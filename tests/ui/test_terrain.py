@@ -199,7 +199,7 @@ def test_the_first_surface_needs_no_program_compiled_and_is_drawn_coarsely_for_a
             "extent_m": [0.08, 0.06], "height_m": [0, 0], "levels": levels, "labels": 0, "label_bytes": 2,
             "materials": [], "parts": None, "photo": False, "fine_photo": None, "layers": {},
         }  # fmt: skip
-        server.done(lambda: server.desk.tell("scene", **meta))
+        server.done(lambda: server.session.tell("scene", **meta))
         whole = 6 * (rows + 1) * (columns + 1)
         page.wait_for_function("whole => window.drawn.some(([count]) => count === whole)", arg=whole)
         assert page.evaluate("() => [linked, page.view.prepared]") == [linked, None]

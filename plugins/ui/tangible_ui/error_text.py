@@ -6,7 +6,7 @@ from tangible_core.errors import TangibleError
 from tangible_core.plugins.failures import sentence
 
 
-async def told(error: BaseException) -> str:
+async def describe_error(error: BaseException) -> str:
     """What a page is told of an error."""
     if isinstance(error, TangibleError):
         return str(error)

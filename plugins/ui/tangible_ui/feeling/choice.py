@@ -32,16 +32,16 @@ class Choice:
         return [f"device={json.dumps({'use': self.name})}"] if self.kind == "other" else []
 
     def check(self, device: HapticDevice) -> None:
-        """Whether this may be opened. Raises: NotAgreed for a motor that nobody said yes to."""
+        """Whether this may be opened. Raises: NotConfirmed for a motor that nobody said yes to."""
         if device.spec().simulated:
             return
         if not self.sure or self.agreed not in (None, type(device)):
-            raise NotAgreed(
+            raise NotConfirmed(
                 f"the device {type(device).__name__} has a motor, and is opened only by who chooses it in the panel "
                 "Devices; what was felt before goes on"
             )
         self.agreed = type(device)
 
 
-class NotAgreed(ConfigError):
+class NotConfirmed(ConfigError):
     """A device with a motor was to be opened, and nobody had said yes."""

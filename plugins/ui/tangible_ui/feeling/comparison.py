@@ -20,7 +20,7 @@ HIGHEST_M = 0.5
 
 
 @final
-class Rival:
+class ComparisonLoop:
     """A law that is computed on the hand of another loop, and pushes nobody. What takes long blocks."""
 
     def __init__(self, channel: str) -> None:

@@ -32,8 +32,8 @@ BUTTONS, PRESSED = (1 << BUTTON_BITS) - 1, 1
 """A device's buttons; and that of the page's own hand by which it is pressed down, and which lets go of no beacon."""
 
 
-class Felt(NamedTuple):
-    """What the maker made, as the loop needs it."""
+class LoopInput(NamedTuple):
+    """What the worker made, as the loop needs it."""
 
     touch: Packed
     law: str
@@ -48,24 +48,24 @@ class Felt(NamedTuple):
     """Their names by label, as a recording has them."""
 
     @classmethod
-    def of(cls, made: dict[str, Any], channel: str) -> "Felt":
-        """From the maker's answer; channel: of the page's own pointer."""
+    def of(cls, made: dict[str, Any], channel: str) -> "LoopInput":
+        """From the worker's answer; channel: of the page's own pointer."""
         touch = Packed(Path(made["parcel"]), made["stiffness_n_per_m"])
         parts = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
         device, mapping, safety = parts
-        own_hand = getattr(unmapped(device), "channel", None) == channel
+        own_hand = getattr(without_mapping(device), "channel", None) == channel
         return cls(
             touch, made["law"], made["device_name"], device, own_hand, mapping, safety, made.get("materials", "")
         )
 
     @property
-    def held(self) -> HapticDevice:
+    def unmapped_device(self) -> HapticDevice:
         """The device itself."""
-        return unmapped(self.device)
+        return without_mapping(self.device)
 
 
-class Beside(NamedTuple):
-    """What is shown beside the law that is felt."""
+class OtherLaw(NamedTuple):
+    """What is shown other_law the law that is felt."""
 
     force_n: Vector = NOBODY
     """Of another law on the same hand."""
@@ -73,10 +73,10 @@ class Beside(NamedTuple):
     """Whether who feels shall not see which law it is: not every law has a proxy."""
 
 
-ALONE = Beside()
+ALONE = OtherLaw()
 
 
-class Ended(NamedTuple):
+class LoopEnd(NamedTuple):
     """A loop that ended though nobody stopped it."""
 
     why: str
@@ -95,7 +95,7 @@ class Feeling:
         """channel: of the page's own pointer device."""
         self.channel = channel
         self.hand = Hand(channel)
-        self.felt: Felt | None = None
+        self.felt: LoopInput | None = None
         self.stopped = False
         """Whether somebody pressed stop: no loop starts until `allow`."""
         self._stops = 0
@@ -150,7 +150,7 @@ class Feeling:
                 self._restart(load_method("device", "pointer")(**options), own_hand=True)
         return None if stopped() else time.monotonic() - begun_s
 
-    def feel(self, felt: Felt) -> float | None:
+    def feel(self, felt: LoopInput) -> float | None:
         """Feel a scene, from one tick to the next where the device is the same; seconds that took.
 
         Returns: None if somebody pressed stop, before or meanwhile: it is then not felt.
@@ -223,15 +223,15 @@ class Feeling:
         """Loops may start again."""
         self.stopped = False
 
-    def ended(self) -> Ended | None:
+    def loop_end(self) -> LoopEnd | None:
         """Why the loop ended, if it did so by itself; said once. To be asked often."""
         servo = self._servo
         if servo is None or servo.running or servo is self._told:
             return None
         self._told = servo
-        return None if self.stopped else Ended(_end(servo), servo.lost)
+        return None if self.stopped else LoopEnd(_end(servo), servo.lost)
 
-    def frame(self, seq: int, status: int, beside: Beside = ALONE) -> bytes | None:
+    def frame(self, seq: int, status: int, other_law: OtherLaw = ALONE) -> bytes | None:
         """The newest tick as a STATE; a hand that is nowhere without a loop; None for a tick that was overwritten."""
         servo = self._servo
         if servo is None or not self.running:
@@ -244,7 +244,8 @@ class Feeling:
         tag = int(buttons) >> BUTTON_BITS
         return STATE_FRAME.pack(
             STATE, status, int(flags) & FLAG_BITS, seq & 0xFFFFFFFF, tag, servo.ring.overruns, sample_ms,
-            x, y, z, *(UNKNOWN if beside.blind else (px, py, pz)), fx, fy, fz, vx, vy, vz, *beside.force_n, 1e6 * late,
+            x, y, z, *(UNKNOWN if other_law.blind else (px, py, pz)), fx, fy, fz, vx, vy, vz,
+            *other_law.force_n, 1e6 * late,
         )  # fmt: skip
 
     @contextmanager
@@ -283,7 +284,7 @@ class Feeling:
             self.hand.open(placement_of(device))
 
 
-def unmapped(device: HapticDevice) -> HapticDevice:
+def without_mapping(device: HapticDevice) -> HapticDevice:
     """What the hand holds."""
     return device.device if isinstance(device, MappedDevice) else device
 

@@ -14,7 +14,7 @@ from ..requests import REQUESTS, Request
 MOST_SHOWN = 200
 
 
-class NotUnderstood(TangibleError):
+class BadRequest(TangibleError):
     """What a tab says is nothing that can be asked for."""
 
     def __init__(self, number: int | None, text: str) -> None:
@@ -23,7 +23,7 @@ class NotUnderstood(TangibleError):
         """Under which the tab waits for an answer, if it said one."""
 
 
-class Asked(NamedTuple):
+class ParsedRequest(NamedTuple):
     """Something to do for a tab."""
 
     number: int
@@ -32,20 +32,20 @@ class Asked(NamedTuple):
     told: dict[str, Any]
 
 
-def parse(text: str) -> Asked:
-    """Raises: NotUnderstood."""
+def parse(text: str) -> ParsedRequest:
+    """Raises: BadRequest."""
     try:
         said = json.loads(text, parse_constant=_refuse)
     except (ValueError, RecursionError) as error:
-        raise NotUnderstood(None, "a message is no JSON") from error
+        raise BadRequest(None, "a message is no JSON") from error
     number = said.pop("number", None) if isinstance(said, dict) else None
     if type(number) is not int:
-        raise NotUnderstood(None, 'a message is no JSON object with a "number"')
+        raise BadRequest(None, 'a message is no JSON object with a "number"')
     name = said.pop("ask", None)
     if not isinstance(name, str) or (ask := REQUESTS.get(name)) is None:
         hint = did_you_mean(name, REQUESTS) if isinstance(name, str) else ""
-        raise NotUnderstood(number, f"there is no {quoted(name)} to ask for{hint}")
-    return Asked(number, name, ask, _fitting(number, name, ask, said))
+        raise BadRequest(number, f"there is no {quoted(name)} to ask for{hint}")
+    return ParsedRequest(number, name, ask, _fitting(number, name, ask, said))
 
 
 def _fitting(number: int, name: str, ask: Request, said: dict[str, Any]) -> dict[str, Any]:
@@ -55,9 +55,9 @@ def _fitting(number: int, name: str, ask: Request, said: dict[str, Any]) -> dict
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"])) or "what is told"
-        raise NotUnderstood(number, shown(f"{name}: {where}: {first['msg']}", MOST_SHOWN)) from error
+        raise BadRequest(number, shown(f"{name}: {where}: {first['msg']}", MOST_SHOWN)) from error
     except RecursionError as error:
-        raise NotUnderstood(number, f"{name}: what is told is nested too deep") from error
+        raise BadRequest(number, f"{name}: what is told is nested too deep") from error
     return {key: getattr(found, key) for key in found.model_fields_set}
 
 
@@ -65,7 +65,7 @@ def _fitting(number: int, name: str, ask: Request, said: dict[str, Any]) -> dict
 def _arguments(ask: Request) -> type[BaseModel]:
     """All that may be told, with its types; nothing else may."""
     types = get_type_hints(ask)
-    _, _, *rest = inspect.signature(ask).parameters.values()  # the desk and the tab come first
+    _, _, *rest = inspect.signature(ask).parameters.values()  # the session and the tab come first
     fields: dict[str, Any] = {
         each.name: (types[each.name], ... if each.default is each.empty else each.default) for each in rest
     }

@@ -19,7 +19,7 @@ from tangible_core.files.reading import MOST_BYTES, in_words
 
 from ..address import static
 from ..requests import feeling
-from ..state.session import Desk
+from ..state.session import Session
 from .access import Guarded
 from .live import LiveTab
 
@@ -28,7 +28,7 @@ ASK_AGAIN = "no-cache"
 """A browser may keep it, and asks each time whether it is still the same."""
 WRONG_KEY = 4401
 EXPORTS = "export-"
-"""How the maker names folders of files that it exported."""
+"""How the worker names folders of files that it export_file."""
 NOT_YOURS = "the key in the address is not this program's; open the address it printed"
 
 WINDOW = frozenset({"row", "rows", "column", "columns", "of", "bytes"})
@@ -48,36 +48,36 @@ class BuiltPage(StaticFiles):
         return response
 
 
-def application(desk: Callable[[], Desk], key: str, hosts: frozenset[str], lifespan: Any) -> ASGIApp:
+def application(session: Callable[[], Session], key: str, hosts: frozenset[str], lifespan: Any) -> ASGIApp:
     """What is served."""
-    return Guarded(Starlette(routes=routes(desk, key), lifespan=lifespan), hosts)
+    return Guarded(Starlette(routes=routes(session, key), lifespan=lifespan), hosts)
 
 
-def routes(desk: Callable[[], Desk], key: str) -> list[BaseRoute]:
+def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
     """Everything but the built page needs the key."""
 
     def has_key(connection: HTTPConnection) -> bool:
         return secrets.compare_digest(connection.query_params.get("token", "").encode(), key.encode())
 
-    def keyed(answer: Answer) -> Answer:
-        async def checked(request: Request) -> Response:
+    def require_key(answer: Answer) -> Answer:
+        async def check_key(request: Request) -> Response:
             return await answer(request) if has_key(request) else PlainTextResponse(NOT_YOURS, 403)
 
-        return checked
+        return check_key
 
     async def scene(request: Request) -> Response:
         digest, name = request.path_params["digest"], request.path_params["name"]
-        path = None if digest.startswith(EXPORTS) else _lying(desk().folder, digest, name)
+        path = None if digest.startswith(EXPORTS) else _lying(session().folder, digest, name)
         if path is None:
             return PlainTextResponse("there is no such thing any more", 404)
         if request.query_params.keys() & WINDOW:
             return await window_of(path, request)
         return FileResponse(path, headers={"cache-control": FOREVER})
 
-    async def exported(request: Request) -> Response:
+    async def export_file(request: Request) -> Response:
         """A file to keep: it is never shown as a page of this address, whatever is in it."""
         folder, name = request.path_params["folder"], request.path_params["name"]
-        path = _lying(desk().folder, folder, name) if folder.startswith(EXPORTS) else None
+        path = _lying(session().folder, folder, name) if folder.startswith(EXPORTS) else None
         if path is None:
             return PlainTextResponse("this file is not there any more; export it again", 404)
         return FileResponse(path, filename=name)
@@ -95,7 +95,7 @@ def routes(desk: Callable[[], Desk], key: str) -> list[BaseRoute]:
         if int(said) > MOST_BYTES:  # before a byte of it is read
             return PlainTextResponse(f"{name}: holds more than {in_words(MOST_BYTES)}; open a smaller one", 413)
         try:
-            await desk().shelf.put(request.path_params["batch"], name, request.stream())
+            await session().uploads.put(request.path_params["batch"], name, request.stream())
         except TangibleError as error:
             return PlainTextResponse(str(error), 400)
         except ClientDisconnect:
@@ -104,21 +104,21 @@ def routes(desk: Callable[[], Desk], key: str) -> list[BaseRoute]:
 
     async def stop(_: Request) -> Response:
         """For a page whose websocket does not answer."""
-        await feeling.stop(desk(), None)
+        await feeling.stop(session(), None)
         return Response(status_code=204)
 
     async def live(socket: WebSocket) -> None:
         if has_key(socket):
-            await LiveTab(desk(), socket).live()
+            await LiveTab(session(), socket).live()
         else:  # a page can tell this from a program that is gone only if it is let in first
             await socket.accept()
             await socket.close(WRONG_KEY, NOT_YOURS)
 
     return [
-        Route("/scene/{digest}/{name}", keyed(scene)),
-        Route("/export/{folder}/{name}", keyed(exported)),
-        Route("/upload/{batch}/{name}", keyed(upload), methods=["PUT"]),
-        Route("/stop", keyed(stop), methods=["POST"]),
+        Route("/scene/{digest}/{name}", require_key(scene)),
+        Route("/export/{folder}/{name}", require_key(export_file)),
+        Route("/upload/{batch}/{name}", require_key(upload), methods=["PUT"]),
+        Route("/stop", require_key(stop), methods=["POST"]),
         WebSocketRoute("/live", live),
         Mount("/", BuiltPage(directory=static(), html=True)),
     ]

@@ -22,7 +22,7 @@ from ..logs import silence, tell_pages
 from ..requests import document
 from ..requests import document as drafts
 from ..stale_files import channel_of_this_process, folder_of_this_process
-from ..state.session import Desk
+from ..state.session import Session
 from .connection import PING_S, Connection
 from .routes import application
 
@@ -45,7 +45,7 @@ def serve(files: list[Path], sets: list[str], address: Address) -> None:
     """Until Ctrl-C. Raises: OutputError if there is no room for a folder."""
     with folder_of_this_process() as folder, channel_of_this_process() as channel:
         served = Served(folder, channel, files or [EXAMPLE], sets)
-        app = application(lambda: served.desk, address.key, address.hosts, served.lifespan)
+        app = application(lambda: served.session, address.key, address.hosts, served.lifespan)
         server = Server(settings(app), served.asked_to_end)
         server.run(sockets=[address.listening])
     served.raise_if_failed()
@@ -65,7 +65,7 @@ def settings(app: ASGIApp) -> uvicorn.Config:
 
 @final
 class Server(uvicorn.Server):
-    """Asked to end, it first takes the force away; then it ends as the whole program does on that signal."""
+    """ParsedRequest to end, it first takes the force away; then it ends as the whole program does on that signal."""
 
     def __init__(self, config: uvicorn.Config, asked_to_end: Callable[[], None]) -> None:
         super().__init__(config)
@@ -99,19 +99,19 @@ class Served:
 
     def __init__(self, folder: Path, channel: str, files: list[Path], sets: list[str]) -> None:
         self._folder, self._channel, self._files, self._sets = folder, channel, files, sets
-        self._desk: Desk | None = None
+        self._session: Session | None = None
         self._failure: Exception | None = None
 
     @property
-    def desk(self) -> Desk:
+    def session(self) -> Session:
         """There from the start on."""
-        assert self._desk is not None
-        return self._desk
+        assert self._session is not None
+        return self._session
 
     def asked_to_end(self) -> None:
         """No force, at once; the rest in its time."""
-        if self._desk is not None:
-            self._desk.feeling.cut()
+        if self._session is not None:
+            self._session.feeling.cut()
 
     def raise_if_failed(self) -> None:
         """Raises: why it could not start."""
@@ -124,48 +124,48 @@ class Served:
         loop = asyncio.get_running_loop()
         loop.set_default_executor(ThreadPoolExecutor(THREADS))
         try:
-            self._desk = desk = Desk(self._folder, Feeling(self._channel), self._sets)
+            self._session = session = Session(self._folder, Feeling(self._channel), self._sets)
         except Exception as error:
             self._failure = error
             raise
 
         def tell(**told: str) -> None:
-            loop.call_soon_threadsafe(partial(desk.tell, "log", **told))
+            loop.call_soon_threadsafe(partial(session.tell, "log", **told))
 
         telling = tell_pages(tell)
-        loop.set_exception_handler(partial(_unforeseen, desk))
-        desk.begin(watch(desk))
-        desk.begin(drafts.offer(desk))
-        desk.begin(document.begin(desk, None, [str(each) for each in self._files]))
-        desk.begin(_start(desk))
+        loop.set_exception_handler(partial(_unforeseen, session))
+        session.begin(watch(session))
+        session.begin(drafts.offer(session))
+        session.begin(document.begin(session, None, [str(each) for each in self._files]))
+        session.begin(_start(session))
         gc.freeze()  # what was imported is never looked through again
         try:
             yield
         finally:
             silence(telling)
-            await desk.close()
+            await session.close()
 
 
-def _unforeseen(desk: Desk, _: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+def _unforeseen(session: Session, _: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
     """What asyncio says of an error that nobody waited for."""
-    desk.failed(context.get("exception") or RuntimeError(context["message"]))
+    session.report_failure(context.get("exception") or RuntimeError(context["message"]))
 
 
-async def _start(desk: Desk) -> None:
+async def _start(session: Session) -> None:
     """Start the loop when the surface is on its way to the screen, or late: both take all that the processor has."""
     until_s = time.monotonic() + LATEST_START_S
-    while desk.scene is None and time.monotonic() < until_s:
+    while session.scene is None and time.monotonic() < until_s:
         await asyncio.sleep(0.02)
-    await asyncio.to_thread(desk.feeling.start)
+    await asyncio.to_thread(session.feeling.start)
 
 
-async def watch(desk: Desk) -> None:
+async def watch(session: Session) -> None:
     """Until the server ends."""
     while True:
-        desk.feeling.hand.keep()
-        desk.laws.follow(desk.feeling)
-        if why := desk.feeling.beacon_over():
-            desk.tell("beacon", part=None, name="", why=why)
-        if (ended := desk.feeling.ended()) is not None:
-            desk.tell("loop", running=False, why=ended.why, lost=ended.lost)
+        session.feeling.hand.keep()
+        session.laws.follow(session.feeling)
+        if why := session.feeling.beacon_over():
+            session.tell("beacon", part=None, name="", why=why)
+        if (ended := session.feeling.loop_end()) is not None:
+            session.tell("loop", running=False, why=ended.why, lost=ended.lost)
         await asyncio.sleep(KEEP_S)

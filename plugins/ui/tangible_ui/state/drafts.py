@@ -42,7 +42,7 @@ class Drafts:
         self.left: Draft | None = None
         """Of a program before this one."""
 
-    def opened(self, text: str) -> None:
+    def remember_opened(self, text: str) -> None:
         """This text is that of a file, or can be had again."""
         self._opened = text
 

@@ -5,8 +5,8 @@ import secrets
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from ..feeling.comparison import Rival
-from ..feeling.feeling import ALONE, Beside, Feeling
+from ..feeling.comparison import ComparisonLoop
+from ..feeling.feeling import ALONE, Feeling, OtherLaw
 
 Choice = Literal[0, 1, 2]
 """The one that is called 1, or 2; 0 for neither."""
@@ -60,7 +60,7 @@ class Tally:
         tail = sum(math.comb(trials, k) for k in range(fewer + 1)) / 2**trials
         return min(1.0, 2 * tail)
 
-    def told(self) -> dict[str, Any]:
+    def as_data(self) -> dict[str, Any]:
         """All of it, as JSON has it."""
         one, two, neither = self.counts
         return {
@@ -77,7 +77,7 @@ class Tally:
 class Laws:
     """The document's law and another one; none while one law alone is felt."""
 
-    rival: Rival
+    comparison: ComparisonLoop
     other: dict[str, Any] | None = None
     """The other law, as `render:` has it."""
     named: tuple[str, str] = ("", "")
@@ -95,18 +95,18 @@ class Laws:
     def follow(self, feeling: Feeling) -> None:
         """Hand the hand that is felt on to the law beside. To be called often; returns at once."""
         servo = feeling.servo
-        if not self.rival.running or servo is None or (row := servo.ring.latest()) is None:
+        if not self.comparison.running or servo is None or (row := servo.ring.latest()) is None:
             return
         x, y, z = row[2:5].tolist()
-        self.rival.follow((x, y, z if feeling.running else math.inf))
+        self.comparison.follow((x, y, z if feeling.running else math.inf))
 
-    def beside(self) -> Beside:
+    def other_law(self) -> OtherLaw:
         """What pages are shown of the other law."""
         if self.tally is not None:
-            return Beside(blind=True)
-        return ALONE if self.other is None else Beside(self.rival.force_n)
+            return OtherLaw(blind=True)
+        return ALONE if self.other is None else OtherLaw(self.comparison.force_n)
 
-    def told(self) -> dict[str, Any]:
+    def message(self) -> dict[str, Any]:
         """What pages may know."""
         if self.tally is not None:
             trials = len(self.tally.trials)

@@ -7,7 +7,7 @@ from typing import TypeVar, final
 
 
 @final
-class Makes:
+class LongJobs:
     """Long jobs are numbered: a newer one takes the place of those before it."""
 
     def __init__(self) -> None:
@@ -17,7 +17,7 @@ class Makes:
         self.apply_after = False
         """Whether to look, after the one at work, if what was edited meanwhile can be applied at once."""
         self.killed = False
-        """Whether the maker was killed for an earlier one: if the newest met the one that died, it is asked again."""
+        """Whether the worker was killed for an earlier one: if the newest met the one that died, it is asked again."""
 
     def begin(self) -> int:
         """The number of another one."""
@@ -35,7 +35,7 @@ T = TypeVar("T")
 
 
 @final
-class Newest:
+class LatestWins:
     """One at a time. Nothing queues up."""
 
     def __init__(self, pause_s: float = 0.0) -> None:
@@ -44,7 +44,7 @@ class Newest:
         self._newest = 0
         self._pause_s, self._rested_s = pause_s, 0.0
 
-    async def do(self, work: Callable[[], Awaitable[T]]) -> T | None:
+    async def run(self, work: Callable[[], Awaitable[T]]) -> T | None:
         """Do it, once what is done now is done; None if a newer one was asked for before that."""
         self._newest += 1
         mine = self._newest

@@ -9,18 +9,18 @@ from typing import Any, Protocol, final, runtime_checkable
 
 from tangible_core.errors import DeviceError
 
-from ..error_text import told
-from ..feeling.choice import Choice, NotAgreed
-from ..feeling.comparison import Rival
-from ..feeling.feeling import Feeling, Felt
+from ..error_text import describe_error
+from ..feeling.choice import Choice, NotConfirmed
+from ..feeling.comparison import ComparisonLoop
+from ..feeling.feeling import Feeling, LoopInput
 from ..feeling.recorder import Recorder
-from ..worker import Maker
+from ..worker import Worker
 from ..worker.messages import Event
 from .drafts import Drafts
 from .laws import Laws
-from .scheduling import Makes, Newest
+from .scheduling import LatestWins, LongJobs
 from .texts import Texts
-from .uploads import Shelf, user_folder
+from .uploads import UploadStore, user_folder
 
 MOST_HISTORY, MOST_LOGGED = 500, 200
 """Events, and lines that were logged, that a tab which is opened later hears of."""
@@ -34,14 +34,14 @@ LATEST_ONLY = frozenset(
 
 @runtime_checkable
 class Tab(Protocol):
-    """A page in a browser, as the desk knows it."""
+    """A page in a browser, as the session knows it."""
 
     def say(self, event: dict[str, Any]) -> None:
         """Tell it something; it does not wait."""
 
 
 @final
-class Desk:
+class Session:
     """One program's state, in the event loop's thread."""
 
     def __init__(self, folder: Path, feeling: Feeling, sets: Iterable[str]) -> None:
@@ -53,18 +53,18 @@ class Desk:
         self.digest = ""
         """Of the text, as events name it."""
         self.texts = Texts()
-        self.makes = Makes()
-        self.strokes = Newest()
+        self.long_jobs = LongJobs()
+        self.strokes = LatestWins()
         """Asks for a part under a stroke."""
-        self.heights, self.drawn = Newest(), Newest(DRAWN_PAUSE_S)
+        self.heights, self.drawn = LatestWins(), LatestWins(DRAWN_PAUSE_S)
         """Asks to feel parts at other heights, and to draw them."""
         self.choice = Choice()
         """Which device is felt."""
         self.drafts = Drafts(user_folder("unsaved"))
-        self.shelf = Shelf(user_folder("opened"), folder / "incoming")
+        self.uploads = UploadStore(user_folder("opened"), folder / "incoming")
         self.recorder: Recorder | None = None
         """Of the recording that was made last, or is being made."""
-        self.laws = Laws(Rival(f"{feeling.channel}-beside"))
+        self.laws = Laws(ComparisonLoop(f"{feeling.channel}-beside"))
         self.scene: dict[str, Any] | None = None
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None
@@ -73,7 +73,7 @@ class Desk:
         """The latest event of each kind in `LATEST_ONLY`."""
         self._history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
         self._logged: deque[dict[str, Any]] = deque(maxlen=MOST_LOGGED)
-        self.maker = Maker(folder, self._hear)
+        self.worker = Worker(folder, self._hear)
         self.began_s = time.time()
         self._tasks: set[asyncio.Task[Any]] = set()
 
@@ -83,12 +83,12 @@ class Desk:
 
     async def feel(self, made: dict[str, Any]) -> None:
         """Feel what was made, alone. Raises: as `put`."""
-        felt = Felt.of(made, self.feeling.channel)
+        felt = LoopInput.of(made, self.feeling.channel)
         seconds = await self.put(felt)
         if seconds is not None:
             self.laws.alone()
-            self.tell("laws", **self.laws.told())
-            await asyncio.to_thread(self.laws.rival.close)
+            self.tell("laws", **self.laws.message())
+            await asyncio.to_thread(self.laws.comparison.close)
             self.tell("touch", law=felt.law, seconds=seconds, how=self.feeling.how)
             self.tell("loop", running=True, why="", device=felt.device_name, own_hand=felt.own_hand)
 
@@ -100,17 +100,17 @@ class Desk:
         if self.laws.other is not None or not self.feeling.running:
             await self.feel(made)
         else:
-            await self.put(Felt.of(made, self.feeling.channel))
+            await self.put(LoopInput.of(made, self.feeling.channel))
 
-    async def put(self, felt: Felt) -> float | None:
+    async def put(self, felt: LoopInput) -> float | None:
         """Put a touch under the hand; seconds that took.
 
         Returns: None after a stop, and with a device that is not the one that is chosen by now: it is then not felt.
-        Raises: NotAgreed for a motor that nobody said yes to, DeviceError if the device cannot be opened.
+        Raises: NotConfirmed for a motor that nobody said yes to, DeviceError if the device cannot be opened.
         """
         try:
-            self.choice.check(felt.held)
-        except NotAgreed:
+            self.choice.check(felt.unmapped_device)
+        except NotConfirmed:
             felt.touch.discard()
             raise
         if felt.own_hand != (self.choice.kind == "hand"):
@@ -171,19 +171,19 @@ class Desk:
         """Do something beside; what it raises is said to all tabs."""
         task = asyncio.ensure_future(work)
         self._tasks.add(task)
-        task.add_done_callback(self._done)
+        task.add_done_callback(self._finish_task)
 
-    def _done(self, task: "asyncio.Task[Any]") -> None:
+    def _finish_task(self, task: "asyncio.Task[Any]") -> None:
         self._tasks.discard(task)
         if not task.cancelled() and (error := task.exception()) is not None:
-            self.failed(error)
+            self.report_failure(error)
 
-    def failed(self, error: BaseException) -> None:
+    def report_failure(self, error: BaseException) -> None:
         """Something beside failed: all tabs are told a sentence."""
         self.begin(self._say_failure(error))
 
     async def _say_failure(self, error: BaseException) -> None:
-        self.tell("error", text=await told(error))
+        self.tell("error", text=await describe_error(error))
 
     def _hear(self, event: Event) -> None:
         self.tell(event.event, **event.told)
@@ -191,10 +191,10 @@ class Desk:
     async def close(self) -> None:
         """No force, no process, no recording that is open; whatever of it fails, the rest is done."""
         self.feeling.cut()
-        self.maker.close()
+        self.worker.close()
         try:
             await asyncio.to_thread(self.feeling.stop)
         finally:
-            await asyncio.to_thread(self.laws.rival.close)
+            await asyncio.to_thread(self.laws.comparison.close)
             if self.recorder is not None:
                 await asyncio.to_thread(self.recorder.stop)

@@ -33,7 +33,7 @@ def user_folder(name: str) -> Path:
 
 
 @final
-class Shelf:
+class UploadStore:
     """Files arrive in batches; a batch that is whole gets a folder named by what is in it, once."""
 
     def __init__(self, folder: Path, incoming: Path) -> None:

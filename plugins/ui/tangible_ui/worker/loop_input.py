@@ -14,9 +14,9 @@ from tangible_core.servo import packed
 from tangible_core.session import materials_text
 
 
-def felt(pipeline: Pipeline, heard: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
+def loop_input_of(pipeline: Pipeline, report: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
     """What the force loop needs of a touch, which is made. Raises: ConfigError without a device; as `Pipeline.make`."""
-    touch, config = pipeline.make("touch", heard, stop), pipeline.config
+    touch, config = pipeline.make("touch", report, stop), pipeline.config
     return parcel_of(touch, pipeline.make("surface"), config)
 
 

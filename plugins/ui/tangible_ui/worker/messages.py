@@ -1,12 +1,12 @@
-"""What the server and the maker tell each other: pickles over a pipe, as the force loop has them."""
+"""What the server and the worker tell each other: pickles over a pipe, as the force loop has them."""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
 
-class Ask(NamedTuple):
-    """Do one of the maker's jobs."""
+class JobRequest(NamedTuple):
+    """Do one of the worker's jobs."""
 
     number: int
     job: str
@@ -14,14 +14,14 @@ class Ask(NamedTuple):
     """Arguments by name."""
 
 
-class Answer(NamedTuple):
+class JobResult(NamedTuple):
     """The job is done."""
 
     number: int
     value: Any
 
 
-class Refused(NamedTuple):
+class JobFailure(NamedTuple):
     """The job could not be done."""
 
     number: int

@@ -1,4 +1,4 @@
-"""What lies on the maker's bench, and what a job is."""
+"""What lies on the worker's state, and what a job is."""
 
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
@@ -54,7 +54,7 @@ class Work:
         self._product = ""
         self._after = False
 
-    def heard(self, stage: StageEvent) -> None:
+    def follow(self, stage: StageEvent) -> None:
         """A stage began or ended."""
         self._product = "" if stage.outcome else stage.product
         if stage.outcome and self._after:
@@ -71,7 +71,7 @@ class Work:
 
 
 @final
-class Bench:
+class WorkerState:
     """The last pipeline that became something to feel or to see, and the folder of what pages fetch.
 
     Long jobs and quick ones come from two threads. A pipeline that lies here is never worked on: a job works on

@@ -18,23 +18,23 @@ from tangible_core.pipeline.starter import MAPS, PICTURES, VIDEOS, are_pictures,
 from tangible_core.scene.scene_files import BUILTINS
 from tangible_core.session.recording_files import SUFFIXES
 
-from ..state import Bench
+from ..state import WorkerState
 from .table import job
 
 
 @job(quick=True)
-def check(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
+def check(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
     """What a pipeline file says, alone and with every default filled in, or what is wrong with it."""
     values, complaints = None, list[Complaint]()
     try:
-        values = bench.config_of(text, path, sets).completed()
+        values = state.config_of(text, path, sets).completed()
     except ConfigError as error:
         complaints = list(error.complaints)
     return {
         "text": text,
         "path": str(path),
         "digest": digest_of(text),
-        "said": _said(text, path),
+        "said": _parse(text, path),
         "values": values,
         "complaints": [each._asdict() for each in complaints],
     }
@@ -42,7 +42,7 @@ def check(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any
 
 @job(quick=True)
 def change(
-    bench: Bench,
+    state: WorkerState,
     text: str,
     path: Path,
     sets: list[str],
@@ -57,25 +57,25 @@ def change(
     """
     loaded = {key: _value(key, value) for key, value in written.items()}
     gone = dict.fromkeys(removed, REMOVE)
-    return check(bench, edited(text, path, {**gone, **changes, **loaded}), path, sets)
+    return check(state, edited(text, path, {**gone, **changes, **loaded}), path, sets)
 
 
 @job(quick=True)
-def overridden(bench: Bench, text: str, path: Path, sets: list[str]) -> str:
+def overridden(state: WorkerState, text: str, path: Path, sets: list[str]) -> str:
     """The text with `key.key=value`, each as `--set` takes it. Raises: ConfigError."""
     return with_overrides(text, path, sets)
 
 
 @job(quick=True)
-def schema(bench: Bench) -> dict[str, Any]:
+def schema(state: WorkerState) -> dict[str, Any]:
     """The JSON Schema of all methods that are installed."""
-    return json_schema(bench.registry, None)
+    return json_schema(state.registry, None)
 
 
 @job(quick=True)
-def library(bench: Bench, text: str, path: Path, sets: list[str]) -> list[dict[str, Any]]:
+def library(state: WorkerState, text: str, path: Path, sets: list[str]) -> list[dict[str, Any]]:
     """The materials that a document can name: figures, and where they come from. Raises: ConfigError."""
-    return [asdict(each) for each in load_library(bench.config_of(text, path, sets).materials.library).values()]
+    return [asdict(each) for each in load_library(state.config_of(text, path, sets).materials.library).values()]
 
 
 def digest_of(text: str) -> str:
@@ -83,7 +83,7 @@ def digest_of(text: str) -> str:
     return sha256(text.encode()).hexdigest()[:16]
 
 
-def _said(text: str, path: Path) -> dict[str, Any] | None:
+def _parse(text: str, path: Path) -> dict[str, Any] | None:
     try:
         return said(text, path)
     except ConfigError:
@@ -114,7 +114,7 @@ MOST = 2000
 
 
 @job(quick=True)
-def folder(bench: Bench, path: Path) -> dict[str, Any]:
+def folder(state: WorkerState, path: Path) -> dict[str, Any]:
     """Folders, and files that can be opened, by name. Raises: ConfigError if it is no folder."""
     try:
         path = path.expanduser().absolute()
@@ -131,7 +131,7 @@ def folder(bench: Bench, path: Path) -> dict[str, Any]:
 
 
 @job(quick=True)
-def begin(bench: Bench, files: list[Path]) -> dict[str, Any]:
+def begin(state: WorkerState, files: list[Path]) -> dict[str, Any]:
     """A pipeline file's text, or that of a new one for pictures, and where it stands; or the path of a recording.
 
     Of a pipeline file and its pictures, the file counts. Raises: ConfigError for what cannot be opened together.
@@ -168,23 +168,23 @@ def _is_recording(path: Path) -> bool:
 
 
 @job(quick=True)
-def examples(bench: Bench) -> list[str]:
+def examples(state: WorkerState) -> list[str]:
     """Scenes that are built in."""
     return list(BUILTINS)
 
 
 @job(quick=True)
-def save(bench: Bench, text: str, path: Path, out: Path) -> None:
+def save(state: WorkerState, text: str, path: Path, out: Path) -> None:
     """Write a document that stood at `path` to another place; its relative paths lead to the same files from there.
 
     Raises: OutputError if it cannot be written; ConfigError for what is wrong with it.
     """
-    config = parse_config(text, path, bench.registry)
+    config = parse_config(text, path, state.registry)
     write_text(out, moved(text, path, config, out))
 
 
 @job(quick=True)
-def exchange(bench: Bench, text: str, path: Path) -> str:
+def exchange(state: WorkerState, text: str, path: Path) -> str:
     """The text with left and right in each other's place. Raises: ConfigError if they are no pair."""
     scene = said(text, path).get("scene")
     if not (isinstance(scene, dict) and {"left", "right"} <= scene.keys()):

@@ -10,16 +10,16 @@ from tangible_core.files.source import parse_value, plain
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.servo import beacon_to, parcel
 
-from ..loop_input import felt
-from ..state import Bench
+from ..loop_input import loop_input_of
+from ..state import WorkerState
 from ..view.surface_view import at_hand
 from .table import job
 
 
 @job(quick=True)
-def beacon(bench: Bench, text: str, path: Path, sets: list[str], part: int) -> dict[str, Any]:
+def beacon(state: WorkerState, text: str, path: Path, sets: list[str], part: int) -> dict[str, Any]:
     """A beacon to a part of the document's surface, by its number, in a parcel. Raises: ConfigError without one."""
-    surface: HapticSurface | None = at_hand(bench.pipeline_of(text, path, sets), "surface")
+    surface: HapticSurface | None = at_hand(state.pipeline_of(text, path, sets), "surface")
     if surface is None:
         raise ConfigError("the surface of this document is not made yet; make it, and a beacon leads to its parts")
     made = beacon_to(surface, part)
@@ -27,13 +27,13 @@ def beacon(bench: Bench, text: str, path: Path, sets: list[str], part: int) -> d
 
 
 @job(quick=True)
-def law_names(bench: Bench) -> list[str]:
+def law_names(state: WorkerState) -> list[str]:
     """The force laws that are installed."""
-    return sorted(bench.registry.names("render"))
+    return sorted(state.registry.names("render"))
 
 
 @job(quick=True)
-def law_block(bench: Bench, use: str, options: str) -> dict[str, Any]:
+def law_block(state: WorkerState, use: str, options: str) -> dict[str, Any]:
     """A law as `render:` has it, its options written in YAML, such as {stiffness_n_per_m: 500}. Raises: ConfigError."""
     try:
         said = plain(parse_value(options)) if options.strip() else {}
@@ -45,13 +45,15 @@ def law_block(bench: Bench, use: str, options: str) -> dict[str, Any]:
 
 
 @job()
-def laws(bench: Bench, text: str, path: Path, sets: list[str], others: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def laws(
+    state: WorkerState, text: str, path: Path, sets: list[str], others: list[dict[str, Any]]
+) -> list[dict[str, Any]]:
     """What the force loop needs of the document's law, and then of others, blocks as `render:` has them.
 
     Raises: ConfigError if the document has no law, or a block is wrong; TangibleError as `Pipeline.make`.
     """
-    first = bench.pipeline_of(text, path, sets)
+    first = state.pipeline_of(text, path, sets)
     if first.config.render is None:
         raise first.config.missing("render")
-    with_others = [bench.config_of(text, path, [*sets, f"render={json.dumps(each)}"]) for each in others]
-    return [felt(first), *(felt(Pipeline.from_config(config, like=first)) for config in with_others)]
+    with_others = [state.config_of(text, path, [*sets, f"render={json.dumps(each)}"]) for each in others]
+    return [loop_input_of(first), *(loop_input_of(Pipeline.from_config(config, like=first)) for config in with_others)]

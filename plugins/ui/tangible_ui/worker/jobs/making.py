@@ -13,12 +13,12 @@ from tangible_core.errors import TangibleError
 from tangible_core.pipeline.engine.engine import Progress, StageEvent
 from tangible_core.pipeline.pipeline import Pipeline
 
-from ..loop_input import felt
-from ..state import Bench, Work
+from ..loop_input import loop_input_of
+from ..state import Work, WorkerState
 from ..view.files import show
-from ..view.surface_view import Seen, see
+from ..view.surface_view import SurfaceView, view_of
 from .document import digest_of
-from .surface import described
+from .surface import description_data
 from .table import job
 
 SLOW = ("disparity", "segments")
@@ -26,15 +26,15 @@ SLOW = ("disparity", "segments")
 
 
 @job(quick=True)
-def plan(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
+def plan(state: WorkerState, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
     """What making a product would do, and why; what stands in the way where it cannot."""
     try:
-        return planned(bench.pipeline_of(text, path, sets), text, want)
+        return plan_data(state.pipeline_of(text, path, sets), text, want)
     except TangibleError as error:
         return {"digest": digest_of(text), "want": want, "steps": [], "slow": [], "refusal": str(error)}
 
 
-def planned(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
+def plan_data(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
     """The plan as pages have it. Raises: as `Pipeline.plan`."""
     found = pipeline.plan(cast(Any, want))
     slow = [each.product for each in found.steps if each.outcome == "ran" and each.product in SLOW]
@@ -55,61 +55,61 @@ def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
 
 
 @job()
-def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:
+def make(state: WorkerState, number: int, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:
     """Make a product; pages hear of every stage, and of the surface as soon as it can be drawn.
 
     Returns: what the force loop needs, where a touch was wanted.
     """
     begun_s = perf_counter()
-    pipeline = bench.pipeline_of(text, path, sets)
-    with bench.work(pipeline, number) as work:
-        bench.tell("making", want=want, digest=digest_of(text))
-        bench.tell("plan", **planned(pipeline, text, want))
-        heard = telling(bench, work)
+    pipeline = state.pipeline_of(text, path, sets)
+    with state.work(pipeline, number) as work:
+        state.tell("making", want=want, digest=digest_of(text))
+        state.tell("plan", **plan_data(pipeline, text, want))
+        report = stage_reporter(state, work)
         product = TO_SEE.get(want, want)
-        pipeline.make(product, heard, work.stop)
-        _show(bench, pipeline, product)
+        pipeline.make(product, report, work.stop)
+        _show(state, pipeline, product)
         work.worth = True
-        made = felt(pipeline, heard, work.stop) if want == "touch" else None
-    bench.tell("made", want=want, digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
+        made = loop_input_of(pipeline, report, work.stop) if want == "touch" else None
+    state.tell("made", want=want, digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
     return made
 
 
-def telling(bench: Bench, work: Work) -> Progress:
+def stage_reporter(state: WorkerState, work: Work) -> Progress:
     """Hears of stages, and tells pages."""
 
-    def heard(stage: StageEvent) -> None:
+    def report(stage: StageEvent) -> None:
         done = {} if stage.outcome is None else asdict(stage.outcome)
-        bench.tell("stage", product=stage.product, method=stage.method, done=done)
-        work.heard(stage)
+        state.tell("stage", product=stage.product, method=stage.method, done=done)
+        work.follow(stage)
 
-    return heard
+    return report
 
 
 @job(quick=True)
-def give_way(bench: Bench, number: int, text: str, path: Path, sets: list[str], want: str) -> bool:
+def give_way(state: WorkerState, number: int, text: str, path: Path, sets: list[str], want: str) -> bool:
     """What is being made ends for this newer document; whether at once, as it needs nothing of what is at work.
 
     Raises: ConfigError if that makes no sense; then what is being made goes on.
     """
-    return bench.give_way(number, bench.pipeline_of(text, path, sets), want)
+    return state.give_way(number, state.pipeline_of(text, path, sets), want)
 
 
 TO_SEE = {"touch": "surface", "disparity": "relief", "segments": "materials"}
 """What is seen of a product, where that is another one."""
 
 
-def _show(bench: Bench, pipeline: Pipeline, product: str) -> None:
+def _show(state: WorkerState, pipeline: Pipeline, product: str) -> None:
     """Pages draw it while the touch is made."""
-    if (seen := see(pipeline, product)).digest != bench.shown:
-        bench.tell("scene", **show(seen, bench.folder))
-        bench.shown = seen.digest
-        bench.described = pipeline, seen
-        bench.tell("described", **described(pipeline, seen))
-    bench.tell("materials", segments=_segments(pipeline, seen))
+    if (seen := view_of(pipeline, product)).digest != state.shown:
+        state.tell("scene", **show(seen, state.folder))
+        state.shown = seen.digest
+        state.described = pipeline, seen
+        state.tell("described", **description_data(pipeline, seen))
+    state.tell("materials", segments=_segments(pipeline, seen))
 
 
-def _segments(pipeline: Pipeline, seen: Seen) -> list[dict[str, Any]]:
+def _segments(pipeline: Pipeline, seen: SurfaceView) -> list[dict[str, Any]]:
     """Each segment with its material, why it has it, its share of the area, and its name where it is a part."""
     if seen.labels is None or not seen.materials:
         return []

@@ -19,9 +19,9 @@ from tangible_core.scene.workspace import kind_of
 from tangible_report.description import describe, describe_at_length, facts, page_of
 from tangible_report.description.at_length import tell
 
-from ..state import Bench
+from ..state import WorkerState
 from ..view.files import ABOUT
-from ..view.surface_view import Seen
+from ..view.surface_view import SurfaceView
 from .table import job
 
 KEPT = 8
@@ -31,13 +31,13 @@ LARGEST_M = 0.1
 
 @job(quick=True)
 def texture_patch(
-    bench: Bench, digest: str, x_m: float, y_m: float, side_m: float, pixels: int = 192
+    state: WorkerState, digest: str, x_m: float, y_m: float, side_m: float, pixels: int = 192
 ) -> dict[str, Any]:
     """Write the heights of a square round a place over the surface's own, metres, the top row far; and say where.
 
     digest: of the surface as pages know it. Raises: GeometryError if that is gone, or the square is none.
     """
-    at = bench.folder / digest
+    at = state.folder / digest
     if not re.fullmatch("[0-9a-f]{32}", digest) or not (at / ABOUT).is_file():
         raise GeometryError("this surface is not kept any more; make it again")
     square = 0 < side_m <= LARGEST_M and 1 <= pixels <= MOST_PIXELS and np.isfinite(x_m + y_m)
@@ -89,11 +89,11 @@ def _heights(
 
 
 @job(quick=True)
-def description(bench: Bench, language: Language) -> dict[str, Any] | None:
+def description(state: WorkerState, language: Language) -> dict[str, Any] | None:
     """What there is to say, as text too and as a page of its own; nothing while there is no surface."""
-    if bench.described is None:
+    if state.described is None:
         return None
-    pipeline, seen = bench.described
+    pipeline, seen = state.described
     config, kind = pipeline.config, kind_of(pipeline.scene)
     title, parts = title_of(config, pipeline.scene), facts(seen.surface)
     told = tell(seen.surface, title, language, parts, kind)
@@ -109,7 +109,7 @@ def description(bench: Bench, language: Language) -> dict[str, Any] | None:
     }
 
 
-def described(pipeline: Pipeline, seen: Seen) -> dict[str, Any]:
+def description_data(pipeline: Pipeline, seen: SurfaceView) -> dict[str, Any]:
     """What is said of what is seen, by language; a material that has no name in a language keeps its own."""
     scene = pipeline.scene
     kind = kind_of(scene)

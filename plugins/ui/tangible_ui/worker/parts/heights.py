@@ -26,8 +26,8 @@ from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scaling import felt_factor
 from tangible_core.scene.scene import Scene
 
-from ..state import Bench
-from ..view.surface_view import Seen, at_hand
+from ..state import WorkerState
+from ..view.surface_view import SurfaceView, at_hand
 from .opening import config_heights
 
 S = TypeVar("S", bound=BaseModel)
@@ -51,7 +51,7 @@ class Kept:
     layering: Layering
     found_m: dict[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
     """What recipes find, by part; those that were asked for."""
-    seen: Seen | None = None
+    seen: SurfaceView | None = None
     """What was seen last, and the surface that is felt now, if it is another."""
     surface: HapticSurface | None = None
 
@@ -60,7 +60,7 @@ def of_parts(config: PipelineConfig, heights: Mapping[str, Any] | None) -> Pipel
     """The configuration with a relief of parts, as it is once all their heights are given."""
     choice = config_heights(config)
     told = {**choice.model_dump(), **(heights or {}), "by": "given"}
-    return config.changed(heights=checked(HeightChoice, told), parts=config.parts or {})
+    return config.changed(heights=validate(HeightChoice, told), parts=config.parts or {})
 
 
 def coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
@@ -73,7 +73,7 @@ def coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
     return config.changed(workspace=config.workspace.model_copy(update={"finest_m": finest_m}))
 
 
-def checked(section: type[S], said: Mapping[str, Any]) -> S:
+def validate(section: type[S], said: Mapping[str, Any]) -> S:
     """Raises: ConfigError for what it cannot say."""
     try:
         return section.model_validate(said)
@@ -89,16 +89,16 @@ def known_heights(kept: Kept, heights_m: Sequence[float | None], by: str) -> lis
         disparity = at_hand(kept.pipeline, "disparity") if by == "depth" else None
         if by == "depth" and disparity is None:
             raise ConfigError("the picture's depth is not made yet; make it, and heights by depth are felt")
-        recipe = kept.config.changed(heights=checked(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
+        recipe = kept.config.changed(heights=validate(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
         kept.found_m[by] = ReliefStage(Context(recipe, kept.scene)).part_heights(kept.parts, disparity).heights_m
     found_m = kept.found_m.get(by, ())
     return [found_m[number] if each is None and number < len(found_m) else each or 0.0
             for number, each in enumerate(heights_m)]  # fmt: skip
 
 
-def kept_of(bench: Bench, pipeline: Pipeline) -> Kept:
+def kept_of(state: WorkerState, pipeline: Pipeline) -> Kept:
     """What was kept, or as much of it as still holds."""
-    config, before = pipeline.config, bench.kept
+    config, before = pipeline.config, state.kept
     named = {number: PartChoice(name=each.name) for number, each in (config.parts or {}).items() if each.name}
     bare = config.changed(parts=named, title="", language="en", source=None)
     if before is not None and before.scene is pipeline.scene and before.config == bare:
@@ -114,7 +114,7 @@ def kept_of(bench: Bench, pipeline: Pipeline) -> Kept:
     if layering is None:
         assert bare.heights is not None
         layering = Layering(parts, bare.size.width_m, bare.heights, grid.views.left if grid.views else None)
-    bench.kept = kept = Kept(made.scene, bare, made, grid, parts, chosen, layering)
+    state.kept = kept = Kept(made.scene, bare, made, grid, parts, chosen, layering)
     return kept
 
 

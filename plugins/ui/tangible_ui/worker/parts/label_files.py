@@ -23,10 +23,10 @@ AFTER_SIZE = len(PNG) + 4 + 4 + 13 + 4
 _TEXT, _PIXELS = b"tEXt", b"IDAT"
 
 
-def unpacked(path: Path, shape: tuple[int, int]) -> UInt16[np.ndarray, "h w"]:
+def unpack(path: Path, shape: tuple[int, int]) -> UInt16[np.ndarray, "h w"]:
     """Labels as a page has sent them: uint16, little-endian, row by row, as gzip.
 
-    No more than one byte too many is ever unpacked. Raises: ConfigError for anything else, and another size.
+    No more than one byte too many is ever unpack. Raises: ConfigError for anything else, and another size.
     """
     size = 2 * shape[0] * shape[1]
     wrong = f"the labels that were sent are no gzip of {shape[1]} x {shape[0]} numbers of two bytes; send them again"

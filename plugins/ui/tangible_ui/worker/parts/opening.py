@@ -18,7 +18,7 @@ from tangible_core.pipeline.engine.part_validation import parts_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
 
-from ..state import Bench
+from ..state import WorkerState
 from ..view.files import leave, write_whole
 from ..view.surface_view import is_there
 
@@ -39,19 +39,19 @@ class Opened(NamedTuple):
     parts: PartMap
 
 
-def edited_of(bench: Bench, text: str, path: Path, sets: list[str]) -> Pipeline:
+def edited_of(state: WorkerState, text: str, path: Path, sets: list[str]) -> Pipeline:
     """The pipeline that a text says, after that of the last quick job here. Raises: ConfigError."""
-    config, before = bench.config_of(text, path, sets), bench.opened
-    made = bench.after(before.pipeline, config) if before and before.pipeline.config.scene == config.scene else None
-    return made or bench.pipeline_of(text, path, sets)
+    config, before = state.config_of(text, path, sets), state.opened
+    made = state.after(before.pipeline, config) if before and before.pipeline.config.scene == config.scene else None
+    return made or state.pipeline_of(text, path, sets)
 
 
-def opened_of(bench: Bench, pipeline: Pipeline) -> Opened:
+def opened_of(state: WorkerState, pipeline: Pipeline) -> Opened:
     """A scene's picture and parts; the last one's are kept. Raises: as `parts_open`."""
-    before, scene = bench.opened, pipeline.scene
+    before, scene = state.opened, pipeline.scene
     if before is None or before.scene is not scene:
         before = Opened(pipeline, scene, to_rgb8(_picture(scene)), _parts(pipeline))
-    bench.opened = before._replace(pipeline=pipeline)
+    state.opened = before._replace(pipeline=pipeline)
     return before
 
 
@@ -71,7 +71,7 @@ def config_heights(config: PipelineConfig) -> HeightChoice:
     return config.heights or HeightChoice(by="given")
 
 
-def listed(parts: PartMap, choices: Mapping[int, PartChoice]) -> list[dict[str, Any]]:
+def part_entries(parts: PartMap, choices: Mapping[int, PartChoice]) -> list[dict[str, Any]]:
     """Every part: what is said of it, its pixels, and a pixel well inside it."""
     places = _places(parts)
     said = [choices.get(number, PartChoice()).model_dump(mode="json") for number in range(parts.count)]

@@ -16,7 +16,7 @@ TURN = 2
 """Steps by which neighbours may differ."""
 
 
-def snapped(
+def snap(
     picture: UInt8[np.ndarray, "h w 3"], outline: Float64[np.ndarray, "n 2"], reach_px: float
 ) -> Float64[np.ndarray, "m 2"]:
     """The closed outline through the edges: of all that stay within reach, the one of the least cost.
@@ -24,7 +24,7 @@ def snapped(
     The strip along the outline is looked at straightened, and nothing else of the picture. The path through it is found
     by dynamic programming (Amini, Weymouth and Jain 1990), twice round, so that its end meets its beginning.
     """
-    places = _spaced(outline)
+    places = _resample(outline)
     if len(places) < 4 or not 0 < reach_px < np.inf:
         return outline
     steps = int(np.clip(round(reach_px), 1, MOST_STEPS))
@@ -35,7 +35,7 @@ def snapped(
     return np.clip(moved, 0, [picture.shape[1] - 1, picture.shape[0] - 1])
 
 
-def _spaced(outline: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "m 2"]:
+def _resample(outline: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "m 2"]:
     """Places along the closed outline, a pixel or more apart."""
     closed = np.concatenate([outline, outline[:1]])
     lengths = np.hypot(*np.diff(closed, axis=0).T)

@@ -38,7 +38,7 @@ class Window(NamedTuple):
         return picture[self.y : self.y + self.rows, self.x : self.x + self.columns]
 
 
-def proposed(
+def propose(
     picture: UInt8[np.ndarray, "h w 3"],
     points: Float64[np.ndarray, "n 2"],
     width_px: float,
@@ -58,12 +58,14 @@ def proposed(
     factor = min(1.0, (MOST_CELLS / (window.rows * window.columns)) ** 0.5)
     size = max(1, round(window.columns * factor)), max(1, round(window.rows * factor))
     small = np.ascontiguousarray(cv2.resize(whole, size, interpolation=cv2.INTER_AREA) if factor < 1 else whole)
-    stroke = _drawn(points, width_px, window, size)
-    mask = _connected(_found(small, stroke, _rim(window, stroke, picture.shape), width_px * factor, kind), stroke)
+    stroke = _draw_stroke(points, width_px, window, size)
+    mask = _keep_connected(
+        _segment(small, stroke, _rim(window, stroke, picture.shape), width_px * factor, kind), stroke
+    )
     if factor < 1:
-        mask = _refined(whole, mask)
-    mask |= _drawn(points, width_px, window, (window.columns, window.rows))
-    return _boxed(mask, window)
+        mask = _refine_border(whole, mask)
+    mask |= _draw_stroke(points, width_px, window, (window.columns, window.rows))
+    return _crop_to_box(mask, window)
 
 
 def as_points(points: Sequence[Sequence[float]], shape: tuple[int, ...]) -> Float64[np.ndarray, "n 2"]:
@@ -101,7 +103,7 @@ def _window(shape: tuple[int, ...], points: np.ndarray, width_px: float, within:
     return Window(x0, y0, max(1, x1 - x0), max(1, y1 - y0))
 
 
-def _drawn(points: np.ndarray, width_px: float, window: Window, size: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
+def _draw_stroke(points: np.ndarray, width_px: float, window: Window, size: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
     """The stroke, on a grid of so many columns and rows over the window."""
     import cv2
 
@@ -122,13 +124,13 @@ def _rim(window: Window, stroke: np.ndarray, shape: tuple[int, ...]) -> Bool[np.
     return found & ~stroke
 
 
-def _found(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: float, kind: Kind) -> np.ndarray:
+def _segment(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: float, kind: Kind) -> np.ndarray:
     import cv2
 
     if stroke.all():
         return stroke
     if kind == "watershed":
-        return _flooded(cv2.bilateralFilter(small, 7, 30, 5), stroke, rim) if rim.any() else ~rim
+        return _watershed(cv2.bilateralFilter(small, 7, 30, 5), stroke, rim) if rim.any() else ~rim
     state = np.full(stroke.shape, cv2.GC_PR_BGD, np.uint8)
     far = cv2.distanceTransform((~stroke).astype(np.uint8), cv2.DIST_L2, 3)
     state[far <= max(NEAR * width, 1)] = cv2.GC_PR_FGD
@@ -141,7 +143,7 @@ def _found(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: float,
     return (state == cv2.GC_FGD) | (state == cv2.GC_PR_FGD)
 
 
-def _flooded(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> Bool[np.ndarray, "r c"]:
+def _watershed(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> Bool[np.ndarray, "r c"]:
     """What is nearer to the inside than to the outside, the picture's edges being steep."""
     import cv2
 
@@ -150,7 +152,7 @@ def _flooded(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> Bo
     return np.asarray(cv2.watershed(np.ascontiguousarray(picture), markers)) == PART
 
 
-def _connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "r c"]:
+def _keep_connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "r c"]:
     """What hangs together with the stroke, without specks at its border and small holes."""
     import cv2
 
@@ -162,7 +164,7 @@ def _connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c"]) -
     return found | small[holes]
 
 
-def _refined(whole: np.ndarray, mask: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "h w"]:
+def _refine_border(whole: np.ndarray, mask: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "h w"]:
     """The mask at the picture's own size: along its border, a watershed between what is surely in and out."""
     import cv2
 
@@ -177,11 +179,11 @@ def _refined(whole: np.ndarray, mask: Bool[np.ndarray, "r c"]) -> Bool[np.ndarra
     for top in range(0, mask.shape[0], BLOCK):
         for left in range(0, mask.shape[1], BLOCK):
             if (state[top : top + BLOCK, left : left + BLOCK] == 0).any():
-                _refine(whole, state, found, (row_ends, column_ends), (top, left))
+                _refine_block(whole, state, found, (row_ends, column_ends), (top, left))
     return found
 
 
-def _refine(
+def _refine_block(
     whole: np.ndarray,
     state: np.ndarray,
     found: np.ndarray,
@@ -198,10 +200,10 @@ def _refine(
     near = state[outer[0][0] : outer[0][1], outer[1][0] : outer[1][1]]
     markers = np.asarray(cv2.resize(near, (x1 - x0, y1 - y0), interpolation=cv2.INTER_NEAREST))
     if (markers == PART).any() and (markers == OUTSIDE).any():
-        part = _flooded(cv2.GaussianBlur(whole[y0:y1, x0:x1], (0, 0), 1.0), markers == PART, markers == OUTSIDE)
+        part = _watershed(cv2.GaussianBlur(whole[y0:y1, x0:x1], (0, 0), 1.0), markers == PART, markers == OUTSIDE)
         found[v0:v1, u0:u1] = part[v0 - y0 : v1 - y0, u0 - x0 : u1 - x0]
 
 
-def _boxed(mask: Bool[np.ndarray, "r c"], window: Window) -> tuple[Window, Bool[np.ndarray, "R C"]]:
+def _crop_to_box(mask: Bool[np.ndarray, "r c"], window: Window) -> tuple[Window, Bool[np.ndarray, "R C"]]:
     (y0, y1), (x0, x1) = (np.flatnonzero(mask.any(axis))[[0, -1]].tolist() for axis in (1, 0))
     return Window(window.x + x0, window.y + y0, x1 + 1 - x0, y1 + 1 - y0), mask[y0 : y1 + 1, x0 : x1 + 1]

@@ -52,7 +52,7 @@ def warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> N
         )
 
 
-def numbered(
+def number_parts(
     parts: Sequence[Mapping[str, Any]], labels: Sequence[int], numbers: Int32[np.ndarray, "h w"]
 ) -> tuple[dict[int, dict[str, Any]], dict[str, list[int]]]:
     """What is said of each part by its number, and the numbers that each label became.
@@ -82,7 +82,7 @@ def numbered(
     return choices, {str(label): found for label, found in of_label.items()}
 
 
-def said_of_parts(
+def document_with_parts(
     text: str,
     path: Path,
     place: Path,
@@ -149,7 +149,7 @@ def _scene(now: Mapping[str, Any], path: Path, place: Path) -> dict[tuple[str, .
     return {("scene",): {**files, "segments": named}}
 
 
-def unframed(labels: Int32[np.ndarray, "h w"], config: PipelineConfig) -> Shaped[np.ndarray, "H W"]:
+def undo_framing(labels: Int32[np.ndarray, "h w"], config: PipelineConfig) -> Shaped[np.ndarray, "H W"]:
     """Labels as the scene's files have them: turned back, and what was cut off gets the label that is nearest."""
     files = config.scene
     if not isinstance(files, SceneFiles) or (files.crop is None and not files.rotate):
@@ -163,7 +163,7 @@ def unframed(labels: Int32[np.ndarray, "h w"], config: PipelineConfig) -> Shaped
     return np.pad(labels, ((y, rows - y - height), (x, columns - x - width)), mode="edge")
 
 
-def stands(path: Path, opened: str) -> bool:
+def is_in_file(path: Path, opened: str) -> bool:
     """Whether the document's file is there, and says what was read from it or written to it last."""
     try:
         return path.is_file() and read_text(path) == opened
@@ -171,24 +171,24 @@ def stands(path: Path, opened: str) -> bool:
         return False
 
 
-def beside(path: Path) -> Path:
+def place_next_to(path: Path) -> Path:
     """Where the labels go beside a pipeline file: where there is nothing, or what was written for that very file."""
     names = itertools.chain([NAME], (f"{Path(NAME).stem}-{number}.png" for number in itertools.count(2)))
     places = (path.parent / name for name in names)
     return next(each for each in places if not os.path.lexists(each) or is_ours(each, path.name))
 
 
-def on_shelf(shelf: Path, picture: bytes) -> Path:
-    """Where a label picture lies on the shelf: by its content."""
-    return shelf / hashlib.sha256(picture).hexdigest()[:16] / NAME
+def in_store(store: Path, picture: bytes) -> Path:
+    """Where a label picture lies on the store: by its content."""
+    return store / hashlib.sha256(picture).hexdigest()[:16] / NAME
 
 
-def kept_before(place: Path, picture: bytes, shelf: Path, texts: Sequence[str], path: Path) -> dict[str, str]:
+def keep_replaced(place: Path, picture: bytes, store: Path, texts: Sequence[str], path: Path) -> dict[str, str]:
     """Keep what another picture is to take the place of, for the texts that name it: a step back finds it there."""
     before = place.read_bytes() if place.is_file() else picture
     if before == picture:
         return {}
-    kept = on_shelf(shelf, before)
+    kept = in_store(store, before)
     moved: dict[str, str] = {}
     for text in dict.fromkeys(texts):
         scene = said(text, path).get("scene") if place.name in text else None

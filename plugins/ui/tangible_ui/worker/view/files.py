@@ -17,7 +17,7 @@ from tangible_core.data.pictures import to_grey
 from tangible_core.errors import OutputError
 
 from . import levels
-from .surface_view import Seen
+from .surface_view import SurfaceView
 
 KEPT = 3
 """Folders that stay: tabs may still fetch from the one before."""
@@ -28,7 +28,7 @@ MOST_FINE_SIDE = 16_384
 """Browsers decode no larger ones."""
 
 
-def show(seen: Seen, folder: Path) -> dict[str, Any]:
+def show(seen: SurfaceView, folder: Path) -> dict[str, Any]:
     """Write what pages draw, whole or not at all, and return what they need to know of it.
 
     Heights are float32 as they are felt, not rounded: their slopes are drawn. Level 0 is the finest.
@@ -73,7 +73,7 @@ def label_type(labels: np.ndarray) -> str:
     return "<u2" if int(labels.max(initial=0)) < 2**16 else "<u4"
 
 
-def _about(seen: Seen) -> dict[str, Any]:
+def _about(seen: SurfaceView) -> dict[str, Any]:
     rows, columns = seen.relief.height_m.shape
     steps = [2**level for level in range(levels.count((rows, columns)))]
     return {
@@ -104,7 +104,7 @@ def _about(seen: Seen) -> dict[str, Any]:
     }
 
 
-def _write(seen: Seen, about: dict[str, Any], part: Path) -> None:
+def _write(seen: SurfaceView, about: dict[str, Any], part: Path) -> None:
     _write_arrays(seen, len(about["levels"]), part)
     if seen.picture is not None:
         _write_picture(seen.picture, part)
@@ -120,7 +120,7 @@ def _put(part: Path, at: Path) -> None:
             raise
 
 
-def _write_arrays(seen: Seen, count: int, part: Path) -> None:
+def _write_arrays(seen: SurfaceView, count: int, part: Path) -> None:
     for level, height_m in enumerate(levels.means(seen.relief.height_m, count)):
         _raw(part / f"height-{level}.f32", height_m, "<f4")
     if seen.labels is not None:

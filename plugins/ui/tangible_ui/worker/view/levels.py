@@ -22,9 +22,9 @@ def means(values: Float32[np.ndarray, "h w"], levels: int) -> list[Float32[np.nd
     found = [values]
     rows, columns = (np.ones(side) for side in values.shape)
     for _ in range(levels - 1):
-        half = _halved(_halved(found[-1], rows).T, columns).T
+        half = _halve_rows(_halve_rows(found[-1], rows).T, columns).T
         found.append(np.ascontiguousarray(half))
-        rows, columns = _paired(rows), _paired(columns)
+        rows, columns = _pair_weights(rows), _pair_weights(columns)
     return found
 
 
@@ -38,7 +38,7 @@ def middles(labels: Shaped[np.ndarray, "h w"], levels: int) -> list[Shaped[np.nd
     return found
 
 
-def _halved(values: Float32[np.ndarray, "h w"], weights: np.ndarray) -> Float32[np.ndarray, "n w"]:
+def _halve_rows(values: Float32[np.ndarray, "h w"], weights: np.ndarray) -> Float32[np.ndarray, "n w"]:
     """Weighted means of rows in pairs; a last row without a partner stays."""
     pairs = len(values) // 2
     found = values[0::2].copy()
@@ -47,5 +47,5 @@ def _halved(values: Float32[np.ndarray, "h w"], weights: np.ndarray) -> Float32[
     return found
 
 
-def _paired(weights: np.ndarray) -> np.ndarray:
+def _pair_weights(weights: np.ndarray) -> np.ndarray:
     return np.add.reduceat(weights, np.arange(0, len(weights), 2))

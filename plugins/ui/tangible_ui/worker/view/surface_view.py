@@ -45,7 +45,7 @@ class Layer(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Seen:
+class SurfaceView:
     """A surface to draw, or what there is of one."""
 
     name: str
@@ -75,25 +75,25 @@ class Seen:
         return digest_of(parts)
 
 
-def see(pipeline: Pipeline, product: str) -> Seen:
+def view_of(pipeline: Pipeline, product: str) -> SurfaceView:
     """What there is to see once this product is made. Raises: as `make`, where a relief cannot be made of a depth."""
     if product in ("surface", "touch"):
-        return see_surface(pipeline)
-    return see_relief(pipeline) if product in ("disparity", "relief") else see_segments(pipeline)
+        return view_surface(pipeline)
+    return view_relief(pipeline) if product in ("disparity", "relief") else view_segments(pipeline)
 
 
-def see_surface(pipeline: Pipeline) -> Seen:
+def view_surface(pipeline: Pipeline) -> SurfaceView:
     """What is touched, its materials as the device holds them."""
-    return _of(_seen(pipeline, "surface", pipeline.surface.relief), pipeline.surface, pipeline.config)
+    return _of(_view(pipeline, "surface", pipeline.surface.relief), pipeline.surface, pipeline.config)
 
 
-def see_parts(pipeline: Pipeline, surface: HapticSurface, before: Seen | None) -> Seen:
+def view_parts(pipeline: Pipeline, surface: HapticSurface, before: SurfaceView | None) -> SurfaceView:
     """A surface of the pipeline's parts that have other heights or materials. before: what was seen of it so far."""
-    seen = before or _seen(pipeline, "surface", surface.relief)
+    seen = before or _view(pipeline, "surface", surface.relief)
     return _of(replace(seen, relief=surface.relief), surface, pipeline.config)
 
 
-def _of(seen: Seen, surface: HapticSurface, config: PipelineConfig) -> Seen:
+def _of(seen: SurfaceView, surface: HapticSurface, config: PipelineConfig) -> SurfaceView:
     if config.felt_device is not None:
         surface, _ = fit_to_device(surface, config, config.felt_device)
     if surface.labels is None:
@@ -101,12 +101,12 @@ def _of(seen: Seen, surface: HapticSurface, config: PipelineConfig) -> Seen:
     return replace(seen, labels=surface.labels, materials=surface.materials or (), names=surface.names)
 
 
-def see_relief(pipeline: Pipeline) -> Seen:
+def view_relief(pipeline: Pipeline) -> SurfaceView:
     """Heights, and segments where they are there. Raises: GeometryError where the depth gives none."""
-    return _seen(pipeline, "relief", pipeline.relief)
+    return _view(pipeline, "relief", pipeline.relief)
 
 
-def see_segments(pipeline: Pipeline) -> Seen:
+def view_segments(pipeline: Pipeline) -> SurfaceView:
     """Segments over the relief that is there, or over a flat picture."""
     if is_there(pipeline, "relief"):
         relief = pipeline.relief
@@ -114,7 +114,7 @@ def see_segments(pipeline: Pipeline) -> Seen:
         felt = pipeline.engine.felt("segments")
         shape = pipeline.scene.shape if felt is None else felt.labels.shape
         relief = flat_relief(shape, pipeline.config.size.width_m)
-    return _seen(pipeline, "segments", relief)
+    return _view(pipeline, "segments", relief)
 
 
 def is_there(pipeline: Pipeline, product: Product) -> bool:
@@ -126,13 +126,13 @@ def is_there(pipeline: Pipeline, product: Product) -> bool:
     return steps.get(product) in ("given", "cached")
 
 
-def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
+def _view(pipeline: Pipeline, shows: Shows, relief: Relief) -> SurfaceView:
     labels = _labels(pipeline, relief.height_m.shape)
     chosen = at_hand(pipeline, "materials")
     materials = chosen.materials if chosen is not None and labels is not None else ()
     picture = None if pipeline.scene.views is None else pipeline.scene.views.left
     names = _names(pipeline) if labels is not None else None
-    return Seen(pipeline.scene.name, shows, relief, labels, materials, picture, _layers(pipeline), names)
+    return SurfaceView(pipeline.scene.name, shows, relief, labels, materials, picture, _layers(pipeline), names)
 
 
 def _names(pipeline: Pipeline) -> tuple[str, ...] | None:

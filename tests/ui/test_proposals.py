@@ -86,7 +86,7 @@ class TestProposals:
         picture, inside = two_things()
         monkeypatch.setattr(proposals, "MOST_CELLS", 2000)
         fine = placed(*propose(picture, STROKE, 12, "grabcut"))
-        monkeypatch.setattr(proposals, "_refined", lambda whole, mask: cv2.resize(
+        monkeypatch.setattr(proposals, "_refine_border", lambda whole, mask: cv2.resize(
             mask.astype(np.uint8), whole.shape[1::-1], interpolation=cv2.INTER_NEAREST) > 0)  # fmt: skip
         coarse = placed(*propose(picture, STROKE, 12, "grabcut"))
         assert overlap(fine, inside) > max(0.96, overlap(coarse, inside) + 0.02)

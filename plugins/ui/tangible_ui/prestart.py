@@ -1,4 +1,4 @@
-"""The worker's process, started before the server itself is imported: each takes half a second, side by side."""
+"""The worker's process, started before the server is imported: both take half a second, and start in parallel."""
 
 import subprocess
 from collections.abc import Generator
@@ -10,13 +10,13 @@ _prestarted: list[subprocess.Popen[bytes]] = []
 
 
 def take_worker_process() -> subprocess.Popen[bytes]:
-    """The one that was started beforehand, or another one; it waits for its folder on standard input."""
+    """Return the prestarted process, or start another one; it waits for its folder on standard input."""
     return _prestarted.pop() if _prestarted else _start()
 
 
 @contextmanager
 def prestart_worker() -> Generator[None]:
-    """Start one that `take_worker_process` then gives; it is ended if nobody asked for it."""
+    """Start a process for `take_worker_process`; at the end of the block, kill it if nobody took it."""
     _prestarted.append(_start())
     try:
         yield

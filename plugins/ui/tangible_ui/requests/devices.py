@@ -1,4 +1,4 @@
-"""Requests about devices: which there are, which one is used, what it reaches, how its loop runs."""
+"""Requests about devices: list, choose and examine them, what they reach, how the loop runs."""
 
 import asyncio
 from typing import Any
@@ -12,34 +12,33 @@ from .making import make
 from .table import request
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
-"""Before a device is looked for again; twice as long each time: to look for one starts a process."""
+"""First and longest pause before a device is looked for again, s; each doubles the last, as a look starts a process."""
 KINDS = ("hand", "document", "other")
 
 
 @request()
 async def devices(session: Session, tab: Tab | None) -> dict[str, Any]:
-    """Every installed device, and which one is chosen; none is opened."""
+    """List the installed devices, and the chosen one; none is opened."""
     return {"devices": await session.worker.ask("devices"), "kind": session.choice.kind, "name": session.choice.name}
 
 
 @request()
 async def examine(session: Session, tab: Tab | None, name: str) -> list[dict[str, Any]]:
-    """What keeps a device from working, and the cure."""
+    """Return what keeps a device from working, and the cure."""
     return await session.worker.ask("examine", name=name)
 
 
 @request()
 async def about_device(session: Session, tab: Tab | None, kind: str, name: str = "") -> dict[str, Any]:
-    """What it means to feel with this device: whether it has a motor, and how strong that may be."""
+    """Describe a device before it is used: whether it has a motor, and its greatest force."""
     return await _about(session, _choice(kind, name, sure=False))
 
 
 @request()
 async def choose_device(session: Session, tab: Tab | None, kind: str, name: str = "", sure: bool = False) -> None:
-    """Feel with the page's own hand ("hand"), the document's device ("document"), or another one by its name ("other");
-    also after a stop.
+    """Use the page's own hand ("hand"), the document's device ("document"), or another one by name ("other").
 
-    sure: that the person was told that it has a motor, and said yes; it is not opened without.
+    Also after a stop. sure: the person was warned of its motor and agreed; without that it is not opened.
     Raises: NotConfirmed, DeviceError if it cannot be opened.
     """
     choice = _choice(kind, name, sure)
@@ -54,13 +53,13 @@ async def choose_device(session: Session, tab: Tab | None, kind: str, name: str 
 
 @request()
 async def wait_for_device(session: Session, tab: Tab | None) -> None:
-    """Look for the chosen device again and again, until it is felt, or another one is chosen, or stop is pressed."""
+    """Look for the chosen device until it can be used, another one is chosen, or a stop."""
     session.begin(_wait(session))
 
 
 @request()
 async def doctor(session: Session, tab: Tab | None) -> dict[str, Any] | None:
-    """How the loop is; None where none runs."""
+    """Return figures of the loop; None if none runs."""
     servo = session.feeling.servo
     return figures(servo) if servo is not None and session.feeling.running else None
 
@@ -91,13 +90,13 @@ async def _wait(session: Session) -> None:
 
 @request()
 async def reach(session: Session, tab: Tab) -> dict[str, Any]:
-    """What the document's device reaches: its name, and its workspace in metres, or none."""
+    """Return the name of the document's device, and its workspace in metres; None without a device."""
     return await session.worker.quick("reach", text=session.text, path=session.path, sets=session.sets)
 
 
 @request()
 async def limits(session: Session, tab: Tab) -> dict[str, Any] | None:
-    """Ticks since the loop began, and those in which each limit acted; none before there is a loop."""
+    """Return the number of ticks since the loop began, and of those in which each limit acted; None before a loop."""
     servo = session.feeling.servo
     if servo is None:
         return None

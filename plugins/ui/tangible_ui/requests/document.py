@@ -15,9 +15,9 @@ from .table import request
 
 @request()
 async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bool = True) -> dict[str, Any]:
-    """Open a pipeline file, pictures or a recording; what can be felt is made and felt.
+    """Open a pipeline file, pictures or a recording; make what can be felt.
 
-    Returns: where a recording lies, if it is one: it is for whoever shows recordings.
+    Returns: the path of a recording, if it is one, for the panel of recordings.
     """
     found = await session.worker.quick("begin", files=[Path(each) for each in files])
     if "text" not in found:
@@ -35,10 +35,10 @@ async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bo
 
 @request()
 async def edit(session: Session, tab: Tab | None, text: str, of: str = "", apply: bool = False) -> dict[str, Any]:
-    """Take another text for the document; all tabs hear what it says, or what is wrong with it.
+    """Replace the document's text; all tabs get its values, or its errors.
 
-    of: digest of the text that was edited; if another took its place meanwhile, it is refused. apply: make and feel it
-    if nothing slow has to run. Raises: ConfigError.
+    of: digest of the text that was edited; if another text replaced that meanwhile, the edit is refused. apply: make it
+    unless something slow has to run. Raises: ConfigError.
     """
     async with session.texts.lock:
         if of and of != session.digest:
@@ -55,10 +55,7 @@ async def change(
     removed: list[str] | None = None,
     apply: bool = False,
 ) -> dict[str, Any]:
-    """Change keys of the document, and nothing else in it: values, values written in YAML, keys to go.
-
-    Raises: ConfigError.
-    """
+    """Change keys of the document and nothing else: values, values in YAML, keys to remove. Raises: ConfigError."""
     async with session.texts.lock:
         told = {"changes": changes or {}, "written": written or {}, "removed": removed or []}
         found = await session.worker.quick("change", text=session.text, path=session.path, sets=session.sets, **told)
@@ -67,30 +64,30 @@ async def change(
 
 @request()
 async def undo(session: Session, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
-    """The document as it was one step before."""
+    """Go one step back in the document's history."""
     return await _step(session, back=True, apply=apply)
 
 
 @request()
 async def redo(session: Session, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
-    """What was undone last."""
+    """Redo what was undone last."""
     return await _step(session, back=False, apply=apply)
 
 
 @request()
 async def schema(session: Session, tab: Tab | None) -> dict[str, Any]:
-    """What forms are made of."""
+    """Return the JSON Schema, from which the page builds its forms."""
     return await session.worker.quick("schema")
 
 
 @request()
 async def library(session: Session, tab: Tab | None) -> list[dict[str, Any]]:
-    """The materials that the document can name."""
+    """List the materials that the document can name."""
     return await session.worker.quick("library", text=session.text, path=session.path, sets=session.sets)
 
 
 async def take(session: Session, text: Text) -> dict[str, Any]:
-    """Another text and place of the document, which all tabs hear of; under the lock of `session.texts`."""
+    """Replace text and path of the document, and send it to all tabs. The caller holds `session.texts.lock`."""
     return _put(session, text, await _check(session, text))
 
 
@@ -109,7 +106,7 @@ async def _check(session: Session, text: Text) -> dict[str, Any]:
 
 
 def _put(session: Session, text: Text, found: dict[str, Any]) -> dict[str, Any]:
-    """The document's text from now on, if it is another."""
+    """Replace the document's text, and add the one before to the history."""
     now = Text(session.text, session.path)
     if text != now:
         session.texts.leave(now)
@@ -133,34 +130,34 @@ def _follow_up(session: Session, found: dict[str, Any], apply: bool) -> dict[str
 
 @request()
 async def folder(session: Session, tab: Tab | None, path: str = "") -> dict[str, Any]:
-    """What lies in a folder of this machine that can be opened; of the current one, without a name."""
+    """List what can be opened in a folder of this machine; the current folder without a path."""
     return await session.worker.quick("folder", path=as_path(path) if path else Path.cwd())
 
 
 @request()
 async def batch(session: Session, tab: Tab | None) -> str:
-    """The name under which a page may send files."""
+    """Begin a batch of files to upload, and return its name."""
     return await asyncio.to_thread(session.uploads.batch)
 
 
 @request()
 async def open_batch(session: Session, tab: Tab | None, batch: str) -> dict[str, Any]:
-    """Open the files that a page has sent, together."""
+    """Open the files of an uploaded batch together."""
     files = await asyncio.to_thread(session.uploads.keep, batch)
     return await begin(session, tab, [str(each) for each in files])
 
 
 @request()
 async def examples(session: Session, tab: Tab | None) -> list[str]:
-    """Scenes that are built in."""
+    """List the built-in scenes."""
     return await session.worker.quick("examples")
 
 
 @request()
 async def save(session: Session, tab: Tab | None, path: str, replace: bool = False) -> dict[str, Any]:
-    """Write the document to a file of this machine, its relative paths leading to the same files from there.
+    """Write the document to a file of this machine; its relative paths lead to the same files from there.
 
-    Raises: ConfigError if a file is there and is not to be replaced; OutputError if it cannot be written.
+    Raises: ConfigError if a file exists and is not to be replaced; OutputError if it cannot be written.
     """
     place = as_path(path)
     if not place.is_absolute():
@@ -175,20 +172,20 @@ async def save(session: Session, tab: Tab | None, path: str, replace: bool = Fal
 
 @request()
 async def exchange(session: Session, tab: Tab | None) -> None:
-    """Left and right of the pair change places, in the document and under the hand."""
+    """Exchange left and right of the pair, and make it again."""
     await edit(session, tab, await session.worker.quick("exchange", text=session.text, path=session.path))
     session.begin(make(session, tab))
 
 
 async def offer(session: Session) -> None:
-    """Tell pages of what a program before this one left, if it left something."""
+    """Tell pages of the draft of an earlier program, if there is one."""
     if (draft := await asyncio.to_thread(session.drafts.look)) is not None:
         session.tell("restored", path=str(draft.text.path), edited_s=draft.at_s)
 
 
 @request()
 async def restore(session: Session, tab: Tab | None) -> None:
-    """What was left is the document from now on, a step after that of before. Raises: ConfigError if there is none."""
+    """Replace the document by the earlier program's draft, as an edit. Raises: ConfigError if there is none."""
     draft = session.drafts.left
     if draft is None:
         raise ConfigError("there is nothing that was not saved")
@@ -201,6 +198,6 @@ async def restore(session: Session, tab: Tab | None) -> None:
 
 @request("forget_draft")
 async def forget(session: Session, tab: Tab | None) -> None:
-    """What was left is not offered again."""
+    """Remove the earlier program's draft."""
     await asyncio.to_thread(session.drafts.drop)
     session.tell("restored", path="", edited_s=0.0)

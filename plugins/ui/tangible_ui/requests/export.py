@@ -11,12 +11,12 @@ from .table import request
 async def export(session: Session, tab: Tab | None, exports: list[dict[str, Any] | str]) -> dict[str, Any] | None:
     """Write files of the document as it is on the screen; None if it was stopped.
 
-    exports: as `export:` of a pipeline file has them. Raises: ConfigError for what none can be.
+    exports: as `export:` of a pipeline file has them. Raises: ConfigError for invalid ones.
     """
     return await long_job(session, "export", "surface", sets=session.sets, exports=exports)
 
 
 @request()
 async def export_zip(session: Session, tab: Tab | None, folder: str) -> str:
-    """Pack what was exported into one file; its name in the same folder. Raises: ConfigError if it is gone."""
+    """Pack exported files into one; return its name in the same folder. Raises: ConfigError if they are gone."""
     return await session.worker.quick("export_zip", folder=folder)

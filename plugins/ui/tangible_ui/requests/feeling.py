@@ -21,30 +21,30 @@ from .table import request
 
 @request()
 async def hold(session: Session, tab: Tab) -> None:
-    """This tab's hand is felt from now on."""
+    """Give the hand to this tab."""
     session.hold(tab)
 
 
 @request()
 async def stop(session: Session, tab: Tab | None) -> None:
-    """No force, at once, and none until `feel`, whatever else is made meanwhile."""
-    ended = session.feeling.cut()  # before anything is waited for
+    """Take all force away at once, until `feel`, whatever else is made meanwhile."""
+    wait_until_gone = session.feeling.cut()  # before anything is waited for
     session.tell("loop", running=False, why="stopped", stopped=True)
-    session.begin(asyncio.to_thread(ended))
+    session.begin(asyncio.to_thread(wait_until_gone))
 
 
 @request()
 async def feel(session: Session, tab: Tab) -> None:
-    """Feel the document, also after a stop. Raises: DeviceError if its device cannot be opened."""
+    """Make and feel the document, also after a stop. Raises: DeviceError if its device cannot be opened."""
     session.feeling.allow()
     await make(session, tab)
 
 
 @request()
 async def beacon(session: Session, tab: Tab | None, part: int | None) -> dict[str, Any]:
-    """Pull the hand to the part of this number from now on; to none without a number. Pages hear of every change.
+    """Pull the hand to the part of this number; release it without a number. All tabs get every change.
 
-    Raises: DeviceError if nothing is felt, ConfigError if there is no such part.
+    Raises: DeviceError if no loop runs, ConfigError if there is no such part.
     """
     if part is None:
         await asyncio.to_thread(session.feeling.pull_to, None)
@@ -69,15 +69,15 @@ MOST_QUESTION = 200
 
 @request()
 async def law_names(session: Session, tab: Tab | None) -> list[str]:
-    """The laws that there are to compare with."""
+    """List the force laws to compare with."""
     return await session.worker.quick("law_names")
 
 
 @request()
 async def compare_laws(session: Session, tab: Tab | None, use: str, options: str = "") -> None:
-    """Hold another law against the document's, on the same surface and hand; the document's is felt first.
+    """Compare another law with the document's, on the same surface and hand; the document's acts first.
 
-    options: of the other law, in YAML. Raises: ConfigError for what is no law.
+    options: of the other law, in YAML. Raises: ConfigError for an invalid law.
     """
     other = await session.worker.quick("law_block", use=use, options=options)
     await _feel(session, 0, other)
@@ -85,7 +85,7 @@ async def compare_laws(session: Session, tab: Tab | None, use: str, options: str
 
 @request()
 async def switch_law(session: Session, tab: Tab | None, to: str) -> None:
-    """Feel `a`, the document's law, or `b`; the other one's force is shown."""
+    """Use `a`, the document's law, or `b`; the page shows the force of the other one."""
     if session.laws.other is None or to not in NAMES:
         raise ConfigError("there is no other law yet; choose one to compare with")
     await _feel(session, NAMES.index(to))
@@ -93,7 +93,7 @@ async def switch_law(session: Session, tab: Tab | None, to: str) -> None:
 
 @request()
 async def end_laws(session: Session, tab: Tab | None) -> None:
-    """One law again: the document's."""
+    """End the comparison, and use the document's law."""
     if session.laws.other is not None and session.laws.felt != 0:
         await _feel(session, 0)
     session.laws.alone()
@@ -103,7 +103,7 @@ async def end_laws(session: Session, tab: Tab | None) -> None:
 
 @request()
 async def begin_blind(session: Session, tab: Tab | None, question: str = "") -> None:
-    """Compare both without knowing which is which. Raises: ConfigError if there is no other law."""
+    """Begin a blind comparison of both laws. Raises: ConfigError if there is no second law."""
     if session.laws.other is None:
         raise ConfigError("there is no other law yet; choose one to compare with")
     session.laws.tally = tally = Tally(session.laws.named, question[:MOST_QUESTION])
@@ -113,7 +113,7 @@ async def begin_blind(session: Session, tab: Tab | None, question: str = "") -> 
 
 @request()
 async def feel_blind(session: Session, tab: Tab | None, called: int) -> None:
-    """Feel the law that is called 1, or 2, in this trial."""
+    """Use the law that is named 1, or 2, in this trial."""
     tally = _tally(session)
     session.laws.called = 2 if called == 2 else 1
     await _feel(session, tally.law(session.laws.called))
@@ -129,7 +129,7 @@ async def choose_blind(session: Session, tab: Tab | None, choice: Choice) -> Non
 
 @request()
 async def end_blind(session: Session, tab: Tab | None) -> dict[str, Any]:
-    """Say which was chosen how often, and keep that in a file of the user's."""
+    """End the blind comparison: return its results, and write them to a file of the user's."""
     tally = _tally(session)
     found = tally.as_data()
     session.laws.tally = None
@@ -148,11 +148,11 @@ def _tally(session: Session) -> Tally:
 
 
 async def _feel(session: Session, which: int, other: dict[str, Any] | None = None) -> None:
-    """Feel one of the two laws; the other one is computed other, unless they are compared blindly.
+    """Use one of the two laws; compute the other one in the background, unless the comparison is blind.
 
-    other: another law than before.
-    Raises: DeviceError if nothing is felt, ConfigError if there is no such law, NotConfirmed for a motor that nobody
-    agreed to; what was felt before goes on.
+    other: a new second law.
+    Raises: DeviceError if no loop runs, ConfigError for an invalid law, NotConfirmed for a motor that nobody
+    agreed to; the law before stays.
     """
     laws, feeling = session.laws, session.feeling
     if not feeling.running:
@@ -176,5 +176,5 @@ async def _feel(session: Session, which: int, other: dict[str, Any] | None = Non
 
 
 def _told_apart(one: str, two: str) -> tuple[str, str]:
-    """Names of both, also where one law is compared with itself under other options."""
+    """Return names of both laws that differ, also if they are one law with different options."""
     return (one, two) if one != two else (f"{one} (a)", f"{two} (b)")

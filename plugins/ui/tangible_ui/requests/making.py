@@ -1,4 +1,4 @@
-"""Make what the document says: products, and what is felt; and stop."""
+"""Requests to make products of the document, and to stop."""
 
 import asyncio
 from typing import Any
@@ -10,12 +10,12 @@ from ..worker.handle import WorkerKilled
 from .table import request
 
 PATIENCE_S = 1.5
-"""So long what is outdated may take to end by itself."""
+"""Time that an outdated job has to end by itself before the worker is killed, s."""
 
 
 @request()
 async def make(session: Session, tab: Tab | None, want: str = "touch") -> None:
-    """Make a product of the document, and feel it if it is a touch. What was being made before gives way."""
+    """Make a product of the document, and feel it if it is a touch. Earlier jobs give way."""
     made = await long_job(session, "make", want, sets=session.felt_sets(), want=want)
     if made is not None:
         await session.feel(made)
@@ -23,7 +23,7 @@ async def make(session: Session, tab: Tab | None, want: str = "touch") -> None:
 
 @request()
 async def stop_making(session: Session, tab: Tab | None) -> None:
-    """End what is being made at once; what is felt goes on."""
+    """Stop the running jobs at once; the loop goes on."""
     if session.long_jobs.running:
         session.long_jobs.stop()
         session.worker.kill()
@@ -31,12 +31,12 @@ async def stop_making(session: Session, tab: Tab | None) -> None:
 
 @request()
 async def try_again(session: Session, tab: Tab | None) -> None:
-    """Start the worker again, which did not start."""
+    """Start the worker again after it failed to start."""
     session.worker.try_again()
 
 
 async def foresee(session: Session, apply: bool = False) -> None:
-    """Tell what making the document would do; make it if that is asked for and nothing slow has to run."""
+    """Send all tabs the plan of making the document. apply: make it unless something slow has to run."""
     digest, told = session.digest, {"text": session.text, "path": session.path, "sets": session.felt_sets()}
     plan = await session.worker.quick("plan", **told, want="touch")
     if session.digest != digest:
@@ -49,7 +49,7 @@ async def foresee(session: Session, apply: bool = False) -> None:
 
 
 async def long_job(session: Session, job: str, needs: str, sets: list[str], **told: Any) -> Any:
-    """Do a long job of the document as it is now; None if it was stopped, which pages hear.
+    """Do a long job of the current document; None if it was stopped, which all tabs get to know.
 
     needs: the product that it is made from. Raises: whatever the job raises.
     """
@@ -73,7 +73,7 @@ async def long_job(session: Session, job: str, needs: str, sets: list[str], **to
 
 
 async def _request_job(session: Session, job: str, number: int, told: dict[str, Any]) -> Any:
-    """Ask for a long job; again, if the worker was killed for its sake."""
+    """Request a long job, and again if the worker was killed for its sake."""
     while True:
         try:
             return await session.worker.ask(job, number=number, **told)
@@ -84,12 +84,12 @@ async def _request_job(session: Session, job: str, number: int, told: dict[str, 
 
 
 def _is_wanted(session: Session, number: int, error: Exception) -> bool:
-    """Whether somebody still waits for it, so that its failure is news."""
+    """Return True if somebody still waits for the job, so that its failure is reported."""
     return number == session.long_jobs.newest or not isinstance(error, Stopped | WorkerKilled)
 
 
 async def _insist(session: Session, numbers: set[int]) -> None:
-    """Kill the worker if these do not end by themselves."""
+    """Kill the worker if these jobs do not end by themselves."""
     await asyncio.sleep(PATIENCE_S)
     if numbers & session.long_jobs.running:
         session.long_jobs.killed = True

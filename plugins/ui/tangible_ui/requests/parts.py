@@ -1,4 +1,4 @@
-"""The parts editor: begin, propose a part, follow the picture's edges, feel heights, and keep what was drawn."""
+"""Requests of the parts editor: open, propose a part, follow the picture's edges, feel heights, save."""
 
 import asyncio
 from typing import Any, Literal
@@ -13,7 +13,7 @@ from .table import request
 
 @request()
 async def parts_open(session: Session, tab: Tab | None) -> dict[str, Any]:
-    """What an editor begins with: the document's picture and parts."""
+    """Return what the editor begins with: the document's picture and parts."""
     return await session.worker.quick("parts_open", **_document(session))
 
 
@@ -28,10 +28,10 @@ async def parts_save(
     language: str | None = None,
     of: str = "",
 ) -> dict[str, Any]:
-    """Keep labels that a page has sent, what is said of each, and the document where it stands in a file.
+    """Save labels that a page has uploaded and the entries of their parts; save the document too if it has a file.
 
-    upload: the batch that they were sent in, as a gzip of uint16. of: digest of the parts that were edited; if others
-    took their place meanwhile, it is refused. Raises: ConfigError, OutputError; then nothing is changed.
+    upload: their batch, a gzip of uint16. of: digest of the parts that were edited; if others replaced those
+    meanwhile, the request is refused. Raises: ConfigError, OutputError; then nothing is changed.
     """
     async with session.texts.lock:
         sent = await asyncio.to_thread(session.uploads.single, upload)
@@ -62,9 +62,9 @@ async def parts_propose(
     kind: Literal["grabcut", "watershed"] = "grabcut",
     within: list[float] | None = None,
 ) -> dict[str, Any] | None:
-    """The part on which a stroke lies, in pixels of the picture; nothing if another stroke came before this began.
+    """Propose the part under a stroke, in pixels of the picture; None if a newer stroke came before this began.
 
-    within: first column and row, and those after the last, beyond which nothing is proposed. Raises: ConfigError.
+    within: first column and row, and those after the last, which bound the proposal. Raises: ConfigError.
     """
     told = {"points": points, "width_px": width_px, "kind": kind, "within": within}
     return await session.strokes.run(lambda: session.worker.quick("parts_propose", **_document(session), **told))
@@ -72,7 +72,7 @@ async def parts_propose(
 
 @request()
 async def parts_snap(session: Session, tab: Tab | None, points: list[list[float]], reach_px: float) -> dict[str, Any]:
-    """A closed outline on the picture's edges that are no farther away than this. Raises: ConfigError."""
+    """Move a closed outline to the picture's edges within this reach. Raises: ConfigError."""
     return await session.worker.quick("parts_snap", **_document(session), points=points, reach_px=reach_px)
 
 
@@ -84,21 +84,21 @@ async def parts_heights(
     materials: list[str | None] | None = None,
     heights: dict[str, Any] | None = None,
 ) -> dict[str, Any] | None:
-    """Feel the parts at these heights, by number, and see them; the document stays as it is.
+    """Feel and show the parts at other heights, by number; the document stays unchanged.
 
-    heights_m: nothing for what the document's recipe finds. materials, heights: others than the document's.
-    Returns: nothing if newer ones came before this began. Raises: TangibleError, and what was felt before is felt on.
+    heights_m: None for what the document's recipe finds. materials, heights: in place of the document's.
+    Returns: None if newer heights came before this began. Raises: TangibleError; the touch before stays.
     """
     told = {"heights_m": heights_m, "materials": materials, "heights": heights}
 
-    async def felt() -> dict[str, Any]:
+    async def feel() -> dict[str, Any]:
         made = await session.worker.quick(
             "parts_heights", **{**_document(session), "sets": session.felt_sets()}, **told
         )
         await session.feel_on(made)
         return {}
 
-    done = await session.heights.run(felt)
+    done = await session.heights.run(feel)
     if done is not None:
         session.begin(session.drawn.run(lambda: session.worker.quick("parts_shown")))
     return done

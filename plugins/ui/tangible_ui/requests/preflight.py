@@ -1,4 +1,4 @@
-"""Judge the document before a hand meets it, and put right what can be."""
+"""Requests to judge the document before a hand meets it, and to correct what can be."""
 
 import json
 from typing import Any
@@ -14,18 +14,18 @@ from .making import long_job
 from .table import request
 
 LEAST_TICKS = 1000
-"""Of a loop whose lateness counts."""
+"""Minimum number of ticks of a loop whose lateness is judged."""
 
 
 @request()
 async def preflight(session: Session, tab: Tab | None) -> dict[str, Any] | None:
-    """Judge the document on its device, or on the page's own hand where it names none; None if it was stopped."""
+    """Judge the document on its device, or on the page's own hand without one; None if it was stopped."""
     return await long_job(session, "preflight", "touch", sets=session.sets, **_loop(session))
 
 
 @request()
 async def fix(session: Session, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
-    """Change what preflight would have changed, and judge again; None if it was stopped."""
+    """Apply the changes that preflight proposes, and judge again; None if it was stopped."""
     found = await long_job(session, "fix", "touch", sets=session.sets, **_loop(session))
     if found is None:
         return None
@@ -41,13 +41,13 @@ async def legible(
 ) -> dict[str, Any] | None:
     """Judge the document by the rules of one medium; None if it was stopped.
 
-    width_m: of the whole picture there; that of the workspace without one.
+    width_m: of the whole picture there; by default that of the workspace.
     """
     return await long_job(session, "legible", "parts", sets=session.sets, medium=medium, width_m=width_m)
 
 
 def _loop(session: Session) -> dict[str, Any]:
-    """The page's own hand, and how late the loop's ticks begin, where enough of them were."""
+    """Return the page's own hand, and the lateness of the loop's ticks if there were enough of them."""
     own = f"device={json.dumps(session.feeling.own_device)}"
     servo = session.feeling.servo
     if servo is None or not session.feeling.running:

@@ -1,4 +1,4 @@
-"""Recordings: keep what is felt, list what was kept, show it again, compare two."""
+"""Requests about recordings: record, list, show, compare."""
 
 import asyncio
 from datetime import datetime
@@ -18,7 +18,7 @@ FOLDER = "recordings"
 
 @request()
 async def record(session: Session, tab: Tab | None) -> str:
-    """Keep what is felt from now on, in a new file of the user's. Raises: DeviceError if nothing is felt."""
+    """Record the loop from now on into a new file of the user's. Raises: DeviceError if no loop runs."""
     servo, felt = session.feeling.servo, session.feeling.felt
     if servo is None or not servo.running or felt is None:
         raise DeviceError("nothing is felt, so there is nothing to record; make and feel a surface first")
@@ -28,46 +28,46 @@ async def record(session: Session, tab: Tab | None) -> str:
     path = user_folder(FOLDER) / f"{now:%Y-%m-%d %H.%M.%S} {felt.law}.nc"
     loop = asyncio.get_running_loop()
 
-    def ended(path: Path, ticks: int, why: str) -> None:
+    def notify_end(path: Path, ticks: int, why: str) -> None:
         told = {"recording": False, "path": str(path), "ticks": ticks, "why": why}
         loop.call_soon_threadsafe(lambda: session.tell("recorder", **told))
 
     text = session.text
     parts = await asyncio.to_thread(names_in, text)
     about = About(felt.device_name, felt.law, text, parts=parts, materials=felt.materials)
-    session.recorder = await asyncio.to_thread(Recorder, servo, path, about, ended)
+    session.recorder = await asyncio.to_thread(Recorder, servo, path, about, notify_end)
     session.tell("recorder", recording=True, path=str(path), ticks=0, why="")
     return str(path)
 
 
 @request()
 async def stop_recording(session: Session, tab: Tab | None) -> None:
-    """Close the file."""
+    """End the recording, and close its file."""
     if session.recorder is not None:
         await asyncio.to_thread(session.recorder.stop)
 
 
 @request()
 async def records(session: Session, tab: Tab | None) -> list[dict[str, Any]]:
-    """The user's recordings, the newest first: name, path, seconds, law, device, why it ended."""
+    """List the user's recordings, newest first: name, path, seconds, law, device, why each ended."""
     return await session.worker.quick("records", folder=user_folder(FOLDER))
 
 
 @request()
 async def show_record(session: Session, tab: Tab | None, path: str) -> dict[str, Any]:
-    """Lay out a recording's ticks for pages to fetch; what it is of, and its figures."""
+    """Write a recording's ticks for pages to fetch; return its description and figures."""
     return await session.worker.quick("show_record", path=Path(path))
 
 
 @request()
 async def compare_records(session: Session, tab: Tab | None, path: str, other: str) -> dict[str, Any]:
-    """Two recordings in figures, and how far they are from each other."""
+    """Compare two recordings: figures of both, and the distance between them."""
     return await session.worker.quick("compare_records", path=Path(path), other=Path(other))
 
 
 @request()
 async def try_law(session: Session, tab: Tab | None, path: str) -> dict[str, Any]:
-    """What the document's law gives for each recorded state: laid out as a recording, and compared with it."""
+    """Replay a recording with the document's force law: write the result as a recording, and compare both."""
     return await session.worker.ask(
         "try_law",
         path=Path(path),

@@ -1,4 +1,4 @@
-"""One tab's websocket: the newest state out, never more than it draws; its hand and its asks in."""
+"""A tab's websocket: sends the newest state, never more than the tab draws; receives its hand and its requests."""
 
 import asyncio
 import json
@@ -26,23 +26,23 @@ from .connection import cut_off
 from .parsing import BadRequest, ParsedRequest, parse
 
 IN_FLIGHT = 2
-"""States that a tab has not drawn yet; more would only queue up in the browser."""
+"""Maximum number of states that a tab has not drawn yet; more would only queue up in the browser."""
 PAUSE_S = 0.01
-"""From what was drawn to the next state: sent at once, it would wait in a busy browser until the frame after next, and
-show the hand where it was; a screen draws every 17 ms."""
+"""Pause from a drawn state to the next one, s. A state sent at once would wait in a busy browser until the frame after
+next, and show where the hand was; a screen draws every 17 ms."""
 SPACING_S = 0.012
-"""Between two states: a screen draws sixty a second."""
+"""Minimum time between two states, s; a screen draws sixty a second."""
 IDLE_SPACING_S = 0.1
-"""While no force is given nothing moves, and the processor has a loop and a surface to start."""
+"""Minimum time between two states without force, s: nothing moves, and loop and surface need the processor to start."""
 MOST_WAITING, MOST_WAITING_CHARACTERS = 2000, 16_000_000
-"""Events that a tab may leave unread; one that reads none is cut off."""
+"""Limits of unread events, in number and characters; a tab that reads none is cut off."""
 MOST_ASKS = 32
-"""That a tab may wait for at once; `stop` is always heard."""
+"""Maximum number of requests that a tab may wait for at once; `stop` is always taken."""
 
 
 @final
 class LiveTab:
-    """A tab that is connected."""
+    """A connected tab."""
 
     def __init__(self, session: Session, socket: WebSocket) -> None:
         self._session, self._socket = session, socket
@@ -53,7 +53,7 @@ class LiveTab:
         self._gone = False
 
     def say(self, event: dict[str, Any]) -> None:
-        """Tell it something; one that does not listen is cut off."""
+        """Send an event; a tab that does not read is cut off."""
         if self._gone:
             return
         text = _as_json(event)
@@ -65,7 +65,7 @@ class LiveTab:
             self._events.put_nowait(text)
 
     async def live(self) -> None:
-        """Until it is closed."""
+        """Serve the tab until it is closed."""
         await self._socket.accept()
         self.say({"event": "hello", "version": VERSION, "history": self._session.history, "scene": self._session.scene})
         self._session.enter(self)
@@ -88,7 +88,7 @@ class LiveTab:
                 self._begin_request(text)
 
     def _handle_frame(self, body: bytes) -> None:
-        """A frame that is no whole one of a known kind is not heard."""
+        """Handle a binary frame; one that is incomplete or of an unknown kind is ignored."""
         kind, hand = body[0], self._session.feeling.hand
         if kind == ACK and len(body) == ACK_FRAME.size:
             self._drawn = max(self._drawn, min(ACK_FRAME.unpack(body)[1], self._seq))
@@ -100,7 +100,7 @@ class LiveTab:
             hand.release()
 
     def _begin_request(self, text: str) -> None:
-        """Begin what it asks for, or refuse it with a sentence."""
+        """Begin a request, or refuse it with a sentence."""
         try:
             asked = parse(text)
         except BadRequest as error:
@@ -133,7 +133,7 @@ class LiveTab:
                 await self._socket.send_text(text)
 
     async def _send_states(self) -> None:
-        """The newest tick soon after one before was drawn: as late as it still comes before the page draws again."""
+        """Send the newest state soon after one was drawn, as late as it still arrives before the page draws again."""
         loop, sent_s, idle = asyncio.get_running_loop(), 0.0, False
         with suppress(WebSocketDisconnect, RuntimeError):
             while True:
@@ -165,7 +165,7 @@ def _as_json(event: dict[str, Any]) -> str:
 
 
 def _without_nan(value: Any) -> Any:
-    """JSON knows no NaN: null stands for it."""
+    """Replace NaN by None: JSON has no NaN."""
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):

@@ -1,4 +1,4 @@
-"""What a tab asks for, taken apart: a name that there is and arguments that fit, or a sentence of what is wrong."""
+"""Parsing of a tab's requests: a known name and valid arguments, or a sentence that says what is wrong."""
 
 import inspect
 import json
@@ -15,16 +15,16 @@ MOST_SHOWN = 200
 
 
 class BadRequest(TangibleError):
-    """What a tab says is nothing that can be asked for."""
+    """A message that is not a valid request."""
 
     def __init__(self, number: int | None, text: str) -> None:
         super().__init__(text)
         self.number = number
-        """Under which the tab waits for an answer, if it said one."""
+        """Number under which the tab waits for the answer; None if it gave none."""
 
 
 class ParsedRequest(NamedTuple):
-    """Something to do for a tab."""
+    """A valid request of a tab."""
 
     number: int
     name: str
@@ -33,7 +33,7 @@ class ParsedRequest(NamedTuple):
 
 
 def parse(text: str) -> ParsedRequest:
-    """Raises: BadRequest."""
+    """Parse a message. Raises: BadRequest."""
     try:
         said = json.loads(text, parse_constant=_refuse)
     except (ValueError, RecursionError) as error:
@@ -49,7 +49,7 @@ def parse(text: str) -> ParsedRequest:
 
 
 def _fitting(number: int, name: str, ask: Request, said: dict[str, Any]) -> dict[str, Any]:
-    """The arguments that were said, of the types that they must have."""
+    """Return the arguments, validated by their types."""
     try:
         found = _arguments(ask).model_validate_json(json.dumps(said))
     except ValidationError as error:
@@ -63,7 +63,7 @@ def _fitting(number: int, name: str, ask: Request, said: dict[str, Any]) -> dict
 
 @cache
 def _arguments(ask: Request) -> type[BaseModel]:
-    """All that may be told, with its types; nothing else may."""
+    """Return a model of the arguments that a request takes, and no others."""
     types = get_type_hints(ask)
     _, _, *rest = inspect.signature(ask).parameters.values()  # the session and the tab come first
     fields: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""What the server answers: the page, the arrays it draws, and its websocket; to this machine and to who has the key."""
+"""Routes of the server: the page, the arrays it draws, and its websocket; for whoever has the key."""
 
 import asyncio
 import secrets
@@ -25,36 +25,36 @@ from .live import LiveTab
 
 FOREVER = "private, max-age=31536000, immutable"
 ASK_AGAIN = "no-cache"
-"""A browser may keep it, and asks each time whether it is still the same."""
+"""Cache rule: a browser may keep the file, and asks each time if it is still current."""
 WRONG_KEY = 4401
 EXPORTS = "export-"
-"""How the worker names folders of files that it export_file."""
+"""Prefix of the worker's folders of exported files."""
 NOT_YOURS = "the key in the address is not this program's; open the address it printed"
 
 WINDOW = frozenset({"row", "rows", "column", "columns", "of", "bytes"})
-"""The first row and how many, the first column and how many, of how many columns, and the bytes of an item."""
+"""Query of a window: first row and number of rows, first column and number, columns of the file, bytes of an item."""
 MOST_ITEMS = 4_000_000
 
 Answer = Callable[[Request], Awaitable[Response]]
 
 
 class BuiltPage(StaticFiles):
-    """The page's own files. One that was built again is seen at the next load."""
+    """The page's own files; a new build is used at the next load."""
 
     def file_response(self, *args: Any, **options: Any) -> Response:
-        """With its ETag, which a browser has to show each time."""
+        """Return the file with its ETag, which the browser must send each time."""
         response = super().file_response(*args, **options)
         response.headers["cache-control"] = ASK_AGAIN
         return response
 
 
 def application(session: Callable[[], Session], key: str, hosts: frozenset[str], lifespan: Any) -> ASGIApp:
-    """What is served."""
+    """Return the server's ASGI app."""
     return Guarded(Starlette(routes=routes(session, key), lifespan=lifespan), hosts)
 
 
 def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
-    """Everything but the built page needs the key."""
+    """Return the routes; all but the built page need the key."""
 
     def has_key(connection: HTTPConnection) -> bool:
         return secrets.compare_digest(connection.query_params.get("token", "").encode(), key.encode())
@@ -75,7 +75,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
         return FileResponse(path, headers={"cache-control": FOREVER})
 
     async def export_file(request: Request) -> Response:
-        """A file to keep: it is never shown as a page of this address, whatever is in it."""
+        """Send a file to keep; it is never shown as a page of this address, whatever it contains."""
         folder, name = request.path_params["folder"], request.path_params["name"]
         path = _lying(session().folder, folder, name) if folder.startswith(EXPORTS) else None
         if path is None:
@@ -103,7 +103,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
         return Response(status_code=204)
 
     async def stop(_: Request) -> Response:
-        """For a page whose websocket does not answer."""
+        """Stop, for a page whose websocket does not answer."""
         await feeling.stop(session(), None)
         return Response(status_code=204)
 
@@ -125,7 +125,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
 
 
 def _lying(folder: Path, digest: str, name: str) -> Path | None:
-    """A file in a folder of this one; None for whatever leads elsewhere, or is no name of a file."""
+    """Return a file in a folder of this one; None for a path that leads elsewhere, or an impossible name."""
     try:
         path = (folder / digest / name).resolve()
         return path if folder.resolve() in path.parents and path.is_file() else None
@@ -134,7 +134,7 @@ def _lying(folder: Path, digest: str, name: str) -> Path | None:
 
 
 def read_window(path: Path, asked: dict[str, int]) -> bytes:
-    """The rectangle, row by row. asked: a number for each of WINDOW. Raises: ValueError if the file has none such."""
+    """Return the rectangle, row by row. asked: a number for each of WINDOW. Raises: ValueError if it is not there."""
     row, rows, column, columns, of, size = (asked[key] for key in ("row", "rows", "column", "columns", "of", "bytes"))
     inside = min(row, column) >= 0 and min(rows, columns, size) > 0 and column + columns <= of
     if not inside or rows * columns > MOST_ITEMS or (row + rows) * of * size > path.stat().st_size:

@@ -1,4 +1,4 @@
-"""What all tabs share: the document, what is being made and felt, who holds the hand, and what has happened."""
+"""The session that all tabs share: the document, running jobs, the force loop, the holder of the hand, past events."""
 
 import asyncio
 import time
@@ -23,52 +23,52 @@ from .texts import Texts
 from .uploads import UploadStore, user_folder
 
 MOST_HISTORY, MOST_LOGGED = 500, 200
-"""Events, and lines that were logged, that a tab which is opened later hears of."""
+"""Numbers of past events and of log lines that a tab opened later gets."""
 DRAWN_PAUSE_S = 0.4
-"""Between two surfaces that are drawn while a height is dragged: a browser draws one while the hand feels five."""
+"""Pause between two drawings while a height is dragged, s: a browser draws once while the hand feels five heights."""
 LATEST_ONLY = frozenset(
     {"restored", "document", "plan", "materials", "preflight", "legible", "exported", "beacon", "described"}
 ) | {"maker", "maker_gone"}
-"""Events that describe a state: only the latest one counts, and it is kept however much else happens."""
+"""Events that describe a state: only the latest of each counts, and it is kept however many other events follow."""
 
 
 @runtime_checkable
 class Tab(Protocol):
-    """A page in a browser, as the session knows it."""
+    """A page in a browser."""
 
     def say(self, event: dict[str, Any]) -> None:
-        """Tell it something; it does not wait."""
+        """Send an event without waiting."""
 
 
 @final
 class Session:
-    """One program's state, in the event loop's thread."""
+    """The state of one program; used in the event loop's thread alone."""
 
     def __init__(self, folder: Path, feeling: Feeling, sets: Iterable[str]) -> None:
         self.folder, self.feeling = folder, feeling
         self.sets = list(sets)
-        """Changes from the command line, which go before what the file says."""
+        """Changes from the command line, which override the file."""
         self.text, self.path = "", Path.cwd() / "untitled.yaml"
-        """The document: a pipeline file as text, and where it stands."""
+        """The document: the text of a pipeline file, and its path."""
         self.digest = ""
-        """Of the text, as events name it."""
+        """Digest of the text, as events name it."""
         self.texts = Texts()
         self.long_jobs = LongJobs()
         self.strokes = LatestWins()
-        """Asks for a part under a stroke."""
+        """Requests for a part under a stroke."""
         self.heights, self.drawn = LatestWins(), LatestWins(DRAWN_PAUSE_S)
-        """Asks to feel parts at other heights, and to draw them."""
+        """Requests for other heights of parts: to feel them, and to draw them."""
         self.choice = Choice()
-        """Which device is felt."""
+        """The chosen device."""
         self.drafts = Drafts(user_folder("unsaved"))
         self.uploads = UploadStore(user_folder("opened"), folder / "incoming")
         self.recorder: Recorder | None = None
-        """Of the recording that was made last, or is being made."""
+        """The last recording, or the running one."""
         self.laws = Laws(ComparisonLoop(f"{feeling.channel}-beside"))
         self.scene: dict[str, Any] | None = None
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None
-        """The tab whose hand is felt."""
+        """The tab that moves the hand."""
         self._latest: dict[str, dict[str, Any]] = {}
         """The latest event of each kind in `LATEST_ONLY`."""
         self._history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
@@ -78,11 +78,11 @@ class Session:
         self._tasks: set[asyncio.Task[Any]] = set()
 
     def felt_sets(self) -> list[str]:
-        """Changes to the document for the one who feels: the page's own hand, unless a device was chosen."""
+        """Return the changes to the document for the loop: the page's own hand, unless a device was chosen."""
         return [*self.sets, *self.choice.sets(self.feeling.own_device)]
 
     async def feel(self, made: dict[str, Any]) -> None:
-        """Feel what was made, alone. Raises: as `put`."""
+        """Put a made touch under the hand, and end a comparison of laws. Raises: as `put`."""
         felt = LoopInput.of(made, self.feeling.channel)
         seconds = await self.put(felt)
         if seconds is not None:
@@ -93,9 +93,9 @@ class Session:
             self.tell("loop", running=True, why="", device=felt.device_name, own_hand=felt.own_hand)
 
     async def feel_on(self, made: dict[str, Any]) -> None:
-        """Feel what is hardly another than what is felt: pages hear of it only if that was not felt. Raises: as `put`.
+        """Put a touch under the hand that hardly differs from the current one; announce it only if no loop ran.
 
-        Many come in a second while somebody drags; what has happened is not to be forgotten for that.
+        Dragging makes many in a second: they must not fill the history. Raises: as `put`.
         """
         if self.laws.other is not None or not self.feeling.running:
             await self.feel(made)
@@ -103,10 +103,10 @@ class Session:
             await self.put(LoopInput.of(made, self.feeling.channel))
 
     async def put(self, felt: LoopInput) -> float | None:
-        """Put a touch under the hand; seconds that took.
+        """Put a touch under the hand; return the seconds that took.
 
-        Returns: None after a stop, and with a device that is not the one that is chosen by now: it is then not felt.
-        Raises: NotConfirmed for a motor that nobody said yes to, DeviceError if the device cannot be opened.
+        Returns: None after a stop, or if another device was chosen meanwhile: the touch is then not used.
+        Raises: NotConfirmed for a motor that nobody agreed to, DeviceError if the device cannot be opened.
         """
         try:
             self.choice.check(felt.unmapped_device)
@@ -124,7 +124,7 @@ class Session:
             raise
 
     def tell(self, event: str, **told: Any) -> None:
-        """Say something to all tabs, and to those that come later."""
+        """Send an event to all tabs, and to those opened later."""
         said = {"event": event, "at_s": round(time.time(), 3), **told}
         if event == "scene":
             self.scene = said
@@ -141,7 +141,7 @@ class Session:
         return sorted([*self._latest.values(), *self._history, *self._logged], key=lambda said: said["at_s"])
 
     def enter(self, tab: Tab) -> None:
-        """Another tab; it holds the hand if no other one does."""
+        """Add a tab; it gets the hand if no other tab holds it."""
         self.tabs.append(tab)
         if self.holder is None:
             self.hold(tab)
@@ -149,16 +149,16 @@ class Session:
             self._say_who_holds()
 
     def leave(self, tab: Tab) -> None:
-        """It was closed, or is gone: if its hand was felt, nothing is, until another tab takes it.
+        """Remove a tab that was closed or is gone. If it held the hand, nobody does until a tab takes it.
 
-        None gets it unasked: a mouse may lie pressed on a page that nobody looks at.
+        No tab gets the hand unasked: a mouse may lie pressed on a page that nobody looks at.
         """
         self.tabs.remove(tab)
         if self.holder is tab:
             self.hold(None)
 
     def hold(self, tab: Tab | None) -> None:
-        """From now on this tab's hand is felt, or none; the others watch."""
+        """Give the hand to this tab, or to none; the others watch."""
         self.feeling.hand.release()
         self.holder = tab
         self._say_who_holds()
@@ -168,7 +168,7 @@ class Session:
             each.say({"event": "holding", "holding": each is self.holder, "free": self.holder is None})
 
     def begin(self, work: Any) -> None:
-        """Do something beside; what it raises is said to all tabs."""
+        """Run a coroutine in the background; its errors are sent to all tabs."""
         task = asyncio.ensure_future(work)
         self._tasks.add(task)
         task.add_done_callback(self._finish_task)
@@ -179,7 +179,7 @@ class Session:
             self.report_failure(error)
 
     def report_failure(self, error: BaseException) -> None:
-        """Something beside failed: all tabs are told a sentence."""
+        """Send the sentence of a background error to all tabs."""
         self.begin(self._say_failure(error))
 
     async def _say_failure(self, error: BaseException) -> None:
@@ -189,7 +189,7 @@ class Session:
         self.tell(event.event, **event.told)
 
     async def close(self) -> None:
-        """No force, no process, no recording that is open; whatever of it fails, the rest is done."""
+        """End force, worker and recording; a failure of one does not keep the others."""
         self.feeling.cut()
         self.worker.close()
         try:

@@ -1,4 +1,4 @@
-"""The process that makes surfaces, and its handle in the server: it may take long, and be killed at any moment."""
+"""The process that computes surfaces, and its handle in the server: jobs may take long, and be killed at any moment."""
 
 from .handle import Worker
 

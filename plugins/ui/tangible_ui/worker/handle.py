@@ -1,4 +1,4 @@
-"""The worker from outside: ask it, hear it, kill it, start it again."""
+"""The server's handle of the worker: request jobs, receive events, kill it, start it again."""
 
 import asyncio
 import itertools
@@ -18,11 +18,11 @@ from ..prestart import take_worker_process
 from .messages import Event, JobFailure, JobRequest, JobResult
 
 MOST_DEATHS = 3
-"""So often in a row it may end before it is ready; then somebody has to say that it is worth another try."""
+"""Failed starts in a row after which the worker is given up until `try_again`."""
 
 
 class WorkerKilled(TangibleError):
-    """The worker was killed while it worked."""
+    """The worker was killed during the job."""
 
 
 class WorkerAbsent(TangibleError):
@@ -31,14 +31,14 @@ class WorkerAbsent(TangibleError):
 
 @final
 class Worker:
-    """A process that does jobs. One that is killed is followed by another; what waited for it gets WorkerKilled.
+    """A process that does jobs. A killed one is replaced; jobs that waited for it raise WorkerKilled.
 
-    One that ends before it is ready, three times in a row, is not: pages hear `maker_gone` with the reason, and what is
-    asked of it is refused until `try_again`.
+    After three failed starts in a row it is given up: pages get `maker_gone` with the reason, and requests are refused
+    until `try_again`.
     """
 
     def __init__(self, folder: Path, hear: Callable[[Event], None]) -> None:
-        """folder: where it leaves what pages fetch. hear: called in the event loop's thread for each event."""
+        """folder: for what pages fetch. hear: called in the event loop's thread for each event."""
         self._folder, self._hear = folder, hear
         self._numbers = itertools.count(1)
         self._waiting: dict[int, asyncio.Future[Any]] = {}
@@ -53,11 +53,11 @@ class Worker:
 
     @property
     def busy(self) -> bool:
-        """Whether anybody waits for a job."""
+        """True while somebody waits for a job."""
         return bool(self._waiting)
 
     async def ask(self, job: str, **told: Any) -> Any:
-        """Do a job, and return what it made.
+        """Do a job, and return its result.
 
         Raises: WorkerKilled if the worker was killed meanwhile, WorkerAbsent if it does not start, and whatever the job
         raises.
@@ -73,25 +73,25 @@ class Worker:
             self._waiting.pop(number, None)
 
     async def quick(self, job: str, **told: Any) -> Any:
-        """Do a quick job; once more, if the worker was killed for the sake of a long one. Raises: as `ask`."""
+        """Do a quick job; once more if the worker was killed for the sake of a long one. Raises: as `ask`."""
         try:
             return await self.ask(job, **told)
         except WorkerKilled:
             return await self.ask(job, **told)
 
     def kill(self) -> None:
-        """End whatever it does; another one takes its place."""
+        """Kill the process; another one replaces it."""
         self._killed = True
         if self._process is not None:
             self._process.kill()
 
     def close(self) -> None:
-        """End it for good."""
+        """Kill the process for good."""
         self._closed = True
         self.kill()
 
     def try_again(self) -> None:
-        """Start it, if it was given up."""
+        """Start the worker if it was given up."""
         if self._gone:
             self._gone, self._deaths = "", 0
             self._start()
@@ -105,7 +105,7 @@ class Worker:
         threading.Thread(target=self._listen, args=(process, reading), daemon=True).start()
 
     def _read(self, process: subprocess.Popen[bytes]) -> None:
-        """What it prints goes where this process prints; its last line says why it ended."""
+        """Print the process's standard error, and keep its last line, which tells why it ended."""
         assert process.stderr is not None
         with process.stderr as lines, suppress(OSError, ValueError):
             for line in lines:

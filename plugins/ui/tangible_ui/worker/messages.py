@@ -1,4 +1,4 @@
-"""What the server and the worker tell each other: pickles over a pipe, as the force loop has them."""
+"""Messages between server and worker: pickles over a pipe, as those of the force loop."""
 
 from typing import Any, NamedTuple
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 class JobRequest(NamedTuple):
-    """Do one of the worker's jobs."""
+    """A job to do."""
 
     number: int
     job: str
@@ -15,30 +15,30 @@ class JobRequest(NamedTuple):
 
 
 class JobResult(NamedTuple):
-    """The job is done."""
+    """The result of a job."""
 
     number: int
     value: Any
 
 
 class JobFailure(NamedTuple):
-    """The job could not be done."""
+    """The failure of a job."""
 
     number: int
     error: Exception
 
 
 class Event(NamedTuple):
-    """Something happened meanwhile that pages should hear of."""
+    """An event for pages."""
 
     event: str
     told: dict[str, Any]
 
 
 class Late(NamedTuple):
-    """How late the ticks of the loop began that gives the forces now."""
+    """Lateness of the ticks of the running loop."""
 
     late_s: np.ndarray
     period_s: float
     real_time: bool
-    """Whether it runs before all others."""
+    """True if the loop has real-time priority."""

@@ -19,19 +19,19 @@ from .messages import Event, JobFailure, JobRequest, JobResult
 
 FULL = {getattr(errno, name, -1) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EROFS")}
 NICENESS = 10
-"""After the first long job: pictures can then wait, the loop and the page cannot. Before it, nothing is felt."""
+"""Niceness after the first long job: pictures can then wait, loop and page cannot. Before it, no loop has input."""
 _keep_precedence: set[int] = set()
 
 
 @final
 class Sender:
-    """Says what happens to the server; any thread may."""
+    """Sender of messages to the server; safe to use from any thread."""
 
     def __init__(self, replies: IO[bytes]) -> None:
         self._replies, self._lock = replies, threading.Lock()
 
     def say(self, message: JobResult | JobFailure | Event) -> None:
-        """Ends the process if nobody listens any more."""
+        """Send a message; end the process if nobody reads any more."""
         try:
             with self._lock:
                 send(self._replies, message)
@@ -40,7 +40,7 @@ class Sender:
 
 
 def main() -> None:
-    """Until the pipe closes."""
+    """Do jobs until the pipe closes."""
     replies = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a plugin prints goes to standard error
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the server, which ends this
@@ -71,7 +71,7 @@ def _work(state: Any, asks: "queue.SimpleQueue[JobRequest]", voice: Sender, quic
 
 
 def give_precedence() -> None:
-    """Let others go first, with every thread but that of the quick jobs, for which somebody waits.
+    """Lower the priority of every thread but that of the quick jobs, for which somebody waits.
 
     In Linux each thread has a niceness of its own.
     """
@@ -83,7 +83,7 @@ def give_precedence() -> None:
 
 
 def answer(state: Any, ask: JobRequest) -> JobResult | JobFailure:
-    """Do a job; whatever becomes of it, the next one can be done."""
+    """Do a job; a failure does not keep the next one from being done."""
     from .jobs import JOBS
 
     try:
@@ -94,14 +94,14 @@ def answer(state: Any, ask: JobRequest) -> JobResult | JobFailure:
 
 
 def keep_folder(state: Any) -> None:
-    """What pages fetch lies in a temporary folder: a system that cleans up may have taken it away."""
+    """Make the folder for pages anew if it is gone: it is temporary, and the system may have removed it."""
     if not state.folder.is_dir():
         state.folder.mkdir(parents=True, exist_ok=True)
         state.shown = ""
 
 
 def full(error: BaseException) -> OutputError | None:
-    """A disk that takes no more: what a person can do about it; None for any other error."""
+    """Return an error with its cure for a full disk; None for any other error."""
     if not isinstance(error, OSError) or error.errno not in FULL:
         return None
     return OutputError(f"{error.filename or 'a temporary folder'}: {error.strerror or error}; free some space")

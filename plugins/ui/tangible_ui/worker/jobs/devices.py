@@ -13,19 +13,19 @@ from .table import job
 
 @job(quick=True)
 def devices(state: WorkerState) -> list[dict[str, Any]]:
-    """Every installed device: what it is, its units that are connected, and why one cannot be used."""
+    """List the installed devices: facts, connected units, and why one cannot be used."""
     return [{**asdict(each), "usable": each.usable} for each in installed_devices(state.registry)]
 
 
 @job(quick=True)
 def examine(state: WorkerState, name: str) -> list[dict[str, Any]]:
-    """What keeps a device from working, and the cure."""
+    """Return what keeps a device from working, and the cure."""
     return [asdict(each) for each in examined(state.registry, name)]
 
 
 @job(quick=True)
 def about_device(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
-    """What feeling this document with its device means. Raises: ConfigError, also where it names no device."""
+    """Describe the document's device: motor, greatest force, relief. Raises: ConfigError, also without a device."""
     config = parse_config(text, path, state.registry, sets)
     if config.device is None or config.felt_device is None:
         raise config.missing("device")
@@ -40,7 +40,7 @@ def about_device(state: WorkerState, text: str, path: Path, sets: list[str]) -> 
 
 @job(quick=True)
 def reach(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
-    """The device that the document names, and its workspace; none where it names none. Raises: ConfigError."""
+    """Return the document's device and its workspace; None without a device. Raises: ConfigError."""
     device = parse_config(text, path, state.registry, sets).device
     if device is None:
         return {"device": "", "workspace_m": None}

@@ -24,7 +24,7 @@ from .table import job
 
 @job(quick=True)
 def check(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
-    """What a pipeline file says, alone and with every default filled in, or what is wrong with it."""
+    """Return what a pipeline file says, alone and with every default filled in, or its errors."""
     values, complaints = None, list[Complaint]()
     try:
         values = state.config_of(text, path, sets).completed()
@@ -50,10 +50,10 @@ def change(
     written: dict[str, str],
     removed: list[str],
 ) -> dict[str, Any]:
-    """A text with some keys changed, and `check` of it.
+    """Change keys of a text, and return `check` of the result.
 
-    changes: values by key, as `render.stiffness_n_per_m`. written: the same, each value in YAML. removed: keys to go.
-    Raises: ConfigError if the text is no YAML, or a key leads nowhere; nothing is checked but that it is YAML.
+    changes: values by key, as `render.stiffness_n_per_m`. written: the same, each value in YAML. removed: keys.
+    Raises: ConfigError if the text is not YAML, or a key leads nowhere; nothing else is checked.
     """
     loaded = {key: _value(key, value) for key, value in written.items()}
     gone = dict.fromkeys(removed, REMOVE)
@@ -62,24 +62,24 @@ def change(
 
 @job(quick=True)
 def overridden(state: WorkerState, text: str, path: Path, sets: list[str]) -> str:
-    """The text with `key.key=value`, each as `--set` takes it. Raises: ConfigError."""
+    """Return the text with `key.key=value` changes, each as `--set` takes it. Raises: ConfigError."""
     return with_overrides(text, path, sets)
 
 
 @job(quick=True)
 def schema(state: WorkerState) -> dict[str, Any]:
-    """The JSON Schema of all methods that are installed."""
+    """Return the JSON Schema of all installed methods."""
     return json_schema(state.registry, None)
 
 
 @job(quick=True)
 def library(state: WorkerState, text: str, path: Path, sets: list[str]) -> list[dict[str, Any]]:
-    """The materials that a document can name: figures, and where they come from. Raises: ConfigError."""
+    """List the materials that a document can name, with figures and sources. Raises: ConfigError."""
     return [asdict(each) for each in load_library(state.config_of(text, path, sets).materials.library).values()]
 
 
 def digest_of(text: str) -> str:
-    """What two events say that are of the same text."""
+    """Return the digest by which events name a text."""
     return sha256(text.encode()).hexdigest()[:16]
 
 
@@ -91,7 +91,7 @@ def _parse(text: str, path: Path) -> dict[str, Any] | None:
 
 
 def _value(key: str, written: str) -> Any:
-    """Raises: ConfigError for what is no YAML."""
+    """Parse a value. Raises: ConfigError if it is not YAML."""
     try:
         return plain(parse_value(written))
     except YAMLError as error:
@@ -108,14 +108,14 @@ KINDS = {
     **dict.fromkeys(MAPS, "heights"),
     **dict.fromkeys(PIPELINES, "pipeline"),
 }
-"""What a file is taken for, by the end of its name; whether an .npz is a recording is looked up."""
+"""Kind of a file by its ending; an .npz file is read to tell if it is a recording."""
 MOST = 2000
-"""Entries that are shown of a folder."""
+"""Maximum number of entries that are listed of a folder."""
 
 
 @job(quick=True)
 def folder(state: WorkerState, path: Path) -> dict[str, Any]:
-    """Folders, and files that can be opened, by name. Raises: ConfigError if it is no folder."""
+    """List folders, and files that can be opened, by name. Raises: ConfigError if it is not a folder."""
     try:
         path = path.expanduser().absolute()
         found = [(each.name, "folder" if each.is_dir() else KINDS.get(each.suffix.lower())) for each in path.iterdir()]
@@ -132,9 +132,9 @@ def folder(state: WorkerState, path: Path) -> dict[str, Any]:
 
 @job(quick=True)
 def begin(state: WorkerState, files: list[Path]) -> dict[str, Any]:
-    """A pipeline file's text, or that of a new one for pictures, and where it stands; or the path of a recording.
+    """Return the text and path of a pipeline file, or of a new one for pictures; or the path of a recording.
 
-    Of a pipeline file and its pictures, the file counts. Raises: ConfigError for what cannot be opened together.
+    Of a pipeline file and its pictures, the file counts. Raises: ConfigError for files that cannot be opened together.
     """
     pipelines = [each for each in files if each.suffix.lower() in PIPELINES]
     if len(pipelines) > 1:
@@ -169,15 +169,15 @@ def _is_recording(path: Path) -> bool:
 
 @job(quick=True)
 def examples(state: WorkerState) -> list[str]:
-    """Scenes that are built in."""
+    """List the built-in scenes."""
     return list(BUILTINS)
 
 
 @job(quick=True)
 def save(state: WorkerState, text: str, path: Path, out: Path) -> None:
-    """Write a document that stood at `path` to another place; its relative paths lead to the same files from there.
+    """Write the document of `path` to another place; its relative paths lead to the same files from there.
 
-    Raises: OutputError if it cannot be written; ConfigError for what is wrong with it.
+    Raises: OutputError if it cannot be written; ConfigError if it is wrong.
     """
     config = parse_config(text, path, state.registry)
     write_text(out, moved(text, path, config, out))
@@ -185,7 +185,7 @@ def save(state: WorkerState, text: str, path: Path, out: Path) -> None:
 
 @job(quick=True)
 def exchange(state: WorkerState, text: str, path: Path) -> str:
-    """The text with left and right in each other's place. Raises: ConfigError if they are no pair."""
+    """Return the text with left and right exchanged. Raises: ConfigError if the scene is not a pair."""
     scene = said(text, path).get("scene")
     if not (isinstance(scene, dict) and {"left", "right"} <= scene.keys()):
         raise ConfigError("the scene is no pair of pictures, left and right")

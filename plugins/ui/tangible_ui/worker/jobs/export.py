@@ -1,4 +1,4 @@
-"""Jobs that write files for others into a folder that pages fetch from, and pack them."""
+"""Jobs that write exported files into a folder that pages fetch from, and pack them."""
 
 import json
 import re
@@ -23,16 +23,16 @@ from .table import job
 FOLDER = "export-"
 NAMED = re.compile(rf"{FOLDER}[0-9a-f]{{16}}")
 KEPT = 2
-"""Folders that stay: tabs may still fetch from the one before."""
+"""Folders that are kept: tabs may still fetch from the one before."""
 
 
 @job()
 def export(
     state: WorkerState, number: int, text: str, path: Path, sets: list[str], exports: list[Any]
 ) -> dict[str, Any]:
-    """Have exporters write their files, into a folder that pages fetch from; what became of each.
+    """Run exporters into a folder that pages fetch from; return their outcomes.
 
-    exports: as `export:` of a pipeline file has them. Raises: ConfigError for what none can be; TangibleError as
+    exports: as `export:` of a pipeline file has them. Raises: ConfigError for invalid ones; TangibleError as
     `Pipeline.export`.
     """
     begun_s = perf_counter()
@@ -58,7 +58,7 @@ def export(
 
 @job(quick=True)
 def export_zip(state: WorkerState, folder: str) -> str:
-    """Pack what was exported into that folder into one file beside it; its name. Raises: ConfigError if it is gone."""
+    """Pack the exported files of a folder into one, and return its name. Raises: ConfigError if they are gone."""
     at = state.folder / folder
     names = sorted(read_list(at)) if NAMED.fullmatch(folder) else []
     if not names:
@@ -88,7 +88,7 @@ def _outcome_data(each: Exported) -> dict[str, Any]:
 
 
 def _sweep(folder: Path) -> None:
-    """Files that were exported long ago go; so do those of a process that was killed."""
+    """Remove folders of files that were exported long ago, also by a killed process."""
     found: list[tuple[int, Path]] = []
     for each in folder.glob(f"{FOLDER}*"):
         with suppress(OSError):  # another thread swept it

@@ -1,4 +1,4 @@
-"""Jobs that prepare what the force loop takes: a beacon, and several force laws on one surface."""
+"""Jobs that prepare input of the force loop: a beacon, and several force laws on one surface."""
 
 import json
 from pathlib import Path
@@ -18,7 +18,7 @@ from .table import job
 
 @job(quick=True)
 def beacon(state: WorkerState, text: str, path: Path, sets: list[str], part: int) -> dict[str, Any]:
-    """A beacon to a part of the document's surface, by its number, in a parcel. Raises: ConfigError without one."""
+    """Pack a beacon to a part of the document's surface, by number. Raises: ConfigError without a surface."""
     surface: HapticSurface | None = at_hand(state.pipeline_of(text, path, sets), "surface")
     if surface is None:
         raise ConfigError("the surface of this document is not made yet; make it, and a beacon leads to its parts")
@@ -28,13 +28,13 @@ def beacon(state: WorkerState, text: str, path: Path, sets: list[str], part: int
 
 @job(quick=True)
 def law_names(state: WorkerState) -> list[str]:
-    """The force laws that are installed."""
+    """List the installed force laws."""
     return sorted(state.registry.names("render"))
 
 
 @job(quick=True)
 def law_block(state: WorkerState, use: str, options: str) -> dict[str, Any]:
-    """A law as `render:` has it, its options written in YAML, such as {stiffness_n_per_m: 500}. Raises: ConfigError."""
+    """Return a law as `render:` has it. options: YAML, such as {stiffness_n_per_m: 500}. Raises: ConfigError."""
     try:
         said = plain(parse_value(options)) if options.strip() else {}
     except Exception as error:
@@ -48,7 +48,7 @@ def law_block(state: WorkerState, use: str, options: str) -> dict[str, Any]:
 def laws(
     state: WorkerState, text: str, path: Path, sets: list[str], others: list[dict[str, Any]]
 ) -> list[dict[str, Any]]:
-    """What the force loop needs of the document's law, and then of others, blocks as `render:` has them.
+    """Return the loop's input for the document's law, then for others, which are blocks as `render:` has them.
 
     Raises: ConfigError if the document has no law, or a block is wrong; TangibleError as `Pipeline.make`.
     """

@@ -1,4 +1,4 @@
-"""Jobs that make products, and say on the way what there is to see; and what making would do."""
+"""Jobs that make products and show them on the way; and the plan of making."""
 
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -22,12 +22,12 @@ from .surface import description_data
 from .table import job
 
 SLOW = ("disparity", "segments")
-"""Products that take seconds: who edits says when they are made."""
+"""Products that take seconds: they are not made again at every edit, but on request."""
 
 
 @job(quick=True)
 def plan(state: WorkerState, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
-    """What making a product would do, and why; what stands in the way where it cannot."""
+    """Return the plan of making a product with its reasons; the refusal if it cannot be made."""
     try:
         return plan_data(state.pipeline_of(text, path, sets), text, want)
     except TangibleError as error:
@@ -35,7 +35,7 @@ def plan(state: WorkerState, text: str, path: Path, sets: list[str], want: str) 
 
 
 def plan_data(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
-    """The plan as pages have it. Raises: as `Pipeline.plan`."""
+    """Return the plan as pages have it. Raises: as `Pipeline.plan`."""
     found = pipeline.plan(cast(Any, want))
     slow = [each.product for each in found.steps if each.outcome == "ran" and each.product in SLOW]
     steps = [asdict(each) for each in _all_steps(pipeline, found)]
@@ -43,7 +43,7 @@ def plan_data(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
 
 
 def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
-    """Those of the plan, and the products that are within one which is kept, in the order of making."""
+    """Return the plan's steps, and the products inside a cached one, in the order of making."""
     steps = {each.product: each for each in found.steps}
     if not found.refusal:
         needed = pipeline.engine.needed(found.want)
@@ -56,9 +56,9 @@ def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
 
 @job()
 def make(state: WorkerState, number: int, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:
-    """Make a product; pages hear of every stage, and of the surface as soon as it can be drawn.
+    """Make a product; send pages every stage, and the surface as soon as it can be drawn.
 
-    Returns: what the force loop needs, where a touch was wanted.
+    Returns: the loop's input, if a touch was wanted.
     """
     begun_s = perf_counter()
     pipeline = state.pipeline_of(text, path, sets)
@@ -76,7 +76,7 @@ def make(state: WorkerState, number: int, text: str, path: Path, sets: list[str]
 
 
 def stage_reporter(state: WorkerState, work: Work) -> Progress:
-    """Hears of stages, and tells pages."""
+    """Return a function that sends the events of stages to pages."""
 
     def report(stage: StageEvent) -> None:
         done = {} if stage.outcome is None else asdict(stage.outcome)
@@ -88,19 +88,19 @@ def stage_reporter(state: WorkerState, work: Work) -> Progress:
 
 @job(quick=True)
 def give_way(state: WorkerState, number: int, text: str, path: Path, sets: list[str], want: str) -> bool:
-    """What is being made ends for this newer document; whether at once, as it needs nothing of what is at work.
+    """End the running job for this newer document; return True if that was at once, as no stage at work is needed.
 
-    Raises: ConfigError if that makes no sense; then what is being made goes on.
+    Raises: ConfigError if the document is wrong; then the running job goes on.
     """
     return state.give_way(number, state.pipeline_of(text, path, sets), want)
 
 
 TO_SEE = {"touch": "surface", "disparity": "relief", "segments": "materials"}
-"""What is seen of a product, where that is another one."""
+"""The product that is shown for a product, if that is another one."""
 
 
 def _show(state: WorkerState, pipeline: Pipeline, product: str) -> None:
-    """Pages draw it while the touch is made."""
+    """Send pages the surface, which they draw while the touch is made."""
     if (seen := view_of(pipeline, product)).digest != state.shown:
         state.tell("scene", **show(seen, state.folder))
         state.shown = seen.digest
@@ -110,7 +110,7 @@ def _show(state: WorkerState, pipeline: Pipeline, product: str) -> None:
 
 
 def _segments(pipeline: Pipeline, seen: SurfaceView) -> list[dict[str, Any]]:
-    """Each segment with its material, why it has it, its share of the area, and its name where it is a part."""
+    """Return for each segment its material, the reason, its share of the area, and its name if it is a part."""
     if seen.labels is None or not seen.materials:
         return []
     chosen = pipeline.make("materials")

@@ -1,4 +1,4 @@
-"""Jobs of the parts editor: open it, propose a part, follow edges, feel heights, save what was drawn."""
+"""Jobs of the parts editor: open it, propose a part, follow edges, feel heights, save the parts."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -53,10 +53,10 @@ from .table import job
 
 @job(quick=True)
 def parts_open(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
-    """What an editor begins with; the picture, and the number of each pixel's part, are left in files.
+    """Return what an editor begins with; write the picture, and the number of each pixel's part, into files.
 
-    Raises: ConfigError for a document that is wrong; PictureError for a scene that cannot be read, or has too many
-    parts; OutputError if there is no room for the files.
+    Raises: ConfigError for a wrong document; PictureError for a scene that cannot be read, or has too many parts;
+    OutputError if the files cannot be written.
     """
     pipeline = edited_of(state, text, path, sets)
     opened, config = opened_of(state, pipeline), pipeline.config
@@ -90,9 +90,9 @@ def parts_propose(
     kind: Kind,
     within: Sequence[float] | None,
 ) -> dict[str, Any]:
-    """The part on which a stroke lies: its box, and runs of pixels outside and inside in turn, row by row.
+    """Propose the part under a stroke: its box, and run lengths of pixels outside and inside in turn, row by row.
 
-    Raises: ConfigError for what is no stroke in the picture; otherwise as `parts_open`.
+    Raises: ConfigError for a stroke outside of the picture; otherwise as `parts_open`.
     """
     picture = opened_of(state, edited_of(state, text, path, sets)).picture
     box, mask = propose(picture, as_points(points, picture.shape), width_px, kind, within)
@@ -103,7 +103,7 @@ def parts_propose(
 def parts_snap(
     state: WorkerState, text: str, path: Path, sets: list[str], points: Sequence[Sequence[float]], reach_px: float
 ) -> dict[str, Any]:
-    """A closed outline, moved to the strongest edges that are no farther than this. Raises: as `parts_propose`."""
+    """Move a closed outline to the strongest edges within reach. Raises: as `parts_propose`."""
     picture = opened_of(state, edited_of(state, text, path, sets)).picture
     outline = as_points(points, picture.shape)
     return {"points": np.round(snap(picture, outline, reach_px), 2).tolist()}
@@ -124,14 +124,14 @@ def parts_save(
     store: Path,
     earlier: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Keep labels that a page has sent, and what is said of each; a document that stands in its file is saved there.
+    """Save labels that a page has uploaded and the entries of their parts; save the document too if it has a file.
 
-    of: digest of the parts that were edited, or nothing. opened: what the document's file said when it was opened or
-    saved; a file that says something else is left alone. store: where the labels of a document go without a file, and
-    those that others take the place of. earlier: texts that the document had.
-    Returns: with `moved`, what earlier texts, and this one, say from now on if they named labels that are elsewhere.
-    Raises: ConfigError for labels that are none, parts that were changed elsewhere meanwhile, and what the document
-    must not say; OutputError, and then nothing is changed.
+    of: digest of the parts that were edited, or "". opened: the document's text when its file was opened or saved; a
+    file with another text is left alone. store: folder for labels of a document without a file, and for labels that
+    were replaced. earlier: texts of the document's history.
+    Returns: with `moved`, new versions of earlier texts, and of this one, that named replaced labels.
+    Raises: ConfigError for invalid labels, parts that were changed elsewhere meanwhile, and invalid entries;
+    OutputError; then nothing is changed.
     """
     pipeline = edited_of(state, text, path, sets)
     if of and of != digest(opened_of(state, pipeline).parts, pipeline.config):
@@ -163,12 +163,12 @@ def parts_heights(
     materials: Sequence[str | None] | None = None,
     heights: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """What the force loop needs of the document with these heights of its parts; the document stays as it is.
+    """Return the loop's input for the document with other heights of its parts; the document stays unchanged.
 
-    heights_m: by the number of a part; None for what the recipe finds, by guess or by depth. materials: the same; None
-    for those that the document says. heights: the recipe, widths of rims and the like, where they are not the
-    document's. Raises: ConfigError for a height above the workspace, a part that is not there, a depth that was not
-    made yet, a document without a law or a device; MaterialError; TangibleError as `Pipeline.make`.
+    heights_m: by number of the part; None for what the recipe finds, by guess or by depth. materials: the same; None
+    for those of the document. heights: the recipe, widths of rims and the like, in place of the document's.
+    Raises: ConfigError for a height above the workspace, an unknown part, a depth that is not made yet, a document
+    without a law or a device; MaterialError; TangibleError as `Pipeline.make`.
     """
     pipeline = edited_of(state, text, path, sets)
     opened_of(state, pipeline)
@@ -198,7 +198,7 @@ def parts_heights(
 
 @job(quick=True)
 def parts_shown(state: WorkerState) -> None:
-    """Pages draw what `parts_heights` made last."""
+    """Send pages the surface that `parts_heights` made last."""
     kept: Kept | None = state.kept
     if kept is None or kept.surface is None:
         return

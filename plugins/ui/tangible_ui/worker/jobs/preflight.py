@@ -24,9 +24,9 @@ from .table import job
 def preflight(
     state: WorkerState, number: int, text: str, path: Path, sets: list[str], own: str, late: Late | None
 ) -> dict[str, Any]:
-    """What is safe and what will be felt, on the document's device, or on the page's own hand where it names none.
+    """Judge safety and touch on the document's device, or on the page's own hand without one.
 
-    own: the page's hand, as `--set` takes it. late: of the loop that runs; without one this process takes a sample.
+    own: the page's hand, as `--set` takes it. late: of the running loop; without one this process takes a sample.
     Raises: ConfigError if there is no law; TangibleError as `Pipeline.make`.
     """
     begun_s = perf_counter()
@@ -50,7 +50,7 @@ def preflight(
 def fix(
     state: WorkerState, number: int, text: str, path: Path, sets: list[str], own: str, late: Late | None
 ) -> dict[str, Any]:
-    """What to change in the document for it to pass, by key, and what preflight says then. Raises: as `preflight`."""
+    """Return the changes with which the document passes, by key, and the verdicts then. Raises: as `preflight`."""
     pipeline, is_own = _pipeline_to_judge(state, text, path, sets, own)
     with state.work(pipeline, number) as work:
         state.tell("making", want="preflight", digest=digest_of(text))
@@ -64,7 +64,7 @@ def fix(
 
 
 def _pipeline_to_judge(state: WorkerState, text: str, path: Path, sets: list[str], own: str) -> tuple[Pipeline, bool]:
-    """The pipeline, and whether it is felt with the page's own hand."""
+    """Return the pipeline, and True if it uses the page's own hand."""
     pipeline = state.pipeline_of(text, path, sets)
     if pipeline.config.device is not None:
         return pipeline, False
@@ -92,7 +92,7 @@ def _verdict_data(
 def legible(
     state: WorkerState, number: int, text: str, path: Path, sets: list[str], medium: Medium, width_m: float | None
 ) -> dict[str, Any]:
-    """Verdicts by the rules of one medium. width_m: of the whole picture there; that of the workspace without one.
+    """Judge by the rules of one medium. width_m: of the whole picture there; by default that of the workspace.
 
     Raises: TangibleError as `Pipeline.legible`.
     """

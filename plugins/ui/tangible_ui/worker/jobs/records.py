@@ -1,4 +1,4 @@
-"""Jobs on recordings: list, lay out for pages, compare, and feel again with another law."""
+"""Jobs on recordings: list, write out for pages, compare, and replay with another law."""
 
 from pathlib import Path
 from typing import Any
@@ -17,14 +17,14 @@ from ..state import WorkerState
 from .table import job
 
 MOST_ROWS = 120_000
-"""Of a recording as pages have it, 8 MB; of a longer one, every second tick, or third..."""
+"""Maximum number of rows of a recording for pages, 8 MB; of a longer one every second tick, or third, is shown."""
 MOST_LISTED = 500
 AT_FLAGS = TICK_COLUMNS.index("flags")
 
 
 @job(quick=True)
 def records(state: WorkerState, folder: Path) -> list[dict[str, Any]]:
-    """Recordings of a folder, the newest first; of one that cannot be read, why."""
+    """List the recordings of a folder, newest first; for an unreadable one, the reason."""
     try:
         found = sorted(
             (each for each in folder.iterdir() if each.suffix in SUFFIXES), key=_modification_time, reverse=True
@@ -61,7 +61,7 @@ def _about(found: Recording) -> dict[str, Any]:
 
 @job(quick=True)
 def show_record(state: WorkerState, path: Path) -> dict[str, Any]:
-    """Write the ticks where pages fetch them. Raises: OutputError for a file that is no recording."""
+    """Write the ticks where pages fetch them. Raises: OutputError if the file is not a recording."""
     return _lay_out(state, Recording.load(path), str(path))
 
 
@@ -81,13 +81,13 @@ def _lay_out(state: WorkerState, found: Recording, path: str) -> dict[str, Any]:
 
 @job(quick=True)
 def compare_records(state: WorkerState, path: Path, other: Path) -> dict[str, Any]:
-    """Two recordings, place by place along their paths. Raises: OutputError for a file that is no recording."""
+    """Compare two recordings place by place along their paths. Raises: OutputError if a file is not a recording."""
     return beside(Recording.load(path), Recording.load(other))
 
 
 @job()
 def try_law(state: WorkerState, path: Path, text: str, document: Path, sets: list[str], folder: Path) -> dict[str, Any]:
-    """Feel a recording's states with the document's law, keep that as a recording beside it, and compare."""
+    """Replay a recording with the document's law, write the result next to it, and compare both."""
     before = Recording.load(path)
     after = Feeling(state.pipeline_of(text, document, sets)).replay(before)
     out = _free(folder, f"{path.stem} with {after.about.renderer}")
@@ -96,6 +96,6 @@ def try_law(state: WorkerState, path: Path, text: str, document: Path, sets: lis
 
 
 def _free(folder: Path, name: str) -> Path:
-    """A file that is not there yet."""
+    """Return the path of a new file."""
     numbered = (folder / f"{name}{f' {number}' if number else ''}.nc" for number in range(10_000))
     return next(path for path in numbered if not path.exists())

@@ -33,9 +33,9 @@ LARGEST_M = 0.1
 def texture_patch(
     state: WorkerState, digest: str, x_m: float, y_m: float, side_m: float, pixels: int = 192
 ) -> dict[str, Any]:
-    """Write the heights of a square round a place over the surface's own, metres, the top row far; and say where.
+    """Write the heights of the textures in a square around a place, metres, far row first; return the file.
 
-    digest: of the surface as pages know it. Raises: GeometryError if that is gone, or the square is none.
+    digest: of the surface as pages know it. Raises: GeometryError if that is gone, or the square is invalid.
     """
     at = state.folder / digest
     if not re.fullmatch("[0-9a-f]{32}", digest) or not (at / ABOUT).is_file():
@@ -54,7 +54,7 @@ def texture_patch(
 
 
 def patch(at: Path, centre_m: tuple[float, float], side_m: float, pixels: int) -> Float32[np.ndarray, "n n"]:
-    """Heights of the textures of all materials in a square, each at its pixel's centre; 0 beyond the surface."""
+    """Return heights of all materials' textures in a square, at pixel centres; 0 beyond the surface."""
     about = json.loads((at / ABOUT).read_text())
     steps_m = ((np.arange(pixels) + 0.5) / pixels - 0.5) * side_m
     x, y = np.meshgrid(centre_m[0] + steps_m, centre_m[1] - steps_m)
@@ -71,7 +71,7 @@ def patch(at: Path, centre_m: tuple[float, float], side_m: float, pixels: int) -
 
 
 def _labels(at: Path, about: dict[str, Any], x: np.ndarray, y: np.ndarray) -> Shaped[np.ndarray, "n n"]:
-    """Of the cell that each place is in, or is nearest to."""
+    """Return the label of the cell that contains each place, or is nearest to it."""
     rows, columns, (width_m, length_m) = about["rows"], about["columns"], about["extent_m"]
     labels = np.memmap(at / "labels-0.u", f"<u{about['label_bytes']}", "r", shape=(rows, columns))
     row = np.clip(((0.5 - y / length_m) * rows).astype(int), 0, rows - 1)
@@ -90,7 +90,7 @@ def _heights(
 
 @job(quick=True)
 def description(state: WorkerState, language: Language) -> dict[str, Any] | None:
-    """What there is to say, as text too and as a page of its own; nothing while there is no surface."""
+    """Describe the surface at length, as text and as an HTML page; None without a surface."""
     if state.described is None:
         return None
     pipeline, seen = state.described
@@ -110,7 +110,7 @@ def description(state: WorkerState, language: Language) -> dict[str, Any] | None
 
 
 def description_data(pipeline: Pipeline, seen: SurfaceView) -> dict[str, Any]:
-    """What is said of what is seen, by language; a material that has no name in a language keeps its own."""
+    """Return descriptions by language, and names of the materials; one without a name in a language keeps its own."""
     scene = pipeline.scene
     kind = kind_of(scene)
     names = {each.name for each in seen.materials}

@@ -1,4 +1,4 @@
-"""The job that proposes a part from a stroke: what looks like what the stroke lies on, up to the picture's edges."""
+"""Proposal of a part from a stroke: what resembles the stroke's surroundings, up to the picture's edges."""
 
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
@@ -11,22 +11,22 @@ from tangible_core.errors import ConfigError
 Kind = Literal["grabcut", "watershed"]
 MOST_POINTS = 2000
 MOST_CELLS = 16_000
-"""Of the window that is looked at as a whole: GrabCut takes a tenth of a second for so many."""
+"""Maximum number of cells of the reduced window: GrabCut takes a tenth of a second for these."""
 AROUND = 0.4
-"""How far the window reaches beyond the stroke, of the stroke's own length."""
+"""Reach of the window beyond the stroke, as a share of the stroke's length."""
 NEAR = 2.0
-"""So many widths of the stroke from it, a pixel is taken for the part's before anything is known."""
+"""Distance from the stroke within which a pixel is first taken for the part's, in widths of the stroke."""
 ROUNDS = 3
 BLOCK = 12
-"""Cells of a side of what is looked at again at the picture's own size, where the border runs through it."""
+"""Side of the blocks that are refined at the picture's own size, in cells; only those that the border crosses."""
 SMALL_HOLE = 0.01
-"""Of the part's area."""
+"""Greatest hole that is filled, as a share of the part's area."""
 RIM = 2
 OUTSIDE, PART = 2, 1
 
 
 class Window(NamedTuple):
-    """The part of the picture that is looked at: first column and row, columns and rows."""
+    """A window of the picture: first column and row, numbers of columns and rows."""
 
     x: int
     y: int
@@ -34,7 +34,7 @@ class Window(NamedTuple):
     rows: int
 
     def of(self, picture: np.ndarray) -> np.ndarray:
-        """The picture there."""
+        """Return the picture's pixels in the window."""
         return picture[self.y : self.y + self.rows, self.x : self.x + self.columns]
 
 
@@ -45,10 +45,10 @@ def propose(
     kind: Kind,
     within: Sequence[float] | None = None,
 ) -> tuple[Window, Bool[np.ndarray, "r c"]]:
-    """The part in the picture as a box that just holds it, and where in that box it is.
+    """Return the part in the picture: its bounding box, and its mask in that box.
 
-    Found in a reduced window round the stroke, by GrabCut (Rother, Kolmogorov and Blake 2004) or by a watershed
-    (Meyer 1992); then its border, and nothing else, is looked for again at the picture's own size.
+    A reduced window around the stroke is segmented by GrabCut (Rother, Kolmogorov and Blake 2004) or by a watershed
+    (Meyer 1992); then the border alone is refined at the picture's own size.
     """
     import cv2
 
@@ -69,7 +69,7 @@ def propose(
 
 
 def as_points(points: Sequence[Sequence[float]], shape: tuple[int, ...]) -> Float64[np.ndarray, "n 2"]:
-    """Points in the picture, columns and rows. Raises: ConfigError for what is none, or far too many."""
+    """Return points in the picture, columns and rows, at most MOST_POINTS. Raises: ConfigError for anything else."""
     found = np.array([list(each) for each in points if len(each) == 2], np.float64).reshape(-1, 2)
     if not 0 < len(found) == len(points) or not np.isfinite(found).all():
         raise ConfigError("points: are [[column, row], ...] in pixels of the picture, at least one")
@@ -79,7 +79,7 @@ def as_points(points: Sequence[Sequence[float]], shape: tuple[int, ...]) -> Floa
 
 
 def runs(mask: Bool[np.ndarray, "r c"]) -> list[int]:
-    """How many pixels are outside, then inside, then outside again, row by row.
+    """Return run lengths of pixels outside, then inside, then outside again, row by row.
 
     >>> runs(np.array([[False, True], [True, False]]))
     [1, 2, 1]
@@ -104,7 +104,7 @@ def _window(shape: tuple[int, ...], points: np.ndarray, width_px: float, within:
 
 
 def _draw_stroke(points: np.ndarray, width_px: float, window: Window, size: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
-    """The stroke, on a grid of so many columns and rows over the window."""
+    """Draw the stroke on a grid of this size over the window."""
     import cv2
 
     scale = np.array(size) / [window.columns, window.rows]
@@ -115,7 +115,7 @@ def _draw_stroke(points: np.ndarray, width_px: float, window: Window, size: tupl
 
 
 def _rim(window: Window, stroke: np.ndarray, shape: tuple[int, ...]) -> Bool[np.ndarray, "r c"]:
-    """Where the window ends and the picture goes on: that is outside the part."""
+    """Return the rim of the window where the picture goes on: it is outside the part."""
     found = np.zeros(stroke.shape, np.bool_)
     found[:RIM] |= window.y > 0
     found[:, :RIM] |= window.x > 0
@@ -144,7 +144,7 @@ def _segment(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: floa
 
 
 def _watershed(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> Bool[np.ndarray, "r c"]:
-    """What is nearer to the inside than to the outside, the picture's edges being steep."""
+    """Return what is nearer to the inside than to the outside, the picture's edges being steep."""
     import cv2
 
     markers = np.zeros(inside.shape, np.int32)
@@ -153,7 +153,7 @@ def _watershed(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> 
 
 
 def _keep_connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "r c"]:
-    """What hangs together with the stroke, without specks at its border and small holes."""
+    """Keep what is connected to the stroke, without specks at its border and small holes."""
     import cv2
 
     smooth = np.asarray(cv2.medianBlur(mask.astype(np.uint8), 3)).astype(np.bool_) | stroke
@@ -165,7 +165,7 @@ def _keep_connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c
 
 
 def _refine_border(whole: np.ndarray, mask: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "h w"]:
-    """The mask at the picture's own size: along its border, a watershed between what is surely in and out."""
+    """Return the mask at the picture's own size: a watershed along its border, between sure inside and sure outside."""
     import cv2
 
     rows, columns = whole.shape[:2]
@@ -190,7 +190,7 @@ def _refine_block(
     ends: tuple[np.ndarray, np.ndarray],
     block: tuple[int, int],
 ) -> None:
-    """One block: looked at with a rim of cells about it, so that blocks fit together."""
+    """Refine one block, with a rim of cells around it so that blocks fit together."""
     import cv2
 
     inner = [(at, min(at + BLOCK, n)) for at, n in zip(block, state.shape, strict=True)]

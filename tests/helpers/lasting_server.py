@@ -12,9 +12,10 @@ from ui_server import START, UiServer
 FORGETS = f"""
 import sys
 sys.path.insert(0, {str(Path(__file__).parent)!r})
-from lasting_server import forget
+from lasting_server import forget, let_go
 from tangible_ui.requests.table import REQUESTS
 REQUESTS["forget"] = forget
+REQUESTS["let_go"] = let_go
 {START}
 """
 
@@ -43,6 +44,7 @@ class LastingServer(UiServer):
                 tab.until(event="answer", number=tab.ask(name, **told))
             tab.ask("choose_device", kind="hand")
             tab.until(event="touch")
+            tab.until(event="answer", number=tab.ask("let_go"))
         return self.url
 
 
@@ -53,3 +55,8 @@ async def forget(session: Any, tab: Any) -> None:
     session._history.clear()
     session._logged.clear()
     session.texts = type(session.texts)()
+
+
+async def let_go(session: Any, tab: Any) -> None:
+    """Take the hand from all tabs: those of earlier tests may close late, and the next tab gets it as it comes."""
+    session.hold(None)

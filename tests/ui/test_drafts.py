@@ -91,7 +91,7 @@ class TestDrafts:
         for text in ("one", "two"):
             keep(kept, text)
         assert [record.message for record in caplog.records] == [
-            "what is edited and not saved is not kept for the next start: no space left on device"
+            "unsaved edits are not kept for the next start: no space left on device"
         ]
 
 

@@ -122,7 +122,7 @@ class TestBegin:
         assert said(exchanged, found["path"])["scene"] == {"left": scene["right"], "right": scene["left"]}
 
     def test_only_a_pair_has_sides(self, worker_state: WorkerState, tmp_path: Path) -> None:
-        with pytest.raises(ConfigError, match="no pair"):
+        with pytest.raises(ConfigError, match="not a pair"):
             opening.exchange(worker_state, "scene: builtin/brick\n", tmp_path / "a.yaml")
 
     def test_a_file_counts_its_pictures_belong_to_it(self, worker_state: WorkerState, tmp_path: Path) -> None:
@@ -144,7 +144,7 @@ class TestBegin:
 
     def test_what_is_nothing_of_it_is_said(self, worker_state: WorkerState, tmp_path: Path) -> None:
         (tmp_path / "note.docx").write_text("x")
-        with pytest.raises(ConfigError, match=r"note.docx: is no picture"):
+        with pytest.raises(ConfigError, match=r"note.docx: is not a picture"):
             opening.begin(worker_state, [tmp_path / "note.docx"])
 
     def test_a_missing_file_is_said(self, worker_state: WorkerState, tmp_path: Path) -> None:

@@ -106,7 +106,7 @@ class TestLabels:
     def test_anything_else_is_refused(self, tmp_path: Path, sent: bytes) -> None:
         path = tmp_path / "sent"
         path.write_bytes(sent)
-        with pytest.raises(ConfigError, match="no gzip of 32 x 24"):
+        with pytest.raises(ConfigError, match="not a gzip of 32 x 24"):
             unpack(path, SHAPE)
 
     def test_a_bomb_is_not_unpacked(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -157,7 +157,7 @@ class TestNumbers:
         ("told", "says"),
         [
             ([{"label": 9, "name": "gone"}], "no pixel"),
-            ([{"label": 7}, {"label": 7}], "told of twice"),
+            ([{"label": 7}, {"label": 7}], "has two entries"),
             ([{"name": "wall"}], "number of its label"),
             ([{"label": "7"}], "number of its label"),
         ],

@@ -37,8 +37,8 @@ class Choice:
             return
         if not self.sure or self.agreed not in (None, type(device)):
             raise NotConfirmed(
-                f"the device {type(device).__name__} has a motor, and is opened only by who chooses it in the panel "
-                "Devices; what was felt before goes on"
+                f"the device {type(device).__name__} has a motor; choose it in the panel Devices to open it. The "
+                "device before stays in use"
             )
         self.agreed = type(device)
 

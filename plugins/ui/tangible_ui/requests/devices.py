@@ -44,7 +44,7 @@ async def choose_device(session: Session, tab: Tab | None, kind: str, name: str 
     choice = _choice(kind, name, sure)
     about = await _about(session, choice)
     if not about["simulated"] and not sure:
-        raise ConfigError(f"{about['name']} has a motor: say yes to that first")
+        raise ConfigError(f"{about['name']} has a motor: agree to that first")
     session.choice = choice
     session.tell("device", kind=choice.kind, name=about["name"])
     session.feeling.allow()

@@ -188,7 +188,7 @@ async def restore(session: Session, tab: Tab | None) -> None:
     """Replace the document by the earlier program's draft, as an edit. Raises: ConfigError if there is none."""
     draft = session.drafts.left
     if draft is None:
-        raise ConfigError("there is nothing that was not saved")
+        raise ConfigError("there is no unsaved draft")
     async with session.texts.lock:
         said = await take(session, draft.text)
     await forget(session, tab)

@@ -143,7 +143,7 @@ async def end_blind(session: Session, tab: Tab | None) -> dict[str, Any]:
 
 def _tally(session: Session) -> Tally:
     if session.laws.tally is None:
-        raise ConfigError("no blind comparison goes on; begin one")
+        raise ConfigError("no blind comparison is running; begin one")
     return session.laws.tally
 
 

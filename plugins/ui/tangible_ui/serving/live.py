@@ -110,7 +110,7 @@ class LiveTab:
             self._asks += 1
             self._session.begin(self._answer(asked))
         else:
-            self._refuse(asked.number, f"{MOST_ASKS} things were asked for that are not done yet; wait for them")
+            self._refuse(asked.number, f"{MOST_ASKS} requests are not done yet; wait for them")
 
     async def _answer(self, asked: ParsedRequest) -> None:
         try:

@@ -37,14 +37,14 @@ def parse(text: str) -> ParsedRequest:
     try:
         said = json.loads(text, parse_constant=_refuse)
     except (ValueError, RecursionError) as error:
-        raise BadRequest(None, "a message is no JSON") from error
+        raise BadRequest(None, "the message is not JSON") from error
     number = said.pop("number", None) if isinstance(said, dict) else None
     if type(number) is not int:
-        raise BadRequest(None, 'a message is no JSON object with a "number"')
+        raise BadRequest(None, 'the message is not a JSON object with a "number"')
     name = said.pop("ask", None)
     if not isinstance(name, str) or (ask := REQUESTS.get(name)) is None:
         hint = did_you_mean(name, REQUESTS) if isinstance(name, str) else ""
-        raise BadRequest(number, f"there is no {quoted(name)} to ask for{hint}")
+        raise BadRequest(number, f"there is no request {quoted(name)}{hint}")
     return ParsedRequest(number, name, ask, _fitting(number, name, ask, said))
 
 
@@ -54,10 +54,10 @@ def _fitting(number: int, name: str, ask: Request, said: dict[str, Any]) -> dict
         found = _arguments(ask).model_validate_json(json.dumps(said))
     except ValidationError as error:
         first = error.errors()[0]
-        where = ".".join(map(str, first["loc"])) or "what is told"
+        where = ".".join(map(str, first["loc"])) or "arguments"
         raise BadRequest(number, shown(f"{name}: {where}: {first['msg']}", MOST_SHOWN)) from error
     except RecursionError as error:
-        raise BadRequest(number, f"{name}: what is told is nested too deep") from error
+        raise BadRequest(number, f"{name}: the arguments are nested too deeply") from error
     return {key: getattr(found, key) for key in found.model_fields_set}
 
 
@@ -73,4 +73,4 @@ def _arguments(ask: Request) -> type[BaseModel]:
 
 
 def _refuse(constant: str) -> NoReturn:
-    raise ValueError(f"{constant} is no JSON")
+    raise ValueError(f"{constant} is not JSON")

@@ -82,7 +82,7 @@ class Drafts:
             self._failed = False
         except OutputError as error:
             if not self._failed:
-                log.warning("what is edited and not saved is not kept for the next start: %s", error)
+                log.warning("unsaved edits are not kept for the next start: %s", error)
             self._failed = True
 
 

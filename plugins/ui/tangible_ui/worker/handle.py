@@ -149,9 +149,9 @@ class Worker:
         self._deaths += not (self._ready or self._killed)
         if self._deaths < MOST_DEATHS:
             self._start()
-            error: TangibleError = WorkerKilled("making was stopped; what was finished is kept")
+            error: TangibleError = WorkerKilled("computation was stopped; finished products are kept")
         else:
-            why = self._last_words[-1] if self._last_words else "it says nothing"
+            why = self._last_words[-1] if self._last_words else "it printed nothing"
             self._gone = f"the process that computes does not start: {shown(why, 300)}"
             error = WorkerAbsent(self._gone)
             self._hear(Event("maker_gone", {"why": self._gone}))

@@ -147,7 +147,7 @@ def begin(state: WorkerState, files: list[Path]) -> dict[str, Any]:
     if not are_pictures(files):
         odd = next(each for each in files if not are_pictures([each]))
         raise ConfigError(
-            f"{odd.name}: is no picture, video, height map (.npy, .npz, .pfm), recording (.nc, .npz, .csv) or "
+            f"{odd.name}: is not a picture, video, height map (.npy, .npz, .pfm), recording (.nc, .npz, .csv) or "
             "pipeline file (.yaml); if it is one, give it the right ending"
         )
     path = Path.cwd() / f"{files[0].stem}.yaml"
@@ -188,5 +188,5 @@ def exchange(state: WorkerState, text: str, path: Path) -> str:
     """Return the text with left and right exchanged. Raises: ConfigError if the scene is not a pair."""
     scene = said(text, path).get("scene")
     if not (isinstance(scene, dict) and {"left", "right"} <= scene.keys()):
-        raise ConfigError("the scene is no pair of pictures, left and right")
+        raise ConfigError("the scene is not a pair of pictures, left and right")
     return edited(text, path, {"scene.left": scene["right"], "scene.right": scene["left"]})

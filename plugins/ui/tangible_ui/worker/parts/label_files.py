@@ -29,7 +29,7 @@ def unpack(path: Path, shape: tuple[int, int]) -> UInt16[np.ndarray, "h w"]:
     At most one byte too many is unpacked. Raises: ConfigError for anything else, and another size.
     """
     size = 2 * shape[0] * shape[1]
-    wrong = f"the labels that were sent are no gzip of {shape[1]} x {shape[0]} numbers of two bytes; send them again"
+    wrong = f"the labels that were sent are not a gzip of {shape[1]} x {shape[0]} numbers of two bytes; send them again"
     if not 0 < size <= 2 * MOST_PIXELS:
         raise ConfigError(wrong)
     try:

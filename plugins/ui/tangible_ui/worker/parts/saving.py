@@ -61,10 +61,10 @@ def number_parts(
     name, the others get numbered names. Raises: ConfigError if a label has two entries, or has no pixel.
     """
     if not all(type(each.get("label")) is int for each in parts):
-        raise ConfigError("parts: each is told of with the number of its label")
+        raise ConfigError("parts: each entry needs the number of its label")
     told = {each["label"]: each for each in parts}
     if len(told) < len(parts):
-        raise ConfigError("a label is told of twice; tell of each once")
+        raise ConfigError("a label has two entries; give each label one")
     of_label: dict[int, list[int]] = {}
     for number, label in enumerate(labels):
         of_label.setdefault(label, []).append(number)

@@ -69,7 +69,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
         digest, name = request.path_params["digest"], request.path_params["name"]
         path = None if digest.startswith(EXPORTS) else _lying(session().folder, digest, name)
         if path is None:
-            return PlainTextResponse("there is no such thing any more", 404)
+            return PlainTextResponse("this file is gone", 404)
         if request.query_params.keys() & WINDOW:
             return await window_of(path, request)
         return FileResponse(path, headers={"cache-control": FOREVER})
@@ -81,6 +81,14 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
         if path is None:
             return PlainTextResponse("this file is not there any more; export it again", 404)
         return FileResponse(path, filename=name)
+
+    async def panel_file(request: Request) -> Response:
+        """Send an ES module, or another file, of a plugin's panel."""
+        folder = session().panel_folders.get(request.path_params["panel"])
+        path = None if folder is None else _lying(folder.parent, folder.name, request.path_params["name"])
+        if path is None:
+            return PlainTextResponse("no plugin brings this file", 404)
+        return FileResponse(path, headers={"cache-control": ASK_AGAIN})
 
     async def window_of(path: Path, request: Request) -> Response:
         try:
@@ -99,7 +107,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
         except TangibleError as error:
             return PlainTextResponse(str(error), 400)
         except ClientDisconnect:
-            return PlainTextResponse("it broke off", 400)
+            return PlainTextResponse("the upload broke off", 400)
         return Response(status_code=204)
 
     async def stop(_: Request) -> Response:
@@ -117,6 +125,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
     return [
         Route("/scene/{digest}/{name}", require_key(scene)),
         Route("/export/{folder}/{name}", require_key(export_file)),
+        Route("/panels/{panel}/{name}", require_key(panel_file)),
         Route("/upload/{batch}/{name}", require_key(upload), methods=["PUT"]),
         Route("/stop", require_key(stop), methods=["POST"]),
         WebSocketRoute("/live", live),

@@ -66,6 +66,8 @@ class Session:
         """The last recording, or the running one."""
         self.laws = Laws(ComparisonLoop(f"{feeling.channel}-beside"))
         self.scene: dict[str, Any] | None = None
+        self.panel_folders: dict[str, Path] = {}
+        """Folders of the ES modules of plugins' panels, by name of the panel."""
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None
         """The tab that moves the hand."""

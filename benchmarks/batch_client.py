@@ -8,7 +8,7 @@ from pathlib import Path
 
 import psutil
 
-from tangible_batch.jobs import BatchOptions
+from tangible_batch.job_maker import BatchOptions
 from tangible_batch.manifest import rows_of
 from tangible_batch.results import kept_rows, write_gallery, write_index
 from tangible_batch.running import Workforce, run_batch

@@ -12,11 +12,11 @@ from tangible_core.data import DeviceSpec
 from tangible_core.servo.guard.coupling import couple
 from tangible_core.servo.guard.guard import guard
 from tangible_core.servo.guard.safety import Safety
-from tangible_core.testing.synthetic.rough import rough_surfaces
 from tangible_render.proxy import Proxy
 
 from .figures import Figure, table
 from .render_waves import FAST, HAND, path, surface
+from .tests_path import rough_surfaces
 from .turns import in_turns
 
 DEVICE = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)

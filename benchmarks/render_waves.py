@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from tangible_core.data import HapticSurface
-from tangible_core.testing.synthetic.rough import rough_surfaces
 from tangible_render.proxy import Proxy
 
 from .figures import Figure
+from .tests_path import rough_surfaces
 
 TICKS, DEPTH_M = 4000, 0.0008
 AMPLITUDE_M, WAVE = 0.004, 2 * np.pi / 0.02

@@ -10,11 +10,10 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from tangible_core.servo import Safety, Servo
-from tangible_core.testing.loop_devices import Circling, Failing
-from tangible_core.testing.loop_laws import FaultyTouch
 
 from .figures import Figure, judged
 from .servo_loops import touch
+from .tests_path import Circling, Failing, FaultyTouch
 
 RUNS, SWAPS = 10, 5000
 LIMITS = Safety(ramp_s=0, max_step_n=10)

@@ -14,12 +14,12 @@ from statistics import median
 from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Safety, Servo
 from tangible_core.session import Recording, Writer, live
-from tangible_core.testing.loop_devices import Circling
 
 from .figures import Figure, judged, part, table
 from .rights import give_up
 from .servo_loops import LOOPS, compiled_c, in_c, ours, touch
 from .servo_rounds import BY_CHANCE, LATE_US, POINTS, TIMES, Round, no_later, no_more_overruns, rows, together
+from .tests_path import Circling
 
 ROUNDS = 8
 RECORDED_S, PLAIN_S = 3.5, 3.0

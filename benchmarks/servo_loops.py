@@ -20,10 +20,10 @@ from tangible_core.data import Spread
 from tangible_core.plugins.interfaces import HapticDevice, Touch
 from tangible_core.servo import Servo
 from tangible_core.servo.ring import SPINS
-from tangible_core.testing.loop_devices import Circling
 
 from .figures import Figure
 from .servo_rounds import Round
+from .tests_path import Circling
 
 SLICE_S, SLICES = 10.0, 3
 """Each loop runs for so long, in turn with the others, so often."""

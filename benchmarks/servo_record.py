@@ -8,10 +8,10 @@ from pathlib import Path
 from tangible_core.data import ServoReport
 from tangible_core.servo import Safety
 from tangible_core.session import Recording, Writer, live
-from tangible_core.testing.loop_devices import Circling
 
 from .figures import Figure
 from .servo_loops import touch
+from .tests_path import Circling
 
 MINUTES = float(os.environ.get("TANGIBLE_MINUTES", "10"))
 

@@ -9,11 +9,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from tangible_core.servo import Servo
-from tangible_core.testing.loop_devices import Circling, Failing
 
 from .figures import Figure
 from .house import tangible
 from .servo_loops import touch
+from .tests_path import Circling, Failing
 
 RUNS = 5
 CONFIG = Path(__file__).parents[1] / "configs" / "demo.yaml"

@@ -16,11 +16,12 @@ from tangible_core.compiled.kernels import Address
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.materials.assignment import library
-from tangible_core.servo import Ring, Safety, cycle
-from tangible_core.servo.loop import sections
+from tangible_core.servo import Ring, Safety
 from tangible_core.servo.ring import PERIOD_NS
-from tangible_devices.falcon import framing, kinematics, packet, tick
+from tangible_core.servo.ticks import cycle
+from tangible_core.servo.ticks.loop import sections
 from tangible_devices.falcon.calibration import Calibration
+from tangible_devices.falcon.kernels import framing, kinematics, packet, tick
 
 from .figures import Figure
 

@@ -13,3 +13,7 @@ import falcon_streams as falcon_streams
 import films as films
 import solids as solids
 import two_cameras as two_cameras
+from faulty_touch import FaultyTouch as FaultyTouch
+from loop_devices import Circling as Circling
+from loop_devices import Failing as Failing
+from rough_surfaces import rough_surfaces as rough_surfaces

@@ -23,14 +23,13 @@ from tangible_core.scene.geometry import smooth
 from tangible_core.servo import Safety, Servo
 from tangible_core.session import Turn, run_in_turn, run_simulated
 from tangible_core.session.film import Steady
-from tangible_core.testing.loop_devices import Circling
 from tangible_depth import SemiGlobal
 from tangible_devices import Mock
 from tangible_render import Proxy
 
 from . import video_stress
 from .figures import Figure, MissedError, judged, part
-from .tests_path import films
+from .tests_path import Circling, films
 from .ui_late import LATE_US, POINTS, ROUND_S, ROUNDS, TIMES
 
 MINUTES, SLICES = (

@@ -17,6 +17,9 @@ from checked_calls import check
 from distributions import Points, distribution
 
 os.environ["MPLBACKEND"] = "Agg"
+HELPERS = str(Path(__file__).parent / "helpers")
+# processes that a test starts find the helpers too
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [os.environ.get("PYTHONPATH"), HELPERS]))
 if "PYTEST_XDIST_WORKER" in os.environ:
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # torch's threads spin, and take the processor from the other workers
 
@@ -175,9 +178,9 @@ def _entry_points(site: Path, **of: str) -> metadata.EntryPoints:
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
     """A force loop that a busy machine does not let tick for a while is not ended for that."""
-    from tangible_core.servo import host
+    from tangible_core.servo import supervisor
 
-    monkeypatch.setattr(host, "STANDSTILL_S", STANDSTILL_S)
+    monkeypatch.setattr(supervisor, "STANDSTILL_S", STANDSTILL_S)
 
 
 @pytest.fixture

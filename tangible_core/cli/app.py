@@ -13,8 +13,8 @@ from ..errors import ConfigError, TangibleError, exited
 from ..plugins import hooks
 from ..plugins.registry import default_registry
 from ..runtime import ending, standard_output
-from . import loudness
-from .commands import COMMANDS, Lazy
+from . import verbosity
+from .command_table import COMMANDS, Lazy
 from .options import DONE, FAILED, INTERRUPTED, MISTAKE
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def _check_folder() -> None:
 
 def _run_app() -> int:
     with standard_output.kept():
-        words = loudness.heed(sys.argv[1:])
+        words = verbosity.heed(sys.argv[1:])
         hooks.tell(default_registry().plugins, "tangible_commands", app=app)
     try:
         code = app(words, standalone_mode=False, default_map=_no_help())

@@ -63,7 +63,7 @@ def keys(ctx: Any, incomplete: str) -> list[str]:
 def _of_scene(words: Sequence[str], incomplete: str) -> list[str]:
     """Keys of the scene readers; after `=`, the values that a reader suggests by the earlier words of `--set`."""
     from ..errors import TangibleError
-    from ..files.source import parse_source, plain
+    from ..files.yaml.source import parse_source, plain
     from ..pipeline.config.scene_readers import scene_reader_of, scene_readers
 
     key, equals, _ = incomplete.removeprefix("scene.").partition("=")

@@ -1,13 +1,12 @@
-"""What travels between stages: frozen records of read-only arrays, and the servo's tuples."""
+"""The data that travels between stages: frozen records of read-only arrays, and the tuples of the force loop."""
 
 from .device import NO_FORCE, DeviceSpec, Finding, Force, HapticState, Unit, Vector, limited
 from .outcome import Kind, Note, NoteKind, Outcome, OutcomeKind, Outcomes, Plan
-from .parts import PartMap
+from .products import Work
 from .records import Record, digest_of
 from .surface import TEXTURES, HapticSurface, Material, MaterialMap, Relief, Texture
 from .ticks import TICK_COLUMNS, UNTOUCHED, FilmFelt, ServoReport, Spread, TickFlag, beacon_part
-from .views import Calibration, DisparityMap, SegmentMap, Views
-from .work import Work
+from .views import Calibration, DisparityMap, PartMap, SegmentMap, Views
 
 __all__ = [
     "Calibration",

@@ -1,6 +1,6 @@
-"""What a program gives to a record or a method, as what it is wanted as; or one sentence that says what it is instead.
+"""Conversion of arguments to the types that records and methods need, with one clear sentence where it fails.
 
-A list becomes an array, and numbers change their type where none of them changes its value by more than its rounding.
+A list becomes an array; numbers change their type if no value changes by more than rounding.
 """
 
 import math
@@ -14,72 +14,72 @@ from ..errors import ArgumentError, wrong_argument
 from .device import Force, HapticState
 
 NUMBERS = "buif"
-"""Kinds of NumPy's types that hold numbers."""
+"""The kinds of NumPy types that hold numbers."""
 READERS = "; Scene.of and numpy.load read files"
 
 
 def as_array(name: str, value: object, dtype: str | None = None) -> np.ndarray:
-    """An array of numbers, of this type if one is named; an array itself where none is.
+    """Return an array of numbers of this type; without a type, an array is returned as it is.
 
-    Raises: ArgumentError for what holds no numbers, or numbers that this type cannot hold.
+    Raises: ArgumentError for a value that does not hold numbers, or numbers that the type cannot hold.
     """
     if isinstance(value, np.ndarray) and dtype is None:
         return cast(np.ndarray, value)
-    found = _plain_array(name, cast(Any, value))
-    if dtype is None or found.dtype == dtype:
-        return found
+    given = _plain_array(name, cast(Any, value))
+    if dtype is None or given.dtype == dtype:
+        return given
     with np.errstate(all="ignore"):
-        made = found.astype(dtype)
-        kept = made.dtype.kind == "f" or bool(np.all(made == found))
-    if not kept:
-        raise wrong_argument(name, found, f"an array of {dtype}: some of its {found.dtype} numbers are none")
-    return made
+        converted = given.astype(dtype)
+        fits = converted.dtype.kind == "f" or bool(np.all(converted == given))
+    if not fits:
+        raise wrong_argument(name, given, f"an array of {dtype}, which cannot hold some of its {given.dtype} numbers")
+    return converted
 
 
 def _plain_array(name: str, value: object) -> np.ndarray:
     if isinstance(value, np.ndarray):
-        found = cast(np.ndarray, value)
+        array = cast(np.ndarray, value)
     elif isinstance(value, str | bytes | PathLike | dict) or value is None:
-        raise _no_array(name, cast(Any, value))
+        raise _not_an_array(name, cast(Any, value))
     else:
         try:
-            found = np.asarray(value)
+            array = np.asarray(value)
         except (ValueError, TypeError) as error:  # such as rows of different lengths
-            raise _no_array(name, value) from error
-    if found.dtype.kind not in NUMBERS:
-        raise _no_array(name, cast(Any, value))
-    return found
+            raise _not_an_array(name, value) from error
+    if array.dtype.kind not in NUMBERS:
+        raise _not_an_array(name, cast(Any, value))
+    return array
 
 
-def _no_array(name: str, value: object) -> ArgumentError:
+def _not_an_array(name: str, value: object) -> ArgumentError:
     read = READERS if isinstance(value, str | PathLike) else ""
     return wrong_argument(name, cast(Any, value), f"an array of numbers{read}")
 
 
 def as_picture(name: str, value: Any) -> np.ndarray:
-    """An array that may be a picture; whole numbers of a list have as few bits as a picture may have.
+    """Return an array that may be a picture; whole numbers of a list get the smallest unsigned type that holds them.
 
     Raises: ArgumentError as `as_array`.
     """
-    found = as_array(name, value)
-    if isinstance(value, list | tuple) and found.dtype.kind == "i" and found.size and found.min() >= 0:
-        return found.astype(np.min_scalar_type(found.max()))
-    return found
+    array = as_array(name, value)
+    if isinstance(value, list | tuple) and array.dtype.kind == "i" and array.size and array.min() >= 0:
+        return array.astype(np.min_scalar_type(array.max()))
+    return array
 
 
 def as_state(state: Any) -> HapticState:
-    """Where a tip is; three numbers are a place where it rests. Raises: ArgumentError."""
+    """Return a state of the tip; three numbers are a position at rest. Raises: ArgumentError."""
     if isinstance(state, HapticState):
         return state
-    if (place := _three(state)) is None:
+    if (position := _three(state)) is None:
         raise wrong_argument("state", state, "a HapticState, or three numbers: x, y and z in metres")
-    return HapticState(place)
+    return HapticState(position)
 
 
 def as_force(force: Any) -> Force | None:
-    """Three numbers as a force; None for what is no three numbers."""
-    found = _three(force)
-    return None if found is None else Force(*found)
+    """Return three numbers as a force; None for any other value."""
+    numbers = _three(force)
+    return None if numbers is None else Force(*numbers)
 
 
 def _three(value: Any) -> tuple[float, float, float] | None:
@@ -95,7 +95,7 @@ def _three(value: Any) -> tuple[float, float, float] | None:
 
 
 def as_number(name: str, value: Any) -> Any:
-    """The value itself, if it is a number, of whatever type. Raises: ArgumentError."""
+    """Return the value itself if it is a number of any type. Raises: ArgumentError."""
     try:
         if not isinstance(value, str | bytes):
             math.isnan(value)

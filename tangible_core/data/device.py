@@ -1,7 +1,7 @@
-"""What passes between a force law and a device, and what a device can do.
+"""States and forces that pass between a force law and a device, and the abilities of a device.
 
-Frame of the workspace: metres, right-handed, x right, y away from the user (the picture's top row is far), z up; its
-origin is the centre of the picture on the base plane.
+The frame of the workspace: metres, right-handed, x right, y away from the user (the picture's top row is far), z up;
+its origin is the centre of the picture on the base plane.
 """
 
 import math
@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 Vector = tuple[float, float, float]
-"""Along x, y and z."""
+"""Components along x, y and z."""
 
 
 class Force(NamedTuple):
-    """Newtons in the workspace frame, on the user's hand."""
+    """A force on the user's hand, newtons in the workspace frame."""
 
     x: float
     y: float
@@ -24,7 +24,7 @@ NO_FORCE = Force(0.0, 0.0, 0.0)
 
 
 def limited(force: Force, most_n: float) -> Force:
-    """The force, scaled down to a magnitude of most_n where it is over it; zero where it is not finite.
+    """Return the force, scaled down to a magnitude of at most most_n; zero if it is not finite.
 
     >>> limited(Force(6.0, 0.0, 8.0), 5.0)
     Force(x=3.0, y=0.0, z=4.0)
@@ -40,28 +40,28 @@ def limited(force: Force, most_n: float) -> Force:
 
 
 class HapticState(NamedTuple):
-    """Where the device's tip is: metres, metres per second and seconds, in the workspace frame."""
+    """The position, velocity and time of the device's tip: m, m/s and s, in the workspace frame."""
 
     position_m: Vector
     velocity_m_per_s: Vector = (0.0, 0.0, 0.0)
     time_s: float = 0.0
     buttons: int = 0
-    """One bit a button."""
+    """The pressed buttons, one bit each."""
 
 
 @dataclass(frozen=True)
 class DeviceSpec:
-    """What a device can do, known before it is opened. Frame: workspace."""
+    """The abilities of a device, known before it is opened; in the workspace frame."""
 
     max_force_n: float
     max_stiffness_n_per_m: float
-    """At a servo rate of 1 kHz."""
+    """The greatest stiffness that it renders at a loop rate of 1 kHz."""
     damping_n_s_per_m: float
     workspace_m: Vector
-    """Size along x, y, z."""
+    """The size along x, y and z."""
     resolution_m: float
     axes: int = 3
-    """How many axes can give force."""
+    """The number of axes that can give force."""
     buttons: int = 0
     simulated: bool = False
     """True if no motor moves."""
@@ -69,25 +69,25 @@ class DeviceSpec:
 
 @dataclass(frozen=True)
 class Unit:
-    """One device that is connected now."""
+    """A device that is connected now."""
 
     name: str
-    """What it is, as its maker calls it."""
+    """The maker's name of the device."""
     serial: str = ""
-    """What tells it from its like; a calibration belongs to it."""
+    """The serial number, to which a calibration belongs; "" if the device has none."""
     place: str = ""
-    """Where it is connected."""
+    """The port or address at which it is connected."""
     problem: str = ""
-    """Why it cannot be used as it is; empty if it can."""
+    """The reason why it cannot be used as it is; "" if it can."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What one check of a device's surroundings found."""
+    """The result of one check of a device's surroundings."""
 
     check: str
     verdict: Literal["fine", "failed", "not asked"]
-    """`not asked` where nothing is there that could be asked."""
+    """The result; `not asked` if there is nothing to check."""
     says: str
     cure: str = ""
-    """What to do about it, for a check that failed."""
+    """The cure for a check that failed."""

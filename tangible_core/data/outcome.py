@@ -1,4 +1,4 @@
-"""What a pipeline will do, and what became of its products."""
+"""The plan of a pipeline, and the outcome of each product."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -6,20 +6,18 @@ from html import escape
 from typing import Literal
 
 Kind = Literal["depth", "texture", "render", "device", "export"]
-
-
 OutcomeKind = Literal["given", "ran", "cached", "skipped", "failed", "refused"]
-"""`refused`: it cannot be made of this scene, which is known before anything is begun."""
+"""The outcomes of a product; `refused`: known to be impossible for this scene before anything is run."""
 HEADINGS = ("product", "method", "outcome", "why", "seconds")
 
 
 NoteKind = Literal["decision", "warning", "doubt"]
-"""`doubt`: what was made is hardly worth feeling."""
+"""The kinds of notes; `doubt`: the result is hardly worth feeling."""
 
 
 @dataclass(frozen=True)
 class Note:
-    """What a method noticed while it made a product."""
+    """An observation that a method made while it computed a product."""
 
     text: str
     kind: NoteKind = "decision"
@@ -27,29 +25,29 @@ class Note:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one product, and why."""
+    """The outcome of one product, and the reason."""
 
     product: str
     outcome: OutcomeKind
     why: str
-    """The texts of the notes included."""
+    """The reason, including the texts of the notes."""
     method: str = ""
     seconds: float = 0.0
     notes: tuple[Note, ...] = ()
-    """What was noticed when it was made; before, if it comes from the cache."""
+    """The notes of the method; for a cached product, those of the run that computed it."""
 
     def row(self, ran: str = "ran") -> tuple[str, ...]:
-        """Texts under HEADINGS; ran: the word for one that ran, or is to."""
+        """Return the texts under HEADINGS; ran: the word for a product that ran, or will run."""
         kind = ran if self.outcome == "ran" else self.outcome
         return self.product, self.method, kind, self.why, f"{self.seconds:.3f}" if self.seconds else ""
 
 
 class Outcomes(list[Outcome]):
-    """Outcomes that show themselves as a table, in a terminal and in a notebook."""
+    """A list of outcomes that prints as a table, in a terminal and in a notebook."""
 
     @property
     def doubts(self) -> list[Note]:
-        """Why what was made is hardly worth feeling; empty where it is."""
+        """The notes that say why the result is hardly worth feeling; [] if it is."""
         return [note for each in self for note in each.notes if note.kind == "doubt"]
 
     def __repr__(self) -> str:
@@ -61,9 +59,9 @@ class Outcomes(list[Outcome]):
 
 @dataclass(frozen=True, repr=False)
 class Plan:
-    """What asking for a product will do: one outcome a product, in order, nothing run.
+    """The steps that lead to a requested product: one outcome for each product, in order; nothing is run.
 
-    It ends with the first product that cannot be made. It shows itself as a table, in a terminal and in a notebook.
+    It ends with the first product that cannot be made. It prints as a table, in a terminal and in a notebook.
     """
 
     want: str
@@ -71,7 +69,7 @@ class Plan:
 
     @property
     def refusal(self) -> str:
-        """Why this cannot be run, as far as that is known beforehand; empty where it can."""
+        """The reason why this cannot be run, as far as it is known beforehand; "" if it can."""
         return next((each.why for each in self.steps if each.outcome == "refused"), "")
 
     def __repr__(self) -> str:
@@ -85,11 +83,11 @@ class Plan:
 
 
 def text_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Columns of one width each, two spaces between them.
+    """Return rows as a text table, with two spaces between the columns.
 
-    >>> print(text_table(("product", "why"), [("relief", "asked for")]))
+    >>> print(text_table(("product", "why"), [("relief", "requested")]))
     product  why
-    relief   asked for
+    relief   requested
     """
     lines = [headings, *rows]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
@@ -98,7 +96,7 @@ def text_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def html_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table for a notebook; what is in the cells is text."""
+    """Return rows as an HTML table for a notebook; the cells are escaped."""
     head = "".join(f"<th style='text-align:left'>{escape(each)}</th>" for each in headings)
     lines = ("".join(f"<td style='text-align:left'>{escape(cell)}</td>" for cell in row) for row in rows)
     body = "".join(f"<tr>{line}</tr>" for line in lines)

@@ -1,4 +1,4 @@
-"""Pictures as numpy arrays: what is accepted, and what is made of it (`picture_files` reads and writes them).
+"""Pictures as numpy arrays: checks and conversions (`scene.formats.pictures` reads and writes files).
 
 A picture is (h, w), (h, w, 3) or (h, w, 4) RGB(A); uint8, uint16, bool, or floating point in 0..1.
 """
@@ -12,14 +12,13 @@ from ..errors import PictureError
 from .arguments import as_picture
 
 RED, BLUE = np.float32(0.299), np.float32(0.114)
-"""ITU-R BT.601 weights of R and B; that of G is what is left of 1."""
+"""The weights of R and B in luma (ITU-R BT.601); the weight of G is the rest of 1."""
 
 
 def check_picture(picture: np.ndarray, name: str = "picture") -> np.ndarray:
-    """The array itself, if it is a picture.
+    """Return the array itself if it is a picture.
 
-    Raises: PictureError naming what is wrong: the shape, the type, an empty picture, or the first place that is
-    NaN or infinite.
+    Raises: PictureError if the shape or the type is wrong, the picture is empty, or a value is NaN or infinite.
     """
     picture = as_picture(name, picture)
     if picture.ndim not in (2, 3) or (picture.ndim == 3 and picture.shape[2] not in (3, 4)):
@@ -35,13 +34,13 @@ def check_picture(picture: np.ndarray, name: str = "picture") -> np.ndarray:
 
 
 def is_one_colour(picture: np.ndarray) -> bool:
-    """Whether every pixel is the same; the first row settles it for most pictures."""
+    """Return True if all pixels are equal; the first row decides it for most pictures."""
     first = picture[:1, :1]
     return bool(np.all(picture[:1] == first)) and bool(np.all(picture == first))
 
 
 def check_finite(values: np.ndarray, name: str) -> None:
-    """Raises: PictureError naming how many values are NaN or infinite, and where the first one is."""
+    """Raise a PictureError with the number of NaN or infinite values and the place of the first, if there are any."""
     if values.dtype.kind == "f" and not (finite := np.isfinite(values)).all():
         row, column = np.argwhere(~finite)[0][:2]
         raise PictureError(
@@ -51,18 +50,18 @@ def check_finite(values: np.ndarray, name: str) -> None:
 
 
 def fill_non_finite(picture: np.ndarray) -> tuple[np.ndarray, Bool[np.ndarray, "h w"]]:
-    """A picture whose NaN and infinite pixels are those of the nearest finite one, and where it is known: for a mask.
+    """Return the picture with each NaN or infinite pixel replaced by the nearest finite one, and the finite mask.
 
-    Raises: PictureError if nothing is finite.
+    Raises: PictureError if no pixel is finite.
     """
     known: np.ndarray = np.all(np.isfinite(np.atleast_3d(picture)), axis=2)
     if not known.any():
         raise PictureError(f"none of the {known.size} pixels is finite; use a picture with finite pixels")
-    return filled(picture, known), known
+    return fill_from_nearest(picture, known), known
 
 
-def filled(picture: np.ndarray, known: Bool[np.ndarray, "h w"]) -> np.ndarray:
-    """A picture in which each unknown pixel is the nearest known one; at least one is known."""
+def fill_from_nearest(picture: np.ndarray, known: Bool[np.ndarray, "h w"]) -> np.ndarray:
+    """Return the picture with each unknown pixel replaced by the nearest known one; at least one must be known."""
     from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
 
     nearest = cast(Any, ndimage).distance_transform_edt(~known, return_distances=False, return_indices=True)
@@ -70,7 +69,7 @@ def filled(picture: np.ndarray, known: Bool[np.ndarray, "h w"]) -> np.ndarray:
 
 
 def opaque(picture: np.ndarray) -> Bool[np.ndarray, "h w"]:
-    """Where a picture shows something: at least half of it, where its fourth channel says how much."""
+    """Return a mask of the opaque pixels: those with an alpha of at least one half; all if there is no alpha."""
     if picture.ndim == 2 or picture.shape[2] == 3:
         return np.ones(picture.shape[:2], np.bool_)
     alpha = picture[..., 3]
@@ -80,18 +79,18 @@ def opaque(picture: np.ndarray) -> Bool[np.ndarray, "h w"]:
 
 
 def full_scale(picture: np.ndarray) -> float:
-    """The value that stands for white: 255, 65535, 1, or the largest magnitude in a float picture that goes over 1."""
+    """Return the value of white: 255, 65535, 1, or the largest magnitude of a float picture that exceeds 1."""
     if picture.dtype.kind == "f":
         return max(1.0, float(np.max(np.abs(picture))))
     return 1.0 if picture.dtype == np.bool_ else float(np.iinfo(picture.dtype).max)
 
 
 def to_grey(picture: np.ndarray) -> Float32[np.ndarray, "h w"]:
-    """Luma in 0..1 (ITU-R BT.601), transparency over white.
+    """Convert a picture to luma in 0..1 (ITU-R BT.601), transparency over white.
 
     Raises: PictureError as `check_picture`.
     """
-    values = _scaled(picture)
+    values = _to_unit_range(picture)
     if values.ndim == 2:
         return values
     grey = luma(values)
@@ -99,35 +98,35 @@ def to_grey(picture: np.ndarray) -> Float32[np.ndarray, "h w"]:
 
 
 def luma(values: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w"]:
-    """Luma of red, green and blue, whatever lies behind them: exactly v where all three are v.
+    """Return the luma of the first three channels: exactly v where all three are v.
 
-    Element by element: a matrix product is added up in another order by every BLAS and processor.
+    Computed element by element: every BLAS and processor sums a matrix product in another order.
     """
     red, green, blue = values[..., 0], values[..., 1], values[..., 2]
-    found, bluer = red - green, blue - green
-    found *= RED
-    found += green
+    grey, bluer = red - green, blue - green
+    grey *= RED
+    grey += green
     bluer *= BLUE
-    found += bluer
-    return found
+    grey += bluer
+    return grey
 
 
 def to_rgb8(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
-    """Eight bits a channel, transparency over white, for drawing and for libraries that read nothing else."""
+    """Convert a picture to 8 bits a channel, transparency over white, for drawing and libraries that need it."""
     if picture.dtype == np.uint8 and picture.ndim == 3 and picture.shape[2] == 3:
         return picture
     return np.rint(np.clip(to_rgb(picture), 0, 1) * 255).astype(np.uint8)
 
 
 def to_rgb(picture: np.ndarray) -> Float32[np.ndarray, "h w 3"]:
-    """Red, green and blue in 0..1, transparency over white. Raises: PictureError as `check_picture`."""
-    values = _scaled(picture)
+    """Convert a picture to RGB in 0..1, transparency over white. Raises: PictureError as `check_picture`."""
+    values = _to_unit_range(picture)
     if values.ndim == 2:
         return np.repeat(values[..., None], 3, axis=2)
     return values if values.shape[2] == 3 else 1 - values[..., 3:] * (1 - values[..., :3])
 
 
-def _scaled(picture: np.ndarray) -> Float32[np.ndarray, "..."]:
+def _to_unit_range(picture: np.ndarray) -> Float32[np.ndarray, "..."]:
     picture = check_picture(picture)
     white = full_scale(picture)
     if picture.dtype.kind == "f":
@@ -136,7 +135,7 @@ def _scaled(picture: np.ndarray) -> Float32[np.ndarray, "..."]:
 
 
 def check_same_shape(name: str, values: np.ndarray, other: str, others: np.ndarray) -> None:
-    """Raises: PictureError if values are not (h, w) of at least one pixel, or not of the others' size."""
+    """Raise a PictureError if the values are not (h, w) with at least one pixel, or differ in size from the others."""
     if values.ndim != 2 or values.size == 0:
         raise PictureError(f"{name} is (h, w) with at least one pixel, not {values.shape}")
     if values.shape != others.shape:
@@ -146,5 +145,5 @@ def check_same_shape(name: str, values: np.ndarray, other: str, others: np.ndarr
 
 
 def size_in_words(picture: np.ndarray) -> str:
-    """Width x height, such as 640 x 480."""
+    """Return width x height, such as 640 x 480."""
     return f"{picture.shape[1]} x {picture.shape[0]}"

@@ -1,4 +1,4 @@
-"""Numbers with a unit: the unit stands in an option's name, and may be written with the number too."""
+"""Numbers with a unit: an option's name ends with its unit, and a number may be written with a unit of its kind."""
 
 import re
 from collections.abc import Mapping
@@ -24,14 +24,14 @@ UNITS: Mapping[str, Mapping[str, Decimal]] = {
         "_s": {"s": 1, "ms": "1e-3", "us": "1e-6", "min": 60},
     }.items()
 }
-"""End of an option's name -> units that may be written, and how much of the option's own unit each is."""
+"""The end of an option's name -> the units that may be written, each with its worth in the option's own unit."""
 
 _DIGITS = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"\s*((?>{_DIGITS}))\s*(\D.*?)\s*")
 
 
 class Quantities(BaseModel):
-    """Base of all blocks of options. A number whose name ends with a unit may be a text with another unit of its kind.
+    """The base of all blocks of options. A number whose name ends with a unit may be text with a unit of that kind.
 
     >>> class Block(Quantities):
     ...     width_m: float
@@ -42,7 +42,7 @@ class Quantities(BaseModel):
     @field_validator("*", mode="before")
     @classmethod
     def _number_of(cls, value: Any, info: ValidationInfo) -> Any:
-        """Raises: ValueError for a text that is no such quantity."""
+        """Convert text with a unit to a number. Raises: ValueError for text that is not such a quantity."""
         units = units_of(info.field_name or "")
         if units and isinstance(value, list | tuple):
             return [_as_number(each, units) for each in cast("list[Any]", value)]
@@ -63,7 +63,7 @@ class Quantities(BaseModel):
 
 
 def units_of(name: str) -> Mapping[str, Decimal]:
-    """The units in which an option of this name may be written, its own first; none where its name ends with none.
+    """Return the units in which an option of this name may be written, its own first; {} if its name has no unit.
 
     >>> list(units_of("stiffness_n_per_m")), list(units_of("segments"))
     (['N/m', 'N/cm', 'N/mm'], [])
@@ -75,7 +75,7 @@ _NONE: Mapping[str, Decimal] = {}
 
 
 def unit_of(name: str) -> str:
-    """The unit of an option of this name; empty where it has none.
+    """Return the unit of an option of this name; "" if it has none.
 
     >>> unit_of("stiffness_n_per_m"), unit_of("window_px"), unit_of("segments")
     ('N/m', 'px', '')
@@ -84,7 +84,7 @@ def unit_of(name: str) -> str:
 
 
 def title_of(name: str) -> str:
-    """An option's name in words, without its unit: what stands beside a field for it.
+    """Return an option's name in words, without its unit: the label of a field for it.
 
     >>> title_of("stiffness_n_per_m"), title_of("least_contrast")
     ('Stiffness', 'Least contrast')
@@ -99,30 +99,30 @@ _UNIT_OF = {suffix: next(iter(units)) for suffix, units in UNITS.items()} | {
     "_mb": "MB",
     "_percent": "%",
 }
-"""End of an option's name -> its unit; those that no other unit can stand for among them."""
+"""The end of an option's name -> its unit, including units without alternatives."""
 
 
 def _as_number(value: Any, units: Mapping[str, Decimal]) -> Any:
-    """The number in an option's own unit; whatever is no number with a unit, as it is."""
-    found = _QUANTITY.fullmatch(value) if units and isinstance(value, str) else None
-    if found is None:
+    """Return a number with a unit as the number in the option's own unit; any other value as it is."""
+    match = _QUANTITY.fullmatch(value) if units and isinstance(value, str) else None
+    if match is None:
         return value
-    worth = next((each for unit, each in units.items() if _plain(unit) == _plain(found[2])), None)
+    worth = next((each for unit, each in units.items() if _plain(unit) == _plain(match[2])), None)
     if worth is None:
         raise ValueError(f"write a number in {next(iter(units))}, or with one of the units {', '.join(units)}")
     try:
-        return float(Decimal(found[1]) * worth)  # in decimals: 30 um is 3e-05 to the last digit
+        return float(Decimal(match[1]) * worth)  # in decimals: 30 um is 3e-05 to the last digit
     except ArithmeticError as error:
-        raise ValueError("this number is beyond all measure") from error
+        raise ValueError("this number is too large") from error
 
 
 def _plain(unit: str) -> str:
-    """A unit however it is written: `N s/m`, `N·s/m` and `Ns/m` are one, and so are the two signs for micro."""
+    """Return the plain form of a unit: `N s/m`, `N·s/m` and `Ns/m` are one, and so are the two signs for micro."""
     return re.sub(r"[\s*·]", "", unit).translate({0xB5: "u", 0x3BC: "u"})
 
 
 def _allow_text(schema: dict[str, Any], units: Mapping[str, Decimal]) -> None:
-    """Say in the schema of an option that each of its numbers may be such a text."""
+    """Allow text with a unit for each number in the schema of an option."""
     for part in ("anyOf", "prefixItems"):
         if part in schema:
             schema[part] = [form for each in schema[part] for form in _forms(each, units, nested=part != "anyOf")]
@@ -134,8 +134,8 @@ def _forms(form: dict[str, Any], units: Mapping[str, Decimal], nested: bool = Fa
     if form.get("type") != "number":
         _allow_text(form, units)
         return [form]
-    found = [form, {"type": "string", "pattern": rf"^{_DIGITS}\s*({'|'.join(units)})$", "examples": [_example(units)]}]
-    return [{"anyOf": found}] if nested else found
+    forms = [form, {"type": "string", "pattern": rf"^{_DIGITS}\s*({'|'.join(units)})$", "examples": [_example(units)]}]
+    return [{"anyOf": forms}] if nested else forms
 
 
 _OF_NUMBERS = ("type", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")

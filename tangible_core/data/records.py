@@ -1,22 +1,25 @@
-"""What all records are: frozen, of read-only arrays, with a digest of their content."""
+"""The base of all records: frozen, with read-only arrays, fields of the annotated types, and a content digest."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import fields, is_dataclass
+from functools import cache
 from importlib import import_module
-from typing import Any, cast
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 import xxhash
 
-from .fields import settle
+from ..errors import wrong_argument
+from .arguments import as_array, as_number, as_picture
 
 
 class Record:
-    """Base of the frozen records: read-only arrays and a digest of the content.
+    """The base of the frozen records: read-only arrays and a digest of the content.
 
-    A record keeps read-only views of the arrays it is given, not copies: whoever made them leaves them alone. What is
-    not of a field's type is converted (a list to an array, float64 to float32).
-    Raises: ArgumentError for what nothing can be made of.
+    A record keeps read-only views of the arrays that it is given, not copies: do not change them afterwards. A value
+    of another type than its field's is converted (a list to an array, float64 to float32).
+    Raises: ArgumentError for a value that cannot be converted.
     """
 
     def __post_init__(self) -> None:
@@ -28,17 +31,17 @@ class Record:
                 object.__setattr__(self, name, view)
 
     def _repr_html_(self) -> str:
-        """A small picture with units, for a notebook."""
+        """Return a small picture with units, for a notebook."""
         home = __name__.partition(".")[0]
-        return import_module(f"{home}.pipeline.output.notebook").as_html(self)  # what draws lies above what is drawn
+        return import_module(f"{home}.pipeline.output.showing").as_html(self)  # the drawing lies on a higher floor
 
     def digest(self) -> str:
-        """XXH3-128 of the content, the same in every process; records of equal content have equal digests."""
+        """Return the XXH3-128 of the content: the same in every process, and equal for equal content."""
         return digest_of(self)
 
 
 def digest_of(value: Any) -> str:
-    """XXH3-128 of a record, an array, or plain values and tuples of these; far faster than a cryptographic hash."""
+    """Return the XXH3-128 of a record, an array, a plain value or a tuple of these; cryptographic hashes are slower."""
     state = xxhash.xxh3_128()
     _feed(state, value)
     return state.hexdigest()
@@ -63,5 +66,101 @@ def _feed(state: Any, value: Any) -> None:
 
 
 def items_of(record: Any) -> Iterator[tuple[str, Any]]:
-    """Names and values of a record's fields, in order."""
+    """Return the names and values of a record's fields, in order."""
     return ((f.name, getattr(record, f.name)) for f in fields(record))
+
+
+Convert = Callable[[str, Any], Any]
+"""A function from a field's name and a given value to the value that the field holds. Raises: ArgumentError."""
+
+
+def settle(record: Any) -> None:
+    """Convert each field of a frozen dataclass to the type of its annotation.
+
+    Raises: ArgumentError with the field, the value it was given and the value it needs.
+    """
+    for name, convert in _converters(cast(Any, type(record))):
+        given = getattr(record, name)
+        if (value := convert(name, given)) is not given:
+            object.__setattr__(record, name, value)
+
+
+@cache
+def _converters(cls: type) -> tuple[tuple[str, Convert], ...]:
+    hints = get_type_hints(cls)
+    converters = ((each.name, _converter(hints[each.name])) for each in fields(cast(Any, cls)))
+    return tuple((name, convert) for name, convert in converters if convert is not None)
+
+
+def _converter(hint: Any) -> Convert | None:
+    """Return the converter for an annotation; None if it accepts any value."""
+    if get_origin(hint) in (Union, UnionType) and len(_parts(hint)) == 1:
+        inner = [each for each in map(_converter, _parts(hint)) if each]
+        return _or_none(inner[0]) if inner else None
+    if get_origin(hint) is Literal:
+        return _one_of(get_args(hint))
+    if get_origin(hint) is tuple:
+        return _tuple_of(get_args(hint))
+    if hint is np.ndarray or hasattr(hint, "array_type"):
+        return _array_of(tuple(getattr(hint, "dtypes", ())))
+    if hint is float:
+        return as_number
+    return _instance_of(hint) if isinstance(hint, type) and (is_dataclass(hint) or hint is str) else None
+
+
+def _parts(union: Any) -> list[Any]:
+    """Return the parts of a union other than None."""
+    return [each for each in get_args(union) if each is not NoneType]
+
+
+def _or_none(convert: Convert) -> Convert:
+    return lambda name, value: None if value is None else convert(name, value)
+
+
+def _array_of(dtypes: tuple[str, ...]) -> Convert:
+    if len(dtypes) != 1:
+        return as_picture
+    return lambda name, value: as_array(name, value, dtypes[0])
+
+
+def _one_of(known: tuple[Any, ...]) -> Convert:
+    def convert(name: str, value: Any) -> Any:
+        if value not in known:
+            raise wrong_argument(name, value, f"one of {', '.join(map(str, known))}")
+        return value
+
+    return convert
+
+
+def _instance_of(cls: type) -> Convert:
+    def convert(name: str, value: Any) -> Any:
+        if not isinstance(value, cls):
+            raise wrong_argument(name, value, f"a {cls.__name__}")
+        return value
+
+    return convert
+
+
+def _tuple_of(parts: tuple[Any, ...]) -> Convert:
+    one = parts[0] if len(parts) == 2 and parts[1] is ... else None
+    each, count = _converter(one or parts[0]), "some" if one else str(len(parts))
+    wanted = f"{count} {'numbers' if parts[0] is float else f'objects of {parts[0].__name__}'}"
+
+    def convert(name: str, value: Any) -> Any:
+        items = _items(value)
+        if items is None or (not one and len(items) != len(parts)):
+            raise wrong_argument(name, value, wanted)
+        for i, item in enumerate(items if each else ()):
+            cast(Convert, each)(f"{name}[{i}]", item)
+        return items
+
+    return convert
+
+
+def _items(value: object) -> tuple[Any, ...] | None:
+    """Return the items of a tuple (itself), a list or an array; None for any other value."""
+    if isinstance(value, tuple):
+        return cast("tuple[Any, ...]", value)
+    if isinstance(value, list | np.ndarray):
+        return tuple(cast(Any, value).tolist() if isinstance(value, np.ndarray) else cast("list[Any]", value))
+    return None

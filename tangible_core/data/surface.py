@@ -1,4 +1,4 @@
-"""What can be touched: heights, materials and both together, in metres and newtons."""
+"""Surfaces that can be touched: heights, materials and both together, in metres and newtons."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
@@ -13,15 +13,13 @@ from .pictures import check_finite, size_in_words
 from .records import Record
 
 Texture = Literal["smooth", "periodic", "stochastic", "stick-slip", "drag"]
-
-
 TEXTURES: tuple[Texture, ...] = get_args(Texture)
 """The models of a material's fine texture."""
 
 
 @dataclass(frozen=True, eq=False)
 class Relief(Record):
-    """A surface's heights, free of pixels: float32 (h, w) metres >= 0 over extent_m = (width, length) metres.
+    """The heights of a surface: float32 (h, w) metres >= 0 over extent_m = (width, length) metres.
 
     Each height stands for one of h x w equal cells, at its centre.
     Raises: GeometryError if a height is not finite or negative, or the extent is not positive.
@@ -47,14 +45,14 @@ class Relief(Record):
 
     @property
     def pitch_m(self) -> tuple[float, float]:
-        """Width and length of one cell."""
+        """The width and length of one cell, metres."""
         rows, columns = self.height_m.shape
         return self.extent_m[0] / columns, self.extent_m[1] / rows
 
 
 @dataclass(frozen=True)
 class Material:
-    """How a segment feels. Every value with its unit; `source` says where they come from, or that they are a guess."""
+    """The properties by which a segment feels; `source` is their reference, or says that they are a guess."""
 
     name: str
     stiffness_n_per_m: float
@@ -62,21 +60,21 @@ class Material:
     static_friction: float
     dynamic_friction: float
     roughness_m: float = 0.0
-    """Amplitude of the fine texture; that of one wave of the same power, where it is made of many."""
+    """The amplitude of the fine texture; for a texture of many waves, that of one wave of the same power."""
     grain_m: float = 0.001
-    """Wavelength of the fine texture."""
+    """The wavelength of the fine texture."""
     texture: Texture = "stochastic"
-    """Model of the fine texture (see `haptic_textures`)."""
+    """The model of the fine texture (see `haptic_textures`)."""
     direction_deg: float = 0.0
-    """Where the lines of the texture run: 0 along x, 90 along y."""
+    """The direction of the texture's lines: 0 along x, 90 along y."""
     anisotropy: float = 0.0
-    """0 is alike in all directions (periodic: two crossed sets of lines), 1 is lines alone."""
+    """The share of lines: 0 is the same in all directions (periodic: two crossed sets of lines), 1 is lines only."""
     irregularity: float = 0.0
-    """Share of a periodic texture's power that strays from strict repetition."""
+    """The share of a periodic texture's power that deviates from strict repetition."""
     drag_n_s_per_m: float = 0.0
-    """Lateral force against one metre per second, in contact."""
+    """The lateral force that opposes one metre per second, in contact."""
     seed: int = 0
-    """Another seed is another specimen of the same material."""
+    """The seed of the random texture: another seed gives another specimen of the same material."""
     source: str = ""
 
     def __post_init__(self) -> None:
@@ -84,11 +82,11 @@ class Material:
             value = as_number(f"material {quoted(self.name)}: {name}", getattr(self, name))
             if not 0 <= value < np.inf:
                 raise MaterialError(f"material {quoted(self.name)}: {name} is {value}; it must be >= 0 and finite")
-        if wrong := next(self._nonsense(), None):
+        if wrong := next(self._contradictions(), None):
             raise MaterialError(f"material {quoted(self.name)}: {wrong}")
 
-    def _nonsense(self) -> Iterator[str]:
-        """What is wrong between the values, each a sentence."""
+    def _contradictions(self) -> Iterator[str]:
+        """Yield a sentence for each contradiction between the values."""
         if self.stiffness_n_per_m == 0 or self.grain_m == 0:
             yield "stiffness_n_per_m and grain_m must be above 0"
         if self.dynamic_friction > self.static_friction:
@@ -111,7 +109,7 @@ class Material:
 
 @dataclass(frozen=True, eq=False)
 class MaterialMap(Record):
-    """One material a segment, and why each was chosen."""
+    """The material of each segment, and the reason for each choice."""
 
     materials: tuple[Material, ...]
     reasons: tuple[str, ...]
@@ -119,9 +117,9 @@ class MaterialMap(Record):
 
 @dataclass(frozen=True, eq=False)
 class HapticSurface(Record):
-    """What a renderer touches: relief, and per label a material where the scene has them; metres and newtons.
+    """The surface that a force law renders: the relief and, where the scene has them, a material for each label.
 
-    names: what each label shows, in somebody's words, empty where nobody said; None where labels are not of parts.
+    names: the name of each part, "" for a part without a name; None if the labels are not those of parts.
     Raises: GeometryError if labels and heights differ in size, MaterialError if a label has no material or no name.
     """
 
@@ -142,7 +140,7 @@ class HapticSurface(Record):
         if low < 0 or (self.materials is not None and high >= len(self.materials)):
             raise MaterialError(f"labels run from {low} to {high}; there are {len(self.materials or ())} materials")
         if self.names is not None and high >= len(self.names):
-            raise MaterialError(f"labels run from {low} to {high}; there are {len(self.names)} names, one a part")
+            raise MaterialError(f"labels run from {low} to {high}; there are {len(self.names)} names of parts")
 
     @classmethod
     def from_heights(
@@ -152,7 +150,7 @@ class HapticSurface(Record):
         labels: Int32[np.ndarray, "h w"] | None = None,
         materials: tuple[Material, ...] | None = None,
     ) -> "HapticSurface":
-        """A surface of square cells from (h, w) heights in metres, width_m metres wide.
+        """Return a surface of square cells from (h, w) heights in metres, width_m metres wide.
 
         Raises: GeometryError as `Relief`, MaterialError as the class.
         """
@@ -166,10 +164,10 @@ class HapticSurface(Record):
 
     @property
     def height_m(self) -> Float32[np.ndarray, "h w"]:
-        """Heights above the base plane, metres."""
+        """The heights above the base plane, metres."""
         return self.relief.height_m
 
     @property
     def extent_m(self) -> tuple[float, float]:
-        """Width and length, metres."""
+        """The width and length, metres."""
         return self.relief.extent_m

@@ -1,4 +1,4 @@
-"""What a force loop keeps of its ticks, and says of them."""
+"""The records of a force loop: the flags and columns of a tick, and reports on the loop."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,22 +9,22 @@ from .device import Force, HapticState
 
 
 class TickFlag(IntFlag):
-    """What happened in one tick of a force loop; any number of them at once."""
+    """Events in one tick of a force loop; several may happen at once."""
 
     TOUCHING = 1
-    """The law gave a force."""
+    """The force law gave a force."""
     FORCE_LIMITED = 2
-    """The force was over the greatest allowed, and scaled down."""
+    """The force exceeded the maximum and was scaled down."""
     SLEW_LIMITED = 4
-    """The force changed by more than is allowed in a tick, and only went part of the way."""
+    """The force changed by more than a tick allows, and was moved only part of the way."""
     STIFFNESS_LIMITED = 8
-    """The law is stiffer than this loop and device hold stably, and was softened."""
+    """The force law is stiffer than this loop and device render stably, and was softened."""
     RAMPING = 16
     """The force is fading in."""
     NOT_FINITE = 32
-    """The law gave NaN or infinity, or the device did; the force was zero."""
+    """The force law or the device gave NaN or infinity; the force was zero."""
     DAMPED = 64
-    """The passivity controller took back energy that the loop had given away."""
+    """The passivity controller dissipated energy that the loop had generated."""
     STALE = 128
     """The device had no fresh position for too long; the force was zero."""
     OVERRUN = 256
@@ -32,17 +32,17 @@ class TickFlag(IntFlag):
     SWAPPED = 512
     """The first tick on a new scene."""
     BEACON = 1024
-    """A beacon pulled, or was about to; the number of its part stands in the bits above this one (`beacon_part`)."""
+    """A beacon pulled, or was about to; the bits above this one hold the number of its part (`beacon_part`)."""
 
 
 BEACON_SHIFT = 11
-"""Where the number of a beacon's part begins among the flags of a tick."""
+"""The lowest bit of the number of a beacon's part in the flags of a tick."""
 MOST_BEACON_PARTS = 1 << 20
-"""Numbers from here on do not fit there."""
+"""The number of parts that a beacon can pull to: larger numbers do not fit into the flags."""
 
 
 def beacon_part(flags: int) -> int | None:
-    """The number of the part that a beacon pulled to in a tick with these flags; None for no beacon.
+    """Return the number of the part that a beacon pulled to in a tick with these flags; None without a beacon.
 
     >>> beacon_part(TickFlag.TOUCHING | TickFlag.BEACON | 6 << BEACON_SHIFT), beacon_part(TickFlag.TOUCHING)
     (6, None)
@@ -51,7 +51,7 @@ def beacon_part(flags: int) -> int | None:
 
 
 UNTOUCHED = TickFlag.TOUCHING | TickFlag.OVERRUN | TickFlag.SWAPPED
-"""Flags that leave the law's force as it was. Each of the others names what changed it."""
+"""The flags that leave the force of the law unchanged; each of the others means a change."""
 
 TICK_COLUMNS = (
     *("time_s", "late_s"),
@@ -62,13 +62,13 @@ TICK_COLUMNS = (
     *("flags", "buttons"),
     "frame",
 )
-"""What is kept of a tick, each a float64: when it began and how late, the tip, the proxy (NaN where there is none), the
-force that the device was given, the sum of its `TickFlag`s, the buttons, and the number of the frame that a surface
-which moves went to (NaN of one that stands still)."""
+"""The columns of a recorded tick, each a float64: its start and delay, the tip's position and velocity, the proxy (NaN
+without one), the force that the device was given, the sum of the `TickFlag`s, the buttons, and the number of the frame
+that a moving surface went to (NaN for a static surface)."""
 
 
 class Spread(NamedTuple):
-    """How a time scatters, in microseconds."""
+    """Percentiles and maximum of a time, microseconds."""
 
     p50: float
     p99: float
@@ -77,25 +77,25 @@ class Spread(NamedTuple):
 
 
 class FilmFelt(NamedTuple):
-    """How a film was played to a loop."""
+    """Statistics of a film that was played to a loop."""
 
     shown: int
-    """Frames that the surface was sent to."""
+    """The frames that were sent to the loop."""
     dropped: int
-    """Of these, those that the loop never went to, as a later one took their place."""
+    """The frames sent that the loop never went to, because a later frame replaced them."""
     skipped: int
-    """Frames that were over before they could be looked at."""
+    """The frames that were over before they could be processed."""
     damaged: int
-    """Frames that could not be read, or showed no depth."""
+    """The frames that could not be read, or had no depth."""
     per_s: float
-    """Frames shown a second."""
+    """The frames shown per second."""
     age_ms: float | None
-    """From when a frame is due to when it is shown, the median of the last thousand; none where time is simulated."""
+    """The delay from when a frame is due to when it is shown, median of the last thousand; None in simulated time."""
 
 
 @dataclass(frozen=True)
 class ServoReport:
-    """How a force loop is doing since it started."""
+    """Statistics of a force loop since it started."""
 
     ticks: int
     time_s: float
@@ -103,28 +103,28 @@ class ServoReport:
     force: Force
     peak_force_n: float
     work_j: float
-    """Work done by the device on the hand; above 0 the loop gave energy away."""
+    """The work done by the device on the hand; above 0 the loop has generated energy."""
     stopped: str = ""
-    """Why the loop ended; empty while it runs."""
+    """The reason why the loop ended; "" while it runs."""
     period_us: Spread | None = None
-    """From one tick to the next; none where time is simulated."""
+    """The time from one tick to the next; None in simulated time."""
     late_us: Spread | None = None
-    """From when a tick was due to when it began."""
+    """The delay from when a tick was due to when it began; None in simulated time."""
     overruns: int = 0
-    """Periods that had no tick."""
+    """The periods without a tick."""
     flagged: Mapping[str, int] = field(default_factory=dict[str, int])
-    """Ticks by the name of the `TickFlag` that they have, those that none has left out."""
+    """The number of ticks by the name of their `TickFlag`; flags that no tick has are left out."""
     contact_share: float | None = None
-    """Share of the ticks in which the device was given a force; none where time is simulated: see the recording."""
+    """The share of ticks in which the device was given a force; None in simulated time (see the recording)."""
     median_contact_force_n: float | None = None
-    """Of that force, within half a millinewton; 0 where there was none."""
+    """The median of that force, within half a millinewton; 0 without contact."""
     part: str = ""
-    """What the part of the picture under the tip is called; empty where the surface has none."""
+    """The name of the part under the tip; "" if the surface has no parts."""
     beacon: int | None = None
-    """Number of the part that a beacon pulls to; none where no beacon is on."""
+    """The number of the part that a beacon pulls to; None without a beacon."""
     material: str = ""
-    """The name of the material under the tip, of parts or of segments; empty where the surface has none."""
+    """The name of the material under the tip; "" if the surface has no materials."""
     frame: int | None = None
-    """Number of the frame that a surface which moves goes to; none where it stands still."""
+    """The number of the frame that a moving surface goes to; None for a static surface."""
     film: FilmFelt | None = None
-    """How the film is played that is felt; none where the surface stands."""
+    """The statistics of the film; None for a static surface."""

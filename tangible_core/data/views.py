@@ -1,18 +1,17 @@
-"""Pictures of a scene, and what is found in them.
+"""Pictures of a scene, and the maps that are computed from them: disparity, segments, parts.
 
-Frame of pictures: (column, row) in pixels, pixel centres at whole numbers.
+Coordinates in pictures are (column, row) in pixels, with pixel centres at whole numbers.
 """
 
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from jaxtyping import Float32, Int32
+from jaxtyping import Bool, Float32, Int32, Integer
 
 from ..errors import GeometryError, PictureError
-from .fields import settle
 from .pictures import check_picture, check_same_shape, size_in_words
-from .records import Record
+from .records import Record, settle
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +24,7 @@ class Calibration(Record):
     focal_px: float
     baseline_m: float
     offset_px: float = 0.0
-    """Difference of the principal points' columns, right minus left (Middlebury's `doffs`)."""
+    """The difference of the principal points' columns, right minus left, px (Middlebury's `doffs`)."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -37,9 +36,9 @@ class Calibration(Record):
 
 @dataclass(frozen=True, eq=False)
 class Views(Record):
-    """One picture of a scene, or two.
+    """A picture of a scene, or a pair of pictures.
 
-    Raises: PictureError if a picture is not one, holds NaN or infinity, or the two differ in size.
+    Raises: PictureError if an array is not a picture, holds NaN or infinity, or the two differ in size.
     """
 
     left: np.ndarray
@@ -65,10 +64,10 @@ class Views(Record):
 
 @dataclass(frozen=True, eq=False)
 class DisparityMap(Record):
-    """Shift of each left pixel against the right view, or relative nearness from one picture.
+    """The shift of each left pixel against the right view, or relative nearness from one picture.
 
     disparity_px: float32 (h, w), NaN where unknown; larger is nearer. A left pixel (row, x) matches (row, x - d).
-    confidence: float32 (h, w) in 0..1; when left out, 1 where the disparity is known and 0 elsewhere.
+    confidence: float32 (h, w) in 0..1; by default 1 where the disparity is known and 0 elsewhere.
     unit: "px" for stereo, "relative" (0 far .. 1 near) for one picture.
     """
 
@@ -86,10 +85,10 @@ class DisparityMap(Record):
 
 @dataclass(frozen=True, eq=False)
 class SegmentMap(Record):
-    """Which texture segment each pixel belongs to.
+    """The texture segment of each pixel.
 
     labels: int32 (h, w), 0..n-1, each of them present.
-    confidence: float32 (h, w) in 0..1; when left out, 1 everywhere.
+    confidence: float32 (h, w) in 0..1; by default 1 everywhere.
     """
 
     labels: Int32[np.ndarray, "h w"]
@@ -104,5 +103,46 @@ class SegmentMap(Record):
 
     @property
     def count(self) -> int:
-        """Number of segments."""
+        """The number of segments."""
         return int(self.labels.max()) + 1
+
+
+@dataclass(frozen=True, eq=False)
+class PartMap(Record):
+    """The part of each pixel. A part is a piece of one segment whose pixels are connected by their sides.
+
+    labels: int32 (h, w), numbers of parts from 0, in the order of their first pixels, row by row. On a coarser grid
+    (see `parts.reduced_parts`) the numbers are those of the whole picture, and a part may have no pixel there.
+    segments: the segment of each part.
+    Raises: PictureError if a label is not the number of a part.
+    """
+
+    labels: Int32[np.ndarray, "h w"]
+    segments: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.labels.ndim != 2 or self.labels.size == 0:
+            raise PictureError(f"parts are numbers (h, w) of at least one pixel, not {self.labels.shape}")
+        low, high = int(self.labels.min()), int(self.labels.max())
+        if low < 0 or high >= self.count:
+            raise PictureError(
+                f"the numbers of parts in {size_in_words(self.labels)} pixels run from {low} to {high}, "
+                f"and segments are given for {self.count} parts; give one for each part"
+            )
+
+    @property
+    def count(self) -> int:
+        """The number of parts."""
+        return len(self.segments)
+
+
+def border_pixels(labels: Integer[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """Return a mask of the pixels that share a side with a pixel of another label."""
+    across, along = labels[:, 1:] != labels[:, :-1], labels[1:] != labels[:-1]
+    mask = np.zeros(labels.shape, np.bool_)
+    mask[:, 1:] |= across
+    mask[:, :-1] |= across
+    mask[1:] |= along
+    mask[:-1] |= along
+    return mask

@@ -1,4 +1,4 @@
-"""Arrays in .npy and .npz files: nothing is decoded before its header was looked at, and nothing of it is run."""
+"""Arrays in .npy and .npz files: headers are checked before anything is decoded, and no pickled object is loaded."""
 
 import math
 import warnings
@@ -16,54 +16,54 @@ from .reading import TooLargeError, check_bytes, check_size
 _CHUNK = 1 << 20
 _ZIP = b"PK"
 _SAMPLES, _SAMPLE = 8, 1 << 14
-"""How many parts of an array are compressed to see whether it is worth it, and their bytes."""
-_WORTH = 0.6
-"""Share of its size to which an array must shrink."""
+"""The number of samples that decide whether an array is worth compressing, and the bytes of each."""
+_MOST_SHARE = 0.6
+"""The largest share of its size that the samples may have after compression for an array to be compressed."""
 
 
 @final
 class Archive:
-    """The arrays of an .npz file by name; what else it holds is passed over.
+    """The arrays of an .npz file by name; other members are ignored.
 
-    Raises: ValueError, in words, if the file is no such archive.
+    Raises: ValueError with a message for people if the file is not such an archive.
     """
 
     def __init__(self, file: IO[bytes]) -> None:
-        with _in_words():
+        with _plain_errors():
             self._zip = ZipFile(file)
         members = self._zip.infolist()
         self._members = {each.filename[:-4]: each for each in members if each.filename.endswith(".npy")}
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What there is to `read`."""
+        """The names of the arrays."""
         return tuple(self._members)
 
     def read(self, names: Collection[str]) -> dict[str, np.ndarray]:
-        """The arrays of these names.
+        """Read the arrays of these names.
 
-        Raises: TooLargeError if they hold more than `MOST_BYTES` together; ValueError, in words, if one is missing, is
-        damaged, or holds no numbers or texts.
+        Raises: TooLargeError if they hold more than `MOST_BYTES` together; ValueError with a message for people if an
+        array is missing, is damaged, or holds neither numbers nor text.
         """
         if missing := [name for name in names if name not in self._members]:
             raise ValueError(f"it holds no {shown(', '.join(missing))}")
         wanted = {name: self._members[name] for name in names}
         check_bytes(sum(each.file_size for each in wanted.values()))
-        with _in_words():
-            for each in wanted.values():  # NumPy uses no other; of some, a few bytes decode to gigabytes at once
+        with _plain_errors():
+            for each in wanted.values():  # a few bytes of others decode to gigabytes at once
                 if each.compress_type not in (ZIP_STORED, ZIP_DEFLATED):
                     raise ValueError("its compression is not one that NumPy uses")
             return {name: self._read(each.filename, each.file_size) for name, each in wanted.items()}
 
-    def _read(self, member: str, held: int) -> np.ndarray:
+    def _read(self, member: str, size: int) -> np.ndarray:
         with self._zip.open(member) as file:
-            return _numbers(file, held)
+            return _parse_array(file, size)
 
 
 def write_arrays(file: IO[bytes], arrays: Mapping[str, np.ndarray]) -> None:
-    """An .npz file of these arrays; those that become much smaller by it are compressed.
+    """Write an .npz file; arrays that shrink a lot are compressed.
 
-    Labels and constants do, by far; heights hardly, and would take several times as long to write and to read.
+    Labels and constants shrink; heights hardly do, and would take several times as long to write and to read.
     """
     with ZipFile(file, "w", compresslevel=1) as archive:
         for name, array in arrays.items():
@@ -73,26 +73,26 @@ def write_arrays(file: IO[bytes], arrays: Mapping[str, np.ndarray]) -> None:
 
 
 def _is_compressible(array: np.ndarray) -> bool:
-    """By a few samples: whole arrays take as long to try as to write. A small one is not worth it."""
+    """Return True if compression pays, by a few samples: to try a whole array takes as long as to write it."""
     if array.nbytes < _SAMPLES * _SAMPLE:
         return False
     flat = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
     starts = np.linspace(0, max(0, flat.size - _SAMPLE), _SAMPLES).astype(int)
     samples = [flat[start : start + _SAMPLE].tobytes() for start in dict.fromkeys(starts.tolist())]
-    return sum(len(zlib.compress(each, 1)) for each in samples) <= _WORTH * sum(map(len, samples))
+    return sum(len(zlib.compress(each, 1)) for each in samples) <= _MOST_SHARE * sum(map(len, samples))
 
 
 def read_array(file: IO[bytes]) -> np.ndarray:
-    """The array of an .npy file, or the only one of an .npz file, whatever the file is called.
+    """Read the array of an .npy file, or the only array of an .npz file, whatever the file's name.
 
-    Raises: TooLargeError or ValueError, in words, if there is no such array.
+    Raises: TooLargeError or ValueError, with a message for people, if there is no such array.
     """
     zipped = file.read(len(_ZIP)) == _ZIP
-    held = file.seek(0, 2)
+    size = file.seek(0, 2)
     file.seek(0)
     if not zipped:
-        with _in_words():
-            return _numbers(file, held)
+        with _plain_errors():
+            return _parse_array(file, size)
     archive = Archive(file)
     if len(archive.names) != 1:
         raise ValueError(f"it holds {len(archive.names)} arrays instead of one")
@@ -101,8 +101,8 @@ def read_array(file: IO[bytes]) -> np.ndarray:
 
 
 @contextmanager
-def _in_words() -> Generator[None]:
-    """A damaged file can provoke any error, and warnings of headers that are passed over."""
+def _plain_errors() -> Generator[None]:
+    """Turn any error into a ValueError with one line, and ignore warnings: a damaged file can cause anything."""
     try:
         with warnings.catch_warnings(action="ignore"):
             yield
@@ -112,8 +112,8 @@ def _in_words() -> Generator[None]:
         raise ValueError(shown(str(error) or type(error).__name__, 200)) from error
 
 
-def _numbers(file: IO[bytes], held: int) -> np.ndarray:
-    """The array of an .npy file, or of a member of an archive, of so many bytes."""
+def _parse_array(file: IO[bytes], size: int) -> np.ndarray:
+    """Read the array of an .npy file, or of a member of an archive, of `size` bytes."""
     version = np.lib.format.read_magic(file)
     if version > (2, 0):
         raise ValueError("its header is for records, not for numbers")
@@ -125,8 +125,8 @@ def _numbers(file: IO[bytes], held: int) -> np.ndarray:
         raise ValueError(f"its header states the shape {shape}")
     check_size(shape, dtype.itemsize)
     wanted = math.prod(shape) * dtype.itemsize
-    if (follow := held - file.tell()) != wanted:
-        raise ValueError(f"its header says {wanted} bytes of numbers, but {follow} follow")
+    if (follow := size - file.tell()) != wanted:
+        raise ValueError(f"its header announces {wanted} bytes of numbers, but {follow} follow")
     data = np.empty(wanted, np.uint8)
     for start in range(0, wanted, _CHUNK):
         part = data[start : start + _CHUNK]

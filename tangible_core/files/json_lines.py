@@ -1,4 +1,4 @@
-"""Files of rows, one JSON document a line, that grow under one writer: a line is whole or not there at all."""
+"""JSON Lines files that one process appends to: each line is whole or absent."""
 
 import errno
 import json
@@ -14,15 +14,17 @@ from .reading import check_file
 from .writing import BINARY, lock
 
 SYNC_EVERY_S = 1.0
+"""The longest time, s, until a row is on the disk."""
 
 
 class JsonLines:
-    """Such a file, open for adding to it. What was left torn at its end by a kill is cut off when it is opened."""
+    """A JSON Lines file, open for appending. Opening it removes a last line that a kill left incomplete."""
 
     def __init__(self, path: Path, sync_every_s: float = SYNC_EVERY_S, alone: bool = False) -> None:
-        """sync_every_s: a row is on the disk after that time at most. alone: nobody else may have it open so.
+        """Open the file; missing parent folders are created.
 
-        Missing parent folders are made. Raises: OutputError if the place cannot be written, or is held.
+        sync_every_s: the longest time until a row is on the disk. alone: lock the file against other processes.
+        Raises: OutputError if the file cannot be written, or another process holds it.
         """
         self.path = path
         self._sync_every_s, self._synced_s = sync_every_s, monotonic()
@@ -50,9 +52,9 @@ class JsonLines:
         self.close()
 
     def add(self, row: Mapping[str, Any]) -> None:
-        """Add a row in one write. Raises: OutputError if it cannot be written; the file is as before then."""
+        """Add a row in one write. Raises: OutputError if it cannot be written; the file is then as before."""
         line = json.dumps(row, ensure_ascii=False, allow_nan=False) + "\n"
-        text = line.encode(errors="backslashreplace")  # half a character, as names of files may hold, is JSON so
+        text = line.encode(errors="backslashreplace")  # names of files may hold half a character
         before = os.fstat(self._file.fileno()).st_size
         try:
             if self._file.write(text) < len(text):
@@ -64,7 +66,7 @@ class JsonLines:
             raise self._wrong(error) from error
 
     def close(self) -> None:
-        """What was added is on the disk. Raises: OutputError if the disk does not take it."""
+        """Close the file, with all rows on the disk. Raises: OutputError if the disk does not take them."""
         try:
             self._sync()
         except OSError as error:
@@ -73,7 +75,7 @@ class JsonLines:
             self._file.close()
 
     def _cut_torn_end(self) -> None:
-        """Of a file whose last byte ends a line, no more than that byte is read: it is opened anew for each row."""
+        """Remove an incomplete last line; a file is opened anew for each row, so only its last byte is read first."""
         if not self._file.seek(0, os.SEEK_END):
             return
         self._file.seek(-1, os.SEEK_END)
@@ -91,7 +93,7 @@ class JsonLines:
 
 
 def read_lines(path: Path) -> Iterator[tuple[int, str]]:
-    """Number of the line, from 1, and the line; without empty ones, and a torn last one, as a kill leaves it.
+    """Yield the number of each line, from 1, and the line, without empty lines and an incomplete last line.
 
     Raises: OSError, UnicodeDecodeError.
     """
@@ -103,9 +105,9 @@ def read_lines(path: Path) -> Iterator[tuple[int, str]]:
 
 
 def read_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Number of the line, from 1, and its row. Of no file, nothing.
+    """Yield the number of each line, from 1, and its row; nothing if the file does not exist.
 
-    Raises: ResultsError for a file that cannot be read, or a damaged line within it.
+    Raises: ResultsError if the file cannot be read or a line in it is damaged.
     """
     try:
         for number, line in read_lines(path):

@@ -1,4 +1,4 @@
-"""A run's figures as JSON that any program reads."""
+"""JSON text of records, arrays and paths, which any program can read."""
 
 import json
 import math
@@ -13,16 +13,16 @@ from .writing import write_text
 
 
 def write_figures(path: Path, data: Mapping[str, Any]) -> None:
-    """Write figures as JSON, whole or not at all; what is not finite becomes null, for JSON has no NaN.
+    """Write the figures of a run as JSON, whole or not at all; numbers that are not finite become null.
 
     data: strings, numbers, paths, numpy scalars and arrays, records, and mappings and sequences of these.
-    Raises: OutputError if the place cannot be written, TypeError for a value that has no place in JSON.
+    Raises: OutputError if the file cannot be written, TypeError for a value that JSON cannot express.
     """
     write_text(path, as_json(data) + "\n")
 
 
 def as_json(data: Any) -> str:
-    """JSON text of what `write_figures` takes."""
+    """Return JSON text of data that `write_figures` accepts."""
     return json.dumps(_plain(data), indent=2, ensure_ascii=False, allow_nan=False)
 
 

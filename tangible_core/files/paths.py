@@ -1,4 +1,4 @@
-"""Paths as somebody writes them: `~` is a home, and what is no path is said."""
+"""Paths as people write them: `~` stands for a home folder."""
 
 from os import PathLike
 from pathlib import Path
@@ -7,17 +7,16 @@ from typing import cast
 from ..errors import ConfigError, quoted, wrong_argument
 
 
-def as_path(path: object, name: str = "path") -> Path:
-    """A path whose `~` or `~user` at the beginning is that user's home.
+def as_path(value: object, name: str = "path") -> Path:
+    """Return a value as a path; a leading `~` or `~user` becomes that user's home folder.
 
-    name: of the argument. Raises: ArgumentError for what is no path, ConfigError for a user that there is not.
+    name: the argument's name in messages.
+    Raises: ArgumentError if the value is not a path, ConfigError if there is no such user.
     """
-    if not isinstance(path, str | PathLike):
-        raise wrong_argument(name, path, "a path")
-    found = Path(cast("str | PathLike[str]", path))
+    if not isinstance(value, str | PathLike):
+        raise wrong_argument(name, value, "a path")
+    path = Path(cast("str | PathLike[str]", value))
     try:
-        return found.expanduser()
+        return path.expanduser()
     except RuntimeError as error:
-        raise ConfigError(
-            f"{found}: no user here is named {quoted(found.parts[0][1:])}, and `~` names a home"
-        ) from error
+        raise ConfigError(f"{path}: no user here is named {quoted(path.parts[0][1:])}, and `~` names a home") from error

@@ -1,65 +1,92 @@
-"""How much a file may hold, looked at before it is read and before it is decoded: one limit for every reader."""
+"""Limits on what a file may hold, checked before it is read and before it is decoded: the same for every reader."""
 
 import errno
 import math
 import stat
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 
+import xxhash
+
 MOST_PIXELS = 89_000_000
-"""Of a picture or an array in a file. A method may take a hundred bytes for each of them."""
+"""The most pixels of a picture or an array in a file. A method may need a hundred bytes for each pixel."""
 MOST_BYTES = 16 * MOST_PIXELS
-"""Of all numbers in a file, once they are decoded, and of the file: four channels of 32 bits."""
+"""The most bytes of a file, and of all its numbers once they are decoded: four channels of 32 bits a pixel."""
 MOST_TEXT_BYTES = 250_000
-"""Of a file that somebody writes by hand; its parser takes longer than in proportion."""
+"""The most bytes of a file that people write by hand; the time to parse YAML grows faster than its length."""
 TOO_MANY_PIXELS = f"is larger than {MOST_PIXELS // 1_000_000} megapixels"
 
-_UNSAID = 1 << 16
+_UNKNOWN_SIZE = 1 << 16
+"""The most bytes to read from a file whose size is given as 0; some files of Linux say so and have no end."""
+_CHUNK = 1 << 20
 
 
 class TooLargeError(ValueError):
-    """A file holds, or says that it holds, more than is read."""
+    """A file holds, or its header announces, more than the limits allow."""
 
 
 def check_size(shape: Sequence[int], itemsize: int) -> None:
-    """What a header says of an array, pixels first. Raises: TooLargeError."""
+    """Check the shape of an array that a header announces, pixels first. Raises: TooLargeError."""
     if len(shape) > 1 and math.prod(shape[:2]) > MOST_PIXELS:
         raise TooLargeError(TOO_MANY_PIXELS)
     check_bytes(math.prod(shape) * itemsize)
 
 
 def check_bytes(count: int) -> None:
-    """What several headers say together. Raises: TooLargeError."""
+    """Check the number of bytes that several headers announce together. Raises: TooLargeError."""
     if count > MOST_BYTES:
         raise TooLargeError(f"holds more than {in_words(MOST_BYTES)}")
 
 
 def check_file(path: Path, most: int = MOST_BYTES) -> None:
-    """Raises: OSError, its strerror in words, if there is none, it is a folder or a device, or holds more than that.
+    """Check that a path leads to a regular file of at most this many bytes.
 
-    A device or a pipe may have no end, or keep its reader waiting.
+    A device or a pipe may have no end, or block its reader.
+    Raises: OSError with an strerror for people if there is no such file, it is a folder or a device, or is too large.
     """
     try:
-        found = path.stat()
+        state = path.stat()
     except ValueError as error:
         raise OSError(errno.EINVAL, "no file can have this name") from error
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(state.st_mode):
         raise OSError(errno.EINVAL, "it is not a file but a folder or a device")
-    if found.st_size > most:
+    if state.st_size > most:
         raise OSError(errno.EFBIG, f"it holds more than {in_words(most)}")
 
 
 def read_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
-    """The whole of a file. Raises: OSError as `check_file`, or if it cannot be read."""
+    """Read a whole file. Raises: OSError as `check_file`, or if it cannot be read."""
     check_file(path, most)
     with path.open("rb") as file:
-        return file.read(max(path.stat().st_size, _UNSAID))  # some of the system's files say 0, and have no end
+        return file.read(max(path.stat().st_size, _UNKNOWN_SIZE))
 
 
 def in_words(count: int) -> str:
-    """A number of bytes.
+    """Return a number of bytes as text.
 
     >>> in_words(MOST_BYTES), in_words(MOST_TEXT_BYTES)
     ('1424 MB', '0.25 MB')
     """
     return f"{count / 1e6:g} MB"
+
+
+def content_digest(path: Path) -> str:
+    """Return the XXH3-128 of a file's content; "" if the file does not exist or cannot be read.
+
+    A file with the same size and modification time as before is not read again.
+    """
+    try:
+        state = path.stat()
+        return _digest(path, state.st_mtime_ns, state.st_size, state.st_ino) if path.is_file() else ""
+    except OSError:  # the reader of the file reports it
+        return ""
+
+
+@lru_cache(maxsize=64)
+def _digest(path: Path, changed_ns: int, size: int, inode: int) -> str:
+    state = xxhash.xxh3_128()
+    with path.open("rb") as file:
+        while chunk := file.read(_CHUNK):
+            state.update(chunk)
+    return state.hexdigest()

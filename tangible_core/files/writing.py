@@ -1,4 +1,4 @@
-"""Files that are whole or not there at all, and files that grow under one writer."""
+"""Atomic writes, and files that only one process writes to at a time."""
 
 import os
 import sys
@@ -12,16 +12,16 @@ from typing import IO
 from ..errors import OutputError
 
 BINARY = getattr(os, "O_BINARY", 0)
-"""Of a file opened by `os.open`, on the one system that knows another kind."""
+"""The flag that makes `os.open` open a file as binary; Windows alone has it."""
 
 
 @contextmanager
 def atomic_write(path: Path) -> Generator[IO[bytes]]:
-    """A binary file that appears under its name only once the block has ended well.
+    """Open a binary file that appears under its name only if the block ends without an error.
 
-    The file is written beside its place and renamed, so a reader, a second writer, a full disk or a kill
-    never sees half of it. Missing parent folders are made.
-    Raises: OutputError if the place cannot be written.
+    The content goes to a temporary file in the same folder, which is then renamed: readers, a second writer, a full
+    disk or a kill never leave half a file. Missing parent folders are created.
+    Raises: OutputError if the file cannot be written.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -43,16 +43,16 @@ def atomic_write(path: Path) -> Generator[IO[bytes]]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file whole (see `atomic_write`)."""
+    """Write a text file, whole or not at all (see `atomic_write`)."""
     with atomic_write(path) as file:
         file.write(text.encode())
 
 
 def open_alone(path: Path) -> FileIO:
-    """An empty binary file, unbuffered, that nobody else opens so before it is closed, or this process ended.
+    """Open an empty, unbuffered binary file that no other call can open until it is closed or this process has ended.
 
-    Missing parent folders are made. What stood there before is gone, but not when another one holds it.
-    Raises: OutputError if the place cannot be written, or is held.
+    Missing parent folders are created. Earlier content is lost, unless another process holds the file.
+    Raises: OutputError if the file cannot be written, or another process holds it.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -73,11 +73,11 @@ def open_alone(path: Path) -> FileIO:
 
 
 def lock(file: FileIO) -> None:
-    """Hold an open file until it is closed, or this process ends. Raises: OSError if another one has it."""
+    """Lock an open file until it is closed or this process ends. Raises: OSError if another process holds it."""
     if sys.platform == "win32":
         import msvcrt
 
-        file.seek(2**62)  # what is locked cannot be read by others on this system: a byte that will never be there
+        file.seek(2**62)  # Windows denies others to read a locked byte: lock one past the end
         msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
         file.seek(0)
     else:
@@ -87,8 +87,8 @@ def lock(file: FileIO) -> None:
 
 
 @contextmanager
-def alone_in(folder: Path) -> Generator[None]:
-    """In a block, one program at a time; the others wait. Where a file system knows no locks, nobody waits."""
+def folder_lock(folder: Path) -> Generator[None]:
+    """Hold a folder's lock in this block while other processes wait; a file system without locks makes nobody wait."""
     if sys.platform == "win32":
         with FileIO(os.open(folder / ".alone", os.O_RDWR | os.O_CREAT | os.O_TEMPORARY), "r+") as file:
             import msvcrt

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from ..data import Relief
-from ..data.parts import beside_border
+from ..data.views import border_pixels
 from ..errors import PictureError
 from ..runtime.opencv import plain_opencv
 from .segments import Labels
@@ -63,7 +63,7 @@ def _near(labels: Labels, pitch_m: tuple[float, float]) -> Bool[np.ndarray, "h w
     """The cells whose centre is no further than `WITHIN_M` from that of a cell beside a border."""
     from scipy.ndimage import distance_transform_edt
 
-    beside = beside_border(labels)
+    beside = border_pixels(labels)
     if not beside.any():
         return beside
     return np.asarray(distance_transform_edt(~beside, sampling=pitch_m[::-1])) <= WITHIN_M * (1 + 1e-6)

@@ -50,16 +50,31 @@ def stiffness_limit(
     return math.sqrt(low * high)
 
 
+def advance(
+    place_m: float,
+    speed_m_per_s: float,
+    force_n: float,
+    damping_n_s_per_m: float,
+    period_s: float,
+    decay: float,
+    settling_s: float,
+) -> tuple[float, float]:
+    """Return place and speed of a handle after a period under a constant force, m dv/dt = f - b v, solved exactly.
+
+    decay is exp(-b T / m), settling_s (1 - decay) m / b. Kernels call this function too.
+    """
+    steady = force_n / damping_n_s_per_m
+    off = speed_m_per_s - steady
+    return place_m + (steady * period_s + off * settling_s), steady + off * decay
+
+
 def _is_spring(law: Callable[[float], Law], height_m: float) -> bool:
     soft, hard = (law(stiffness)(HapticState((0.0, 0.0, height_m - DEPTH_M))).z for stiffness in (500.0, 1000.0))
     return soft > 0 and math.isclose(hard, 2 * soft, rel_tol=0.01)
 
 
 def _comes_to_rest(law: Law, height_m: float, delay_ticks: int, handle: Handle) -> bool:
-    """Whether it swings less at the end than in the second quarter, pressed down by what holds it at DEPTH_M.
-
-    Between ticks m dv/dt = f - b v is solved exactly for a force f that is held.
-    """
+    """Test whether a handle, pressed down by the force that holds it at DEPTH_M, swings less and less."""
     mass_kg, damping, period_s = handle
     decay = math.exp(-damping * period_s / mass_kg)
     settling_s = (1 - decay) * mass_kg / damping
@@ -69,9 +84,7 @@ def _comes_to_rest(law: Law, height_m: float, delay_ticks: int, handle: Handle) 
     z, v, swing = rest_m + PUSHED_M, 0.0, [0.0] * 4
     for tick in range(TICKS):
         waiting.append(law(HapticState((0.0, 0.0, z), (0.0, 0.0, v), tick * period_s)).z)
-        steady = (waiting.popleft() - push_n) / damping
-        z += steady * period_s + (v - steady) * settling_s
-        v = steady + (v - steady) * decay
+        z, v = advance(z, v, waiting.popleft() - push_n, damping, period_s, decay, settling_s)
         off_m = abs(z - rest_m)
         if off_m > DEPTH_M:
             return False

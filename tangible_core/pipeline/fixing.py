@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from ..files.source import read_text
+from ..files.yaml.source import read_text
 from ..preflight import Flight, Hand, Loop, Preflight, judge
 from ..preflight.timing import Lateness
 from ..preflight.verdict import Change
-from .config.editing import edited, moved, with_overrides
+from .config.editing import edit_text, relocate_text, with_overrides
 from .config.parsing import parse_config
 from .feeling import Feeling
 from .pipeline import Pipeline
@@ -55,7 +55,7 @@ def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cach
         pipeline.engine.cache = None
     found = cured(with_overrides(read_text(path), path, sets), path, pipeline, hand, loop)
     changes = {key: change.value for key, change in found.changes.items()}
-    return Fixed(changes, found.flight, found.verdicts, moved(found.text, path, found.pipeline.config, out))
+    return Fixed(changes, found.flight, found.verdicts, relocate_text(found.text, path, found.pipeline.config, out))
 
 
 def cured(
@@ -78,7 +78,7 @@ def cured(
     for _ in range(ROUNDS):
         if (change := _next(judge(flight), done)) is None:
             break
-        text = edited(text, path, {change.key: change.setting})
+        text = edit_text(text, path, {change.key: change.setting})
         done[change.key] = change
         pipeline = Pipeline.from_config(parse_config(text, path, pipeline.engine.registry, sets), like=pipeline)
         flight = Feeling(pipeline).flight(hand=hand, loop=replace(loop, seconds=AT_ONCE))

@@ -43,8 +43,9 @@ from .config.material_choice import MaterialChoice
 from .config.model import PipelineConfig
 from .config.parsing import config_of, load_config
 from .engine.cache import Cache
-from .engine.engine import Engine, Progress
-from .engine.warm_up import rehearsal
+from .engine.engine import Engine
+from .engine.stage import Progress
+from .engine.warm_up import warm_up
 from .feeling import Feeling, FeelOptions
 from .output.exporting import Export, chosen_exporters, export
 from .output.runs import Run, Sheet, make_run
@@ -124,8 +125,7 @@ class Pipeline:
             language=language,
             **others,
         )
-        self.engine = Engine(config, registry, Cache() if cached else None)
-        self.engine.limit_threads(threads)
+        self.engine = Engine(config, registry, Cache() if cached else None, threads)
 
     @classmethod
     def from_yaml(
@@ -161,7 +161,7 @@ class Pipeline:
         if like is None:
             pipeline.engine = Engine(config, registry or default_registry(), cache)
         else:
-            pipeline.engine = like.engine.changed(config)
+            pipeline.engine = like.engine.with_config(config)
         return pipeline
 
     def to_yaml(self, path: str | PathLike[str]) -> None:
@@ -199,7 +199,7 @@ class Pipeline:
         progress: hears of every stage as it begins and ends. stop: set from another thread, it ends the work.
         Raises: TangibleError for what a user can put right, Stopped after `stop`, and whatever a plugin raises.
         """
-        watched, beside = self.engine.watched(progress, stop), rehearsal(self.engine, want or self.config.want)
+        watched, beside = self.engine.watching(progress, stop), warm_up(self.engine, want or self.config.want)
         with watched, beside as self.engine.beside:
             return self.engine.make(want)
 
@@ -248,7 +248,7 @@ class Pipeline:
         progress, stop: as `make`. sheet: png, or svg or pdf, which can be enlarged.
         Raises: OutputError if the folder cannot be written; TangibleError as `make`.
         """
-        with self.engine.watched(progress, stop):
+        with self.engine.watching(progress, stop):
             return make_run(self.engine, as_path(out, "out"), want or self.config.want, seconds, self._report, sheet)
 
     def export(

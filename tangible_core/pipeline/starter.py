@@ -16,9 +16,9 @@ from ..data.pictures import to_grey
 from ..errors import ConfigError
 from ..plugins.registry import default_registry
 from ..runtime.opencv import plain_opencv
-from ..scene.height_files import said_of
-from ..scene.picture_files import PICTURES as PICTURES
-from ..scene.picture_files import VIDEOS as VIDEOS
+from ..scene.formats.decoding import PICTURES as PICTURES
+from ..scene.formats.decoding import VIDEOS as VIDEOS
+from ..scene.formats.height_maps import read_heights_metadata
 from ..scene.scene import Scene
 from .config.parsing import parse_config
 from .engine.cache import Cache
@@ -83,7 +83,7 @@ def pipeline_of(pictures: Sequence[Path], overrides: Sequence[str] = ()) -> Pipe
     made = starter(pictures, path)
     config = parse_config(made.text, path, registry, overrides)
     if not any(each.lstrip().startswith("scene") for each in overrides):
-        config = config.changed(scene=made.scene)  # it need not be read again
+        config = config.with_values(scene=made.scene)  # it need not be read again
     return Pipeline.from_config(config, registry, Cache())
 
 
@@ -93,7 +93,7 @@ def _is_builtin(path: Path) -> bool:
 
 def _is_map(path: Path) -> bool:
     """By its name, or by what it says of itself. Raises: PictureError if that is nonsense."""
-    return path.suffix.lower() in MAPS or said_of(path) is not None
+    return path.suffix.lower() in MAPS or read_heights_metadata(path) is not None
 
 
 def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:

@@ -1,6 +1,6 @@
-"""The interfaces of plugins, their registry, and the moments that observers hear of.
+"""The interfaces of plugins, the registry of installed ones, and the hooks.
 
-The names below are those that authors of plugins need; each is imported when first used.
+Authors of plugins need the names below; each is imported when first used.
 """
 
 from typing import TYPE_CHECKING
@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from .capabilities import Scripted as Scripted
     from .capabilities import Serviceable as Serviceable
     from .capabilities import Skippable as Skippable
-    from .film import Film as Film
-    from .film import Filming as Filming
+    from .hooks import Panel as Panel
     from .hooks import hookimpl as hookimpl
     from .interfaces import DepthEstimator as DepthEstimator
     from .interfaces import Exporter as Exporter
@@ -32,6 +31,8 @@ if TYPE_CHECKING:
     from .interfaces import Method as Method
     from .interfaces import Segmenter as Segmenter
     from .link import Link as Link
+    from .touch import Film as Film
+    from .touch import Filming as Filming
     from .touch import PlainTouch as PlainTouch
     from .touch import Touch as Touch
 
@@ -44,10 +45,9 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
             "Adjustable", "Attended", "Drawing", "Following", "Reshaping", "Scripted", "Serviceable",
             "Skippable",
         ],
-        "film": ["Film", "Filming"],
-        "hooks": ["hookimpl"],
+        "hooks": ["Panel", "hookimpl"],
         "interfaces": ["DepthEstimator", "Exporter", "ForceRenderer", "HapticDevice", "Medium", "Method", "Segmenter"],
         "link": ["Link"],
-        "touch": ["PlainTouch", "Touch"],
+        "touch": ["Film", "Filming", "PlainTouch", "Touch"],
     },
 )  # fmt: skip

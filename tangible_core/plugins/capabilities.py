@@ -1,4 +1,4 @@
-"""The capabilities: what a method may do next to the verb of its kind. A method has one by inheriting from it."""
+"""The capabilities: optional interfaces of methods next to that of their kind, acquired by inheritance."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
@@ -28,80 +28,80 @@ class Drawing(ABC):
 
 
 class Skippable(ABC):
-    """For a depth or texture method that can tell that a scene does not need it."""
+    """The capability of a depth or texture method to detect that a scene does not need it."""
 
     @abstractmethod
     def skip(self, views: Views) -> str | None:
-        """A reason, in words, not to run on these views; None to run. Cheap: it is asked for every plan."""
+        """Return a reason, in words, not to run on these views; None to run. It must be cheap: every plan calls it."""
 
 
 class Following(ABC):
-    """For a depth method that looks for something before it matches, such as the range: a film has it found once."""
+    """The capability of a depth method to find the geometry of a film, such as its range, once for all frames."""
 
     @abstractmethod
     def follow(self, views: Views) -> Callable[[Views], DisparityMap]:
-        """`estimate` for the frames of a film that these views begin.
+        """Return an `estimate` for the frames of a film, of which these views are the first.
 
-        What they show of the cameras is kept for all that follow, which is quicker, and steadier: what is called may
-        remember what it saw. It is called for the first frame as well.
+        It keeps the geometry of the cameras, which is quicker and steadier, and may keep a state from frame to frame.
+        It is called for the first frame as well.
         Raises: TangibleError as `estimate`.
         """
 
 
 class Reshaping(ABC):
-    """For a force law that feels another surface than the one that it is given: `preflight` judges the one felt."""
+    """The capability of a force law to render another surface than its argument; `preflight` checks that one."""
 
     @abstractmethod
     def felt(self, surface: HapticSurface) -> HapticSurface:
-        """The surface as it is felt, of the same extent."""
+        """Return the rendered surface, of the same extent."""
 
 
 class Serviceable(ABC):
-    """For a device that can be looked for and examined without being opened for use."""
+    """The capability of a device to be found and examined without being opened for use."""
 
     @abstractmethod
     def connected(self) -> tuple[Unit, ...]:
-        """The units that are there now. Raises: DeviceError if they cannot be looked for."""
+        """Return the units that are connected now. Raises: DeviceError if they cannot be looked for."""
 
     @abstractmethod
     def examine(self) -> Iterator[Finding]:
-        """Everything that must be right before `open` succeeds, in the order in which to put it right."""
+        """Check everything that `open` needs, in the order in which to correct it."""
 
 
 class Attended(ABC):
-    """For a device whose hand is another program."""
+    """The capability of a device whose hand is another program."""
 
     @abstractmethod
     def unattended(self) -> str | None:
-        """In one line that nobody moves it now, and what to do; None if somebody does. Asked while it is open."""
+        """Return in one line that no program moves it now, with the cure, or None. Called while it is open."""
 
 
 class Scripted(ABC):
-    """For a device whose hand follows a path that it knows."""
+    """The capability of a device whose hand follows a known path."""
 
     @abstractmethod
     def over(self, extent_m: tuple[float, float]) -> Self:
-        """The same, with a path within this width and length about its centre, where its options leave that open."""
+        """Return the device with a path of this width and length about its centre, where its options leave it open."""
 
     @abstractmethod
     def wanted(self, ticks: Int64[np.ndarray, " n"]) -> Float64[np.ndarray, "n 3"] | None:
-        """Where its hand wants to be at these reads, the first of which is 0; None where that depends on more."""
+        """Return the positions of the path at these reads, counted from 0; None where they depend on more than that."""
 
 
 class Adjustable(ABC):
-    """For a device that its user must set up by hand."""
+    """The capability of a device that its user must set up by hand."""
 
     @abstractmethod
     def home(self, say: Callable[[str], None]) -> None:
-        """Guide the user until the device knows where it is; no force meanwhile.
+        """Guide the user until the device knows its position, without force.
 
-        Raises: DeviceError if it is not there, or was not homed in time.
+        Raises: DeviceError if it is absent, or was not homed in time.
         """
 
     @abstractmethod
     def calibrate(self, ask: Callable[[str], str]) -> tuple[str, BaseModel]:
-        """Measure this unit with the user's help: its serial number, and what to keep for it.
+        """Measure this unit with the user's help, and return its serial number and its calibration.
 
-        `ask` shows a text and returns what the user answers. Raises: DeviceError as `open`, or if an answer or a
+        `ask` shows a text and returns the user's answer. Raises: DeviceError as `open`, or if an answer or a
         measurement makes no sense.
         """

@@ -1,4 +1,4 @@
-"""Installed devices: which are there, which are connected, and what keeps one from working; none of them is opened."""
+"""The installed devices, their connected units and the problems of each; none is opened."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from typing import cast
 
 from ..data import Finding, Unit
 from ..errors import TangibleError
-from ..files.source import parse_source
+from ..files.yaml.source import parse_source
 from .failures import sentence
 from .interfaces import HapticDevice, Serviceable
 from .registry import Listing, Registry
@@ -15,32 +15,32 @@ from .registry import Listing, Registry
 
 @dataclass(frozen=True)
 class InstalledDevice:
-    """A device that is installed, and whether it can be felt now."""
+    """A device that is installed, with its connected units."""
 
     name: str
-    """What `device: {use: ...}` says."""
+    """The name for `device: {use: ...}`."""
     origin: str
     summary: str
     simulated: bool | None = None
-    """None where it cannot be told, for the `problem`."""
+    """True for a simulated device; None where this is unknown because of the `problem`."""
     units: tuple[Unit, ...] = ()
-    """Those that are connected now, each with why it cannot be used as it is."""
+    """The units that are connected now, each with the problem that it has, if any."""
     problem: str = ""
-    """Why it cannot be looked for; empty if it can."""
+    """The reason why it cannot be looked for; empty if it can."""
 
     @property
     def usable(self) -> bool:
-        """Whether it is simulated, or a unit of it is connected and has no problem."""
+        """True if it is simulated, or if a unit without a problem is connected."""
         return bool(self.simulated) or any(not unit.problem for unit in self.units)
 
 
 def installed_devices(registry: Registry) -> tuple[InstalledDevice, ...]:
-    """Every installed device, and its units that are connected; one that fails costs its own row."""
-    return tuple(_installed(each, registry) for each in registry.listings if each.kind == "device")
+    """List every installed device with its connected units; a device that fails is a row with a problem."""
+    return tuple(_look_for(each, registry) for each in registry.listings if each.kind == "device")
 
 
 def make_device(registry: Registry, name: str, sets: Sequence[str] = ()) -> HapticDevice:
-    """An installed device with options as `key=value`; it is not opened.
+    """Make an installed device with options as `key=value`, without opening it.
 
     Raises: UnknownMethod, BrokenMethod, ConfigError with every complaint of the options.
     """
@@ -51,34 +51,34 @@ def make_device(registry: Registry, name: str, sets: Sequence[str] = ()) -> Hapt
     return cast(HapticDevice, device)
 
 
-def examined(registry: Registry, name: str, sets: Sequence[str] = ()) -> tuple[Finding, ...]:
-    """What must be right before this device can be opened, in the order in which to put it right, and whether it is.
+def examine_device(registry: Registry, name: str, sets: Sequence[str] = ()) -> tuple[Finding, ...]:
+    """Check everything that this device needs before it can be opened, in the order in which to correct it.
 
-    What fails meanwhile is the last finding. Raises: as `make_device`.
+    An error of the device becomes the last finding. Raises: as `make_device`.
     """
-    device, found = make_device(registry, name, sets), list[Finding]()
+    device, findings = make_device(registry, name, sets), list[Finding]()
     try:
         if not isinstance(device, Serviceable):
-            says = "needs nothing" if device.spec().simulated else "offers no examination"
-            return (Finding("device", "fine", says),)
+            text = "needs nothing" if device.spec().simulated else "offers no examination"
+            return (Finding("device", "fine", text),)
         for finding in device.examine():
-            found.append(finding)
-    except Exception as error:  # noqa: BLE001 - a device's own failure is what is asked for
-        found.append(Finding("plugin", "failed", _said(error)))
-    return tuple(found)
+            findings.append(finding)
+    except Exception as error:  # noqa: BLE001 - a device's own failure is a finding
+        findings.append(Finding("plugin", "failed", _message(error)))
+    return tuple(findings)
 
 
-def _installed(listing: Listing, registry: Registry) -> InstalledDevice:
-    said = listing.name, listing.origin, listing.summary
+def _look_for(listing: Listing, registry: Registry) -> InstalledDevice:
+    known = listing.name, listing.origin, listing.summary
     simulated = None
     try:
         device = make_device(registry, listing.name)
         simulated = device.spec().simulated
         units = device.connected() if isinstance(device, Serviceable) else ()
-        return InstalledDevice(*said, simulated, tuple(units))
-    except Exception as error:  # noqa: BLE001 - one that fails costs its own row
-        return InstalledDevice(*said, simulated, problem=_said(error))
+        return InstalledDevice(*known, simulated, tuple(units))
+    except Exception as error:  # noqa: BLE001 - the other devices are listed all the same
+        return InstalledDevice(*known, simulated, problem=_message(error))
 
 
-def _said(error: Exception) -> str:
+def _message(error: Exception) -> str:
     return str(error) if isinstance(error, TangibleError) else sentence(error)

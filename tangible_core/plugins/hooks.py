@@ -1,10 +1,10 @@
-"""Moments that plugins may watch or add to. Nouns come by entry point, moments by pluggy."""
+"""The hooks: moments that plugins watch or contribute to, by pluggy; methods come by entry points."""
 
 from __future__ import annotations
 
 import logging
 from importlib.metadata import entry_points
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import pluggy
@@ -12,49 +12,69 @@ import pluggy
 from ..errors import did_you_mean, shown
 from ..runtime.failure_log import where_kept
 from ..runtime.slowness import said_if_slow
-from .origin import origin
+from .naming import origin
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
 
     from typer import Typer
 
     from ..data import Kind, Outcome, Plan, ServoReport
-    from .panel import Panel
 
 log = logging.getLogger(__name__)
 hookspec = pluggy.HookspecMarker("tangible")
 hookimpl = pluggy.HookimplMarker("tangible")
 _failed: WeakKeyDictionary[pluggy.PluginManager, set[tuple[str, str]]] = WeakKeyDictionary()
-"""Observers that failed, and the moments: a moment may come ten times a second, and is complained of once."""
+"""Observers that failed and the hooks in which they did: a hook may run ten times a second, and is reported once."""
+
+
+class Panel(NamedTuple):
+    """A panel of a run's sheet: its drawing, the products that it shows, and its size."""
+
+    draw: Callable[..., str]
+    """A function of matplotlib's axes and, by name, the products below; it draws and returns a headline."""
+    needs: Collection[str]
+    """The products without which the panel is left out: views, truth, disparity, segments, parts, materials, relief,
+    surface, recording."""
+    likes: Collection[str] = ()
+    """Further products, passed where the run has them."""
+    aspect: float | Callable[..., float] = 0.0
+    """Width over height; 0 is the scene's. A function is called with the products by name."""
+    left_in: float = 0.15
+    right_in: float = 0.15
+    bottom_in: float = 0.4
+    least_in: float = 2.9
+    """The width for the headline, in inches, where the axes are narrower."""
+    least_aspect: float = 0.0
+    """The least width over height next to tall panels, where the aspect is not fixed."""
 
 
 class Specs:
-    """Every moment. A module that implements some of them is named in the entry-point group `tangible.hooks`."""
+    """The hooks. A module that implements some of them is named in the entry-point group `tangible.hooks`."""
 
     @hookspec
     def tangible_methods(self, kind: Kind) -> Mapping[str, str]:  # pyright: ignore[reportReturnType]
-        """More names for this kind, as 'package.module:Class'; nothing is imported."""
+        """Return more names for this kind, as 'package.module:Class'; nothing is imported."""
 
     @hookspec
     def tangible_plan_made(self, plan: Plan) -> None:
-        """A plan was made; what follows runs it, unless only the plan was asked for."""
+        """Watch a plan that was made; its stages follow, unless only the plan was requested."""
 
     @hookspec
     def tangible_stage_started(self, product: str, method: str) -> None:
-        """A product is being made."""
+        """Watch the start of a product."""
 
     @hookspec
     def tangible_stage_finished(self, outcome: Outcome) -> None:
-        """A product is given, ran, cached, skipped, failed or refused; outcome.why says why."""
+        """Watch the end of a product: given, ran, cached, skipped, failed or refused; outcome.why has the reason."""
 
     @hookspec
     def tangible_servo_report(self, report: ServoReport) -> None:
-        """Ten times a second of the loop's time, from the host, never inside the loop."""
+        """Watch the force loop: ten times a second of its time, called in the host process, never inside the loop."""
 
     @hookspec
     def tangible_panels(self) -> Sequence[Panel]:  # pyright: ignore[reportReturnType]
-        """Panels to add to a run's sheet, after those that are there; asked for whenever a sheet is drawn."""
+        """Return panels to add to the end of a run's sheet; called for every sheet."""
 
     @hookspec
     def tangible_commands(self, app: Typer) -> None:
@@ -62,7 +82,7 @@ class Specs:
 
 
 def manager() -> pluggy.PluginManager:
-    """A manager with every installed hook module; one that cannot be imported is logged and left out."""
+    """Make a manager with all installed hook modules; a module that cannot be imported is logged and left out."""
     plugins = pluggy.PluginManager("tangible")
     plugins.add_hookspecs(Specs)
     for point in entry_points(group="tangible.hooks"):
@@ -73,31 +93,31 @@ def manager() -> pluggy.PluginManager:
         except (Exception, SystemExit) as error:
             log.warning("hooks %s (%s) cannot be loaded and are left out: %r", point.name, point.value, error)
             log.debug("the import of %s", point.value, exc_info=True)
-    _say_unknown_moments(plugins)
+    _warn_of_unknown_hooks(plugins)
     return plugins
 
 
-def _say_unknown_moments(plugins: pluggy.PluginManager) -> None:
-    moments = [name for name in vars(Specs) if name.startswith("tangible_")]
+def _warn_of_unknown_hooks(plugins: pluggy.PluginManager) -> None:
+    specified = [name for name in vars(Specs) if name.startswith("tangible_")]
     for name, plugin in plugins.list_name_plugin():
         for each in plugins.get_hookcallers(plugin) or []:
-            if each.name not in moments:
-                near = did_you_mean(each.name, moments)
-                log.warning("hooks %s watch %s, which is not a moment%s", name, each.name, near)
+            if each.name not in specified:
+                near = did_you_mean(each.name, specified)
+                log.warning("%s implements an unknown hook: %s%s", name, each.name, near)
 
 
 def tell(plugins: pluggy.PluginManager, moment: str, **facts: Any) -> list[Any]:
-    """Call every observer of a moment, one at a time; one that raises is logged, and the rest still hear."""
+    """Call the implementations of a hook one by one, and return their answers; an error is logged, the rest go on."""
     answers: list[Any] = []
     for each in plugins.hook.__getattribute__(moment).get_hookimpls():
         try:
             answers.append(each.function(*(facts[name] for name in each.argnames)))
-        except Exception as error:  # noqa: BLE001 - whatever it raises, the others hear
-            _say_failed(plugins, each.plugin_name, moment, error)
+        except Exception as error:  # noqa: BLE001 - the other observers are called all the same
+            _warn_of_failure(plugins, each.plugin_name, moment, error)
     return [answer for answer in answers if answer is not None]
 
 
-def _say_failed(plugins: pluggy.PluginManager, name: str, moment: str, error: Exception) -> None:
+def _warn_of_failure(plugins: pluggy.PluginManager, name: str, moment: str, error: Exception) -> None:
     known = _failed.setdefault(plugins, set())
     if (name, moment) in known:
         log.debug("observer %s failed in %s again", name, moment, exc_info=error)

@@ -1,13 +1,13 @@
-"""The interfaces: a method is its options, a frozen model with one verb.
+"""The interfaces of methods: a method is its options, a frozen model with one verb.
 
-Methods are stateless; what keeps state is a session: `Touch` for a renderer, `Link` for a device.
+Methods are stateless; the state is in a session: `Touch` for a force law, `Link` for a device.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from functools import partial
+from collections.abc import Callable, Mapping
+from functools import partial, wraps
 from pathlib import Path
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from pydantic import ConfigDict
@@ -23,6 +23,8 @@ from ..data import (
 )
 from ..data.arguments import as_picture
 from ..data.quantities import Quantities
+from ..errors import wrong_argument
+from ..runtime.threads import limited_threads
 from .capabilities import Adjustable as Adjustable
 from .capabilities import Attended as Attended
 from .capabilities import Drawing as Drawing
@@ -31,26 +33,71 @@ from .capabilities import Reshaping as Reshaping
 from .capabilities import Scripted as Scripted
 from .capabilities import Serviceable as Serviceable
 from .capabilities import Skippable as Skippable
-from .film import Film as Film
-from .film import Filming as Filming
-from .film import touch_of as touch_of
 from .link import Link as Link
+from .naming import wrong_result
+from .touch import Film as Film
+from .touch import Filming as Filming
 from .touch import PlainTouch as PlainTouch
 from .touch import Touch as Touch
-from .verbs import Verb, guard_verb, taking
+from .touch import touch_of as touch_of
+
+Convert = Callable[[Any], Any]
+
+
+def taking(name: str, wanted: type, hint: str = "") -> Convert:
+    """Return a check of an argument's type. hint: how to make an object of it."""
+
+    def convert(value: Any) -> Any:
+        if not isinstance(value, wanted):
+            raise wrong_argument(name, value, f"a {wanted.__name__}{hint}")
+        return value
+
+    return convert
+
+
+class Verb(NamedTuple):
+    """A verb of a kind of plugin, with the types of its argument and its result."""
+
+    kind: str
+    name: str
+    returns: type
+    take: Convert | None = None
+    """The conversion of each argument; None for a verb without arguments or with arbitrary ones."""
+
+
+def guard_verb(cls: type, verb: Verb) -> None:
+    """Wrap the verb that a class defines, if it does: arguments are converted, and the result's type is checked.
+
+    A result of another type raises a BrokenMethod that names the plugin.
+    """
+    own = cls.__dict__.get(verb.name)
+    if own is None or getattr(own, "__isabstractmethod__", False):
+        return
+
+    @wraps(own)
+    def call(self: Any, *args: Any, **by_name: Any) -> Any:
+        if verb.take is not None:
+            args, by_name = tuple(map(verb.take, args)), {name: verb.take(each) for name, each in by_name.items()}
+        with limited_threads():
+            result = own(self, *args, **by_name)
+        if not isinstance(result, verb.returns):
+            raise wrong_result(self, verb.kind, verb.name, result, verb.returns)
+        return result
+
+    setattr(cls, verb.name, call)
 
 
 class Method(Quantities, ABC):
-    """A named way of doing one stage; its fields are its options, and each has a default."""
+    """A named way to do one stage; its fields are its options, each with a default."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     version: ClassVar[int] = 1
-    """Raise it when results change: it is part of the cache key."""
+    """A number to raise when results change: it is part of the cache key."""
     expected_failures: ClassVar[Mapping[str, str]] = {}
-    """Checks of the conformance kit that it does not keep, by name, each with the reason; they must then fail."""
+    """Names of conformance checks that it does not pass, each with the reason; they must then fail."""
     verbs: ClassVar[tuple[Verb, ...]] = ()
-    """The verbs of its kind: each is given and gives what the interface says, or a BrokenMethod names the plugin."""
+    """The verbs of its kind, whose arguments and results are checked on every call."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
@@ -58,84 +105,84 @@ class Method(Quantities, ABC):
             guard_verb(cls, verb)
 
     def reads(self) -> tuple[Path, ...]:
-        """Files whose content its results depend on: those that its options name, unless it says more."""
+        """Return the files whose content its results depend on: by default those that its options name."""
         return tuple(value for _, value in self if isinstance(value, Path))
 
 
 class DepthEstimator(Method):
-    """Makes a disparity map from one picture or two."""
+    """The interface of a method that makes a disparity map from one picture or two."""
 
     verbs: ClassVar = (Verb("depth", "estimate", DisparityMap, taking("views", Views, ", such as Views(left, right)")),)
 
     needs_pair: ClassVar[bool] = False
-    """True for a method that finds nothing without a right view: then a plan says so, and nothing is begun."""
+    """True for a method that finds nothing without a right view: the plan then refuses it before anything is made."""
 
     @abstractmethod
     def estimate(self, views: Views) -> DisparityMap:
-        """Disparity of the left view. Raises: TangibleError if these views do not allow it."""
+        """Estimate the disparity of the left view. Raises: TangibleError if these views do not allow it."""
 
 
 class Segmenter(Method):
-    """Divides a picture into parts of one texture each."""
+    """The interface of a method that divides a picture into segments of one texture each."""
 
     verbs: ClassVar = (Verb("texture", "segment", SegmentMap, partial(as_picture, "picture")),)
 
     @abstractmethod
     def segment(self, picture: np.ndarray) -> SegmentMap:
-        """Labels of the picture's own size. Raises: PictureError if it is no picture or holds NaN or infinity."""
+        """Label each pixel of the picture. Raises: PictureError if it is not a picture, or has NaN or infinity."""
 
 
 class ForceRenderer(Method):
-    """Turns positions into forces on a surface."""
+    """The interface of a force law: positions on a surface become forces."""
 
     verbs: ClassVar = (
         Verb("render", "touch", Touch, taking("surface", HapticSurface, ", such as from_heights makes")),
     )
 
     uses_materials: ClassVar[bool] = True
-    """False for a law that feels heights alone: then no texture is segmented for it."""
+    """False for a force law of heights alone, for which no texture is segmented."""
     renders_materials: ClassVar[bool] = False
-    """True for a law that renders friction, damping and fine textures of materials by itself."""
+    """True for a force law that renders friction, damping and fine textures of materials by itself."""
     is_lateral: ClassVar[bool] = False
-    """True for a law of lateral forces alone: the normal force is the table's, under the hand."""
+    """True for a force law of lateral forces alone: the normal force is that of the table under the hand."""
     why_still: ClassVar[str] = ""
-    """Why it is no `Filming`, where one may wonder: words that go on "it feels no surface that moves"."""
+    """The reason, for the user, why the force law is not `Filming`; appended to the error message."""
 
     @abstractmethod
     def touch(self, surface: HapticSurface) -> Touch:
-        """A new touch on this surface, free of contact."""
+        """Make a touch on this surface that starts without contact."""
 
 
 class HapticDevice(Method):
-    """Something that has a position and gives a force."""
+    """The interface of a device that has a position and applies a force."""
 
     verbs: ClassVar = (Verb("device", "spec", DeviceSpec), Verb("device", "open", Link))
 
     @abstractmethod
     def spec(self) -> DeviceSpec:
-        """What the device can do; asks nothing of the hardware."""
+        """Return the limits of the device, without access to the hardware."""
 
     @abstractmethod
     def open(self) -> Link:
-        """Raises: DeviceError if it is not there, not permitted or in use."""
+        """Open the device. Raises: DeviceError if it is absent, not permitted or in use."""
 
 
 Medium = Literal["swell", "print", "pins", "force"]
-"""What a finger reads: swell paper, a solid that was printed, pins that rise, or a force device."""
+"""A medium for fingers: swell paper, a printed solid, pins that rise, or a force device."""
 
 
 class Exporter(Method):
-    """Writes what was made as files for others: a printer, a pin display, a reader."""
+    """The interface of a method that writes products as files: for a printer, a pin display, a reader."""
 
     verbs: ClassVar = (Verb("export", "write", tuple),)
 
     needs: ClassVar[tuple[str, ...]] = ()
-    """Products that it writes or reads, such as `relief`: these are made for it, and no others."""
+    """The products that it reads, such as `relief`; only these are made for it."""
     medium: ClassVar[Medium | None] = None
-    """What a finger reads of it, by whose rules it is checked before it is written; None for what is not felt."""
+    """The medium by whose rules legibility is checked before writing; None for files that are not touched."""
 
     def picture_width_m(self, aspect: float) -> float | None:
-        """The width of the whole picture in the files, for which the products are made; None for the workspace's.
+        """Return the width of the whole picture in the files, at which products are made; None for the workspace's.
 
         aspect: width through length of the picture.
         """
@@ -143,10 +190,10 @@ class Exporter(Method):
 
     @abstractmethod
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
-        """Write the files, and return their paths: `stem` with endings of its own, such as `stem.with_suffix`.
+        """Write the files, and return their paths: `stem` with endings, such as `stem.with_suffix` makes.
 
-        It writes into a folder of its own; the files are moved to their place once all are there.
-        Raises: TangibleError for what cannot be written of this work.
+        The folder of `stem` is temporary; the files are moved to their place once all are complete.
+        Raises: TangibleError for a work that cannot be written.
         """
 
 
@@ -157,4 +204,4 @@ KINDS: dict[Kind, type[Method]] = {
     "device": HapticDevice,
     "export": Exporter,
 }
-"""What each kind of plugin must be."""
+"""The interface of each kind of plugin."""

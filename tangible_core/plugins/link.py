@@ -1,4 +1,4 @@
-"""An open device: what a driver does, and around it, once for all drivers, what keeps the hand safe."""
+"""An open device: the methods of a driver, and around them the checks that keep the hand safe."""
 
 import logging
 import math
@@ -16,46 +16,46 @@ log = logging.getLogger(__name__)
 class Link(ABC):
     """An open device. As a context manager it leaves zero force behind, whatever happens.
 
-    A driver is `_read`, `_send`, `_release` and `applied`. What it cannot forget stands around them: a force that is
-    not finite is sent as zero, one over the greatest is scaled down, a link that is closed refuses in one sentence,
-    and one that is being closed sends zero force before the device is let go of.
+    A driver implements `_read`, `_send`, `_release` and `applied`. The link around them keeps every driver safe: a
+    force that is not finite is sent as zero, a force over the limit is scaled down, a closed link raises an error in
+    one sentence, and closing sends zero force before the device is released.
     """
 
-    # Mangled, so that no driver's own field of such a name takes their place.
+    # Mangled names, so that a driver's fields cannot replace them.
 
     def __init__(self, name: str, max_force_n: float) -> None:
-        """name: as messages call it, such as "the mock device". max_force_n: the greatest force that is sent."""
+        """Keep the name for messages, such as "the mock device", and the greatest force to send, in newtons."""
         self.__name, self.__max_force_n = name, max_force_n
         self.__closed = ""
 
     @abstractmethod
     def _read(self) -> HapticState:
-        """Where the tip is now. Raises: DeviceError if the device stopped answering."""
+        """Read the state of the tip. Raises: DeviceError if the device stopped answering."""
 
     @abstractmethod
     def _send(self, force: Force) -> None:
-        """Set this force, which is finite and no greater than the device's. Raises: DeviceError as `_read`."""
+        """Set this force, which is finite and not over the device's limit. Raises: DeviceError as `_read`."""
 
     @abstractmethod
     def _release(self) -> None:
-        """Let go of the device, to which zero force was sent before, if it listened; called once."""
+        """Release the device. Called once, after zero force was sent, which a broken device may not have received."""
 
     @property
     @abstractmethod
     def applied(self) -> Force:
-        """The force the device holds now, as far as the driver knows."""
+        """The force that the device applies now, as far as the driver knows."""
 
     @final
     def read(self) -> HapticState:
-        """Where the tip is now. Raises: DeviceError if the device stopped answering or the link is closed."""
+        """Read the state of the tip. Raises: DeviceError if the device stopped answering or the link is closed."""
         if self.__closed:
             raise self.__refusal()
-        found = self._read()
-        return found if type(found) is HapticState else self.__as_state(found)
+        state = self._read()
+        return state if type(state) is HapticState else self.__as_state(state)
 
     @final
     def write(self, force: Force) -> None:
-        """Set the force on the hand; a force that is not finite becomes zero, one too strong is scaled down.
+        """Set the force on the hand; a force that is not finite becomes zero, a too strong one is scaled down.
 
         Raises: DeviceError if the device stopped answering or the link is closed.
         """
@@ -68,9 +68,9 @@ class Link(ABC):
 
     @final
     def close(self) -> None:
-        """Let go of the device, with no force left; a second call does nothing."""
+        """Send zero force and release the device; a second call does nothing."""
         try:
-            self.__let_go()
+            self.__release_once()
         except DeviceError as error:
             log.warning("%s: its force could not be made zero, turn off its power: %s", self.__name, error)
 
@@ -83,44 +83,45 @@ class Link(ABC):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         try:
-            self.__let_go()
+            self.__release_once()
         except DeviceError:
             if error is None:  # a device that died raised already
                 raise
 
     @final
     def _check_open(self) -> None:
-        """For what else a driver can be asked. Raises: DeviceError if the link is closed."""
+        """Refuse a closed link, in a driver's own methods. Raises: DeviceError if the link is closed."""
         if self.__closed:
             raise self.__refusal()
 
     @final
     def _end(self, why: str) -> None:
-        """For a driver that let go by itself: closed from now on. why: such as "was closed after an error"."""
+        """Mark the link as closed, for a driver that released its device. why: such as "was closed after an error"."""
         self.__closed = self.__closed or why
 
-    def __let_go(self) -> None:
+    def __release_once(self) -> None:
         if self.__closed:
             return
         try:
             self._send(NO_FORCE)
         finally:
-            if not self.__closed:  # else the driver did so itself
+            if not self.__closed:  # else the driver released it
                 self.__closed = "is closed"
                 self._release()
 
-    def __as_state(self, found: Any) -> HapticState:
+    def __as_state(self, value: Any) -> HapticState:
         try:
-            return as_state(found)
+            return as_state(value)
         except ArgumentError as error:
-            gave = what_is(found)
-            raise BrokenMethod(f"{self.__name}: its driver read {gave}; it must read a HapticState") from error
+            raise BrokenMethod(
+                f"{self.__name}: its driver read {what_is(value)}; it must read a HapticState"
+            ) from error
 
     def __refusal(self) -> DeviceError:
         return DeviceError(f"{self.__name} {self.__closed}; open it again")
 
 
 def _as_force(force: Any) -> Force:
-    if (found := as_force(force)) is None:
+    if (converted := as_force(force)) is None:
         raise wrong_argument("force", force, "a Force, or three numbers: x, y and z in newtons")
-    return found
+    return converted

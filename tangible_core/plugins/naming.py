@@ -1,23 +1,56 @@
-"""What messages call a plugin's object: its kind, its name and its distribution, as far as metadata tells."""
+"""The names of plugins in messages: kind, name and distribution, from metadata alone."""
 
+from __future__ import annotations
+
+import re
+from functools import cache
 from importlib.metadata import EntryPoint, entry_points
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .origin import origin
+from ..errors import BrokenMethod, what_is
+
+if TYPE_CHECKING:
+    from importlib.metadata import Distribution
 
 KIND_NAMES = ("depth", "texture", "render", "device", "export")
 GROUPS = "tangible."
-"""How the groups of entry points begin; what follows is a kind, or `hooks`."""
+"""The prefix of our groups of entry points; a kind follows, or `hooks`."""
+_HEADER = re.compile(r"^(Name|Version): *(.+?) *$", re.MULTILINE)
 
 
-def named(kind: str, module: str, owner: str) -> str:
-    """What to call a class, or with no owner a function, of this module: `depth method zncc (tangible-images 0.1)`.
+class Origin(NamedTuple):
+    """The distribution of an entry point, shown as its name and its version."""
 
-    It is the method itself, or the only one of its kind in its module or its package; else its package is named.
+    name: str
+    version: str
+
+    def __str__(self) -> str:
+        return " ".join(self).rstrip()
+
+
+@cache
+def origin(distribution: Distribution | None) -> Origin:
+    """Return the name and version of a distribution.
+
+    Both are in the head of its metadata, all of which `Distribution.name` would parse as an e-mail.
+    """
+    if distribution is None:
+        return Origin("computed by a hook", "")
+    text = distribution.read_text("METADATA") or distribution.read_text("PKG-INFO") or ""
+    header = dict(_HEADER.findall(text.partition("\n\n")[0].replace("\r", "")))
+    return Origin(header.get("Name", "?"), header.get("Version", "?"))
+
+
+def plugin_name(kind: str, module: str, owner: str) -> str:
+    """Name the plugin of a class, or with no owner of a function: `depth method zncc (tangible-images 0.1)`.
+
+    The plugin is the class itself, or the only one of its kind in the module or in its package. Where there are
+    several, the class and the distribution are named.
     """
     of_kind = [each for each in points() if kind in ("", _kind(each))]
     exact = [each for each in of_kind if each.value == f"{module}:{owner}"]
-    beside = [each for each in of_kind if each.module == module]
-    near = exact or beside or [each for each in of_kind if package(each.module) == package(module)]
+    in_module = [each for each in of_kind if each.module == module]
+    near = exact or in_module or [each for each in of_kind if package(each.module) == package(module)]
     if not near:
         return f"{module}{owner and '.'}{owner}"
     if exact or len(near) == 1:
@@ -25,14 +58,22 @@ def named(kind: str, module: str, owner: str) -> str:
     return f"{owner or module} of {origin(near[0].dist)}"
 
 
+def wrong_result(giver: object, kind: str, verb: str, result: Any, wanted: type) -> BrokenMethod:
+    """Make the error for a plugin whose verb returned another type than `wanted`."""
+    name = plugin_name(kind, type(giver).__module__, type(giver).__qualname__)
+    return BrokenMethod(
+        f"{name}: {verb} gave {what_is(result)}; it must give a {wanted.__name__}, as `tangible check` tests"
+    )
+
+
 def points() -> list[EntryPoint]:
-    """Of all plugins that are installed."""
+    """Return the entry points of all installed plugins."""
     installed = entry_points()
     return [each for kind in (*KIND_NAMES, "hooks") for each in installed.select(group=f"{GROUPS}{kind}")]
 
 
 def package(module: str) -> str:
-    """The outermost package of a module."""
+    """Return the outermost package of a module."""
     return module.partition(".")[0]
 
 

@@ -1,4 +1,4 @@
-"""What a method decided, left out or doubts: said in the log, and kept with its result for whoever asks."""
+"""Notes of methods about their decisions and doubts: logged, and kept with the result."""
 
 import logging
 from collections.abc import Callable, Generator
@@ -7,14 +7,14 @@ from contextvars import ContextVar
 
 from ..data import Note
 
-_told: ContextVar[Callable[[Note], None] | None] = ContextVar("tangible_notes", default=None)
+_listener: ContextVar[Callable[[Note], None] | None] = ContextVar("tangible_notes", default=None)
 _silent: ContextVar[bool] = ContextVar("tangible_notes_silent", default=False)
 
 
 def note(log: logging.Logger, message: str, level: int = logging.INFO) -> None:
     """Log a decision, or from `logging.WARNING` on a warning, and keep it with the result that is being made.
 
-    What is kept is told again when the result comes from the cache; what is only logged is not.
+    A kept note is shown again when the result comes from the cache, unlike a line that is only logged.
     """
     if _silent.get():
         return
@@ -23,7 +23,7 @@ def note(log: logging.Logger, message: str, level: int = logging.INFO) -> None:
 
 
 def doubt(log: logging.Logger, message: str) -> None:
-    """`note` that a result is hardly worth feeling: a warning, on which `tangible feel` asks first."""
+    """Note that a result is hardly worth feeling: a warning, after which `tangible feel` asks for confirmation."""
     if _silent.get():
         return
     log.warning(message)
@@ -32,7 +32,7 @@ def doubt(log: logging.Logger, message: str) -> None:
 
 @contextmanager
 def silently() -> Generator[None]:
-    """Nothing that is noted in this block is said or kept: frame after frame of a film, it would be the same again."""
+    """Drop all notes of this block, such as those of a film, which repeat with every frame."""
     token = _silent.set(True)
     try:
         yield
@@ -41,16 +41,16 @@ def silently() -> Generator[None]:
 
 
 @contextmanager
-def noted() -> Generator[list[Note]]:
-    """The notes of all methods that run in this block, in order."""
+def collect_notes() -> Generator[list[Note]]:
+    """Collect the notes of all methods that run in this block, in order."""
     notes: list[Note] = []
-    with _heard(notes.append):
+    with _listening(notes.append):
         yield notes
 
 
 @contextmanager
 def collected() -> Generator[list[str]]:
-    """The texts of these notes.
+    """Collect the texts of these notes.
 
     >>> with collected() as notes:
     ...     note(logging.getLogger("doctest"), "skipped: the views are identical")
@@ -58,19 +58,19 @@ def collected() -> Generator[list[str]]:
     ['skipped: the views are identical']
     """
     texts: list[str] = []
-    with _heard(lambda each: texts.append(each.text)):
+    with _listening(lambda each: texts.append(each.text)):
         yield texts
 
 
 @contextmanager
-def _heard(tell: Callable[[Note], None]) -> Generator[None]:
-    token = _told.set(tell)
+def _listening(listener: Callable[[Note], None]) -> Generator[None]:
+    token = _listener.set(listener)
     try:
         yield
     finally:
-        _told.reset(token)
+        _listener.reset(token)
 
 
-def _keep(made: Note) -> None:
-    if (tell := _told.get()) is not None:
-        tell(made)
+def _keep(kept: Note) -> None:
+    if (listener := _listener.get()) is not None:
+        listener(kept)

@@ -1,4 +1,4 @@
-"""Which methods are installed: names from metadata, classes on first use."""
+"""The registry of installed methods: names from metadata, classes on first use."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..runtime.failure_log import where_kept
 from ..runtime.slowness import said_if_slow
 from . import hooks
 from .naming import KIND_NAMES as KIND_NAMES
-from .origin import origin
+from .naming import origin
 
 if TYPE_CHECKING:
     import pluggy
@@ -47,7 +47,7 @@ class Listing:
 
     @cached_property
     def summary(self) -> str:
-        """First line of the class's docstring, read from the source text."""
+        """The first line of the class's docstring, read from the source text."""
         try:
             return _docstring_line(self.point)
         except (OSError, SyntaxError, ImportError, ValueError) as error:
@@ -55,54 +55,54 @@ class Listing:
 
 
 class Registry:
-    """Listing reads metadata only; `load` is the one place that imports a plugin."""
+    """The registry of installed plugins: listing reads metadata only, `load` alone imports a plugin."""
 
     def __init__(self, plugins: pluggy.PluginManager | None = None) -> None:
         self.plugins = hooks.manager() if plugins is None else plugins
 
     @cached_property
     def listings(self) -> tuple[Listing, ...]:
-        """Every installed method, two of one name included, by kind and name."""
-        installed = entry_points()  # one walk over what is installed serves all kinds
-        found = [
+        """The installed methods, two of one name included, by kind and name."""
+        installed = entry_points()  # one walk over all distributions serves all kinds
+        listings = [
             Listing(kind, point.name, point.value, str(origin(point.dist)), point)
             for kind in KIND_NAMES
-            for point in (*installed.select(group=f"tangible.{kind}"), *self._computed(kind))
+            for point in (*installed.select(group=f"tangible.{kind}"), *self._points_of_hooks(kind))
         ]
-        return tuple(sorted(found, key=lambda each: (KIND_NAMES.index(each.kind), each.name, each.origin)))
+        return tuple(sorted(listings, key=lambda each: (KIND_NAMES.index(each.kind), each.name, each.origin)))
 
     def names(self, kind: str) -> list[str]:
-        """Names to write after `use:`; `distribution/name` where two offer the same one."""
+        """Return the names to write after `use:`: `distribution/name` where two distributions offer the same name."""
         of_kind = [each for each in self.listings if each.kind == kind]
         short = [each.name for each in of_kind]
         return [each.name if short.count(each.name) == 1 else f"{each.distribution}/{each.name}" for each in of_kind]
 
     def find(self, kind: str, name: str) -> Listing:
-        """The one listing of this name.
+        """Find the listing of this name.
 
         Raises: UnknownMethod if there is none, BrokenMethod if two distributions offer it and none is named.
         """
         if kind not in KIND_NAMES:
             raise UnknownMethod("plugin", kind, KIND_NAMES)
         distribution, _, short = str(name).rpartition("/")
-        found = [
+        listings = [
             each
             for each in self.listings
             if each.kind == kind and each.name == short and distribution in ("", each.distribution)
         ]
-        if not found:
+        if not listings:
             raise UnknownMethod(kind, name, self.names(kind))
-        if len(found) > 1:
+        if len(listings) > 1:
             raise BrokenMethod(
-                f"{kind} method {name!r} is offered by {' and '.join(each.origin for each in found)}; "
-                f"write {' or '.join(f'{each.distribution}/{short}' for each in found)}"
+                f"{kind} method {name!r} is offered by {' and '.join(each.origin for each in listings)}; "
+                f"write {' or '.join(f'{each.distribution}/{short}' for each in listings)}"
             )
-        return found[0]
+        return listings[0]
 
     def load(self, kind: str, name: str) -> type[Method]:
-        """The class of a method.
+        """Import the class of a method.
 
-        Raises: UnknownMethod, BrokenMethod (it cannot be imported, or is no method of this kind).
+        Raises: UnknownMethod, BrokenMethod if it cannot be imported or is not a method of this kind.
         """
         from .interfaces import KINDS
 
@@ -123,15 +123,15 @@ class Registry:
             raise BrokenMethod(f"{kind} method {name!r} ({each.target}) does not implement {', '.join(missing)}")
         return cls
 
-    def _computed(self, kind: str) -> list[EntryPoint]:
-        named: list[Any] = hooks.tell(self.plugins, "tangible_methods", kind=kind)
-        pairs = [pair for more in named if isinstance(more, dict) for pair in cast("dict[Any, Any]", more).items()]
+    def _points_of_hooks(self, kind: str) -> list[EntryPoint]:
+        answers: list[Any] = hooks.tell(self.plugins, "tangible_methods", kind=kind)
+        pairs = [pair for more in answers if isinstance(more, dict) for pair in cast("dict[Any, Any]", more).items()]
         return [EntryPoint(str(name), str(value), f"tangible.{kind}") for name, value in pairs]
 
 
 @cache
 def default_registry() -> Registry:
-    """The registry of what is installed here."""
+    """Return the registry of this installation."""
     return Registry()
 
 
@@ -148,39 +148,36 @@ def load_method(kind: Literal["export"], name: str) -> type[Exporter]: ...
 @overload
 def load_method(kind: Kind, name: str) -> type[Method]: ...
 def load_method(kind: str, name: str) -> type[Any]:
-    """The class of an installed method; its fields are its options.
-
-    Raises: UnknownMethod, BrokenMethod.
-    """
+    """Import the class of an installed method; its fields are its options. Raises: UnknownMethod, BrokenMethod."""
     return default_registry().load(kind, name)
 
 
 def _docstring_line(point: EntryPoint) -> str:
-    """The class's docstring without running a line of the module: only the top package is looked up, not imported."""
-    found = EntryPoint.pattern.match(point.value)
-    if found is None or not found["attr"]:
+    """Read the first line of the class's docstring without running the module: its top package is located only."""
+    target = EntryPoint.pattern.match(point.value)
+    if target is None or not target["attr"]:
         raise ImportError(f"{point.value!r} is not package.module:Class")
-    text = _source(*found["module"].split(".")).read_text(encoding="utf-8")
-    if plain := re.search(_PLAIN_CLASS.format(re.escape(found["attr"])), text, re.MULTILINE):
+    text = _source(*target["module"].split(".")).read_text(encoding="utf-8")
+    if plain := re.search(_PLAIN_CLASS.format(re.escape(target["attr"])), text, re.MULTILINE):
         return plain[1]
     tree = ast.parse(text)
     classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
-    if found["attr"] not in classes:
-        raise ImportError(f"{found['module']} has no class {found['attr']}{did_you_mean(found['attr'], classes)}")
-    return (ast.get_docstring(classes[found["attr"]]) or "(no docstring)").splitlines()[0]
+    if target["attr"] not in classes:
+        raise ImportError(f"{target['module']} has no class {target['attr']}{did_you_mean(target['attr'], classes)}")
+    return (ast.get_docstring(classes[target["attr"]]) or "(no docstring)").splitlines()[0]
 
 
 _PLAIN_CLASS = r"^class {}\b[^\n]*:\n    \"\"\"(\w[^\n\\]*?)(?:\"\"\")?$"
-"""A class as nearly all are written, and the first line of its docstring: Python's parser takes a fifth of the
-listing's time."""
+"""A class in the usual layout with the first line of its docstring; Python's parser takes a fifth of the listing's
+time."""
 
 
 def _source(top: str, *rest: str) -> Path:
-    """The file of a module."""
+    """Find the file of a module."""
     spec = find_spec(top)
     if spec is None:
         raise ImportError(f"there is no module {top}")
     if not spec.submodule_search_locations:
-        return Path(spec.origin or "").joinpath(*rest)  # below a single file there is nothing: it cannot be read
+        return Path(spec.origin or "").joinpath(*rest)  # a path below a file, which cannot be read
     module = Path(next(iter(spec.submodule_search_locations))).joinpath(*rest)
     return module / "__init__.py" if module.is_dir() else module.with_suffix(".py")

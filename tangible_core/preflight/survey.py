@@ -8,7 +8,7 @@ from jaxtyping import Float64
 from ..data import HapticSurface
 from ..errors import BrokenMethod
 from ..plugins.interfaces import ForceRenderer, HapticDevice, Touch
-from ..plugins.naming import named
+from ..plugins.naming import plugin_name
 from ..scene.geometry import workspace_to_picture
 from ..scene.workspace import FeltSize, Workspace
 from ..servo.guard.safety import Safety
@@ -73,7 +73,7 @@ def _check_finite(law: ForceRenderer, probes: Probes) -> None:
     felt = (probes.force_n.sum(axis=1), probes.onset_n, probes.stiffness_n_per_m, probes.damping_n_s_per_m)
     broken = ~np.isfinite(felt).all(axis=0)
     if broken.any():
-        who = named("render", type(law).__module__, type(law).__qualname__)
+        who = plugin_name("render", type(law).__module__, type(law).__qualname__)
         raise BrokenMethod(
             f"{who}: force gave values that are not finite at {np.count_nonzero(broken)} of {broken.size} places of "
             "the surface; a force is always finite, as `tangible check` tests"

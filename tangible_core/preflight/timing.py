@@ -12,7 +12,7 @@ from jaxtyping import Float64
 from ..compiled.touch import CompiledTouch
 from ..data import HapticState, Record
 from ..plugins.interfaces import Touch
-from ..servo.priority import PRIORITY
+from ..servo.ticks.priority import PRIORITY
 
 TICKS = 2000
 """So many ticks are timed one by one, of a stroke over the surface."""

@@ -3,10 +3,14 @@
 from .beacon import Beacon, BeaconState, beacon_to
 from .child import TERMINATED
 from .guard.safety import Safety
-from .host import OVER, Servo
-from .packed import Packed, packed
+from .host import Servo
+from .packed_touch import Packed, pack_touch
 from .ring import Ring
-from .still import still
+from .supervisor import OVER
+from .ticks.null_law import null_touch
+
+packed, still = pack_touch, null_touch
+"""Former names of these two functions."""
 
 __all__ = [
     "OVER",
@@ -18,6 +22,6 @@ __all__ = [
     "Safety",
     "Servo",
     "beacon_to",
-    "packed",
-    "still",
+    "null_touch",
+    "pack_touch",
 ]

@@ -1,9 +1,9 @@
-"""A beacon: a gentle pull along the surface to one of its parts, for a hand that looks for it.
+"""A beacon: a gentle pull along the surface towards one of its parts, for a hand that looks for it.
 
-The pull is U' of a potential over the plane, U = F (sqrt(D^2 + s^2) - s): a spring near the part that grows no stronger
-than F far away. D is the distance to the nearest point of the part, zero within it; ridges of D, where two ways are
-equally long, are rounded off. The potential is sampled on a grid, and a quadratic B-spline between: its gradient is
-exact and steady, so that no closed path gains energy. `beacon_kernels` has what happens in a tick.
+The pull is the gradient of a potential over the plane, U = F (sqrt(D^2 + s^2) - s): a spring near the part that never
+exceeds F far away. D is the distance to the nearest point of the part, zero within it; ridges of D, where two ways are
+equally long, are rounded off. The potential is sampled on a grid and interpolated by a quadratic B-spline: its gradient
+is exact and continuous, so that no closed path gains energy. `beacon_kernels` has the beacon's tick.
 """
 # pyright: reportMissingTypeStubs=false
 
@@ -19,50 +19,57 @@ from ..data.ticks import BEACON_SHIFT, MOST_BEACON_PARTS
 from ..errors import ConfigError, GeometryError, did_you_mean, quoted
 
 PULL_N, MOST_N = 0.8, 1.0
-"""The pull far away from the part; and the most that it is with its damping."""
+"""The pull far away from the part, N; and the greatest force of a beacon, with its damping."""
 SOFT_M = 0.005
-"""Distance at which the pull is 0.7 of that; over it the spring goes over into a steady pull."""
+"""Distance at which the pull is 0.7 of PULL_N, and the spring changes into a constant pull."""
 DAMPING_N_S_PER_M = 0.5
-"""Across the surface, wherever it pulls; never more than MOST_N - PULL_N."""
+"""Damping along the surface, wherever the beacon pulls; its force is at most MOST_N - PULL_N."""
 BRAKED_FROM = 0.125
 """Share of the pull from which on the damping is whole: sampling a spring adds energy where it is steep, next to the
-part, where the pull itself is nearly nothing."""
+part, where the pull itself is nearly zero."""
 RAMP_S = 0.5
-"""Over which a pull fades in."""
+"""Time over which a pull fades in."""
 STIFFNESS_N_PER_M = PULL_N / SOFT_M
-"""The steepest rise of the pull, next to the part."""
+"""The steepest slope of the pull, next to the part."""
 ROUNDED_M = 0.0015
-"""Standard deviation by which ridges of the distance are rounded."""
+"""Standard deviation of the Gaussian that rounds the ridges of the distance."""
 MARGIN_M = 0.03
-"""So far beyond the picture a hand is pulled back to it; farther away along its side alone."""
+"""Margin of the grid around the picture, in which a hand is pulled back; beyond it the pull is along the edge alone."""
 MOST_CELLS = 1 << 20
-"""Of a beacon's grid, margins included: cells of 0.2 mm on a picture of 160 mm."""
+"""Greatest number of cells of a beacon's grid, margins included: cells of 0.2 mm on a picture of 160 mm."""
 ALL_BUTTONS = 0x7FFFFFFF
-"""Every button of a device."""
+"""Bits of every button of a device."""
 
 (ASKED, PART, ROWS, COLUMNS, BUTTONS, SEEN, LET_GO, WHY, HELD, TICKS, WORDS) = range(11)
-"""Words. Whoever asks writes the number of the ask (0 for no beacon), the part, the size of the grid, and the buttons
-that release it; the loop writes the ask that is felt now, the last one that is over and why, the buttons that were held
-in the tick before (-1 before the first), and in how many ticks a beacon was on. The last is how many there are."""
+"""Indices of the words; the last is their number.
+
+The program writes the number of its request (0 for no beacon), the part, the size of the grid, and the buttons that
+release the beacon. The loop writes the request that acts now, the last request that ended and why, the buttons held in
+the tick before (-1 before the first), and the number of ticks with a beacon.
+"""
 (LEFT_M, FAR_M, ACROSS_M, DOWN_M, RAMP, X_M, Y_M, U_J, NUMBERS) = range(9)
-"""Numbers: where the grid's first value stands, and its pitches; of the loop, the share of the force that has faded in,
-and the place and the potential of the tick before. The last is how many there are."""
+"""Indices of the numbers; the last is their number.
+
+The program writes the place of the grid's first value and the pitches. The loop writes the factor by which the force
+has faded in, and the place and the potential of the tick before.
+"""
 BY_BUTTON, BY_SCENE = 1, 2
-"""Of WHY: a button was pressed; another scene is felt."""
+"""Values of WHY: a button was pressed; another scene was swapped in."""
 BUTTON, SCENE = "button", "scene"
+"""The same reasons in `BeaconState.why`."""
 REASONS = {0: "", BY_BUTTON: BUTTON, BY_SCENE: SCENE}
 
 
 @dataclass(frozen=True, eq=False)
 class Beacon(Record):
-    """Where a part pulls from everywhere, as a loop takes it. Made by `beacon_to`; it can be sent to another process.
+    """The potential of a part's pull, by `beacon_to`, for a force loop; it can be sent to another process.
 
     potential_j: float32 (h, w), values at nodes `pitch_m` apart, the first at (left_m, far_m), rows towards the user.
     """
 
     part: int
     name: str
-    """Empty where nobody gave the part one."""
+    """The part's name; empty if it has none."""
     potential_j: Float32[np.ndarray, "h w"]
     left_m: float
     far_m: float
@@ -70,17 +77,17 @@ class Beacon(Record):
 
 
 class BeaconState(NamedTuple):
-    """Whether a beacon is on, and why not."""
+    """The state of a beacon: on, or off and why."""
 
     part: int | None
-    """The number of the part that pulls; none where none is."""
+    """The number of the part that pulls; None if no beacon is on."""
     why: str = ""
-    """`button` where a button released it, `scene` where another scene is felt since; else empty."""
+    """`button` if a button released the beacon, `scene` if another scene was swapped in; else empty."""
 
 
 @final
 class BeaconMemory:
-    """The numbers by which whoever asks for a beacon and the loop that gives it know of each other."""
+    """The memory that a program and its force loop share about a beacon."""
 
     def __init__(
         self, words: np.ndarray | None = None, numbers: np.ndarray | None = None, field: np.ndarray | None = None
@@ -91,27 +98,27 @@ class BeaconMemory:
 
     @classmethod
     def ready(cls) -> Self:
-        """A memory before the first tick."""
-        made = cls()
-        made.words[HELD] = -1
-        return made
+        """Return a memory for a loop before its first tick."""
+        memory = cls()
+        memory.words[HELD] = -1
+        return memory
 
     @classmethod
     def of(cls, beacon: Beacon | None) -> Self:
-        """For a loop in this process, with this beacon from the first tick on."""
-        made = cls.ready()
+        """Return a memory for a loop in this process, with this beacon from the first tick on."""
+        memory = cls.ready()
         if beacon is not None:
-            made.field = np.zeros(beacon.potential_j.size, np.float32)
-            made.put(beacon)
-        return made
+            memory.field = np.zeros(beacon.potential_j.size, np.float32)
+            memory.put(beacon)
+        return memory
 
     @property
     def arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """As kernels take them."""
+        """The words, numbers and field, as arguments of the kernels."""
         return self.words, self.numbers, self.field
 
     def put(self, beacon: Beacon, buttons: int = ALL_BUTTONS) -> None:
-        """Ask for it. No other may be felt meanwhile (`SEEN` is 0): the grid is written over."""
+        """Request a beacon. No other one may act meanwhile (`SEEN` is 0), as its grid is overwritten."""
         rows, columns = beacon.potential_j.shape
         self.field[: rows * columns] = beacon.potential_j.ravel()
         self.numbers[[LEFT_M, FAR_M, ACROSS_M, DOWN_M]] = beacon.left_m, beacon.far_m, *beacon.pitch_m
@@ -119,73 +126,74 @@ class BeaconMemory:
         self.words[ASKED] = 1 + max(self.words[LET_GO], self.words[SEEN])
 
     def leave(self) -> None:
-        """Another scene is felt: a beacon is over. For the loop alone."""
+        """End the beacon, as another scene was swapped in. Only the loop calls this."""
         words = self.words
         if words[ASKED] and words[ASKED] != words[LET_GO]:
             words[LET_GO], words[WHY], words[SEEN] = words[ASKED], BY_SCENE, 0
 
     @property
     def state(self) -> BeaconState:
-        """As it is now."""
-        asked = int(self.words[ASKED])
-        if asked and asked != self.words[LET_GO]:
+        """The state now."""
+        request = int(self.words[ASKED])
+        if request and request != self.words[LET_GO]:
             return BeaconState(int(self.words[PART]))
-        return BeaconState(None, REASONS[int(self.words[WHY])] if asked else "")
+        return BeaconState(None, REASONS[int(self.words[WHY])] if request else "")
 
 
 def beacon_flags(part: int) -> int:
-    """Of a tick in which a beacon to this part was on."""
+    """Return the flags of a tick in which a beacon to this part was on."""
     return int(TickFlag.BEACON) | part << BEACON_SHIFT
 
 
 def part_number(surface: HapticSurface, part: str | int) -> int:
-    """The number of a part by its number or its name. Raises: ConfigError with what there is, if there is none such."""
+    """Return the number of a part, given by number or name. Raises: ConfigError, with all parts, if there is none."""
     names = surface.names
     if names is None or surface.labels is None:
-        raise ConfigError("a beacon pulls to a part, and this surface has no parts; say `parts:` or `heights:`")
+        raise ConfigError("a beacon pulls to a part, and this surface has no parts; add `parts:` or `heights:`")
     if isinstance(part, int):
         if 0 <= part < min(len(names), MOST_BEACON_PARTS):
             return part
-        raise ConfigError(f"there is no part {part}; the parts are {_told(names)}")
+        raise ConfigError(f"there is no part {part}; the parts are {_list_parts(names)}")
     wanted = part.strip()
-    found = [number for number, name in enumerate(names) if wanted and name == wanted]
-    if len(found) > 1:
-        raise ConfigError(f"{len(found)} parts are called {quoted(wanted)}; say which by its number: {_listed(found)}")
-    if found:
-        return part_number(surface, found[0])
+    numbers = [number for number, name in enumerate(names) if wanted and name == wanted]
+    if len(numbers) > 1:
+        choice = ", ".join(map(str, numbers))
+        raise ConfigError(f"{len(numbers)} parts are called {quoted(wanted)}; choose one by its number: {choice}")
+    if numbers:
+        return part_number(surface, numbers[0])
     if wanted.isdecimal():
         return part_number(surface, int(wanted))
     hint = did_you_mean(wanted, [name for name in names if name])
-    raise ConfigError(f"no part is called {quoted(wanted)}{hint}; the parts are {_told(names)}")
+    raise ConfigError(f"no part is called {quoted(wanted)}{hint}; the parts are {_list_parts(names)}")
 
 
 def beacon_to(surface: HapticSurface, part: str | int) -> Beacon:
-    """A beacon to a part of a surface, by its number or its name.
+    """Return a beacon to a part of a surface, given by its number or name.
 
-    Raises: ConfigError if there is none such, GeometryError if the part has no cell on this surface.
+    Raises: ConfigError if there is no such part, GeometryError if the part has no cell on this surface.
     """
     number = part_number(surface, part)
     assert surface.labels is not None and surface.names is not None
     cells = surface.labels == number
     if not cells.any():
-        raise GeometryError(f"part {number} is too small for a cell of the surface that is felt; choose another one")
+        raise GeometryError(f"part {number} is too small for a cell of the surface; choose another one")
     across_m, down_m = surface.relief.pitch_m
     step = _step(cells.shape, (across_m, down_m))
-    cells, above, beside = _coarse(cells, step, (across_m, down_m))
+    cells, above, left = _coarsen(cells, step, (across_m, down_m))
     across_m, down_m = step * across_m, step * down_m
     width_m, length_m = surface.extent_m
     return Beacon(
         part=number,
         name=surface.names[number],
         potential_j=_potential(_distance(cells, across_m, down_m)),
-        left_m=-width_m / 2 + (0.5 - beside) * across_m,
+        left_m=-width_m / 2 + (0.5 - left) * across_m,
         far_m=length_m / 2 - (0.5 - above) * down_m,
         pitch_m=(across_m, down_m),
     )
 
 
 def _step(shape: tuple[int, int], pitch_m: tuple[float, float]) -> int:
-    """Cells of the surface to one of the beacon's, along each side."""
+    """Return the number of surface cells in one cell of the beacon, along each side."""
     step = 1
     while np.prod([-(-cells // step) + 2 * _margin(step * pitch)
                    for cells, pitch in zip(shape, reversed(pitch_m), strict=True)]) > MOST_CELLS:  # fmt: skip
@@ -194,12 +202,15 @@ def _step(shape: tuple[int, int], pitch_m: tuple[float, float]) -> int:
 
 
 def _margin(pitch_m: float) -> int:
-    """Cells beyond the picture; of very large ones two, which the spline needs, of very small ones 256."""
+    """Return the margin in cells: at least 2, which the spline needs, and at most 256."""
     return min(max(2, int(np.ceil(MARGIN_M / pitch_m))), 256)
 
 
-def _coarse(cells: np.ndarray, step: int, pitch_m: tuple[float, float]) -> tuple[np.ndarray, int, int]:
-    """The part in cells of so many, each of which holds any of it; and how many were added above and to the left."""
+def _coarsen(cells: np.ndarray, step: int, pitch_m: tuple[float, float]) -> tuple[np.ndarray, int, int]:
+    """Return the part in blocks of step x step cells, with a margin, and the margins above and to the left.
+
+    A block belongs to the part if one of its cells does.
+    """
     across, down = (_margin(step * pitch) for pitch in pitch_m)
     rows, columns = cells.shape
     filled = np.pad(cells, ((0, -rows % step), (0, -columns % step)))
@@ -208,10 +219,11 @@ def _coarse(cells: np.ndarray, step: int, pitch_m: tuple[float, float]) -> tuple
 
 
 def _distance(cells: np.ndarray, across_m: float, down_m: float) -> Float64[np.ndarray, "h w"]:
-    """To the nearest cell of the part, metres, its ridges rounded; 0 on the part's cells and on those around it.
+    """Return the distance to the nearest cell of the part, metres, its ridges rounded.
 
-    A Gaussian lowers a distance at its ridges alone: elsewhere, it is as it was or lies above, and the less counts. As
-    those around the part are 0 as well, the spline is nothing wherever in a cell of the part the tip may be.
+    A Gaussian lowers a distance only at its ridges: elsewhere the result is equal or greater, and the lesser of both
+    counts. The distance is 0 on the cells around the part too, so that the spline is zero wherever in a cell of the
+    part the tip may be.
     """
     from scipy import ndimage
 
@@ -225,17 +237,14 @@ def _potential(distance_m: Float64[np.ndarray, "h w"]) -> Float32[np.ndarray, "h
     return np.ascontiguousarray(PULL_N * (np.hypot(distance_m, SOFT_M) - SOFT_M), np.float32)
 
 
-def _told(names: tuple[str, ...]) -> str:
-    """The parts with their names, or their numbers alone; few enough for a line."""
+def _list_parts(names: tuple[str, ...]) -> str:
+    """Return the parts with their names, or their numbers alone; few enough for a line."""
     named = [f"{number}: {quoted(name)}" for number, name in enumerate(names) if name]
     if not named:
         return f"0 to {len(names) - 1}, none of which has a name"
-    more = f" and {len(named) - MOST_TOLD} others" if len(named) > MOST_TOLD else ""
-    return ", ".join(named[:MOST_TOLD]) + more
+    more = f" and {len(named) - MOST_LISTED} others" if len(named) > MOST_LISTED else ""
+    return ", ".join(named[:MOST_LISTED]) + more
 
 
-MOST_TOLD = 20
-
-
-def _listed(numbers: list[int]) -> str:
-    return ", ".join(map(str, numbers))
+MOST_LISTED = 20
+"""Greatest number of parts in a message."""

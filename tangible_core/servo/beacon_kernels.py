@@ -1,8 +1,8 @@
-"""What a beacon does in a tick, compiled; `beacon` says what it is. Imports numba.
+"""A beacon's tick, compiled; `beacon` describes its pull. Imports numba.
 
-Its force joins the law's in the guard, by the guard's memory. Its potential is an account of its own there: what the
-hand is given on the way to the part is no energy that the loop owes, and what it gives on the way back is none that the
-law may spend. What sampling adds to that is observed as everything else.
+The pull is added to the law's force in the guard, through the guard's memory. Its potential has a separate account
+there: the energy that the hand receives on the way to the part is not a debt of the loop, and the energy that it gives
+on the way back is not a credit of the force law. What sampling adds is observed like any other energy.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
@@ -16,7 +16,7 @@ from ..data import TickFlag
 from . import beacon as at
 from .guard import layout
 from .guard.coupling import FASTEST_M_PER_S, WRITTEN
-from .guard.vectors import shortened
+from .guard.vectors import clip
 
 INTEGERS, FIELD = types.Array(int64, 1, "C"), types.Array(float32, 1, "C", readonly=True)
 FLAG, SHIFT = int(TickFlag.BEACON), at.BEACON_SHIFT
@@ -24,14 +24,14 @@ FLAG, SHIFT = int(TickFlag.BEACON), at.BEACON_SHIFT
 
 @inner(forceinline=True)
 def _weights(t):
-    """The three quadratic B-splines at t in -0.5..0.5 of the middle one, and their slopes."""
+    """Return the three quadratic B-splines at t in -0.5..0.5 of the middle one, and their slopes."""
     left, right = 0.5 - t, 0.5 + t
     return 0.5 * left * left, 0.75 - t * t, 0.5 * right * right, -left, -2.0 * t, right
 
 
 @inner(forceinline=True)
 def _node(u, count):
-    """The nearest node that has one on either side, how far it is, and 1, or 0 beyond the last ones."""
+    """Return the nearest inner node, the distance to it, and 1, or 0 beyond the outer nodes."""
     node = min(max(int(np.rint(min(max(u, 0.0), float(count)))), 1), count - 2)
     t = u - node
     return (node, t, 1.0) if -0.5 <= t <= 0.5 else (node, 0.5 if t > 0.0 else -0.5, 0.0)
@@ -39,7 +39,7 @@ def _node(u, count):
 
 @njit(types.UniTuple(float64, 3)(INTEGERS, WRITTEN, FIELD, float64, float64), **KERNEL)
 def potential(words, numbers, field, x, y):
-    """(U, U_x, U_y) in joules and newtons at a place; nothing where the grid does not fit the memory."""
+    """Return (U, U_x, U_y) in joules and newtons at a place; zeros if the grid does not fit the memory."""
     rows, columns = words[at.ROWS], words[at.COLUMNS]
     if rows < 3 or columns < 3 or rows > field.size or columns > field.size or rows * columns > field.size:
         return 0.0, 0.0, 0.0
@@ -61,32 +61,32 @@ def potential(words, numbers, field, x, y):
 
 @inner(forceinline=True)
 def _is_on(words, pressed):
-    """Whether a beacon is to be felt in this tick; a button that was pressed just now releases it for good."""
-    asked = words[at.ASKED]
-    if asked == 0 or asked == words[at.LET_GO]:
+    """Return True if a beacon acts in this tick; a button that was pressed just now ends the request."""
+    request = words[at.ASKED]
+    if request == 0 or request == words[at.LET_GO]:
         words[at.SEEN] = 0
         return False
     if pressed & words[at.BUTTONS]:
-        words[at.LET_GO], words[at.WHY], words[at.SEEN] = asked, at.BY_BUTTON, 0
+        words[at.LET_GO], words[at.WHY], words[at.SEEN] = request, at.BY_BUTTON, 0
         return False
     return True
 
 
 @inner(forceinline=True)
 def _settle(numbers, memory, x, y, u, elapsed_s):
-    """What the pull gave on the way here is the beacon's own, not what the loop owes; a leap is no way."""
+    """Take the work of the pull on the way to this place out of the loop's account; a jump does not count as a way."""
     dx, dy = x - numbers[at.X_M], y - numbers[at.Y_M]
     if dx * dx + dy * dy <= (FASTEST_M_PER_S * elapsed_s) ** 2:
-        share = numbers[at.RAMP] * memory[layout.RAMP] * memory[layout.SOFTNESS]
+        share = numbers[at.RAMP] * memory[layout.RAMP] * memory[layout.GAIN]
         memory[layout.ENERGY_J] += share * (numbers[at.U_J] - u)
     numbers[at.X_M], numbers[at.Y_M], numbers[at.U_J] = x, y, u
 
 
 @njit(int64(INTEGERS, WRITTEN, FIELD, WRITTEN, *[float64] * 5, int64), **KERNEL)
 def pull(words, numbers, field, memory, period_s, x, y, vx, vy, buttons):
-    """Leave the beacon's force at a fresh position in the guard's memory, nothing where there is none; flags.
+    """Write the beacon's force at a fresh position into the guard's memory, zero if no beacon is on; return the flags.
 
-    Called once a tick, before the guard; at the place that the law is asked for. buttons: of the device.
+    Called once a tick, before the guard, with the place for the force law and the buttons of the device.
     """
     pressed = buttons & ~words[at.HELD]
     words[at.HELD] = buttons
@@ -95,7 +95,7 @@ def pull(words, numbers, field, memory, period_s, x, y, vx, vy, buttons):
         return 0
     words[at.TICKS] += 1
     flags = FLAG | words[at.PART] << SHIFT
-    if words[at.SEEN] != words[at.ASKED]:  # its grid is read from the next tick on, when it surely is whole
+    if words[at.SEEN] != words[at.ASKED]:  # its grid is read from the next tick on, when it is certainly complete
         words[at.SEEN] = words[at.ASKED]
         numbers[at.RAMP], numbers[at.X_M] = 0.0, np.nan
         return flags
@@ -109,8 +109,8 @@ def pull(words, numbers, field, memory, period_s, x, y, vx, vy, buttons):
     numbers[at.RAMP] = share = min(numbers[at.RAMP] + period_s / at.RAMP_S, 1.0)
     steep = np.sqrt(ux * ux + uy * uy)
     brake = at.DAMPING_N_S_PER_M * min(steep / (at.BRAKED_FROM * at.PULL_N), 1.0)
-    bx, by, _, _ = shortened(brake * vx, brake * vy, 0.0, at.MOST_N - at.PULL_N)
-    fx, fy, _, _ = shortened(-share * (ux + bx), -share * (uy + by), 0.0, at.MOST_N)
+    bx, by, _, _ = clip(brake * vx, brake * vy, 0.0, at.MOST_N - at.PULL_N)
+    fx, fy, _, _ = clip(-share * (ux + bx), -share * (uy + by), 0.0, at.MOST_N)
     memory[layout.PULL], memory[layout.PULL + 1] = fx, fy
     memory[layout.PULL_STIFFNESS] = share * at.STIFFNESS_N_PER_M
     return flags

@@ -1,6 +1,7 @@
-"""The process of a force loop, told what to do over its standard input.
+"""The process of a force loop, which takes its commands from standard input.
 
-The loop runs in a thread of its own, so that this one hears commands and signals while compiled code holds no lock.
+The loop runs in its own thread, so that the main thread can take commands and signals while compiled code runs without
+Python's lock.
 """
 
 import gc
@@ -14,23 +15,25 @@ from typing import IO, final
 
 from ..errors import DeviceError
 from ..plugins.interfaces import Link, Touch, touch_of
-from . import loop, parcel, priority
+from . import parcel
+from .framing import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
 from .ring import STOP, SWAP, Ring
-from .wire import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
+from .ticks import loop, priority
 
-TERMINATED = "the process was asked to end"
+TERMINATED = "the process received a signal to end"
 ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT")
-"""From `kill`, from a terminal that is closed, from Ctrl-\\: sent to the loop as well, they must not end it at once."""
+"""Signals of `kill`, of a closed terminal, and of Ctrl-\\: they reach the loop too, but must not end it at once."""
 PAUSED = "the program was paused from the keyboard"
 SWITCH_S = 1e-4
-"""After so long a thread that holds Python's lock hands it to one that waits: the loop, where it needs Python."""
+"""Time after which a thread passes Python's lock to a waiting one, such as a loop that needs Python."""
 LOOK_EVERY_S, LOOKS = 0.05, 10
-"""A loop that is to end and has not after so many looks is stuck in a law or a device, and is left behind."""
+"""Interval and number of checks for the end of a loop; if it still runs then, it is stuck in its force law or its
+device, and is abandoned."""
 
 
 @final
 class Child:
-    """One session: a device, and the scenes felt on it one after the other."""
+    """The server of one host: a device, and its scenes one after the other."""
 
     def __init__(self, commands: IO[bytes], replies: IO[bytes]) -> None:
         self._commands, self._replies = commands, replies
@@ -40,18 +43,18 @@ class Child:
         self._taken = threading.Event()
 
     def main(self) -> None:
-        """Until the host, a signal, the device or the time ends it."""
+        """Run until the host, a signal, the device or the end of the time stops the loop."""
         try:
             start = receive(self._commands)
             if isinstance(start, Start):
-                self._feel(start)
-        except BaseException as error:  # noqa: BLE001 - whatever a plugin raises is for the host to say
-            said = sendable(error)
-            self._reply(End(str(said) if isinstance(said, DeviceError) else "", said))
+                self._open(start)
+        except BaseException as error:  # noqa: BLE001 - the host reports whatever a plugin raises
+            failure = sendable(error)
+            self._reply(End(str(failure) if isinstance(failure, DeviceError) else "", failure))
         else:
             self._reply(End(self._stopped))
 
-    def _feel(self, start: Start) -> None:
+    def _open(self, start: Start) -> None:
         self._ring = ring = Ring.attach(Path(start.ring))
         if self._stopped:
             self.stop()
@@ -63,7 +66,7 @@ class Child:
 
     def _serve(self, ring: Ring, link: Link, touch: Touch, start: Start) -> None:
         self._next = loop.prepare(link, touch, ring, start.settings)
-        gc.freeze()  # what is there now stays, and is not looked at when a scene that was felt is collected
+        gc.freeze()  # what exists now stays, and is skipped when an earlier scene is collected
         failures: list[BaseException] = []
         thread = threading.Thread(target=self._tick, args=(ring, failures), daemon=True)
         thread.start()
@@ -79,7 +82,7 @@ class Child:
 
     def _tick(self, ring: Ring, failures: list[BaseException]) -> None:
         try:
-            real_time, granted = priority.ask()
+            real_time, granted = priority.request()
             loop.start_clock(ring.header, real_time)
             self._granted = granted
             self._reply(StartReply(f"{granted}; {self._next.how}"))
@@ -88,7 +91,7 @@ class Child:
                 loop.take_over(ring)
                 self._taken.set()
                 self._next.run()
-        except BaseException as error:  # noqa: BLE001 - the main thread hands it on, once the force is zero
+        except BaseException as error:  # noqa: BLE001 - the main thread raises it again, once the force is zero
             failures.append(error)
         finally:
             ring.header[STOP] = 1
@@ -98,18 +101,18 @@ class Child:
         while isinstance(message := receive(self._commands), Swap):
             self._swap(ring, link, message)
             gc.collect()
-        self.stop()  # the program that started the loop is done with it, or gone
+        self.stop()  # the program that started the loop closed the pipe, or is gone
 
     def _swap(self, ring: Ring, link: Link, message: Swap) -> None:
         try:
             touch = touch_of(parcel.unpack(Path(message.scene)))
             self._next = loop.prepare(link, touch, ring, message.settings)
-        except BaseException as error:  # noqa: BLE001 - the scene that is felt stays
+        except BaseException as error:  # noqa: BLE001 - the current scene stays
             self._reply(Refusal(sendable(error)))
             return
         self._taken.clear()
         ring.header[SWAP] = 1
-        if not ring.header[STOP]:  # looked at after clearing: the loop sets both when it ends, in this order
+        if not ring.header[STOP]:  # read after clearing: the loop sets both when it ends, in this order
             self._taken.wait()
         if not ring.header[STOP]:
             self._reply(SwapReply(f"{self._granted}; {self._next.how}"))
@@ -121,22 +124,22 @@ class Child:
             self._ring.header[STOP] = 1
 
     def _reply(self, message: object) -> None:
-        with self._lock, suppress(OSError):  # a host that is gone hears nothing any more
+        with self._lock, suppress(OSError):  # the host may be gone
             send(self._replies, message)
 
 
 def main() -> None:
-    """The process. What a plugin prints goes to standard error."""
+    """Run the process; the output of plugins goes to standard error."""
     replies = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the host too, which says what is to be done
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the host too, which decides
     sys.setswitchinterval(SWITCH_S)
     commands = open(0, "rb", buffering=0)  # noqa: SIM115 - a buffer's lock would outlive the thread that waits
     child = Child(commands, replies)
     for number in (getattr(signal, name) for name in ENDING if hasattr(signal, name)):
-        if signal.getsignal(number) != signal.SIG_IGN:  # as nohup has it: the program goes on, and so does its loop
+        if signal.getsignal(number) != signal.SIG_IGN:  # nohup ignores it: the program goes on, and so does its loop
             signal.signal(number, lambda _number, _frame: child.stop(TERMINATED))
-    if hasattr(signal, "SIGTSTP"):  # Ctrl-Z: a process that stands still would leave its force on
+    if hasattr(signal, "SIGTSTP"):  # Ctrl-Z: a suspended process would leave its force on
         signal.signal(signal.SIGTSTP, lambda _number, _frame: child.stop(PAUSED))
     gc.disable()  # a collection takes longer than a tick
     child.main()

@@ -1,4 +1,4 @@
-"""Objects with large arrays, passed to another process through shared memory: there, nothing is copied."""
+"""Parcels: objects with large arrays, passed to another process through shared memory without a copy there."""
 
 import mmap
 import os
@@ -13,9 +13,9 @@ from .ring import ALIGN, NAME, PREFIX, shared_folder
 
 
 def pack(thing: Any) -> Path:
-    """Write a thing to a file that `unpack` takes away again.
+    """Write an object to a file, which `unpack` deletes again; return the file's path.
 
-    Raises: DeviceError if there is no room, or if the thing cannot be sent to another process.
+    Raises: DeviceError if there is no room, or if the object cannot be sent to another process.
     """
     buffers: list[pickle.PickleBuffer] = []
     try:
@@ -34,43 +34,43 @@ def pack(thing: Any) -> Path:
                 file.write(bytes(-file.tell() % ALIGN))
     except OSError as error:
         Path(name).unlink(missing_ok=True)
-        raise DeviceError(f"{folder}: no room to hand over the scene: {error.strerror or error}") from error
+        raise DeviceError(f"{folder}: no room to pass on the scene: {error.strerror or error}") from error
     return Path(name)
 
 
-def adopted(path: Path) -> Path:
-    """The file of `pack` under a name of this process: it is swept away when this process is gone, not its maker.
+def adopt(path: Path) -> Path:
+    """Rename a file of `pack` to this process: it is deleted as stale once this process is gone, not its maker.
 
-    Raises: DeviceError if it is not there any more, or is no such file.
+    Raises: DeviceError if the file does not exist any more, or is not a parcel.
     """
     named = NAME.fullmatch(path.name)
     if named is None or named[2] != "parcel":
-        raise DeviceError(f"{path}: is not the file of a packed scene; give the one that `packed` made")
+        raise DeviceError(f"{path}: is not the file of a packed scene; give the file that `pack_touch` made")
     mine = path.with_name(f"{PREFIX}{os.getpid()}{path.name[named.end(1) :]}")
     try:
         return path.rename(mine)
     except OSError as error:
-        raise DeviceError(f"{path}: the packed scene is not there ({error.strerror}); make it again") from error
+        raise DeviceError(f"{path}: the packed scene is missing ({error.strerror}); make it again") from error
 
 
 def unpack(path: Path) -> Any:
-    """The thing in a file of `pack`; its arrays are the file's own memory, which lasts as long as they do."""
-    mapped = _mapped(path)
+    """Load the object from a file of `pack` and delete the file; its memory lasts as long as the object's arrays."""
+    mapped = _map(path)
     path.unlink()
-    return _thing(mapped)
+    return _load(mapped)
 
 
-def shared(path: Path) -> Any:
-    """The thing in a file of `pack`, which stays there: its arrays are the memory of whoever unpacks it as well."""
-    return _thing(_mapped(path))
+def share(path: Path) -> Any:
+    """Load the object from a file of `pack`, which stays: the process that unpacks it later shares its arrays."""
+    return _load(_map(path))
 
 
-def _mapped(path: Path) -> memoryview:
+def _map(path: Path) -> memoryview:
     with path.open("r+b") as file:
         return memoryview(mmap.mmap(file.fileno(), 0))
 
 
-def _thing(mapped: memoryview) -> Any:
+def _load(mapped: memoryview) -> Any:
     parts: list[memoryview] = []
     at = 0
     while at < len(mapped):

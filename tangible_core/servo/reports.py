@@ -1,4 +1,4 @@
-"""What a ring says of its loop."""
+"""Reports of a force loop, made of its ring."""
 
 import math
 from bisect import bisect_left
@@ -16,13 +16,15 @@ from .guard import safety
 from .ring import LONGEST_S, MOST_LATE_S, PEAK_N, WORK_J, Ring
 
 AT = {name: column for column, name in enumerate(TICK_COLUMNS)}
+"""Column of each name in a row of ticks."""
 NOTHING_YET = np.array([np.nan if name == "frame" else 0.0 for name in TICK_COLUMNS])
+"""The row of a loop before its first tick."""
 Counts = Int64[np.ndarray, "n"]
 """A histogram of a ring."""
 
 
-class Counted(NamedTuple):
-    """What a loop has counted, or several that followed each other in one session."""
+class LoopTotals(NamedTuple):
+    """The counts, sums and histograms of a loop, or of several consecutive loops of one session."""
 
     ticks: int
     overruns: int
@@ -37,7 +39,7 @@ class Counted(NamedTuple):
 
     @classmethod
     def of(cls, ring: Ring) -> Self:
-        """By the loop that writes to this ring, until now."""
+        """Return the totals so far of the loop that writes to this ring."""
         return cls(
             ticks=ring.count,
             overruns=ring.overruns,
@@ -48,11 +50,11 @@ class Counted(NamedTuple):
             late=ring.late.copy(),
             period=ring.period.copy(),
             contact=ring.contact.copy(),
-            flagged=_flagged(ring),
+            flagged=_flag_counts(ring),
         )
 
-    def then(self, later: Self) -> Self:
-        """Both."""
+    def plus(self, later: Self) -> Self:
+        """Return the totals of both."""
         return self._replace(
             ticks=self.ticks + later.ticks,
             overruns=self.overruns + later.overruns,
@@ -67,29 +69,29 @@ class Counted(NamedTuple):
         )
 
 
-def report(ring: Ring, stopped: str = "", before: Counted | None = None, since_s: float = 0.0) -> ServoReport:
-    """How the loop that writes to this ring is doing.
+def report(ring: Ring, stopped: str = "", before: LoopTotals | None = None, since_s: float = 0.0) -> ServoReport:
+    """Return a report of the loop that writes to this ring.
 
-    before: what loops before it counted in the same session, which began since_s before this one's clock.
+    before: totals of the loops before it in the same session, which began since_s before this loop's clock.
     """
     rows, _ = ring.since(ring.count - 1)
     rows[:, AT["time_s"]] += since_s
-    counted = Counted.of(ring)
-    found = counted if before is None else before.then(counted)
-    touching = int(found.contact.sum())
+    totals = LoopTotals.of(ring)
+    totals = totals if before is None else before.plus(totals)
+    touching = int(totals.contact.sum())
     return replace(
-        so_far(rows, found.ticks, found.peak_force_n, found.work_j, stopped),
-        period_us=spread(found.period, found.longest_s),
-        late_us=spread(found.late, found.most_late_s),
-        overruns=found.overruns,
-        flagged=dict(found.flagged),
-        contact_share=min(1.0, touching / max(1, found.ticks)),
-        median_contact_force_n=_median_n(found.contact, touching),
+        brief_report(rows, totals.ticks, totals.peak_force_n, totals.work_j, stopped),
+        period_us=spread(totals.period, totals.longest_s),
+        late_us=spread(totals.late, totals.most_late_s),
+        overruns=totals.overruns,
+        flagged=dict(totals.flagged),
+        contact_share=min(1.0, touching / max(1, totals.ticks)),
+        median_contact_force_n=_median_n(totals.contact, touching),
     )
 
 
-def _flagged(ring: Ring) -> Counter[str]:
-    """Ticks by the flags of the guard, and by that of a beacon."""
+def _flag_counts(ring: Ring) -> Counter[str]:
+    """Count the ticks with each flag of the guard, and with a beacon."""
     flags = safety.counts(ring.guard)
     if pulled := int(ring.beacon.words[TICKS]):
         flags[TickFlag.BEACON] = pulled
@@ -97,14 +99,14 @@ def _flagged(ring: Ring) -> Counter[str]:
 
 
 def _median_n(contact: Counts, touching: int) -> float:
-    """The middle of the millinewton that half of the ticks with a force are in or under."""
+    """Return the median force: the middle of the bin, 1 mN wide, that half of the ticks are in or under."""
     return (int(np.searchsorted(np.cumsum(contact), touching / 2)) + 0.5) / 1000 if touching else 0.0
 
 
-def so_far(
+def brief_report(
     rows: Float64[np.ndarray, "n columns"], ticks: int, peak_force_n: float, work_j: float, stopped: str
 ) -> ServoReport:
-    """After so many ticks, the last of which is the last of these rows; of the loop's time nothing is said."""
+    """Return a report without the loop's timing; the last of these rows is the last of the ticks."""
     last = rows[-1] if len(rows) else NOTHING_YET
     time_s, buttons = float(last[AT["time_s"]]), int(last[AT["buttons"]])
     return ServoReport(
@@ -121,7 +123,7 @@ def so_far(
 
 
 def spread(counts: np.ndarray, most_s: float) -> Spread:
-    """Quantiles of a histogram of microseconds: the smallest bin that so many are in or under.
+    """Return the quantiles of a histogram of microseconds: the smallest bin that holds, with those below, the share.
 
     >>> spread(np.array([0, 90, 9, 1]), 3e-6)
     Spread(p50=1.0, p99=2.0, p999=3.0, most=3.0)

@@ -1,24 +1,24 @@
-"""The memory that a force loop shares with whoever watches it: a file of fixed layout, mapped by both.
+"""The ring: memory that a force loop shares with its observers, a file of fixed layout, mapped by all of them.
 
 All numbers are in the machine's own byte order, one section after the other, each starting at a multiple of 64 bytes:
 
 | section | type | meaning |
 |---|---|---|
 | header | int64 (64,) | the words named below |
-| sums | float64 (64,) | those named below |
-| guard | float64 (128,) | what the guard remembers and has counted (`guard`) |
-| late | int64 (4096,) | ticks that began so many microseconds late; the last for all that were later |
-| period | int64 (4096,) | ticks that came so many microseconds after the one before |
-| contact | int64 (32768,) | ticks with a force, by whole millinewtons of it; the last for all that were stronger |
-| stamps | int64 (n,) | number of the tick that lies in each slot, -1 while it is written |
-| ticks | float64 (n, 17) | `data.TICK_COLUMNS`; tick k lies in slot k modulo n |
-| asked | int64 (16,) | which beacon is asked for, and which is felt (`beacon`) |
-| pull | float64 (16,) | where the beacon's grid lies, and how far its pull has faded in (`beacon`) |
-| field | float32 (1048576,) | the beacon's potential; without memory of its own until one is asked for |
+| sums | float64 (64,) | the sums named below |
+| guard | float64 (128,) | memory and counts of the guard (`guard`) |
+| late | int64 (4096,) | histogram of lateness in microseconds; the last bin holds all later ticks |
+| period | int64 (4096,) | histogram of the time since the tick before, in microseconds |
+| contact | int64 (32768,) | histogram of forces above zero in millinewtons; the last bin holds all stronger forces |
+| stamps | int64 (n,) | number of the tick in each slot, -1 while it is written |
+| ticks | float64 (n, 17) | `data.TICK_COLUMNS`; tick k is in slot k modulo n |
+| asked | int64 (16,) | the requested beacon and the active one (`beacon`) |
+| pull | float64 (16,) | the place of the beacon's grid, and how far its pull has faded in (`beacon`) |
+| field | float32 (1048576,) | the beacon's potential; without memory until a beacon is requested |
 
-The loop alone writes, but for the word STOP, which anybody may set and nobody clears, and what asks for a beacon, which
-the program writes that started the loop. Who reads a slot looks at its
-stamp before and after: if it is not the same, the slot was overwritten meanwhile, and is read again or given up.
+Only the loop writes, with two exceptions: the word STOP, which anybody may set and nobody clears, and the request for a
+beacon, which the program writes that started the loop. A reader of a slot compares its stamp before and after: if it
+differs, the slot was overwritten meanwhile, and is read again or given up.
 """
 
 import mmap
@@ -40,7 +40,7 @@ from ..runtime.child_process import is_alive
 from .beacon import HELD, MOST_CELLS, BeaconMemory
 
 MAGIC, LAYOUT = 0x54414E47_49424C45, 5
-"""The word that begins every ring, and the version of this layout."""
+"""The first word of every ring, and the version of this layout."""
 (
     IS_MAGIC,
     IS_LAYOUT,
@@ -58,20 +58,23 @@ MAGIC, LAYOUT = 0x54414E47_49424C45, 5
     MARKS,
     SWAP,
 ) = range(15)
-"""Words of the header, after the first two: ticks that it has room for; ticks so far; 1 when the loop is to end, or
-has; the period; when it started, and when the next tick is due, in nanoseconds of the monotonic clock; periods that had
-no tick; how long before a tick the loop wakes; after how many ticks it ends; when the last one began; whether it may
-wait for a tick awake; flags for the next tick; 1 when another scene is ready to be felt."""
+"""Words of the header, after the first two: number of slots; number of ticks so far; 1 if the loop is to end, or has
+ended; the period; the time of its first tick and of the next one, in nanoseconds of the monotonic clock; number of
+periods without a tick; lead with which the loop wakes before a tick; number of ticks after which it ends; time of the
+last tick; 1 if it may spin before a tick; flags for the next tick; 1 if another scene is ready."""
 PEAK_N, WORK_J, MOST_LATE_S, LONGEST_S = range(4)
-"""Where the sums stand: greatest force; work done on the hand; the latest tick; the longest period."""
+"""Indices of the sums: greatest force; work on the hand; greatest lateness of a tick; longest period."""
 WIDEST_US = 4096
+"""Number of bins of `late` and `period`, 1 us each."""
 STRONGEST_MN = 32768
+"""Number of bins of `contact`, 1 mN each."""
 ALIGN = 64
+"""Alignment of the sections, bytes: a cache line."""
 
 
 @final
 class Ring:
-    """The sections of a ring's file as arrays; `create` makes the file, `attach` finds it."""
+    """The sections of a ring's file as arrays; `create` makes the file, `attach` opens it."""
 
     def __init__(self, path: Path, file: mmap.mmap, slots: int) -> None:
         self.path = path
@@ -81,7 +84,7 @@ class Ring:
         arrays: dict[str, np.ndarray] = {}
         for name, (kind, shape) in sections.items():
             arrays[name] = np.frombuffer(file, kind, int(np.prod(shape)), at).reshape(shape)
-            at += _padded(arrays[name].nbytes)
+            at += _padded_size(arrays[name].nbytes)
         self.header, self.sums, self.guard = arrays["header"], arrays["sums"], arrays["guard"]
         self.late, self.period, self.contact = arrays["late"], arrays["period"], arrays["contact"]
         self.stamps, self.ticks = arrays["stamps"], arrays["ticks"]
@@ -89,8 +92,8 @@ class Ring:
 
     @classmethod
     def create(cls, slots: int = 8192) -> Self:
-        """A new ring of zeros, for so many ticks. Raises: DeviceError if there is no room for it."""
-        _sweep()
+        """Create a ring of zeros, with slots for this number of ticks. Raises: DeviceError if there is no room."""
+        _delete_stale_files()
         folder = shared_folder()
         try:
             number, name = tempfile.mkstemp(".ring", f"{PREFIX}{os.getpid()}-", folder)
@@ -105,7 +108,7 @@ class Ring:
 
     @classmethod
     def attach(cls, path: Path) -> Self:
-        """The ring in this file. Raises: DeviceError if it is none, or of another layout."""
+        """Open the ring in this file. Raises: DeviceError if the file is not a ring, or has another layout."""
         try:
             with path.open("r+b") as file:
                 mapped = mmap.mmap(file.fileno(), 0)
@@ -116,8 +119,8 @@ class Ring:
             raise DeviceError(f"{path}: is not a ring of layout {LAYOUT}; watch it with the version that wrote it")
         return cls(path, mapped, slots)
 
-    def room_for_a_beacon(self) -> None:
-        """Have memory under the field: a file without it ends whoever writes there when the memory is full.
+    def allocate_beacon(self) -> None:
+        """Allocate memory for the field: otherwise a process that writes there while memory is full would be killed.
 
         Raises: DeviceError if there is no room.
         """
@@ -131,43 +134,43 @@ class Ring:
             raise DeviceError(f"{self.path.parent}: no room for a beacon: {error.strerror or error}") from error
 
     def remove(self) -> None:
-        """Take the file away; who has it mapped may go on reading."""
+        """Delete the file; processes that have mapped it may go on reading."""
         self.path.unlink(missing_ok=True)
 
     @property
     def count(self) -> int:
-        """Ticks so far, which is the number of the next one."""
+        """The number of ticks so far, and so the number of the next one."""
         return int(self.header[COUNT])
 
     @property
     def start_ns(self) -> int:
-        """When the first tick was due, in nanoseconds of the monotonic clock; a tick's `time_s` counts from then."""
+        """The time at which the first tick was due, nanoseconds of the monotonic clock; origin of a tick's `time_s`."""
         return int(self.header[START_NS])
 
     @property
     def overruns(self) -> int:
-        """Periods that had no tick."""
+        """The number of periods without a tick."""
         return int(self.header[OVERRUNS])
 
     def latest(self) -> Float64[np.ndarray, "c"] | None:
-        """The newest tick, a row of `TICK_COLUMNS`; None before the first, and for one overwritten while it is read."""
+        """Return the newest tick, a row of `TICK_COLUMNS`; None before the first, or if overwritten during the read."""
         number = self.count - 1
         if number < 0:
             return None
         slot = number % len(self.stamps)
         row = self.ticks[slot].copy()
-        return row if self.stamps[slot] == number else None  # as in `since`: a look afterwards is enough
+        return row if self.stamps[slot] == number else None  # as in `since`, reading the stamp afterwards is enough
 
     def since(self, first: int) -> tuple[Float64[np.ndarray, "n c"], int]:
-        """Ticks from number `first` on, those still there, and the number of the next one to come.
+        """Return the ticks from number `first` on that still exist, and the number of the next tick.
 
-        If the loop has overwritten some of them there are fewer rows than numbers.
+        If the loop has overwritten some of the ticks, there are fewer rows than numbers.
         """
         count = self.count
         numbers = np.arange(max(first, count - len(self.stamps), 0), count)
         slots = numbers % len(self.stamps)
-        # Ticks below COUNT are stamped, and no slot gets a stamp back that it had: the look after would do. The one
-        # before is the rule that the table above gives to other readers, and costs nothing.
+        # Ticks below COUNT are stamped, and no slot ever gets an earlier stamp again, so reading the stamp afterwards
+        # would do. Reading it before too is the rule that the table above gives to other readers, and costs nothing.
         before = self.stamps[slots]
         rows = self.ticks[slots]
         whole = (before == numbers) & (self.stamps[slots] == numbers)
@@ -175,7 +178,7 @@ class Ring:
 
 
 def shared_folder() -> Path:
-    """$TANGIBLE_SHARED_DIR, or where files are memory alone, if there is such a place: a disk would stop the loop."""
+    """Return $TANGIBLE_SHARED_DIR, or a folder in memory if the system has one, as a disk would stall the loop."""
     if named := os.environ.get("TANGIBLE_SHARED_DIR"):
         return Path(named)
     memory = Path("/dev/shm")
@@ -184,7 +187,7 @@ def shared_folder() -> Path:
 
 PREFIX = "tangible-"
 NAME = re.compile(rf"{PREFIX}([0-9]{{1,9}})-\w+\.(ring|parcel)")
-"""Of a file there: the process that made it stands in it."""
+"""Pattern of the name of a shared file, which contains the ID of the process that made it."""
 
 
 def _sections(slots: int) -> dict[str, tuple[type, tuple[int, ...]]]:
@@ -203,25 +206,25 @@ def _sections(slots: int) -> dict[str, tuple[type, tuple[int, ...]]]:
     }
 
 
-def _padded(size: int) -> int:
+def _padded_size(size: int) -> int:
     return -(-size // ALIGN) * ALIGN
 
 
 def _size(slots: int) -> int:
-    return sum(_padded(np.dtype(kind).itemsize * int(np.prod(shape))) for kind, shape in _sections(slots).values())
+    return sum(_padded_size(np.dtype(kind).itemsize * int(np.prod(shape))) for kind, shape in _sections(slots).values())
 
 
-def _sweep() -> None:
-    """Take away the files of this user's processes that were killed; what cannot be looked at or removed stays."""
+def _delete_stale_files() -> None:
+    """Delete the files of this user's killed processes, except files that cannot be examined or deleted."""
     with suppress(OSError):
         for path in shared_folder().glob(f"{PREFIX}*"):
             with suppress(OSError):
-                if _left_behind(path):
+                if _is_stale(path):
                     path.unlink()
 
 
-def _left_behind(path: Path) -> bool:
-    """Whether this file was made by `Ring.create` or `parcel.pack`, for this user, in a process that is gone."""
+def _is_stale(path: Path) -> bool:
+    """Return True for a file of `Ring.create` or `parcel.pack` by a process of this user that is gone."""
     named = NAME.fullmatch(path.name)
     about = path.lstat()
     ours = hasattr(os, "getuid") and about.st_uid == os.getuid() and stat.S_ISREG(about.st_mode)

@@ -17,7 +17,7 @@ from ..plugins.interfaces import Film, HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import OVER, Beacon, Safety, Servo
 from ..servo.beacon import BUTTON
-from ..servo.reports import Counted, report, so_far
+from ..servo.reports import LoopTotals, brief_report, report
 from .film import Player, Reliefs
 from .live import LOOK_EVERY_S, attended, ignored
 from .parts_felt import with_part
@@ -96,8 +96,8 @@ class _Session:
         """When the first tick of all was due; 0 before there was one."""
         self._since_s = 0.0
         """From then until the first tick of the loop that runs."""
-        self._before: Counted | None = None
-        self._last = so_far(np.empty((0, len(TICK_COLUMNS))), 0, 0.0, 0.0, "")
+        self._before: LoopTotals | None = None
+        self._last = brief_report(np.empty((0, len(TICK_COLUMNS))), 0, 0.0, 0.0, "")
         self._row: np.ndarray | None = None
         self._told, self._pause_s = "", FIRST_PAUSE_S
         self._player: Player | None = None
@@ -129,12 +129,12 @@ class _Session:
             try:
                 attended(servo, partial(self._tell, servo), self._keep, self._started, look)
             except DeviceError as error:
-                if self._on_wait is None or not servo.lost:
+                if self._on_wait is None or not servo.device_lost:
                     raise
                 return str(error)
             finally:
                 self._stand()
-        if self._on_wait is None or not servo.lost:
+        if self._on_wait is None or not servo.device_lost:
             return None
         self._let_go(servo)
         return self._last.stopped
@@ -211,8 +211,8 @@ class _Session:
     def _let_go(self, servo: Servo) -> None:
         """What this loop counted is kept, and the recording says that no force is left."""
         self._look_at_beacon(servo)
-        counted = Counted.of(servo.ring)
-        self._before = counted if self._before is None else self._before.then(counted)
+        counted = LoopTotals.of(servo.ring)
+        self._before = counted if self._before is None else self._before.plus(counted)
         if self._row is not None:
             self._row[ARRAYS["time_s"]] += PERIOD_S
             self._row[ARRAYS["force_n"]], self._row[ARRAYS["flags"]] = 0.0, float(TickFlag.STALE)

@@ -16,10 +16,9 @@ from ..plugins.interfaces import Film, HapticDevice, Link, Touch, touch_of
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Beacon, Safety
 from ..servo.beacon import BeaconMemory
-from ..servo.guard.guarded import Guarded, guarded
 from ..servo.guard.stiffness import stiffness_of
-from ..servo.pulling import pulling
-from ..servo.reports import so_far
+from ..servo.reports import brief_report
+from ..servo.ticks.python_tick import GuardedForce, guard_touch
 from .recording import INTERRUPTED, STOPPED, Recording
 from .replay import proxy_of
 
@@ -56,13 +55,13 @@ def run_simulated(
     check_positive("seconds", seconds)
     touch, spec = touch_of(touch), device.spec()
     settings, memory = (limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m)
-    pull = None if beacon is None else pulling(BeaconMemory.of(beacon).arrays, memory)
-    allowed = guarded(touch, settings, memory, pull)
+    pull = None if beacon is None else BeaconMemory.of(beacon).arrays
+    allowed_force = guard_touch(touch, settings, memory, pull)
     tape = _Tape(touch, on_report or _ignore)
     link = device.open()
     try:
         with stoppable(stop), link:
-            _feel(allowed, link, seconds, tape, frames or _ignore)
+            _feel(allowed_force, link, seconds, tape, frames or _ignore)
     except DeviceError as error:  # also when the device is gone before its force could be made zero
         tape.stopped = tape.stopped or str(error)
     if tape.stopped:
@@ -79,14 +78,16 @@ def run_simulated(
     return recording
 
 
-def _feel(allowed: Guarded, link: Link, seconds: float, tape: "_Tape", frames: Callable[[float], None]) -> None:
+def _feel(
+    allowed_force: GuardedForce, link: Link, seconds: float, tape: "_Tape", frames: Callable[[float], None]
+) -> None:
     """Tick until the time is over; a cause to end early is left in tape.stopped."""
     try:
         state, period_s = link.read(), FIRST_S
         start_s = state.time_s
         while not tape.stopped:
             frames(state.time_s - start_s)
-            force, flags = allowed(state, period_s)
+            force, flags = allowed_force(state, period_s)
             link.write(force)
             tape.add(state, link.applied, flags)
             last_s, state = state.time_s, link.read()
@@ -139,7 +140,7 @@ class _Tape:
     def report(self, stopped: str) -> None:
         """Say how it goes."""
         last = np.array(self._numbers[-len(TICK_COLUMNS) :]).reshape(-1, len(TICK_COLUMNS))
-        self._on_report(so_far(last, self.ticks, self._peak_n, self._work_j, stopped))
+        self._on_report(brief_report(last, self.ticks, self._peak_n, self._work_j, stopped))
 
     def recording(self) -> Recording:
         """All of it."""

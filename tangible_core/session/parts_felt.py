@@ -85,7 +85,7 @@ def materials_text(surface: HapticSurface) -> str:
 
 def names_in(configuration: str) -> str:
     """`names_text` of the parts that the text of a pipeline file names; empty where it is none that can be read."""
-    from ..files.source import parse_source, plain
+    from ..files.yaml.source import parse_source, plain
 
     try:
         parts: Any = plain(parse_source(configuration, Path(), "a mapping", empty=True).tree).get("parts")

@@ -1,9 +1,9 @@
-"""The conformance kit: what every method keeps, run against yours.
+"""The conformance kit: checks that every method must pass, run on yours.
 
     from tangible_core.testing import conforms
     test_mine = conforms("depth", "mine")
 
-is a whole test module. `scenes` holds the analytic scenes the checks use, for tests of your own.
+is a whole test module. `synthetic.scenes` has the analytic scenes of the checks, for your own tests.
 """
 
 from .checks import Check as Check

@@ -1,4 +1,4 @@
-"""What a check is, and the words that checks are written in."""
+"""The type of a check, and the functions that checks are written with."""
 
 from collections.abc import Callable
 from typing import Any
@@ -6,27 +6,27 @@ from typing import Any
 from ..errors import TangibleError
 
 Check = Callable[[Any], None]
-"""A function that raises CheckFailure when its subject does not keep what the docstring demands."""
+"""A function that raises CheckFailure if a method does not meet the demand of the function's docstring."""
 
 
 class CheckFailure(AssertionError):
-    """A method does not keep what its kind promises."""
+    """A demand of the kit that a method does not meet."""
 
 
-def demand(kept: Any, otherwise: str) -> None:
-    """Fail a check, in words, unless the demand is kept.
+def demand(met: Any, otherwise: str) -> None:
+    """Raise CheckFailure with the message `otherwise` unless the demand is met.
 
     >>> demand(1 + 1 == 3, "one and one make 2")
     Traceback (most recent call last):
     tangible_core.testing.checks.CheckFailure: one and one make 2
     """
     __tracebackhide__ = True  # pytest then shows the check, not this line
-    if not kept:
+    if not met:
         raise CheckFailure(otherwise)
 
 
 def refuses(error: type[TangibleError], what: str, attempt: Callable[[], object]) -> None:
-    """Demand that an attempt raises this error; any other that it raises goes through."""
+    """Demand that an attempt raises this error; another error that it raises is passed on."""
     __tracebackhide__ = True
     try:
         attempt()

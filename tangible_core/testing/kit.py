@@ -1,4 +1,4 @@
-"""Every check of a kind, run one by one: by pytest, or by `tangible check`."""
+"""Run every check of a kind one by one: by pytest, or by `tangible check`."""
 
 import logging
 import os
@@ -10,72 +10,61 @@ from typing import Any, NamedTuple, cast
 from ..errors import BrokenMethod, DeviceAbsent, ModelAbsent, TangibleError, UnknownMethod, did_you_mean
 from ..plugins.interfaces import HapticDevice
 from ..plugins.registry import Registry, default_registry
-from . import (
-    checks_depth,
-    checks_device,
-    checks_export,
-    checks_film,
-    checks_listing,
-    checks_options,
-    checks_render,
-    checks_texture,
-    checks_touch,
-)
 from .checks import Check, CheckFailure
+from .every_method import LISTING_CHECKS, OPTION_CHECKS
+from .kinds import depth, device, export, film, render, texture, touch
 
 log = logging.getLogger(__name__)
 
 FAMILIES: dict[str, tuple[Check, ...]] = {
-    "depth": checks_depth.CHECKS,
-    "texture": checks_texture.CHECKS,
-    "render": (*checks_render.CHECKS, *checks_touch.CHECKS, *checks_film.CHECKS),
-    "device": checks_device.CHECKS,
-    "export": checks_export.CHECKS,
+    "depth": depth.CHECKS,
+    "texture": texture.CHECKS,
+    "render": (*render.CHECKS, *touch.CHECKS, *film.CHECKS),
+    "device": device.CHECKS,
+    "export": export.CHECKS,
 }
-"""What each kind is asked on top of what every method is asked."""
-
-
+"""The checks of each kind; those of `every_method` come before them."""
 PASSES = "it passes, though the method declares that it fails ({reason}): take {check} out of its expected_failures"
 MOTORS = "TANGIBLE_MOTORS"
-"""Environment variable that lets a test suite push with real devices; `tangible check device NAME` does so as asked."""
+"""Environment variable that lets a test suite push with real devices; `tangible check device NAME` needs none."""
 
 
 class CheckResult(NamedTuple):
-    """What became of one check; a failed one's message says why, a passed one's what was demanded.
+    """The result of one check: `message` is the reason of a failure, or the demand that the method meets.
 
-    Where a device is not there, what could be asked is passed and what could not be says so.
+    If a device or a model is absent, checks that need it pass, and their message starts with "not run".
     """
 
     name: str
     passed: bool
     message: str
     expected_failure: str = ""
-    """The reason that the method declares for failing this check; empty where it declares none."""
+    """The reason that the method declares for failing this check; empty if it declares none."""
 
     @property
     def as_declared(self) -> bool:
-        """Whether it passed, or failed as the method declares: one that passes all the same is declared wrongly."""
+        """True if it passed, or failed as declared; a check that passes though declared to fail is not."""
         return self.passed != bool(self.expected_failure)
 
 
 def checks(kind: str) -> tuple[Check, ...]:
-    """Every check of this kind, in the order in which they run.
+    """Return every check of this kind, in the order in which they run.
 
     Raises: UnknownMethod if there is no such kind.
     """
     if kind not in FAMILIES:
         raise UnknownMethod("plugin", kind, FAMILIES)
-    return (*checks_listing.CHECKS, *checks_options.CHECKS, *FAMILIES[kind])
+    return (*LISTING_CHECKS, *OPTION_CHECKS, *FAMILIES[kind])
 
 
 def conforms(
     kind: str, name: str, expected_failures: Mapping[str, str] | None = None, **options: Any
 ) -> Callable[..., None]:
-    """A pytest test of every check; `test_mine = conforms("depth", "mine")` is a whole test module.
+    """Return a pytest test with a case for every check; `test_mine = conforms("depth", "mine")` is a whole test module.
 
-    Parameters: kind and name as in `load_method`; expected_failures maps the name of a check to the reason why the
-    method does not keep it (it must then fail, or the test does), beside those that its class declares; options as the
-    method's own.
+    Parameters: kind and name as for `load_method`; expected_failures maps the name of a check to the reason why the
+    method fails it, in addition to those that its class declares (the test fails if such a check passes); options of
+    the method.
     Raises: ValueError if expected_failures names a check that does not exist.
     """
     import pytest
@@ -86,13 +75,13 @@ def conforms(
 
     @pytest.mark.parametrize("check", [pytest.param(check, id=check.__name__) for check in checks(kind)])
     def test_conforms(check: Check) -> None:
-        declared = {**_declared(default_registry(), kind, name), **reasons}.get(check.__name__, "")
+        declared = {**_declared_failures(default_registry(), kind, name), **reasons}.get(check.__name__, "")
         try:
-            if check in checks_device.WITH_MOTORS and _would_push(name, options):
+            if check in device.WITH_MOTORS and _would_push(name, options):
                 pytest.skip(f"a real device is there, and this pushes: let its grip hang free, and set {MOTORS}=1")
             _run(default_registry(), check, kind, name, options)
-        except (DeviceAbsent, ModelAbsent) as absent:  # that it is said is a check of its own, and passes
-            pytest.skip(f"nothing to ask: {absent}")
+        except (DeviceAbsent, ModelAbsent) as absent:  # its message has a check of its own, which passes
+            pytest.skip(f"not run: {absent}")
         except Exception:
             if declared:
                 pytest.xfail(declared)
@@ -104,7 +93,7 @@ def conforms(
 
 
 def _would_push(name: str, options: dict[str, Any]) -> bool:
-    """Whether a device is real and there, and nobody allowed it to push. Raises: DeviceAbsent if it is not there."""
+    """Test whether a device is real and connected, and MOTORS does not let it push. Raises: DeviceAbsent."""
     device = cast(HapticDevice, default_registry().load("device", name)(**options))
     if MOTORS in os.environ or device.spec().simulated:
         return False
@@ -113,28 +102,28 @@ def _would_push(name: str, options: dict[str, Any]) -> bool:
 
 
 def run_checks(kind: str, name: str, registry: Registry | None = None, **options: Any) -> Iterator[CheckResult]:
-    """Run every check against an installed method, without pytest; each result comes as soon as it is known.
+    """Run every check on an installed method, without pytest; yield each result at once.
 
-    Raises: UnknownMethod; BrokenMethod, also where its `expected_failures` name a check that does not exist.
+    Raises: UnknownMethod; BrokenMethod, also if its `expected_failures` name a check that does not exist.
     """
     installed = registry or default_registry()
-    declared = _declared(installed, kind, name)
+    declared = _declared_failures(installed, kind, name)
     for check in checks(kind):
         reason = declared.get(check.__name__, "")
         try:
             _run(installed, check, kind, name, options)
         except (DeviceAbsent, ModelAbsent) as absent:
-            yield CheckResult(check.__name__, not reason, f"not asked: {absent}", reason)
+            yield CheckResult(check.__name__, not reason, f"not run: {absent}", reason)
         except Exception as error:
             log.debug("%s %s fails in %s", kind, name, check.__name__, exc_info=True)
-            yield CheckResult(check.__name__, False, _in_words(error), reason)
+            yield CheckResult(check.__name__, False, _describe(error), reason)
         else:
-            said = PASSES.format(check=check.__name__, reason=reason) if reason else _demand(check)
-            yield CheckResult(check.__name__, True, said, reason)
+            message = PASSES.format(check=check.__name__, reason=reason) if reason else _demand(check)
+            yield CheckResult(check.__name__, True, message, reason)
 
 
-def _declared(registry: Registry, kind: str, name: str) -> Mapping[str, str]:
-    """What the class says that it does not keep. Raises: UnknownMethod, BrokenMethod."""
+def _declared_failures(registry: Registry, kind: str, name: str) -> Mapping[str, str]:
+    """Return the checks that the class declares to fail, with its reasons. Raises: UnknownMethod, BrokenMethod."""
     declared = registry.load(kind, name).expected_failures
     if complaint := _unknown(kind, declared):
         raise BrokenMethod(f"{kind} method {name}: {complaint}")
@@ -142,7 +131,7 @@ def _declared(registry: Registry, kind: str, name: str) -> Mapping[str, str]:
 
 
 def _unknown(kind: str, reasons: Mapping[str, str]) -> str:
-    """A complaint about the first that is no check of this kind; empty where all are."""
+    """Return a complaint about the first name that is not a check of this kind; empty if all are."""
     known = [check.__name__ for check in checks(kind)]
     unknown = next((each for each in reasons if each not in known), None)
     if unknown is None:
@@ -151,18 +140,20 @@ def _unknown(kind: str, reasons: Mapping[str, str]) -> str:
 
 
 def _demand(check: Check) -> str:
-    return " ".join((check.__doc__ or "").split("\n\n")[0].split())
+    """Return the demand of a check: its docstring's first paragraph, without "Check that"."""
+    demand = " ".join((check.__doc__ or "").split("\n\n")[0].split()).removeprefix("Check that ")
+    return demand[:1].upper() + demand[1:]
 
 
 def _run(registry: Registry, check: Check, kind: str, name: str, options: dict[str, Any]) -> None:
-    """What is seen before use is checked of the listing, the rest of the method, made anew for each check."""
-    if check in checks_listing.CHECKS:
+    """Run a check on the method's listing, or on a new instance of the method."""
+    if check in LISTING_CHECKS:
         check(registry.find(kind, name))
     else:
         check(registry.load(kind, name)(**options))
 
 
-def _in_words(error: Exception) -> str:
+def _describe(error: Exception) -> str:
     if isinstance(error, CheckFailure | TangibleError):
         return str(error)
     last = traceback.extract_tb(error.__traceback__)[-1]

@@ -1,4 +1,4 @@
-"""One picture in every form that a picture may come in."""
+"""Variants of one picture: every type, memory layout and range of values that methods must accept."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,7 @@ TINY = ((1, 1), (1, 9), (9, 1), (2, 2), (17, 9))
 
 
 def exact_variants(picture: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
-    """The same uint8 (h, w, 3) picture, losslessly, in other types and memory layouts."""
+    """Yield the uint8 (h, w, 3) picture without loss in other types and memory layouts, with their names."""
     yield "uint16", picture.astype(np.uint16) * 257
     yield "float32", np.asarray(picture / 255, np.float32)
     yield "float64", picture / 255
@@ -21,7 +21,7 @@ def exact_variants(picture: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
 
 
 def coarse_variants(picture: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
-    """The uint8 (h, w, 3) picture with less in it, or with values that are odd but finite."""
+    """Yield the uint8 (h, w, 3) picture with less information, or with unusual but finite values, with names."""
     yield "grey", np.rint(to_grey(picture) * 255).astype(np.uint8)
     yield "bool", picture > 127
     yield "float16", np.asarray(picture / 255, np.float16)

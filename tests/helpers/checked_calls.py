@@ -28,12 +28,12 @@ OURS = (
     "tangible_export", "tangible_authoring", "tangible_batch", "tangible_bench", "tangible_report", "tangible_ui",
 )  # fmt: skip
 UNCHECKED = {
-    "tangible_core.cli.devices": "typer's Context, as its documentation has it, is given another class's",
-    "tangible_core.cli.cache": "likewise",
+    "tangible_core.cli.commands.devices": "typer's Context, as its documentation has it, is given another class's",
+    "tangible_core.cli.commands.cache": "likewise",
     "tangible_report.commands.materials": "likewise",
-    "tangible_core.cli.plugins": "likewise",
+    "tangible_core.cli.commands.plugins": "likewise",
     "tangible_core.provenance.watching": "Python calls it with what is no Sequence, though its stubs say so",
-    "tangible_core.servo.schedule": "its functions are compiled into the loop, as they stand",
+    "tangible_core.servo.ticks.schedule": "its functions are compiled into the loop, as they stand",
 }
 """Modules whose calls are not checked, and why."""
 CALLS = 1_000

@@ -13,7 +13,11 @@ from typing import Any
 
 import pytest
 
-from tangible_core.servo import child, host, priority
+from tangible_core.servo import child, supervisor
+from tangible_core.servo.ticks import priority
+
+ENDING_S = 120.0
+"""Longer than a loop takes to compile what it needs on a busy machine, before it hears that it is to end."""
 
 
 class LoopThread(subprocess.Popen[bytes]):
@@ -65,7 +69,8 @@ class _Commands(io.FileIO):
 def loops_in_threads(patch: pytest.MonkeyPatch) -> None:
     """Start each loop in a thread from now on; it locks no memory, and leaves collecting garbage alone."""
     popen: dict[str, Any] = {**vars(subprocess), "Popen": LoopThread}
-    patch.setattr(host, "subprocess", SimpleNamespace(**popen))
+    patch.setattr(supervisor, "subprocess", SimpleNamespace(**popen))
+    patch.setattr(supervisor, "STOPPING_S", ENDING_S)
     patch.setattr(child, "gc", SimpleNamespace(freeze=lambda: None, collect=lambda: None))
     asked = priority._c
     patch.setattr(priority, "_c", lambda name: (lambda *_: -1) if name == "mlockall" else asked(name))

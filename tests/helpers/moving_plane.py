@@ -9,8 +9,7 @@ from numba import float64, njit, types
 from tangible_core.compiled.compiling import KERNEL
 from tangible_core.compiled.touch import FRAME, RISE_M, CompiledTouch
 from tangible_core.data import Relief
-from tangible_core.plugins.film import Film
-from tangible_core.plugins.touch import Touch
+from tangible_core.plugins.touch import Film, Touch
 
 AT_M, GOAL_M, STEP_M, SHOWN, GOING = range(5)
 """Height, where it goes, by how much a tick, the frame that was shown last, and the one that it goes to."""

@@ -1,4 +1,4 @@
-"""Solids as their files have them, and their heights as seen from above: by code that made none of them."""
+"""Readers of solids, independent of the code that writes them; and heights as seen from above."""
 
 import io
 from collections.abc import Callable, Mapping
@@ -37,9 +37,9 @@ def bare(cls: type[Exporter], **options: Any) -> Exporter:
     return cls.model_validate({"rim_m": 0.0, "braille": False, "corner_mark": False, **options})
 
 
-def written(exporter: Exporter, made: Work, folder: Path) -> Mesh:
-    """The solid of the one file that is written."""
-    (path,) = exporter.write(made, folder / "solid")
+def write_and_read(exporter: Exporter, work: Work, folder: Path) -> Mesh:
+    """The solid of the one file that is write_and_read."""
+    (path,) = exporter.write(work, folder / "solid")
     return read(path)
 
 
@@ -136,10 +136,10 @@ def _places(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.stack([across.ravel(), along.ravel(), np.ones(across.size)])
 
 
-def nodes(made: Work, rim_mm: float = 0.0, below_mm: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+def nodes(work: Work, rim_mm: float = 0.0, below_mm: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """Where the cells' centres of the relief lie on the plate, in millimetres: x from the left, y from the front."""
-    rows, columns = made.relief.height_m.shape
-    across, down = (1000 * pitch for pitch in made.relief.pitch_m)
+    rows, columns = work.relief.height_m.shape
+    across, down = (1000 * pitch for pitch in work.relief.pitch_m)
     return rim_mm + (np.arange(columns) + 0.5) * across, below_mm + (np.arange(rows) + 0.5) * down
 
 

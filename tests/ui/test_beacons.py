@@ -13,7 +13,7 @@ from tangible_core import load_method
 from tangible_core.data import HapticSurface, Relief, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.mapping import WorkspaceMapping
-from tangible_core.servo import Beacon, Safety, beacon_to, packed
+from tangible_core.servo import Beacon, Safety, beacon_to, pack_touch
 from tangible_core.servo.ring import shared_folder
 from tangible_ui.feeling.feeling import Feeling, LoopInput
 from tangible_ui.framing import STATE_FRAME
@@ -73,7 +73,7 @@ def test_a_button_of_the_page_s_hand_releases_it_and_a_scene_and_a_stop_end_it()
     device = load_method("device", "pointer")(**options)
 
     def felt() -> LoopInput:
-        touch = packed(load_method("render", "proxy")().touch(surface), device.spec())
+        touch = pack_touch(load_method("render", "proxy")().touch(surface), device.spec())
         return LoopInput(touch, "proxy", "it", device, True, WorkspaceMapping(), Safety(ramp_s=0, passivity="off"))
 
     tag = [0]

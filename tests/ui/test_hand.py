@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.errors import ConfigError, DeviceError, TangibleError
 from tangible_core.mapping import Placement, WorkspaceMapping
 from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.runtime.child_process import dumps
-from tangible_core.servo import Safety, packed
-from tangible_core.testing.loop_devices import Circling, Failing
+from tangible_core.servo import Safety, pack_touch
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.feeling.hand import high_without_client
 from tangible_ui.requests import REQUESTS
@@ -59,7 +59,7 @@ class FakeWorker:
         name = "pointer" if own else "the other"
         if job == "about_device":
             return {"name": name, "simulated": device.spec().simulated, "most_force_n": 8.0, "relief_m": 0.01}
-        touch = packed(load_method("render", "proxy")(stiffness_n_per_m=500.0).touch(LEVEL), device.spec())
+        touch = pack_touch(load_method("render", "proxy")(stiffness_n_per_m=500.0).touch(LEVEL), device.spec())
         return {
             "parcel": str(touch.parcel),
             "stiffness_n_per_m": touch.stiffness_n_per_m,

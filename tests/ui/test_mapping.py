@@ -30,7 +30,7 @@ def test_the_page_s_reference_is_what_the_core_computes():
     for case in cases:
         to = WorkspaceMapping(**case["mapping"]).placement(vector(case["workspace_m"]))
         x, y, z = case["hand_m"]
-        u, v = to.turned_back(x - to.offset_x_m, y - to.offset_y_m)
+        u, v = to.rotate_back(x - to.offset_x_m, y - to.offset_y_m)
         under = to.centre_x_m + u / to.scale, to.centre_y_m + v / to.scale, (z - to.offset_z_m) / to.scale
         assert case["scale"] == pytest.approx(to.scale, rel=1e-12)
         assert case["picture_m"] == pytest.approx(under, abs=1e-12)

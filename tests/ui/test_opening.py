@@ -11,7 +11,7 @@ from PIL import Image
 
 from tangible_core import load_pipeline
 from tangible_core.errors import ConfigError
-from tangible_core.pipeline.config.editing import said
+from tangible_core.pipeline.config.editing import read_values
 from tangible_core.session import Recording
 from tangible_core.session.tick_file import About
 from tangible_ui.state.uploads import MOST_FILES, UploadStore
@@ -111,15 +111,15 @@ class TestBegin:
 
     def test_a_video_is_its_first_frame(self, worker_state: WorkerState, tmp_path: Path) -> None:
         path = greys(tmp_path / "walk.avi", 3)
-        assert said(opening.begin(worker_state, [path])["text"], path)["scene"] == {"video": str(path)}
+        assert read_values(opening.begin(worker_state, [path])["text"], path)["scene"] == {"video": str(path)}
         assert {"name": "walk.avi", "kind": "video"} in opening.folder(worker_state, tmp_path)["entries"]
 
     def test_two_are_a_pair(self, worker_state: WorkerState, tmp_path: Path) -> None:
         found = opening.begin(worker_state, [picture(tmp_path / "l.png"), picture(tmp_path / "r.png")])
-        scene = said(found["text"], found["path"])["scene"]
+        scene = read_values(found["text"], found["path"])["scene"]
         assert (scene["left"].endswith("l.png"), scene["right"].endswith("r.png")) == (True, True)
         exchanged = opening.exchange(worker_state, found["text"], found["path"])
-        assert said(exchanged, found["path"])["scene"] == {"left": scene["right"], "right": scene["left"]}
+        assert read_values(exchanged, found["path"])["scene"] == {"left": scene["right"], "right": scene["left"]}
 
     def test_only_a_pair_has_sides(self, worker_state: WorkerState, tmp_path: Path) -> None:
         with pytest.raises(ConfigError, match="not a pair"):

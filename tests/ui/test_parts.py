@@ -18,7 +18,7 @@ from tangible_core import load_pipeline
 from tangible_core.data import SegmentMap
 from tangible_core.errors import ConfigError, OutputError, TangibleError
 from tangible_core.parts import find_parts
-from tangible_core.scene.picture_files import read_labels
+from tangible_core.scene.formats.pictures import read_labels
 from tangible_ui.requests import REQUESTS
 from tangible_ui.state.scheduling import LatestWins
 from tangible_ui.state.session import Session
@@ -197,11 +197,11 @@ class TestText:
         "name", ["a: b", '"', "\\", "# no comment", "- x", "{}", "null", "007", "é ✂ 𝄞", "a\nb", "\x07", " a ", "&a *b"]
     )
     def test_every_name_comes_back(self, tmp_path: Path, name: str) -> None:
-        from tangible_core.pipeline.config.editing import said
+        from tangible_core.pipeline.config.editing import read_values
 
         path = tmp_path / "mine.yaml"
         found = self.said(TEXT, path, {0: {"name": name}, 1: {"name": name + "x", "height_m": 0.001}})
-        assert said(found, path)["parts"] == {"0": name, "1": {"name": name + "x", "height_m": 0.001}}
+        assert read_values(found, path)["parts"] == {"0": name, "1": {"name": name + "x", "height_m": 0.001}}
 
     def test_a_great_many_parts_take_no_great_time(self, tmp_path: Path) -> None:
         path, many = tmp_path / "mine.yaml", {number: {"name": f"part {number}"} for number in range(600)}
@@ -211,10 +211,10 @@ class TestText:
         assert "  599: piece 599\n" in self.said(first, path, renamed)
 
     def test_a_built_in_scene_becomes_its_files(self, tmp_path: Path) -> None:
-        from tangible_core.pipeline.config.editing import said
+        from tangible_core.pipeline.config.editing import read_values
 
         path = tmp_path / "mine.yaml"
-        scene = said(self.said("scene: builtin/motorcycle\n", path, {}), path)["scene"]
+        scene = read_values(self.said("scene: builtin/motorcycle\n", path, {}), path)["scene"]
         assert Path(scene["left"]).is_file()
         assert (scene["focal_px"], scene["segments"]) == (994.978, "parts.png")
         with pytest.raises(ConfigError, match="builtin/nothing"):

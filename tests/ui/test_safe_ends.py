@@ -312,7 +312,7 @@ def test_what_is_missing_at_the_start(home: Home, env: dict[str, str], words: li
 def test_a_makers_end_under_work(home: Home) -> None:
     """It ends with its pipe, whatever it computes."""
     from tangible_core.runtime.child_process import command
-    from tangible_core.servo.wire import send
+    from tangible_core.servo.framing import send
     from tangible_ui.worker.messages import JobRequest
 
     folder = home.folder / "drawn"

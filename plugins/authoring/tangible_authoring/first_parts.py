@@ -140,7 +140,7 @@ def _pipeline(
     template = starter(pictures, file)
     chosen = f"texture={{use: {in_yaml(method)}}}" if method else f"texture.segments={SEGMENTS_PER_PART * most}"
     config = parse_config(template.text, file, registry, [chosen, *overrides])
-    return Pipeline.from_config(config.changed(scene=template.scene), registry, cache)
+    return Pipeline.from_config(config.with_values(scene=template.scene), registry, cache)
 
 
 def _heights(pipeline: Pipeline, parts: PartMap) -> PartHeights:

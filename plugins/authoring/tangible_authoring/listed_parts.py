@@ -84,7 +84,9 @@ def list_parts(pipeline: Pipeline) -> ListedParts:
     `Pipeline.make`.
     """
     config, scene = pipeline.config, pipeline.scene
-    alone = Pipeline.from_config(config.changed(parts=None, heights=None, materials=MaterialChoice()), like=pipeline)
+    alone = Pipeline.from_config(
+        config.with_values(parts=None, heights=None, materials=MaterialChoice()), like=pipeline
+    )
     segments = alone.make("segments")
     if segments is None or scene.views is None:
         where = f"{config.path}: " if config.path else ""

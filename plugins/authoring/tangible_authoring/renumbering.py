@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 from tangible_core.errors import ConfigError
-from tangible_core.files.parts_block import with_parts
-from tangible_core.files.source import parse_source, plain, read_text
 from tangible_core.files.writing import atomic_write
+from tangible_core.files.yaml.parts_block import with_parts
+from tangible_core.files.yaml.source import parse_source, plain, read_text
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.pipeline import Pipeline

@@ -216,7 +216,7 @@ def _cluster(distributed: Any, workers: int, threads: int) -> Any:
             dashboard_address="127.0.0.1:0",  # with None, a port is open to everybody
             memory_limit=0,
             silence_logs=logging.CRITICAL,
-            preload=[f"{__package__}.deaf"],
+            preload=[f"{__package__}.dask_preload"],
         )
 
 

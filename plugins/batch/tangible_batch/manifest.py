@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from tangible_core.errors import BatchError, quoted
 from tangible_core.files.paths import as_path
-from tangible_core.scene.picture_files import PICTURES, VIDEOS
+from tangible_core.scene.formats.decoding import PICTURES, VIDEOS
 from tangible_core.scene.scene_files import SceneFiles
 
 MANIFESTS = (".csv", ".parquet")

@@ -16,7 +16,7 @@ from tangible_core.runtime.threads import check_threads, processors
 from .extra import need_all
 from .farm import LONGEST_S, Farm
 from .job import FULL, Job, Row, dead_row, make_scene
-from .jobs import BatchOptions, JobMaker
+from .job_maker import BatchOptions, JobMaker
 from .manifest import SceneRow, rows_from
 from .results import ROWS, kept_rows
 

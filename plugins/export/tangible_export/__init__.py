@@ -1,6 +1,6 @@
-"""Exporters: what was made of a picture, as files for printers, swell paper and pin displays.
+"""Exporters: files for printers, swell paper and pin displays.
 
-Each is imported when it is first used.
+Each exporter is imported when it is first used.
 """
 
 from typing import TYPE_CHECKING

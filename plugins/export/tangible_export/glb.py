@@ -1,68 +1,54 @@
-"""A solid as GLB, with the picture on it: to be looked at, in a browser or beside a print."""
+"""A solid as GLB with the picture on it, for viewing in a browser or next to a print."""
 
 import json
 import struct
 from math import ceil
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jaxtyping import Float32, UInt8
 
 from tangible_core.data import Work
-from tangible_core.plugins.interfaces import Exporter, Medium
 
-from .solid import options as said
+from .solid.exporter import SolidExporter
 
 if TYPE_CHECKING:
     from .solid.closed import Solid
     from .solid.plate import Layout
 
 
-class Glb(Exporter):
-    """The solid of `stl` with the picture as its texture, as binary glTF: metres, and y up as glTF has it.
+class Glb(SolidExporter):
+    """The solid of `stl` with the picture as its texture, as binary glTF: in metres, y up as glTF requires.
 
-    Its origin is the centre of the plate's lower side. Without a picture, as in a scene of heights, it is one colour.
+    The origin is the centre of the plate's lower side. Without a picture, as in a scene of heights, the solid has one
+    colour.
     Source: glTF 2.0 Specification, The Khronos Group, sec. 3 and 4.
     """
 
-    needs: ClassVar[tuple[str, ...]] = ("relief",)
-    medium: ClassVar[Medium | None] = "print"
-
-    longer_side_m: said.LongerSide = 0.16
-    error_m: said.Error = 5e-5
-    base_m: said.Base = 0.0015
-    rim_m: said.Rim = 0.006
-    corner_mark: said.CornerMark = True
-    braille: said.Braille = True
-    braille_language: said.BrailleLanguage = None
-
-    def picture_width_m(self, aspect: float) -> float:
-        """Of the picture, whose longer side is `longer_side_m`."""
-        return said.width_of(self.longer_side_m, aspect)
-
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
-        """One file, `stem.glb`.
+        """Write one file, `stem.glb`.
 
-        Raises: GeometryError for a relief of no height, BrailleError or OutputError for a title that cannot be written.
+        Raises: GeometryError for a flat relief, BrailleError or OutputError for a title that cannot be written.
         """
-        from .solid.making import made_solid
+        from .solid.making import make_solid
 
         path = stem.with_name(f"{stem.name}.glb")
-        path.write_bytes(as_glb(*made_solid(self, work), work.title, work.picture))
+        path.write_bytes(as_glb(*make_solid(self, work), work.title, work.picture))
         return (path,)
 
 
 RIM_GREY = 225
+"""Grey level of the rim in the texture."""
 MOST_PX = 4096
-"""Of a side of the texture: graphics processors of phones take no more."""
+"""Largest side of the texture in pixels: graphics processors of phones take no more."""
 _ARRAY, _ELEMENTS = 34962, 34963
 _FLOAT, _UINT = 5126, 5125
 _CLAMP = 33071
 
 
 def as_glb(solid: "Solid", layout: "Layout", title: str, picture: np.ndarray | None) -> bytes:
-    """The file."""
+    """Return the bytes of the file."""
     x_mm, y_mm, z_mm = solid.vertices_mm.T
     width_mm, length_mm, _ = solid.vertices_mm.max(axis=0)
     upright = np.stack([x_mm - width_mm / 2, z_mm, length_mm / 2 - y_mm], axis=1)
@@ -103,11 +89,11 @@ def as_glb(solid: "Solid", layout: "Layout", title: str, picture: np.ndarray | N
         "accessors": accessors,
         **more,
     }
-    return _packed(head, [(data, view) for data, view, _ in parts])
+    return _pack(head, [(data, view) for data, view, _ in parts])
 
 
-def _packed(head: dict[str, Any], parts: list[tuple[bytes, dict[str, Any]]]) -> bytes:
-    """The two chunks of a GLB, each of whole words."""
+def _pack(head: dict[str, Any], parts: list[tuple[bytes, dict[str, Any]]]) -> bytes:
+    """Return a GLB of two chunks, JSON and binary, each padded to whole words of 4 bytes."""
     body, views = bytearray(), list[dict[str, Any]]()
     for data, view in parts:
         views.append({"buffer": 0, "byteOffset": len(body), "byteLength": len(data), **view})
@@ -121,12 +107,12 @@ def _packed(head: dict[str, Any], parts: list[tuple[bytes, dict[str, Any]]]) -> 
 def _texture(
     picture: np.ndarray, layout: "Layout", solid: "Solid"
 ) -> tuple[UInt8[np.ndarray, "h w 3"], Float32[np.ndarray, "n 2"]]:
-    """The picture with the rim in grey around it, and where each vertex lies on that, as shares from its upper left."""
+    """Return the picture in a grey rim, and the texture coordinates of each vertex, 0..1 from the upper left."""
     import cv2
 
     from tangible_core.data.pictures import to_rgb8
 
-    colours = _within(to_rgb8(picture), layout)
+    colours = _shrink(to_rgb8(picture), layout)
     across, down = (px / side_m for px, side_m in zip(colours.shape[1::-1], layout.picture_m, strict=True))
     side, above, below = ceil(across * layout.rim_m), ceil(down * layout.rim_m), ceil(down * layout.below_m)
     texture = cv2.copyMakeBorder(colours, above, below, side, side, cv2.BORDER_CONSTANT, value=(RIM_GREY,) * 3)
@@ -136,15 +122,16 @@ def _texture(
     return texture, np.stack([column / texture.shape[1], row / texture.shape[0]], axis=1).astype("<f4")
 
 
-def _within(colours: UInt8[np.ndarray, "h w 3"], layout: "Layout") -> UInt8[np.ndarray, "h2 w2 3"]:
-    """So small that the texture of the whole plate has no side of more than `MOST_PX`."""
+def _shrink(colours: UInt8[np.ndarray, "h w 3"], layout: "Layout") -> UInt8[np.ndarray, "h2 w2 3"]:
+    """Shrink the picture so that the texture of the whole plate has no side longer than `MOST_PX`."""
     import cv2
 
     sides = zip(colours.shape[1::-1], layout.picture_m, layout.size_m, strict=True)
     scale = min(1.0, *((MOST_PX - 4) * own_m / (px * whole_m) for px, own_m, whole_m in sides))
     rows, columns = (max(1, int(scale * px)) for px in colours.shape[:2])
-    small = (rows, columns) != colours.shape[:2]
-    return cv2.resize(colours, (columns, rows), interpolation=cv2.INTER_AREA) if small else colours
+    if (rows, columns) == colours.shape[:2]:
+        return colours
+    return cv2.resize(colours, (columns, rows), interpolation=cv2.INTER_AREA)
 
 
 def _jpeg(texture: UInt8[np.ndarray, "h w 3"]) -> bytes:

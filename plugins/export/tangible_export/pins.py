@@ -1,4 +1,4 @@
-"""Pictures for displays of pins."""
+"""Pictures for pin displays."""
 
 import logging
 from pathlib import Path
@@ -11,30 +11,30 @@ from tangible_core.errors import PictureError, shown
 from tangible_core.plugins.interfaces import Exporter, Medium
 from tangible_core.plugins.notes import note
 
-from .labels import label_of, some
+from .labels import first_labels, label_of
 from .pin_display.displays import DISPLAYS, HEXADECIMAL, PITCH_M, Display, Named
 
 log = logging.getLogger(__name__)
 
 LEAST_PINS = 3
-"""A side of a picture; in fewer, there is nothing between two borders."""
+"""Shortest side of a picture in pins; fewer leave nothing between two borders."""
 
 
 @final
 class Pins(Exporter):
     """Pins that rise along the borders of parts: PNG, JSON, Unicode braille, and an SVG for the IMAGE services.
 
-    A display whose pins have heights shows those of the relief between the borders, which stand above them.
+    On a display whose pins have several heights, the relief fills the areas between the borders, below their height.
     """
 
     medium: ClassVar[Medium | None] = "pins"
 
     display: Named | Display = "monarch"
-    """A display by name, or how many columns and rows of pins it has, and how many heights."""
+    """A display by name, or the numbers of its columns, rows and heights."""
 
     @property
     def needs(self) -> tuple[str, ...]:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """Heights only where pins have them: what makes them may take long, or not do for this scene."""
+        """The parts; the relief only if pins have several heights, as it may be slow or impossible to make."""
         return ("simplified", "relief") if self._array.levels > 1 else ("simplified",)
 
     @property
@@ -42,15 +42,15 @@ class Pins(Exporter):
         return self.display if isinstance(self.display, Display) else DISPLAYS[self.display]
 
     def picture_width_m(self, aspect: float) -> float:
-        """Of the picture on the display."""
+        """Return the width of the picture on the display."""
         return PITCH_M * min(self._array.columns, self._array.rows * aspect)
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
-        """A file each way; hexadecimal digits for a display that takes them.
+        """Write a file of each format; hexadecimal digits only for a display that reads them.
 
         Raises: PictureError where there is no border to show, or no room for one.
         """
-        from .pin_display import drawing, raising, writing
+        from .pin_display import formats, raising
 
         array, parts = self._array, _parts(work, self._array)
         place = raising.place_of(array, parts.labels.shape)
@@ -61,24 +61,24 @@ class Pins(Exporter):
                 "and narrow"
             )
         most = raising.most_of(parts, rows, columns)
-        labels = _labels(work, parts, most)
+        labels = _visible_labels(work, parts, most)
         area = raising.heights(work.relief, rows, columns, array.levels - 1) if array.levels > 1 else None
-        pins = raising.raised(array, raising.borders(most), area, place)
+        pins = raising.pin_heights(array, raising.borders(most), area, place)
         if not pins.any():
             raise PictureError("no pin would rise, as one part fills the display; have more parts, and larger ones")
         title = shown(work.title)
-        svg = drawing.svg(pins, array.levels, raising.whole(array, most, place), labels, title)
-        said = {"title": title, "language": work.language, "display": self._name, **array.model_dump()}
+        svg = formats.svg(pins, array.levels, raising.parts_on_display(array, most, place), labels, title)
+        head = {"title": title, "language": work.language, "display": self._name, **array.model_dump()}
         texts = {
-            ".json": writing.numbers(pins, {**said, "parts": list(labels.values())}),
-            ".txt": writing.patterns(pins),
+            ".json": formats.numbers(pins, {**head, "parts": list(labels.values())}),
+            ".txt": formats.patterns(pins),
             ".svg": svg,
-            "-graphic.json": drawing.graphic(svg),
+            "-graphic.json": formats.graphic(svg),
         }
         if self.display in HEXADECIMAL:
-            texts[".hex"] = writing.hexadecimal(pins)
+            texts[".hex"] = formats.hexadecimal(pins)
         note(log, f"{columns} x {rows} of {array.columns} x {array.rows} pins; {100 * (pins > 0).mean():.0f} % are up")
-        return _written(stem, self._name, writing.png(pins, array.levels), texts)
+        return _write_files(stem, self._name, formats.png(pins, array.levels), texts)
 
     @property
     def _name(self) -> str:
@@ -86,7 +86,7 @@ class Pins(Exporter):
 
 
 def _parts(work: Work, display: Display) -> PartMap:
-    """Raises: PictureError for a scene of one part, unless pins have heights."""
+    """Return the parts to show. Raises: PictureError for a scene of one part, unless pins have several heights."""
     if (parts := work.simplified) is None:
         raise PictureError("this scene has no parts to show; it needs a picture, or `parts:` of its own")
     if display.levels == 1 and (parts.labels == parts.labels.flat[0]).all():
@@ -97,17 +97,17 @@ def _parts(work: Work, display: Display) -> PartMap:
     return parts
 
 
-def _labels(work: Work, parts: PartMap, most: np.ndarray) -> dict[int, str]:
-    """What the parts are called that have a pin; a note names those that have none."""
+def _visible_labels(work: Work, parts: PartMap, most: np.ndarray) -> dict[int, str]:
+    """Return the labels of the parts that have a pin; note those that have none."""
     sizes = np.bincount(parts.labels.ravel(), minlength=parts.count)
     pins = np.bincount(most.ravel(), minlength=parts.count)
     labels = {number: label_of(number, work) for number in np.flatnonzero(sizes).tolist()}
     if lost := [label for number, label in labels.items() if not pins[number]]:
-        note(log, f"too small for a pin: {some(lost)}")
+        note(log, f"too small for a pin: {first_labels(lost)}")
     return {number: label for number, label in labels.items() if pins[number]}
 
 
-def _written(stem: Path, name: str, png: bytes, texts: dict[str, str]) -> tuple[Path, ...]:
+def _write_files(stem: Path, name: str, png: bytes, texts: dict[str, str]) -> tuple[Path, ...]:
     picture = stem.with_name(f"{stem.name}-{name}.png")
     picture.write_bytes(png)
     paths = [picture]

@@ -1,49 +1,33 @@
 """A solid as STL, the format that every slicer reads."""
 
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, ClassVar
+from typing import IO, TYPE_CHECKING
 
 import numpy as np
 
 from tangible_core.data import Work
-from tangible_core.plugins.interfaces import Exporter, Medium
 
-from .solid import options as said
+from .solid.exporter import SolidExporter
 
 if TYPE_CHECKING:
     from .solid.closed import Solid
 
 
-class Stl(Exporter):
+class Stl(SolidExporter):
     """A closed solid to print, in millimetres, as binary STL: the relief on a plate with its title in braille.
 
-    Binary STL has no unit; slicers take its numbers for millimetres, and so they are.
+    Binary STL has no unit; slicers read its numbers as millimetres, which they are.
     Source: StereoLithography Interface Specification, 3D Systems, 1988.
     """
 
-    needs: ClassVar[tuple[str, ...]] = ("relief",)
-    medium: ClassVar[Medium | None] = "print"
-
-    longer_side_m: said.LongerSide = 0.16
-    error_m: said.Error = 5e-5
-    base_m: said.Base = 0.0015
-    rim_m: said.Rim = 0.006
-    corner_mark: said.CornerMark = True
-    braille: said.Braille = True
-    braille_language: said.BrailleLanguage = None
-
-    def picture_width_m(self, aspect: float) -> float:
-        """Of the picture, whose longer side is `longer_side_m`."""
-        return said.width_of(self.longer_side_m, aspect)
-
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
-        """One file, `stem.stl`.
+        """Write one file, `stem.stl`.
 
-        Raises: GeometryError for a relief of no height, BrailleError or OutputError for a title that cannot be written.
+        Raises: GeometryError for a flat relief, BrailleError or OutputError for a title that cannot be written.
         """
-        from .solid.making import made_solid
+        from .solid.making import make_solid
 
-        solid, _ = made_solid(self, work)
+        solid, _ = make_solid(self, work)
         path = stem.with_name(f"{stem.name}.stl")
         with path.open("wb") as file:
             write_stl(file, solid)
@@ -51,12 +35,13 @@ class Stl(Exporter):
 
 
 FACETS_AT_ONCE = 65_536
+"""Facets in memory at a time: a solid may have millions."""
 HEAD = b"tangible-images; unit: millimetre"
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
 
 
 def write_stl(file: IO[bytes], solid: "Solid") -> None:
-    """Some facets at a time: there may be millions."""
+    """Write the head, the number of facets and the facets, with their normals."""
     file.write(HEAD.ljust(79) + b"\0" + np.uint32(len(solid.triangles)).tobytes())
     for first in range(0, len(solid.triangles), FACETS_AT_ONCE):
         corners = solid.vertices_mm[solid.triangles[first : first + FACETS_AT_ONCE]]

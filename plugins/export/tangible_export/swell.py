@@ -17,39 +17,39 @@ class Swell(Exporter):
     """A page for swell paper and its key: outlines, fills and braille in black shapes alone, as SVG and as PDF.
 
     Sources: Guidelines and Standards for Tactile Graphics, Braille Authority of North America, 2010, for a key of
-    letters, outlines that stand clear of fills, and a mark at the upper right corner; the sizes have their own.
+    letters, outlines that stand clear of fills, and a mark at the upper right corner; sizes have their own sources.
     """
 
     needs: ClassVar[tuple[str, ...]] = ("simplified",)
     medium: ClassVar[Medium | None] = "swell"
 
     page: Page = "a4"
-    """Size of the paper; it lies on its side where the picture is larger so."""
+    """Size of the paper; it lies on its side where that makes the picture larger."""
     width_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
-    """Width of the picture; as large as the page allows where it is not said."""
+    """Width of the picture; null for the largest that the page allows."""
 
     def picture_width_m(self, aspect: float) -> float:
-        """Of the picture on the page."""
+        """Return the width of the picture on the page."""
         return sheet_for(self.page, aspect, self.width_m).picture_mm[0] / 1000
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
-        """The page and each page of the key as an SVG of its own, and all of them as one PDF.
+        """Write the page and each page of the key as an SVG, and all of them as one PDF.
 
         Raises: PictureError where there are no parts, or a page could not be read; GeometryError where it has no room;
         BrailleError for a title or a name that has no braille; BrokenMethod without shapely.
         """
         try:
-            from .paper.figures import write_pdf
+            from .paper.marks.reading import read
+            from .paper.marks.rendering import write_pdf
+            from .paper.opening import open_parts
             from .paper.page import drawn_pages
-            from .paper.parting import parted
-            from .paper.reading import read
         except ImportError as error:
             raise BrokenMethod(f"pages need shapely ({error}); pip install 'tangible-images[export]'") from error
         if (parts := work.simplified) is None:
             raise PictureError("this scene has no parts to outline; it needs a picture, or `parts:` of its own")
         sheet = sheet_for(self.page, _aspect(work, parts), self.width_m)
         check_readable(self.page, sheet)
-        texts = drawn_pages(work, parted(work, parts, sheet.picture_mm[0] / 1000), sheet, self.page)
+        texts = drawn_pages(work, open_parts(work, parts, sheet.picture_mm[0] / 1000), sheet, self.page)
         files = {f"{stem.name}-swell{'-key' * (n > 0)}{f'-{n}' * (n > 1)}.svg": text for n, text in enumerate(texts)}
         paths = [stem.with_name(name) for name in files]
         for path, text in zip(paths, texts, strict=True):
@@ -60,6 +60,6 @@ class Swell(Exporter):
 
 
 def _aspect(work: Work, parts: PartMap) -> float:
-    """Width through length of the picture: of its own pixels, for parts lie on a grid that may be half a cell off."""
+    """Return width by length of the picture, by its own pixels: the parts' grid may be half a cell off."""
     rows, columns = parts.labels.shape if work.picture is None else work.picture.shape[:2]
     return columns / rows

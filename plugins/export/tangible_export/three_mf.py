@@ -1,52 +1,36 @@
-"""A solid as 3MF, which says its unit and its title."""
+"""A solid as 3MF, a format with a unit and a title."""
 
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, ClassVar
+from typing import IO, TYPE_CHECKING
 from xml.sax.saxutils import escape, quoteattr
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 import numpy as np
 
 from tangible_core.data import Work
-from tangible_core.plugins.interfaces import Exporter, Medium
 
-from .solid import options as said
+from .solid.exporter import SolidExporter
 
 if TYPE_CHECKING:
     from .solid.closed import Solid
 
 
-class ThreeMF(Exporter):
-    """A closed solid to print, as 3MF: as `stl`, in a third of its bytes, with its unit and its title.
+class ThreeMF(SolidExporter):
+    """A closed solid to print, as 3MF: the solid of `stl` in a third of the bytes, with its unit and its title.
 
     Source: 3D Manufacturing Format, Core Specification 1.3, 3MF Consortium.
     """
 
-    needs: ClassVar[tuple[str, ...]] = ("relief",)
-    medium: ClassVar[Medium | None] = "print"
-
-    longer_side_m: said.LongerSide = 0.16
-    error_m: said.Error = 5e-5
-    base_m: said.Base = 0.0015
-    rim_m: said.Rim = 0.006
-    corner_mark: said.CornerMark = True
-    braille: said.Braille = True
-    braille_language: said.BrailleLanguage = None
-
-    def picture_width_m(self, aspect: float) -> float:
-        """Of the picture, whose longer side is `longer_side_m`."""
-        return said.width_of(self.longer_side_m, aspect)
-
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
-        """One file, `stem.3mf`.
+        """Write one file, `stem.3mf`.
 
-        Raises: GeometryError for a relief of no height, BrailleError or OutputError for a title that cannot be written.
+        Raises: GeometryError for a flat relief, BrailleError or OutputError for a title that cannot be written.
         """
-        from .solid.making import made_solid
+        from .solid.making import make_solid
 
-        solid, _ = made_solid(self, work)
+        solid, _ = make_solid(self, work)
         path = stem.with_name(f"{stem.name}.3mf")
         with path.open("wb") as file:
             write_3mf(file, solid, work.title, work.language)
@@ -67,13 +51,16 @@ _PARTS = {
         'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
     ),
 }
-_NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Characters that an XML file cannot hold."""
 _LANGUAGE = re.compile("[A-Za-z]{1,8}(-[A-Za-z0-9]{1,8})*")
+"""Language tags that `xml:lang` takes."""
 ROWS_AT_ONCE = 65_536
+"""Vertices or triangles written at a time: a solid may have millions."""
 
 
 def write_3mf(file: IO[bytes], solid: "Solid", title: str, language: str) -> None:
-    """Write the package: the same bytes for the same solid, as its parts bear no date."""
+    """Write the package: the same bytes for the same solid, as its parts have no date."""
     with ZipFile(file, "w", ZIP_DEFLATED) as package:
         for name, text in _PARTS.items():
             package.writestr(_part(name), text)
@@ -89,10 +76,10 @@ def _part(name: str) -> ZipInfo:
 
 
 def _model(solid: "Solid", title: str, language: str) -> Iterator[str]:
-    title = _NO_XML.sub("", title).strip() or "tangible-images"
-    spoken = f' xml:lang="{language}"' if _LANGUAGE.fullmatch(language) else ""
+    title = _NOT_IN_XML.sub("", title).strip() or "tangible-images"
+    language_attribute = f' xml:lang="{language}"' if _LANGUAGE.fullmatch(language) else ""
     core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
-    yield f'{_XML}<model unit="millimeter"{spoken} xmlns="{core}">'
+    yield f'{_XML}<model unit="millimeter"{language_attribute} xmlns="{core}">'
     yield f'<metadata name="Title">{escape(title)}</metadata><metadata name="Application">tangible-images</metadata>'
     yield f'<resources><object id="1" type="model" name={quoteattr(title)}><mesh>\n<vertices>\n'
     yield from _rows('<vertex x="%.5f" y="%.5f" z="%.5f"/>\n', solid.vertices_mm)
@@ -103,5 +90,5 @@ def _model(solid: "Solid", title: str, language: str) -> Iterator[str]:
 
 def _rows(template: str, values: np.ndarray) -> Iterator[str]:
     for first in range(0, len(values), ROWS_AT_ONCE):
-        some = values[first : first + ROWS_AT_ONCE]
-        yield template * len(some) % tuple(some.ravel().tolist())
+        rows = values[first : first + ROWS_AT_ONCE]
+        yield template * len(rows) % tuple(rows.ravel().tolist())

@@ -9,19 +9,19 @@ from typing import Any, cast
 from pydantic import BaseModel
 
 from ...errors import ConfigError, quoted
-from ...files.editing import REMOVE, Changes, change_text
 from ...files.paths import as_path
-from ...files.source import Location, parse_override, parse_source, plain
+from ...files.yaml.editing import REMOVE, Changes, change_text
+from ...files.yaml.source import Location, parse_override, parse_source, plain
 from .keys import MethodBlock, MethodList
 from .keys.method import index_of
 from .model import KEYS, PipelineConfig
 from .parsing import EXPECTED, shorthand
 from .scene_readers import scene_reader_of
 
-__all__ = ["REMOVE", "Changes", "edited", "moved", "said", "with_overrides"]
+__all__ = ["REMOVE", "Changes", "edit_text", "read_values", "relocate_text", "with_overrides"]
 
 
-def edited(text: str, path: Path, changes: Changes) -> str:
+def edit_text(text: str, path: Path, changes: Changes) -> str:
     """Return a pipeline file's text with other values of these keys; comments elsewhere, and the order, stay.
 
     Another `depth.use` clears the options of the method before. A stage that is None is removed, as with `REMOVE`. The
@@ -75,11 +75,11 @@ def with_overrides(text: str, path: Path, overrides: Iterable[str]) -> str:
     """Return the text with these overrides, `key.key=value` as `--set` takes them. Raises: ConfigError as `edited`."""
     for each in overrides:
         parts, value = parse_override(each)
-        text = edited(text, path, {parts: plain(value)})
+        text = edit_text(text, path, {parts: plain(value)})
     return text
 
 
-def said(text: str, path: Path) -> dict[str, Any]:
+def read_values(text: str, path: Path) -> dict[str, Any]:
     """Read a pipeline file as plain values that JSON has, whether they are right or wrong.
 
     Raises: ConfigError if it is not YAML, or not a mapping.
@@ -99,7 +99,7 @@ def _as_json(node: Any) -> Any:
     return node if isinstance(node, float) and isfinite(node) else str(node)
 
 
-def moved(text: str, path: Path, config: PipelineConfig, out: Path) -> str:
+def relocate_text(text: str, path: Path, config: PipelineConfig, out: Path) -> str:
     """Return a pipeline file's text for another place, from which its relative paths lead to the same files.
 
     config: the configuration of the text at `path`.
@@ -107,8 +107,10 @@ def moved(text: str, path: Path, config: PipelineConfig, out: Path) -> str:
     if out.parent.absolute() == path.parent.absolute():
         return text
     blocks = {place: each for name, key in KEYS.items() for place, each in key.models(getattr(config, name)).items()}
-    tree, folder = said(text, path), out.parent.resolve()
-    return edited(text, path, {**dict(_lead_elsewhere(tree, blocks, folder)), **_scene_elsewhere(tree, path, folder)})
+    tree, folder = read_values(text, path), out.parent.resolve()
+    return edit_text(
+        text, path, {**dict(_lead_elsewhere(tree, blocks, folder)), **_scene_elsewhere(tree, path, folder)}
+    )
 
 
 def _scene_elsewhere(tree: Mapping[str, Any], path: Path, folder: Path) -> Mapping[tuple[str, str], str]:

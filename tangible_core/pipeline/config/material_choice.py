@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Tag
 
 from ...errors import ConfigError, MaterialError
-from ...files.source import Location, Source
+from ...files.yaml.source import Location, Source
 from ...materials.assignment import NEUTRAL, find, load_library
 from ...materials.rules import MaterialRule
 from ...scene.workspace import Section

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar, cast
 
 from ...errors import ConfigError, TangibleError, quoted
-from ...files.source import Location, Source
+from ...files.yaml.source import Location, Source
 from ...plugins.interfaces import KINDS, Method
 from ...plugins.registry import Registry
 

@@ -16,12 +16,12 @@ from ruamel.yaml import YAML
 
 from ...data.products import Product
 from ...errors import ConfigError
-from ...files.source import Source
-from ...legibility.choice import SimplifyChoice
-from ...mapping import WorkspaceMapping, mapped
+from ...files.yaml.source import Source
+from ...legibility import SimplifyChoice
+from ...mapping import WorkspaceMapping, map_device
 from ...parts import HeightChoice, PartChoice
 from ...plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter
-from ...scene.height_files import Measured
+from ...scene.formats.height_maps import MeasuredSize
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
 from ...scene.workspace import FeltSize, Workspace, kind_of
@@ -109,12 +109,12 @@ class PipelineConfig(BaseModel):
 
     path: Annotated[Path | None, Unchecked()] = None
     """The file that the configuration stands in; None for a configuration that was made in Python."""
-    measured: Annotated[Measured | None, Unchecked()] = None
+    measured: Annotated[MeasuredSize | None, Unchecked()] = None
     """The size that the scene's heights have by their own account."""
     source: Annotated[Source | None, Unchecked()] = Field(default=None, repr=False)
     """The file with the places of its keys."""
 
-    def changed(self, **values: Any) -> Self:
+    def with_values(self, **values: Any) -> Self:
         """Return the same configuration with other values, which are not checked."""
         return self.model_copy(update=values)
 
@@ -161,7 +161,7 @@ class PipelineConfig(BaseModel):
     @property
     def felt_device(self) -> HapticDevice | None:
         """The device as the picture sees it, by the mapping; None where none is configured."""
-        return None if self.device is None else mapped(self.device.method, self.mapping)
+        return None if self.device is None else map_device(self.device.method, self.mapping)
 
     def missing(self, kind: str) -> ConfigError:
         """Return the complaint for a method that is needed and not named."""
@@ -172,14 +172,14 @@ class PipelineConfig(BaseModel):
             "(`tangible plugins` lists them)"
         )
 
-    def complained(self, *wrong: Wrong) -> ConfigError:
+    def error_at(self, *wrong: Wrong) -> ConfigError:
         """Return the complaints about these keys, each at its place in the file."""
         source = replace(self.source or Source(Path(), {}), complaints=[])
         for location, text in wrong:
             source.complain(location, f"{'.'.join(map(str, location))}: {text}")
         return source.error if self.source is not None else without_places(source)
 
-    def completed(self) -> dict[str, Any]:
+    def as_data(self) -> dict[str, Any]:
         """Return the configuration with every default filled in, as plain values.
 
         Raises: ConfigError for what no file can have: a scene of arrays, a method that is not installed.
@@ -195,11 +195,11 @@ class PipelineConfig(BaseModel):
         return name == "heights" and self.heights is None and bool(self.given_heights_m)
 
     def as_yaml(self, leave_out: Collection[str] = ()) -> str:
-        """Return the completed configuration as a pipeline file, without these keys. Raises: as `completed`."""
+        """Return the completed configuration as a pipeline file, without these keys. Raises: as `as_data`."""
         yaml, text = YAML(typ="safe"), StringIO()
         yaml.default_flow_style = False
         yaml.sort_base_mapping_type_on_output = False  # pyright: ignore[reportAttributeAccessIssue]
-        plain = {key: value for key, value in self.completed().items() if key not in leave_out}
+        plain = {key: value for key, value in self.as_data().items() if key not in leave_out}
         yaml.dump(plain, text)  # pyright: ignore[reportUnknownMemberType]
         return text.getvalue()
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from ...files.source import Location
+from ...files.yaml.source import Location
 from ...parts import PartChoice
 
 Wrong = tuple[Location, str]

@@ -6,9 +6,9 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from ...errors import BrokenMethod, shown
-from ...plugins.origin import origin
+from ...plugins.naming import origin
 from ...runtime.failure_log import where_kept
-from ...scene.scene_reader import SceneReader
+from ...scene.scene_files import SceneReader
 
 GROUP = "tangible.scene"
 

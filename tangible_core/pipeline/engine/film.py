@@ -79,7 +79,7 @@ def reliefs_of(config: PipelineConfig, scene: Scene) -> Reliefs:
     if scene.video is None:
         raise ConfigError(f"the scene {scene.name} does not move; give it a `video:`")
     if config.heights is not None:
-        raise config.complained(
+        raise config.error_at(
             (
                 ("heights",),
                 "the relief of a video is made anew of the depth in each frame, and not of parts; leave `heights:` "
@@ -114,7 +114,7 @@ def _filming(config: PipelineConfig, registry: Registry) -> Filming:
     if not isinstance(law, Filming):
         can = " or ".join(_laws_that_film(registry))
         why = f": {law.why_still}" if law.why_still else ""
-        raise config.complained(
+        raise config.error_at(
             (
                 ("render",),
                 f"the scene is a video, and {config.render.name} feels no surface that moves{why}; use {can}, or take "

@@ -7,7 +7,7 @@ from typing import Any
 from uuid import uuid4
 
 from ...data import Material, digest_of
-from ...files.content import content_digest
+from ...files.reading import content_digest
 from ...plugins.interfaces import Method
 from ...provenance.closure import closure
 from ...provenance.source import source_digest

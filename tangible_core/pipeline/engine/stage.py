@@ -1,17 +1,17 @@
-"""The base of all stages: how one product is made of a scene by a configuration.
+"""The base of all stages: each makes one product from a scene by a configuration.
 
 A stage stands in `stages/PRODUCT.py`, as the class `ProductStage`; the table `tangible_core.data.products.PRODUCTS`
 names the product.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import import_module
-from typing import Any, ClassVar, final
+from typing import Any, ClassVar, NamedTuple, final
 
-from ...data import Record, Views
+from ...data import Outcome, Record, Views
 from ...errors import BrokenMethod, ConfigError, TangibleError
 from ...plugins.interfaces import Skippable
 from ...provenance.closure import closure
@@ -28,6 +28,23 @@ Inputs = Mapping[str, Any]
 """Products by name; None for a product that was skipped."""
 
 
+class StageEvent(NamedTuple):
+    """The start of a stage, or its outcome."""
+
+    product: str
+    method: str
+    outcome: Outcome | None = None
+    """None at the start."""
+
+
+Progress = Callable[[StageEvent], None]
+"""A listener, called at the start and the end of every stage in the thread that makes it."""
+
+
+def ignore_event(event: StageEvent) -> None:
+    """Do nothing: there is no listener."""
+
+
 @final
 @dataclass(frozen=True, eq=False)
 class Context:
@@ -35,7 +52,7 @@ class Context:
 
     config: PipelineConfig
     scene: Scene
-    brought: Mapping[str, Record] = field(default_factory=dict[str, Record])
+    scene_products: Mapping[str, Record] = field(default_factory=dict[str, Record])
     """Products that need no stage, as the scene provides them."""
 
     @cached_property
@@ -46,11 +63,11 @@ class Context:
     @cached_property
     def no_segments(self) -> str | None:
         """The reason why there are no segments; None if there are."""
-        return None if "segments" in self.brought else stage_class("segments")(self).skip
+        return None if "segments" in self.scene_products else stage_class("segments")(self).skip
 
 
 class Stage(ABC):
-    """How one product is made: from which inputs, when it is skipped, and what its cached result depends on."""
+    """The making of one product: its inputs, the reason to skip it, and the key of its cached result."""
 
     product: ClassVar[str]
     cached: ClassVar[bool] = True
@@ -104,7 +121,7 @@ class Stage(ABC):
         return None
 
     @property
-    def listed(self) -> bool:
+    def in_outcomes(self) -> bool:
         """False for a product that outcomes leave out unless it was made."""
         return True
 
@@ -134,16 +151,16 @@ class MethodStage(Stage):
     """The key of the configuration that names the method."""
 
     @property
-    def chosen(self) -> NamedMethod[Any] | None:
+    def choice(self) -> NamedMethod[Any] | None:
         """The configured method, if any."""
         return getattr(self.config, self.kind)
 
     @property
-    def configured(self) -> NamedMethod[Any]:
+    def required_choice(self) -> NamedMethod[Any]:
         """The configured method. Raises: ConfigError without one."""
-        if self.chosen is None:
+        if self.choice is None:
             raise self.config.missing(self.kind)
-        return self.chosen
+        return self.choice
 
     @property
     def method(self) -> str:
@@ -153,21 +170,21 @@ class MethodStage(Stage):
     @cached_property
     def identity(self) -> tuple[str, str]:
         """The method's name, and all that its results depend on."""
-        return method_identity(self.chosen)
+        return method_identity(self.choice)
 
     @cached_property
     def skip(self) -> str | None:
         """The method's own reason why this scene does not need it; None if it gives none."""
-        method, views = self.chosen and self.chosen.method, self.context.scene.views
+        method, views = self.choice and self.choice.method, self.context.scene.views
         return method.skip(views) if isinstance(method, Skippable) and views is not None else None
 
     def check_shape(self, what: str, found: tuple[int, ...], wanted: tuple[int, ...]) -> None:
         """Raise BrokenMethod for a result of another size: enlarged to the pictures' size it would pass unseen."""
         if found != wanted:
-            name = self.configured.name
+            choice = self.required_choice
             raise BrokenMethod(
-                f"{self.kind} method {name} ({self.configured.origin}) made {what} of {_size(found)} for a picture of "
-                f"{_size(wanted)}; `tangible check {self.kind} {name}` shows what it must keep"
+                f"{self.kind} method {choice.name} ({choice.origin}) made {what} of {_size(found)} for a picture of "
+                f"{_size(wanted)}; `tangible check {self.kind} {choice.name}` shows the rules that it breaks"
             )
 
 

@@ -1,7 +1,7 @@
-"""What a pipeline will do after its depth, done in haste on a part of its picture, so that the kernels are compiled.
+"""The warm-up: the stages after the depth, run on a crop in a background process, so that their kernels are compiled.
 
-It runs in a process beside the one that makes the real thing, and what it finds is thrown away. Only the types of
-arrays must be what the pipeline will have, as kernels are compiled for those.
+Its results are discarded. Only the types of its arrays must be those of the pipeline, as kernels are compiled for
+types.
 """
 
 from collections.abc import Iterator
@@ -17,15 +17,17 @@ from ..config.model import PipelineConfig
 from .engine import Engine
 
 MOST_PX = 768
-"""Rows and columns of the picture that are looked at."""
+"""The most rows and columns of the crop."""
 STRIPES = 6
-"""Segments of a made-up map: enough for every material that a rule may choose."""
+"""Segments of the made-up map: enough for every material that a rule may choose."""
 FELT = "felt"
+"""The name of the simulated session, the last step of the warm-up."""
 SECONDS = 0.02
+"""The length of the simulated session, s: some ticks are enough to compile its loop."""
 
 
-def rehearsal(engine: Engine, want: str) -> Beside:
-    """For a block in which the engine makes this product: what it compiles later is compiled beside it."""
+def warm_up(engine: Engine, want: str) -> Beside:
+    """Return a block in which the engine makes this product, while its later kernels are compiled in the background."""
     return Beside(lambda: _work(engine, want))
 
 
@@ -33,19 +35,19 @@ def _work(engine: Engine, want: str) -> Work | None:
     from ...compiled.threads import thread_count  # imports numba, which is there by now
 
     views, config = engine.scene.views, engine.config
-    segments = config.texture is not None and "segments" not in {*engine.begun, *engine.brought}
+    segments = config.texture is not None and "segments" not in {*engine.begun, *engine.scene_products}
     touch = want == "touch" and config.render is not None and "touch" not in engine.begun
     if views is None or min(thread_count(), engine.threads or 2) < 2 or not (segments or touch):
         return None
     rows, columns = (slice(max(0, (size - MOST_PX) // 2), (size + MOST_PX) // 2) for size in views.shape)
     part = Views(np.ascontiguousarray(views.left[rows, columns]))
     names = frozenset(["segments"] * segments + ["touch", FELT] * touch)
-    said = config.changed(scene=Scene("rehearsal", part), simplify=None)
-    return Work(names, rehearse, (said, part, segments, touch))
+    crop_config = config.with_values(scene=Scene("rehearsal", part), simplify=None)
+    return Work(names, run_stages, (crop_config, part, segments, touch))
 
 
-def rehearse(config: PipelineConfig, views: Views, segments: bool, touch: bool) -> Iterator[str]:
-    """Segment, make the touch of a made-up surface, feel it; after each it is named, as the pipeline's product is."""
+def run_stages(config: PipelineConfig, views: Views, segments: bool, touch: bool) -> Iterator[str]:
+    """Segment, make the touch of a made-up surface, and run it; yield the name of each step when it is done."""
     if segments and config.texture is not None:
         config.texture.method.segment(views.left)
         yield "segments"
@@ -55,7 +57,7 @@ def rehearse(config: PipelineConfig, views: Views, segments: bool, touch: bool) 
     ramp, stripes = np.empty(views.shape, np.float32), np.empty(views.shape, np.int32)
     ramp[:], stripes[:] = columns + 1, columns * STRIPES // columns.size
     scene = Scene("rehearsal", views, DisparityMap(ramp), SegmentMap(stripes))
-    made = Engine(config.changed(scene=scene), default_registry()).make("touch")
+    made = Engine(config.with_values(scene=scene), default_registry()).make("touch")
     yield "touch"
     device = config.felt_device
     if device is not None and device.spec().simulated:

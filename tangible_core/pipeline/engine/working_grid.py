@@ -38,15 +38,15 @@ class WorkingGrid:
     @cached_property
     def views(self) -> Views | None:
         """The pictures; without calibration where they are reduced."""
-        return None if self.scene.views is None else scaling.reduced(self.scene.views, self.factor)
+        return None if self.scene.views is None else scaling.reduce_views(self.scene.views, self.factor)
 
     @cached_property
-    def known(self) -> Bool[np.ndarray, "h w"] | None:
+    def known_mask(self) -> Bool[np.ndarray, "h w"] | None:
         """A mask, True where the pictures have values; None for everywhere."""
         return None if self.scene.known is None else scaling.reduced_mask(self.scene.known, self.shape)
 
     @cached_property
-    def shown(self) -> Bool[np.ndarray, "h w"] | None:
+    def opaque_mask(self) -> Bool[np.ndarray, "h w"] | None:
         """A mask, True where the pictures are opaque; None for everywhere."""
         shown = None if self.scene.shown is None else scaling.reduced_mask(self.scene.shown, self.shape)
         return None if shown is None or shown.all() else shown

@@ -14,9 +14,8 @@ from pathlib import Path
 from typing import Any, cast
 
 from ...errors import BrokenMethod, OutputError, quoted
-from ...files.content import content_digest
-from ...files.reading import read_bytes
-from ...files.writing import alone_in, write_text
+from ...files.reading import content_digest, read_bytes
+from ...files.writing import folder_lock, write_text
 
 LISTED = ".exports.json"
 """What an export leaves beside its files: no file of an exporter begins with a dot."""
@@ -73,7 +72,7 @@ def move(written: Sequence[Path], folder: Path, source: str, exporter: str, forc
 
     Raises: OutputError if one would be written over, before any is moved.
     """
-    with alone_in(folder):
+    with folder_lock(folder):
         return _moved(written, folder, source, exporter, force)
 
 

@@ -18,15 +18,16 @@ from ...errors import BrokenMethod, ConfigError, Stopped, TangibleError, exited,
 from ...legibility import Legibility
 from ...plugins import failures, hooks
 from ...plugins.interfaces import Exporter
-from ...plugins.naming import named
-from ...plugins.notes import noted
+from ...plugins.naming import plugin_name
+from ...plugins.notes import collect_notes
 from ...plugins.registry import Registry
 from ...runtime.stopping import check_stopped, stoppable
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
-from ..engine.engine import Engine, Progress, StageEvent
+from ..engine.engine import Engine
+from ..engine.stage import Progress, StageEvent
 from .export_folder import check_writable, check_written, move, scratch
 from .legible import judged, names, of_width
 from .run_folder import default_name, relative_source
@@ -187,14 +188,14 @@ class _Desk:
 
         try:
             engine = self._engine(chosen)
-            with engine.watched(told):
+            with engine.watching(told):
                 work = work_for(engine, chosen.method)
                 legible = legible_for(engine, chosen.method)
             check_stopped()
             self.progress(StageEvent(product, chosen.name))
             hooks.tell(self.engine.registry.plugins, "tangible_stage_started", product=product, method=chosen.name)
             start = perf_counter()
-            with scratch(self.folder) as place, noted() as notes:
+            with scratch(self.folder) as place, collect_notes() as notes:
                 files = self._written(chosen, work, place / stem)
             seconds = perf_counter() - start
             became: OutcomeKind = "ran"
@@ -224,7 +225,7 @@ class _Desk:
         cls = type(chosen.method)
         written = chosen.method.write(work, stem)
         check_stopped()
-        found = check_written(written, stem, named("export", cls.__module__, cls.__qualname__))
+        found = check_written(written, stem, plugin_name("export", cls.__module__, cls.__qualname__))
         return move(found, self.folder, self.source, chosen.name, self.force)
 
 
@@ -234,9 +235,9 @@ def work_for(engine: Engine, exporter: Exporter) -> Work:
     Raises: BrokenMethod for a product that nothing makes; TangibleError as `Engine.make`.
     """
     if odd := [each for each in exporter.needs if each not in EXPORTABLE]:
-        who = named("export", type(exporter).__module__, type(exporter).__qualname__)
+        who = plugin_name("export", type(exporter).__module__, type(exporter).__qualname__)
         raise BrokenMethod(f"{who}: needs {quoted(odd[0])}; an exporter may need {', '.join(EXPORTABLE)}")
-    products: dict[str, Record | None] = {name: engine.felt(name) for name in exporter.needs}
+    products: dict[str, Record | None] = {name: engine.make_on_grid(name) for name in exporter.needs}
     views = engine.scene.views
     return Work(
         title_of(engine.config, engine.scene),
@@ -253,7 +254,7 @@ def legible_for(engine: Engine, exporter: Exporter) -> Legibility | None:
     if exporter.medium is None:
         return None
     parts = "simplified" if "simplified" in exporter.needs else engine.config.felt_parts
-    return judged(engine, exporter.medium, parts, set[str]().union(*map(engine.needed, exporter.needs)))
+    return judged(engine, exporter.medium, parts, set[str]().union(*map(engine.inputs_of, exporter.needs)))
 
 
 def _illegible(legible: Legibility | None) -> list[Note]:

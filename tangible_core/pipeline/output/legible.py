@@ -27,7 +27,9 @@ def legible(engine: Engine, medium: Medium) -> Legibility:
 
 def judged(engine: Engine, medium: Medium, parts: str, looked_at: Collection[str]) -> Legibility:
     """Of no other products than these. parts: the product whose parts are read. Raises: TangibleError as `make`."""
-    found: dict[str, Any] = {name: engine.felt(name) for name in (parts, "relief", "materials") if name in looked_at}
+    found: dict[str, Any] = {
+        name: engine.make_on_grid(name) for name in (parts, "relief", "materials") if name in looked_at
+    }
     said = {name: found[name] for name in LOOKED_AT.get(medium, ()) if name in found}
     read: PartMap | None = found.get(parts)
     return legibility(medium, read, engine.config.size.width_m, names=names(engine.config, found), **said)
@@ -47,7 +49,7 @@ def of_width(engine: Engine, width_m: float | None) -> Engine:
         workspace = Workspace.model_validate({**dict(config.workspace), "width_m": width_m, "finest_m": finest_m})
     except ValueError as error:
         raise ConfigError(f"width_m: is {quoted(width_m)}; a width is from 1e-6 to 10 m") from error
-    return engine.changed(config.changed(workspace=workspace))
+    return engine.with_config(config.with_values(workspace=workspace))
 
 
 def names(config: PipelineConfig, products: Mapping[str, Record | None]) -> tuple[str, ...]:

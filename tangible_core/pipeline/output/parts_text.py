@@ -5,8 +5,8 @@ from typing import Any
 
 from ...data import DisparityMap, PartMap
 from ...errors import ConfigError, shown
-from ...files.editing import on_one_line
-from ...files.parts_block import with_parts
+from ...files.yaml.editing import on_one_line
+from ...files.yaml.parts_block import with_parts
 from ...parts import PartChoice, PartHeights
 from ..config.model import PipelineConfig
 from ..engine.engine import Engine
@@ -30,8 +30,8 @@ def part_heights(engine: Engine) -> PartHeights | None:
     config = engine.config
     if config.heights is None:
         return None
-    found: PartMap = engine.felt(config.felt_parts)
-    disparity: DisparityMap | None = engine.felt("disparity") if config.heights.by == "depth" else None
+    found: PartMap = engine.make_on_grid(config.felt_parts)
+    disparity: DisparityMap | None = engine.make_on_grid("disparity") if config.heights.by == "depth" else None
     return ReliefStage(Context(config, engine.scene)).part_heights(found, disparity)
 
 

@@ -17,8 +17,7 @@ from typing import Any, cast
 
 from ...data.products import PRODUCTS
 from ...errors import OutputError
-from ...files.content import content_digest
-from ...files.reading import MOST_TEXT_BYTES, read_bytes
+from ...files.reading import MOST_TEXT_BYTES, content_digest, read_bytes
 from ...files.writing import write_text
 
 MANIFEST = "manifest.json"

@@ -8,22 +8,33 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
+import numpy as np
+
 from ...data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Record, ServoReport, Work
 from ...data.products import IN_REPORT
 from ...errors import ConfigError, OutputError
 from ...files.json_text import write_figures
 from ...files.writing import write_text
+from ...mapping import intended_path, map_device, over
 from ...metrics import disparity_errors
-from ...plugins.interfaces import Touch
-from ...session import EVERY, About, Recording, materials_text, names_text, run_simulated, telling_parts
+from ...plugins.interfaces import HapticDevice, Touch
+from ...session import (
+    EVERY,
+    About,
+    Followed,
+    Recording,
+    followed,
+    materials_text,
+    names_text,
+    run_simulated,
+    telling_parts,
+)
 from ..engine.cache import write_record
 from ..engine.engine import Engine
-from ..engine.warm_up import FELT, rehearsal
-from .following import felt_device, how_followed
-from .notebook import png_html
+from ..engine.warm_up import FELT, warm_up
 from .parts_text import part_heights, to_correct
 from .run_folder import CONFIG, GUESSED, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
-from .showing import can_draw, drawing
+from .showing import can_draw, drawing, png_html
 
 Sheet = Literal["png", "svg", "pdf"]
 """What a sheet can be drawn as."""
@@ -90,9 +101,9 @@ def make_run(
     """
     engine.check(want)
     check_folder(out, engine.config.path)
-    with rehearsal(engine, want) as engine.beside:
-        value = engine.felt(want)
-        products = {name: engine.felt(name) for name in IN_REPORT if name in engine.needed(want)}
+    with warm_up(engine, want) as engine.beside:
+        value = engine.make_on_grid(want)
+        products = {name: engine.make_on_grid(name) for name in IN_REPORT if name in engine.inputs_of(want)}
         products[want] = value
         recording = _felt(engine, value, seconds, on_report) if want == "touch" else None
     figures, config = _figures(engine, products, recording), _configuration(engine)
@@ -142,8 +153,20 @@ def about(engine: Engine) -> About:
         text = engine.config.as_yaml()
     except ConfigError as error:
         text = f"# {error}"
-    parts, materials = names_text(engine.config.part_names), materials_text(engine.felt("surface"))
+    parts, materials = names_text(engine.config.part_names), materials_text(engine.make_on_grid("surface"))
     return About(names["device"], names["render"], text, parts=parts, materials=materials)
+
+
+def felt_device(engine: Engine, device: HapticDevice | None = None) -> HapticDevice | None:
+    """This or the configured device as the picture sees it, a path of its own over the surface; None where none is."""
+    felt = engine.config.felt_device if device is None else map_device(device, engine.config.mapping)
+    return felt and over(felt, engine.make("surface").extent_m)
+
+
+def how_followed(engine: Engine, felt: HapticDevice | None, seen: Recording) -> Followed:
+    """How the hand followed the path of a device of `felt_device`. seen: one of `EVERY` ticks."""
+    path_m = felt and intended_path(felt, np.arange(len(seen.rows)) * EVERY)
+    return followed(seen, path_m, engine.make("surface"))
 
 
 def _felt(
@@ -155,7 +178,7 @@ def _felt(
     said = about(engine).stamped()
     if engine.beside is not None:
         engine.beside.wait(FELT)
-    told = telling_parts(engine.felt("surface"), on_report) if on_report else None
+    told = telling_parts(engine.make_on_grid("surface"), on_report) if on_report else None
     recording = run_simulated(touch, device, seconds, told, engine.config.safety)
     return replace(recording, about=said)
 

@@ -1,1 +1,1 @@
-"""Observers that come with the house; plugins like any other."""
+"""The hook modules that come with the program; plugins like any other."""

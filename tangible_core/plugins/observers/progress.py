@@ -1,4 +1,4 @@
-"""Shows on a terminal what is being made now, and how long the hand has been feeling; `--quiet` leaves it out."""
+"""The progress line of a terminal: the product that is being made, or the time of the session; off with `--quiet`."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ if TYPE_CHECKING:
     from ...data import Outcome, ServoReport
 
 EXPORT = "export: "
-"""How the outcome of an exporter is called, before its name."""
+"""The product in the outcome of an exporter, before the exporter's name."""
 _shown: list[Any] = []
 """The one spinner on the screen, if any."""
 
 
 @hookimpl
 def tangible_stage_started(product: str, method: str) -> None:
-    """A spinner with the product's name, or what is written."""
+    """Show a spinner with the name of the product or exporter."""
     _show(f"writing {method}" if product.startswith(EXPORT) else f"making {product} with {method}")
 
 
 @hookimpl
 def tangible_stage_finished(outcome: Outcome) -> None:
-    """The spinner goes."""
+    """Remove the spinner."""
     _clear()
 
 
 @hookimpl
 def tangible_servo_report(report: ServoReport) -> None:
-    """Time, force, and the part and material under the tip, rewritten in place; gone when the loop stops."""
+    """Show time, force, part and material under the tip in one line, until the loop stops."""
     if report.stopped:
         _clear()
     else:

@@ -1,1 +1,1 @@
-"""What stands between a law and a motor: limits, softening, passivity."""
+"""The guard between force law and motor: force limits, stiffness limit, virtual coupling, passivity."""

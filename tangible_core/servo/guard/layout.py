@@ -1,7 +1,7 @@
-"""Where each number stands in the two arrays of a guard."""
+"""The layout of a guard's two arrays: indices of its settings and of its memory."""
 
 MOST_DELAY = 8
-"""Ticks of delay that are told apart."""
+"""Greatest delay of a force, ticks; the memory holds one force for each."""
 
 (
     MAX_FORCE_N,
@@ -22,33 +22,36 @@ MOST_DELAY = 8
     MOST_SURFACE_J,
     SETTINGS,
 ) = range(17)
-"""Settings, which a guard reads; the last is how many there are. N/m and N s/m where no unit is in the name.
+"""Indices of the settings, which a guard reads; the last is their number. N/m and N s/m where the name has no unit.
 
-STIFFNESS_TIMES_PERIOD, N s/m: divided by the period it is the stiffness held stably. CREDIT: the damping whose loss is
-counted for the loop. COUPLING: its stiffness, 0 for none; COUPLING_LAW: that of the law behind it. SURFACE_W,
-MOST_SURFACE_J: the work that a surface which moves may do, as a power for long and as an energy at once.
+STIFFNESS_TIMES_PERIOD, N s/m: divided by the period, it is the greatest stable stiffness. CREDIT: the damping whose
+dissipation the loop is credited with. COUPLING: stiffness of the coupling, 0 for none; COUPLING_LAW: stiffness of the
+force law behind it. SURFACE_W, MOST_SURFACE_J: limits of the work of a moving surface, as sustained power and as energy
+at once.
 """
 
 FORCE = 0
-"""Memory: where the force that left at the last tick begins; x, y, z."""
+"""Memory: the force sent at the last tick; x, y, z from this index on."""
 PLACE = 3
-"""The last fresh position; x is NaN where there is none."""
-RAMP, SOFTNESS, MEAN_S, MEAN_S2, ENERGY_J, AGE_S, SLOT = range(6, 13)
-"""Shares of the force, 0..1; running means of the period and its square; what the loop took in and may give; the time
-without a fresh position; and the place in HELD of the force that is on its way longest."""
+"""Memory: the last fresh position; x is NaN if there is none."""
+RAMP, GAIN, MEAN_S, MEAN_S2, ENERGY_J, AGE_S, SLOT = range(6, 13)
+"""Memory: factors 0..1 of fading in and of the stiffness limit; running means of the period and of its square; energy
+that the loop received and may return; time without a fresh position; slot in HELD of the oldest delayed force."""
 HELD = 13
-"""The forces that are on their way to the hand, or there."""
+"""Memory: the forces that are delayed on their way to the hand, or act on it."""
 TOOL = HELD + 3 * (MOST_DELAY + 1)
-"""The tool of the coupling: position, with x NaN where it has none, velocity, and the law's force on it."""
+"""Memory: the tool of the coupling: position, with x NaN if it has none, velocity, and the law's force on it."""
 COUNTS = TOOL + 9
-"""Ticks of each flag that a guard gives, by the flag's bit."""
+"""Memory: ticks with each flag of the guard, by the flag's bit."""
 FLAGS = 8
+"""Number of flags that a guard sets."""
 PULL = COUNTS + FLAGS
-"""The beacon's force along x and y, which joins the law's; and its stiffness, which joins the law's as well."""
+"""Memory: the beacon's force along x and y, which is added to the law's."""
 PULL_STIFFNESS = PULL + 2
-RISE_M, ROSE_M, LIFT_N, GIVEN_J, MAY_GIVE_J = range(PULL_STIFFNESS + 1, PULL_STIFFNESS + 6)
-"""Of a surface that moves: by how much it rose under the proxy in this tick, which whoever asks the law writes before
-the guard, and in the one before; the law's force along z as it left; the work that the surface did in this contact and
-has not taken back, and what it may yet do."""
+"""Memory: the beacon's stiffness, which is added to the law's."""
+RISE_M, LAST_RISE_M, SURFACE_FORCE_N, GIVEN_J, MAY_GIVE_J = range(PULL_STIFFNESS + 1, PULL_STIFFNESS + 6)
+"""Memory of a moving surface: its rise under the proxy in this tick, which the caller of the law writes before the
+guard, and in the tick before; the law's force along z as it was sent; the work that the surface did in this contact and
+has not taken back, and the work that it may still do."""
 MEMORY = MAY_GIVE_J + 1
-"""How many numbers a guard remembers."""
+"""Length of a guard's memory."""

@@ -1,4 +1,4 @@
-"""What a force loop allows: the options, and the two arrays that `guard` is given."""
+"""The limits of a force loop: their options, and the two arrays in which `guard` takes them."""
 
 from typing import Annotated, Literal
 
@@ -11,31 +11,32 @@ from ...data.quantities import Quantities
 from . import layout as at
 
 BRAKE_TIMES = 5
-"""The controller brakes by at most so many times the device's damping: more makes noise of the velocity felt, and a
-sampled brake of 30 times it is itself unstable."""
+"""Greatest damping of the passivity controller, in units of the device's damping: above it, noise of the velocity can
+be felt, and a sampled damper of 30 times the device's is itself unstable."""
 NOMINAL_S = 0.001
-"""The period that a device's greatest stiffness is stated for, and that is assumed before one was measured."""
+"""The period for which a device's greatest stiffness is stated, and which is assumed before one was measured."""
 DEBT_M = 0.001
-"""A loop owes at most what the greatest force does over this way: a law that gives by design is not braked for ever."""
+"""Greatest debt of a loop, as the way over which the greatest force does that work: a force law that gives energy by
+design is not damped for ever."""
 SURFACE_M_PER_S, SURFACE_M = 0.0025, 0.01
-"""A surface that moves does at most the work of the greatest force at this speed for long, and over this way at once,
-beyond what it takes back: what it did more would be no loop's own, and unbounded."""
+"""Greatest work of a moving surface beyond what it takes back: that of the greatest force at this speed for long, and
+over this way at once. More would be unbounded energy that the loop is not charged for."""
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
 class Coupling(Quantities):
-    """A spring and a damper between the device and the tool that the law feels."""
+    """A spring and a damper between the device and the tool that touches the surface."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     stiffness_n_per_m: Positive
-    """Stiffness of the coupling: no law feels stiffer."""
+    """Stiffness of the coupling, which is the greatest that can be felt."""
     damping_n_s_per_m: Annotated[float, Field(ge=0, allow_inf_nan=False)]
-    """Damping of the coupling, which the device's own damping must exceed."""
+    """Damping of the coupling; it must be less than the device's own damping."""
 
 
 class Safety(Quantities):
-    """What no law may do to a hand; every limit that acted is counted and reported."""
+    """Limits of the force on a hand, whatever the force law; the ticks in which each limit acted are reported."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
@@ -48,26 +49,26 @@ class Safety(Quantities):
     stale_s: Annotated[float, Field(ge=0.002, le=1, allow_inf_nan=False)] = 0.02
     """Age of the last position at which the force is cut to zero."""
     stiffness_margin: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.8
-    """Fraction of the stiffness limit that a law may use. The rest compensates for the law's own damping, whose delay
-    adds energy too."""
+    """Fraction of the stiffness limit that a force law may use. The rest compensates for the law's own damping, whose
+    delay adds energy too."""
     delay_ticks: Annotated[int, Field(ge=0, le=at.MOST_DELAY)] = 0
     """Delay, in whole ticks, from reading a position to its force on the hand, beyond the tick itself."""
     friction_n: Positive | None = None
     """Coulomb friction of the handle, if it was measured: it limits the stiffness that coarse encoders allow."""
     passivity: Literal["off", "coupled", "strict"] = "coupled"
-    """Passivity control. `strict`: the loop gives back no more energy than it took in. `coupled`: nor more than that
+    """Passivity control. `strict`: the loop gives back no more energy than it took in. `coupled`: no more than that
     plus what the device's own damping dissipates, so that a stable spring is not altered. `off`: none."""
     coupling: Coupling | Literal["auto"] | None = None
-    """Virtual coupling between law and device: null for none, where the law's stiffness is known; `auto` for one that
-    the device holds stably."""
+    """Virtual coupling between force law and device: null for none, where the law's stiffness is known; `auto` for one
+    that the device renders stably."""
 
     def arrays(
         self, spec: DeviceSpec, stiffness_n_per_m: float
     ) -> tuple[Float64[np.ndarray, "settings"], Float64[np.ndarray, "memory"]]:
-        """What `guard` reads, and what it remembers: one memory for as long as a device is open.
+        """Return the settings and the initial memory of `guard`; one memory lasts as long as the device is open.
 
-        For another scene take other settings, keep the memory and call `restart`.
-        stiffness_n_per_m: the law's, as `stiffness_of` has it; 0 for one that is no spring.
+        For another scene, take other settings, keep the memory and call `restart`.
+        stiffness_n_per_m: stiffness of the force law by `stiffness_of`; 0 if the law has no spring.
         """
         settings, memory = np.zeros(at.SETTINGS), np.zeros(at.MEMORY)
         damping = effective_damping_n_s_per_m(spec)
@@ -91,11 +92,11 @@ class Safety(Quantities):
             self._couple(settings, damping, stiffness_n_per_m)
         memory[[at.PLACE, at.TOOL]] = np.nan
         memory[[at.MEAN_S, at.MEAN_S2]] = NOMINAL_S, NOMINAL_S**2
-        memory[at.SOFTNESS] = softness(settings, NOMINAL_S)
+        memory[at.GAIN] = gain(settings, NOMINAL_S)
         return settings, memory
 
     def _couple(self, settings: np.ndarray, damping_n_s_per_m: float, law_n_per_m: float) -> None:
-        """Half of the stiffness, and a quarter of the damping, that the device holds, where nothing else is said."""
+        """Set the coupling: as configured, or half the stiffness and a quarter of the damping of the device."""
         most = min(settings[at.MAX_STIFFNESS], settings[at.STIFFNESS_TIMES_PERIOD] / NOMINAL_S)
         if isinstance(self.coupling, Coupling):
             stiffness, damping = self.coupling.stiffness_n_per_m, self.coupling.damping_n_s_per_m
@@ -106,20 +107,20 @@ class Safety(Quantities):
         settings[at.STIFFNESS] = 1 / (1 / stiffness + (1 / law_n_per_m if law_n_per_m else 0))
 
 
-def softness(settings: Float64[np.ndarray, "settings"], period_s: float) -> float:
-    """The share of a law's force that leaves a guard at this period, 1 if the law is soft enough."""
+def gain(settings: Float64[np.ndarray, "settings"], period_s: float) -> float:
+    """Return the gain by which a guard scales the law's force at this period; 1 if the law is soft enough."""
     held = min(settings[at.STIFFNESS_TIMES_PERIOD] / period_s, settings[at.MAX_STIFFNESS])
     return float(held / settings[at.STIFFNESS]) if settings[at.STIFFNESS] > held else 1.0
 
 
 def counts(memory: Float64[np.ndarray, "memory"]) -> dict[TickFlag, int]:
-    """In how many ticks each flag of a guard was set, those that never were left out."""
+    """Return the number of ticks in which each flag of a guard was set, without flags that never were."""
     ticks = {TickFlag(1 << bit): int(memory[at.COUNTS + bit]) for bit in range(at.FLAGS)}
     return {flag: count for flag, count in ticks.items() if count}
 
 
 def stiffness_limit_n_per_m(damping_n_s_per_m: float, period_s: float, delay_ticks: int = 0) -> float:
-    """The stiffest sampled spring that a damped handle holds passively, K = 2 b / (T (1 + 2 d)).
+    """Return the stiffness of the stiffest sampled spring that is passive on a damped handle, K = 2 b / (T (1 + 2 d)).
 
     From Re{(1 - e^-jwT) K e^-jwdT} (T / 2) / (1 - cos wT) < b at all frequencies, the worst of which is 0.
     Source: Colgate & Schenkel, Passivity of a class of sampled-data systems, J. Robotic Systems 14, 1997, eq. 19.
@@ -128,7 +129,7 @@ def stiffness_limit_n_per_m(damping_n_s_per_m: float, period_s: float, delay_tic
 
 
 def encoder_limit_n_per_m(friction_n: float, resolution_m: float) -> float:
-    """The stiffest spring whose steps, of K times the encoder's, Coulomb friction swallows, K = 2 f / Delta.
+    """Return the stiffness above which Coulomb friction no longer hides the steps of the encoder, K = 2 f / Delta.
 
     Source: Abbott & Okamura, Effects of position quantization and sampling rate on virtual-wall passivity, IEEE
     Trans. Robotics 21(5), 2005.
@@ -137,9 +138,9 @@ def encoder_limit_n_per_m(friction_n: float, resolution_m: float) -> float:
 
 
 def effective_damping_n_s_per_m(spec: DeviceSpec) -> float:
-    """The device's damping, or less where its greatest stiffness at 1 kHz says so; that alone where none is stated.
+    """Return the device's damping, but at most the damping implied by its greatest stiffness at 1 kHz.
 
-    Makers' tables give the damping that a device can display, which is far more than what is in its joints.
+    Data sheets give the damping that a device can display, which is far more than the damping of its joints.
     """
     implied = spec.max_stiffness_n_per_m * NOMINAL_S / 2
     return min(spec.damping_n_s_per_m or implied, implied)

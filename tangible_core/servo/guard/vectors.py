@@ -1,4 +1,4 @@
-"""Vectors of any floats at all, compiled. Imports numba."""
+"""Vectors of any floats, infinite and NaN included, compiled. Imports numba."""
 
 # ruff: noqa: ANN001, ANN201 -- the types are those that numba infers
 # pyright: basic
@@ -9,14 +9,14 @@ from ...compiled.compiling import inner
 
 
 @inner(forceinline=True)
-def nought(x, y, z):
-    """0.0, and NaN if one of them is not finite; no sum of these overflows."""
+def zero_or_nan(x, y, z):
+    """Return 0.0, or NaN if one of the three is not finite; a sum of such values never overflows."""
     return 0.0 * x + 0.0 * y + 0.0 * z
 
 
 @inner(forceinline=True)
-def shortened(x, y, z, most):
-    """The vector in its direction, of at most this length, and whether it was over it; NaN where it is not finite."""
+def clip(x, y, z, most):
+    """Return the vector, clipped to this length, and whether it was longer; NaN where it is not finite."""
     if x * x + y * y + z * z <= most * most:
         return x, y, z, False
     greatest = max(abs(x), abs(y), abs(z))  # divided by first, so that the length cannot overflow

@@ -236,7 +236,7 @@ class ByClock:
             self._again_s = time_s + self._frame_s
             if self._screen.waits:
                 self._screen.again()
-            if self._next is None and not self._reliefs.frames.ended:
+            if self._next is None and not self._reliefs.frames.at_end:
                 self._next = self._read()
 
     def told(self, tell: Callable[[ServoReport], None]) -> Callable[[ServoReport], None]:

@@ -1,14 +1,14 @@
-"""More surfaces to touch whose heights and slopes are known exactly: waves, a ridge, a cone and a cliff."""
+"""Further surfaces whose heights and slopes are known exactly: waves, a ridge, a cone and a cliff."""
 
 import numpy as np
 
-from .scenes import KnownSurface, sampled
+from .scenes import KnownSurface, sample_surface
 
 
 def waves(amplitude_m: float = 0.004, wavelength_m: float = 0.02, shape: tuple[int, int] = (256, 256)) -> KnownSurface:
-    """An egg box: h = A + A sin(2 pi x / L) sin(2 pi y / L), slopes up to 2 pi A / L."""
+    """Return an egg box: h = A + A sin(2 pi x / L) sin(2 pi y / L), with slopes up to 2 pi A / L."""
     k = 2 * np.pi / wavelength_m
-    return sampled(
+    return sample_surface(
         lambda x, y: amplitude_m * float(1 + np.sin(k * x) * np.sin(k * y)),
         lambda x, y: (
             amplitude_m * k * float(np.cos(k * x) * np.sin(k * y)),
@@ -19,20 +19,20 @@ def waves(amplitude_m: float = 0.004, wavelength_m: float = 0.02, shape: tuple[i
 
 
 def ridge(slope: float = 0.5, top_m: float = 0.03, shape: tuple[int, int] = (256, 256)) -> KnownSurface:
-    """Two planes that meet in a sharp edge along y."""
-    return sampled(lambda x, y: top_m - slope * abs(x), lambda x, y: (-slope * float(np.sign(x)), 0.0), shape)
+    """Return two planes that meet in a sharp edge along y."""
+    return sample_surface(lambda x, y: top_m - slope * abs(x), lambda x, y: (-slope * float(np.sign(x)), 0.0), shape)
 
 
 def cone(slope: float = 0.5, top_m: float = 0.04, shape: tuple[int, int] = (256, 256)) -> KnownSurface:
-    """A cone with its tip over the centre."""
+    """Return a cone with its tip over the centre."""
 
     def gradient(x: float, y: float) -> tuple[float, float]:
         radius = float(np.hypot(x, y)) or 1.0
         return -slope * x / radius, -slope * y / radius
 
-    return sampled(lambda x, y: top_m - slope * float(np.hypot(x, y)), gradient, shape)
+    return sample_surface(lambda x, y: top_m - slope * float(np.hypot(x, y)), gradient, shape)
 
 
 def cliff(high_m: float = 0.004, shape: tuple[int, int] = (256, 256)) -> KnownSurface:
-    """Level ground that steps up by this much at x = 0."""
-    return sampled(lambda x, y: high_m * float(x > 0), lambda x, y: (0.0, 0.0), shape)
+    """Return level ground that steps up by `high_m` at x = 0."""
+    return sample_surface(lambda x, y: high_m * float(x > 0), lambda x, y: (0.0, 0.0), shape)

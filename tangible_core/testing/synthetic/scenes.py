@@ -1,4 +1,4 @@
-"""Analytic scenes: what is to be found in them is known exactly, and they are the same in every run."""
+"""Analytic scenes, whose disparity, segments or heights are known exactly, and which are the same in every run."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ GREY, CONTRAST = 127.5, 40.0
 
 
 def wall(disparity_px: float = 6.0, shape: tuple[int, int] = (96, 320), seed: int = 0) -> Views:
-    """A textured wall that faces both cameras: every pixel has this one disparity, of either sign.
+    """Return views of a textured wall that faces both cameras: all pixels have one disparity, of either sign.
 
     The texture is a sum of plane waves 4 to 24 px long, so it is exact at any fraction of a pixel.
     Returns: views of uint8 (h, w, 3), uncalibrated.
@@ -24,9 +24,9 @@ def wall(disparity_px: float = 6.0, shape: tuple[int, int] = (96, 320), seed: in
 def two_textures(
     shape: tuple[int, int] = (96, 128), seed: int = 0
 ) -> tuple[UInt8[np.ndarray, "h w 3"], Int32[np.ndarray, "h w"]]:
-    """A dark half with upright stripes 4 px apart beside a bright half with slanting ones 5.7 px apart; a little noise.
+    """Return a dark half with upright stripes 4 px apart, a bright one with slanting ones 5.7 px apart, and some noise.
 
-    A step of 110 grey levels between stripes of 16: told apart by brightness, by direction and by frequency.
+    The halves differ by 110 grey levels and their stripes by 16: in brightness, direction and frequency.
     Returns: the picture, and the true labels: 0 on the left, 1 on the right.
     """
     rows, columns = np.indices(shape, np.float64)
@@ -48,43 +48,43 @@ class KnownSurface:
     """Gradient of the height at (x, y)."""
 
     def at(self, x_m: float, y_m: float, depth_m: float) -> tuple[float, float, float]:
-        """The point this deep under the surface, measured straight down."""
+        """Return the point this deep under the surface, measured straight down."""
         return x_m, y_m, self.height_m(x_m, y_m) - depth_m
 
     def normal(self, x_m: float, y_m: float) -> Float64[np.ndarray, "3"]:
-        """The unit normal above (x, y), pointing out of the surface."""
+        """Return the unit normal above (x, y), pointing out of the surface."""
         across, along = self.slope(x_m, y_m)
         return np.array((-across, -along, 1.0)) / np.sqrt(1 + across**2 + along**2)
 
 
 def plane(height_m: float = 0.01, shape: tuple[int, int] = (65, 65)) -> KnownSurface:
-    """A level plane."""
+    """Return a level plane."""
     return ramp((0.0, 0.0), height_m, shape)
 
 
 def ramp(
     slope: tuple[float, float] = (0.2, 0.1), height_m: float = 0.015, shape: tuple[int, int] = (65, 65)
 ) -> KnownSurface:
-    """A plane that rises by `slope` along x and y, this high in its middle."""
-    return sampled(lambda x, y: height_m + slope[0] * x + slope[1] * y, lambda x, y: slope, shape)
+    """Return a plane that rises by `slope` along x and y, this high in its middle."""
+    return sample_surface(lambda x, y: height_m + slope[0] * x + slope[1] * y, lambda x, y: slope, shape)
 
 
 def sphere_cap(radius_m: float = 0.1, base_m: float = 0.08, shape: tuple[int, int] = (65, 65)) -> KnownSurface:
-    """The part of a sphere higher than `base_m` over its centre, the picture's centre on its top."""
+    """Return the part of a sphere more than `base_m` over its centre; its top is at the picture's centre."""
 
     def up(x: float, y: float) -> float:
         return float(np.sqrt(radius_m**2 - x**2 - y**2))
 
-    return sampled(lambda x, y: up(x, y) - base_m, lambda x, y: (-x / up(x, y), -y / up(x, y)), shape)
+    return sample_surface(lambda x, y: up(x, y) - base_m, lambda x, y: (-x / up(x, y), -y / up(x, y)), shape)
 
 
-def sampled(
+def sample_surface(
     height_m: Callable[[float, float], float],
     slope: Callable[[float, float], tuple[float, float]],
     shape: tuple[int, int],
     width_m: float = 0.08,
 ) -> KnownSurface:
-    """A surface of square cells with the heights at their centres; the top row is far, at the largest y."""
+    """Sample a surface at the centres of square cells; the top row is far, at the largest y."""
     pitch = width_m / shape[1]
     x = (np.arange(shape[1]) + 0.5) * pitch - width_m / 2
     y = (shape[0] / 2 - np.arange(shape[0]) - 0.5) * pitch

@@ -14,7 +14,7 @@ from .surfaces import (
     left_view,
     rectangle,
     right_view,
-    slanted,
+    slanted_plane,
     true_disparity,
     truly_visible,
 )
@@ -36,7 +36,7 @@ class KnownPair(Record):
 
 
 def synthetic_pair(name: str, width_px: int = 480, height_px: int = 360, seed: int = 0) -> KnownPair:
-    """One of SCENES, uint8 grey; layout and textures follow from the seed.
+    """Return one of SCENES in uint8 grey; layout and textures follow from the seed.
 
     Raises: KeyError if no scene has this name.
     """
@@ -49,48 +49,48 @@ def synthetic_pair(name: str, width_px: int = 480, height_px: int = 360, seed: i
 
 
 def planes(width: int, height: int, random: np.random.Generator, seed: int) -> list[Surface]:
-    """Five slanted rectangles before slanted ground."""
-    found = [slanted(seed + BACKGROUND, everywhere, FAR * width, 0.01, 0.025 * width / height)]
+    """Return five slanted rectangles in front of slanted ground."""
+    surfaces = [slanted_plane(seed + BACKGROUND, everywhere, FAR * width, 0.01, 0.025 * width / height)]
     for index in range(5):
         left, top = random.uniform(0.02, 0.7) * width, random.uniform(0.02, 0.65) * height
         region = rectangle(left, top, left + random.uniform(0.15, 0.3) * width, top + random.uniform(0.2, 0.4) * height)
         across, down = random.uniform(-0.06, 0.06, 2)
         base = random.uniform(0.06, NEAR) * width - across * left - down * top
-        found.append(slanted(seed + FIRST + index, region, base, across, down))
-    return found
+        surfaces.append(slanted_plane(seed + FIRST + index, region, base, across, down))
+    return surfaces
 
 
 def steps(width: int, height: int, random: np.random.Generator, seed: int) -> list[Surface]:
-    """A staircase: upright strips that face the cameras, each nearer or farther than its neighbour."""
+    """Return a staircase: upright strips that face the cameras, each nearer or farther than its neighbour."""
     edges = np.linspace(0, width, 8)
     shares = np.linspace(FAR, NEAR, edges.size - 1)
     random.shuffle(shares)
-    return [slanted(seed + BACKGROUND, everywhere, FAR * width / 2)] + [
-        slanted(seed + FIRST + index, rectangle(left, 0.1 * height, right, 0.9 * height), share * width)
+    return [slanted_plane(seed + BACKGROUND, everywhere, FAR * width / 2)] + [
+        slanted_plane(seed + FIRST + index, rectangle(left, 0.1 * height, right, 0.9 * height), share * width)
         for index, (left, right, share) in enumerate(zip(edges[:-1], edges[1:], shares, strict=True))
     ]
 
 
 def spheres(width: int, height: int, random: np.random.Generator, seed: int) -> list[Surface]:
-    """Six round caps before a wall."""
-    found = [slanted(seed + BACKGROUND, everywhere, FAR * width)]
+    """Return six round caps in front of a wall."""
+    surfaces = [slanted_plane(seed + BACKGROUND, everywhere, FAR * width)]
     for index in range(6):
         centre = ((index % 3 + random.uniform(0.3, 0.7)) * width / 3, (index // 3 + 0.5) * height / 2)
         radius = random.uniform(0.12, 0.2) * min(width, height)
-        found.append(cap(seed + FIRST + index, centre, radius, random.uniform(1.5, 3) * FAR * width))
-    return found
+        surfaces.append(cap(seed + FIRST + index, centre, radius, random.uniform(1.5, 3) * FAR * width))
+    return surfaces
 
 
 def bars(width: int, height: int, random: np.random.Generator, seed: int) -> list[Surface]:
-    """Thin bars before a wall: most methods lose them, or make them thicker."""
-    found = [slanted(seed + BACKGROUND, everywhere, FAR * width)]
+    """Return thin bars in front of a wall: most methods lose them, or make them thicker."""
+    surfaces = [slanted_plane(seed + BACKGROUND, everywhere, FAR * width)]
     for index, (place, thickness) in enumerate(
         zip(np.linspace(0.16, 0.92, len(BAR_WIDTHS_PX)), random.permutation(BAR_WIDTHS_PX), strict=True)
     ):
         left = place * width + random.uniform(0, 1)
         region = rectangle(left, 0.1 * height, left + thickness, 0.9 * height)
-        found.append(slanted(seed + FIRST + index, region, random.uniform(0.05, NEAR) * width))
-    return found
+        surfaces.append(slanted_plane(seed + FIRST + index, region, random.uniform(0.05, NEAR) * width))
+    return surfaces
 
 
 SCENES: Mapping[str, Callable[[int, int, np.random.Generator, int], list[Surface]]] = {

@@ -1,4 +1,4 @@
-"""A hand's way over a surface, and the exact nearest points of analytic surfaces along it."""
+"""Paths of a hand over a surface, with the exact nearest points of analytic surfaces along them."""
 # scipy has no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
@@ -22,35 +22,35 @@ LOOPS, LOOP_TICKS = 4, 2000
 LIFTED = 0.2
 """Share of a loop that each lift takes, up or down."""
 CLEAR_M = 0.001
-"""How far the hand is lifted over the highest point."""
+"""Height of the lifted hand over the highest point."""
 REACH = 0.375
-"""How far the hand goes to each side, as a share of the surface's width and length."""
+"""Largest distance of the hand from the centre, as a share of the surface's width and length."""
 FINGER_M = 0.001
-"""Sigma of the Gaussian by which a hand passes over what is finer than it is."""
+"""Sigma of the Gaussian that removes details finer than a fingertip from the path over a relief."""
 
 
 @dataclass(frozen=True, eq=False)
 class KnownStroke(Record):
-    """A hand's way over a surface, and where a proxy without friction truly is at each tick."""
+    """A path of a hand over a surface, and the true position of a proxy without friction at each tick."""
 
     surface: HapticSurface
     position_m: Float64[np.ndarray, "n 3"]
     nearest_m: Float64[np.ndarray, "n 3"]
-    """The surface's nearest point; in free air the hand itself, so that a spring to it has no force; NaN if unknown."""
+    """Nearest point of the surface; in free air the hand itself, so that a spring has no force; NaN if unknown."""
     period_s: float = PERIOD_S
 
 
 @dataclass(frozen=True)
 class Analytic:
-    """A surface given by a formula, where the hand goes on it, and its nearest point to any hand inside it."""
+    """A surface given by a formula, its nearest point to any hand inside it, and the range of the hand's path."""
 
     known: Callable[[tuple[int, int]], KnownSurface]
-    """Of so many cells, 80 mm wide."""
+    """(rows, columns) -> the surface of these cells, 80 mm wide."""
     nearest: Callable[[Points], Points]
     across_m: tuple[float, float] = (-0.03, 0.03)
-    """How far the hand goes to the left and to the right."""
+    """Range of x of the hand."""
     ride_m: Callable[[float, float], float] | None = None
-    """Height that the hand follows, if not the surface's own."""
+    """Height that the hand follows, if not the surface's."""
 
 
 SURFACES: Mapping[str, Analytic] = {
@@ -70,41 +70,41 @@ SURFACES: Mapping[str, Analytic] = {
         lambda x, y: 0.0,
     ),
 }
-"""By the name of what is felt."""
+"""The analytic surfaces by name."""
 
 
 def analytic_stroke(
     name: str, cells: int = 256, depth_m: float = 0.001, path_m: Points | None = None, period_s: float = PERIOD_S
 ) -> KnownStroke:
-    """A way over one of SURFACES, 80 mm wide, of cells x cells: `path_m`, or the scripted one this deep under it.
+    """Return a path over one of SURFACES of cells x cells: `path_m`, or the scripted path at this depth.
 
-    Beside the surface nothing is known.
+    Nearest points are NaN where the hand is outside of the surface's extent.
     Raises: KeyError if no surface has this name.
     """
     analytic = SURFACES[name]
     known = analytic.known((cells, cells))
     if path_m is None:
-        ride = _at_all(analytic.ride_m or known.height_m)
+        ride = _vectorise(analytic.ride_m or known.height_m)
         path_m = scripted_path(known.surface.relief, ride, depth_m, analytic.across_m)
     border_m = np.divide(known.surface.extent_m, 2)
     over = np.clip(path_m[:, :2], -border_m, border_m)
-    inside = path_m[:, 2] < _at_all(known.height_m)(over[:, 0], over[:, 1])
-    found = np.where(inside[:, None], analytic.nearest(path_m), path_m)
-    found[(over != path_m[:, :2]).any(axis=1)] = np.nan
-    return KnownStroke(known.surface, path_m, found, period_s)
+    inside = path_m[:, 2] < _vectorise(known.height_m)(over[:, 0], over[:, 1])
+    nearest_m = np.where(inside[:, None], analytic.nearest(path_m), path_m)
+    nearest_m[(over != path_m[:, :2]).any(axis=1)] = np.nan
+    return KnownStroke(known.surface, path_m, nearest_m, period_s)
 
 
 def relief_stroke(
     surface: HapticSurface, depth_m: float = 0.001, path_m: Points | None = None, period_s: float = PERIOD_S
 ) -> KnownStroke:
-    """A way over any surface, of which nothing is known between its cells: the nearest points are NaN."""
+    """Return a path over any surface; as nothing is known between its cells, the nearest points are NaN."""
     if path_m is None:
-        path_m = scripted_path(surface.relief, _felt_heights(surface.relief), depth_m)
+        path_m = scripted_path(surface.relief, _smooth_heights(surface.relief), depth_m)
     return KnownStroke(surface, path_m, np.full_like(path_m, np.nan), period_s)
 
 
 def scripted_path(relief: Relief, ride: Heights, depth_m: float, across_m: tuple[float, float] | None = None) -> Points:
-    """A hand that wanders over a surface in four loops of 2 s, at 57 mm/s (on 80 x 80 mm; 84 at most).
+    """Return the path of a hand over a surface in four loops of 2 s, at 57 mm/s (on 80 x 80 mm; 84 at most).
 
     x and y swing (Lissajous); each loop starts and ends in free air, over the highest point. (n, 3), 1 ms apart.
     """
@@ -120,12 +120,12 @@ def scripted_path(relief: Relief, ride: Heights, depth_m: float, across_m: tuple
     return np.column_stack([x, y, z])
 
 
-def _at_all(height_m: Callable[[float, float], float]) -> Heights:
+def _vectorise(height_m: Callable[[float, float], float]) -> Heights:
     return lambda x, y: np.array([height_m(*place) for place in zip(x.tolist(), y.tolist(), strict=True)], np.float64)
 
 
-def _felt_heights(relief: Relief) -> Heights:
-    """Heights as a finger follows them, linear between the cells."""
+def _smooth_heights(relief: Relief) -> Heights:
+    """Return the heights that a finger follows, linear between the cells."""
     from scipy.ndimage import map_coordinates
 
     heights = smooth(relief, FINGER_M).height_m.astype(np.float64)

@@ -1,4 +1,4 @@
-"""Analytic surfaces in front of two cameras, and what each camera sees of them; no picture is ever warped.
+"""Analytic surfaces in front of two cameras, and the view of each camera; no picture is ever warped.
 
 A surface is a disparity d(x, y) over the left view, and a texture painted on it: a sum of plane waves none of which is
 shorter than SHORTEST_PX. The left view at (x, y) shows the nearest surface there; the right view at (x_r, y) shows the
@@ -15,7 +15,7 @@ from jaxtyping import Bool, Float64
 SHORTEST_PX, LONGEST_PX, WAVES = 3.0, 48.0, 24
 GREY, CONTRAST = 127.5, 36.0
 ROUNDING_PX = 1e-9
-"""Nearer by less than this is the same surface."""
+"""Difference of disparities below which a point is on the same surface."""
 
 Points = Float64[np.ndarray, "..."]
 Region = Callable[[Points, Points], Bool[np.ndarray, "..."]]
@@ -25,10 +25,10 @@ OfPoints = Callable[[Points, Points], Points]
 
 @dataclass(frozen=True)
 class Surface:
-    """Something that both cameras see."""
+    """A surface that both cameras see."""
 
     seed: int
-    """Of its texture."""
+    """Seed of its texture."""
     region: Region
     disparity_px: OfPoints
     """(x, y) -> d, larger is nearer."""
@@ -36,8 +36,8 @@ class Surface:
     """(x_r, y) -> the x with x - d(x, y) = x_r."""
 
 
-def slanted(seed: int, region: Region, base_px: float, across: float = 0.0, down: float = 0.0) -> Surface:
-    """A plane, d = base + across * x + down * y; across < 1, or the right camera would see its back."""
+def slanted_plane(seed: int, region: Region, base_px: float, across: float = 0.0, down: float = 0.0) -> Surface:
+    """Return a plane, d = base + across * x + down * y; across < 1, or the right camera would see its back."""
     return Surface(
         seed,
         region,
@@ -47,7 +47,7 @@ def slanted(seed: int, region: Region, base_px: float, across: float = 0.0, down
 
 
 def cap(seed: int, centre: tuple[float, float], radius_px: float, base_px: float, flatness: float = 0.7) -> Surface:
-    """A round cap whose rim has disparity `base_px`: the part of an ellipsoid of radius R, s R deep, within r <= R / 2.
+    """Return a round cap whose rim has disparity `base_px`: an ellipsoid of radius R, s R deep, within r <= R / 2.
 
     d = base + s (sqrt(R^2 - r^2) - sqrt(R^2 - radius^2)), with R = 2 radius and s = flatness <= 1, so that its slope is
     below 0.58 and the right camera sees all of it. With u = x - x_c, v = y - y_c and k = x_r - x_c + base - s sqrt(..),
@@ -72,22 +72,22 @@ def cap(seed: int, centre: tuple[float, float], radius_px: float, base_px: float
 
 
 def everywhere(x_px: Points, y_px: Points) -> Bool[np.ndarray, "..."]:
-    """A background."""
+    """Return True for all points: the region of a background."""
     return np.ones(np.broadcast(x_px, y_px).shape, np.bool_)
 
 
 def rectangle(left: float, top: float, right: float, bottom: float) -> Region:
-    """left <= x < right and top <= y < bottom."""
+    """Return the region left <= x < right and top <= y < bottom."""
     return lambda x, y: (x >= left) & (x < right) & (y >= top) & (y < bottom)
 
 
 def disc(centre: tuple[float, float], radius_px: float) -> Region:
-    """Points nearer to the centre than the radius."""
+    """Return the region of points nearer to the centre than the radius."""
     return lambda x, y: (x - centre[0]) ** 2 + (y - centre[1]) ** 2 < radius_px**2
 
 
 def texture(seed: int, x_px: Points, y_px: Points) -> Points:
-    """Grey level about GREY at points of a surface: plane waves of all lengths in equal parts."""
+    """Return grey levels around GREY at points of a surface: plane waves of all lengths in equal parts."""
     random = np.random.default_rng(seed)
     angles, phases = random.uniform(0, np.pi, WAVES), random.uniform(0, 2 * np.pi, WAVES)
     total = np.zeros(np.broadcast(x_px, y_px).shape)
@@ -97,7 +97,7 @@ def texture(seed: int, x_px: Points, y_px: Points) -> Points:
 
 
 def left_view(surfaces: Sequence[Surface], shape: tuple[int, int], points: int = 3) -> Float64[np.ndarray, "h w"]:
-    """What the left camera sees.
+    """Render the view of the left camera.
 
     A pixel mixes the textures at its centre, each in the share of points x points within the pixel where its surface
     is the nearest: the textures are band-limited, so only edges need it.
@@ -106,18 +106,18 @@ def left_view(surfaces: Sequence[Surface], shape: tuple[int, int], points: int =
 
 
 def right_view(surfaces: Sequence[Surface], shape: tuple[int, int], points: int = 3) -> Float64[np.ndarray, "h w"]:
-    """What the right camera sees, as `left_view`."""
+    """Render the view of the right camera, as `left_view`."""
     return _view(surfaces, shape, points, lambda surface, x, y: surface.seen_at(x, y))
 
 
 def true_disparity(surfaces: Sequence[Surface], shape: tuple[int, int]) -> Float64[np.ndarray, "h w"]:
-    """Disparity of the nearest surface at the centres of the left view's pixels."""
+    """Return the disparity of the nearest surface at the centres of the left view's pixels."""
     rows, columns = np.indices(shape, np.float64)
     return np.max([_depth(surface, columns, rows) for surface in surfaces], axis=0)
 
 
 def truly_visible(surfaces: Sequence[Surface], shape: tuple[int, int]) -> Bool[np.ndarray, "h w"]:
-    """Whether the right view shows the centres of the left view's pixels: inside of it, and nothing before them."""
+    """Test whether the right view shows the centres of the left view's pixels: inside of it and not occluded."""
     rows, columns = np.indices(shape, np.float64)
     disparity_px = true_disparity(surfaces, shape)
     right = columns - disparity_px
@@ -127,7 +127,7 @@ def truly_visible(surfaces: Sequence[Surface], shape: tuple[int, int]) -> Bool[n
 
 
 Where = Callable[[Surface, Points, Points], Points]
-"""Which x of the surface a camera sees at its own (x, y)."""
+"""(surface, x, y) -> the x of the surface that a camera sees at its (x, y)."""
 
 
 def _view(surfaces: Sequence[Surface], shape: tuple[int, int], points: int, where: Where) -> Float64[np.ndarray, "h w"]:
@@ -143,7 +143,7 @@ def _view(surfaces: Sequence[Surface], shape: tuple[int, int], points: int, wher
 def _shares(
     surfaces: Sequence[Surface], x: Points, y: Points, points: int, where: Where
 ) -> Float64[np.ndarray, "n h w"]:
-    """How much of each pixel each surface fills."""
+    """Return the share of each pixel that each surface fills."""
     shares = np.zeros((len(surfaces), *x.shape))
     offsets = (np.arange(points) + 0.5) / points - 0.5
     for down, across in product(offsets, offsets):
@@ -154,5 +154,5 @@ def _shares(
 
 
 def _depth(surface: Surface, x: Points, y: Points) -> Points:
-    """Disparity where the surface is, minus infinity elsewhere."""
+    """Return the disparity in the surface's region, minus infinity elsewhere."""
     return np.where(surface.region(x, y), surface.disparity_px(x, y), -np.inf)

@@ -12,42 +12,40 @@ from ...data import Record
 from ...data.pictures import is_one_colour, to_grey
 from ...errors import PictureError
 from ...runtime.opencv import plain_opencv
-from ...scene.picture_files import read_picture
+from ...scene.formats.pictures import read_picture
 from ...scene.scene import Scene
 from .textures import FAMILIES, Family, Shape, smooth_noise, without_grey
 
 PHOTOGRAPHS = ("brick", "grass", "gravel")
-"""Textures that come inside scikit-image."""
+"""Pictures of scikit-image that are textures."""
 WARP, WARP_SIGMA = 18 / 512, 28 / 512
-"""How far borders wander, and over what length, as shares of the root of the picture's area."""
+"""Amplitude and wavelength of the warp of borders, as shares of the root of the picture's area."""
 CANDIDATES = 40
+"""Random candidates for each scattered point: more spread the points more evenly."""
 ENDINGS = frozenset((".png", ".jpg", ".jpeg", ".tif", ".tiff"))
 
 
 @dataclass(frozen=True, eq=False)
 class KnownSegments(Record):
-    """A picture and its truth.
-
-    labels: int32 (h, w), 0..n-1, each of them present.
-    """
+    """A picture and its true labels, int32 (h, w), 0..n-1, all present."""
 
     picture: np.ndarray
     labels: Int32[np.ndarray, "h w"]
 
     @property
     def count(self) -> int:
-        """Number of true segments."""
+        """The number of true segments."""
         return int(self.labels.max()) + 1
 
 
 def texture_mosaic(
     segments: int, shape: Shape = (512, 512), seed: int = 0, textures: Mapping[str, Family] | None = None
 ) -> KnownSegments:
-    """A mosaic of this many textures, uint8 (h, w), in curvy regions, one or more for each texture.
+    """Return a mosaic of n textures, uint8 (h, w), in curvy regions, one or more for each texture.
 
-    textures: what to choose from; by default those of `builtin_textures`. Each loses local mean and contrast
+    textures: to choose from; by default those of `builtin_textures`. Each loses local mean and contrast
     (`without_grey`), so that grey tells nothing about the label. The seed chooses textures, regions and places. A
-    picture too small for all of the regions holds fewer segments.
+    picture too small for all of the regions has fewer segments.
     Raises: PictureError if there are fewer textures than segments.
     """
     known = builtin_textures() if textures is None else textures
@@ -67,7 +65,7 @@ def texture_mosaic(
 def smooth_scene(
     segments: int = 14, shape: Shape = (512, 512), seed: int = 0, noise: float = 6.0, blur_px: float = 1.0
 ) -> KnownSegments:
-    """Curvy regions of one grey each under a slope of light, blurred, with noise (both in grey levels of 255)."""
+    """Return curvy regions of one grey each under a gradient of light, blurred, with noise of `noise` grey levels."""
     import cv2
 
     random = np.random.default_rng(seed)
@@ -82,13 +80,13 @@ def smooth_scene(
 
 
 def curvy_regions(shape: Shape, count: int, random: np.random.Generator) -> Int32[np.ndarray, "h w"]:
-    """Voronoi's cells of scattered points, seen through a smooth random warp: 0..count-1, some perhaps absent."""
+    """Return Voronoi cells of scattered points under a smooth random warp: labels 0..count-1, some perhaps absent."""
     side = np.sqrt(shape[0] * shape[1])
     places = np.indices(shape, np.float64)
     for place in places:
         place += WARP * side * smooth_noise(shape, random, WARP_SIGMA * side)
     nearest, labels = np.full(shape, np.inf), np.zeros(shape, np.int32)
-    for index, (row, column) in enumerate(scattered(shape, count, random)):
+    for index, (row, column) in enumerate(scatter_points(shape, count, random)):
         distance = (places[0] - row) ** 2 + (places[1] - column) ** 2
         labels[distance < nearest] = index
         np.minimum(nearest, distance, out=nearest)
@@ -96,37 +94,37 @@ def curvy_regions(shape: Shape, count: int, random: np.random.Generator) -> Int3
 
 
 def in_order(labels: np.ndarray) -> Int32[np.ndarray, "h w"]:
-    """The same segments numbered 0..n-1, each of them present."""
+    """Renumber labels to 0..n-1, all present."""
     _, inverse = np.unique(labels, return_inverse=True)
     return inverse.reshape(labels.shape).astype(np.int32)
 
 
-def scattered(shape: Shape, count: int, random: np.random.Generator) -> Float64[np.ndarray, "n 2"]:
-    """Points (row, column) far apart: of some at chance, the one furthest from all that are there.
+def scatter_points(shape: Shape, count: int, random: np.random.Generator) -> Float64[np.ndarray, "n 2"]:
+    """Return points (row, column) far apart: each is the one of CANDIDATES that is furthest from earlier points.
 
     Source: Mitchell, Spectrally optimal sampling for distribution ray tracing, SIGGRAPH 1991 (best candidate).
     """
     points = random.uniform(0, shape, (1, 2))
     while len(points) < count:
-        tried = random.uniform(0, shape, (CANDIDATES, 2))
-        gaps = np.linalg.norm(tried[:, None] - points, axis=2).min(axis=1)
-        points = np.vstack([points, tried[gaps.argmax()]])
+        candidates = random.uniform(0, shape, (CANDIDATES, 2))
+        gaps = np.linalg.norm(candidates[:, None] - points, axis=2).min(axis=1)
+        points = np.vstack([points, candidates[gaps.argmax()]])
     return points
 
 
 def builtin_textures() -> dict[str, Family]:
-    """Those made in code, and those inside scikit-image."""
+    """Return the synthetic textures and those of scikit-image, by name."""
     return {**FAMILIES, **{name: partial(_crop, _builtin_photograph(name)) for name in PHOTOGRAPHS}}
 
 
 def folder_textures(folder: Path) -> dict[str, Family]:
-    """Every picture of a folder, in grey, by its name without the ending.
+    """Return every picture of a folder, in grey, by its name without the ending.
 
     Raises: PictureError if there is none, one cannot be read, or one is a single flat colour.
     """
     paths = sorted(path for path in folder.glob("*.*") if path.suffix.lower() in ENDINGS)
     if not paths:
-        raise PictureError(f"{folder}: holds no texture pictures; put some there, such as bark.png")
+        raise PictureError(f"{folder}: has no texture pictures; add some, such as bark.png")
     return {path.stem: partial(_crop, _texture(read_picture(path), str(path))) for path in paths}
 
 
@@ -143,7 +141,7 @@ def _texture(picture: np.ndarray, name: str) -> Float64[np.ndarray, "h w"]:
 
 
 def _crop(texture: Float64[np.ndarray, "H W"], shape: Shape, random: np.random.Generator) -> np.ndarray:
-    """A part at chance; a texture that is too small goes on mirrored."""
+    """Crop a random part; a texture that is too small is continued by its mirror image."""
     missing = [max(0, side - has) for side, has in zip(shape, texture.shape, strict=True)]
     large = np.pad(texture, [(0, more) for more in missing], mode="symmetric")
     top, left = random.integers(0, np.subtract(large.shape, shape) + 1)

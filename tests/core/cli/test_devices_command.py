@@ -10,11 +10,11 @@ import pytest
 import typer
 
 from command_line import tangible
-from tangible_core.cli import devices as command
+from tangible_core.cli.commands import devices as command
 from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.plugins.devices import examined, installed_devices
+from tangible_core.mapping.device_calibrations import calibration_path
+from tangible_core.plugins.devices import examine_device, installed_devices
 from tangible_core.plugins.registry import Registry
-from tangible_core.scene.calibrations import calibration_path
 from tangible_core.session.stress import stressed
 from tangible_devices.mock import Mock
 
@@ -132,8 +132,8 @@ class TestDoctor:
             command.doctor("arm" if named else None, [f"state={state}"] if named else [])
 
     def test_what_it_found_for_a_program(self, registry: Registry):
-        assert [each.verdict for each in examined(registry, "arm", ["state=wrong"])] == ["fine", "failed"]
-        assert [each.verdict for each in examined(registry, "arm", ["state=gone"])] == ["not asked"]
+        assert [each.verdict for each in examine_device(registry, "arm", ["state=wrong"])] == ["fine", "failed"]
+        assert [each.verdict for each in examine_device(registry, "arm", ["state=gone"])] == ["not asked"]
 
     def test_the_cure_can_be_copied_as_it_stands(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
         with pytest.raises(typer.Exit):

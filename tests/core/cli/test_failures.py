@@ -172,7 +172,7 @@ def test_a_plugin_that_cannot_be_imported(folder: Path, install, log_dir: Path):
 
 
 def test_a_fault_of_our_own_is_one_line_too(folder: Path, log_dir: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("tangible_core.cli.run.open_pipeline", lambda *_: [][0])
+    monkeypatch.setattr("tangible_core.cli.commands.run.open_pipeline", lambda *_: [][0])
     said = failed(tangible("plan", "p.yaml", cwd=folder), code=1)
     assert said.startswith("tangible itself failed: IndexError: list index out of range; please report it: ")
     assert "Traceback" in (log_dir / "failures.log").read_text()

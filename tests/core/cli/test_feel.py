@@ -99,7 +99,7 @@ def test_it_goes_on_until_it_is_asked_to_end(folder: Path, asked_by: signal.Sign
     assert "Traceback" not in errors
     assert "contact_share" in out
     kept = Recording.load(grown)
-    assert kept.stopped in (INTERRUPTED, "the process was asked to end")
+    assert kept.stopped in (INTERRUPTED, "the process received a signal to end")
     assert (len(kept.rows) > 500, (np.diff(kept.time_s) > 0).all()) == (True, True)
 
 

@@ -15,8 +15,8 @@ import pytest
 from command_line import tangible
 from pictures import write_png
 from standard_sets import LAYOUTS, known
-from tangible_core.cli import completing, loudness, sentences, show
-from tangible_core.cli.commands import COMMANDS, made
+from tangible_core.cli import completing, sentences, show, verbosity
+from tangible_core.cli.command_table import COMMANDS, made
 from tangible_core.data import Outcome, Relief
 from tangible_core.pipeline.engine.cache import Cache
 
@@ -141,7 +141,7 @@ def test_quiet_says_nothing_of_what_went_well(folder: Path):
 
 
 def test_a_log_that_nobody_asked_for_reads_like_a_sentence(caplog: pytest.LogCaptureFixture):
-    formatter = loudness._Plain()
+    formatter = verbosity._Plain()
     compiling = logging.LogRecord("tangible_core.compiled.compiling", logging.INFO, "", 0, "compiling", None, None)
     lost = logging.LogRecord("tangible_core.session.live", logging.WARNING, "", 0, "3 ticks were lost", None, None)
     assert [formatter.format(each) for each in (compiling, lost)] == ["compiling", "warning: 3 ticks were lost"]

@@ -30,7 +30,7 @@ FLAT = np.zeros((2, 2), np.float32)
 
 
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("make", "message"),
     [
         (lambda: Views("l.png"), "left: is the str 'l.png'; it must be an array of numbers; Scene.of and numpy.load"),
         (lambda: Views(GREY, Path("r.png")), "right: is a PosixPath; it must be an array of numbers"),
@@ -54,14 +54,14 @@ FLAT = np.zeros((2, 2), np.float32)
         (lambda: Scene.of(left=GREY, right=GREY, rig=7), "rig: is the int 7; it must be a StereoRig, or"),
     ],
 )  # fmt: skip
-def test_one_sentence_names_the_argument(make: Callable[[], Any], said: str):
-    with pytest.raises(TangibleError, match=f"^{said}") as raised:
+def test_wrong_argument_gives_one_sentence_with_its_name(make: Callable[[], Any], message: str):
+    with pytest.raises(TangibleError, match=f"^{message}") as raised:
         make()
     assert isinstance(raised.value, TypeError)
     assert "\n" not in str(raised.value)
 
 
-def test_what_can_be_converted_is():
+def test_convertible_arguments_are_converted():
     assert Views([[0, 255], [7, 0]]).left.dtype == np.uint8
     assert Views([[0, 256], [7, 0]]).left.dtype == np.uint16
     assert Views([[0.0, 1.0]]).left.shape == (1, 2)
@@ -74,7 +74,7 @@ def test_what_can_be_converted_is():
     assert Recording([[0] * len(TICK_COLUMNS)]).rows.dtype == np.float64
 
 
-def test_what_is_right_is_left_alone():
+def test_argument_of_the_right_type_is_not_copied():
     assert as_array("a", FLAT, "float32") is FLAT
     assert np.shares_memory(DisparityMap(FLAT).disparity_px, FLAT)
     assert as_picture("a", GREY) is GREY
@@ -82,13 +82,13 @@ def test_what_is_right_is_left_alone():
     assert as_state(state) is state
 
 
-def test_numbers_that_a_type_cannot_hold_are_refused():
+def test_array_of_numbers_that_the_type_cannot_hold_is_refused():
     for wrong in ([[2**40]], [[np.nan]], [[0.25]]):
         with pytest.raises(ArgumentError, match="it must be an array of int32"):
             as_array("labels", wrong, "int32")
 
 
-def test_three_numbers_are_a_place_or_a_force():
+def test_three_numbers_become_a_state_or_a_force():
     for three in ((0, 1, 2), [0.0, 1.0, 2.0], np.arange(3)):
         assert as_state(three) == HapticState((0.0, 1.0, 2.0))
         assert as_force(three) == Force(0.0, 1.0, 2.0)

@@ -1,4 +1,4 @@
-"""What passes between a law and a device."""
+"""Forces that pass between a force law and a device."""
 
 import math
 
@@ -11,7 +11,7 @@ from tangible_core.data import NO_FORCE, Force, limited
 
 
 @given(st.tuples(*[st.floats()] * 3), st.floats(1e-3, 1e3))
-def test_limited_forces_are_finite_within_the_limit_and_keep_their_direction(parts, most_n: float):
+def test_limited_force_is_finite_within_the_limit_and_keeps_its_direction(parts, most_n: float):
     force = limited(Force(*parts), most_n)
     if not all(map(math.isfinite, parts)):
         assert force == NO_FORCE
@@ -24,6 +24,6 @@ def test_limited_forces_are_finite_within_the_limit_and_keep_their_direction(par
         assert np.allclose(np.array(force) / most_n, unit / np.linalg.norm(unit), atol=1e-12)
 
 
-def test_a_little_too_much_is_too_much():
+def test_force_one_percent_over_the_limit_is_scaled_down():
     assert limited(Force(0.0, 3.0, 4.0), 5.0) == (0.0, 3.0, 4.0)
     assert limited(Force(0.0, 3.03, 4.04), 5.0) == pytest.approx((0.0, 3.0, 4.0))

@@ -15,13 +15,13 @@ from PIL import Image
 from hostile import SIDE, npy_header, npz_bomb, tiff
 from tangible_core.data.pictures import check_picture, fill_non_finite, full_scale, to_grey, to_rgb8
 from tangible_core.errors import PictureError, shown
-from tangible_core.scene.picture_files import MAX_LABELS, read_labels, read_map, read_picture
+from tangible_core.scene.formats.pictures import MAX_LABELS, read_labels, read_map, read_picture
 
 NAN = np.nan
 COLOURS = np.random.default_rng(0).integers(0, 256, (6, 9, 3), dtype=np.uint8)
 
 
-def encoded(image, form, **options):
+def encode(image, form, **options):
     file = io.BytesIO()
     image.save(file, form, **options)
     return file.getvalue()
@@ -33,12 +33,12 @@ def put(folder, name, data):
     return path
 
 
-def saved(folder, name, array):
+def save_npy(folder, name, array):
     np.save(folder / name, array)
     return folder / name
 
 
-def by_opencv(folder, name, array):
+def save_by_opencv(folder, name, array):
     import cv2
 
     return put(folder, name, cv2.imencode(f".{name.rsplit('.')[-1]}", array)[1].tobytes())
@@ -49,7 +49,7 @@ def by_opencv(folder, name, array):
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float16, np.float32, np.float64, np.bool_])
 @pytest.mark.parametrize("shape", [(1, 1), (3, 4), (3, 4, 3), (3, 4, 4)])
-def test_what_a_picture_is(dtype, shape):
+def test_picture_of_any_allowed_shape_and_type_is_accepted(dtype, shape):
     picture = np.ones(shape, dtype)
     assert check_picture(picture) is picture
 
@@ -65,7 +65,7 @@ def test_what_a_picture_is(dtype, shape):
         (np.array([[0, 1], [NAN, np.inf]]), "the view: 2 values are NaN or infinite, the first at row 1, column 0"),
     ],
 )
-def test_what_is_no_picture_is_said(array, complaint):
+def test_array_that_is_not_a_picture_is_refused_with_the_reason(array, complaint):
     with pytest.raises(PictureError, match=complaint):
         check_picture(array, "the view")
 
@@ -74,11 +74,11 @@ def test_what_is_no_picture_is_said(array, complaint):
     ("white", "scale"),
     [(np.uint8(255), 255), (np.uint16(65535), 65535), (np.float32(0.5), 1), (np.float64(4), 4), (np.bool_(1), 1)],
 )
-def test_white_is_what_the_type_or_the_float_picture_holds(white, scale):
+def test_full_scale_is_the_maximum_of_the_type_or_of_a_float_picture(white, scale):
     assert full_scale(np.full((2, 2), white)) == scale
 
 
-def test_grey_is_luma_of_rec_601_whatever_the_type():
+def test_grey_of_any_type_is_the_luma_of_rec_601():
     grey = [[0.299, 0.587, 0.114]]
     primaries = np.eye(3)[None]
     for picture in (primaries, primaries.astype(bool), np.uint8(primaries * 255), np.uint16(primaries * 65535)):
@@ -87,7 +87,7 @@ def test_grey_is_luma_of_rec_601_whatever_the_type():
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32, np.float64])
-def test_three_channels_of_one_value_are_that_value_to_the_last_bit(dtype):
+def test_grey_of_three_equal_channels_is_exactly_that_value(dtype):
     white = 1 if np.dtype(dtype).kind == "f" else np.iinfo(dtype).max
     one = (np.random.default_rng(1).random((211, 127)) * white).astype(dtype)
     for many in (np.dstack([one] * 3), np.dstack([one] * 3 + [np.full_like(one, white)])):
@@ -95,20 +95,20 @@ def test_three_channels_of_one_value_are_that_value_to_the_last_bit(dtype):
         assert to_grey(many[::-1, ::3]).tobytes() == to_grey(one[::-1, ::3]).tobytes()  # a BLAS asks how rows lie
 
 
-def test_grey_is_what_its_formula_says_to_the_last_bit():
+def test_grey_equals_its_formula_to_the_last_bit():
     red, green, blue, opaque = np.moveaxis(np.random.default_rng(2).random((64, 63, 4), np.float32), 2, 0)
     grey = green + np.float32(0.299) * (red - green) + np.float32(0.114) * (blue - green)
     assert to_grey(np.dstack([red, green, blue])).tobytes() == grey.tobytes()
     assert to_grey(np.dstack([red, green, blue, opaque])).tobytes() == (grey * opaque + (1 - opaque)).tobytes()
 
 
-def test_what_is_transparent_shows_white():
+def test_transparent_pixels_become_white():
     picture = np.uint8([[[255, 0, 0, 0], [0, 0, 0, 255]]])
     np.testing.assert_allclose(to_grey(picture), [[1, 0]], atol=1e-6)
     assert to_rgb8(picture).tolist() == [[[255, 255, 255], [0, 0, 0]]]
 
 
-def test_eight_bits_of_any_picture():
+def test_picture_of_any_type_converts_to_eight_bits():
     assert to_rgb8(COLOURS) is COLOURS
     assert to_rgb8(COLOURS.astype(np.uint16) * 257).tolist() == COLOURS.tolist()
     assert to_rgb8(np.array([[True, False]])).tolist() == [[[255] * 3, [0] * 3]]
@@ -119,51 +119,51 @@ def test_eight_bits_of_any_picture():
 
 
 @pytest.mark.parametrize("form", ["PNG", "TIFF", "BMP", "PPM", "GIF"])
-def test_pictures_without_loss_come_back_as_they_were(tmp_path, form):
+def test_lossless_picture_file_is_read_unchanged(tmp_path, form):
     flat = COLOURS // 64 * 64
-    path = put(tmp_path, "picture", encoded(Image.fromarray(flat), form))
+    path = put(tmp_path, "picture", encode(Image.fromarray(flat), form))
     np.testing.assert_array_equal(read_picture(path), flat)
 
 
-def test_a_jpeg_is_read(tmp_path):
-    path = put(tmp_path, "a.jpg", encoded(Image.new("RGB", (9, 6), (200, 10, 30)), "JPEG"))
+def test_jpeg_is_read_in_its_size(tmp_path):
+    path = put(tmp_path, "a.jpg", encode(Image.new("RGB", (9, 6), (200, 10, 30)), "JPEG"))
     assert read_picture(path).shape == (6, 9, 3)
 
 
-def test_a_palette_becomes_colours_and_its_transparency_a_channel(tmp_path):
+def test_palette_png_becomes_rgb_or_rgba(tmp_path):
     image = Image.fromarray(np.uint8([[0, 1]]), "L").convert("P")
     image.putpalette([255, 0, 0, 0, 255, 0])
-    assert read_picture(put(tmp_path, "a.png", encoded(image, "PNG"))).tolist() == [[[255, 0, 0], [0, 255, 0]]]
-    clear = put(tmp_path, "b.png", encoded(image, "PNG", transparency=1))
+    assert read_picture(put(tmp_path, "a.png", encode(image, "PNG"))).tolist() == [[[255, 0, 0], [0, 255, 0]]]
+    clear = put(tmp_path, "b.png", encode(image, "PNG", transparency=1))
     assert read_picture(clear).tolist() == [[[255, 0, 0, 255], [0, 255, 0, 0]]]
 
 
 @pytest.mark.parametrize(("mode", "channels"), [("1", ()), ("L", ()), ("LA", (4,)), ("RGBA", (4,)), ("RGB", (3,))])
-def test_every_mode_becomes_grey_rgb_or_rgba(tmp_path, mode, channels):
-    picture = read_picture(put(tmp_path, "a.png", encoded(Image.new(mode, (5, 3), 1), "PNG")))
+def test_picture_file_of_any_mode_becomes_grey_rgb_or_rgba(tmp_path, mode, channels):
+    picture = read_picture(put(tmp_path, "a.png", encode(Image.new(mode, (5, 3), 1), "PNG")))
     assert picture.shape == (3, 5, *channels)
     assert picture.dtype == np.uint8
 
 
-def test_a_printers_jpeg_becomes_rgb(tmp_path):
-    path = put(tmp_path, "a.jpg", encoded(Image.new("CMYK", (5, 3)), "JPEG"))
+def test_cmyk_jpeg_becomes_rgb(tmp_path):
+    path = put(tmp_path, "a.jpg", encode(Image.new("CMYK", (5, 3)), "JPEG"))
     assert read_picture(path).shape == (3, 5, 3)
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.pgm"])
-def test_sixteen_bits_of_grey_are_kept(tmp_path, name):
+def test_sixteen_bit_grey_file_keeps_its_values(tmp_path, name):
     deep = np.arange(54, dtype=np.uint16).reshape(6, 9) * 1200
-    picture = read_picture(by_opencv(tmp_path, name, deep))
+    picture = read_picture(save_by_opencv(tmp_path, name, deep))
     assert picture.dtype == np.uint16
     np.testing.assert_array_equal(picture, deep)
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif"])
 @pytest.mark.parametrize("channels", [3, 4])
-def test_sixteen_bits_of_colour_are_kept(tmp_path, name, channels):
+def test_sixteen_bit_colour_file_keeps_its_values(tmp_path, name, channels):
     deep = np.random.default_rng(0).integers(0, 65536, (4, 5, channels), dtype=np.uint16)
     swapped = deep[..., [2, 1, 0, 3][:channels]]
-    np.testing.assert_array_equal(read_picture(by_opencv(tmp_path, name, swapped)), deep)
+    np.testing.assert_array_equal(read_picture(save_by_opencv(tmp_path, name, swapped)), deep)
 
 
 @pytest.mark.parametrize(
@@ -180,25 +180,25 @@ def test_sixteen_bits_of_colour_are_kept(tmp_path, name, channels):
         (99, [[1, 2, 3], [4, 5, 6]]),
     ],
 )
-def test_a_picture_stands_as_its_exif_says(tmp_path, orientation, upright):
+def test_picture_file_is_turned_upright_by_its_exif_orientation(tmp_path, orientation, upright):
     tags = Image.Exif()
     tags[0x0112] = orientation
     image = Image.fromarray(np.uint8([[1, 2, 3], [4, 5, 6]]))
-    path = put(tmp_path, "a.png", encoded(image, "PNG", exif=tags))
+    path = put(tmp_path, "a.png", encode(image, "PNG", exif=tags))
     assert read_picture(path).tolist() == upright
     assert read_picture(path).flags.c_contiguous
 
 
-def test_an_array_in_a_file_is_a_picture_too(tmp_path):
-    np.testing.assert_array_equal(read_picture(saved(tmp_path, "a.npy", COLOURS)), COLOURS)
+def test_npy_file_is_read_as_a_picture(tmp_path):
+    np.testing.assert_array_equal(read_picture(save_npy(tmp_path, "a.npy", COLOURS)), COLOURS)
 
 
-def test_an_array_that_is_no_picture_is_refused_with_its_file(tmp_path):
+def test_npy_file_that_is_not_a_picture_is_refused_with_its_name(tmp_path):
     with pytest.raises(PictureError, match=r"a\.npy: .*not int64"):
-        read_picture(saved(tmp_path, "a.npy", np.zeros((2, 2), np.int64)))
+        read_picture(save_npy(tmp_path, "a.npy", np.zeros((2, 2), np.int64)))
 
 
-# Files that hold none
+# Files that are not pictures
 
 
 def refusal(path, read=read_picture):
@@ -212,26 +212,26 @@ def refusal(path, read=read_picture):
 
 @pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
 @pytest.mark.parametrize("name", ["left.png", "left.npy"])
-def test_a_missing_file_names_its_neighbour(tmp_path, read, name):
+def test_missing_picture_file_is_refused_with_a_similar_name(tmp_path, read, name):
     put(tmp_path, name.replace("left", "lefft"), b"x")
     assert f"no such file (did you mean 'lefft{name[4:]}'?)" in refusal(tmp_path / name, read)
 
 
-def test_a_missing_folder_is_named(tmp_path):
+def test_missing_folder_is_refused_with_its_name(tmp_path):
     assert f"no folder {tmp_path / 'nowhere'}" in refusal(tmp_path / "nowhere" / "a.png")
 
 
 @pytest.mark.parametrize("place", [".", os.devnull])
-def test_a_folder_or_a_device_is_no_file(tmp_path, place):
+def test_folder_or_device_as_a_picture_is_refused(tmp_path, place):
     assert "not a file but a folder or a device" in refusal(tmp_path / place)
 
 
 @pytest.mark.parametrize("name", ["n" * 300, "a\0b"])
-def test_a_name_that_no_file_can_have_is_refused(tmp_path, name):
+def test_impossible_file_name_is_refused(tmp_path, name):
     refusal(tmp_path / name)
 
 
-def test_a_file_that_may_not_be_read_says_so(tmp_path, monkeypatch):
+def test_unreadable_picture_file_is_refused_with_the_reason(tmp_path, monkeypatch):
     path = put(tmp_path, "a.png", b"x")
 
     def deny(*_):
@@ -242,30 +242,30 @@ def test_a_file_that_may_not_be_read_says_so(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.npy", "a.npz"])
-def test_an_empty_file_says_so(tmp_path, name):
+def test_empty_picture_file_is_refused_with_the_reason(tmp_path, name):
     assert "the file is empty; copy or download it again" in refusal(put(tmp_path, name, b""))
 
 
 @pytest.mark.parametrize("data", [b"hello", b"%PDF-1.7 whatever", b"%!PS-Adobe-3.0 EPSF-3.0\n", b"\0" * 500])
-def test_what_is_no_picture_says_what_to_use(tmp_path, data):
+def test_file_of_another_kind_is_refused_with_the_formats_to_use(tmp_path, data):
     assert "not a picture that this program can read; use PNG" in refusal(put(tmp_path, "a.png", data))
 
 
 @pytest.mark.parametrize(("form", "name"), [("PNG", "a.png"), ("JPEG", "a.jpg"), ("TIFF", "a.tif"), ("WEBP", "a.webp")])
 @pytest.mark.parametrize("share", [0.5, 0.95])
-def test_a_picture_cut_short_says_so(tmp_path, form, name, share):
+def test_truncated_picture_file_is_refused_with_the_reason(tmp_path, form, name, share):
     noise = np.random.default_rng(0).integers(0, 256, (64, 64, 3), dtype=np.uint8)
-    data = encoded(Image.fromarray(noise), form)
+    data = encode(Image.fromarray(noise), form)
     assert "again" in refusal(put(tmp_path, name, data[: int(len(data) * share)]))
 
 
-def test_a_deep_picture_cut_short_says_so(tmp_path):
+def test_truncated_sixteen_bit_picture_is_refused_with_the_reason(tmp_path):
     noise = np.random.default_rng(0).integers(0, 65536, (64, 64, 3), dtype=np.uint16)
-    data = by_opencv(tmp_path, "a.png", noise).read_bytes()
+    data = save_by_opencv(tmp_path, "a.png", noise).read_bytes()
     assert "damaged or cut short" in refusal(put(tmp_path, "a.png", data[: len(data) // 2]))
 
 
-def test_a_picture_that_claims_to_be_huge_is_not_opened(tmp_path):
+def test_picture_file_announcing_too_many_pixels_is_refused(tmp_path):
     for side in (12_000, 60_000):
         path = put(tmp_path, "a.pgm", f"P5 {side} {side} 255\n".encode())
         assert "larger than 89 megapixels; make it smaller first" in refusal(path)
@@ -280,8 +280,8 @@ def test_a_picture_that_claims_to_be_huge_is_not_opened(tmp_path):
         {"bits": 8, "sample_format": 1},
     ],
 )
-def test_whoever_decodes_a_tiff_its_size_is_looked_at_before(tmp_path, layout, monkeypatch):
-    """The first two are OpenCV's alone, which would decode them; of the third it decodes what Pillow has looked at."""
+def test_tiff_announcing_too_many_pixels_is_refused_before_any_decoder(tmp_path, layout, monkeypatch):
+    """OpenCV alone decodes the first two layouts; Pillow checks the third before OpenCV decodes it."""
     tiny = tiff(tmp_path / "tiny.tif", 5, 3, strip_rows=3, **layout)
     assert read_picture(tiny).shape[:2] == (3, 5)
     monkeypatch.setattr("cv2.imdecode", None)
@@ -292,23 +292,23 @@ def test_whoever_decodes_a_tiff_its_size_is_looked_at_before(tmp_path, layout, m
 
 @pytest.mark.parametrize("tag", [256, 257, 322, 323])
 @pytest.mark.parametrize("last", [False, True])
-def test_of_a_size_that_a_tiff_says_twice_the_largest_counts(tmp_path, tag, last, monkeypatch):
-    """Who decodes it may take the first or the last. Tags 322 and 323 are of tiles, which are decoded whole."""
+def test_tiff_with_a_size_given_twice_counts_the_larger(tmp_path, tag, last, monkeypatch):
+    """A decoder may take the first or the last. Tags 322 and 323 give the size of tiles, which are decoded whole."""
     monkeypatch.setattr("cv2.imdecode", None)
     twice = ((tag, 90_000_000), (tag, 5))
     path = tiff(tmp_path / "a.tif", 5, 3, strip_rows=3, more=twice[:: -1 if last else 1])
     assert "larger than 89 megapixels" in refusal(path)
 
 
-def test_tiles_that_pillow_would_decode_are_looked_at(tmp_path):
-    """One of 40,000 x 40,000 for a picture of 5 x 3, which is 1.6 GB from 1.6 MB."""
+def test_tiff_with_too_large_tiles_is_refused(tmp_path):
+    """A tile of 40,000 x 40,000 for a picture of 5 x 3 expands 1.6 MB to 1.6 GB."""
     path = tiff(tmp_path / "a.tif", 5, 3, bits=8, sample_format=1, more=((322, 40_000), (323, 40_000)))
     assert "larger than 89 megapixels" in refusal(path)
 
 
 @pytest.mark.parametrize(("order", "side"), [("<", 3), ("<", 9_500), (">", 9_500)])
-def test_a_tiff_of_eight_byte_places(tmp_path, order, side):
-    """Where all numbers have eight bytes. Pillow reads those of little-endian machines alone."""
+def test_big_tiff_is_read_or_refused_by_its_size(tmp_path, order, side):
+    """BigTIFF has numbers of eight bytes. Pillow reads only little-endian files."""
     tags = [
         (256, side),
         (257, side),
@@ -331,14 +331,14 @@ def test_a_tiff_of_eight_byte_places(tmp_path, order, side):
         assert "larger than 89 megapixels" in refusal(path)
 
 
-def test_the_bytes_of_a_pixel_count_too(tmp_path, monkeypatch):
+def test_tiff_with_too_many_bytes_a_pixel_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr("cv2.imdecode", None)
     path = tiff(tmp_path / "a.tif", 30_000, 2_000, strip_rows=1, bits=64, samples=4)
     assert "holds more than 1424 MB; make it smaller first" in refusal(path)
 
 
-def test_a_deep_png_whose_two_headers_differ_is_not_decoded(tmp_path):
-    """By the first header it has 4e8 pixels, which OpenCV would make, by the second, which Pillow takes, 1."""
+def test_png_with_two_different_headers_is_refused(tmp_path):
+    """OpenCV reads the first header, with 4e8 pixels; Pillow the second, with one."""
 
     def chunk(name, data):
         return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
@@ -351,14 +351,14 @@ def test_a_deep_png_whose_two_headers_differ_is_not_decoded(tmp_path):
     assert "larger than 89 megapixels" in refusal(path)
 
 
-def test_what_pillow_reads_is_held_to_the_same_limit(tmp_path):
-    """Pillow's own is a little above it."""
+def test_picture_file_over_the_limit_is_refused_also_below_pillows_own(tmp_path):
+    """Pillow's own limit is slightly higher."""
     path = put(tmp_path, "a.pgm", b"P5 89200 1000 255\n")
     assert "larger than 89 megapixels" in refusal(path)
     assert "cut short" in refusal(put(tmp_path, "a.pgm", b"P5 89000 1000 255\n"))
 
 
-def test_nothing_is_said_beside_the_error(tmp_path, capfd):
+def test_damaged_tiff_prints_nothing_on_the_standard_streams(tmp_path, capfd):
     whole = tiff(tmp_path / "a.tif", 50, 30).read_bytes()
     assert "damaged" in refusal(put(tmp_path, "a.tif", whole[:-20]))
     assert capfd.readouterr() == ("", "")
@@ -367,13 +367,13 @@ def test_nothing_is_said_beside_the_error(tmp_path, capfd):
 @pytest.mark.timeout(20)
 @pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
 @pytest.mark.parametrize("name", ["a.npy", "a.npz", "a.png"])
-def test_a_pipe_is_not_waited_for(tmp_path, read, name):
+def test_pipe_as_a_picture_is_refused_at_once(tmp_path, read, name):
     os.mkfifo(tmp_path / name)
     assert "not a file but a folder or a device" in refusal(tmp_path / name, read)
 
 
 @pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
-def test_arrays_that_say_that_they_are_huge(tmp_path, read):
+def test_npy_file_announcing_too_much_is_refused(tmp_path, read):
     path = put(tmp_path, "a.npy", npy_header((10_000, 10_000)))
     assert "larger than 89 megapixels; make it smaller first" in refusal(path, read)
     path = npz_bomb(tmp_path / "a.npz", a=(13_000, 6_000, 4))
@@ -381,13 +381,13 @@ def test_arrays_that_say_that_they_are_huge(tmp_path, read):
 
 
 @pytest.mark.parametrize("read", [read_picture, read_map, read_labels])
-def test_an_archive_of_something_else(tmp_path, read):
+def test_npz_file_without_arrays_is_refused(tmp_path, read):
     with zipfile.ZipFile(tmp_path / "a.npz", "w") as archive:
         archive.writestr("readme.txt", "hello")
     assert "holds 0 arrays instead of one" in refusal(tmp_path / "a.npz", read)
 
 
-def test_an_array_under_the_other_name_is_an_array(tmp_path):
+def test_npy_and_npz_files_with_swapped_suffixes_are_read(tmp_path):
     np.savez(tmp_path / "a.npz", COLOURS)
     np.save(tmp_path / "b.npy", COLOURS)
     swapped = (tmp_path / "a.npz").rename(tmp_path / "a.npy"), (tmp_path / "b.npy").rename(tmp_path / "b.npz")
@@ -395,9 +395,9 @@ def test_an_array_under_the_other_name_is_an_array(tmp_path):
 
 
 @given(st.data())
-def test_any_damage_is_one_error_or_a_picture(tmp_path_factory, data):
+def test_damaged_picture_file_gives_a_picture_or_an_error_with_its_name(tmp_path_factory, data):
     form, name = data.draw(st.sampled_from([("PNG", "a.png"), ("JPEG", "a.jpg"), ("GIF", "a.gif"), ("BMP", "a.bmp")]))
-    damaged = bytearray(encoded(Image.fromarray(COLOURS), form))
+    damaged = bytearray(encode(Image.fromarray(COLOURS), form))
     for place in data.draw(st.lists(st.integers(0, len(damaged) - 1), min_size=1, max_size=5)):
         damaged[place] = data.draw(st.integers(0, 255))
     path = put(tmp_path_factory.mktemp("damaged"), name, bytes(damaged))
@@ -411,7 +411,7 @@ def test_any_damage_is_one_error_or_a_picture(tmp_path_factory, data):
 # Maps of numbers
 
 
-def test_a_map_keeps_its_numbers_and_its_holes(tmp_path):
+def test_map_file_keeps_its_numbers_and_holes(tmp_path):
     values = np.array([[1.5, NAN], [np.inf, -np.inf]])
     for name, save in (("a.npy", np.save), ("a.npz", np.savez)):
         save(tmp_path / name, values)
@@ -419,91 +419,91 @@ def test_a_map_keeps_its_numbers_and_its_holes(tmp_path):
 
 
 @pytest.mark.parametrize("scale", ["-1", "-0.0039"])
-def test_a_pfm_is_taken_as_it_stands_bottom_row_first(tmp_path, scale):
+def test_pfm_is_read_unscaled_from_the_bottom_row(tmp_path, scale):
     rows = np.float32([[1, 2, 3], [4, 5, np.inf]])
     path = put(tmp_path, "a.pfm", f"Pf\n3 2\n{scale}\n".encode() + rows[::-1].astype("<f4").tobytes())
     np.testing.assert_array_equal(read_map(path), [[1, 2, 3], [4, 5, NAN]])
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.int16, np.int32, np.float32, np.float64])
-def test_a_tiff_is_taken_as_it_stands(tmp_path, dtype):
+def test_tiff_map_keeps_its_values(tmp_path, dtype):
     values = np.array([[1, 2, 3], [4, 5, 200]], dtype)
-    np.testing.assert_array_equal(read_map(by_opencv(tmp_path, "a.tif", values)), values)
+    np.testing.assert_array_equal(read_map(save_by_opencv(tmp_path, "a.tif", values)), values)
 
 
-def test_a_grey_picture_is_a_map_of_its_raw_values(tmp_path):
+def test_grey_picture_as_a_map_keeps_its_raw_values(tmp_path):
     grey = np.repeat(np.arange(6, dtype=np.uint8).reshape(2, 3, 1), 3, axis=2)
-    assert read_map(put(tmp_path, "a.png", encoded(Image.fromarray(grey), "PNG"))).tolist() == [[0, 1, 2], [3, 4, 5]]
+    assert read_map(put(tmp_path, "a.png", encode(Image.fromarray(grey), "PNG"))).tolist() == [[0, 1, 2], [3, 4, 5]]
 
 
-def test_numbers_too_large_for_a_map_are_holes(tmp_path):
-    assert np.isnan(read_map(saved(tmp_path, "a.npy", np.array([[1e300]])))).all()
+def test_map_values_beyond_float32_are_holes(tmp_path):
+    assert np.isnan(read_map(save_npy(tmp_path, "a.npy", np.array([[1e300]])))).all()
 
 
-def test_colours_are_no_map(tmp_path):
-    path = put(tmp_path, "a.png", encoded(Image.fromarray(COLOURS), "PNG"))
+def test_colour_picture_as_a_map_is_refused(tmp_path):
+    path = put(tmp_path, "a.png", encode(Image.fromarray(COLOURS), "PNG"))
     assert "a map must have one number per pixel" in refusal(path, read_map)
 
 
 @pytest.mark.parametrize("values", [np.zeros((0, 3)), np.zeros(3), np.zeros((2, 2), complex), np.array([["a"]])])
-def test_an_array_that_is_no_map_is_refused(tmp_path, values):
-    assert "a map must have one number per pixel" in refusal(saved(tmp_path, "a.npy", values), read_map)
+def test_array_of_another_shape_or_type_as_a_map_is_refused(tmp_path, values):
+    assert "a map must have one number per pixel" in refusal(save_npy(tmp_path, "a.npy", values), read_map)
 
 
-def test_an_array_that_runs_code_is_not_loaded(tmp_path):
+def test_pickled_array_as_a_map_is_refused(tmp_path):
     path = tmp_path / "a.npy"
     np.save(path, np.array([[object()]]), allow_pickle=True)
     assert "cannot be read as an array" in refusal(path, read_map)
 
 
-def test_of_several_arrays_none_is_guessed(tmp_path):
+def test_npz_file_with_several_arrays_as_a_map_is_refused(tmp_path):
     np.savez(tmp_path / "a.npz", np.zeros((2, 2)), np.ones((2, 2)))
     assert "holds 2 arrays" in refusal(tmp_path / "a.npz", read_map)
 
 
-def test_a_damaged_array_says_so(tmp_path):
-    data = saved(tmp_path, "a.npy", np.zeros((9, 9))).read_bytes()
+def test_truncated_array_as_a_map_is_refused_with_the_reason(tmp_path):
+    data = save_npy(tmp_path, "a.npy", np.zeros((9, 9))).read_bytes()
     assert "cannot be read as an array" in refusal(put(tmp_path, "a.npy", data[:300]), read_map)
 
 
 # Label pictures
 
 
-def test_labels_are_numbered_from_zero_in_the_order_of_their_values(tmp_path):
-    path = put(tmp_path, "a.png", encoded(Image.fromarray(np.uint8([[7, 7], [200, 30]])), "PNG"))
+def test_label_file_is_numbered_from_zero_in_the_order_of_values(tmp_path):
+    path = put(tmp_path, "a.png", encode(Image.fromarray(np.uint8([[7, 7], [200, 30]])), "PNG"))
     assert read_labels(path).dtype == np.int32
     assert read_labels(path).tolist() == [[0, 0], [2, 1]]
 
 
-def test_labels_of_a_palette_are_its_indices_not_its_colours(tmp_path):
+def test_label_file_with_a_palette_uses_its_indices(tmp_path):
     image = Image.fromarray(np.uint8([[0, 1, 2]]), "L").convert("P")
     image.putpalette([255, 255, 255, 0, 0, 0, 128, 128, 128])
-    assert read_labels(put(tmp_path, "a.png", encoded(image, "PNG"))).tolist() == [[0, 1, 2]]
+    assert read_labels(put(tmp_path, "a.png", encode(image, "PNG"))).tolist() == [[0, 1, 2]]
 
 
-def test_each_colour_is_a_label(tmp_path):
+def test_label_file_in_colour_has_a_label_for_each_colour(tmp_path):
     flat = np.uint8([[[255, 0, 0], [0, 255, 0]], [[0, 255, 0], [255, 0, 0]]])
-    labels = read_labels(put(tmp_path, "a.png", encoded(Image.fromarray(flat), "PNG")))
+    labels = read_labels(put(tmp_path, "a.png", encode(Image.fromarray(flat), "PNG")))
     assert np.unique(labels).tolist() == [0, 1]
     assert labels[0, 0] == labels[1, 1] != labels[0, 1] == labels[1, 0]
 
 
-def test_labels_of_an_array(tmp_path):
-    assert read_labels(saved(tmp_path, "a.npy", np.array([[-1, 5], [5, 9]]))).tolist() == [[0, 1], [1, 2]]
+def test_label_array_is_numbered_from_zero(tmp_path):
+    assert read_labels(save_npy(tmp_path, "a.npy", np.array([[-1, 5], [5, 9]]))).tolist() == [[0, 1], [1, 2]]
 
 
-def test_a_photo_is_no_label_picture(tmp_path):
+def test_label_file_with_too_many_values_is_refused(tmp_path):
     photo = np.arange(MAX_LABELS + 1, dtype=np.int32)[None]
-    assert "give each segment one flat colour" in refusal(saved(tmp_path, "a.npy", photo), read_labels)
+    assert "give each segment one flat colour" in refusal(save_npy(tmp_path, "a.npy", photo), read_labels)
 
 
 @pytest.mark.parametrize("values", [np.zeros((2, 2, 5), np.uint8), np.zeros((0, 2)), np.array([[NAN, 1]])])
-def test_what_holds_no_labels_is_refused(tmp_path, values):
-    refusal(saved(tmp_path, "a.npy", values), read_labels)
+def test_array_that_does_not_hold_labels_is_refused(tmp_path, values):
+    refusal(save_npy(tmp_path, "a.npy", values), read_labels)
 
 
 @pytest.mark.parametrize("channels", [(), (3,), (4,)])
-def test_what_is_not_finite_is_filled_from_the_nearest_pixel(channels):
+def test_non_finite_pixels_are_filled_from_the_nearest_finite_one(channels):
     picture = np.random.default_rng(0).random((6, 8, *channels))
     expected = picture.copy()
     picture[2, 3:] = np.nan
@@ -515,13 +515,13 @@ def test_what_is_not_finite_is_filled_from_the_nearest_pixel(channels):
     assert np.array_equal(filled[5, 0], expected[4, 0])
 
 
-def test_a_picture_of_integers_is_known_everywhere():
+def test_integer_picture_is_finite_everywhere():
     picture = np.arange(6, dtype=np.uint8).reshape(2, 3)
     filled, known = fill_non_finite(picture)
     assert known.all()
     assert np.array_equal(filled, picture)
 
 
-def test_nothing_finite_cannot_be_filled():
+def test_picture_without_finite_pixels_cannot_be_filled():
     with pytest.raises(PictureError, match="none of the 6 pixels is finite"):
         fill_non_finite(np.full((2, 3), np.nan))

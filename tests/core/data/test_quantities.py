@@ -1,4 +1,4 @@
-"""Lengths and their like with a unit: in files, in Python, and what the schema says of them."""
+"""Numbers with a unit: in files, in Python and in the schema."""
 
 from pathlib import Path
 
@@ -26,7 +26,7 @@ safety: {ramp_s: 250 ms}
 """
 
 
-def test_a_file_says_quantities_with_their_units():
+def test_pipeline_file_with_units_is_read_in_base_units():
     config = parse_config(TEXT, Path("p.yaml"), default_registry(), ["workspace.relief_m=6 mm"])
     assert isinstance(config.scene, SceneFiles) and config.scene.relief_m == 0.012
     size = config.workspace
@@ -37,12 +37,12 @@ def test_a_file_says_quantities_with_their_units():
 
 
 @pytest.mark.parametrize("text", ["6 mm", "6mm", " 6e3 um ", "0.6 cm", "6000 μm", "6000 µm", "0.006 m", "0.006"])
-def test_one_length_in_every_unit_is_one_block(text: str):
+def test_length_written_in_any_unit_gives_the_same_block(text: str):
     assert Workspace(relief_m=text) == Workspace(relief_m=0.006)
 
 
 @pytest.mark.parametrize("text", ["6 inches", "6 N/m", "6 m m m", "6,5 mm"])
-def test_what_is_no_length_is_said_with_the_units_that_there_are(text: str):
+def test_text_that_is_not_a_length_is_refused_with_the_known_units(text: str):
     with pytest.raises(ConfigError) as error:
         parse_config(f"scene: builtin/coins\nworkspace: {{width_m: {text!r}}}\n", Path("p.yaml"), default_registry())
     assert str(error.value) == (
@@ -50,7 +50,7 @@ def test_what_is_no_length_is_said_with_the_units_that_there_are(text: str):
     )
 
 
-def test_bounds_and_words_are_checked_as_before():
+def test_quantity_out_of_bounds_or_of_another_unit_is_refused():
     for wrong in ("-6 mm", "11 m", "wide", None, "1e999 mm", "1e9999999 mm", "1" * 100_000 + " mm", "nan mm", "inf"):
         with pytest.raises(ValidationError):
             Workspace(width_m=wrong)
@@ -59,14 +59,14 @@ def test_bounds_and_words_are_checked_as_before():
     assert WorkspaceMapping(region_m=("1 cm", 0, "2 cm", "30 mm")).region_m == (0.01, 0.0, 0.02, 0.03)
 
 
-def test_a_material_is_strict_about_texts_but_knows_units():
-    said = "felt: {stiffness_n_per_m: 0.4 N/mm, damping_n_s_per_m: 1 N s/m, static_friction: 1, dynamic_friction: 1}"
-    assert parse_materials(said, Path("m.yaml"), {})["felt"].stiffness_n_per_m == 400.0
+def test_material_accepts_units_and_refuses_quoted_numbers():
+    text = "felt: {stiffness_n_per_m: 0.4 N/mm, damping_n_s_per_m: 1 N s/m, static_friction: 1, dynamic_friction: 1}"
+    assert parse_materials(text, Path("m.yaml"), {})["felt"].stiffness_n_per_m == 400.0
     with pytest.raises(ConfigError, match=r"stiffness_n_per_m: Input should be a valid number"):
-        parse_materials(said.replace("0.4 N/mm", "'400'"), Path("m.yaml"), {})
+        parse_materials(text.replace("0.4 N/mm", "'400'"), Path("m.yaml"), {})
 
 
-def test_the_schema_says_so():
+def test_schema_accepts_text_with_a_unit():
     schema = json_schema()
     validator = jsonschema.Draft202012Validator(schema)
     right = {"scene": "builtin/coins", "workspace": {"width_m": "8 cm"}, "mapping": {"offset_m": ["1 mm", 0, 0]}}

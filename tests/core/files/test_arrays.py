@@ -1,4 +1,4 @@
-"""Arrays in files: those that NumPy writes, and those that nobody should."""
+"""Arrays in files: as NumPy writes them, damaged, and hostile."""
 
 import io
 import struct
@@ -21,19 +21,19 @@ from tangible_core.files.reading import MOST_BYTES, TooLargeError
 ONE = npy_header((2, 3)) + np.arange(6.0).tobytes()
 
 
-def saved(array: object, **options) -> bytes:
+def npy_bytes(array: object, **options) -> bytes:
     file = io.BytesIO()
     np.save(file, array, **options)
     return file.getvalue()
 
 
-def zipped(**held: np.ndarray) -> bytes:
+def npz_bytes(**held: np.ndarray) -> bytes:
     file = io.BytesIO()
     np.savez_compressed(file, **held)
     return file.getvalue()
 
 
-def why(data: bytes) -> str:
+def refusal(data: bytes) -> str:
     with pytest.raises(ValueError) as error:
         read_array(io.BytesIO(data))
     text = str(error.value)
@@ -45,23 +45,23 @@ def why(data: bytes) -> str:
 @given(
     arrays.arrays(arrays.scalar_dtypes() | arrays.unicode_string_dtypes(), arrays.array_shapes(min_dims=0, min_side=0))
 )
-def test_what_numpy_writes_comes_back(array: np.ndarray):
-    for data in (saved(array), saved(np.asarray(array, order="F")), zipped(it=array)):
+def test_array_that_numpy_wrote_is_read_back_unchanged(array: np.ndarray):
+    for data in (npy_bytes(array), npy_bytes(np.asarray(array, order="F")), npz_bytes(it=array)):
         again = read_array(io.BytesIO(data))
         assert (again.dtype, again.shape) == (array.dtype, array.shape)
         assert again.tobytes() == array.tobytes()
         assert again.flags.writeable
 
 
-def test_columns_first_stay_columns_first():
+def test_array_in_fortran_order_is_read_in_fortran_order():
     array = np.asfortranarray(np.arange(6).reshape(2, 3))
-    again = read_array(io.BytesIO(saved(array)))
+    again = read_array(io.BytesIO(npy_bytes(array)))
     assert again.flags.f_contiguous
     assert again.tolist() == array.tolist()
 
 
 @pytest.mark.parametrize(
-    ("data", "says"),
+    ("data", "reason"),
     [
         (b"", "EOF"),
         (b"hello", "magic string"),
@@ -71,21 +71,21 @@ def test_columns_first_stay_columns_first():
         (npy_header((2, 3)), "but 0 follow"),
         (npy_header((-1, 2)), "the shape (-1, 2)"),
         (npy_header((2, 2), "|O") + b"x" * 32, "Python objects or records"),
-        (saved(np.zeros(3, [("a", "f8"), ("b", "i4")])), "Python objects or records"),
-        (saved(np.array([{}], object), allow_pickle=True), "Python objects or records"),
+        (npy_bytes(np.zeros(3, [("a", "f8"), ("b", "i4")])), "Python objects or records"),
+        (npy_bytes(np.array([{}], object), allow_pickle=True), "Python objects or records"),
         (npy_header((1,), "<f8\x1b[31m"), r"\x1b"),
         (npy_header("(" * 5000), ""),
         (npy_header("(" + "9" * 5000 + ",)"), ""),
         (npy_header("(1, 'a')"), "shape is not valid"),
         (npy_header((1,)).replace(b"NUMPY\x02", b"NUMPY\x03"), "for records"),
         (npy_header((1,)).replace(b"NUMPY\x02", b"NUMPY\x09"), "for records"),
-        (zipped(), "0 arrays"),
-        (zipped(a=np.zeros(2), b=np.ones(2)), "2 arrays"),
+        (npz_bytes(), "0 arrays"),
+        (npz_bytes(a=np.zeros(2), b=np.ones(2)), "2 arrays"),
     ],
     ids=map(str, range(99)),  # an archive holds the time at which it was made
 )
-def test_what_is_no_array_is_said(data: bytes, says: str):
-    assert says in why(data)
+def test_file_that_is_not_an_array_is_refused_with_the_reason(data: bytes, reason: str):
+    assert reason in refusal(data)
 
 
 def archive(**members: bytes) -> bytearray:
@@ -96,8 +96,8 @@ def archive(**members: bytes) -> bytearray:
     return bytearray(file.getvalue())
 
 
-def changed(at: int, directory_at: int, what: bytes) -> bytes:
-    """An archive of one array with a field of both its headers changed."""
+def archive_with_field(at: int, directory_at: int, what: bytes) -> bytes:
+    """Return an archive of one array with a field changed in both its headers."""
     data = archive(a_npy=ONE)
     entry = data.rfind(b"PK\x01\x02")
     data[at : at + len(what)] = what
@@ -106,7 +106,7 @@ def changed(at: int, directory_at: int, what: bytes) -> bytes:
 
 
 @pytest.mark.parametrize(
-    ("data", "says"),
+    ("data", "reason"),
     [
         (bytes(archive(readme_txt=b"hello")), "0 arrays"),
         (bytes(archive(a_npy=ONE)[:100]), "not a zip file"),
@@ -114,23 +114,23 @@ def changed(at: int, directory_at: int, what: bytes) -> bytes:
         (bytes(archive(a_npy=b"")), "EOF"),
         (bytes(archive(a_npy=b"hello")), "magic string"),
         (bytes(archive(a_npy=ONE + bytes(1000))), "but 1048 follow"),
-        (changed(6, 8, b"\x01\x00"), "encrypted"),
-        (changed(8, 10, b"\x63\x00"), "its compression is not one"),
-        (changed(14, 16, b"\x00\x00\x00\x00"), "Bad CRC-32"),
-        (changed(22, 24, struct.pack("<I", 1000)), "bytes of numbers"),
-        (changed(22, 24, struct.pack("<I", MOST_BYTES + 1)), "more than 1424 MB"),
-        (changed(26, 28, b"\xff\xff"), ""),
+        (archive_with_field(6, 8, b"\x01\x00"), "encrypted"),
+        (archive_with_field(8, 10, b"\x63\x00"), "its compression is not one"),
+        (archive_with_field(14, 16, b"\x00\x00\x00\x00"), "Bad CRC-32"),
+        (archive_with_field(22, 24, struct.pack("<I", 1000)), "bytes of numbers"),
+        (archive_with_field(22, 24, struct.pack("<I", MOST_BYTES + 1)), "more than 1424 MB"),
+        (archive_with_field(26, 28, b"\xff\xff"), ""),
     ],
     ids=map(str, range(99)),  # an archive holds the time at which it was made
 )
-def test_an_odd_archive_is_said(data: bytes, says: str):
-    assert says in why(data)
+def test_damaged_archive_is_refused_with_the_reason(data: bytes, reason: str):
+    assert reason in refusal(data)
 
 
 @pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
-def test_ways_to_pack_that_unpack_at_once_are_not_tried(tmp_path: Path, method: int):
+def test_archive_with_bzip2_or_lzma_is_refused(tmp_path: Path, method: int):
     path = npz(tmp_path / "a.npz", method, a=npy_header((4, 1000)) + bytes(32_000))
-    assert "its compression is not one that NumPy uses" in why(path.read_bytes())
+    assert "its compression is not one that NumPy uses" in refusal(path.read_bytes())
 
 
 @contextmanager
@@ -144,27 +144,27 @@ def refused_in_little_memory() -> Iterator[None]:
         tracemalloc.stop()
 
 
-def test_a_bomb_is_not_unpacked(tmp_path: Path):
+def test_zip_bomb_is_refused_in_little_memory(tmp_path: Path):
     path = npz_bomb(tmp_path / "a.npz", a=(20_000, 20_000))
     with path.open("rb") as file, refused_in_little_memory():
         read_array(file)
 
 
-def test_a_member_of_more_than_its_header_says_is_not_unpacked(tmp_path: Path):
+def test_archive_member_longer_than_its_header_announces_is_refused_in_little_memory(tmp_path: Path):
     with zipfile.ZipFile(tmp_path / "a.npz", "w", zipfile.ZIP_DEFLATED) as held:
         held.writestr("a.npy", npy_header((4, 4)) + bytes(50_000_000))
     with (tmp_path / "a.npz").open("rb") as file, refused_in_little_memory():
         read_array(file)
 
 
-def test_a_header_without_numbers_takes_no_memory():
+def test_header_without_numbers_is_refused_in_little_memory():
     with refused_in_little_memory():
         read_array(io.BytesIO(npy_header((100_000_000,))))
-    assert "89 megapixels" in why(npy_header((10_000, 10_000)))
+    assert "89 megapixels" in refusal(npy_header((10_000, 10_000)))
 
 
-def test_the_arrays_of_an_archive_by_name():
-    held = Archive(io.BytesIO(zipped(a=np.arange(3), b=np.array("text"))))
+def test_archive_read_by_name_returns_those_arrays():
+    held = Archive(io.BytesIO(npz_bytes(a=np.arange(3), b=np.array("text"))))
     assert held.names == ("a", "b")
     read = held.read(["b", "a"])
     assert (read["a"].tolist(), str(read["b"])) == ([0, 1, 2], "text")
@@ -173,13 +173,13 @@ def test_the_arrays_of_an_archive_by_name():
         held.read(["a", "c", "d"])
 
 
-def test_what_is_not_asked_for_is_not_unpacked(tmp_path: Path):
+def test_archive_lists_names_without_decoding_a_bomb(tmp_path: Path):
     path = npz_bomb(tmp_path / "a.npz", a=(20_000, 20_000), b=(0,))
     with path.open("rb") as file:
         assert Archive(file).names == ("a", "b")
 
 
-def test_arrays_that_are_small_alone_are_too_large_together(tmp_path: Path):
+def test_archive_of_many_small_arrays_is_refused_as_too_large(tmp_path: Path):
     path = npz_bomb(tmp_path / "a.npz", **{f"n{number}": (9_000_000,) for number in range(20)})
     with path.open("rb") as file:
         held = Archive(file)
@@ -191,9 +191,9 @@ def test_arrays_that_are_small_alone_are_too_large_together(tmp_path: Path):
 
 @given(st.data())
 @pytest.mark.slow
-def test_any_damage_is_a_reason_or_an_array(data):
+def test_damaged_file_gives_an_array_or_a_printable_reason(data):
     whole = bytearray(
-        data.draw(st.sampled_from([ONE, zipped(a=np.arange(6.0).reshape(2, 3)), bytes(archive(a_npy=ONE))]))
+        data.draw(st.sampled_from([ONE, npz_bytes(a=np.arange(6.0).reshape(2, 3)), bytes(archive(a_npy=ONE))]))
     )
     for place in data.draw(st.lists(st.integers(0, len(whole) - 1), min_size=1, max_size=4)):
         whole[place] = data.draw(st.integers(0, 255))
@@ -203,7 +203,7 @@ def test_any_damage_is_a_reason_or_an_array(data):
         assert str(error).isprintable()
 
 
-def test_what_shrinks_is_compressed_and_what_does_not_is_stored():
+def test_written_archive_compresses_only_arrays_that_shrink():
     noise = np.random.default_rng(0).random((300, 400), np.float32)
     labels = np.repeat(np.arange(4, dtype=np.int32), 30_000).reshape(300, 400)
     held, file = {"heights": noise, "labels": labels, "few": np.zeros(9), "one": np.array(2)}, io.BytesIO()

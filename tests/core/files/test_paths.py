@@ -1,4 +1,4 @@
-"""`~` is a home, of whoever it names; what is no path is said."""
+"""Paths as people write them: `~`, and values that are not paths."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from tangible_core.errors import ArgumentError, ConfigError
 from tangible_core.files.paths import as_path
 
 
-def test_homes(monkeypatch: pytest.MonkeyPatch):
+def test_path_with_a_tilde_starts_in_that_users_home(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("HOME", "/somewhere")
     assert as_path("~/a.png") == Path("/somewhere/a.png")
     assert as_path(Path("~")) == Path("/somewhere")
@@ -19,6 +19,6 @@ def test_homes(monkeypatch: pytest.MonkeyPatch):
 
 
 @pytest.mark.parametrize("other", [7, None, b"a", ["a"]])
-def test_what_is_no_path(other: object):
+def test_value_that_is_not_a_path_is_refused_by_name(other: object):
     with pytest.raises(ArgumentError, match=r"record: is .*; it must be a path"):
         as_path(other, "record")

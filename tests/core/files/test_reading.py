@@ -1,4 +1,4 @@
-"""What is looked at before a file is read."""
+"""Checks before a file is read."""
 
 import os
 import stat
@@ -9,7 +9,7 @@ import pytest
 from tangible_core.files.reading import MOST_BYTES, MOST_PIXELS, TooLargeError, check_file, check_size, read_bytes
 
 
-def test_a_file_is_read_whole(tmp_path: Path):
+def test_file_within_the_limit_is_read_whole(tmp_path: Path):
     (tmp_path / "a").write_bytes(bytes(200_000))
     assert read_bytes(tmp_path / "a") == bytes(200_000)
     assert read_bytes(tmp_path / "a", 200_000) == bytes(200_000)
@@ -17,7 +17,7 @@ def test_a_file_is_read_whole(tmp_path: Path):
 
 @pytest.mark.timeout(20)
 @pytest.mark.parametrize("name", [".", os.devnull, "/dev/zero", "pipe", "link"])
-def test_a_folder_a_pipe_and_a_device_are_no_files(tmp_path: Path, name: str):
+def test_folder_pipe_and_device_are_refused(tmp_path: Path, name: str):
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "link").symlink_to("/dev/zero")
     with pytest.raises(OSError) as error:
@@ -25,31 +25,31 @@ def test_a_folder_a_pipe_and_a_device_are_no_files(tmp_path: Path, name: str):
     assert error.value.strerror == "it is not a file but a folder or a device"
 
 
-def test_a_file_of_more_than_is_asked_for_is_not_read(tmp_path: Path):
+def test_file_over_the_limit_is_not_read(tmp_path: Path):
     (tmp_path / "a").write_bytes(bytes(11))
     with pytest.raises(OSError, match="it holds more than 1e-05 MB"):
         read_bytes(tmp_path / "a", 10)
 
 
-def test_a_file_full_of_holes_is_as_large_as_it_says(tmp_path: Path):
+def test_sparse_file_counts_with_its_full_size(tmp_path: Path):
     with (tmp_path / "a").open("wb") as file:
         file.truncate(MOST_BYTES + 1)
     with pytest.raises(OSError, match="it holds more than 1424 MB"):
         check_file(tmp_path / "a")
 
 
-def test_a_name_that_no_file_can_have(tmp_path: Path):
+def test_name_with_a_null_byte_is_refused(tmp_path: Path):
     with pytest.raises(OSError, match="no file can have this name"):
         check_file(tmp_path / "a\0b")
 
 
-def test_a_missing_file_is_missing(tmp_path: Path):
+def test_missing_file_raises_file_not_found(tmp_path: Path):
     with pytest.raises(FileNotFoundError):
         read_bytes(tmp_path / "a")
 
 
-def test_of_a_file_that_grows_while_it_is_read_there_is_an_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    """As with those of Linux that say that they are empty and have no end, such as /proc/self/pagemap."""
+def test_file_of_unknown_size_is_read_up_to_a_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Some files of Linux, such as /proc/self/pagemap, give their size as 0 and have no end."""
     (tmp_path / "a").write_bytes(bytes(100_000))
     monkeypatch.setattr(Path, "stat", lambda self: os.stat_result((stat.S_IFREG, *[0] * 9)))
     assert len(read_bytes(tmp_path / "a")) == 1 << 16
@@ -70,7 +70,7 @@ SIDE = int(MOST_PIXELS**0.5)
         ((3, 3, 1 << 62), 8, "1424 MB"),
     ],
 )
-def test_what_is_too_large(shape: tuple[int, ...], itemsize: int, why: str):
+def test_array_size_over_a_limit_is_refused(shape: tuple[int, ...], itemsize: int, why: str):
     with pytest.raises(TooLargeError, match=why):
         check_size(shape, itemsize)
 
@@ -79,5 +79,5 @@ def test_what_is_too_large(shape: tuple[int, ...], itemsize: int, why: str):
     ("shape", "itemsize"),
     [((1, MOST_PIXELS, 4), 4), ((1, MOST_PIXELS), 8), ((MOST_BYTES,), 1), ((), 8), ((0, 1 << 62), 8)],
 )
-def test_what_is_just_not(shape: tuple[int, ...], itemsize: int):
+def test_array_size_at_the_limit_is_accepted(shape: tuple[int, ...], itemsize: int):
     check_size(shape, itemsize)

@@ -26,72 +26,72 @@ class FullDisk:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
-def only(folder: Path) -> list[str]:
+def names_in(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_a_file_is_written_and_its_folders_are_made(tmp_path):
+def test_written_file_is_whole_and_its_folders_are_created(tmp_path):
     path = tmp_path / "a" / "b" / "c.txt"
     write_text(path, "grün\n")
     assert path.read_text(encoding="utf-8") == "grün\n"
-    assert only(path.parent) == ["c.txt"]
+    assert names_in(path.parent) == ["c.txt"]
 
 
-def test_a_file_is_not_there_before_the_block_ends(tmp_path):
+def test_atomic_write_shows_no_file_before_the_block_ends(tmp_path):
     path = tmp_path / "c.bin"
     with atomic_write(path) as file:
         file.write(b"half")
         file.flush()
         assert not path.exists()
-        (part,) = tmp_path.iterdir()  # on the same disk, as only there a file gets its name at once
+        (part,) = tmp_path.iterdir()  # on the same disk, as names_in there a file gets its name at once
         assert part.read_bytes() == b"half"
     assert path.read_bytes() == b"half"
 
 
-def test_an_error_leaves_the_old_file_and_nothing_else(tmp_path):
+def test_atomic_write_with_an_error_leaves_only_the_old_file(tmp_path):
     path = tmp_path / "c.txt"
     write_text(path, "old")
     with pytest.raises(ZeroDivisionError), atomic_write(path) as file:
         file.write(b"new")
         raise ZeroDivisionError
     assert path.read_text() == "old"
-    assert only(tmp_path) == ["c.txt"]
+    assert names_in(tmp_path) == ["c.txt"]
 
 
-def test_an_interrupt_leaves_nothing_half_written(tmp_path):
+def test_atomic_write_interrupted_leaves_nothing(tmp_path):
     with pytest.raises(KeyboardInterrupt), atomic_write(tmp_path / "c.txt") as file:
         file.write(b"new")
         raise KeyboardInterrupt
-    assert only(tmp_path) == []
+    assert names_in(tmp_path) == []
 
 
-def test_a_full_disk_is_one_clear_error_and_leaves_nothing(tmp_path, monkeypatch):
+def test_full_disk_gives_one_clear_error_and_leaves_nothing(tmp_path, monkeypatch):
     path = tmp_path / "c.txt"
 
     real = os.fdopen
     monkeypatch.setattr("tangible_core.files.writing.os.fdopen", lambda handle, mode: FullDisk(real(handle, mode)))
     with pytest.raises(OutputError, match=rf"{path}: cannot be written: No space left on device; free some space"):
         write_text(path, "new")
-    assert only(tmp_path) == []
+    assert names_in(tmp_path) == []
 
 
-def test_a_disk_that_is_full_when_the_file_takes_its_name(tmp_path, monkeypatch):
+def test_disk_full_at_the_rename_gives_an_error_and_leaves_nothing(tmp_path, monkeypatch):
     def full(*_):
         raise OSError(errno.EDQUOT, os.strerror(errno.EDQUOT))
 
     monkeypatch.setattr(Path, "replace", full)
     with pytest.raises(OutputError, match="quota"):
         write_text(tmp_path / "c.txt", "new")
-    assert only(tmp_path) == []
+    assert names_in(tmp_path) == []
 
 
-def test_a_folder_that_cannot_be_made(tmp_path):
+def test_folder_that_cannot_be_created_is_an_output_error(tmp_path):
     write_text(tmp_path / "file", "no folder")
     with pytest.raises(OutputError, match=r"file.c\.txt: cannot be written: .*choose another folder"):
         write_text(tmp_path / "file" / "c.txt", "new")
 
 
-def test_a_folder_that_cannot_be_written(tmp_path, monkeypatch):
+def test_folder_without_permission_is_an_output_error(tmp_path, monkeypatch):
     def denied(**_):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
@@ -102,14 +102,14 @@ def test_a_folder_that_cannot_be_written(tmp_path, monkeypatch):
         write_text(tmp_path / "c.txt", "new")
 
 
-def test_a_name_that_is_taken_by_a_folder(tmp_path):
+def test_name_of_a_folder_is_an_output_error(tmp_path):
     (tmp_path / "c.txt").mkdir()
     with pytest.raises(OutputError, match=r"c\.txt: cannot be written"):
         write_text(tmp_path / "c.txt", "new")
-    assert only(tmp_path) == ["c.txt"]
+    assert names_in(tmp_path) == ["c.txt"]
 
 
-def test_the_umask_decides_who_may_read(tmp_path):
+def test_written_file_has_the_permissions_of_the_umask(tmp_path):
     before = os.umask(0o027)
     try:
         write_text(tmp_path / "c.txt", "new")
@@ -119,17 +119,17 @@ def test_the_umask_decides_who_may_read(tmp_path):
     assert stat.S_IMODE((tmp_path / "c.txt").stat().st_mode) == 0o640
 
 
-def test_writers_at_one_time_leave_one_whole_file(tmp_path):
+def test_concurrent_writers_leave_one_whole_file(tmp_path):
     path = tmp_path / "c.txt"
     texts = [letter * 100_000 for letter in "abcdefgh"]
     with ThreadPoolExecutor(8) as pool:
         for each in [pool.submit(write_text, path, text) for text in texts * 5]:
             each.result()
     assert path.read_text() in texts
-    assert only(tmp_path) == ["c.txt"]
+    assert names_in(tmp_path) == ["c.txt"]
 
 
-def test_a_file_that_grows_is_held_by_one(tmp_path):
+def test_file_opened_alone_cannot_be_opened_again_until_closed(tmp_path):
     path = tmp_path / "a" / "b.bin"
     write_text(path, "old")
     with open_alone(path) as file:
@@ -144,6 +144,6 @@ def test_a_file_that_grows_is_held_by_one(tmp_path):
     assert path.read_bytes() == b""
 
 
-def test_a_file_that_cannot_grow_there(tmp_path):
+def test_folder_opened_as_a_file_is_an_output_error(tmp_path):
     with pytest.raises(OutputError, match="cannot be written: Is a directory; choose another folder"):
         open_alone(tmp_path)

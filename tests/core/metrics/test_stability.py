@@ -2,9 +2,9 @@
 
 import math
 
-import numpy as np
 import pytest
 
+from simulated_handle import exact_stiffness_limit
 from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.metrics import HANDLE, Handle, stiffness_limit
 from tangible_core.metrics.stability import Law
@@ -25,32 +25,6 @@ def bound(delay_ticks: int) -> float:
     return stiffness_limit_n_per_m(HANDLE.damping_n_s_per_m, HANDLE.period_s, delay_ticks)
 
 
-def exact_limit(handle: Handle, delay: int, damping: float = 0.0) -> float:
-    """Where an eigenvalue of the handle in contact leaves the unit circle: x, v, and the forces that wait."""
-    m, b, period = handle
-    decay = math.exp(-b * period / m)
-    moved, pushed = (period - (1 - decay) * m / b) / b, (1 - decay) / b
-
-    def stable(stiffness: float) -> bool:
-        system = np.zeros((2 + delay, 2 + delay))
-        system[:2, :2] = [[1, (1 - decay) * m / b], [0, decay]]
-        force = np.zeros(2 + delay)
-        force[:2] = -stiffness, -damping
-        if delay:
-            system[2] = force
-            system[range(3, 2 + delay), range(2, 1 + delay)] = 1
-            force = np.eye(2 + delay)[-1]
-        system[0] += moved * force
-        system[1] += pushed * force
-        return bool(np.abs(np.linalg.eigvals(system)).max() < 1)
-
-    low, high = 1.0, 1e6
-    while high > low * 1.00001:
-        middle = math.sqrt(low * high)
-        low, high = (middle, high) if stable(middle) else (low, middle)
-    return low
-
-
 @pytest.mark.parametrize("delay", [0, 1, 2])
 def test_the_bound_of_the_literature_holds(delay: int):
     """K < 2 b / (T (1 + 2 d)), within 5 %."""
@@ -60,12 +34,13 @@ def test_the_bound_of_the_literature_holds(delay: int):
 @pytest.mark.parametrize("delay", [0, 1, 2, 5])
 @pytest.mark.parametrize("handle", [HANDLE, Handle(0.05, 1.0), Handle(0.3, 5.0, 0.002)])
 def test_the_limit_is_where_the_eigenvalues_leave_the_circle(delay: int, handle: Handle):
-    assert stiffness_limit(spring, GROUND_M, delay, handle) == pytest.approx(exact_limit(handle, delay), rel=0.005)
+    exact = exact_stiffness_limit(handle, delay)
+    assert stiffness_limit(spring, GROUND_M, delay, handle) == pytest.approx(exact, rel=0.005)
 
 
 def test_damping_of_the_law_counts():
     found = stiffness_limit(lambda stiffness: spring(stiffness, 2.0), GROUND_M, 0)
-    assert found == pytest.approx(exact_limit(HANDLE, 0, 2.0), rel=0.005)
+    assert found == pytest.approx(exact_stiffness_limit(HANDLE, 0, 2.0), rel=0.005)
     assert found > 1.5 * bound(0)
 
 

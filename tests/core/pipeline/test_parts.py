@@ -234,7 +234,7 @@ class TestCached:
         first = load_pipeline(written(folder, f"{SAID}heights: given\n"))
         first.engine.cache = None
         first.make("surface")
-        config = first.config.changed(parts={**(first.config.parts or {}), 0: PartChoice(name="sky")})
+        config = first.config.with_values(parts={**(first.config.parts or {}), 0: PartChoice(name="sky")})
         again = first.changed(config)
         assert again.surface.names is not None and again.surface.names[0] == "sky"
         assert again.materials is not None and "part 0 (sky)" in again.materials.reasons[0]
@@ -437,7 +437,7 @@ class TestComplaints:
         grain = np.indices((2 * ROWS, 2 * COLUMNS)).sum(axis=0) % 2  # each pixel a part
         made = Pipeline(scene(grain, np.zeros(grain.shape)), heights="guess", cached=False)
         with pytest.raises(
-            PictureError, match=r"the segments fall into \d+ parts, and at most 4096 are felt; paint each"
+            PictureError, match=r"the segments fall into \d+ parts, and at most 4096 can be felt; paint each"
         ):
             made.plan("surface")
 
@@ -467,8 +467,8 @@ class TestComplaints:
         (slip,) = notes(made, "parts")
         assert slip.kind == "warning"
         assert slip.text == (
-            "2 parts are hardly there: part 1 at [50, 2] (1 pixel), part 5 at [2, 30] (1 pixel); paint over them, or "
-            "have smoother segments made; the numbers of the parts behind them then change"
+            "2 parts have few pixels: part 1 at [50, 2] (1 pixel), part 5 at [2, 30] (1 pixel); paint over them, or "
+            "choose smoother segments; the numbers of the parts after them then change"
         )
 
 
@@ -515,9 +515,9 @@ class TestSizes:
         made = Pipeline(
             scene(None, picture), heights="guess", texture=Same(), workspace={"finest_m": 0.08 / COLUMNS}, cached=False
         )
-        assert made.parts is not None and made.engine.felt("parts").labels.shape == (ROWS, COLUMNS)
+        assert made.parts is not None and made.engine.make_on_grid("parts").labels.shape == (ROWS, COLUMNS)
         np.testing.assert_array_equal(
-            made.parts.labels, np.kron(made.engine.felt("parts").labels, np.ones((2, 2), int))
+            made.parts.labels, np.kron(made.engine.make_on_grid("parts").labels, np.ones((2, 2), int))
         )
 
     def test_twelve_megapixels(self):

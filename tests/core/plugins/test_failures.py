@@ -1,4 +1,4 @@
-"""Which plugin an error came from: the innermost one, and none where the fault is ours."""
+"""The plugin that an error came from: the innermost one, or none for a fault of the core."""
 
 import pytest
 
@@ -9,7 +9,7 @@ from tangible_core.plugins.failures import Place, place_of
 
 
 class Law(PlainTouch):
-    """Asks another law, or fails itself."""
+    """A force law that calls another one, or fails."""
 
     def __init__(self, other: PlainTouch | None = None) -> None:
         self.other = other
@@ -19,17 +19,17 @@ class Law(PlainTouch):
 
 
 class Outer(Law):
-    """Stands around another."""
+    """A wrapper of another force law."""
 
 
-def test_the_innermost_plugin_is_named():
+def test_error_in_nested_plugins_names_the_innermost():
     with pytest.raises(IndexError) as raised:
         Outer(Law()).force((0, 0, 0))
     assert place_of(raised.value) == Place("render", __name__, "Law", "force")
 
 
 @pytest.mark.usefixtures("unchecked_shapes")
-def test_a_fault_of_the_core_is_nobody_elses():
+def test_error_of_the_core_has_no_plugin():
     touch = CompiledTouch(None, ())  # pyright: ignore[reportArgumentType]
     with pytest.raises(TypeError, match="'NoneType' object is not callable") as raised:
         touch.force((0, 0, 0))  # pyright: ignore[reportArgumentType]

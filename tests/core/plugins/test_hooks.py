@@ -29,36 +29,36 @@ def manager(*observers) -> pluggy.PluginManager:
 
 class Witness:
     def __init__(self):
-        self.heard = []
+        self.calls = []
 
     @hookimpl
     def tangible_methods(self, kind):
-        self.heard.append(("tangible_methods", {"kind": kind}))
+        self.calls.append(("tangible_methods", {"kind": kind}))
         return {"mine": "acme:Mine"}
 
     @hookimpl
     def tangible_plan_made(self, plan):
-        self.heard.append(("tangible_plan_made", {"plan": plan}))
+        self.calls.append(("tangible_plan_made", {"plan": plan}))
 
     @hookimpl
     def tangible_stage_started(self, product, method):
-        self.heard.append(("tangible_stage_started", {"product": product, "method": method}))
+        self.calls.append(("tangible_stage_started", {"product": product, "method": method}))
 
     @hookimpl
     def tangible_stage_finished(self, outcome):
-        self.heard.append(("tangible_stage_finished", {"outcome": outcome}))
+        self.calls.append(("tangible_stage_finished", {"outcome": outcome}))
 
     @hookimpl
     def tangible_servo_report(self, report):
-        self.heard.append(("tangible_servo_report", {"report": report}))
+        self.calls.append(("tangible_servo_report", {"report": report}))
 
     @hookimpl
     def tangible_panels(self):
-        self.heard.append(("tangible_panels", {}))
+        self.calls.append(("tangible_panels", {}))
 
     @hookimpl
     def tangible_commands(self, app):
-        self.heard.append(("tangible_commands", {"app": app}))
+        self.calls.append(("tangible_commands", {"app": app}))
 
 
 class Failing:
@@ -68,45 +68,45 @@ class Failing:
 
 
 class Terse:
-    """Asks for less than the moment tells."""
+    """An observer with fewer arguments than the hook has."""
 
     def __init__(self):
-        self.heard = []
+        self.calls = []
 
     @hookimpl
     def tangible_stage_started(self, product):
-        self.heard.append(product)
+        self.calls.append(product)
 
 
 @pytest.mark.parametrize("moment", FACTS)
-def test_every_moment_is_heard_with_its_facts(moment):
+def test_hook_calls_observers_with_all_arguments(moment):
     witness = Witness()
     hooks.tell(manager(witness), moment, **FACTS[moment])
-    assert witness.heard == [(moment, FACTS[moment])]
+    assert witness.calls == [(moment, FACTS[moment])]
 
 
-def test_every_moment_there_is_stands_above():
+def test_hooks_are_all_tested_here():
     assert set(FACTS) == {name for name in vars(hooks.Specs) if name.startswith("tangible_")}
 
 
 @pytest.mark.parametrize("moment", FACTS)
-def test_a_moment_that_nobody_watches(moment):
+def test_hook_without_observers_gives_no_answers(moment):
     assert hooks.tell(manager(), moment, **FACTS[moment]) == []
 
 
-def test_answers_come_back_and_silence_does_not():
+def test_hook_answers_are_returned_without_none():
     assert hooks.tell(manager(Witness(), Failing()), "tangible_methods", kind="depth") == [{"mine": "acme:Mine"}]
     assert hooks.tell(manager(Witness()), "tangible_stage_started", product="relief", method="core") == []
 
 
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
-def test_an_observer_that_fails_harms_no_other_and_is_said_once(caplog, order, log_dir):
+def test_failing_observer_is_logged_once_and_harms_no_other(caplog, order, log_dir):
     witness = Witness()
     both = (witness, Failing())
     plugins = manager(*(both[i] for i in order))
     for _ in range(3):
         hooks.tell(plugins, "tangible_stage_finished", outcome=RAN)
-    assert witness.heard == 3 * [("tangible_stage_finished", {"outcome": RAN})]
+    assert witness.calls == 3 * [("tangible_stage_finished", {"outcome": RAN})]
     [record] = caplog.records
     assert (record.levelno, record.exc_info) == (logging.WARNING, None)
     assert "observer Failing failed in tangible_stage_finished" in record.message
@@ -115,13 +115,13 @@ def test_an_observer_that_fails_harms_no_other_and_is_said_once(caplog, order, l
     assert log.read_text().count("Traceback") == 1
 
 
-def test_an_observer_asks_for_what_it_needs():
+def test_observer_with_fewer_arguments_is_called():
     terse = Terse()
     hooks.tell(manager(terse), "tangible_stage_started", product="relief", method="core")
-    assert terse.heard == ["relief"]
+    assert terse.calls == ["relief"]
 
 
-def test_hook_modules_come_by_entry_point(install):
+def test_hook_modules_are_found_by_entry_point(install):
     install(
         "acme",
         {"tangible.hooks": {"diary": "acme_diary"}},
@@ -137,7 +137,7 @@ def test_hook_modules_come_by_entry_point(install):
     assert plugins.has_plugin("acme/diary")
 
 
-def test_a_hook_module_that_cannot_be_imported_is_left_out_and_said(install, caplog):
+def test_hook_module_that_cannot_be_imported_is_left_out_with_a_warning(install, caplog):
     install(
         "broken",
         {"tangible.hooks": {"broken": "broken_hooks", "gone": "no_such_module", "quits": "quits"}},
@@ -150,7 +150,7 @@ def test_a_hook_module_that_cannot_be_imported_is_left_out_and_said(install, cap
     assert all("left out" in record.message for record in caplog.records)
 
 
-def test_an_observer_of_a_moment_that_does_not_exist_is_said(install, caplog):
+def test_unknown_hook_is_logged_with_the_nearest_name(install, caplog):
     install(
         "acme",
         {"tangible.hooks": {"diary": "acme_diary"}},
@@ -161,10 +161,10 @@ def test_an_observer_of_a_moment_that_does_not_exist_is_said(install, caplog):
             """,
     )
     assert hooks.tell(hooks.manager(), "tangible_stage_finished", outcome=RAN) == []
-    assert "hooks acme/diary watch tangible_stage_finisched, which is not a moment (did you mean" in caplog.text
+    assert "acme/diary implements an unknown hook: tangible_stage_finisched (did you mean" in caplog.text
 
 
-def test_an_observer_that_asks_for_what_is_not_told_is_left_out(install, caplog):
+def test_observer_with_an_unknown_argument_is_left_out(install, caplog):
     install(
         "acme",
         {"tangible.hooks": {"diary": "acme_diary"}},

@@ -28,13 +28,13 @@ def install_mine(install, name="acme", **points):
     return install(name, {"tangible.depth": points or {"mine": f"{name}:Mine"}}, **{name: MINE})
 
 
-def test_nothing_is_installed(install):
+def test_registry_without_plugins_is_empty(install):
     assert Registry().listings == ()
     with pytest.raises(UnknownMethod, match="no depth method is named 'mine'; installed: none"):
         Registry().load("depth", "mine")
 
 
-def test_a_method_is_listed_without_being_imported(install):
+def test_method_is_listed_without_being_imported(install):
     install_mine(install)
     [listing] = Registry().listings
     assert (listing.kind, listing.name, listing.target) == ("depth", "mine", "acme:Mine")
@@ -43,7 +43,7 @@ def test_a_method_is_listed_without_being_imported(install):
     assert "acme" not in sys.modules
 
 
-def test_a_method_is_loaded_by_name(install):
+def test_method_is_loaded_by_name(install):
     install_mine(install)
     cls = Registry().load("depth", "mine")
     assert issubclass(cls, DepthEstimator)
@@ -53,9 +53,9 @@ def test_a_method_is_loaded_by_name(install):
 def test_listings_are_sorted_by_kind_and_name(install):
     install("b", {f"tangible.{kind}": {"y": "b:Y", "x": "b:X"} for kind in reversed(KIND_NAMES)})
     install("a", {"tangible.depth": {"y": "a:Y"}, "tangible.other": {"z": "a:Z"}})
-    found = [(each.kind, each.name, each.distribution) for each in Registry().listings]
+    listings = [(each.kind, each.name, each.distribution) for each in Registry().listings]
     depth = [("depth", "x", "b"), ("depth", "y", "a"), ("depth", "y", "b")]
-    assert found == depth + [(kind, name, "b") for kind in KIND_NAMES[1:] for name in ("x", "y")]
+    assert listings == depth + [(kind, name, "b") for kind in KIND_NAMES[1:] for name in ("x", "y")]
 
 
 @pytest.mark.parametrize(
@@ -67,18 +67,18 @@ def test_listings_are_sorted_by_kind_and_name(install):
         ("Mine", "installed: mine"),
     ],
 )
-def test_a_name_that_is_not_installed(install, name, complaint):
+def test_name_that_is_not_installed_is_refused_with_the_nearest(install, name, complaint):
     install_mine(install)
     with pytest.raises(UnknownMethod, match=complaint):
         Registry().load("depth", name)
 
 
-def test_a_kind_that_does_not_exist(install):
+def test_unknown_kind_is_refused_with_the_nearest(install):
     with pytest.raises(UnknownMethod, match=r"no plugin method is named 'dept' \(did you mean 'depth'\?\)"):
         Registry().load("dept", "mine")
 
 
-def test_a_name_of_another_kind(install):
+def test_name_of_another_kind_is_refused(install):
     install_mine(install)
     with pytest.raises(UnknownMethod, match="no texture method is named 'mine'"):
         Registry().load("texture", "mine")
@@ -98,7 +98,7 @@ def test_a_name_of_another_kind(install):
         ("raise SystemExit(3)", "SystemExit"),
     ],
 )
-def test_a_broken_plugin_costs_only_its_own_name(install, source, complaint):
+def test_broken_plugin_leaves_the_others_usable(install, source, complaint):
     install("broken", {"tangible.depth": {"broken": "broken:Mine"}}, version="2.0", broken=source)
     install_mine(install)
     registry = Registry()
@@ -121,7 +121,7 @@ def test_a_broken_plugin_costs_only_its_own_name(install, source, complaint):
         ("acme:Bare", "(no docstring)"),
     ],
 )
-def test_a_target_that_leads_nowhere_is_listed_all_the_same(install, target, summary):
+def test_target_that_leads_nowhere_is_listed_and_not_loaded(install, target, summary):
     install("acme", {"tangible.depth": {"lost": target}}, acme=MINE + "\n    class Bare: ...")
     [listing] = Registry().listings
     assert listing.summary.startswith(summary)
@@ -129,7 +129,7 @@ def test_a_target_that_leads_nowhere_is_listed_all_the_same(install, target, sum
         Registry().load("depth", "lost")
 
 
-def test_two_plugins_of_one_name_are_both_listed_and_the_distribution_chooses(install):
+def test_two_plugins_of_one_name_are_chosen_by_distribution(install):
     install_mine(install, "acme", mine="acme:Mine")
     install_mine(install, "rival", mine="rival:Mine", other="rival:Mine")
     registry = Registry()
@@ -147,7 +147,7 @@ def test_two_plugins_of_one_name_are_both_listed_and_the_distribution_chooses(in
 @pytest.mark.parametrize(
     ("group", "what"), [("depth", "depth method slow (slow:Slow, from acme 1.0)"), ("hooks", "hooks slow (slow)")]
 )
-def test_a_plugin_that_takes_long_to_import_is_named_meanwhile(install, monkeypatch, caplog, group, what):
+def test_plugin_with_a_slow_import_is_logged_meanwhile(install, monkeypatch, caplog, group, what):
     monkeypatch.setattr("tangible_core.runtime.slowness.LONG_S", 0.01)
     slow = """
         import time
@@ -168,7 +168,7 @@ def test_a_plugin_that_takes_long_to_import_is_named_meanwhile(install, monkeypa
     assert caplog.messages[0].endswith("has taken 0.01 s so far and goes on; Ctrl-C ends it")
 
 
-def test_a_plugin_that_is_slow_to_import_is_listed_without_waiting(install):
+def test_plugin_with_a_heavy_library_is_listed_without_importing_it(install):
     site = install(
         "heavy",
         {"tangible.depth": {"heavy": "heavy:Mine"}},
@@ -186,7 +186,7 @@ def test_a_plugin_that_is_slow_to_import_is_listed_without_waiting(install):
     assert ran.stdout.strip() == "['The same everywhere.'] False"
 
 
-def test_a_method_in_a_package_is_read_from_its_file(install):
+def test_method_in_a_package_has_its_summary_read_from_the_file(install):
     site = install("deep", {"tangible.depth": {"file": "deep.rooms.mine:Mine", "folder": "deep.rooms:Mine"}})
     (site / "deep" / "rooms").mkdir(parents=True)
     (site / "deep" / "__init__.py").write_text("imported = True")
@@ -196,7 +196,7 @@ def test_a_method_in_a_package_is_read_from_its_file(install):
     assert "deep" not in sys.modules
 
 
-def test_names_can_be_computed_by_a_hook(install):
+def test_names_from_a_hook_are_listed_and_loaded(install):
     install(
         "acme",
         {"tangible.hooks": {"names": "acme_names"}},
@@ -221,7 +221,7 @@ def test_names_can_be_computed_by_a_hook(install):
 @pytest.mark.parametrize(
     "answer", ["1 / 0", "return ['odd']", "return {'odd': 3}", "return {3: 'odd:Odd'}", "return 3"]
 )
-def test_a_hook_that_computes_nonsense_costs_only_its_own_names(install, answer):
+def test_hook_with_nonsense_names_leaves_the_others_usable(install, answer):
     install_mine(install)
     install(
         "odd",
@@ -237,6 +237,6 @@ def test_a_hook_that_computes_nonsense_costs_only_its_own_names(install, answer)
     assert Registry().load("depth", "mine")
 
 
-def test_what_is_shipped_is_installed():
+def test_shipped_methods_are_installed():
     assert load_method("depth", "opencv-sgbm").__name__ == "OpenCVSGBM"
     assert load_method("device", "mock").__name__ == "Mock"

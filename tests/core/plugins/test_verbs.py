@@ -1,4 +1,4 @@
-"""What any method is given, and what it gives: three numbers do for a place, and nothing else for views."""
+"""The arguments and results of every method's verb: three numbers do for a state, and only views for views."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ pytestmark = pytest.mark.usefixtures("unchecked_shapes")
 SURFACE = HapticSurface.from_heights(np.zeros((4, 4)))
 
 
-def test_a_place_is_enough_for_a_force():
+def test_touch_takes_three_numbers_for_a_state():
     touch = load_method("render", "penalty")().touch(SURFACE)
     below = (0, 0, -0.001)
     assert touch.force(below) == touch.force(np.array(below)) == touch.force(HapticState(below)) != (0, 0, 0)
@@ -24,7 +24,7 @@ def test_a_place_is_enough_for_a_force():
         touch.force(None)
 
 
-def test_three_numbers_are_enough_for_a_link():
+def test_link_takes_three_numbers_for_a_force():
     with load_method("device", "mock")().open() as link:
         link.write((0, 0, 1))
         assert link.applied == Force(0.0, 0.0, 1.0)
@@ -33,23 +33,23 @@ def test_three_numbers_are_enough_for_a_link():
 
 
 @pytest.mark.parametrize(
-    ("kind", "name", "verb", "said"),
+    ("kind", "name", "verb", "complaint"),
     [
         ("depth", "semi-global", "estimate", "views: is the str 'x'; it must be a Views, such as Views"),
         ("texture", "gradient", "segment", "picture: is the str 'x'; it must be an array of numbers"),
         ("render", "proxy", "touch", "surface: is the str 'x'; it must be a HapticSurface, such as from_heights makes"),
     ],
 )
-def test_a_method_that_is_given_something_else(kind, name, verb, said):
-    with pytest.raises(ArgumentError, match=said):
+def test_method_with_a_wrong_argument_is_refused(kind, name, verb, complaint):
+    with pytest.raises(ArgumentError, match=complaint):
         getattr(load_method(kind, name)(), verb)("x")
 
 
-def test_a_picture_of_lists_is_segmented():
+def test_segmenter_takes_a_picture_of_lists():
     assert load_method("texture", "gradient")().segment([[0.0, 1.0], [1.0, 0.0]]).labels.shape == (2, 2)
 
 
-def test_a_method_of_no_distribution_is_named_by_its_class():
+def test_wrong_result_without_a_distribution_names_the_class():
     class Odd(DepthEstimator):
         def estimate(self, views: Views) -> DisparityMap:
             return views  # pyright: ignore[reportReturnType]
@@ -58,7 +58,7 @@ def test_a_method_of_no_distribution_is_named_by_its_class():
         Odd().estimate(Views(np.zeros((2, 2), np.uint8)))
 
 
-def test_a_verb_keeps_its_name_and_its_words():
+def test_wrapped_verb_keeps_its_name():
     for kind, name in (("depth", "zncc"), ("texture", "gradient"), ("render", "proxy"), ("device", "mock")):
         cls = load_method(kind, name)
         for verb in KINDS[kind].__abstractmethods__:
@@ -67,7 +67,7 @@ def test_a_verb_keeps_its_name_and_its_words():
 
 
 class TestPipelines:
-    def test_what_is_no_scene_no_device_and_no_recording(self, tmp_path):
+    def test_pipeline_with_wrong_arguments_is_refused(self, tmp_path):
         with pytest.raises(ArgumentError, match=r"scene: is the str .x\.png.; it must be a Scene, such as"):
             Pipeline("x.png")
         law, device = load_method("render", "penalty")(), load_method("device", "mock")()
@@ -78,6 +78,6 @@ class TestPipelines:
         with pytest.raises(ArgumentError, match="seconds: is the str '1'; it must be a number"):
             pipeline.feel(seconds="1", in_real_time=False)
         path = str(tmp_path / "hand.nc")
-        felt = pipeline.feel(seconds=0.01, in_real_time=False, record=path)
-        assert Recording.load(path).digest() == felt.digest()
-        assert pipeline.replay(path).rows.shape == felt.rows.shape
+        recording = pipeline.feel(seconds=0.01, in_real_time=False, record=path)
+        assert Recording.load(path).digest() == recording.digest()
+        assert pipeline.replay(path).rows.shape == recording.rows.shape

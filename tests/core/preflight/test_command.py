@@ -11,7 +11,7 @@ import pytest
 
 from command_line import tangible
 from tangible_core import load_pipeline
-from tangible_core.cli.preflight import line, preflight
+from tangible_core.cli.commands.preflight import line, preflight
 from tangible_core.data import HapticState
 from tangible_core.errors import BrokenMethod, ConfigError
 from tangible_core.preflight import Hand, Loop, Verdict

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tangible_core.pipeline.config.editing import edited
+from tangible_core.pipeline.config.editing import edit_text
 from tangible_core.preflight import Preflight, Verdict, relation
 from tangible_core.preflight.verdict import Change, held
 
@@ -102,5 +102,5 @@ def test_a_program_is_told_all_of_it_and_can_apply_a_cure():
     ]
     assert (fine["changes"], fine["cure"], fine["stands"]) == ([], "", "1 N/m <= 2 N/m")
     text = "scene: builtin/brick\nmaterials: {by: rules}  # mine\nworkspace: {relief_m: 4 mm}\n"
-    cured = edited(text, Path("p.yaml"), {each["key"]: each["value"] for each in wrong["changes"]})
+    cured = edit_text(text, Path("p.yaml"), {each["key"]: each["value"] for each in wrong["changes"]})
     assert cured == text.replace("rules}", "rules, fit: device}").replace("4 mm", "0.0012")

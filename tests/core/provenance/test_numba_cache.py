@@ -59,7 +59,9 @@ class Acme:
         self.folder = folder / "acme"
         self.users = folder / "users"
         self.folder.mkdir()
-        environment = {**os.environ, "NUMBA_CACHE_DIR": "", "XDG_CACHE_HOME": str(self.users)}
+        # Python takes a source that was edited within a second, at the same length, for the one that it compiled.
+        fresh = {"PYTHONDONTWRITEBYTECODE": "1"}
+        environment = {**os.environ, **fresh, "NUMBA_CACHE_DIR": "", "XDG_CACHE_HOME": str(self.users)}
         self._world = {"env": environment, "cwd": folder}
         for name, text in ACME.items():
             self.edit(name, textwrap.dedent(text))

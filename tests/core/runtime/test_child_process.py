@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from distributions import distribution
-from tangible_bench.config import parse_comparison
-from tangible_bench.plan import measurements
-from tangible_bench.run import look, run
+from tangible_bench.config.reading import parse_comparison
+from tangible_bench.measuring.plan import measurements
+from tangible_bench.measuring.run import look, run
 from tangible_core import HapticSurface, load_method
 from tangible_core.errors import BrokenMethod
 from tangible_core.plugins.registry import Registry
@@ -40,9 +40,10 @@ import numpy as np
 from tangible_core import DisparityMap, Force
 from tangible_core.plugins import DepthEstimator, ForceRenderer, HapticDevice
 from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.data import DeviceSpec
 from tangible_core.plugins.interfaces import PlainTouch
-from tangible_core.testing.loop_devices import SPEC
 
+SPEC = DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.1, 0.1), 1e-6, simulated=True)
 FELT = pathlib.Path(__file__).with_suffix(f".{os.getpid()}.felt")
 
 

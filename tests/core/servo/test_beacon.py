@@ -11,11 +11,13 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from faulty_touch import FaultyTouch
+from loop_devices import SPEC, Circling, Failing
 from tangible_core.data import Force, HapticState, HapticSurface, Relief, ServoReport, TickFlag, beacon_part
 from tangible_core.errors import ConfigError, DeviceError, GeometryError
 from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.plugins.registry import load_method
-from tangible_core.servo import Beacon, Safety, Servo, beacon_kernels, beacon_to, still
+from tangible_core.servo import Beacon, Safety, Servo, beacon_kernels, beacon_to, null_touch
 from tangible_core.servo.beacon import (
     ASKED,
     LET_GO,
@@ -29,9 +31,8 @@ from tangible_core.servo.beacon import (
     beacon_flags,
 )
 from tangible_core.servo.guard import layout
-from tangible_core.servo.guard.guarded import Guarded, guarded
-from tangible_core.servo.pulling import pulling
 from tangible_core.servo.ring import Ring
+from tangible_core.servo.ticks.python_tick import GuardedForce, guard_touch
 from tangible_core.session import (
     Recording,
     Turn,
@@ -41,8 +42,6 @@ from tangible_core.session import (
     run_in_turn,
     run_simulated,
 )
-from tangible_core.testing.loop_devices import SPEC, Circling, Failing
-from tangible_core.testing.loop_laws import FaultyTouch
 from tangible_devices import Mock
 
 WIDTH_M, LENGTH_M = 0.08, 0.06
@@ -223,13 +222,13 @@ class Wall(PlainTouch):
         return Force(0.0, 0.0, 500.0 * max(0.002 - state.position_m[2], 0.0))
 
 
-def loop_of(beacon: Beacon | None, limits: Safety) -> tuple[Guarded, np.ndarray, BeaconMemory]:
+def loop_of(beacon: Beacon | None, limits: Safety) -> tuple[GuardedForce, np.ndarray, BeaconMemory]:
     settings, memory = limits.arrays(SPEC, 500.0)
     asked = BeaconMemory.of(beacon)
-    return guarded(Wall(), settings, memory, pulling(asked.arrays, memory)), memory, asked
+    return guard_touch(Wall(), settings, memory, asked.arrays), memory, asked
 
 
-def drift(allowed: Guarded, seconds: float, at: np.ndarray, mass_kg: float = 0.3, b: float = 0.0) -> np.ndarray:
+def drift(allowed: GuardedForce, seconds: float, at: np.ndarray, mass_kg: float = 0.3, b: float = 0.0) -> np.ndarray:
     """A hand that only the force moves: position, velocity, force, flags, a row a tick; exact under a held force."""
     place, speed, rows = np.array(at, float), np.zeros(3), []
     for _ in range(round(seconds / T)):
@@ -280,8 +279,8 @@ class TestThroughTheGuard:
         def felt(with_one: bool) -> np.ndarray:
             touch = load_method("render", law)().touch(SURFACE) if law else Wall()
             settings, memory = Safety().arrays(SPEC, 800.0)
-            pull = pulling(BeaconMemory.ready().arrays, memory) if with_one else None
-            allowed = guarded(touch, settings, memory, pull)
+            pull = BeaconMemory.ready().arrays if with_one else None
+            allowed = guard_touch(touch, settings, memory, pull)
             return np.array([[*force, flags] for force, flags in (allowed(HapticState(tuple(p)), T) for p in path)])
 
         assert felt(True).tobytes() == felt(False).tobytes()
@@ -297,10 +296,10 @@ class TestThroughTheGuard:
     def test_its_stiffness_counts_with_the_law_s(self):
         settings, memory = Safety(**{"ramp_s": 0, "passivity": "off"}).arrays(SPEC, 2300.0)
         asked = BeaconMemory.of(beacon_to(SURFACE, 1))
-        allowed = guarded(Wall(), settings, memory, pulling(asked.arrays, memory))
+        allowed = guard_touch(Wall(), settings, memory, asked.arrays)
         for _ in range(900):
             allowed(HapticState((-0.03, -0.02, 0.01)), T)
-        assert memory[layout.SOFTNESS] == pytest.approx(2400 / 2460, abs=0.002)
+        assert memory[layout.GAIN] == pytest.approx(2400 / 2460, abs=0.002)
 
 
 class TestNames:
@@ -411,7 +410,7 @@ def test_in_the_loop_s_own_process_it_is_switched_while_feeling_and_released_by_
 @pytest.mark.usefixtures("patient")
 @pytest.mark.usefixtures("loop_in_thread")
 def test_scenes_in_turn_pull_each_to_its_own_until_a_button_is_pressed():
-    turns = [Turn(still(), AT_ONCE, SURFACE, beacon_to(SURFACE, part)) for part in (1, 4)]
+    turns = [Turn(null_touch(), AT_ONCE, SURFACE, beacon_to(SURFACE, part)) for part in (1, 4)]
     rows: list[np.ndarray] = []
     stop = Event()
 
@@ -431,7 +430,7 @@ def test_scenes_in_turn_pull_each_to_its_own_until_a_button_is_pressed():
         if report.beacon == 1:
             stop.set()
 
-    one = run_in_real_time(still(), Circling(), IN_TIME_S, AT_ONCE, heard, beacon=turns[0].beacon, stop=stop)
+    one = run_in_real_time(null_touch(), Circling(), IN_TIME_S, AT_ONCE, heard, beacon=turns[0].beacon, stop=stop)
     assert one.beacon == 1
 
 
@@ -467,10 +466,10 @@ class TestSessionsAndRecordings:
 
         ring = Ring.create(64)
         try:
-            ring.room_for_a_beacon()
+            ring.allocate_beacon()
             monkeypatch.setattr("os.posix_fallocate", full, raising=False)
             with pytest.raises(DeviceError, match="no room for a beacon: No space left"):
-                ring.room_for_a_beacon()
+                ring.allocate_beacon()
         finally:
             ring.remove()
 

@@ -1,5 +1,6 @@
 """What goes wrong around a force loop: each fault ends with no force, in a time that is bounded, and is said."""
 
+import copyreg
 import gc
 import io
 import os
@@ -18,16 +19,17 @@ from typing import Any
 import numpy as np
 import pytest
 
+from faulty_touch import FaultyTouch, OddError
+from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.errors import BrokenMethod, DeviceError
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.servo import Safety, Servo, host, loop, priority
+from tangible_core.servo import Safety, Servo, host, supervisor
 from tangible_core.servo.child import Child
+from tangible_core.servo.framing import Start, StartReply, Swap, SwapReply, receive, send
 from tangible_core.servo.parcel import pack
 from tangible_core.servo.ring import COUNT, LAST, PERIOD_NS, STOP, SWAP, Ring, shared_folder
-from tangible_core.servo.wire import Start, StartReply, Swap, SwapReply, receive, send
-from tangible_core.testing.loop_devices import Circling, Failing
-from tangible_core.testing.loop_laws import FaultyTouch
+from tangible_core.servo.ticks import loop, priority
 
 pytestmark = pytest.mark.usefixtures("own_memory")
 
@@ -67,7 +69,7 @@ def left_behind() -> set[Path]:
 
 
 class Interrupt:
-    """Raises KeyboardInterrupt before the n-th line of `host` that the main thread comes to."""
+    """Raises KeyboardInterrupt before the n-th line of `host` or `supervisor` that the main thread comes to."""
 
     def __init__(self, line: int, servo: Servo) -> None:
         self._left, self._servo = line, servo
@@ -75,7 +77,7 @@ class Interrupt:
         """Ticks when it was raised; -1 if it was not."""
 
     def trace(self, frame: FrameType, event: str, _: Any) -> Any:
-        if frame.f_code.co_filename != host.__file__:
+        if frame.f_code.co_filename not in (host.__file__, supervisor.__file__):
             return None
         if event in ("line", "call"):
             self._left -= 1
@@ -128,8 +130,8 @@ class TestInterruptedStart:
         until(lambda: not held(record) > 0)
 
     def test_a_start_that_takes_for_ever_is_given_up(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(host, "COMPILING_S", 1.0)
-        monkeypatch.setattr(host, "STOPPING_S", 0.5)
+        monkeypatch.setattr(supervisor, "COMPILING_S", 1.0)
+        monkeypatch.setattr(supervisor, "STOPPING_S", 0.5)
         servo = Servo(FaultyTouch(), Failing(opens="late"), AT_ONCE)
         with pytest.raises(DeviceError, match="has not answered for 1 s"):
             servo.__enter__()
@@ -139,7 +141,7 @@ class TestInterruptedStart:
         assert not left_behind()
 
     def test_a_process_that_cannot_be_started(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(host, "command", lambda _: ["/no/such/python"])
+        monkeypatch.setattr(supervisor, "command", lambda _: ["/no/such/python"])
         with pytest.raises(DeviceError, match="no process can be started"), Servo(proxy(), Circling()):
             pytest.fail("it was begun")
         assert not left_behind()
@@ -157,8 +159,8 @@ import signal, time, numpy as np
 from pathlib import Path
 from tangible_core import HapticSurface, load_method
 from tangible_core.servo import Safety, Servo
-from tangible_core.testing.loop_devices import Failing
-from tangible_core.testing.loop_laws import FaultyTouch
+from loop_devices import Failing
+from faulty_touch import FaultyTouch
 signal.signal(signal.SIGINT, signal.default_int_handler)
 device = Failing(fault="none", record={record!r}, simulated=False)
 Path({ready!r}).touch()
@@ -181,8 +183,8 @@ class TestStandstill:
         record = tmp_path / "force"
         with self.feel(record, law, fault) as servo:
             until(lambda: not servo.running)
-            assert servo.report().stopped == host.STOOD_STILL
-            assert servo.lost
+            assert servo.report().stopped == supervisor.STOOD_STILL
+            assert servo.device_lost
             assert servo.report().peak_force_n > 0
             assert held(record) == 0
             assert servo.report().ticks == 99
@@ -193,7 +195,7 @@ class TestStandstill:
             until(lambda: held(record) > 0)
             os.kill(servo.process_id, signal.SIGSTOP)
             until(lambda: not servo.running)
-            assert servo.report().stopped == host.STOOD_STILL
+            assert servo.report().stopped == supervisor.STOOD_STILL
             assert held(record) == 0
 
     @pytest.mark.usefixtures("loop_in_thread")
@@ -214,7 +216,7 @@ class TestStandstill:
     def test_a_device_that_cannot_be_opened_once_more_is_told_of(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
     ) -> None:
-        monkeypatch.setattr(host, "STOPPING_S", 0.5)
+        monkeypatch.setattr(supervisor, "STOPPING_S", 0.5)
         record = tmp_path / "force"
         device = Failing(fault="none", record=str(record), simulated=False, opens="once")
         with Servo(FaultyTouch(), device, AT_ONCE) as servo:
@@ -245,7 +247,7 @@ class TestStandstill:
             until(lambda: held(record) > 0)
             os.kill(servo.process_id, number)
             until(lambda: not servo.running)
-            assert servo.report().stopped == "the process was asked to end"
+            assert servo.report().stopped == "the process received a signal to end"
             assert held(record) == 0
 
     def test_a_signal_that_the_program_ignores_ends_its_loop_neither(self, tmp_path: Path) -> None:
@@ -286,7 +288,11 @@ def answered(number: int, how: signal.Handlers) -> Iterator[None]:
 @pytest.mark.usefixtures("patient")
 @pytest.mark.usefixtures("loop_in_thread")
 class TestWhatAPluginRaises:
-    def test_an_error_that_cannot_be_unpickled_ends_the_session_with_its_text(self, tmp_path: Path) -> None:
+    def test_an_error_that_cannot_be_unpickled_ends_the_session_with_its_text(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        # distributed, which other tests of this process may have imported, teaches pickle every error that there is.
+        monkeypatch.delitem(copyreg.dispatch_table, OddError, raising=False)
         record = tmp_path / "force"
         with (
             pytest.raises(BrokenMethod, match="OddError: a fault in the law"),
@@ -297,7 +303,7 @@ class TestWhatAPluginRaises:
 
     @pytest.mark.parametrize(
         ("law", "fault", "name"),
-        [(FaultyTouch("exits"), "none", "loop_laws"), (FaultyTouch(), "exits", "loop_devices")],
+        [(FaultyTouch("exits"), "none", "faulty_touch"), (FaultyTouch(), "exits", "loop_devices")],
     )
     def test_sys_exit_is_an_error_that_names_the_plugin(self, tmp_path: Path, law, fault, name: str) -> None:
         record = tmp_path / "force"
@@ -314,7 +320,7 @@ class TestWhatAPluginRaises:
         def deaf(_: object) -> object:
             raise EOFError("half a message")
 
-        monkeypatch.setattr(host, "receive", deaf)
+        monkeypatch.setattr(supervisor, "receive", deaf)
         with pytest.raises(EOFError, match="half a message"), Servo(proxy(), Circling()):
             pytest.fail("it was begun")
 
@@ -430,7 +436,7 @@ ENDS: list[Callable[[Session], None]] = [
 @pytest.fixture
 def in_this_process(monkeypatch: pytest.MonkeyPatch):
     """Neither real-time rights nor locked memory are asked for, and what is collected stays so."""
-    monkeypatch.setattr(priority, "ask", lambda: (False, "nothing asked"))
+    monkeypatch.setattr(priority, "request", lambda: (False, "nothing asked"))
     yield
     gc.unfreeze()
 
@@ -478,7 +484,7 @@ def test_no_sigterm_is_lost_among_swaps(round: int, tmp_path: Path) -> None:
     with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE) as servo:
         timer = threading.Timer(random.Random(round).uniform(0, 0.2), os.kill, [servo.process_id, signal.SIGTERM])
         timer.start()
-        with pytest.raises(DeviceError, match="asked to end"):
+        with pytest.raises(DeviceError, match="received a signal to end"):
             for _ in range(100_000):
                 servo.swap(FaultyTouch())
         timer.join()

@@ -10,17 +10,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from loop_devices import Circling, Failing
 from moving_plane import MovingPlane, level
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.servo import Packed, Ring, Safety, Servo, packed, parcel, still
+from tangible_core.servo import Packed, Ring, Safety, Servo, null_touch, pack_touch, parcel
 from tangible_core.servo.guard.layout import GIVEN_J
 from tangible_core.servo.ring import shared_folder
 from tangible_core.session import run_simulated
-from tangible_core.testing.loop_devices import Circling, Failing
 
 pytestmark = pytest.mark.usefixtures("own_memory", "patient")
 
@@ -74,7 +74,7 @@ class TestShow:
             servo.swap(film)
             servo.show(level(0.011), 1)
             until(lambda: servo.report().frame == 1)
-            servo.swap(still())
+            servo.swap(null_touch())
             with pytest.raises(DeviceError, match="stands still"):
                 servo.show(level(0.011), 2)
             servo.swap(film)  # once more, as it was handed over
@@ -102,9 +102,9 @@ class TestShow:
 class TestPacked:
     def test_whoever_packed_it_shows(self) -> None:
         """Also when another process feels it, which is given a name and a number alone."""
-        made = packed(MovingPlane(0.01), Circling().spec())
+        made = pack_touch(MovingPlane(0.01), Circling().spec())
         handed_on = Packed(str(made.parcel), made.stiffness_n_per_m)
-        with Servo(still(), Circling(z_m=0.009), AT_ONCE) as servo:
+        with Servo(null_touch(), Circling(z_m=0.009), AT_ONCE) as servo:
             servo.swap(handed_on)
             with pytest.raises(DeviceError, match="feel the film"):
                 servo.show(level(0.012), 1)
@@ -114,18 +114,18 @@ class TestPacked:
         assert not left_behind()
 
     def test_in_the_same_process_the_loop_shows_as_well(self) -> None:
-        made = packed(MovingPlane(0.01), Circling().spec())
+        made = pack_touch(MovingPlane(0.01), Circling().spec())
         with Servo(made, Circling(z_m=0.009), AT_ONCE) as servo:
             assert servo.film is made.film
             servo.show(level(0.012), 3)
             until(lambda: servo.report().frame == 3)
-        assert packed(proxy(), Circling().spec()).film is None
+        assert pack_touch(proxy(), Circling().spec()).film is None
         for path in left_behind():
             path.unlink()
 
     def test_its_memory_is_everybody_s_who_unpacks_it(self) -> None:
         path = parcel.pack(MovingPlane(0.01))
-        here, again, there = parcel.shared(path), parcel.shared(path), parcel.unpack(path)
+        here, again, there = parcel.share(path), parcel.share(path), parcel.unpack(path)
         here.show(level(0.0123), 9)
         assert again.plane.tolist() == there.plane.tolist() == here.plane.tolist()
         assert there.touch.fixed[0] is there.plane and there.touch.fixed[2] is there.touch.moving
@@ -194,7 +194,7 @@ import sys, time
 sys.path[:] = {path}
 from moving_plane import MovingPlane, level
 from tangible_core.servo import Safety, Servo
-from tangible_core.testing.loop_devices import Failing
+from loop_devices import Failing
 if __name__ == "__main__":
     with Servo(MovingPlane(0.01, 100.0), Failing(fault="none", record={record!r}), Safety(ramp_s=0)) as servo:
         number = 0

@@ -12,16 +12,17 @@ import pytest
 
 from ctrl_c import hearing
 from full_disk import files_up_to
+from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import ServoReport
 from tangible_core.errors import OutputError
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.servo import OVER, Ring, Safety, Servo, cycle
-from tangible_core.servo.loop import sections
+from tangible_core.servo import OVER, Ring, Safety, Servo
 from tangible_core.servo.ring import STOP
+from tangible_core.servo.ticks import cycle
+from tangible_core.servo.ticks.loop import sections
 from tangible_core.session import INTERRUPTED, Keeper, Recording, figures, keeping, run_in_real_time
 from tangible_core.session.tick_file import About
-from tangible_core.testing.loop_devices import Circling, Failing
 
 pytestmark = pytest.mark.usefixtures("patient")
 

@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 from numba import float64, int32, int64, njit, types, uintp, void
 
+from loop_devices import SPEC
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import TICK_COLUMNS, Force, HapticState, TickFlag
 from tangible_core.plugins.interfaces import Link, Touch
-from tangible_core.servo import Ring, Safety, clock, loop
+from tangible_core.servo import Ring, Safety
 from tangible_core.servo.guard import guard
 from tangible_core.servo.reports import report
 from tangible_core.servo.ring import LAST, LEAD_NS, PERIOD_NS
-from tangible_core.testing.loop_devices import SPEC
+from tangible_core.servo.ticks import clock, loop
 
 PERIOD = 1_000_000
 SECOND = 1_000_000_000

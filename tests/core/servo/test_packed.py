@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from faulty_touch import FaultyTouch
+from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import BrokenMethod, DeviceError
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.plugins.touch import PlainTouch
-from tangible_core.servo import Packed, Ring, Safety, Servo, packed, parcel, ring, still
+from tangible_core.servo import Packed, Ring, Safety, Servo, null_touch, pack_touch, parcel, ring
 from tangible_core.servo.ring import shared_folder
-from tangible_core.testing.loop_devices import Circling, Failing
-from tangible_core.testing.loop_laws import FaultyTouch
 
 pytestmark = pytest.mark.usefixtures("own_memory")
 
@@ -51,7 +51,7 @@ class Unsendable(PlainTouch):
 
 
 def of_a_dead_maker(touch: Touch) -> tuple[Path, float]:
-    made = packed(touch, SPEC)
+    made = pack_touch(touch, SPEC)
     dead = made.parcel.with_name("tangible-999999999-a_b1.parcel")
     return made.parcel.rename(dead), made.stiffness_n_per_m
 
@@ -65,7 +65,7 @@ class TestStiffness:
     @pytest.mark.parametrize("touch", [stiff(), Silent()])
     @pytest.mark.parametrize("limits", [Safety(), Safety(coupling="auto")])
     def test_it_is_limited_as_the_touch_itself(self, touch: Touch, limits: Safety):
-        one = packed(touch, SPEC)
+        one = pack_touch(touch, SPEC)
         settings = [Servo(each, Circling(), limits)._arrays(each)[0] for each in (touch, one)]
         assert np.array_equal(*settings)
         assert one.stiffness_n_per_m > 5000
@@ -83,7 +83,7 @@ class TestWhoseItIs:
         one = Packed(*of_a_dead_maker(stiff()))
         assert one.parcel.name == f"tangible-{os.getpid()}-a_b1.parcel"
         Ring.create(16).remove()  # which sweeps
-        assert one.handed_on().exists()
+        assert one.unused_parcel().exists()
         one.discard()
         one.discard()
         assert not parcels()
@@ -91,11 +91,11 @@ class TestWhoseItIs:
     def test_what_was_swept_away_before_is_said(self):
         path, stiffness = of_a_dead_maker(stiff())
         Ring.create(16).remove()
-        with pytest.raises(DeviceError, match=r"the packed scene is not there .*; make it again"):
+        with pytest.raises(DeviceError, match=r"the packed scene is missing .*; make it again"):
             Packed(path, stiffness)
 
     def test_it_has_one_owner(self):
-        first = packed(stiff(), SPEC)
+        first = pack_touch(stiff(), SPEC)
         dead = first.parcel.rename(first.parcel.with_name("tangible-999999999-c.parcel"))
         second = Packed(str(dead), 1.0)
         with pytest.raises(DeviceError, match="make it again"):
@@ -109,21 +109,21 @@ class TestWhoseItIs:
 
     def test_nothing_is_left_where_it_cannot_be_packed(self):
         with pytest.raises(DeviceError, match="make it picklable"):
-            packed(Unsendable(), SPEC)
+            pack_touch(Unsendable(), SPEC)
         assert not parcels()
 
 
 @pytest.mark.usefixtures("loop_in_thread")
 class TestHandedOn:
     def test_here_it_gives_no_force(self):
-        one = packed(stiff(), SPEC)
+        one = pack_touch(stiff(), SPEC)
         for ask in (lambda: one.force(HapticState((0.0, 0.0, 0.0))), lambda: one.path(np.zeros((2, 3)))):
-            with pytest.raises(DeviceError, match="a packed touch is felt in the loop's process alone"):
+            with pytest.raises(DeviceError, match="only in the loop's process; ask the touch that was packed"):
                 ask()
         one.discard()
 
     def test_within_something_else_it_arrives_as_the_touch(self):
-        one = packed(stiff(), SPEC)
+        one = pack_touch(stiff(), SPEC)
         (touch,) = parcel.unpack(parcel.pack([one]))
         assert isinstance(touch, CompiledTouch)
         assert touch.force(HapticState((0.0, 0.0, 0.001))).z == pytest.approx(50)
@@ -131,7 +131,7 @@ class TestHandedOn:
 
     @pytest.mark.parametrize("device", [Failing(opens="never"), Circling()])
     def test_a_loop_that_does_not_start_takes_it_along(self, device, monkeypatch: pytest.MonkeyPatch):
-        one = packed(stiff(), SPEC)
+        one = pack_touch(stiff(), SPEC)
         if isinstance(device, Circling):  # there is no room for the ring
             monkeypatch.setattr(ring, "_size", lambda slots: 1 << 62)
         with pytest.raises(DeviceError), Servo(one, device):
@@ -139,17 +139,17 @@ class TestHandedOn:
         assert not parcels()
 
     def test_it_is_felt_once_and_what_was_felt_before_stays(self):
-        with Servo(still(), Failing(fault="none")) as servo:
-            one = packed(FaultyTouch(), SPEC)
+        with Servo(null_touch(), Failing(fault="none")) as servo:
+            one = pack_touch(FaultyTouch(), SPEC)
             servo.swap(one)
-            with pytest.raises(DeviceError, match="felt once"):
+            with pytest.raises(DeviceError, match="already used or discarded"):
                 servo.swap(one)
-            broken = packed(FaultyTouch("does not arrive"), SPEC)
+            broken = pack_touch(FaultyTouch("does not arrive"), SPEC)
             with pytest.raises(LookupError, match="the law's data is not in process"):
                 servo.swap(broken)
             assert servo.running
             servo.stop()
-            late = packed(FaultyTouch(), SPEC)
+            late = pack_touch(FaultyTouch(), SPEC)
             with pytest.raises(DeviceError, match="has ended"):
                 servo.swap(late)
         assert not parcels()
@@ -158,8 +158,8 @@ class TestHandedOn:
 SERVER = """
 import json, sys, time
 from tangible_core.data import TickFlag
-from tangible_core.servo import Packed, Safety, Servo, still
-from tangible_core.testing.loop_devices import Circling
+from tangible_core.servo import Packed, Safety, Servo, null_touch
+from loop_devices import Circling
 
 def wait(ticks):
     end, there = time.monotonic() + 60, servo.ring.count
@@ -168,7 +168,7 @@ def wait(ticks):
         time.sleep(0.005)
 
 path, stiffness, z_m = sys.argv[1:]
-with Servo(still(), Circling(z_m=float(z_m)), Safety(ramp_s=0)) as servo:
+with Servo(null_touch(), Circling(z_m=float(z_m)), Safety(ramp_s=0)) as servo:
     wait(50)
     servo.swap(Packed(path, float(stiffness)))
     wait(500)
@@ -187,7 +187,7 @@ print(json.dumps({
 
 
 def test_a_process_without_kernels_begins_with_no_force_and_hands_a_scene_on():
-    made = packed(stiff(), SPEC)
+    made = pack_touch(stiff(), SPEC)
     words = [str(made.parcel), str(made.stiffness_n_per_m), str(0.002 - DEPTH_M)]
     ran = subprocess.run([sys.executable, "-c", SERVER, *words], capture_output=True, text=True, timeout=120)
     assert ran.returncode == 0, ran.stderr
@@ -202,7 +202,7 @@ def test_a_process_without_kernels_begins_with_no_force_and_hands_a_scene_on():
 
 class TestStill:
     def test_it_gives_no_force_anywhere(self):
-        here, there = still(), parcel.unpack(parcel.pack(still()))
+        here, there = null_touch(), parcel.unpack(parcel.pack(null_touch()))
         assert isinstance(there, CompiledTouch)
         places = np.random.default_rng(0).uniform(-1, 1, (100, 3)) * np.logspace(-9, 3, 100)[:, None]
         places[:3] = np.nan, np.inf, 0

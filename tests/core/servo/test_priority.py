@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from tangible_core.servo import priority
+from tangible_core.servo.ticks import priority
 
 ON_LINUX = "x86_64", 314
 
@@ -49,7 +49,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> Asked:
 
 
 def test_without_rights_the_shortest_slack_and_slice_are_asked_for_and_the_niceness_stays(asked: Asked):
-    real_time, said = priority.ask()
+    real_time, said = priority.request()
     assert not real_time
     assert said == (
         "plain sleeping: SCHED_FIFO is not permitted (Operation not permitted), so busy programs make ticks late; "
@@ -75,7 +75,7 @@ def test_a_processor_whose_call_is_not_known_is_asked_for_nothing(asked: Asked, 
     assert asked.calls == []
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="another system is asked for nothing")
+@pytest.mark.skipif(sys.platform != "linux", reason="another system grants nothing")
 def test_the_thread_keeps_its_class_and_niceness():
     """Of the kernel itself, whether it knows slices or not."""
     seen: list[tuple[int, int]] = []

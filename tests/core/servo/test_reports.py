@@ -3,7 +3,7 @@
 import numpy as np
 
 from tangible_core.data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
-from tangible_core.servo.reports import so_far
+from tangible_core.servo.reports import brief_report
 from tangible_core.session import run_simulated
 from tangible_devices.replay import Replay
 from tangible_render.penalty import Penalty
@@ -11,7 +11,7 @@ from tangible_render.penalty import Penalty
 
 def test_a_report_is_of_the_last_tick():
     rows = np.arange(2.0 * len(TICK_COLUMNS)).reshape(2, -1)
-    assert so_far(rows, 7, 1.5, 0.25, "it is over") == ServoReport(
+    assert brief_report(rows, 7, 1.5, 0.25, "it is over") == ServoReport(
         ticks=7,
         time_s=17.0,
         state=HapticState((19.0, 20.0, 21.0), (22.0, 23.0, 24.0), 17.0, 32),
@@ -24,7 +24,7 @@ def test_a_report_is_of_the_last_tick():
 
 
 def test_before_the_first_tick_there_is_nothing_to_say():
-    nothing = so_far(np.empty((0, len(TICK_COLUMNS))), 0, 0.0, 0.0, "")
+    nothing = brief_report(np.empty((0, len(TICK_COLUMNS))), 0, 0.0, 0.0, "")
     assert nothing == ServoReport(0, 0.0, HapticState((0.0, 0.0, 0.0)), NO_FORCE, 0.0, 0.0)
 
 
@@ -36,4 +36,6 @@ def test_in_simulated_time_it_is_that_of_the_recording():
     recording = run_simulated(Penalty().touch(surface), Replay(), 0.5, reports.append)
     assert len(reports) >= 5
     for each in reports:
-        assert each == so_far(recording.rows[: each.ticks], each.ticks, each.peak_force_n, each.work_j, each.stopped)
+        assert each == brief_report(
+            recording.rows[: each.ticks], each.ticks, each.peak_force_n, each.work_j, each.stopped
+        )

@@ -9,10 +9,9 @@ import pytest
 
 from tangible_core.data import TICK_COLUMNS, Force, HapticState, TickFlag
 from tangible_core.errors import DeviceError
-from tangible_core.servo import Ring, cycle, parcel, ring
+from tangible_core.servo import Ring, parcel, ring
 from tangible_core.servo.guard.layout import COUNTS
-from tangible_core.servo.loop import sections
-from tangible_core.servo.reports import Counted, report, spread
+from tangible_core.servo.reports import LoopTotals, report, spread
 from tangible_core.servo.ring import (
     COUNT,
     IS_LAYOUT,
@@ -26,6 +25,8 @@ from tangible_core.servo.ring import (
     WIDEST_US,
     shared_folder,
 )
+from tangible_core.servo.ticks import cycle
+from tangible_core.servo.ticks.loop import sections
 from tangible_core.session import Recording, figures
 
 
@@ -381,7 +382,7 @@ class TestReport:
         small.guard[COUNTS + 2] = 8
         small.header[OVERRUNS] = 3
         one = report(small)
-        both = report(small, "over", Counted.of(small), 100.0)
+        both = report(small, "over", LoopTotals.of(small), 100.0)
         assert (both.ticks, both.overruns, both.flagged) == (40, 6, {"SLEW_LIMITED": 16})
         assert (both.time_s, both.work_j) == (one.time_s + 100, 2 * one.work_j)
         same = ("peak_force_n", "period_us", "late_us", "contact_share", "median_contact_force_n")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tangible_core.servo import cycle, schedule
 from tangible_core.servo.ring import LEAD_NS, NEXT_NS, OVERRUNS, PERIOD_NS, SPINS
+from tangible_core.servo.ticks import cycle, schedule
 
 PERIOD, FIRST = 1_000_000, 5_000_000
 COMPILED = pytest.mark.parametrize("begin_tick", [schedule.begin_tick, cycle.begin_tick], ids=["python", "compiled"])

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from ctrl_c import HEARING
+from faulty_touch import FaultyTouch
+from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import OVER, Safety, Servo
 from tangible_core.servo.ring import shared_folder
-from tangible_core.testing.loop_devices import Circling, Failing
-from tangible_core.testing.loop_laws import FaultyTouch
 
 FLAGS = TICK_COLUMNS.index("flags")
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
@@ -50,8 +50,8 @@ class TestTicks:
         ("device", "how"),
         [
             (Circling(z_m=0.001), "Python" if sys.platform != "linux" else "the whole loop is compiled"),
-            (Circling(z_m=0.001, exchanges=True), "Python asks the device"),
-            (Failing(fault="none"), "the tick is Python's"),
+            (Circling(z_m=0.001, exchanges=True), "Python calls the device"),
+            (Failing(fault="none"), "the tick is in Python"),
         ],
     )
     def test_each_loop_feels_the_surface(self, device, how: str) -> None:
@@ -138,11 +138,11 @@ class TestSwap:
 
     def test_another_law(self) -> None:
         with Servo(proxy(), Circling()) as servo:
-            assert "the tick is Python's" not in servo.how
+            assert "the tick is in Python" not in servo.how
             servo.swap(FaultyTouch())
-            assert "the tick is Python's" in servo.how
+            assert "the tick is in Python" in servo.how
             servo.swap(load_method("render", "penalty")().touch(LEVEL))
-            assert "the tick is Python's" not in servo.how
+            assert "the tick is in Python" not in servo.how
             there = servo.report().ticks
             until(lambda: servo.report().ticks > there + 20)
 
@@ -224,7 +224,7 @@ HOST = """
 import time, numpy as np
 from tangible_core import HapticSurface, load_method
 from tangible_core.servo import Safety, Servo
-from tangible_core.testing.loop_devices import Failing
+from loop_devices import Failing
 touch = load_method("render", "proxy")().touch(HapticSurface.from_heights(np.full((8, 8), 0.002, np.float32)))
 with Servo(touch, Failing(fault="none", record={record!r}), Safety(ramp_s=0)):
     time.sleep(60)

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from ctrl_c import hearing
+from loop_devices import Circling, Failing
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport, TickFlag
 from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import PlainTouch, Touch
 from tangible_core.servo import OVER, Safety
 from tangible_core.session import INTERRUPTED, STOPPED, Turn, in_turn, run_in_turn
-from tangible_core.testing.loop_devices import Circling, Failing
 
 AT_ONCE = Safety(ramp_s=0, max_step_n=10, stale_s=1.0, passivity="off")  # late ticks change nothing
 pytestmark = pytest.mark.usefixtures("patient")

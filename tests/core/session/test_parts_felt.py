@@ -7,6 +7,7 @@ from threading import Event
 import numpy as np
 import pytest
 
+from loop_devices import Failing
 from tangible_core.data import HapticSurface, Material, Relief, ServoReport
 from tangible_core.errors import OutputError
 from tangible_core.servo import Safety
@@ -25,7 +26,6 @@ from tangible_core.session import (
     run_simulated,
     telling_parts,
 )
-from tangible_core.testing.loop_devices import Failing
 from tangible_devices import Mock
 from tangible_render import Penalty
 

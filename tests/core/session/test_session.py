@@ -13,7 +13,7 @@ from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState, HapticS
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.plugins.interfaces import HapticDevice, Link, PlainTouch
 from tangible_core.servo import Safety
-from tangible_core.servo.guard.safety import softness
+from tangible_core.servo.guard.safety import gain
 from tangible_core.session import INTERRUPTED, failure, loop, run_simulated
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
@@ -164,7 +164,7 @@ class TestRun:
     def test_a_law_that_is_too_stiff_for_the_device_is_softened(self):
         level = HapticSurface.from_heights(np.zeros((8, 8)))
         device = Mock(hand=None, path="circle", z_m=-0.001)
-        held = softness(FREE.arrays(device.spec(), 4000.0)[0], 0.001)
+        held = gain(FREE.arrays(device.spec(), 4000.0)[0], 0.001)
         recording = run_simulated(Proxy(stiffness_n_per_m=4000).touch(level), device, 0.01, limits=FREE)
         assert held < 1
         assert (recording.flags & TickFlag.STIFFNESS_LIMITED).all()

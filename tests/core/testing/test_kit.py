@@ -1,16 +1,19 @@
-"""The kit itself: how it is asked, and the checks that every kind of method shares."""
+"""The conformance kit itself, and the checks that every kind of method shares."""
 
 import inspect
 import logging
+import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 import pytest
 from pydantic import ConfigDict, Field
 
+import loop_devices
 from tangible_core import DisparityMap, Views
 from tangible_core.errors import BrokenMethod, UnknownMethod
 from tangible_core.plugins import DepthEstimator
@@ -19,9 +22,8 @@ from tangible_core.testing import (
     CheckFailure,
     CheckResult,
     checks,
-    checks_listing,
-    checks_options,
     conforms,
+    every_method,
     run_checks,
 )
 
@@ -48,24 +50,24 @@ def registry(install):
 
 
 @pytest.mark.parametrize("kind", KIND_NAMES)
-def test_every_check_says_what_it_demands(kind):
+def test_check_docstring_states_a_demand(kind):
     for check in checks(kind):
         first, *_ = inspect.getdoc(check).split("\n\n")
         assert first.endswith("."), check.__name__
 
 
 @pytest.mark.parametrize("kind", KIND_NAMES)
-def test_every_check_has_a_name_of_its_own(kind):
+def test_check_names_of_a_kind_are_unique(kind):
     names = [check.__name__ for check in checks(kind)]
     assert len(set(names)) == len(names)
 
 
-def test_a_kind_that_does_not_exist():
+def test_checks_unknown_kind_suggests_a_name():
     with pytest.raises(UnknownMethod, match=r"did you mean 'depth'"):
         checks("dept")
 
 
-def test_results_come_one_by_one_with_reasons(registry):
+def test_run_checks_yields_results_with_messages(registry):
     results = {result.name: result for result in run_checks("depth", "mine", registry)}
     assert list(results) == [check.__name__ for check in checks("depth")]
     assert {name for name, result in results.items() if not result.passed} == {
@@ -76,15 +78,15 @@ def test_results_come_one_by_one_with_reasons(registry):
     assert results["wall_is_found"].message.startswith("A textured wall shifted by 6 px is found")
 
 
-def declaring(*names: str) -> str:
-    """`SOURCE`, whose method says of its own that it fails these checks."""
-    said = f"expected_failures: ClassVar[Mapping[str, str]] = {dict.fromkeys(names, 'a toy')}"
+def source_declaring(*names: str) -> str:
+    """Return `SOURCE` with a method that declares to fail these checks."""
+    declaration = f"expected_failures: ClassVar[Mapping[str, str]] = {dict.fromkeys(names, 'a toy')}"
     imports = "from collections.abc import Mapping\n    from typing import ClassVar\n    import numpy"
-    return SOURCE.replace("shift_px: float", f"{said}\n        shift_px: float").replace("import numpy", imports)
+    return SOURCE.replace("shift_px: float", f"{declaration}\n        shift_px: float").replace("import numpy", imports)
 
 
-def test_a_failure_that_the_method_declares_is_no_complaint_and_a_pass_is_one(install):
-    source = declaring("flat_pair_claims_nothing", "one_view_is_answered", "wall_is_found")
+def test_run_checks_declared_failure_that_passes_is_reported(install):
+    source = source_declaring("flat_pair_claims_nothing", "one_view_is_answered", "wall_is_found")
     install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=source)
     results = {each.name: each for each in run_checks("depth", "mine", Registry())}
     assert [name for name, each in results.items() if each.expected_failure and not each.passed] == [
@@ -95,25 +97,25 @@ def test_a_failure_that_the_method_declares_is_no_complaint_and_a_pass_is_one(in
     assert "take wall_is_found out of its expected_failures" in results["wall_is_found"].message
 
 
-def test_a_method_that_declares_what_is_no_check(install):
-    install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=declaring("wall_is_fond"))
+def test_run_checks_unknown_declared_check_is_refused(install):
+    install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=source_declaring("wall_is_fond"))
     with pytest.raises(BrokenMethod, match=r"depth method mine: .*'wall_is_fond' \(did you mean 'wall_is_found'\?\)"):
         list(run_checks("depth", "mine", Registry()))
 
 
-def test_options_are_handed_on(registry):
+def test_run_checks_options_reach_the_method(registry):
     [result] = [each for each in run_checks("depth", "mine", registry, shift_px=9.0) if each.name == "wall_is_found"]
     assert result == CheckResult("wall_is_found", False, "the wall is shifted by 6 px; the median error is 3 px")
 
 
-def test_a_method_that_cannot_be_loaded(registry):
+def test_run_checks_method_not_loadable_raises(registry):
     with pytest.raises(BrokenMethod, match="'lost'"):
         list(run_checks("depth", "lost", registry))
     with pytest.raises(UnknownMethod, match="did you mean 'mine'"):
         list(run_checks("depth", "mime", registry))
 
 
-def test_any_other_error_is_a_failed_check_that_names_its_place(install, caplog):
+def test_run_checks_other_exception_is_a_failure_with_its_place(install, caplog):
     install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=SOURCE.replace("np.full(", "1 / 0 + np.full("))
     with caplog.at_level(logging.DEBUG, "tangible_core.testing"):
         results = {result.name: result for result in run_checks("depth", "mine", Registry())}
@@ -122,7 +124,7 @@ def test_any_other_error_is_a_failed_check_that_names_its_place(install, caplog)
     assert "ZeroDivisionError" in caplog.text
 
 
-def test_a_method_without_its_extra_says_so_itself(install):
+def test_run_checks_missing_extra_keeps_the_message(install):
     missing = 'raise BrokenMethod("mine needs torch; pip install tangible-images[torch]")'
     source = SOURCE.replace("return", f"from tangible_core.errors import BrokenMethod; {missing}; return")
     install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme=source)
@@ -130,9 +132,9 @@ def test_a_method_without_its_extra_says_so_itself(install):
     assert results["wall_is_found"].message == "mine needs torch; pip install tangible-images[torch]"
 
 
-def test_a_whole_test_module_of_someone_elses(install, tmp_path, monkeypatch):
+def test_conforms_in_a_third_party_module_runs_every_check(install, tmp_path, monkeypatch):
     points = {"tangible.depth": {"mine": "acme:Mine"}}
-    site = install("acme", points, acme=declaring("flat_pair_claims_nothing"))
+    site = install("acme", points, acme=source_declaring("flat_pair_claims_nothing"))
     reasons = {"one_view_is_answered": "a toy", "options_are_frozen": "not true"}
     tmp_path.joinpath("test_acme.py").write_text(
         f"from tangible_core.testing import conforms\ntest_mine = conforms('depth', 'mine', {reasons}, shift_px=9.0)\n"
@@ -151,7 +153,7 @@ def test_a_whole_test_module_of_someone_elses(install, tmp_path, monkeypatch):
     assert "the wall is shifted by 6 px; the median error is 3 px" in ran.stdout
 
 
-def test_an_expected_failure_that_is_no_check():
+def test_conforms_unknown_expected_failure_is_refused():
     with pytest.raises(ValueError, match=r"no depth check is named 'wall_is_fond' \(did you mean 'wall_is_found'\?\)"):
         conforms("depth", "mine", {"wall_is_fond": "because"})
 
@@ -167,36 +169,36 @@ LISTINGS = {
 }
 
 
-@pytest.mark.parametrize("check", checks_listing.CHECKS)
-def test_a_listing_that_fails_the_check(install, check):
+@pytest.mark.parametrize("check", every_method.LISTING_CHECKS)
+def test_listing_check_faulty_listing_fails(install, check):
     name, source, complaint = LISTINGS[check.__name__]
     install("acme", {"tangible.depth": {name: "acme:Mine"}}, acme=source)
     with pytest.raises(CheckFailure, match=complaint):
         check(Registry().find("depth", name))
 
 
-@pytest.mark.parametrize("check", checks_listing.CHECKS)
-def test_a_listing_that_keeps_the_check(registry, check):
+@pytest.mark.parametrize("check", every_method.LISTING_CHECKS)
+def test_listing_check_correct_listing_passes(registry, check):
     check(registry.find("depth", "mine"))
 
 
-def test_a_module_that_cannot_be_imported_is_not_light(install):
+def test_import_check_module_not_importable_fails(install):
     install("acme", {"tangible.depth": {"mine": "acme:Mine"}}, acme="import nothing_there")
     with pytest.raises(CheckFailure, match="acme cannot be imported: ModuleNotFoundError: No module named 'nothing"):
-        checks_listing.import_is_light(Registry().find("depth", "mine"))
+        every_method.import_is_light(Registry().find("depth", "mine"))
 
 
 @pytest.mark.parametrize("name", ["gabor", "opencv-sgbm", "zncc-7x7", "a1", "3mf"])
-def test_names_that_are_plain(install, name):
+def test_name_check_plain_name_passes(install, name):
     install("acme", {"tangible.depth": {name: "acme:Mine"}}, acme=SOURCE)
-    checks_listing.name_is_plain(Registry().find("depth", name))
+    every_method.name_is_plain(Registry().find("depth", name))
 
 
 @pytest.mark.parametrize("name", ["Gabor", "two words", "a_b", "-a", "a-", "a--b", "1a", "1e3", "0xff", "a.b"])
-def test_names_that_are_not(install, name):
+def test_name_check_other_name_fails(install, name):
     install("acme", {"tangible.depth": {name: "acme:Mine"}}, acme=SOURCE)
     with pytest.raises(CheckFailure, match="lower-case words joined by hyphens"):
-        checks_listing.name_is_plain(Registry().find("depth", name))
+        every_method.name_is_plain(Registry().find("depth", name))
 
 
 class Six(DepthEstimator):
@@ -228,7 +230,7 @@ class Lenient(Six):
 
 class Forgetful(Six):
     seed: Annotated[int, Field(exclude=True)] = 0
-    """Left out of the configuration that is saved."""
+    """A field that is excluded from the saved configuration."""
 
 
 class Opaque(Six):
@@ -253,40 +255,40 @@ OPTIONS: dict[str, Any] = {
 }
 
 
-@pytest.mark.parametrize("check", checks_options.CHECKS)
-def test_options_that_fail_the_check(check):
+@pytest.mark.parametrize("check", every_method.OPTION_CHECKS)
+def test_option_check_faulty_options_fail(check):
     with pytest.raises(Exception) as caught:
         check(OPTIONS[check.__name__])
     assert isinstance(caught.value, CheckFailure) or check.__name__ == "schema_can_be_made"
 
 
-@pytest.mark.parametrize("check", checks_options.CHECKS)
-def test_options_that_keep_the_check(check):
+@pytest.mark.parametrize("check", every_method.OPTION_CHECKS)
+def test_option_check_correct_options_pass(check):
     check(Six(shift_px=3.0))
 
 
 MOTOR = '''
     from tangible_core.data import DeviceSpec
-    from tangible_core.testing.loop_devices import Failing
+    from loop_devices import Failing
 
     class Motor(Failing):
-        """A device that is real, as far as anybody can tell."""
+        """A device that claims to be real."""
 
         fault: str = "none"
-        """It works."""
+        """No fault."""
         simulated: bool = False
-        """No."""
+        """False."""
         record: str = "held"
-        """Where it says what it held."""
+        """File of the force held."""
     '''
 
 
 @pytest.mark.parametrize("allowed", ["", "1"])
-def test_a_real_device_is_not_pushed_with_unless_that_is_asked_for(install, tmp_path, monkeypatch, allowed):
+def test_conforms_real_device_is_pushed_only_if_allowed(install, tmp_path, monkeypatch, allowed):
     site = install("acme", {"tangible.device": {"motor": "acme:Motor"}}, acme=MOTOR)
     module = 'from tangible_core.testing import conforms\n\ntest_motor = conforms("device", "motor")\n'
     tmp_path.joinpath("test_motor.py").write_text(module)
-    monkeypatch.setenv("PYTHONPATH", str(site))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(site), str(Path(loop_devices.__file__).parent)]))
     monkeypatch.delenv("TANGIBLE_MOTORS", raising=False)
     if allowed:
         monkeypatch.setenv("TANGIBLE_MOTORS", allowed)

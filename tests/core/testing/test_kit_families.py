@@ -1,4 +1,4 @@
-"""Every check of every family holds for a method that is right, and fails for one that is wrong in just its way."""
+"""Every check of every kind passes a correct method and fails one with the fault that it is there for."""
 
 from collections.abc import Callable
 from datetime import datetime
@@ -24,23 +24,15 @@ from tangible_core.plugins import (
     Touch,
     Work,
 )
-from tangible_core.testing import (
-    CheckFailure,
-    checks_depth,
-    checks_device,
-    checks_export,
-    checks_render,
-    checks_texture,
-    checks_touch,
-)
-from tangible_core.testing.whole_files import demand_whole
+from tangible_core.testing import CheckFailure, kinds
+from tangible_core.testing.kinds.whole_files import demand_whole
 
 ticket = count()
-"""What a method must not have: a memory of its own."""
+"""A counter that gives methods a forbidden memory."""
 
 
 def right_depth(views: Views) -> DisparityMap:
-    """Six pixels wherever there is any texture: what the kit's wall has."""
+    """Return six pixels wherever there is texture: the disparity of the kit's wall."""
     if views.right is None:
         raise PictureError("a pair is needed")
     known = np.ptp(to_grey(views.left)) > 0 or views.shape == (1, 1)
@@ -85,22 +77,22 @@ class Texture(Segmenter):
         return self.twist(picture)
 
 
-def scribbled(picture: np.ndarray) -> SegmentMap:
-    found = right_segments(picture)
+def segment_and_scribble(picture: np.ndarray) -> SegmentMap:
+    segments = right_segments(picture)
     picture[0, 0] = 0
-    return found
+    return segments
 
 
-def shattered(picture: np.ndarray) -> SegmentMap:
+def segment_each_pixel(picture: np.ndarray) -> SegmentMap:
     return SegmentMap(np.arange(to_grey(picture).size, dtype=np.int32).reshape(picture.shape[:2]))
 
 
 TEXTURE: dict[str, Callable[[np.ndarray], SegmentMap]] = {
     "labels_are_well_formed": lambda picture: SegmentMap(right_segments(picture).labels * 2),
-    "two_textures_are_told_apart": shattered,
+    "two_textures_are_told_apart": segment_each_pixel,
     "same_picture_same_labels": lambda picture: SegmentMap(np.full(picture.shape[:2], next(ticket), np.int32)),
-    "picture_is_not_written_to": scribbled,
-    "one_colour_is_one_segment": shattered,
+    "picture_is_not_written_to": segment_and_scribble,
+    "one_colour_is_one_segment": segment_each_pixel,
     "every_picture_type_is_segmented": lambda picture: right_segments(np.where(picture > 180, picture, 0)),
     "any_size_is_segmented": lambda picture: SegmentMap(right_segments(picture).labels[:8]),
     "what_is_no_picture_is_refused": lambda picture: right_segments(np.nan_to_num(picture)),
@@ -111,7 +103,7 @@ Law = Callable[[HapticSurface, HapticState], Force]
 
 
 def spring(surface: HapticSurface, state: HapticState) -> Force:
-    """k d (-g, 1) on the bilinear interpolant of the heights."""
+    """Return k d (-g, 1) on the bilinear interpolant of the heights."""
     if not all(abs(part) < 1 for part in state.position_m):
         return NO_FORCE
     x, y, z = state.position_m
@@ -132,7 +124,7 @@ def bilinear(surface: HapticSurface, x: float, y: float) -> tuple[float, float, 
 
 
 class LawTouch(Touch):
-    """Not a `PlainTouch`, whose path cannot be wrong."""
+    """A touch whose path can be wrong, unlike that of a `PlainTouch`."""
 
     def __init__(self, surface: HapticSurface, render: "Render") -> None:
         self.surface, self.law, self.gain_on_a_path = surface, render.law, render.gain_on_a_path
@@ -155,8 +147,8 @@ class Render(ForceRenderer):
         return LawTouch(surface, self)
 
 
-def changed(change: Callable[..., Force]) -> Render:
-    """The spring with its force in contact changed: `change(x, y, z, surface)`."""
+def spring_with(change: Callable[..., Force]) -> Render:
+    """Return the spring with its force in contact spring_with by `change(x, y, z, surface)`."""
 
     def law(surface: HapticSurface, state: HapticState) -> Force:
         force = spring(surface, state)
@@ -165,17 +157,17 @@ def changed(change: Callable[..., Force]) -> Render:
     return Render(law=law)
 
 
-def mirrored(surface: HapticSurface, state: HapticState) -> Force:
+def mirrored_spring(surface: HapticSurface, state: HapticState) -> Force:
     x, y, z = state.position_m
     force = spring(surface, HapticState((x, -y, z)))
     return Force(force.x, -force.y, force.z)
 
 
-def unguarded(surface: HapticSurface, state: HapticState) -> Force:
+def plane_spring(surface: HapticSurface, state: HapticState) -> Force:
     return Force(0.0, 0.0, max(500.0 * (0.01 - state.position_m[2]), 0.0))
 
 
-def worn(surface: HapticSurface, state: HapticState) -> Force:
+def spring_that_wears(surface: HapticSurface, state: HapticState) -> Force:
     surface.height_m.base[0, 0] += 0.001
     return spring(surface, state)
 
@@ -183,32 +175,32 @@ def worn(surface: HapticSurface, state: HapticState) -> Force:
 last = [0.0]
 
 
-def haunted(surface: HapticSurface, state: HapticState) -> Force:
+def spring_with_memory(surface: HapticSurface, state: HapticState) -> Force:
     force = spring(surface, state)
     last[0], before = force.z, last[0]
     return Force(force.x, force.y, force.z + before)
 
 
-def bumpy(surface: HapticSurface, state: HapticState) -> Force:
+def spring_on_bumps(surface: HapticSurface, state: HapticState) -> Force:
     return spring(surface, state) if surface.height_m[1:, 1:].any() else Force(0.0, 0.0, float("nan"))
 
 
 RENDER: dict[str, Render] = {
     "free_air_is_free": Render(law=lambda surface, state: Force(0.0, 0.0, spring(surface, state).z + 0.01)),
-    "plane_pushes_straight_up": changed(lambda x, y, z, surface: Force(x + 0.1 * z, y, z)),
-    "surface_lies_where_it_is_drawn": Render(law=mirrored),
-    "slopes_push_downhill": changed(lambda x, y, z, surface: Force(-x, -y, z)),
-    "springs_are_exact": changed(lambda x, y, z, surface: Force(0.0, 0.0, z)),
+    "plane_pushes_straight_up": spring_with(lambda x, y, z, surface: Force(x + 0.1 * z, y, z)),
+    "surface_lies_where_it_is_drawn": Render(law=mirrored_spring),
+    "slopes_push_downhill": spring_with(lambda x, y, z, surface: Force(-x, -y, z)),
+    "springs_are_exact": spring_with(lambda x, y, z, surface: Force(0.0, 0.0, z)),
     "what_it_says_of_itself_is_felt": Render(law=lambda surface, state: NO_FORCE),
-    "resampling_feels_the_same": changed(lambda x, y, z, surface: Force(x, y, z * surface.height_m.shape[0])),
+    "resampling_feels_the_same": spring_with(lambda x, y, z, surface: Force(x, y, z * surface.height_m.shape[0])),
     "broken_state_gives_no_force": Render(law=lambda surface, state: Force(0.0, 0.0, 1.0)),
     "path_is_force_by_force": Render(gain_on_a_path=1.1),
-    "same_path_same_forces": changed(lambda x, y, z, surface: Force(x, y, z * next(ticket))),
-    "touches_are_apart": Render(law=haunted),
-    "surface_is_not_written_to": Render(law=worn),
-    "forces_are_always_finite": Render(law=unguarded),
-    "any_surface_is_taken": Render(law=bumpy),
-    "materials_are_taken": changed(lambda x, y, z, surface: Force(x, y, -z if surface.materials else z)),
+    "same_path_same_forces": spring_with(lambda x, y, z, surface: Force(x, y, z * next(ticket))),
+    "touches_are_apart": Render(law=spring_with_memory),
+    "surface_is_not_written_to": Render(law=spring_that_wears),
+    "forces_are_always_finite": Render(law=plane_spring),
+    "any_surface_is_taken": Render(law=spring_on_bumps),
+    "materials_are_taken": spring_with(lambda x, y, z, surface: Force(x, y, -z if surface.materials else z)),
     "stiffness_is_no_less_than_felt": Render(said_n_per_m=400.0),
 }
 
@@ -255,7 +247,7 @@ the_only_one = GadgetLink("openers_do_not_share")
 
 
 class Note(Exporter):
-    """A line of text of what there is; wrong in the way that `fault` names."""
+    """An exporter of a line of text, with the fault that `fault` names."""
 
     needs: ClassVar[tuple[str, ...]] = ("relief", "simplified")
     fault: str = ""
@@ -290,34 +282,34 @@ class NeedsATouch(Note):
 
 
 EXPORT: dict[str, Exporter] = {
-    **{check.__name__: Note(fault=check.__name__) for check in checks_export.CHECKS},
+    **{check.__name__: Note(fault=check.__name__) for check in kinds.export.CHECKS},
     "needs_are_products": NeedsATouch(),
     "plain_scene_is_written": Note(fault="reads_more"),
 }
 
 
 FAMILIES: list[tuple[Any, Any, dict[str, Any]]] = [
-    (checks_depth.CHECKS, Depth(), {name: Depth(twist=twist) for name, twist in DEPTH.items()}),
-    (checks_texture.CHECKS, Texture(), {name: Texture(twist=twist) for name, twist in TEXTURE.items()}),
-    ((*checks_render.CHECKS, *checks_touch.CHECKS), Render(), RENDER),
-    (checks_device.CHECKS, Gadget(), {check.__name__: Gadget(fault=check.__name__) for check in checks_device.CHECKS}),
-    (checks_export.CHECKS, Note(), EXPORT),
+    (kinds.depth.CHECKS, Depth(), {name: Depth(twist=twist) for name, twist in DEPTH.items()}),
+    (kinds.texture.CHECKS, Texture(), {name: Texture(twist=twist) for name, twist in TEXTURE.items()}),
+    ((*kinds.render.CHECKS, *kinds.touch.CHECKS), Render(), RENDER),
+    (kinds.device.CHECKS, Gadget(), {check.__name__: Gadget(fault=check.__name__) for check in kinds.device.CHECKS}),
+    (kinds.export.CHECKS, Note(), EXPORT),
 ]
 RIGHT = [pytest.param(check, right, id=check.__name__) for checks, right, _ in FAMILIES for check in checks]
 WRONG = [
     pytest.param(check, wrong.get(check.__name__), id=check.__name__)
     for checks, _, wrong in FAMILIES
     for check in checks
-    if check is not checks_depth.nan_is_refused  # no method can fail it: Views lets no NaN through
+    if check is not kinds.depth.nan_is_refused  # no method can fail it: Views lets no NaN through
 ]
 
 
 @pytest.mark.parametrize(("check", "method"), RIGHT)
-def test_a_method_that_is_right(check, method):
+def test_check_correct_method_passes(check, method):
     check(method)
 
 
-def test_a_method_that_raises_without_a_right_view_says_so_in_its_class():
+def test_one_view_check_wrong_needs_pair_fails():
     class Silent(DepthEstimator):
         def estimate(self, views: Views) -> DisparityMap:
             return right_depth(views)
@@ -330,12 +322,12 @@ def test_a_method_that_raises_without_a_right_view_says_so_in_its_class():
 
     for method, says in ((Silent(), "write `needs_pair"), (Boasts(), "leave that out")):
         with pytest.raises(CheckFailure, match=says):
-            checks_depth.one_view_is_answered(method)
+            kinds.depth.one_view_is_answered(method)
 
 
 @pytest.mark.parametrize(("check", "method"), WRONG)
 @pytest.mark.usefixtures("unchecked_shapes")
-def test_a_method_that_is_wrong(check, method):
+def test_check_faulty_method_fails(check, method):
     with pytest.raises((CheckFailure, DeviceError, BrokenMethod)):
         check(method)
 
@@ -343,13 +335,13 @@ def test_a_method_that_is_wrong(check, method):
 @pytest.mark.parametrize(
     ("fault", "check"),
     [
-        ("is_empty", checks_export.plain_scene_is_written),
-        ("leaves_a_draft", checks_export.nothing_else_is_left),
-        ("says_the_day", checks_export.same_work_same_files),
-        ("ascii", checks_export.every_work_is_answered),
+        ("is_empty", kinds.export.plain_scene_is_written),
+        ("leaves_a_draft", kinds.export.nothing_else_is_left),
+        ("says_the_day", kinds.export.same_work_same_files),
+        ("ascii", kinds.export.every_work_is_answered),
     ],
 )
-def test_an_exporter_that_is_wrong_in_another_way(fault, check):
+def test_export_check_exporter_with_other_fault_fails(fault, check):
     with pytest.raises(CheckFailure):
         check(Note(fault=fault))
 
@@ -367,7 +359,7 @@ CUT = {
 
 
 @pytest.mark.parametrize("ending", CUT)
-def test_a_file_that_is_cut_short_is_noticed(tmp_path, ending):
+def test_demand_whole_truncated_file_fails(tmp_path, ending):
     path = tmp_path / f"cut{ending}"
     path.write_bytes(CUT[ending])
     with pytest.raises(Exception, match=r"."):

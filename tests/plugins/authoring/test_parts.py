@@ -15,7 +15,7 @@ from tangible_authoring.first_parts import first_parts
 from tangible_authoring.renumbering import draw_numbers
 from tangible_core.errors import OutputError
 from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.scene.picture_files import read_labels
+from tangible_core.scene.formats.pictures import read_labels
 from tangible_core.session import Recording, names_of
 
 WALL, FLOOR, VASE = (90, 120, 200), (120, 80, 40), (200, 200, 60)

@@ -7,7 +7,7 @@ import pytest
 
 from standard_sets import LAYOUTS, known
 from tangible_core.errors import ConfigError
-from tangible_core.pipeline.config.editing import moved
+from tangible_core.pipeline.config.editing import relocate_text
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.pipeline import Pipeline
@@ -65,7 +65,7 @@ def test_a_file_that_is_saved_elsewhere_leads_to_the_same_pair(said: str, folder
     text, here, there = f"scene: {{{said}, name: {name}}}\n", folder / "p.yaml", folder / "other" / "q.yaml"
     config = parse_config(text, here, default_registry())
     there.parent.mkdir()
-    again = moved(text, here, config, there)
+    again = relocate_text(text, here, config, there)
     assert parse_config(again, there, default_registry()).scene.left.resolve() == config.scene.left.resolve()
 
 

@@ -26,7 +26,7 @@ from tangible_core.testing.synthetic.surfaces import (
     left_view,
     rectangle,
     right_view,
-    slanted,
+    slanted_plane,
     true_disparity,
     truly_visible,
 )
@@ -104,16 +104,16 @@ def planes() -> KnownPair:
 def border() -> KnownPair:
     """Near objects cut by the left and right borders of the pictures."""
     return render(
-        slanted(1, everywhere, 4),
-        slanted(2, rectangle(-99, 20, 30, 70), 18),
-        slanted(3, rectangle(145, 30, 999, 80), 16),
+        slanted_plane(1, everywhere, 4),
+        slanted_plane(2, rectangle(-99, 20, 30, 70), 18),
+        slanted_plane(3, rectangle(145, 30, 999, 80), 16),
     )
 
 
 @cache
 def jump() -> KnownPair:
     """A third of the width between the depths of two things."""
-    return render(slanted(4, everywhere, 2), slanted(5, rectangle(90, 16, 160, 80), 58))
+    return render(slanted_plane(4, everywhere, 2), slanted_plane(5, rectangle(90, 16, 160, 80), 58))
 
 
 def change(scene: Callable[[], KnownPair], left: Callable = lambda z: z, right: Callable | None = None) -> KnownPair:

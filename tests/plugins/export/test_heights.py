@@ -1,4 +1,4 @@
-"""Heights, written in millimetres and read back as wide and as high as they were."""
+"""Heights in millimetres, written and read back at their own width and height."""
 
 import json
 from pathlib import Path
@@ -27,78 +27,78 @@ def bumps(high_m: float = 0.01, low_m: float = 0.0012, shape: tuple[int, int] = 
     return Relief((low_m + (high_m - low_m) * values).astype(np.float32), (0.16, 0.16 * shape[0] / shape[1]))
 
 
-def written(folder: Path, relief: Relief, title: str = "hills") -> dict[str, Path]:
+def write(folder: Path, relief: Relief, title: str = "hills") -> dict[str, Path]:
     paths = Heights().write(Work(title, "de", {"relief": relief}), folder / "hills")
     return {path.suffix.removeprefix("."): path for path in paths}
 
 
-def read(path: Path, **said: Any) -> Pipeline:
-    return Pipeline(Scene.of(height=path, **said), cached=False)
+def read(path: Path, **options: Any) -> Pipeline:
+    return Pipeline(Scene.of(height=path, **options), cached=False)
 
 
 @pytest.mark.parametrize("ending", ENDINGS)
-def test_they_are_read_back(tmp_path: Path, ending: str):
+def test_heights_are_read_back_from_each_file(tmp_path: Path, ending: str):
     relief = bumps()
-    found = read(written(tmp_path, relief)[ending]).relief
-    assert found.extent_m == pytest.approx(relief.extent_m, abs=1e-12)
-    assert np.abs(found.height_m.astype(float) - relief.height_m).max() <= TENTH_UM
-    assert found.height_m.min() == pytest.approx(0.0012, abs=TENTH_UM)
+    read_back = read(write(tmp_path, relief)[ending]).relief
+    assert read_back.extent_m == pytest.approx(relief.extent_m, abs=1e-12)
+    assert np.abs(read_back.height_m.astype(float) - relief.height_m).max() <= TENTH_UM
+    assert read_back.height_m.min() == pytest.approx(0.0012, abs=TENTH_UM)
 
 
 @pytest.mark.parametrize("ending", ENDINGS)
-def test_a_pipeline_file_reads_them_too(tmp_path: Path, ending: str):
-    path = written(tmp_path, bumps())[ending]
+def test_heights_are_read_by_a_pipeline_file(tmp_path: Path, ending: str):
+    path = write(tmp_path, bumps())[ending]
     config = parse_config(f"scene: {{height: {path.name}}}", tmp_path / "p.yaml", default_registry())
     relief = Pipeline.from_config(config, default_registry(), None).relief
     assert relief.extent_m[0] == pytest.approx(0.16)
     assert (relief.height_m.min(), relief.height_m.max()) == pytest.approx((0.0012, 0.01), abs=TENTH_UM)
-    assert config.completed()["workspace"]["width_m"] == pytest.approx(0.16)
+    assert config.as_data()["workspace"]["width_m"] == pytest.approx(0.16)
 
 
-def test_what_the_pipeline_says_of_its_size_goes_before(tmp_path: Path):
-    path = written(tmp_path, bumps())["json"]
+def test_heights_size_in_the_pipeline_overrides_the_file(tmp_path: Path):
+    path = write(tmp_path, bumps())["json"]
     half = Pipeline(Scene.of(height=path), workspace=Workspace(width_m=0.08, relief_m=0.005), cached=False).relief
     assert half.extent_m[0] == 0.08
     assert (half.height_m.min(), half.height_m.max()) == pytest.approx((0.0006, 0.005), abs=TENTH_UM)
 
 
 @pytest.mark.parametrize("high_m", [0.0, 0.004, 0.02, 0.3])
-def test_the_text_leads_to_heights_that_are_exact_however_high_they_are(tmp_path: Path, high_m: float):
+def test_heights_json_is_exact_for_any_height(tmp_path: Path, high_m: float):
     relief = bumps(high_m, low_m=0.0)
-    files = written(tmp_path, relief)
+    files = write(tmp_path, relief)
     assert np.abs(read(files["json"]).relief.height_m - relief.height_m).max() <= TENTH_UM
     files["tif"].unlink()
-    found = read(files["json"]).relief.height_m
-    assert np.abs(found - relief.height_m).max() <= high_m / 65535 / 2 + 1e-8
+    read_back = read(files["json"]).relief.height_m
+    assert np.abs(read_back - relief.height_m).max() <= high_m / 65535 / 2 + 1e-8
 
 
-def test_steps_that_are_coarse_are_said(tmp_path: Path):
+def test_heights_png_with_coarse_steps_is_noted(tmp_path: Path):
     def notes_of(high_m: float) -> list[str]:
         rows = np.linspace(0, high_m, 64, dtype=np.float32).reshape(8, 8)
-        scene, said = Scene.of(height=rows, relief_m=high_m or None), Workspace(relief_m=high_m)
-        done = Pipeline(scene, workspace=said, cached=False).export(tmp_path / str(high_m), ["heights"])
+        scene, workspace = Scene.of(height=rows, relief_m=high_m or None), Workspace(relief_m=high_m)
+        done = Pipeline(scene, workspace=workspace, cached=False).export(tmp_path / str(high_m), ["heights"])
         return [note.text for note in done.outcomes[0].notes]
 
     assert notes_of(0.01) == []
-    (said,) = notes_of(0.02)
-    assert "arrays-heights.png holds heights in steps of 0.31 um" in said
-    assert "arrays-heights.tif holds them exactly" in said
+    (text,) = notes_of(0.02)
+    assert "arrays-heights.png holds heights in steps of 0.31 um" in text
+    assert "arrays-heights.tif holds them exactly" in text
 
 
-def test_other_programs_read_them(tmp_path: Path):
+def test_heights_files_are_read_by_pillow(tmp_path: Path):
     relief = bumps()
-    files = written(tmp_path, relief, "Hügel «Süd»")
-    said = json.loads(files["json"].read_text(encoding="utf-8"))
-    assert (said["title"], said["language"]) == ("Hügel «Süd»", "de")
+    files = write(tmp_path, relief, "Hügel «Süd»")
+    head = json.loads(files["json"].read_text(encoding="utf-8"))
+    assert (head["title"], head["language"]) == ("Hügel «Süd»", "de")
     with Image.open(files["png"]) as png, Image.open(files["tif"]) as tiff:
-        from_png = np.asarray(png).astype(float) * said["step_mm"] + said["low_mm"]
+        from_png = np.asarray(png).astype(float) * head["step_mm"] + head["low_mm"]
         assert np.asarray(png).max() == 65535
         np.testing.assert_allclose(from_png, relief.height_m * 1000.0, atol=1e-4)
         np.testing.assert_allclose(np.asarray(tiff), relief.height_m * 1000.0, rtol=1e-6)
 
 
-def test_a_part_of_them_keeps_its_scale(tmp_path: Path):
-    path = written(tmp_path, bumps())["json"]
+def test_heights_cropped_or_rotated_keep_their_scale(tmp_path: Path):
+    path = write(tmp_path, bumps())["json"]
     part = read(path, crop=[3, 4, 20, 10]).relief
     assert part.extent_m == pytest.approx((0.16 * 20 / 53, 0.16 * 10 / 53))
     np.testing.assert_allclose(part.height_m, bumps().height_m[4:14, 3:23], atol=TENTH_UM)
@@ -106,52 +106,52 @@ def test_a_part_of_them_keeps_its_scale(tmp_path: Path):
     assert turned.extent_m == pytest.approx((0.16 * 37 / 53, 0.16))
 
 
-def test_upside_down_they_are_a_map_as_any_other(tmp_path: Path):
-    relief = read(written(tmp_path, bumps())["json"], invert=True).relief
+def test_heights_inverted_lose_their_scale(tmp_path: Path):
+    relief = read(write(tmp_path, bumps())["json"], invert=True).relief
     assert (relief.extent_m[0], relief.height_m.min()) == (0.08, 0)
 
 
-def test_a_picture_that_is_none_of_theirs_is_a_map_as_any_other(tmp_path: Path):
-    path = written(tmp_path, bumps())["png"]
+def test_heights_json_of_another_picture_is_ignored(tmp_path: Path):
+    path = write(tmp_path, bumps())["png"]
     other = path.rename(tmp_path / "other.png")
     (tmp_path / "other.json").write_text((tmp_path / "hills-heights.json").read_text())
     assert read(other).relief.extent_m[0] == 0.08
 
 
 @pytest.mark.parametrize(
-    ("said", "says"),
+    ("changes", "message"),
     [
         ({"width_mm": 0}, r"hills-heights.json: width_mm: Input should be greater than 0; export the heights again"),
         ({"step_mm": -1}, "step_mm"),
         ({"format": "tangible heights 9"}, "format"),
-        ({"rows": 5}, "is 53 x 37, and is said to be 53 x 5"),
+        ({"rows": 5}, "is 53 x 37, but its metadata state 53 x 5"),
         ({"file": "../hills.png", "exact": ""}, "it must be a file beside this one"),
         ({"file": "gone.png", "exact": ""}, "gone.png: there is no such file"),
     ],
 )
-def test_what_is_said_wrongly_is_refused(tmp_path: Path, said: dict[str, Any], says: str):
-    files = written(tmp_path, bumps())
+def test_heights_json_with_wrong_value_is_refused(tmp_path: Path, changes: dict[str, Any], message: str):
+    files = write(tmp_path, bumps())
     plain = json.loads(files["json"].read_text())
-    files["json"].write_text(json.dumps({**plain, "exact": "", **said}))
-    with pytest.raises(PictureError, match=says):
+    files["json"].write_text(json.dumps({**plain, "exact": "", **changes}))
+    with pytest.raises(PictureError, match=message):
         read(files["json"])
-    if "rows" not in said and "file" not in said:
+    if "rows" not in changes and "file" not in changes:
         with pytest.raises(ConfigError, match=r"p.yaml:1:9: .*hills-heights.json"):
             parse_config("scene: {height: hills-heights.json}", tmp_path / "p.yaml", default_registry())
 
 
 @pytest.mark.parametrize("content", [b"", b"{", b"[" * 10_000, b'"tangible heights 1"', b"{}", b"\xff"])
-def test_a_text_of_something_else_is_no_height_map(tmp_path: Path, content: bytes):
+def test_heights_json_of_other_content_is_refused(tmp_path: Path, content: bytes):
     (tmp_path / "x.json").write_bytes(content)
     with pytest.raises(PictureError, match=r"x\.json"):
         read(tmp_path / "x.json")
 
 
-def test_one_cell_and_a_flat_surface(tmp_path: Path):
+def test_heights_of_one_cell_or_flat_surface_are_read_back(tmp_path: Path):
     for number, relief in enumerate((bumps(shape=(1, 1)), Relief(np.full((3, 4), 0.002, np.float32), (0.08, 0.06)))):
         folder = tmp_path / str(number)
         folder.mkdir()
-        for path in written(folder, relief).values():
-            found = read(path).relief
-            assert found.extent_m == pytest.approx(relief.extent_m)
-            np.testing.assert_allclose(found.height_m, relief.height_m, atol=TENTH_UM)
+        for path in write(folder, relief).values():
+            read_back = read(path).relief
+            assert read_back.extent_m == pytest.approx(relief.extent_m)
+            np.testing.assert_allclose(read_back.height_m, relief.height_m, atol=TENTH_UM)

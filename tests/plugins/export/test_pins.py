@@ -1,4 +1,4 @@
-"""Pins, held against borders that were found by other code, and read by programs of others."""
+"""Pins, compared with borders that other code found, and read by other programs."""
 
 import base64
 import json
@@ -32,12 +32,12 @@ def wanted(labels: np.ndarray, columns: int, rows: int) -> np.ndarray:
     scale = min(columns / width, rows / height)
     wide, long = max(1, round(width * scale)), max(1, round(height * scale))
     left, top = (columns - wide) // 2, (rows - long) // 2
-    found = np.zeros((rows, columns), bool)
+    border = np.zeros((rows, columns), bool)
     row, column = np.nonzero(labels[:, 1:] != labels[:, :-1])
-    found[top + (2 * row + 1) * long // (2 * height), left + np.minimum(wide - 1, (column + 1) * wide // width)] = True
+    border[top + (2 * row + 1) * long // (2 * height), left + np.minimum(wide - 1, (column + 1) * wide // width)] = True
     row, column = np.nonzero(labels[1:] != labels[:-1])
-    found[top + np.minimum(long - 1, (row + 1) * long // height), left + (2 * column + 1) * wide // (2 * width)] = True
-    return found
+    border[top + np.minimum(long - 1, (row + 1) * long // height), left + (2 * column + 1) * wide // (2 * width)] = True
+    return border
 
 
 def near(pins: np.ndarray) -> np.ndarray:
@@ -51,7 +51,7 @@ def shares(up: np.ndarray, want: np.ndarray) -> tuple[float, float]:
 
 @pytest.mark.parametrize("display", SIZES)
 @pytest.mark.parametrize("name", PICTURES)
-def test_no_border_is_lost_and_none_is_made_up(tmp_path, name, display):
+def test_pins_of_pictures_show_all_borders_and_no_others(tmp_path, name, display):
     pins = Pins(display=display)
     work = work_of(name, pins)
     heights = heights_in(pins.write(work, tmp_path / name))
@@ -64,7 +64,7 @@ def test_no_border_is_lost_and_none_is_made_up(tmp_path, name, display):
 
 
 @given(st.data())
-def test_no_border_of_a_map_of_fields_is_lost(tmp_path_factory, data):
+def test_pins_of_fields_show_all_borders(tmp_path_factory, data):
     """Fields at least three pins wide, on displays of any size."""
     columns, rows = data.draw(st.integers(12, 90)), data.draw(st.integers(12, 60))
     fields = np.random.default_rng(data.draw(st.integers(0, 99))).integers(0, 9, (rows // 4, columns // 4))
@@ -78,7 +78,7 @@ def test_no_border_of_a_map_of_fields_is_lost(tmp_path_factory, data):
     assert (kept, false) == (1, 0)
 
 
-def test_the_picture_lies_in_the_middle_the_right_way_up(tmp_path):
+def test_pins_picture_is_centred_and_upright(tmp_path):
     labels = np.zeros((60, 60), np.int32)
     labels[:30, :30] = 1  # the upper left quarter
     heights = heights_in(Pins().write(labels_work(labels), tmp_path / "quarter"))
@@ -87,7 +87,7 @@ def test_the_picture_lies_in_the_middle_the_right_way_up(tmp_path):
     assert np.array_equal(heights, expected)
 
 
-def test_heights_lie_below_the_borders(tmp_path):
+def test_pins_with_heights_keep_areas_below_borders(tmp_path):
     labels = np.zeros((40, 60), np.int32)
     labels[:, 30:] = 1
     pins = Pins(display="graphiti")
@@ -101,14 +101,14 @@ def test_heights_lie_below_the_borders(tmp_path):
     assert set(heights[:, 30:].ravel()) == {3}
 
 
-def test_the_picture_has_a_pixel_a_pin(tmp_path):
+def test_pins_png_has_a_pixel_a_pin(tmp_path):
     pins = Pins(display="graphiti")
     files = pins.write(work_of("coffee", pins), tmp_path / "coffee")
     picture = cv2.imread(str(files[0]), cv2.IMREAD_UNCHANGED)
     assert np.array_equal(np.rint((255 - picture) / 255 * 4), heights_in(files))
 
 
-def test_braille_patterns_are_the_pins(tmp_path):
+def test_pins_text_has_the_pins_as_braille_patterns(tmp_path):
     pins = Pins(display={"columns": 31, "rows": 22})  # neither is a multiple of a cell
     files = pins.write(work_of("coffee", pins), tmp_path / "coffee")
     [text] = [each.read_text() for each in files if each.suffix == ".txt"]
@@ -121,7 +121,7 @@ def test_braille_patterns_are_the_pins(tmp_path):
             assert bool(ord(lines[row // 4][column // 2]) - 0x2800 >> bit & 1) == up[row, column]
 
 
-def test_hexadecimal_digits_are_as_dot_pad_takes_them(tmp_path):
+def test_pins_hexadecimal_digits_fit_dot_pad(tmp_path):
     """Written again from the description of the community's toolkit: a digit a half cell, neighbours swapped."""
     pins = Pins(display="dotpad")
     files = pins.write(work_of("motorcycle", pins), tmp_path / "motorcycle")
@@ -135,7 +135,7 @@ def test_hexadecimal_digits_are_as_dot_pad_takes_them(tmp_path):
 
 
 @pytest.mark.parametrize("display", [*SIZES, {"columns": 33, "rows": 21, "levels": 2}])
-def test_alpha_is_the_pins_and_nothing_else(tmp_path, display):
+def test_pins_svg_alpha_equals_the_pins(tmp_path, display):
     pins = Pins(display=display)
     files = pins.write(work_of("astronaut", pins), tmp_path / "astronaut")
     heights = heights_in(files)
@@ -143,7 +143,7 @@ def test_alpha_is_the_pins_and_nothing_else(tmp_path, display):
     assert np.array_equal(alpha(svg, *heights.shape[::-1]) > 0, heights > 0)
 
 
-def test_layers_are_parts_with_their_names(tmp_path):
+def test_pins_svg_layers_are_named_parts(tmp_path):
     """By the rules of the IMAGE services: layers and their labels, one title, and nothing outside of a layer."""
     labels = np.zeros((40, 60), np.int32)
     labels[:, 30:] = 1
@@ -155,14 +155,14 @@ def test_layers_are_parts_with_their_names(tmp_path):
     assert [each.get("data-image-layer") for each in root[1:]] == ["layer-1", "layer-2"]
     assert [each.get("aria-label") for each in root[1:]] == ["sea & <sky>", "part 1"]
     assert all(len(each) for each in root[1:])  # both sides of a border have it
-    [said] = [json.loads(each.read_text()) for each in files if each.name.endswith("-graphic.json")]
-    assert list(said) == ["graphic"]
-    head, data = said["graphic"].split(",")
+    [content] = [json.loads(each.read_text()) for each in files if each.name.endswith("-graphic.json")]
+    assert list(content) == ["graphic"]
+    head, data = content["graphic"].split(",")
     assert head == "data:image/svg+xml;base64"
     assert base64.b64decode(data) == svg.read_bytes()
 
 
-def test_a_part_without_a_pin_is_named(tmp_path):
+def test_pins_note_names_part_without_a_pin(tmp_path):
     labels = np.zeros((400, 600), np.int32)
     labels[:, 300:], labels[10:12, 10:12] = 1, 2
     with collected() as notes:
@@ -177,7 +177,7 @@ HUNDREDS = np.arange(900, dtype=np.int32).reshape(30, 30).repeat(10, 0).repeat(1
 
 
 @pytest.mark.parametrize(
-    ("labels", "said"),
+    ("labels", "message"),
     [
         (FLAT, "one part"),
         (FLAT[:1, :1], "one part"),
@@ -186,18 +186,18 @@ HUNDREDS = np.arange(900, dtype=np.int32).reshape(30, 30).repeat(10, 0).repeat(1
         (HUNDREDS, None),
     ],
 )
-def test_what_has_no_border_is_refused_in_one_line(tmp_path: Path, labels, said):
-    if said is None:
+def test_pins_without_border_are_refused_in_one_line(tmp_path: Path, labels, message):
+    if message is None:
         assert Pins().write(labels_work(labels), tmp_path / "map")
         return
     with pytest.raises(TangibleError) as refusal:
         Pins().write(labels_work(labels), tmp_path / "map")
-    assert re.search(said, str(refusal.value))
+    assert re.search(message, str(refusal.value))
     assert "\n" not in str(refusal.value)
     assert not list(tmp_path.iterdir())
 
 
-def test_no_parts_at_all_is_said(tmp_path):
+def test_pins_without_parts_are_refused(tmp_path):
     work = labels_work(FLAT)
     work.products["simplified"] = None
     with pytest.raises(PictureError, match="no parts"):
@@ -207,11 +207,11 @@ def test_no_parts_at_all_is_said(tmp_path):
 @pytest.mark.parametrize(
     "display", ["braillex", {"columns": 2, "rows": 40}, {"columns": 60, "rows": 40, "levels": 0}, 7]
 )
-def test_a_display_that_is_none_is_refused(display):
+def test_pins_with_invalid_display_are_refused(display):
     with pytest.raises(ValueError):
         Pins(display=display)
 
 
-def test_the_same_work_gives_the_same_bytes(tmp_path):
+def test_pins_written_twice_have_the_same_bytes(tmp_path):
     first, second = (Pins().write(work_of("coffee", Pins()), tmp_path / each) for each in ("a", "b"))
     assert [each.read_bytes() for each in first] == [each.read_bytes() for each in second]

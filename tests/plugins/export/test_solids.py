@@ -1,4 +1,4 @@
-"""STL, 3MF and GLB, read by what did not write them."""
+"""STL, 3MF and GLB files, read by independent programs."""
 
 import json
 import shutil
@@ -28,7 +28,7 @@ from solids import (
     rough,
     volume,
     work,
-    written,
+    write_and_read,
 )
 from tangible_core import Pipeline, Scene
 from tangible_core.data import Work
@@ -57,60 +57,60 @@ def without_pydelatin(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @EVERY
 @pytest.mark.parametrize("title", ["Coffee", ""])
-def test_the_solid_is_closed_and_of_its_size(tmp_path: Path, cls: type[Exporter], title: str, mesher: str):
-    made = work(rough(), 0.05, title)
-    mesh = written(cls(), made, tmp_path)
+def test_solid_is_closed_and_has_its_size(tmp_path: Path, cls: type[Exporter], title: str, mesher: str):
+    sample = work(rough(), 0.05, title)
+    mesh = write_and_read(cls(), sample, tmp_path)
     assert is_closed(mesh)
     length = 50 * 40 / 56 + 2 * RIM_MM + (BAND_MM if title else 0)
     assert mesh.vertices.min(axis=0).tolist() == pytest.approx([0, 0, 0], abs=1e-6)
     assert mesh.vertices[:, :2].max(axis=0).tolist() == pytest.approx([62, length], abs=1e-3)
-    assert mesh.vertices[:, 2].max() == pytest.approx(1.5 + 1000 * made.relief.height_m.max(), abs=0.05)
+    assert mesh.vertices[:, 2].max() == pytest.approx(1.5 + 1000 * sample.relief.height_m.max(), abs=0.05)
     below = 1.5 * 62 * length
     assert below < volume(mesh) < below + 50**2 * 7
 
 
 @pytest.mark.parametrize("error_mm", [0.3, 0.05, 0.01])
-def test_every_node_is_within_the_error(tmp_path: Path, error_mm: float):
-    made = work(rough(), 0.05, "F")
-    mesh = written(Stl(error_m=error_mm / 1000), made, tmp_path)
-    heights = from_above(mesh, *nodes(made, RIM_MM, RIM_MM + BAND_MM))
-    off = np.abs(heights[::-1] - 1.5 - 1000 * made.relief.height_m)
+def test_solid_nodes_are_within_the_error(tmp_path: Path, error_mm: float):
+    sample = work(rough(), 0.05, "F")
+    mesh = write_and_read(Stl(error_m=error_mm / 1000), sample, tmp_path)
+    heights = from_above(mesh, *nodes(sample, RIM_MM, RIM_MM + BAND_MM))
+    off = np.abs(heights[::-1] - 1.5 - 1000 * sample.relief.height_m)
     assert off.max() <= error_mm
     assert off.max() > error_mm / 2 or error_mm < 0.05, "fewer triangles would do"
 
 
-def test_cliffs_keep_the_error_where_floating_point_is_coarse(tmp_path: Path):
+def test_solid_of_steep_cliffs_keeps_the_error_despite_float32(tmp_path: Path):
     """A coordinate that is rounded by so little as STL does it tells on a cliff of 8 mm."""
     cliffs = 0.004 * np.random.default_rng(2).integers(0, 3, (6, 700)) + 1e-5 * np.random.default_rng(3).random(
         (6, 700)
     )
-    made = work(cliffs, 0.12)
-    mesh = written(Stl(error_m=5e-6, rim_m=0.1, corner_mark=False, braille=False), made, tmp_path)
-    off = from_above(mesh, *nodes(made, 100, 100))[::-1] - 1.5 - 1000 * made.relief.height_m
+    sample = work(cliffs, 0.12)
+    mesh = write_and_read(Stl(error_m=5e-6, rim_m=0.1, corner_mark=False, braille=False), sample, tmp_path)
+    off = from_above(mesh, *nodes(sample, 100, 100))[::-1] - 1.5 - 1000 * sample.relief.height_m
     assert np.abs(off).max() <= 0.005
 
 
-def test_without_pydelatin_every_node_is_met(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_solid_without_pydelatin_meets_every_node(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     without_pydelatin(monkeypatch)
-    made = work(rough(), 0.05)
+    sample = work(rough(), 0.05)
     with collected() as notes:
-        mesh = written(bare(ThreeMF), made, tmp_path)
+        mesh = write_and_read(bare(ThreeMF), sample, tmp_path)
     assert any("pydelatin is not installed" in each and "tangible-images[export]" in each for each in notes)
-    heights = from_above(mesh, *nodes(made))
-    assert np.abs(heights[::-1] - 1.5 - 1000 * made.relief.height_m).max() < 5e-4
+    heights = from_above(mesh, *nodes(sample))
+    assert np.abs(heights[::-1] - 1.5 - 1000 * sample.relief.height_m).max() < 5e-4
 
 
 @EVERY
-def test_an_f_reads_as_an_f_from_above(tmp_path: Path, cls: type[Exporter]):
-    made = work(0.002 * np.kron(LETTER_F, np.ones((5, 5))), title="F")
-    mesh = written(cls(), made, tmp_path)
-    heights = from_above(mesh, *nodes(made, RIM_MM, RIM_MM + BAND_MM))[::-1]  # row 0 at the back, as on a desk
+def test_solid_of_letter_f_reads_as_f_from_above(tmp_path: Path, cls: type[Exporter]):
+    sample = work(0.002 * np.kron(LETTER_F, np.ones((5, 5))), title="F")
+    mesh = write_and_read(cls(), sample, tmp_path)
+    heights = from_above(mesh, *nodes(sample, RIM_MM, RIM_MM + BAND_MM))[::-1]  # row 0 at the back, as on a desk
     assert ((heights - 1.5 > 1)[2::5, 2::5] == LETTER_F).all()
 
 
 @EVERY
-def test_the_sides_of_the_picture_stand_upright_and_the_rim_is_flat(tmp_path: Path, cls: type[Exporter]):
-    mesh = written(cls(), work(np.full((8, 8), 0.003)), tmp_path)
+def test_solid_has_vertical_sides_and_a_flat_rim(tmp_path: Path, cls: type[Exporter]):
+    mesh = write_and_read(cls(), work(np.full((8, 8), 0.003)), tmp_path)
     x = np.array([1, 3, 5.99, 6.01, 16, 25.99, 26.01, 31])
     heights = from_above(mesh, x, np.array([3.0, 16]))
     assert heights[0] == pytest.approx(1.5)
@@ -118,47 +118,47 @@ def test_the_sides_of_the_picture_stand_upright_and_the_rim_is_flat(tmp_path: Pa
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 2), (2, 1), (1, 300), (300, 1), (2, 2), (3, 3)])
-def test_odd_sizes_are_solids_too(tmp_path: Path, shape: tuple[int, int], mesher: str):
+def test_solid_of_odd_size_is_closed(tmp_path: Path, shape: tuple[int, int], mesher: str):
     heights = np.random.default_rng(1).uniform(0.001, 0.004, shape)
-    made = work(heights, 0.03 if shape[1] > 1 else 0.01)
-    mesh = written(bare(Stl), made, tmp_path)
+    sample = work(heights, 0.03 if shape[1] > 1 else 0.01)
+    mesh = write_and_read(bare(Stl), sample, tmp_path)
     assert is_closed(mesh) and volume(mesh) > 0
-    assert mesh.vertices.max(axis=0)[:2] == pytest.approx([1000 * side for side in made.relief.extent_m], abs=1e-3)
-    off = from_above(mesh, *nodes(made))[::-1] - 1.5 - 1000 * made.relief.height_m
+    assert mesh.vertices.max(axis=0)[:2] == pytest.approx([1000 * side for side in sample.relief.extent_m], abs=1e-3)
+    off = from_above(mesh, *nodes(sample))[::-1] - 1.5 - 1000 * sample.relief.height_m
     assert np.abs(off).max() <= 0.05
 
 
-def test_cells_need_not_be_square(tmp_path: Path):
+def test_solid_of_oblong_cells_has_its_size(tmp_path: Path):
     tall = work(rough(30, 20), 0.02)
     relief = replace(tall.relief, extent_m=(0.02, 0.09))
-    mesh = written(bare(Stl), replace(tall, products={"relief": relief}), tmp_path)
+    mesh = write_and_read(bare(Stl), replace(tall, products={"relief": relief}), tmp_path)
     assert is_closed(mesh)
     assert mesh.vertices.max(axis=0)[:2] == pytest.approx([20, 90], abs=1e-3)
 
 
 @EVERY
 @pytest.mark.parametrize("height_mm", [0, 0.05])
-def test_a_relief_of_no_height_is_one_clear_line(tmp_path: Path, cls: type[Exporter], height_mm: float):
-    with pytest.raises(GeometryError, match=r"the relief is [\d.]+ mm high.*nothing would be felt") as told:
+def test_solid_of_flat_relief_is_refused_in_one_line(tmp_path: Path, cls: type[Exporter], height_mm: float):
+    with pytest.raises(GeometryError, match=r"the relief is [\d.]+ mm high.*the print would be flat") as refusal:
         cls().write(work(np.full((9, 9), height_mm / 1000)), tmp_path / "flat")
-    assert "\n" not in str(told.value) and not list(tmp_path.iterdir())
+    assert "\n" not in str(refusal.value) and not list(tmp_path.iterdir())
 
 
 @EVERY
-def test_the_same_again_is_the_same_bytes(tmp_path: Path, cls: type[Exporter]):
-    made = work(rough(), 0.05, "Coffee", picture=np.zeros((40, 56, 3), np.uint8))
-    (one,), (two,) = cls().write(made, tmp_path / "one"), cls().write(made, tmp_path / "a.b")
+def test_solid_written_twice_has_the_same_bytes(tmp_path: Path, cls: type[Exporter]):
+    sample = work(rough(), 0.05, "Coffee", picture=np.zeros((40, 56, 3), np.uint8))
+    (one,), (two,) = cls().write(sample, tmp_path / "one"), cls().write(sample, tmp_path / "a.b")
     assert one.read_bytes() == two.read_bytes()
     assert two.name == f"a.b{one.suffix}"
 
 
 @EVERY
 @pytest.mark.parametrize(("aspect", "width_m"), [(2.0, 0.12), (0.5, 0.06)])
-def test_the_longer_side_is_as_long_as_it_is_said(cls: type[Exporter], aspect: float, width_m: float):
+def test_solid_picture_width_follows_longer_side(cls: type[Exporter], aspect: float, width_m: float):
     assert cls.model_validate({"longer_side_m": "12 cm"}).picture_width_m(aspect) == pytest.approx(width_m)
 
 
-def test_a_pipeline_makes_the_relief_as_wide_as_the_print(tmp_path: Path):
+def test_pipeline_export_makes_relief_as_wide_as_the_print(tmp_path: Path):
     photo = (255 * np.random.default_rng(0).random((30, 60))).astype(np.uint8)
     done = Pipeline(Scene.of(photo=photo), depth=Luminance()).export(tmp_path, [Stl(longer_side_m=0.1, braille=False)])
     ((path,),) = done.files.values()
@@ -166,11 +166,11 @@ def test_a_pipeline_makes_the_relief_as_wide_as_the_print(tmp_path: Path):
 
 
 class TestBraille:
-    def test_each_dot_is_an_island_of_its_size_at_its_place(self, tmp_path: Path):
+    def test_braille_dots_are_islands_at_their_places(self, tmp_path: Path):
         """`a`, then `l`: dot 1, and dots 1 to 3 a cell further."""
         from scipy.ndimage import label
 
-        mesh = written(Stl(), work(np.full((9, 9), 0.002), title="al"), tmp_path)
+        mesh = write_and_read(Stl(), work(np.full((9, 9), 0.002), title="al"), tmp_path)
         x, y = np.arange(0, 32, 0.05), np.arange(0, RIM_MM + BAND_MM - 2.4, 0.05)
         heights = from_above(mesh, x, y) - 1.5
         assert heights.max() == pytest.approx(0.48, abs=6e-3)
@@ -183,10 +183,10 @@ class TestBraille:
         wide = np.ptp(x[(heights > 1e-6).any(axis=0) & (x < 10)])
         assert 1.3 < wide <= 1.44 + 0.05
 
-    def test_a_long_title_takes_lines_that_reach_no_further_than_the_picture(self, tmp_path: Path):
+    def test_braille_of_long_title_breaks_at_the_picture_s_width(self, tmp_path: Path):
         short, long = (work(np.full((9, 9), 0.002), 0.06, title) for title in ("coffee", "coffee milk " * 2))
         with collected() as notes:
-            meshes = [written(Stl(), each, tmp_path) for each in (short, long)]
+            meshes = [write_and_read(Stl(), each, tmp_path) for each in (short, long)]
         assert any("4 lines" in each for each in notes)
         lengths = [mesh.vertices[:, 1].max() for mesh in meshes]
         assert lengths[1] - lengths[0] == pytest.approx(30)
@@ -196,38 +196,40 @@ class TestBraille:
         assert raised[:, (x > RIM_MM) & (x < 66)].sum() == raised.sum() > 100
 
     @pytest.mark.parametrize(
-        ("title", "error", "told"),
+        ("title", "error", "message"),
         [
             ("word " * 40, OutputError, "takes 20 lines of braille of 60 mm; a plate has 6"),
             ("猫", BrailleError, "猫"),
             ("a\x07", BrailleError, r"\\x07"),
         ],
     )
-    def test_a_title_that_cannot_be_written_is_one_line(self, tmp_path: Path, title: str, error: Any, told: str):
-        made = work(np.full((9, 9), 0.002), 0.06, title)
-        with pytest.raises(error, match=told) as raised:
-            ThreeMF().write(made, tmp_path / "x")
+    def test_braille_of_unwritable_title_is_refused_in_one_line(
+        self, tmp_path: Path, title: str, error: Any, message: str
+    ):
+        sample = work(np.full((9, 9), 0.002), 0.06, title)
+        with pytest.raises(error, match=message) as raised:
+            ThreeMF().write(sample, tmp_path / "x")
         assert "\n" not in str(raised.value) and not list(tmp_path.iterdir())
-        assert ThreeMF(braille=False).write(made, tmp_path / "x")
+        assert ThreeMF(braille=False).write(sample, tmp_path / "x")
 
-    def test_a_picture_that_is_too_narrow_for_it_says_what_helps(self, tmp_path: Path):
-        made = work(np.full((9, 9), 0.002), 0.016, "I")
-        with pytest.raises(OutputError, match=r"16 mm wide, too narrow .* longer_side_m larger, or say braille: false"):
-            Stl().write(made, tmp_path / "x")
-        assert Stl().write(replace(made, title=""), tmp_path / "x")
+    def test_braille_on_narrow_picture_is_refused_with_the_cure(self, tmp_path: Path):
+        sample = work(np.full((9, 9), 0.002), 0.016, "I")
+        with pytest.raises(OutputError, match=r"16 mm wide, too narrow .* longer_side_m larger, or set braille: false"):
+            Stl().write(sample, tmp_path / "x")
+        assert Stl().write(replace(sample, title=""), tmp_path / "x")
 
-    def test_its_language_may_be_another_than_the_title_s(self, tmp_path: Path):
-        made = work(np.full((9, 9), 0.002), 0.06, "Öl", language="de-AT")
+    def test_braille_language_overrides_that_of_the_title(self, tmp_path: Path):
+        sample = work(np.full((9, 9), 0.002), 0.06, "Öl", language="de-AT")
         files = [
-            cls.write(made, tmp_path / name)[0].read_bytes()
+            cls.write(sample, tmp_path / name)[0].read_bytes()
             for name, cls in (("a", Stl()), ("b", Stl(braille_language="en")), ("c", Stl(braille_language="de")))
         ]
         assert files[0] == files[2] != files[1]
 
 
 class TestRim:
-    def test_the_corner_mark_is_a_triangle_at_the_upper_right(self, tmp_path: Path):
-        mesh = written(Stl(rim_m=0.01), work(np.full((9, 9), 0.002)), tmp_path)
+    def test_corner_mark_is_a_triangle_at_the_upper_right(self, tmp_path: Path):
+        mesh = write_and_read(Stl(rim_m=0.01), work(np.full((9, 9), 0.002)), tmp_path)
         x = y = np.arange(0.05, 40, 0.1)
         heights = from_above(mesh, x, y) - 1.5
         aside = heights.copy()
@@ -240,94 +242,94 @@ class TestRim:
         assert corner[-2, -2] and corner[-2, 2] and corner[2, -2] and not corner[2, 2]
 
     @pytest.mark.parametrize("rim_mm", [0, 0.05, 1, 3.9, 30])
-    def test_a_rim_of_any_width_closes(self, tmp_path: Path, rim_mm: float):
-        made = work(rough(), 0.05, "Coffee")
+    def test_rim_of_any_width_gives_a_closed_solid(self, tmp_path: Path, rim_mm: float):
+        sample = work(rough(), 0.05, "Coffee")
         with collected() as notes:
-            mesh = written(Stl(rim_m=rim_mm / 1000), made, tmp_path)
+            mesh = write_and_read(Stl(rim_m=rim_mm / 1000), sample, tmp_path)
         assert is_closed(mesh)
         assert any("no room for the title and the corner mark" in each for each in notes) == (rim_mm < 4)
         wide = 50 + 2 * (rim_mm if rim_mm > 0.1 else 0)
         assert mesh.vertices[:, 0].max() == pytest.approx(wide, abs=1e-3)
 
-    def test_none_of_it_is_asked_for_and_nothing_is_said(self, tmp_path: Path):
+    def test_rim_switched_off_gives_no_notes(self, tmp_path: Path):
         with collected() as notes:
-            written(bare(Stl), work(np.full((9, 9), 0.002), title="Coffee"), tmp_path)
+            write_and_read(bare(Stl), work(np.full((9, 9), 0.002), title="Coffee"), tmp_path)
         assert len(notes) == 1 and notes[0].startswith("the plate is 20.0 x 20.0 x 3.5 mm, of")
 
 
 class TestNotes:
     @staticmethod
-    def of(exporter: Exporter, made: Work, folder: Path) -> str:
+    def of(exporter: Exporter, sample: Work, folder: Path) -> str:
         with collected() as notes:
-            exporter.write(made, folder / "noted")
+            exporter.write(sample, folder / "noted")
         return "\n".join(notes)
 
-    def test_a_thin_base_and_a_large_plate(self, tmp_path: Path):
-        made = work(np.full((9, 9), 0.002), 0.3)
-        assert "a base of 0.7 mm bends" in self.of(Stl(base_m=0.0007), made, tmp_path)
-        assert "the plate is 312 mm long" in self.of(Stl(), made, tmp_path)
+    def test_note_names_thin_base_and_large_plate(self, tmp_path: Path):
+        sample = work(np.full((9, 9), 0.002), 0.3)
+        assert "a base of 0.7 mm bends" in self.of(Stl(base_m=0.0007), sample, tmp_path)
+        assert "the plate is 312 mm long" in self.of(Stl(), sample, tmp_path)
         assert "a base" not in self.of(Stl(base_m=0.0008), work(np.full((9, 9), 0.002)), tmp_path)
 
-    @pytest.mark.parametrize(("cells", "said"), [(1, True), (3, True), (4, False), (6, False)])
+    @pytest.mark.parametrize(("cells", "is_noted"), [(1, True), (3, True), (4, False), (6, False)])
     @pytest.mark.parametrize("pitch_mm", [0.1, 0.13])
-    def test_what_is_thinner_than_a_nozzle(self, tmp_path: Path, cells: int, said: bool, pitch_mm: float):
+    def test_note_names_shapes_thinner_than_a_nozzle(self, tmp_path: Path, cells: int, is_noted: bool, pitch_mm: float):
         heights = np.full((80, 80), 0.001)
         heights[20:60, 40 : 40 + cells] = 0.003
-        told = self.of(Stl(braille=False), work(heights, 80 * pitch_mm / 1000), tmp_path)
-        assert ("thinner than a nozzle" in told) == said
-        if said:
-            assert "up to 2 mm high" in told and f"{40 * cells * pitch_mm**2:.1f} square mm" in told
+        notes = self.of(Stl(braille=False), work(heights, 80 * pitch_mm / 1000), tmp_path)
+        assert ("thinner than a nozzle" in notes) == is_noted
+        if is_noted:
+            assert "up to 2 mm high" in notes and f"{40 * cells * pitch_mm**2:.1f} square mm" in notes
 
-    def test_a_slope_is_not_thin(self, tmp_path: Path):
+    def test_note_of_thin_shapes_leaves_out_slopes(self, tmp_path: Path):
         """Kernels of an even side have no middle: a slope is off by a node, if they are laid askew."""
         up = np.linspace(0, 0.01, 60)
         roof = np.tile(np.concatenate([up, up[::-1]]), (120, 1))
         for each in (roof, roof.T):
             assert "thinner" not in self.of(Stl(), work(each, 120 * 0.0003), tmp_path)
 
-    @pytest.mark.parametrize(("steepness", "said"), [(0.9, False), (1.1, True)])
-    def test_what_is_steeper_than_45_degrees(self, tmp_path: Path, steepness: float, said: bool):
+    @pytest.mark.parametrize(("steepness", "is_noted"), [(0.9, False), (1.1, True)])
+    def test_note_names_slopes_steeper_than_45_degrees(self, tmp_path: Path, steepness: float, is_noted: bool):
         heights = np.zeros((40, 40))
         heights[:, 20:30] = np.arange(10) * steepness * 0.0005
         heights[:, 30:] = heights[:, 29:30]
-        told = self.of(Stl(), work(heights, 0.02), tmp_path)
-        assert ("% of the picture is steeper than 45 degrees: print the plate lying flat" in told) == said
-        assert not said or "24 %" in told or "23 %" in told
+        notes = self.of(Stl(), work(heights, 0.02), tmp_path)
+        assert ("% of the picture is steeper than 45 degrees: print the plate lying flat" in notes) == is_noted
+        assert not is_noted or "24 %" in notes or "23 %" in notes
 
-    def test_noise_does_not_make_a_gigantic_file(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_solid_of_noise_has_limited_triangles(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr(making, "MOST_TRIANGLES", 500)
-        made = work(rough(), 0.05)
+        sample = work(rough(), 0.05)
         with collected() as notes:
-            mesh = written(bare(Stl), made, tmp_path)
-        off = np.abs(from_above(mesh, *nodes(made))[::-1] - 1.5 - 1000 * made.relief.height_m).max()
+            mesh = write_and_read(bare(Stl), sample, tmp_path)
+        off = np.abs(from_above(mesh, *nodes(sample))[::-1] - 1.5 - 1000 * sample.relief.height_m).max()
         assert is_closed(mesh) and len(mesh.triangles) < 1000
         assert any(f"the solid is off by up to {off:.2g} mm, as it would take more than 500" in each for each in notes)
 
-    def test_more_nodes_than_there_is_room_for_are_averaged(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_solid_of_too_many_nodes_is_averaged_with_a_note(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr(making, "MOST_IN_GRID", 500)
         without_pydelatin(monkeypatch)
-        made = work(rough(), 0.05)
+        sample = work(rough(), 0.05)
         with collected() as notes:
-            mesh = written(bare(Stl), made, tmp_path)
+            mesh = write_and_read(bare(Stl), sample, tmp_path)
         assert any("heights are averaged over squares of 2 mm" in each and "pip install" in each for each in notes)
         assert is_closed(mesh) and len(mesh.triangles) < 1500
         assert mesh.vertices.max(axis=0)[:2] == pytest.approx([50, 50 * 40 / 56], abs=1e-3)
 
 
 class TestThreeMF:
-    def test_lib3mf_finds_millimetres_and_a_title_whatever_it_holds(self, tmp_path: Path):
+    def test_3mf_with_any_title_is_read_by_lib3mf_in_millimetres(self, tmp_path: Path):
         title = 'Kaffee & <Kuchen> "Ü" \x07\ud800\ufffe🍰'
-        made = work(rough(), 0.05, title, language='de"><x/>')
-        (path,) = ThreeMF(braille=False).write(made, tmp_path / "k")
+        sample = work(rough(), 0.05, title, language='de"><x/>')
+        (path,) = ThreeMF(braille=False).write(sample, tmp_path / "k")
         model, (body,) = read_3mf(path)
         assert model.GetUnit().name == "MilliMeter"
         assert body.GetName() == 'Kaffee & <Kuchen> "Ü" 🍰'
         assert body.IsManifoldAndOriented()
         assert model.GetBuildItems().Count() == 1
 
-    def test_it_is_far_smaller_than_an_stl(self, tmp_path: Path):
-        made = work(rough(80, 100), 0.1)
-        sizes = [cls().write(made, tmp_path / "s")[0].stat().st_size for cls in (ThreeMF, Stl)]
+    def test_3mf_is_smaller_than_stl(self, tmp_path: Path):
+        sample = work(rough(80, 100), 0.1)
+        sizes = [cls().write(sample, tmp_path / "s")[0].stat().st_size for cls in (ThreeMF, Stl)]
         assert sizes[0] < sizes[1] / 2
 
 
@@ -335,10 +337,10 @@ class TestGlb:
     COLOURS = np.array([[[250, 0, 0], [0, 250, 0]], [[0, 0, 250], [250, 250, 0]]], np.uint8)
     """Red, green; blue, yellow."""
 
-    def test_the_picture_lies_on_the_relief_the_right_way_up(self, tmp_path: Path):
+    def test_glb_texture_lies_upright_on_the_relief(self, tmp_path: Path):
         picture = np.kron(self.COLOURS, np.ones((40, 60, 1), np.uint8))
-        made = work(rough(32, 48), 0.06, "F", picture=picture)
-        (path,) = Glb().write(made, tmp_path / "g")
+        sample = work(rough(32, 48), 0.06, "F", picture=picture)
+        (path,) = Glb().write(sample, tmp_path / "g")
         mesh = read_glb(path)
         texture = np.asarray(mesh.visual.material.baseColorTexture).astype(int)
         across, up = np.asarray(mesh.visual.uv).T
@@ -356,12 +358,12 @@ class TestGlb:
         assert np.ptp(column[edge]) < 1e-3 and column[edge][0] == pytest.approx(round(column[edge][0]), abs=2e-2)
 
     @pytest.mark.parametrize("shape", [(7, 9), (7, 9, 3), (7, 9, 4), (1, 1), (5000, 20, 3)])
-    def test_any_picture_is_a_texture(self, tmp_path: Path, shape: tuple[int, ...]):
-        made = work(rough(8, 9), 0.06, picture=np.full(shape, 200, np.uint8))
-        mesh = read_glb(Glb().write(made, tmp_path / "g")[0])
+    def test_glb_of_any_picture_has_a_texture(self, tmp_path: Path, shape: tuple[int, ...]):
+        sample = work(rough(8, 9), 0.06, picture=np.full(shape, 200, np.uint8))
+        mesh = read_glb(Glb().write(sample, tmp_path / "g")[0])
         assert max(np.asarray(mesh.visual.material.baseColorTexture).shape) <= 4096
 
-    def test_a_scene_of_heights_has_no_texture(self, tmp_path: Path):
+    def test_glb_of_heights_has_no_texture(self, tmp_path: Path):
         (path,) = Glb(braille=False).write(work(rough(), 0.05, "Höhen \ud800"), tmp_path / "g")
         data = path.read_bytes()
         head = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
@@ -369,7 +371,7 @@ class TestGlb:
         assert int.from_bytes(data[8:12], "little") == len(data)
         assert read_glb(path).is_volume
 
-    def test_it_lies_in_metres_about_its_middle(self, tmp_path: Path):
+    def test_glb_is_in_metres_about_its_centre(self, tmp_path: Path):
         (path,) = Glb().write(work(rough(), 0.05), tmp_path / "g")
         low, high = read_glb(path).bounds
         assert low[[0, 2]] == pytest.approx(-high[[0, 2]], abs=1e-7) and low[1] == 0
@@ -377,8 +379,8 @@ class TestGlb:
 
 
 @EVERY
-def test_trimesh_finds_a_volume(tmp_path: Path, cls: type[Exporter]):
-    mesh = trimesh.Trimesh(*written(cls(), work(rough(), 0.05, "Coffee"), tmp_path))
+def test_solid_is_a_volume_for_trimesh(tmp_path: Path, cls: type[Exporter]):
+    mesh = trimesh.Trimesh(*write_and_read(cls(), work(rough(), 0.05, "Coffee"), tmp_path))
     assert mesh.is_watertight and mesh.is_winding_consistent and mesh.is_volume and mesh.euler_number == 2
 
 
@@ -395,25 +397,25 @@ def judge(program: str) -> Callable[..., str]:
     return run
 
 
-def test_admesh_repairs_nothing(tmp_path: Path):
+def test_stl_needs_no_repair_by_admesh(tmp_path: Path):
     admesh = judge("admesh")
     Stl().write(work(rough(), 0.05, "Coffee"), tmp_path / "a")
-    told = admesh("a.stl", cwd=tmp_path)
-    counts = {name.strip(): int(value) for name, value in (line.split(":")[:2] for line in repairs(told))}
-    assert len(counts) == 7 and not any(counts.values()), told
+    output = admesh("a.stl", cwd=tmp_path)
+    counts = {name.strip(): int(value) for name, value in (line.split(":")[:2] for line in repairs(output))}
+    assert len(counts) == 7 and not any(counts.values()), output
 
 
-def repairs(told: str) -> list[str]:
+def repairs(output: str) -> list[str]:
     words = ("Degenerate", "Edges fixed", "Facets removed", "Facets added", "Facets reversed", "Backwards", "Normals f")
-    return [line for line in told.splitlines() if line.startswith(words)]
+    return [line for line in output.splitlines() if line.startswith(words)]
 
 
 @pytest.mark.parametrize("name", ["stl", "3mf"])
-def test_a_slicer_finds_it_manifold_and_of_its_size(tmp_path: Path, name: str):
+def test_solid_is_manifold_for_a_slicer(tmp_path: Path, name: str):
     slicer = judge("prusa-slicer")
-    mesh: Mesh = written(FORMATS[name](), work(rough(), 0.05, "Coffee"), tmp_path)
-    told = slicer("--info", f"solid.{name}", cwd=tmp_path)
-    said = dict(line.split(" = ") for line in told.splitlines() if " = " in line)
-    assert said["manifold"] == "yes" and int(said["number_of_parts"]) == 1
-    sizes = [float(said[f"size_{axis}"]) for axis in "xyz"]
+    mesh: Mesh = write_and_read(FORMATS[name](), work(rough(), 0.05, "Coffee"), tmp_path)
+    output = slicer("--info", f"solid.{name}", cwd=tmp_path)
+    values = dict(line.split(" = ") for line in output.splitlines() if " = " in line)
+    assert values["manifold"] == "yes" and int(values["number_of_parts"]) == 1
+    sizes = [float(values[f"size_{axis}"]) for axis in "xyz"]
     assert sizes == pytest.approx(np.ptp(mesh.vertices, axis=0).tolist(), abs=1e-3)

@@ -1,4 +1,4 @@
-"""What docs/export.md tells of solids is done here; with TANGIBLE_DOCS_PICTURES=1 its picture is written."""
+"""The examples of docs/export.md on solids; with TANGIBLE_DOCS_PICTURES=1 the picture of the page is written."""
 
 import os
 import re
@@ -21,7 +21,7 @@ MOST_BYTES = 150_000
 
 
 @pytest.mark.slow
-def test_the_page_s_portrait_becomes_a_plate(tmp_path: Path):
+def test_page_example_portrait_becomes_a_plate(tmp_path: Path):
     parts, added = (re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0] for text in (PAGES["parts"], SECTION))
     astronaut = drawn("astronaut")
     write_png(tmp_path / "astronaut.png", astronaut.picture)
@@ -35,7 +35,7 @@ def test_the_page_s_portrait_becomes_a_plate(tmp_path: Path):
     keep(seen_from_above(meshes[1]), tmp_path)
 
 
-def test_the_page_names_every_option_with_its_default():
+def test_page_lists_every_option_with_its_default():
     (table,) = re.findall(r"\| option \|.*?\n\n", SECTION, re.DOTALL)
     rows = dict(re.findall(r"^\| `(\w+)` \| (\S+(?: mm)?) \|", table, re.MULTILINE))
     for cls in FORMATS.values():

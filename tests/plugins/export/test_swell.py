@@ -25,7 +25,7 @@ pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module", params=PICTURES)
-def written(request, tmp_path_factory) -> tuple[str, tuple[Path, ...], list[str]]:
+def exported(request, tmp_path_factory) -> tuple[str, tuple[Path, ...], list[str]]:
     swell, folder = Swell(), tmp_path_factory.mktemp("swell")
     with collected() as notes:
         files = swell.write(work_of(request.param, swell), folder / request.param)
@@ -37,9 +37,9 @@ def svgs(files) -> list[Path]:
 
 
 def halves(labels=(0, 1), shape=(300, 400)) -> np.ndarray:
-    found = np.full(shape, labels[0], np.int32)
-    found[:, shape[1] // 2 :] = labels[1]
-    return found
+    labels_of_halves = np.full(shape, labels[0], np.int32)
+    labels_of_halves[:, shape[1] // 2 :] = labels[1]
+    return labels_of_halves
 
 
 def braille_dots(root) -> list[np.ndarray]:
@@ -72,15 +72,15 @@ def least_gap_mm(svg: Path) -> float:
     return least
 
 
-def test_nothing_is_nearer_than_a_finger_can_part(written):
-    _, files, _ = written
+def test_page_marks_keep_the_gap_of_a_finger(exported):
+    _, files, _ = exported
     for svg in svgs(files):
         assert least_gap_mm(svg) >= GAP_MM - 1e-9, svg.name
 
 
-def test_outlines_leave_room_between_them(written):
+def test_page_outlines_leave_room_for_a_finger(exported):
     """A disc as wide as the gap reaches nearly all between the lines; what is left are tips of corners."""
-    _, files, _ = written
+    _, files, _ = exported
     root = ElementTree.parse(files[0]).getroot()
     for element in root.iter():
         for child in list(element):
@@ -95,8 +95,8 @@ def test_outlines_leave_room_between_them(written):
     assert (beyond[free] > 0.2).mean() < 0.02
 
 
-def test_every_part_has_its_outline_and_its_name(written):
-    name, files, notes = written
+def test_page_parts_have_outline_and_name(exported):
+    name, files, notes = exported
     work = work_of(name, Swell())
     root = ElementTree.parse(files[0]).getroot()
     areas = [each for each in root if each.find("./*[@data-mark='outline']") is not None]
@@ -104,12 +104,12 @@ def test_every_part_has_its_outline_and_its_name(written):
     there = set(np.unique(work.simplified.labels).tolist())
     assert {each.get("aria-label") for each in areas} == {work.names[number] for number in there}
     unlettered = [each.get("aria-label") for each in areas if each.find("./*[@data-mark='braille']") is None]
-    said = next((note for note in notes if note.startswith("no room for a letter")), "")
-    assert not unlettered or all(each in said for each in list(dict.fromkeys(unlettered))[:6])
+    noted = next((note for note in notes if note.startswith("no room for a letter")), "")
+    assert not unlettered or all(each in noted for each in list(dict.fromkeys(unlettered))[:6])
 
 
-def test_shapes_are_black_and_alone(written):
-    _, files, _ = written
+def test_page_svg_has_black_shapes_alone(exported):
+    _, files, _ = exported
     for svg in svgs(files):
         root = ElementTree.parse(svg).getroot()
         assert {each.tag.rpartition("}")[2] for each in root.iter()} <= {"svg", "title", "desc", "g", "path", "circle"}
@@ -120,33 +120,33 @@ def test_shapes_are_black_and_alone(written):
         assert root.findtext("{*}desc")
 
 
-def test_a_key_names_every_part_beside_its_letter_and_its_fill(written):
-    _, files, _ = written
+def test_key_lists_every_part_with_letter_and_fill(exported):
+    _, files, _ = exported
     picture, *keys = (ElementTree.parse(each).getroot() for each in svgs(files))
     letters, fill_of = {}, {}
     for area in picture:
         if (letter := area.find("./*[@data-mark='braille']")) is not None:
             letters[area.get("aria-label")] = letter.get("aria-label")
-    said = [each.get("aria-label") for key in keys for each in key.iterfind(".//*[@data-mark='braille']")]
+    labels_in_key = [each.get("aria-label") for key in keys for each in key.iterfind(".//*[@data-mark='braille']")]
     for key in keys:
         fill_of |= dict(
             each.get("aria-label").split(": ") for each in key if each.find("./*[@data-mark='outline']") is not None
         )
     parts = {each.get("aria-label") for each in picture if each.find("./*[@data-mark='outline']") is not None}
-    assert parts <= set(said)
-    assert set(letters.values()) <= set(said)
+    assert parts <= set(labels_in_key)
+    assert set(letters.values()) <= set(labels_in_key)
     assert len(set(letters.values())) == len(letters)
     assert fill_of.keys() == parts
     assert len({*fill_of.values()}) <= 5
 
 
-def test_neighbours_differ_in_their_fills(written):
-    _, _, notes = written
+def test_page_neighbours_have_different_fills(exported):
+    _, _, notes = exported
     assert not any("neighbours with one fill" in note for note in notes)
 
 
-def test_the_pdf_is_the_pages_true_to_size(written):
-    _, files, _ = written
+def test_pdf_has_all_pages_in_true_size(exported):
+    _, files, _ = exported
     pdf, pages = files[-1], svgs(files)
     data = pdf.read_bytes()
     assert b"/Image" not in data.replace(b"/ImageB", b"").replace(b"/ImageC", b"").replace(b"/ImageI", b"")
@@ -165,7 +165,7 @@ def test_the_pdf_is_the_pages_true_to_size(written):
 
 
 @pytest.mark.parametrize(("paper", "shape"), [("a4", (300, 450)), ("letter", (450, 300)), ("a3", (300, 450))])
-def test_the_picture_is_as_large_as_the_page_allows_or_as_is_said(tmp_path, paper, shape):
+def test_page_picture_has_largest_or_given_width(tmp_path, paper, shape):
     for width_m in (None, 0.1):
         swell = Swell(page=paper, width_m=width_m)
         svg = swell.write(labels_work(halves(shape=shape)), tmp_path / "map")[0]
@@ -186,7 +186,7 @@ def test_the_picture_is_as_large_as_the_page_allows_or_as_is_said(tmp_path, pape
             assert min(size[0] - 20 - width, size[1] - 20 - length) < 13  # the title takes 12 mm
 
 
-def test_an_f_is_neither_mirrored_nor_upside_down(tmp_path):
+def test_page_of_letter_f_is_upright(tmp_path):
     labels = np.zeros((70, 50), np.int32)
     labels[10:60, 10:20] = labels[10:20, 10:40] = labels[30:40, 10:32] = 1
     svg = Swell().write(labels_work(labels.repeat(8, 0).repeat(8, 1), ("ground", "letter")), tmp_path / "f")[0]
@@ -203,23 +203,23 @@ def test_an_f_is_neither_mirrored_nor_upside_down(tmp_path):
     assert (places[y, x] != outside).all()
 
 
-def test_the_same_work_gives_the_same_bytes(tmp_path):
+def test_page_written_twice_has_the_same_bytes(tmp_path):
     first, second = (Swell().write(labels_work(halves()), tmp_path / each) for each in ("a", "b"))
     assert [each.read_bytes() for each in first] == [each.read_bytes() for each in second]
 
 
-def test_parts_of_one_name_have_one_letter_and_one_fill(tmp_path):
+def test_page_parts_of_one_name_share_letter(tmp_path):
     labels = np.zeros((300, 600), np.int32)
     labels[:, 200:400], labels[:, 400:] = 1, 2
     svg = Swell().write(labels_work(labels, ("sea", "land", "sea")), tmp_path / "map")[0]
     root = ElementTree.parse(svg).getroot()
-    said = [each.get("aria-label") for each in root if each.find("./*[@data-mark='outline']") is not None]
-    assert sorted(said) == ["land", "sea", "sea"]
+    outlined = [each.get("aria-label") for each in root if each.find("./*[@data-mark='outline']") is not None]
+    assert sorted(outlined) == ["land", "sea", "sea"]
     letters = [each.get("aria-label") for each in root.iterfind("./{*}g/*[@data-mark='braille']")]
     assert sorted(letters) == ["l", "s", "s"]
 
 
-def test_a_letter_is_the_cells_of_its_name_in_true_size(tmp_path):
+def test_page_letter_is_braille_in_true_size(tmp_path):
     svg = Swell().write(labels_work(halves(), ("land", "sea")), tmp_path / "map")[0]
     root = ElementTree.parse(svg).getroot()
     dots = {each.get("aria-label"): each for each in root.iterfind("./{*}g/*[@data-mark='braille']")}
@@ -229,18 +229,18 @@ def test_a_letter_is_the_cells_of_its_name_in_true_size(tmp_path):
 
 
 @pytest.mark.parametrize("clear_mm", [0.5, 2.0])
-def test_what_is_drawn_too_near_is_moved_or_left_out(tmp_path, monkeypatch, clear_mm):
-    """The drawing keeps too little from outlines; the page that is measured does not pass until it is put right."""
+def test_page_marks_drawn_too_near_are_moved_or_left_out(tmp_path, monkeypatch, clear_mm):
+    """The drawing keeps too little from outlines; the page that is measured does not pass until that is corrected."""
     monkeypatch.setattr(fills, "CLEAR_MM", clear_mm)
     monkeypatch.setattr(page, "CLEAR_MM", clear_mm)
-    monkeypatch.setattr(fills.filled, "__defaults__", (None, clear_mm))
+    monkeypatch.setattr(fills.fill_shape, "__defaults__", (None, clear_mm))
     labels = np.zeros((300, 450), np.int32)
     labels[:, 260:], labels[100:200, 100:180] = 1, 2
     svg = Swell().write(labels_work(labels, ("land", "sea", "isle")), tmp_path / "map")[0]
     assert least_gap_mm(svg) >= GAP_MM - 1e-9
 
 
-def test_a_long_title_is_told_in_full_on_the_key(tmp_path):
+def test_page_long_title_is_complete_on_the_key(tmp_path):
     title = "A map of the harbour and of all the islands before it as they were in the year of the great flood"
     with collected() as notes:
         files = Swell().write(labels_work(halves(shape=(300, 460)), title=title), tmp_path / "map")
@@ -249,7 +249,7 @@ def test_a_long_title_is_told_in_full_on_the_key(tmp_path):
     assert len(above[1]) > len(above[0])
 
 
-def test_more_parts_than_letters_get_two_each(tmp_path):
+def test_page_with_many_parts_has_pairs_of_letters(tmp_path):
     labels = np.arange(30, dtype=np.int32).reshape(5, 6).repeat(60, 0).repeat(60, 1)
     with collected() as notes:
         files = Swell(page="a3").write(labels_work(labels), tmp_path / "map")
@@ -265,7 +265,7 @@ HUNDREDS = np.arange(900, dtype=np.int32).reshape(30, 30).repeat(20, 0).repeat(2
 
 
 @pytest.mark.parametrize(
-    ("labels", "options", "said", "error"),
+    ("labels", "options", "message", "error"),
     [
         (np.zeros((40, 60), np.int32), {}, "one part", PictureError),
         (np.zeros((1, 1), np.int32), {}, "one part", PictureError),
@@ -273,7 +273,7 @@ HUNDREDS = np.arange(900, dtype=np.int32).reshape(30, 30).repeat(20, 0).repeat(2
         (halves(shape=(600, 3)), {}, "a finger needs 12.7 mm", GeometryError),
         (halves(), {"width_m": 0.4}, "has no room on a4", GeometryError),
         (halves(), {"width_m": 0.005}, "a finger needs 12.7 mm", GeometryError),
-        (HUNDREDS, {}, "900 parts are more than anybody keeps apart", PictureError),
+        (HUNDREDS, {}, "900 parts are more than anybody can tell apart", PictureError),
         (
             np.arange(101, dtype=np.int32)[:, None].repeat(90, 1),
             {"page": "a3"},
@@ -282,15 +282,15 @@ HUNDREDS = np.arange(900, dtype=np.int32).reshape(30, 30).repeat(20, 0).repeat(2
         ),
     ],
 )
-def test_what_cannot_be_read_is_refused_in_one_line(tmp_path, labels, options, said, error):
+def test_page_unreadable_by_finger_is_refused_in_one_line(tmp_path, labels, options, message, error):
     with pytest.raises(error) as refusal:
         Swell(**options).write(labels_work(labels), tmp_path / "map")
-    assert re.search(said, str(refusal.value))
+    assert re.search(message, str(refusal.value))
     assert "\n" not in str(refusal.value)
     assert not list(tmp_path.iterdir())
 
 
-def test_no_parts_at_all_is_said(tmp_path):
+def test_page_without_parts_is_refused(tmp_path):
     work = labels_work(halves())
     work.products["simplified"] = None
     with pytest.raises(PictureError, match="no parts"):
@@ -298,13 +298,13 @@ def test_no_parts_at_all_is_said(tmp_path):
 
 
 @pytest.mark.parametrize(("title", "names"), [("東京", ()), ("Map", ("地", "海"))])
-def test_what_has_no_braille_is_refused_before_anything_is_written(tmp_path, title, names):
+def test_page_text_without_braille_is_refused_before_writing(tmp_path, title, names):
     with pytest.raises(BrailleError):
         Swell().write(labels_work(halves(), names, title=title), tmp_path / "map")
     assert not list(tmp_path.iterdir())
 
 
-def test_without_shapely_one_line_says_what_to_install(tmp_path, monkeypatch):
+def test_page_without_shapely_names_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "shapely", None)
     for name in [name for name in sys.modules if name.startswith("tangible_export.paper.")]:
         monkeypatch.delitem(sys.modules, name)

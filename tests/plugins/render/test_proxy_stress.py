@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rough_surfaces import rough_surfaces
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, HapticState, HapticSurface, Material
-from tangible_core.testing.synthetic.rough import rough_surfaces
 from tangible_core.testing.synthetic.scenes import plane
 from tangible_render.proxy import Proxy
 from tangible_render.surface import spline

@@ -6,13 +6,13 @@ CI feels ten million ticks in all; `pytest -m nightly tests/plugins/render/test_
 import numpy as np
 import pytest
 
+from random_hand import MARGIN_M, Worst, fuzz
+from rough_surfaces import rough_surfaces
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticSurface
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.interfaces import ForceRenderer
 from tangible_core.plugins.registry import load_method
-from tangible_core.testing.fuzz import MARGIN_M, Worst, fuzz
-from tangible_core.testing.synthetic.rough import rough_surfaces
 from tangible_core.testing.synthetic.scenes import sphere_cap
 from tangible_render.contact.approach import LEAP_M, STRETCH_M
 from tangible_render.proxy import Proxy

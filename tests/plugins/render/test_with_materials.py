@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from materials_on_laws import GRAINY, LATERAL, PLAIN, PUSHING, RUBBER, STICKY, K, cover, level, stroke
+from rough_surfaces import rough_surfaces
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticState, HapticSurface, Material
 from tangible_core.haptic_textures import compile_textures
@@ -14,7 +15,6 @@ from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.registry import load_method
 from tangible_core.testing.synthetic.reliefs import waves
-from tangible_core.testing.synthetic.rough import rough_surfaces
 from tangible_core.testing.synthetic.scenes import ramp
 from tangible_render.with_materials import WithMaterials
 

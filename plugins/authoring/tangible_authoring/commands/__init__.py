@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 @hookimpl
 def tangible_commands(app: Typer) -> None:
     """Add `tangible new` and `tangible parts`."""
-    from tangible_core.cli.commands import add
+    from tangible_core.cli.command_table import add
 
     add("new", "tangible_authoring.commands.new:new", "Write a pipeline file for your pictures.")
     add("parts", "tangible_authoring.commands.parts:parts", "Divide a picture into parts, which get names and heights.")

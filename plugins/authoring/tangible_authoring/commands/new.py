@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from tangible_core.cli.loudness import is_quiet
+from tangible_core.cli.verbosity import is_quiet
 
 
 def new(

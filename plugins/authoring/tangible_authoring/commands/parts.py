@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tangible_core.cli import completing
-from tangible_core.cli.loudness import is_quiet
 from tangible_core.cli.options import Json, NoCache, Sets
+from tangible_core.cli.verbosity import is_quiet
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

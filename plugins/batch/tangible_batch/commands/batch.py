@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli.loudness import is_quiet
 from tangible_core.cli.options import FAILED, Config, Json, Sets
+from tangible_core.cli.verbosity import is_quiet
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -57,12 +57,12 @@ def batch(
     """
     from tangible_core.cli import show
     from tangible_core.errors import check_positive
-    from tangible_core.files.source import read_text
+    from tangible_core.files.yaml.source import read_text
     from tangible_core.pipeline.config.editing import with_overrides
     from tangible_core.pipeline.output.run_folder import default_name
 
     from ..farm import LONGEST_S
-    from ..jobs import BatchOptions
+    from ..job_maker import BatchOptions
     from ..manifest import rows_of
     from ..results import ROWS, write_gallery, write_index
     from ..running import Tally, Workforce, run_batch

@@ -9,19 +9,19 @@ from typing import TypeAlias
 import numpy as np
 from jaxtyping import Float64
 
-from tangible_core.legibility.braille import CELL_PITCH_M, DOT_DIAMETER_M, DOT_PITCH_M, LINE_PITCH_M
+from tangible_core.legibility.rules import CELL_PITCH_M, DOT_DIAMETER_M, DOT_PITCH_M, LINE_PITCH_M
 
 Cells: TypeAlias = tuple[int, ...]
 
 _UNICODE = 0x2800
 _ASCII = " A1B'K2L@CIF/MSP\"E3H9O6R^DJG>NTQ,*5<-U8V.%[$+X!&;:4\\0Z7(_?W]#Y)="
-"""By the number of a cell: North American Braille Computer Code, by which embossers print."""
+"""Characters by the number of their cell: North American Braille Computer Code, which embossers print."""
 
 
 def dots(cells: Cells, at_m: tuple[float, float] = (0.0, 0.0)) -> Float64[np.ndarray, "n 2"]:
-    """Centres of the raised dots of one line: metres to the right, and metres down.
+    """Return the centres of the raised dots of one line: metres to the right, and metres down.
 
-    at_m: the centre of dot 1 of the first cell, raised or not.
+    at_m: centre of dot 1 of the first cell, raised or not.
 
     >>> (1000 * dots((0b001001,))).round(2).tolist()
     [[0.0, 0.0], [2.34, 0.0]]
@@ -37,17 +37,17 @@ def dots(cells: Cells, at_m: tuple[float, float] = (0.0, 0.0)) -> Float64[np.nda
 
 
 def width_m(cells: Cells) -> float:
-    """From the left edge of the first cell's dots to the right edge of the last one's; 0 for no cell."""
+    """Return the width from the left edge of the first cell's dots to the right edge of the last cell's, or 0."""
     return (len(cells) - 1) * CELL_PITCH_M + DOT_PITCH_M + DOT_DIAMETER_M if cells else 0.0
 
 
 def height_m(lines: int = 1) -> float:
-    """From the upper edge of the first line's dots to the lower edge of the last one's; 0 for no line."""
+    """Return the height from the upper edge of the first line's dots to the lower edge of the last line's, or 0."""
     return (lines - 1) * LINE_PITCH_M + 2 * DOT_PITCH_M + DOT_DIAMETER_M if lines else 0.0
 
 
 def as_unicode(cells: Cells) -> str:
-    """Cells as the characters of Unicode's braille patterns.
+    """Return cells as the characters of Unicode's braille patterns.
 
     >>> as_unicode((0b000001, 0b000011))
     '⠁⠃'
@@ -56,7 +56,7 @@ def as_unicode(cells: Cells) -> str:
 
 
 def as_ascii(cells: Cells) -> str:
-    """Cells as the characters that embossers and files named `.brf` have for them.
+    """Return cells as the characters of embossers and of `.brf` files.
 
     >>> as_ascii((0b000001, 0b111100, 0))
     'A# '

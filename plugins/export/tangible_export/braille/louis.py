@@ -1,6 +1,6 @@
-"""Liblouis, where it is installed: the library that embossers and screen readers translate with, and its tables.
+"""Liblouis, where it is installed: the library by which embossers and screen readers translate, and its tables.
 
-It is called by ctypes. What PyPI has under the name `louis` is something else.
+The library is called by ctypes. The package `louis` on PyPI is something else.
 """
 
 import ctypes
@@ -14,34 +14,34 @@ from tangible_core.errors import BrailleError, quoted
 from .cells import Cells
 
 TABLES = {"en": "en-ueb-g1.ctb", "de": "de-g0.utb", "fr": "fr-bfu-comp6.utb"}
-"""Uncontracted: Unified English Braille, German Basisschrift, French Braille uniformisé."""
+"""Tables of uncontracted braille: Unified English Braille, German Basisschrift, French Braille uniformisé."""
 NAMES = {
     "linux": ("liblouis.so.20", "liblouis.so"),
     "darwin": ("liblouis.20.dylib", "liblouis.dylib", "/opt/homebrew/lib/liblouis.dylib"),
     "win32": ("liblouis.dll",),
 }
-"""By `sys.platform`; looked up by name, for `find_library` would start a compiler."""
+"""Names of the library by `sys.platform`; not by `find_library`, which would start a compiler."""
 _PROBE = "abc"
 _PROBED: Cells = (1, 3, 9)
 _DOTS, _UNICODE, _KNOWN_ALONE = 4, 64, 128
-"""Its modes `dotsIO`, `ucBrl` and `noUndefined`: cells are wanted; of a character that is in no table, nothing."""
+"""Modes `dotsIO`, `ucBrl` and `noUndefined` of liblouis: return cells, and nothing for a character not in the table."""
 _SILENT = 60_000
-"""Its log level `LOU_LOG_OFF`."""
+"""Log level `LOU_LOG_OFF` of liblouis."""
 
 _turn = Lock()
-"""Liblouis keeps its tables and buffers in variables of its own, for one caller at a time."""
+"""Lock around each call: liblouis keeps its tables and buffers in global variables."""
 
 
 class Louis(NamedTuple):
-    """A library that was found and tried."""
+    """A library that was loaded and tested."""
 
     library: Any
     version: str
     character: Any
-    """The type of its characters: of 2 bytes or of 4."""
+    """Type of a character, of 2 or 4 bytes."""
 
     def translate(self, text: str, language: str) -> Cells:
-        """Raises: BrailleError for a character that its table does not have, OSError where the table fails."""
+        """Translate text. Raises: BrailleError for a character that is not in the table, OSError if the table fails."""
         for place, each in enumerate(text, 1):
             if not each.isascii():
                 self._check_known(each, place, text, language)
@@ -49,7 +49,7 @@ class Louis(NamedTuple):
 
     def _check_known(self, character: str, place: int, text: str, language: str) -> None:
         if not any(self._call(character, TABLES[language], _DOTS | _UNICODE | _KNOWN_ALONE)):
-            raise BrailleError(not_written(character, place, text, f"liblouis's table {TABLES[language]}"))
+            raise BrailleError(missing_character(character, place, text, f"liblouis's table {TABLES[language]}"))
 
     def _call(self, text: str, table: str, mode: int) -> Cells:
         units = [unit for each in text for unit in _units(each, ctypes.sizeof(self.character))]
@@ -65,8 +65,8 @@ class Louis(NamedTuple):
         return tuple(each & 0x3F for each in target[: written.value])
 
 
-def not_written(character: str, place: int, text: str, table: str) -> str:
-    """What to say of a character that no table has."""
+def missing_character(character: str, place: int, text: str, table: str) -> str:
+    """Return the message for a character that is not in a table."""
     return (
         f"{quoted(text)}: character {place}, {quoted(character)} (U+{ord(character):04X}), is not in {table}; "
         "spell it with other letters"
@@ -82,29 +82,29 @@ def _units(character: str, size: int) -> list[int]:
 
 @cache
 def louis() -> Louis | str:
-    """The library, or why it is not used: it is not installed, or does not write what it must."""
+    """Return the library, or the reason why it is not used."""
     for name in NAMES.get(sys.platform, NAMES["linux"]):
         try:
             library = ctypes.CDLL(name)
         except OSError:
             continue
         try:
-            return _tried(library)
+            return _test(library)
         except (OSError, AttributeError, ValueError, ctypes.ArgumentError) as error:
             return f"the liblouis that is installed cannot be used ({error})"
     return "liblouis is not installed"
 
 
-def _tried(library: Any) -> Louis:
-    """It writes three letters in each language as each of them does. Raises: OSError, AttributeError."""
+def _test(library: Any) -> Louis:
+    """Let the library write three letters in each language. Raises: OSError, AttributeError if it does not do so."""
     library.lou_version.restype = ctypes.c_char_p
     library.lou_setLogLevel(_SILENT)
     version = library.lou_version().decode()
     size = library.lou_charSize()
     if size not in (2, 4):
         raise OSError(f"its characters have {size} bytes")
-    found = Louis(library, version, ctypes.c_uint16 if size == 2 else ctypes.c_uint32)
+    liblouis = Louis(library, version, ctypes.c_uint16 if size == 2 else ctypes.c_uint32)
     for language in TABLES:
-        if (wrote := found.translate(_PROBE, language)) != _PROBED:
-            raise OSError(f"it writes {_PROBE} as {wrote} by {TABLES[language]}")
-    return found
+        if (cells := liblouis.translate(_PROBE, language)) != _PROBED:
+            raise OSError(f"it writes {_PROBE} as {cells} by {TABLES[language]}")
+    return liblouis

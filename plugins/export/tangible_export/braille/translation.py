@@ -1,73 +1,76 @@
-"""Text as uncontracted braille, by liblouis where it is installed and else by tables of our own."""
+"""Text as lines of uncontracted braille, by liblouis where it is installed and otherwise by our own tables."""
 
 import logging
 import re
 import unicodedata
 
-from tangible_core.errors import BrailleError, quoted
+from tangible_core.errors import BrailleError, check_positive, quoted
 from tangible_core.plugins.notes import note
 
 from .cells import Cells
-from .latin import CODES, translated
-from .louis import TABLES, louis, not_written
+from .cells import width_m as width_of_m
+from .latin import LANGUAGES, code_of, translate_by_table
+from .louis import TABLES, louis, missing_character
 
 log = logging.getLogger(__name__)
 
-LANGUAGES = tuple(CODES)
-"""Those whose braille is written; any other is written by the English code."""
 _APOSTROPHE = re.compile("(?<=\\w)\u2019(?=\\w)")
-"""As print has it between letters: no closing quotation mark."""
+"""A typographic apostrophe between letters: it is not a closing quotation mark."""
 _OPENING = re.compile(r'(?<![^\s(\[])"(?=\S)')
-"""Straight quotation marks that open: the English code tells them from those that close."""
+"""Straight quotation marks that open: the English code tells opening from closing ones."""
 _GERMAN_QUOTES = re.compile("[„\u201c\u201d]")
-"""What closes in German opens in English; by where they stand, straight ones are either."""
+"""German quotation marks, made straight: the mark that closes in German opens in English."""
 _FRENCH_SPACE = re.compile("(«) +| +([:;!?»])")
-"""Print sets a space there; braille has none."""
+"""Spaces that print has and braille has not."""
 _LEFT_OUT = "\u00ad\u200b\u2060\ufeff"
-"""Characters that say where a line may break, and have no form of their own."""
+"""Invisible characters that allow or forbid a line break."""
+_HYPHEN = "-"
+_BREAK = re.compile("[^\\S\u00a0\u202f]+(?!%)")
+"""Spaces at which a line may break: not the non-breaking ones, nor before a per cent sign."""
 
 
 def translate(text: str, language: str = "en") -> Cells:
-    """Cells of one line of text: bit i for dot i + 1. The first cell of `()` is none: an empty text has no cells.
+    """Translate one line of text into cells, numbers whose bit i is dot i + 1; an empty text has no cells.
 
-    language: a tag such as `de-AT`; English, German and French have codes of their own, all else is written by the
-    English one: see `written_by`.
+    language: a tag such as `de-AT`; English, German and French have their own codes, any other language is written by
+    the English code: see `written_by`.
     Raises: BrailleError for a character that has no braille there, with its place and the cure.
 
     >>> translate("a cab") == (1, 0, 9, 1, 3)
     True
     """
-    spoken = _language_of(language)
-    text = _plain(text, spoken)
+    code_language = _language_of(language)
+    text = _plain(text, code_language)
     library = louis()
     if isinstance(library, str):
-        return translated(text, spoken)
+        return translate_by_table(text, code_language)
     try:
-        return library.translate(text, spoken)
+        return library.translate(text, code_language)
     except OSError as error:
-        note(log, f"braille by a table of our own: {error}", logging.WARNING)
-        return translated(text, spoken)
+        note(log, f"braille by our own table: {error}", logging.WARNING)
+        return translate_by_table(text, code_language)
 
 
 def written_by(language: str = "en") -> str:
-    """Who translates: liblouis with its version and table, or a table of our own, and why.
+    """Name the translator: liblouis with its version and table, or our own table, with the reason.
 
-    What writes braille into a file says it once, by `note`.
+    An exporter that writes braille into a file reports it once, by `note`.
     """
-    library, spoken = louis(), _language_of(language)
-    other = "" if language.partition("-")[0].lower() == spoken else f", for want of one for {quoted(language)}"
+    library, code_language = louis(), _language_of(language)
+    is_own = language.partition("-")[0].lower() == code_language
+    other = "" if is_own else f", for want of one for {quoted(language)}"
     if isinstance(library, str):
-        return f"{CODES[spoken].title}{other} ({library})"
-    return f"liblouis {library.version}, {TABLES[spoken]}{other}"
+        return f"{code_of(code_language).title}{other} ({library})"
+    return f"liblouis {library.version}, {TABLES[code_language]}{other}"
 
 
 def _language_of(tag: str) -> str:
-    spoken = tag.partition("-")[0].lower()
-    return spoken if spoken in CODES else "en"
+    language = tag.partition("-")[0].lower()
+    return language if language in LANGUAGES else "en"
 
 
 def _plain(text: str, language: str) -> str:
-    """Composed letters and plain spaces. Raises: BrailleError for what is no character of a line."""
+    """Return composed letters and plain spaces. Raises: BrailleError for control and unassigned characters."""
     composed = unicodedata.normalize("NFC", text)
     plain = "".join(" " if each.isspace() else each for each in composed if each not in _LEFT_OUT)
     plain = _APOSTROPHE.sub("'", plain)
@@ -76,8 +79,53 @@ def _plain(text: str, language: str) -> str:
     elif language == "de":
         plain = _GERMAN_QUOTES.sub('"', plain)
     elif language == "fr":
-        plain = _FRENCH_SPACE.sub(lambda found: found[1] or found[2], plain)
+        plain = _FRENCH_SPACE.sub(lambda match: match[1] or match[2], plain)
     for place, each in enumerate(plain, 1):
         if unicodedata.category(each) in ("Cc", "Cs", "Co", "Cn"):
-            raise BrailleError(not_written(each, place, plain, "any braille"))
+            raise BrailleError(missing_character(each, place, plain, "any braille"))
     return plain
+
+
+def wrapped(text: str, language: str, width_m: float, indent: int = 0) -> list[Cells]:
+    """Return lines of cells, none wider than `width_m`: they break at spaces, and longer words after a hyphen.
+
+    Lines do not break at non-breaking spaces. indent: empty cells before every line but the first.
+    Raises: BrailleError as `translate`, and where not even one letter has room.
+
+    >>> [len(line) for line in wrapped("a cab is here", "en", 0.05)]
+    [8, 4]
+    """
+    check_positive("width_m", width_m)
+    lines, line = list[Cells](), ""
+    for word in filter(None, _BREAK.split(text)):
+        if _fits(longer := f"{line} {word}".strip(), language, width_m, indent if lines else 0):
+            line = longer
+            continue
+        if line:
+            lines.append(_indent(line, language, indent if lines else 0))
+        while (count := _fitting_characters(word, language, width_m, indent if lines else 0)) < len(word):
+            lines.append(_indent(word[:count] + _HYPHEN, language, indent if lines else 0))
+            word = word[count:]
+        line = word
+    return [*lines, _indent(line, language, indent if lines else 0)] if line else lines
+
+
+def _indent(text: str, language: str, indent: int) -> Cells:
+    return (0,) * indent + translate(text, language)
+
+
+def _fits(text: str, language: str, width_m: float, indent: int) -> bool:
+    return width_of_m(_indent(text, language, indent)) <= width_m
+
+
+def _fitting_characters(word: str, language: str, width_m: float, indent: int) -> int:
+    """Return how many characters of a word fit on a line, with a hyphen after them if the word goes on."""
+    if _fits(word, language, width_m, indent):
+        return len(word)
+    for count in range(len(word) - 1, 0, -1):
+        if _fits(word[:count] + _HYPHEN, language, width_m, indent):
+            return count
+    raise BrailleError(
+        f"{quoted(word)}: not even its first letter and a hyphen have room in {1000 * width_m:.4g} mm of braille; "
+        "make the place wider"
+    )

@@ -1,1 +1,1 @@
-"""Pages for swell paper: what is drawn where in millimetres, its SVG and PDF, and the drawn page measured again."""
+"""Pages for swell paper: the layout in millimetres, the key, and the marks as SVG and PDF."""

@@ -1,81 +1,84 @@
-"""A fill for each thing, so that neighbours differ: the colouring of a graph."""
+"""Fills for parts so that neighbours differ, by colouring the graph of neighbours."""
 
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 MOST_STEPS = 1000
-"""Of the search that follows where the first try does not do, before it takes what there is."""
+"""Largest number of steps of the search with backtracking; then the first colouring is taken as it is."""
 
-Beside = Sequence[Collection[int]]
-"""The neighbours of each thing."""
+Neighbours = Sequence[Collection[int]]
+"""The neighbours of each vertex."""
 Allowed = Sequence[Sequence[str]]
-"""The fills that each thing may have, the plainest first; never none."""
+"""The fills allowed for each vertex, the plainest first; at least one."""
 
 
-def coloured(beside: Beside, allowed: Allowed, sizes: Sequence[float]) -> tuple[list[str], list[tuple[int, int]]]:
-    """A fill for each thing, and the pairs of neighbours that have the same one though they have a choice.
+def choose_fills(
+    neighbours: Neighbours, allowed: Allowed, sizes: Sequence[float]
+) -> tuple[list[str], list[tuple[int, int]]]:
+    """Return a fill for each vertex, and the pairs of neighbours that share one although one of them has a choice.
 
-    The largest is given its fill first, then the one whose neighbours leave it the fewest, and of those that are left
-    it gets the one that is used least: so where there are no more things than fills, none is used twice.
+    The largest vertex comes first, then always the one whose neighbours leave it the fewest fills; of these it gets the
+    least used one. So no fill is used twice if there are no more vertices than fills.
     Source: Brelaz, New methods to color the vertices of a graph, 1979.
     """
-    beside = [_with_a_choice(thing, others, allowed) for thing, others in enumerate(beside)]
-    given = _at_once(beside, allowed, sizes)
-    if alike := list(_alike(beside, given)):
-        given = _searched(beside, allowed, sizes) or given
-        alike = list(_alike(beside, given))
-    return [given[each] for each in range(len(beside))], alike
+    neighbours = [_with_a_choice(vertex, others, allowed) for vertex, others in enumerate(neighbours)]
+    fills = _colour_greedily(neighbours, allowed, sizes)
+    if alike := list(_alike(neighbours, fills)):
+        fills = _search(neighbours, allowed, sizes) or fills
+        alike = list(_alike(neighbours, fills))
+    return [fills[each] for each in range(len(neighbours))], alike
 
 
-def _with_a_choice(thing: int, others: Collection[int], allowed: Allowed) -> list[int]:
-    """Of neighbours that have the one fill alone, none can be helped."""
-    return [other for other in others if len({*allowed[thing], *allowed[other]}) > 1]
+def _with_a_choice(vertex: int, others: Collection[int], allowed: Allowed) -> list[int]:
+    """Return the neighbours, without those that are bound to have the same fill as the vertex."""
+    return [other for other in others if len({*allowed[vertex], *allowed[other]}) > 1]
 
 
-def _alike(beside: Beside, given: Mapping[int, str]) -> Iterator[tuple[int, int]]:
-    for one in sorted(given):
-        yield from ((one, other) for other in beside[one] if one < other and given[one] == given[other])
+def _alike(neighbours: Neighbours, fills: Mapping[int, str]) -> Iterator[tuple[int, int]]:
+    for one in sorted(fills):
+        yield from ((one, other) for other in neighbours[one] if one < other and fills[one] == fills[other])
 
 
-def _at_once(beside: Beside, allowed: Allowed, sizes: Sequence[float]) -> dict[int, str]:
-    given, used = dict[int, str](), Counter[str]()
-    while len(given) < len(beside):
-        thing = _next(beside, allowed, sizes, given)
-        around = [given.get(other) for other in beside[thing]]
-        given[thing] = min(allowed[thing], key=lambda fill: (around.count(fill), used[fill]))
-        used[given[thing]] += 1
-    return given
+def _colour_greedily(neighbours: Neighbours, allowed: Allowed, sizes: Sequence[float]) -> dict[int, str]:
+    fills, uses = dict[int, str](), Counter[str]()
+    while len(fills) < len(neighbours):
+        vertex = _next(neighbours, allowed, sizes, fills)
+        around = [fills.get(other) for other in neighbours[vertex]]
+        fills[vertex] = min(allowed[vertex], key=lambda fill: (around.count(fill), uses[fill]))
+        uses[fills[vertex]] += 1
+    return fills
 
 
-def _searched(beside: Beside, allowed: Allowed, sizes: Sequence[float]) -> dict[int, str] | None:
-    """By going back where a thing is left none; None where there is no way, or none was found in MOST_STEPS."""
-    given, used = dict[int, str](), Counter[str]()
-    tried = list[tuple[int, list[str]]]()
+def _search(neighbours: Neighbours, allowed: Allowed, sizes: Sequence[float]) -> dict[int, str] | None:
+    """Search with backtracking; None if no colouring exists, or none was found in MOST_STEPS."""
+    fills, uses = dict[int, str](), Counter[str]()
+    open_choices = list[tuple[int, list[str]]]()
     for _ in range(MOST_STEPS):
-        if len(given) == len(beside):
-            return given
-        thing = _next(beside, allowed, sizes, given)
-        tried.append((thing, sorted(_free(thing, beside, allowed, given), key=lambda fill: used[fill])))
-        while tried and not tried[-1][1]:
-            tried.pop()
-            if tried:
-                used[given.pop(tried[-1][0])] -= 1
-        if not tried:
+        if len(fills) == len(neighbours):
+            return fills
+        vertex = _next(neighbours, allowed, sizes, fills)
+        free = sorted(_free(vertex, neighbours, allowed, fills), key=lambda fill: uses[fill])
+        open_choices.append((vertex, free))
+        while open_choices and not open_choices[-1][1]:
+            open_choices.pop()
+            if open_choices:
+                uses[fills.pop(open_choices[-1][0])] -= 1
+        if not open_choices:
             return None
-        thing, left = tried[-1]
-        given[thing] = left.pop(0)
-        used[given[thing]] += 1
+        vertex, left = open_choices[-1]
+        fills[vertex] = left.pop(0)
+        uses[fills[vertex]] += 1
     return None
 
 
-def _next(beside: Beside, allowed: Allowed, sizes: Sequence[float], given: Mapping[int, str]) -> int:
-    left = [each for each in range(len(beside)) if each not in given]
-    if not given:
+def _next(neighbours: Neighbours, allowed: Allowed, sizes: Sequence[float], fills: Mapping[int, str]) -> int:
+    left = [each for each in range(len(neighbours)) if each not in fills]
+    if not fills:
         return max(left, key=lambda each: sizes[each])
-    return min(left, key=lambda each: (len(_free(each, beside, allowed, given)), -sizes[each]))
+    return min(left, key=lambda each: (len(_free(each, neighbours, allowed, fills)), -sizes[each]))
 
 
-def _free(thing: int, beside: Beside, allowed: Allowed, given: Mapping[int, str]) -> list[str]:
-    """Those that no neighbour has."""
-    around = {given.get(other) for other in beside[thing]}
-    return [fill for fill in allowed[thing] if fill not in around]
+def _free(vertex: int, neighbours: Neighbours, allowed: Allowed, fills: Mapping[int, str]) -> list[str]:
+    """Return the allowed fills that no neighbour has."""
+    around = {fills.get(other) for other in neighbours[vertex]}
+    return [fill for fill in allowed[vertex] if fill not in around]

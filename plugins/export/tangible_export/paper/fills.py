@@ -1,6 +1,6 @@
-"""What fills a part, so that a finger tells it from its neighbours: five kinds, of other elements, pitch, direction.
+"""Fills by which a finger tells a part from its neighbours: five kinds that differ in elements, pitch and direction.
 
-Each element is whole: none is cut by the outline. All elements keep the clear distance from each other.
+Every element is whole: none is cut by the outline. All elements keep the clear distance from each other.
 """
 # shapely has no types.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
@@ -16,14 +16,14 @@ from jaxtyping import Float64
 from .sheet import CLEAR_MM, LINE_MM
 
 LEAST_DOTS, LEAST_STROKES_MM = 4, 16.0
-"""Fewer dots, or strokes of less together, are no fill. Conventions of ours."""
+"""Smallest number of dots and smallest length of all strokes of a fill. Conventions of ours."""
 DOT_MM, DOTS_APART_MM = 2.4, 6.0
-"""Diameter of the dots of a fill, larger than those of braille; and from one to the next."""
+"""Diameter of the dots of a fill, larger than in braille; and their distance."""
 
 
 @dataclass(frozen=True)
 class Lines:
-    """A fill of lines side by side."""
+    """A fill of parallel lines."""
 
     width_mm: float
     pitch_mm: float
@@ -31,9 +31,9 @@ class Lines:
     wave_mm: float = 0
     """Half the height of the waves."""
     length_mm: float = 10
-    """Of a wave."""
+    """Length of a wave."""
     least_mm: float = 5
-    """A shorter piece is left out: it would be felt as a dot, or as a line that is straight."""
+    """Shortest piece: a shorter one would be felt as a dot, or as a straight line."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Fill:
         return bool(len(self.dots_mm) or self.strokes)
 
     def without(self, places_mm: Float64[np.ndarray, "n 2"]) -> "Fill":
-        """The same, less the dots and strokes at these places."""
+        """Return the fill without the dots and strokes at these places."""
         near = shapely.MultiPoint(places_mm)
         dots = self.dots_mm[shapely.distance(shapely.points(self.dots_mm), near) > 0.1]
         return Fill(dots, tuple(each for each in self.strokes if each.distance(near) > 0.1), self.stroke_mm)
@@ -62,18 +62,18 @@ def _dots(inner: Any) -> Fill:
     left, top, right, bottom = room.bounds
     columns, rows = _amid(left, right, DOTS_APART_MM), _amid(top, bottom, DOTS_APART_MM * np.sqrt(3) / 2)
     at = np.array([(x + row % 2 * DOTS_APART_MM / 2, y) for row, y in enumerate(rows) for x in columns])
-    at = _in_company(at[shapely.contains_xy(room, at)])
+    at = _without_single_dots(at[shapely.contains_xy(room, at)])
     return Fill(dots_mm=at) if len(at) >= LEAST_DOTS else Fill()
 
 
 def _amid(start: float, end: float, pitch: float) -> Float64[np.ndarray, " n"]:
-    """Places a pitch apart, as far from the start as from the end."""
+    """Return places at this pitch, as far from the start as from the end."""
     count = int((end - start) / pitch)
     return (start + end - count * pitch) / 2 + pitch * np.arange(count + 1)
 
 
-def _in_company(at: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "k 2"]:
-    """Without those that have no other beside them: a single dot is a letter to a finger."""
+def _without_single_dots(at: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "k 2"]:
+    """Return the dots that have a neighbour: a finger takes a single dot for a letter."""
     points: Any = shapely.points(at)
     one, other = shapely.STRtree(points).query(points, predicate="dwithin", distance=1.1 * DOTS_APART_MM)
     return at[np.unique(one[one != other])]
@@ -83,14 +83,14 @@ def _lines(inner: Any, kind: Lines) -> Fill:
     room = inner.buffer(-kind.width_mm / 2)
     if room.is_empty:
         return Fill()
-    strokes = _apart(shapely.get_parts(shapely.intersection(_ruled(room.bounds, kind), room)), kind)
+    strokes = _clear_strokes(shapely.get_parts(shapely.intersection(_parallels(room.bounds, kind), room)), kind)
     if sum(each.length for each in strokes) < LEAST_STROKES_MM or len(strokes) < 2:
         return Fill()
     return Fill(strokes=tuple(strokes), stroke_mm=kind.width_mm)
 
 
-def _ruled(bounds: tuple[float, ...], kind: Lines) -> Any:
-    """Lines over all of a rectangle, from its middle to both sides."""
+def _parallels(bounds: tuple[float, ...], kind: Lines) -> Any:
+    """Return lines over a whole rectangle, from its middle to both sides."""
     left, top, right, bottom = bounds
     reach = np.hypot(right - left, bottom - top) / 2 + kind.wave_mm
     along = np.arange(-reach, reach + 0.5, 0.5) if kind.wave_mm else np.array([-reach, reach])
@@ -103,19 +103,19 @@ def _ruled(bounds: tuple[float, ...], kind: Lines) -> Any:
     return shapely.multilinestrings(lines)
 
 
-def _apart(strokes: Any, kind: Lines) -> list[Any]:
-    """The long ones, without those too near to a longer one: ends that a corner of the part left over."""
+def _clear_strokes(strokes: Any, kind: Lines) -> list[Any]:
+    """Return the long strokes, without those too near to a longer one: ends that a corner of the part left over."""
     long = sorted((each for each in strokes if each.length >= kind.least_mm), key=lambda each: -each.length)
     tree = shapely.STRtree(long)
     one, other = tree.query(long, predicate="dwithin", distance=CLEAR_MM + kind.width_mm) if long else ([], [])
-    beside: dict[int, list[int]] = {}
+    neighbours: dict[int, list[int]] = {}
     for this, that in zip(one, other, strict=True):
-        beside.setdefault(int(this), []).append(int(that))
-    kept: dict[int, Any] = {}
+        neighbours.setdefault(int(this), []).append(int(that))
+    clear: dict[int, Any] = {}
     for number, each in enumerate(long):
-        if not any(other in kept for other in beside.get(number, [])):
-            kept[number] = each
-    return list(kept.values())
+        if not any(other in clear for other in neighbours.get(number, [])):
+            clear[number] = each
+    return list(clear.values())
 
 
 KINDS: dict[str, Callable[[Any], Fill]] = {
@@ -125,14 +125,14 @@ KINDS: dict[str, Callable[[Any], Fill]] = {
     "steep lines": lambda inner: _lines(inner, Lines(1.6, 6.0, -50)),
     "waves": lambda inner: _lines(inner, Lines(0.8, 6.2, 90, wave_mm=1.5, least_mm=11)),
 }
-"""By what it is called; five, as many as a finger tells apart (tactile-graphics wiki)."""
+"""Fills by name: five, as many as a finger tells apart (tactile-graphics wiki)."""
 BLANK = next(iter(KINDS))
 
 
-def filled(shape: Any, kind: str, free: Any = None, clear_mm: float = CLEAR_MM) -> Fill:
-    """A fill of this kind within a shape, clear of its outline; empty where it has no room.
+def fill_shape(shape: Any, kind: str, free: Any = None, clear_mm: float = CLEAR_MM) -> Fill:
+    """Return a fill of this kind within a shape, clear of its outline; empty where it has no room.
 
-    free: a shape where no element may be.
+    free: a shape without elements.
     """
     inner = shape.buffer(-(LINE_MM / 2 + clear_mm))
     inner = inner if free is None else inner.difference(free)

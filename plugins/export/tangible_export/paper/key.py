@@ -1,4 +1,4 @@
-"""Key pages: of each thing its letter, a sample of its fill, and its name."""
+"""Key pages: the letter of each name on the page, a sample of its fill, and the name."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -6,34 +6,33 @@ from typing import Any
 import shapely
 
 from ..braille import CELL_PITCH_M, Cells, height_m, translate, wrapped
-from .drawing import Area, Braille, Drawing
-from .fills import filled
+from .fills import fill_shape
+from .lettering import MOST_TITLE_LINES, lines_at, title_at, words
+from .marks.svg import Area, Braille, Drawing
 from .sheet import CLEAR_MM, LINE_MM, MARGIN_MM, Page, Sheet, empty_sheet
-from .titles import MOST_LINES, lines_at, title_at
-from .words import words
 
 SAMPLE_MM = (36.0, 22.0)
-"""Width and length of a sample: what shows three elements of each fill across."""
+"""Width and length of a sample, with room for three elements of each fill across."""
 BESIDE_MM = 6.0
-"""Between the letter, the sample and the name."""
+"""Distance between the letter, the sample and the name."""
 
 
 @dataclass(frozen=True)
 class Entry:
-    """What the key says of a thing."""
+    """The entry of one name in the key."""
 
     name: str
     letter: str
-    """Empty where it has none on the page."""
+    """Letter; empty if there is none on the page."""
     fill: str
-    """Its kind."""
+    """Kind of the fill."""
 
 
 def key_pages(entries: list[Entry], title: str, language: str, page: Page, like: Sheet) -> list[Drawing]:
-    """As many pages as it takes, in the order of the letters. Raises: BrailleError as `wrapped`."""
+    """Return the pages of the key, in the order of the letters. Raises: BrailleError as `wrapped`."""
     heading = f"{title}: {words(language).key}" if title else words(language).key
     sheet = empty_sheet(page, like)
-    lines = wrapped(heading, language, sheet.title_width_mm / 1000)[:MOST_LINES]
+    lines = wrapped(heading, language, sheet.title_width_mm / 1000)[:MOST_TITLE_LINES]
     below = MARGIN_MM + 1000 * height_m(len(lines)) + BESIDE_MM
     rows = sorted(entries, key=lambda each: (not each.letter, each.letter, each.name))
     described = "; ".join(f"{each.letter} {each.name}".strip() for each in rows)
@@ -48,16 +47,16 @@ def key_pages(entries: list[Entry], title: str, language: str, page: Page, like:
             column, top = column + 1, max(below, sheet.top_mm)
         if column == columns:
             pages, column = [*pages, blank], 0
-        pages[-1] = _with(pages[-1], row, MARGIN_MM + column * (width + 2 * BESIDE_MM), top)
+        pages[-1] = _add_row(pages[-1], row, MARGIN_MM + column * (width + 2 * BESIDE_MM), top)
         top += row.height_mm + CLEAR_MM + LINE_MM
     return pages
 
 
 class _Row:
-    """An entry with its lines."""
+    """The row of an entry: its measures and its lines of braille."""
 
     def __init__(self, entry: Entry, language: str, width_mm: float, letters: int) -> None:
-        """letters: cells for which there is room before all samples of the key."""
+        """letters: number of cells in front of each sample of the key."""
         self.entry = entry
         self.letter: Cells = translate(entry.letter, language)
         self.sample_mm = BESIDE_MM + 1000 * ((letters - 1) * CELL_PITCH_M + CELL_PITCH_M / 2) if letters else 0.0
@@ -66,14 +65,14 @@ class _Row:
         self.height_mm = max(SAMPLE_MM[1], 1000 * height_m(len(self.lines)))
 
 
-def _with(page: Drawing, row: _Row, left: float, top: float) -> Drawing:
-    """The page with one more row, whose upper left corner is there."""
+def _add_row(page: Drawing, row: _Row, left: float, top: float) -> Drawing:
+    """Return the page with one more row, with this upper left corner."""
     middle, entry = top + row.height_mm / 2, row.entry
     beside = middle - 500 * height_m(len(row.lines))
     box = _box(left + row.sample_mm, middle - SAMPLE_MM[1] / 2)
     texts: list[Braille] = [lines_at(entry.name, row.lines, left + row.name_mm, beside)]
     texts += [lines_at(entry.letter, [row.letter], left, beside)] if entry.letter else []
-    area = Area(f"{entry.name}: {entry.fill}", box, filled(box, entry.fill))
+    area = Area(f"{entry.name}: {entry.fill}", box, fill_shape(box, entry.fill))
     return replace(page, areas=(*page.areas, area), texts=(*page.texts, *texts))
 
 

@@ -1,4 +1,4 @@
-"""The pages of a work: the picture with its letters and fills, measured once it is drawn, and its key."""
+"""The pages of a work: the picture with its letters and fills, measured after it is drawn, and its key."""
 # shapely has no types.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
@@ -18,63 +18,60 @@ from tangible_core.parts import shared_borders
 from tangible_core.plugins.notes import note
 
 from ..braille import Cells, height_m, translate, written_by
-from ..labels import some
-from .colouring import coloured
-from .drawing import NO_DOTS, Area, Braille, Drawing, svg
-from .fills import BLANK, KINDS, filled
+from ..labels import first_labels
+from .colouring import choose_fills
+from .fills import BLANK, KINDS, fill_shape
 from .key import Entry, key_pages
-from .letters import around, placed
-from .measuring import Near, narrow_places, too_near
-from .parting import opened_at
-from .reading import read
+from .lettering import around, place_letter, title_at, title_lines, words
+from .marks.gaps import Near, narrow_places, too_near
+from .marks.reading import read
+from .marks.svg import NO_DOTS, Area, Braille, Drawing, svg
+from .named_parts import LETTERS, MOST_NAMES, NamedParts, group_by_name, key_letters
+from .opening import open_at
 from .sheet import CLEAR_MM, GAP_MM, Page, Sheet
-from .things import LETTERS, MOST_THINGS, Thing, key_letters, things_of
-from .titles import title_at, title_lines
-from .words import words
 
 log = logging.getLogger(__name__)
 
 SMOOTH_MM = 0.8
-"""Tolerance of borders, by which the stairs of pixels become lines."""
+"""Tolerance of borders in smoothing, by which steps of pixels become lines."""
 ROUNDS = 6
-"""Of measuring and putting right."""
+"""Largest number of rounds of measuring and correcting a page."""
 APART_MM = 0.15
-"""By which a letter is moved farther than it was too near."""
+"""Margin that is added when a letter is moved away from a mark."""
 
 
 @dataclass(frozen=True)
-class Shown:
-    """A thing as it is shown."""
+class Symbols:
+    """The letter and the fill by which the parts of one name are shown."""
 
-    thing: Thing
+    group: NamedParts
     letter: str
     cells: Cells
-    """Of the letter."""
+    """Braille of the letter."""
     kind: str
-    """Of the fill."""
+    """Kind of the fill."""
 
 
 def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[str]:
-    """The texts of SVGs: of the page itself, and of those of its key.
+    """Return the SVGs of the page and of its key.
 
-    Raises: PictureError for a picture of one part, or a page that cannot be read; BrailleError for its texts."""
-    things = things_of(work, parts)
-    if sum(len(thing.numbers) for thing in things) < 2:
+    Raises: PictureError for a picture of one part, or a page that fingers cannot read; BrailleError for its texts.
+    """
+    groups = group_by_name(work, parts)
+    if sum(len(group.numbers) for group in groups) < 2:
         raise PictureError(
-            "the picture is one part, and a page of it would be a frame and nothing in it; "
-            "choose another texture method, say `parts:` by hand, or make smaller parts fit with `simplify:`"
+            "the picture is one part, and its page would be an empty frame; "
+            "choose another texture method, give `parts:` by hand, or make smaller parts fit with `simplify:`"
         )
-    if len(things) > MOST_THINGS:
+    if len(groups) > MOST_NAMES:
         raise PictureError(
-            f"{len(things)} parts are more than anybody keeps apart on a page, which takes {MOST_THINGS}; have "
+            f"{len(groups)} parts are more than anybody can tell apart on a page, which takes {MOST_NAMES}; have "
             "fewer, by a texture method with fewer segments or by one name for several in `parts:`"
         )
     lines, whole = title_lines(work.title, work.language, sheet)
     sheet = sheet.below(1000 * height_m(len(lines)))
     if not whole:
-        note(
-            log, f"the title has more lines of braille than room above the picture: {len(lines)} of it, all in the key"
-        )
+        note(log, f"only {len(lines)} lines of the title's braille have room above the picture; the key has all")
     blank = Drawing(
         sheet=sheet,
         title=shown_text(work.title),
@@ -84,108 +81,110 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[st
         areas=(),
         texts=(title_at(work.title, lines),),
     )
-    shown, picture = _smoothed(blank, parts, things)
-    _say(shown, picture)
-    keys = [_checked(key) for key in key_pages(_entries(shown, picture), work.title, work.language, page, sheet)]
-    return [svg(picture), *keys]
+    symbols, picture = _draw_readable(blank, parts, groups)
+    _note_left_out(symbols, picture)
+    keys = key_pages(_entries(symbols, picture), work.title, work.language, page, sheet)
+    return [svg(picture), *map(_check_key, keys)]
 
 
-def _smoothed(blank: Drawing, parts: PartMap, things: Sequence[Thing]) -> tuple[list[Shown], Drawing]:
-    """The page, once no outlines run too near to each other: where they do, parts are opened.
+def _draw_readable(blank: Drawing, parts: PartMap, groups: Sequence[NamedParts]) -> tuple[list[Symbols], Drawing]:
+    """Draw the page; open the parts where their outlines run too near to each other, until none do.
 
-    Raises: PictureError where that does not help.
+    Raises: PictureError if that does not help.
     """
     near, sheet = list[Near](), blank.sheet
     wide_mm = sheet.picture_mm[0]
     for turn in range(ROUNDS):
         shapes = _on_page(parts, sheet)
-        outlines = [Area(thing.name, shapes[number]) for thing in things for number in thing.numbers]
+        outlines = [Area(group.name, shapes[number]) for group in groups for number in group.numbers]
         if not (near := narrow_places(read(svg(replace(blank, areas=tuple(outlines), texts=()))))):
-            shown = _shown(things, shapes, _beside(parts, things), blank.language)
-            described = "; ".join(f"{each.letter} {each.thing.name}" for each in shown)
-            drawing, near = _measured(replace(blank, description=described), shown, shapes)
+            symbols = _choose_symbols(groups, shapes, _neighbours(parts, groups), blank.language)
+            description = "; ".join(f"{each.letter} {each.group.name}" for each in symbols)
+            drawing, near = _draw_clear(replace(blank, description=description), symbols, shapes)
             if not near:
-                return shown, drawing
-        parts = opened_at(parts, _on_picture([each.place_mm for each in near], sheet), wide_mm / 1000, turn + 1)
+                return symbols, drawing
+        parts = open_at(parts, _on_picture([each.place_mm for each in near], sheet), wide_mm / 1000, turn + 1)
     raise PictureError(f"{near[0]}, and {GAP_MM} mm must be between them; make the picture larger or simpler")
 
 
 def _on_picture(places_mm: Sequence[tuple[float, float]], sheet: Sheet) -> Float64[np.ndarray, "n 2"]:
-    """Places on the page as shares of the picture's width, from its upper left corner."""
+    """Return places on the page as shares of the picture's width, from its upper left corner."""
     return np.subtract(places_mm, (sheet.left_mm, sheet.top_mm)) / sheet.picture_mm[0]
 
 
 def _on_page(parts: PartMap, sheet: Sheet) -> tuple[Any, ...]:
-    """The shapes of parts in millimetres on the page, y down."""
+    """Return the shapes of parts in millimetres on the page, y down."""
     rows, columns = parts.labels.shape
     width, length = sheet.picture_mm
     middle = np.array([sheet.left_mm + width / 2, sheet.top_mm + length / 2])
     # The rows of a simplified map are whole, so its sides are those of the picture but for half a row.
     scale = np.array([width, -length * columns / rows])
 
-    def moved(at: Float64[np.ndarray, "k 2"]) -> Float64[np.ndarray, "k 2"]:
+    def to_page(at: Float64[np.ndarray, "k 2"]) -> Float64[np.ndarray, "k 2"]:
         return at * scale + middle
 
     shapes = shared_borders(parts, 1.0, SMOOTH_MM / width)
-    return tuple(shapely.transform(each, moved) for each in shapes)
+    return tuple(shapely.transform(each, to_page) for each in shapes)
 
 
-def _beside(parts: PartMap, things: Sequence[Thing]) -> list[set[int]]:
-    """The things that share a border with each."""
-    of = np.zeros(parts.count, np.int64)
-    for place, thing in enumerate(things):
-        of[list(thing.numbers)] = place
-    labels = of[parts.labels]
-    found = [set[int]() for _ in things]
+def _neighbours(parts: PartMap, groups: Sequence[NamedParts]) -> list[set[int]]:
+    """Return for each group the groups that share a border with it."""
+    group_of = np.zeros(parts.count, np.int64)
+    for place, group in enumerate(groups):
+        group_of[list(group.numbers)] = place
+    labels = group_of[parts.labels]
+    neighbours = [set[int]() for _ in groups]
     for one, other in ((labels[:, 1:], labels[:, :-1]), (labels[1:], labels[:-1])):
         for pair in np.unique(np.stack([one[one != other], other[one != other]]), axis=1).T.tolist():
-            found[pair[0]].add(pair[1])
-            found[pair[1]].add(pair[0])
-    return found
+            neighbours[pair[0]].add(pair[1])
+            neighbours[pair[1]].add(pair[0])
+    return neighbours
 
 
-def _shown(things: Sequence[Thing], shapes: Sequence[Any], beside: list[set[int]], language: str) -> list[Shown]:
-    letters = key_letters([thing.name for thing in things])
+def _choose_symbols(
+    groups: Sequence[NamedParts], shapes: Sequence[Any], neighbours: list[set[int]], language: str
+) -> list[Symbols]:
+    letters = key_letters([group.name for group in groups])
     plain = [
-        Shown(thing, letter, translate(letter, language), BLANK) for thing, letter in zip(things, letters, strict=True)
+        Symbols(group, letter, translate(letter, language), BLANK)
+        for group, letter in zip(groups, letters, strict=True)
     ]
     allowed = [
         [kind for kind in KINDS if kind == BLANK or _has_room(replace(each, kind=kind), shapes)] for each in plain
     ]
-    sizes = [sum(shapes[number].area for number in thing.numbers) for thing in things]
-    kinds, alike = coloured(beside, allowed, sizes)
-    shown = [replace(each, kind=kind) for each, kind in zip(plain, kinds, strict=True)]
+    sizes = [sum(shapes[number].area for number in group.numbers) for group in groups]
+    kinds, alike = choose_fills(neighbours, allowed, sizes)
     if alike:
-        pairs = [f"{things[one].name} and {things[other].name}" for one, other in alike]
-        note(log, f"neighbours with one fill, for want of another: {some(pairs)}", logging.WARNING)
-    if len(things) > len(LETTERS):
+        pairs = [f"{groups[one].name} and {groups[other].name}" for one, other in alike]
+        note(log, f"neighbours with the same fill, as there are too few: {first_labels(pairs)}", logging.WARNING)
+    if len(groups) > len(LETTERS):
         note(
             log,
-            f"{len(things)} parts have letters, two each: many for one page; fewer are read sooner",
+            f"{len(groups)} parts have letters, two each: many for one page; fewer are read sooner",
             logging.WARNING,
         )
-    return shown
+    return [replace(each, kind=kind) for each, kind in zip(plain, kinds, strict=True)]
 
 
-def _has_room(each: Shown, shapes: Sequence[Any]) -> bool:
-    """Whether the largest part of the thing can have this fill."""
-    largest = max(each.thing.numbers, key=lambda number: shapes[number].area)
-    return bool(_area(each, shapes[largest]).fill)
+def _has_room(symbols: Symbols, shapes: Sequence[Any]) -> bool:
+    """Tell whether the largest part of the group has room for this fill."""
+    largest = max(symbols.group.numbers, key=lambda number: shapes[number].area)
+    return bool(_area(symbols, shapes[largest]).fill)
 
 
-def _area(each: Shown, shape: Any, clear_mm: float = CLEAR_MM) -> Area:
-    """clear_mm: kept around the letter; infinite where it is left out."""
-    dots = placed(each.cells, shape, clear_mm) if clear_mm < np.inf else None
-    fill = filled(shape, each.kind, None if dots is None else around(dots))
-    return Area(each.thing.name, shape, fill, None if dots is None else Braille(each.letter, dots))
+def _area(symbols: Symbols, shape: Any, clear_mm: float = CLEAR_MM) -> Area:
+    """Return a part with its symbols. clear_mm: distance around the letter; infinite to leave it out."""
+    dots = place_letter(symbols.cells, shape, clear_mm) if clear_mm < np.inf else None
+    fill = fill_shape(shape, symbols.kind, None if dots is None else around(dots))
+    return Area(symbols.group.name, shape, fill, None if dots is None else Braille(symbols.letter, dots))
 
 
-def _measured(blank: Drawing, shown: Sequence[Shown], shapes: Sequence[Any]) -> tuple[Drawing, list[Near]]:
-    """The page, once nothing on it is too near to anything: letters are moved or left out, elements of fills left out.
+def _draw_clear(blank: Drawing, symbols: Sequence[Symbols], shapes: Sequence[Any]) -> tuple[Drawing, list[Near]]:
+    """Draw the page; move or leave out letters, and leave out elements of fills, until no marks are too near.
 
-    And what that does not help.
+    Returns: the page, and the pairs of marks that are still too near.
     """
-    pieces = [(each, shapes[number]) for each in shown for number in each.thing.numbers]
+    pieces = [(each, shapes[number]) for each in symbols for number in each.group.numbers]
     away, clear_mm = NO_DOTS, [CLEAR_MM] * len(pieces)
     drawing, near = blank, list[Near]()
     for turn in range(ROUNDS):
@@ -206,7 +205,7 @@ def _measured(blank: Drawing, shown: Sequence[Shown], shapes: Sequence[Any]) -> 
 
 
 def _letter_in(near: Near, areas: Sequence[Area]) -> int | None:
-    """The area whose letter is too near to something."""
+    """Return the index of the area whose letter is one of two marks that are too near."""
     at = shapely.points(np.array([mark.place_mm for mark in near.marks if mark.what == "braille"]).reshape(-1, 2))
     for number, area in enumerate(areas):
         if area.letter is not None and (shapely.distance(shapely.MultiPoint(area.letter.dots_mm), at) < 0.1).any():
@@ -214,33 +213,33 @@ def _letter_in(near: Near, areas: Sequence[Area]) -> int | None:
     return None
 
 
-def _checked(key: Drawing) -> str:
-    """Raises: PictureError if something in it is too near to something."""
+def _check_key(key: Drawing) -> str:
+    """Return the SVG of a key page. Raises: PictureError if two of its marks are too near."""
     text = svg(key)
     if near := too_near(read(text)):
         raise PictureError(f"in the key, {near[0]}, and {GAP_MM} mm must be between them")
     return text
 
 
-def _entries(shown: Sequence[Shown], picture: Drawing) -> list[Entry]:
-    """What the key says: of letters and fills those that are on the page."""
+def _entries(symbols: Sequence[Symbols], picture: Drawing) -> list[Entry]:
+    """Return the entries of the key, with the letters and fills that are on the page."""
     lettered = {area.label for area in picture.areas if area.letter}
     has_fill = {area.label for area in picture.areas if area.fill}
     return [
         Entry(
-            each.thing.name,
-            each.letter if each.thing.name in lettered else "",
-            each.kind if each.thing.name in has_fill else BLANK,
+            each.group.name,
+            each.letter if each.group.name in lettered else "",
+            each.kind if each.group.name in has_fill else BLANK,
         )
-        for each in shown
+        for each in symbols
     ]
 
 
-def _say(shown: Sequence[Shown], picture: Drawing) -> None:
-    """What the page leaves out, by the names of the parts."""
+def _note_left_out(symbols: Sequence[Symbols], picture: Drawing) -> None:
+    """Note the parts without a letter or a fill, by their names."""
     note(log, f"braille by {written_by(picture.language)}")
     if bare := [area.label for area in picture.areas if area.letter is None]:
-        note(log, f"no room for a letter in {some(bare)}")
-    kinds = {each.thing.name: each.kind for each in shown}
+        note(log, f"no room for a letter in {first_labels(bare)}")
+    kinds = {each.group.name: each.kind for each in symbols}
     if bare := [area.label for area in picture.areas if kinds[area.label] != BLANK and not area.fill]:
-        note(log, f"no room for a fill in {some(bare)}")
+        note(log, f"no room for a fill in {first_labels(bare)}")

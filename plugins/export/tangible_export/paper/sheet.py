@@ -1,4 +1,4 @@
-"""Where on a sheet of paper the picture, the title and the corner mark lie: millimetres from its upper left corner."""
+"""Sheets of paper: the places of picture, title and corner mark, in millimetres from the upper left corner."""
 
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -11,20 +11,19 @@ Page = Literal["a4", "letter", "a3"]
 SIZES_MM: dict[Page, tuple[float, float]] = {"a4": (210, 297), "letter": (215.9, 279.4), "a3": (297, 420)}
 """Width and length, upright."""
 MARGIN_MM = 10.0
-"""Free on all sides: what printers leave white, and where a hand holds the sheet."""
+"""Margin on all sides, which printers leave white, and where a hand holds the sheet."""
 LINE_MM = 1.0
 """Width of outlines. A convention of ours, within the 0.5 to 1.5 mm that tactile graphics use."""
 GAP_MM = 3.2
-"""Between marks, so that a finger parts them. Source: tactilegraphics.org."""
+"""Smallest gap between marks that a finger tells apart. Source: tactilegraphics.org."""
 CLEAR_MM = GAP_MM + 0.2
-"""What the drawing keeps between marks: more than GAP_MM by two pixels of those in which it is measured."""
+"""Gap at which marks are drawn: GAP_MM and two pixels of the measurement."""
 CORNER_MM = 8.0
-"""Legs of the triangle that says which corner is the upper right one."""
+"""Legs of the triangle that marks the upper right corner."""
 LOWERED_MM = 10.0
-"""By which a picture that leaves room is lower than it could be, and no more: a hand that comes from the title finds
-it."""
+"""Limit to moving a picture down where there is room: a hand that comes from the title still finds it."""
 LEAST_MM = 12.7
-"""The shorter side of a picture. Source for the least size of a shape that is recognised: APH, 1997."""
+"""Shorter side of a picture. Source for the least size of a shape that is recognised: APH, 1997."""
 
 
 @dataclass(frozen=True)
@@ -38,15 +37,15 @@ class Sheet:
     picture_mm: tuple[float, float]
     """Width and length."""
     spare_mm: float = 0
-    """By which the picture can be moved down, for a title of several lines."""
+    """Room below the picture, for moving it down under a title of several lines."""
 
     @property
     def title_width_mm(self) -> float:
-        """Of the lines above the picture, beside the corner mark."""
+        """Width of the lines above the picture, to the left of the corner mark."""
         return self.width_mm - 2 * MARGIN_MM - CORNER_MM - 2 * GAP_MM
 
     def below(self, title_mm: float) -> "Sheet":
-        """The same with its picture below a title of this height, as far as there is room, and nearer to the middle."""
+        """Return the sheet with its picture moved below a title of this height and towards the middle, if possible."""
         least = MARGIN_MM + title_mm + CLEAR_MM + LINE_MM / 2
         down = max(least - self.top_mm, min(self.spare_mm / 2, LOWERED_MM))
         down = min(max(down, 0), self.spare_mm)
@@ -54,17 +53,17 @@ class Sheet:
 
 
 def sheet_for(page: Page, aspect: float, width_m: float | None) -> Sheet:
-    """The sheet, upright or on its side, on which the picture is largest; or where it is so wide.
+    """Return the sheet, upright or on its side, on which the picture is largest; or with a picture of this width.
 
-    aspect: width through length of the picture.
+    aspect: width by length of the picture.
     """
     size, wide = _largest(page, aspect)
     wide = wide if width_m is None else 1000 * width_m
-    return _placed(size, (wide, wide / aspect))
+    return _centre(size, (wide, wide / aspect))
 
 
 def check_readable(page: Page, sheet: Sheet) -> None:
-    """Raises: GeometryError for a picture that has no room, or is too narrow for a finger."""
+    """Check the picture's size. Raises: GeometryError if it is too large for the page or too narrow for a finger."""
     width, length = sheet.picture_mm
     _, most = _largest(page, width / length)
     if width > most + 1e-6:
@@ -80,7 +79,7 @@ def check_readable(page: Page, sheet: Sheet) -> None:
 
 
 def _largest(page: Page, aspect: float) -> tuple[tuple[float, float], float]:
-    """The size of the sheet as it lies, and the width of the largest picture on it."""
+    """Return the size of the sheet as it lies, and the width of the largest picture on it."""
     upright = SIZES_MM[page]
     level = upright[1], upright[0]
     rooms = {size: min(_room(size)[0], _room(size)[1] * aspect) for size in (upright, level)}
@@ -89,7 +88,7 @@ def _largest(page: Page, aspect: float) -> tuple[tuple[float, float], float]:
 
 
 def empty_sheet(page: Page, like: Sheet) -> Sheet:
-    """A sheet that lies as the other one does, for a key: its picture is all that lies below the title."""
+    """Return a sheet for a key, lying as the other one: its picture is the whole room below the title."""
     upright = SIZES_MM[page]
     size = upright if like.width_mm < like.length_mm else (upright[1], upright[0])
     return Sheet(size[0], size[1], MARGIN_MM, _top_mm(), _room(size))
@@ -100,12 +99,12 @@ def _top_mm() -> float:
 
 
 def _room(size: tuple[float, float]) -> tuple[float, float]:
-    """Width and length of the largest picture, to the middle of its outline."""
+    """Return width and length of the largest picture, to the middle of its outline."""
     width, length = size
     return width - 2 * MARGIN_MM - LINE_MM, length - _top_mm() - MARGIN_MM - LINE_MM / 2
 
 
-def _placed(size: tuple[float, float], picture: tuple[float, float]) -> Sheet:
-    """In the middle of what is left below the title."""
+def _centre(size: tuple[float, float], picture: tuple[float, float]) -> Sheet:
+    """Return a sheet with the picture centred from left to right, directly below the title."""
     left = (size[0] - picture[0]) / 2
     return Sheet(size[0], size[1], left, _top_mm(), picture, spare_mm=_room(size)[1] - picture[1])

@@ -1,1 +1,1 @@
-"""Pictures of pins: which of them rise for parts and heights, and how files say so."""
+"""Pictures of pins: which pins rise for parts and heights, and the formats of their files."""

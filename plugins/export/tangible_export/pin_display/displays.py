@@ -1,4 +1,4 @@
-"""Displays of pins that rise."""
+"""Displays of raised pins."""
 
 from typing import Annotated, Literal
 
@@ -7,7 +7,7 @@ from pydantic import ConfigDict, Field
 from tangible_core.data.quantities import Quantities
 
 PITCH_M = 0.0025
-"""From pin to pin: of all displays below, about. Products are made for it, so that parts narrower than a finger go."""
+"""Distance from pin to pin of the displays below, about. Parts are simplified for pictures of this pitch."""
 
 
 class Display(Quantities):
@@ -22,8 +22,8 @@ class Display(Quantities):
     levels: Annotated[int, Field(ge=1, le=255)] = 1
     """Heights above that of a pin that is down: 1 for pins that are up or down, 4 for heights of 0 to 4."""
 
-    def fitted(self, aspect: float) -> tuple[int, int]:
-        """Columns and rows of a picture of this width through length, as large as there is room for."""
+    def picture_size(self, aspect: float) -> tuple[int, int]:
+        """Return columns and rows of the largest picture with this ratio of width to length."""
         columns = min(self.columns, self.rows * aspect)
         return max(1, round(columns)), max(1, min(self.rows, round(columns / aspect)))
 
@@ -34,6 +34,7 @@ DISPLAYS: dict[str, Display] = {
     "graphiti": Display(columns=60, rows=40, levels=4),
     "dotpad": Display(columns=60, rows=40),
 }
-"""Sources: the makers' pages: APH and HumanWare of Monarch, Orbit Research of Graphiti, Dot Inc. of Dot Pad 320."""
+"""Displays by name. Sources: pages of the makers, APH and HumanWare (Monarch), Orbit Research (Graphiti), Dot Inc. (Dot
+Pad 320)."""
 HEXADECIMAL = ("dotpad",)
-"""Those whose maker takes pins as hexadecimal digits."""
+"""Displays that read pins as hexadecimal digits."""

@@ -1,1 +1,1 @@
-"""Heights become a closed solid: the plate around them, triangles, walls and floor, and what a print makes of it."""
+"""Heights as a closed solid: the plate around them, triangles, walls and floor, and checks for printing."""

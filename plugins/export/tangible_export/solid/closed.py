@@ -10,7 +10,7 @@ from tangible_core.data.records import Record
 from .patches import Patch
 
 STEPS_PER_MM = 100_000
-"""Coordinates are whole hundred-thousandths of a millimetre, as a file of text can say them."""
+"""Steps of coordinates in a millimetre: files of text hold five decimals."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,14 +24,14 @@ class Solid(Record):
     triangles: Int64[np.ndarray, "m 3"]
 
 
-def closed(upper: Patch, base_m: float) -> Solid:
-    """What lies below a surface whose outline is a rectangle from (0, 0) on, down to `base_m` below its level.
+def close_solid(upper: Patch, base_m: float) -> Solid:
+    """Return the solid below a surface whose outline is a rectangle from (0, 0) on; its floor is `base_m` below z = 0.
 
-    Points of patches at one place are one vertex, and triangles between fewer than three vertices are none.
+    Coinciding points of patches become one vertex; triangles with fewer than three different vertices are dropped.
     """
     raised_m = upper.points_m + np.array([0.0, 0.0, base_m])
     points = np.rint(1000 * STEPS_PER_MM * raised_m).astype(np.int64)
-    vertices, triangles = _welded(points, upper.triangles)
+    vertices, triangles = _weld(points, upper.triangles)
     start, end = _outline(vertices, triangles)
     count, rim = len(vertices), len(start)
     foot = np.zeros(count, np.int64)
@@ -43,7 +43,7 @@ def closed(upper: Patch, base_m: float) -> Solid:
     return Solid(np.concatenate([vertices, below]) / STEPS_PER_MM, np.concatenate([triangles, *walls, floor]))
 
 
-def _welded(
+def _weld(
     points: Int64[np.ndarray, "n 3"], triangles: Int64[np.ndarray, "m 3"]
 ) -> tuple[Int64[np.ndarray, "v 3"], Int64[np.ndarray, "t 3"]]:
     order = np.lexsort(points.T)
@@ -59,12 +59,12 @@ def _welded(
 def _outline(
     vertices: Int64[np.ndarray, "v 3"], triangles: Int64[np.ndarray, "t 3"]
 ) -> tuple[Int64[np.ndarray, " e"], Int64[np.ndarray, " e"]]:
-    """Starts and ends of the edges that run along one of the four sides: each vertex is one start, and one end."""
+    """Return starts and ends of the edges along the four sides: each vertex there is one start and one end."""
     far = vertices.max(axis=0)
     sides = np.stack([vertices[:, axis] == limit for axis in (0, 1) for limit in (0, far[axis])])
-    found = list[np.ndarray]()
+    edges = list[np.ndarray]()
     for a, b in ((0, 1), (1, 2), (2, 0)):
         start, end = triangles[:, a], triangles[:, b]
-        found.append(np.stack([start, end])[:, (sides[:, start] & sides[:, end]).any(axis=0)])
-    start, end = np.concatenate(found, axis=1)
+        edges.append(np.stack([start, end])[:, (sides[:, start] & sides[:, end]).any(axis=0)])
+    start, end = np.concatenate(edges, axis=1)
     return start, end

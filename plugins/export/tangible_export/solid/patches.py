@@ -1,6 +1,6 @@
 """Patches of a surface: points in metres, and triangles that run counter-clockwise as seen from outside.
 
-Patches that are laid side by side have the same points along their common edge; `closed` makes one surface of them.
+Adjacent patches have the same points along their common edge; `close_solid` makes one surface of them.
 """
 
 from collections.abc import Iterable, Sequence
@@ -14,14 +14,14 @@ from tangible_core.data.records import Record
 
 @dataclass(frozen=True, eq=False)
 class Patch(Record):
-    """x to the right, y to the back, z up from the upper side of the plate."""
+    """A piece of a surface: x to the right, y to the back, z up from the upper side of the plate."""
 
     points_m: Float64[np.ndarray, "n 3"]
     triangles: Int64[np.ndarray, "m 3"]
 
 
-def joined(patches: Iterable[Patch]) -> Patch:
-    """One patch of all, with the points that each of them has."""
+def join_patches(patches: Iterable[Patch]) -> Patch:
+    """Return all patches as one; common points are not merged."""
     points, triangles, count = list[np.ndarray](), list[np.ndarray](), 0
     for patch in patches:
         points.append(patch.points_m)
@@ -31,9 +31,9 @@ def joined(patches: Iterable[Patch]) -> Patch:
 
 
 def strip(inner: Float64[np.ndarray, "n 3"], outer: Float64[np.ndarray, "k 3"]) -> Patch:
-    """The surface between two chains of points that run the same way, `outer` to the right or below.
+    """Return the surface between two chains of points that run the same way, `outer` to the right or below.
 
-    At each end of a piece of one chain, both have come equally far, each as a share of its whole length.
+    Points of the two chains are paired by the share of the chain's whole length at which they lie.
     """
     along_inner, along_outer = _shares(inner), _shares(outer)
     near_outer = len(inner) + np.searchsorted(along_outer, along_inner, "left")
@@ -44,13 +44,13 @@ def strip(inner: Float64[np.ndarray, "n 3"], outer: Float64[np.ndarray, "k 3"]) 
 
 
 def _shares(chain: Float64[np.ndarray, "n 3"]) -> Float64[np.ndarray, " m"]:
-    """How far along the chain each of its points but the first lies, 1 for the last."""
+    """Return the share of the chain's length at each point but the first; 1 at the last."""
     lengths = np.linalg.norm(np.diff(chain[:, :2], axis=0), axis=1).cumsum()
     return lengths / lengths[-1]
 
 
 def wall(ring: Float64[np.ndarray, "n 3"], foot_m: float = 0.0) -> Patch:
-    """From a ring that runs counter-clockwise straight down."""
+    """Return the vertical wall below a ring of points that runs counter-clockwise."""
     count, lower = len(ring), ring.copy()
     lower[:, 2] = foot_m
     upper = np.arange(count)
@@ -60,11 +60,11 @@ def wall(ring: Float64[np.ndarray, "n 3"], foot_m: float = 0.0) -> Patch:
 
 
 def rectangle(left_m: float, front_m: float, right_m: float, back_m: float) -> Patch:
-    """A flat one, at the upper side of the plate, without points between its corners."""
+    """Return a flat rectangle at the upper side of the plate, without points between its corners."""
     corners = flat([(left_m, front_m), (right_m, front_m), (right_m, back_m), (left_m, back_m)])
     return Patch(corners, np.array([[0, 1, 2], [0, 2, 3]]))
 
 
 def flat(places_m: Sequence[tuple[float, float]], height_m: float = 0.0) -> Float64[np.ndarray, "n 3"]:
-    """Points at one height."""
+    """Return points at one height."""
     return np.array([(x_m, y_m, height_m) for x_m, y_m in places_m], np.float64)

@@ -2,32 +2,32 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Float64, Int64
 
 from tangible_core.data import Relief
 
 from ..braille import DOT_DIAMETER_M, LINE_PITCH_M, Cells, dots
 from ..braille import height_m as braille_height_m
-from .block import Block, block
 from .braille_band import braille_band
-from .patches import Patch, flat, joined, rectangle, strip, wall
+from .patches import Patch, flat, join_patches, rectangle, strip, wall
 from .triangles import Triangles
 
 LEAST_RIM_M = 0.004
-"""What braille and the corner mark need around them."""
+"""Narrowest rim with room for braille and the corner mark."""
 ABOVE_BRAILLE_M = 0.005
-"""From the picture to its title: so far apart, raised things are felt as two (Round Table, Guidelines for producing
-accessible 3D prints)."""
+"""Distance from the picture to its title: at this distance, raised shapes are felt as two (Round Table, Guidelines for
+producing accessible 3D prints)."""
 LARGEST_MARK_M, MARK_HEIGHT_M = 0.006, 0.001
 FLAT_SHARE = 0.2
-"""Of the rim, between the picture and the row of the corner mark."""
+"""Share of the rim's width between the picture and the corner mark."""
 
 
 @dataclass(frozen=True)
 class Layout:
-    """Where everything lies on the plate: x from the left, y from the front edge, which is below the picture."""
+    """The layout of the plate: x from the left, y from the front edge, which is below the picture."""
 
     picture_m: tuple[float, float]
     """Width and length."""
@@ -38,7 +38,7 @@ class Layout:
 
     @property
     def below_m(self) -> float:
-        """Length of the rim before the picture."""
+        """Length of the rim in front of the picture."""
         return self.rim_m + (ABOVE_BRAILLE_M + braille_height_m(len(self.lines)) if self.lines else 0.0)
 
     @property
@@ -53,7 +53,7 @@ class Layout:
         return min((1 - FLAT_SHARE) * self.rim_m, LARGEST_MARK_M) if self.corner_mark else 0.0
 
     def centres_m(self) -> Float64[np.ndarray, "n 2"]:
-        """Of the dots of the title."""
+        """Return the centres of the title's dots."""
         first_m = self.below_m - ABOVE_BRAILLE_M - DOT_DIAMETER_M / 2
         left_m = self.rim_m + DOT_DIAMETER_M / 2
         of_lines = [dots(cells, (left_m, number * LINE_PITCH_M)) for number, cells in enumerate(self.lines)]
@@ -61,16 +61,65 @@ class Layout:
         return np.stack([down[:, 0], first_m - down[:, 1]], axis=1)
 
 
+class Block(NamedTuple):
+    """The picture as a block: its upper side, and the points at its edge, counter-clockwise from the lower left.
+
+    corners: indices of the block's four corners in the ring.
+    """
+
+    top: Patch
+    ring_m: Float64[np.ndarray, "r 3"]
+    corners: tuple[int, int, int, int]
+
+
 def plate(relief: Relief, triangles: Triangles, layout: Layout) -> Patch:
-    """The whole upper side. Without a rim, that is the picture alone."""
+    """Return the whole upper side of the plate; without a rim, the picture alone."""
     raised = block(relief, triangles, (layout.rim_m, layout.below_m))
     if not layout.rim_m:
         return raised.top
-    return joined([raised.top, wall(raised.ring_m), *_rim(layout, raised)])
+    return join_patches([raised.top, wall(raised.ring_m), *_rim(layout, raised)])
+
+
+def block(relief: Relief, triangles: Triangles, at_m: tuple[float, float]) -> Block:
+    """Return the block of a relief, whose lower left corner is to lie at `at_m`.
+
+    The nodes of the triangles are centres of cells. From the outermost nodes, level triangles go on to the edge of the
+    picture, so that neither the heights nor the picture's size are off.
+    """
+    rows, columns = relief.height_m.shape
+    column, row = triangles.column, triangles.row
+    across_m, down_m = relief.pitch_m
+    inner = np.stack([at_m[0] + (column + 0.5) * across_m, at_m[1] + (row + 0.5) * down_m, triangles.height_m], axis=1)
+    ring, corners = _ring(column, row, columns, rows)
+    edge = inner[ring]
+    for axis, (place, last) in enumerate(((column[ring], columns - 1), (row[ring], rows - 1))):
+        edge[place == 0, axis] = at_m[axis]
+        edge[place == last, axis] = at_m[axis] + relief.extent_m[axis]
+    outer = len(inner) + np.arange(len(ring))
+    after, outer_after = np.roll(ring, -1), np.roll(outer, -1)
+    sides = [np.stack([after, ring, outer], axis=1), np.stack([after, outer, outer_after], axis=1)]
+    top = Patch(np.concatenate([inner, edge]), np.concatenate([triangles.corners.astype(np.int64), *sides]))
+    return Block(top, edge, corners)
+
+
+def _ring(
+    column: np.ndarray, row: np.ndarray, columns: int, rows: int
+) -> tuple[Int64[np.ndarray, " r"], tuple[int, int, int, int]]:
+    """Return the outermost nodes, counter-clockwise from the lower left, and the indices of the corners among them."""
+    right, back = columns - 1, rows - 1
+    way = np.select(
+        [row == 0, column == right, row == back, column == 0],
+        [column, right + row, 2 * right + back - column, 2 * (right + back) - row],
+        -1,
+    )
+    outermost = np.flatnonzero(way >= 0)
+    ring = outermost[np.argsort(way[outermost], kind="stable")]
+    a, b, c, d = np.searchsorted(way[ring], [0, right, right + back, 2 * right + back]).tolist()
+    return ring, (a, b, c, d)
 
 
 def _rim(layout: Layout, raised: Block) -> Iterator[Patch]:
-    """The band of braille, the row of the mark, and what is flat between these and the picture."""
+    """Yield the band of braille, the row of the mark, and the flat strips between them and the picture."""
     width_m, length_m = layout.size_m
     front_m, back_m = 0.0, length_m - layout.mark_m
     before = flat([(0.0, 0.0), (width_m, 0.0)])
@@ -88,7 +137,7 @@ def _rim(layout: Layout, raised: Block) -> Iterator[Patch]:
 
 
 def _around(raised: Block, edges: Sequence[Float64[np.ndarray, "_ 3"]]) -> Iterator[Patch]:
-    """Flat strips from the foot of the block to four edges, counter-clockwise from the front one."""
+    """Yield flat strips from the foot of the block to four edges, counter-clockwise from the front one."""
     foot = raised.ring_m * (1, 1, 0)
     foot = np.concatenate([foot, foot[:1]])
     ends = (*raised.corners, len(foot) - 1)
@@ -97,7 +146,7 @@ def _around(raised: Block, edges: Sequence[Float64[np.ndarray, "_ 3"]]) -> Itera
 
 
 def _mark_row(width_m: float, length_m: float, side_m: float) -> Iterator[Patch]:
-    """At the back edge: nothing, and in the right corner a triangle whose right angle points to that corner."""
+    """Yield the row at the back edge: flat, but for a triangle in the right corner, its right angle at that corner."""
     left_m, front_m, inset_m = width_m - side_m, length_m - side_m, side_m / 6
     yield rectangle(0.0, front_m, left_m, length_m)
     mark = flat(

@@ -1,4 +1,4 @@
-"""What a printer makes of a plate, said before it prints."""
+"""Notes on parts of a plate that a printer cannot print well."""
 
 import logging
 from math import ceil
@@ -13,36 +13,37 @@ from tangible_core.runtime.opencv import plain_opencv
 log = logging.getLogger(__name__)
 
 THIN_BASE_M = 0.0008
-"""A thinner plate bends and breaks; 0.0015 is better (Round Table, Guidelines for producing accessible 3D prints)."""
+"""Thinnest base that neither bends nor breaks; 0.0015 is better (Round Table, Guidelines for producing accessible 3D
+prints)."""
 LARGEST_BED_M = 0.25
-"""Most printers for the home and for schools print no further. A convention of ours."""
+"""Bed of most printers for homes and schools. A convention of ours."""
 NOZZLE_M, LAYER_M = 0.0004, 0.00015
-"""What most printers come with. A convention of ours."""
+"""Nozzle and layer of most printers. A convention of ours."""
 LEAST_AREA_M2, LEAST_SHARE = 2.5e-7, 0.001
-"""Of what is said."""
+"""Smallest area of thin shapes and smallest share of steep pixels that are reported."""
 STEEPEST_DEG = 45
-"""Of a face that hangs over, from the upright: so far, plastic holds without support."""
+"""Largest overhang, from the upright, that plastic holds without support."""
 ROWS_AT_ONCE = 256
-"""A huge plate is looked at in strips."""
+"""Rows that are checked at a time, to save memory."""
 
 
-def say_what_prints(picture: Relief, size_m: tuple[float, float], base_m: float) -> None:
-    """Notes of what is too thin, too large or too steep for a print.
+def note_print_problems(picture: Relief, size_m: tuple[float, float], base_m: float) -> None:
+    """Note shapes that are too thin, too large or too steep to print.
 
-    size_m: of the whole plate.
+    size_m: width and length of the whole plate.
     """
     if base_m < THIN_BASE_M:
-        told = f"a base of {1000 * base_m:.2g} mm bends and breaks"
-        note(log, f"{told}; make base_m {1000 * THIN_BASE_M:.1g} mm or more, better 1.5 mm", logging.WARNING)
+        fault = f"a base of {1000 * base_m:.2g} mm bends and breaks"
+        note(log, f"{fault}; make base_m {1000 * THIN_BASE_M:.1g} mm or more, better 1.5 mm", logging.WARNING)
     if (side_m := max(size_m)) > LARGEST_BED_M:
-        told = f"the plate is {1000 * side_m:.0f} mm long, more than the bed of most printers has room for"
-        note(log, f"{told}; for {1000 * LARGEST_BED_M:.0f} mm, make longer_side_m or rim_m smaller", logging.WARNING)
-    _say_thin(picture)
-    _say_steep(picture)
+        fault = f"the plate is {1000 * side_m:.0f} mm long, more than the bed of most printers has room for"
+        note(log, f"{fault}; for {1000 * LARGEST_BED_M:.0f} mm, make longer_side_m or rim_m smaller", logging.WARNING)
+    _note_thin(picture)
+    _note_steep(picture)
 
 
-def _say_thin(picture: Relief) -> None:
-    """Where the picture stands higher than it does without all that is narrower than a nozzle."""
+def _note_thin(picture: Relief) -> None:
+    """Note shapes that an opening with a disc of a nozzle's size removes."""
     heights = picture.height_m
     size = tuple(max(1, ceil(NOZZLE_M / pitch - 1e-6)) for pitch in picture.pitch_m)
     middle = tuple((side - 1) // 2 for side in size)
@@ -53,13 +54,13 @@ def _say_thin(picture: Relief) -> None:
     area_m2 = np.count_nonzero(lost_m > LAYER_M) * picture.pitch_m[0] * picture.pitch_m[1]
     if area_m2 < LEAST_AREA_M2:
         return
-    told = f"what is thinner than a nozzle of {1000 * NOZZLE_M:.1g} mm may be left out by the printer"
+    fault = f"the printer may leave out shapes thinner than a nozzle of {1000 * NOZZLE_M:.1g} mm"
     where = f"{1e6 * area_m2:,.1f} square mm of the picture, up to {1000 * lost_m.max():.2g} mm high"
-    note(log, f"{told}: {where}; smooth it with workspace.smooth_m, or print it larger", logging.WARNING)
+    note(log, f"{fault}: {where}; smooth the relief with workspace.smooth_m, or print it larger", logging.WARNING)
 
 
-def _say_steep(picture: Relief) -> None:
-    """Lying flat, a height map never hangs over; standing up, it does so where it is steep."""
+def _note_steep(picture: Relief) -> None:
+    """Note steep slopes: they overhang when the plate is printed standing up, never when it lies flat."""
     heights = picture.height_m
     rows, columns = heights.shape
     limit = float(np.tan(np.radians(STEEPEST_DEG)))
@@ -71,5 +72,5 @@ def _say_steep(picture: Relief) -> None:
         steep += np.count_nonzero(np.hypot(right, down) > limit)
     share = steep / max(1, (rows - 1) * (columns - 1))
     if share >= LEAST_SHARE:
-        told = f"{100 * share:.2g} % of the picture is steeper than {STEEPEST_DEG} degrees"
-        note(log, f"{told}: print the plate lying flat; standing up, it would need supports there")
+        fault = f"{100 * share:.2g} % of the picture is steeper than {STEEPEST_DEG} degrees"
+        note(log, f"{fault}: print the plate lying flat; standing up, it would need supports there")

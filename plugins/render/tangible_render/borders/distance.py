@@ -30,9 +30,9 @@ def _near(labels: Int32[np.ndarray, "h w"], pitch_m: tuple[float, float], most_m
     """Return a mask of cells that may be within most_m: those near cells at borders, half a cell from the line."""
     from scipy import ndimage
 
-    from tangible_core.data.parts import beside_border
+    from tangible_core.data.views import border_pixels
 
-    bordering = beside_border(labels)
+    bordering = border_pixels(labels)
     if not bordering.any():
         return bordering
     reach_m = most_m + 1.5 * float(np.hypot(*pitch_m))

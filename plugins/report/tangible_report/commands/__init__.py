@@ -1,4 +1,4 @@
-"""The command that shows materials. Imported whenever `tangible` starts, so this room imports next to nothing."""
+"""The command that shows materials. It is imported at each start of `tangible`, so it imports next to nothing."""
 
 from __future__ import annotations
 
@@ -13,6 +13,6 @@ if TYPE_CHECKING:
 @hookimpl
 def tangible_commands(app: Typer) -> None:
     """Add `tangible materials`."""
-    from tangible_core.cli.commands import add
+    from tangible_core.cli.command_table import add
 
     add("materials", "tangible_report.commands.materials:app", "List the materials; show or draw some.")

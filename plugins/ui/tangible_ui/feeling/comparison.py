@@ -7,7 +7,7 @@ from typing import final
 
 from tangible_core.data import Vector
 from tangible_core.errors import DeviceError
-from tangible_core.servo import Packed, Safety, Servo, still
+from tangible_core.servo import Packed, Safety, Servo, null_touch
 from tangible_devices.pointer import PointerClient
 from tangible_devices.pointer.pointer import Pointer
 
@@ -71,7 +71,7 @@ class ComparisonLoop:
     def _start(self) -> None:
         self._end()
         device = Pointer(channel=self._channel, stale_after_s=STALE_AFTER_S, follow_s=FOLLOW_S)
-        servo = Servo(still(), device, Safety())
+        servo = Servo(null_touch(), device, Safety())
         servo.__enter__()
         self._servo = servo
         self._client = PointerClient(self._channel, 5.0)

@@ -14,7 +14,7 @@ from tangible_core.errors import DeviceError, TangibleError
 from tangible_core.mapping import MappedDevice, WorkspaceMapping, placement_of
 from tangible_core.plugins.failures import sentence
 from tangible_core.plugins.interfaces import HapticDevice
-from tangible_core.servo import Beacon, Packed, Safety, Servo, still
+from tangible_core.servo import Beacon, Packed, Safety, Servo, null_touch
 from tangible_core.servo.ring import STOP
 
 from ..framing import BUTTON_BITS, FLAG_BITS, STATE, STATE_FRAME
@@ -229,7 +229,7 @@ class Feeling:
         if servo is None or servo.running or servo is self._told:
             return None
         self._told = servo
-        return None if self.stopped else LoopEnd(_end(servo), servo.lost)
+        return None if self.stopped else LoopEnd(_end(servo), servo.device_lost)
 
     def frame(self, seq: int, status: int, other_law: OtherLaw = ALONE) -> bytes | None:
         """Return the newest tick as a STATE frame, without a loop a hand that is nowhere; None if overwritten."""
@@ -274,7 +274,7 @@ class Feeling:
         before, self._servo, self._device = self._servo, None, None
         if before is not None:
             _end(before)
-        self._starting = servo = Servo(still(), device, Safety())
+        self._starting = servo = Servo(null_touch(), device, Safety())
         try:
             servo.__enter__()
             self._servo, self._device = servo, device

@@ -6,11 +6,11 @@ from typing import Any
 from tangible_core.data import HapticSurface
 from tangible_core.mapping import over
 from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.pipeline.engine.engine import Progress
+from tangible_core.pipeline.engine.stage import Progress
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.runtime.child_process import dumps
-from tangible_core.servo import packed
+from tangible_core.servo import pack_touch
 from tangible_core.session import materials_text
 
 
@@ -25,7 +25,7 @@ def parcel_of(touch: Touch, surface: HapticSurface, config: PipelineConfig) -> d
     if config.device is None or config.felt_device is None:
         raise config.missing("device")
     device = over(config.felt_device, surface.extent_m)
-    sent = packed(touch, device.spec())
+    sent = pack_touch(touch, device.spec())
     return {
         "parcel": str(sent.parcel),
         "stiffness_n_per_m": sent.stiffness_n_per_m,

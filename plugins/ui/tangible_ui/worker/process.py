@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import IO, Any, final
 
 from tangible_core.errors import OutputError
-from tangible_core.servo.wire import receive, send, sendable
+from tangible_core.servo.framing import receive, send, sendable
 
 from .messages import Event, JobFailure, JobRequest, JobResult
 

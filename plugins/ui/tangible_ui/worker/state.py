@@ -11,7 +11,7 @@ from tangible_core.errors import Stopped
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
-from tangible_core.pipeline.engine.engine import StageEvent
+from tangible_core.pipeline.engine.stage import StageEvent
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.registry import Registry, default_registry
 from tangible_core.scene.scene_files import SceneFiles
@@ -62,7 +62,7 @@ class Work:
 
     def give_way(self, to: Pipeline, want: str) -> bool:
         """Stop for another pipeline: at once, or after a stage that it needs too. Returns: True if at once."""
-        product, needed = self._product, to.engine.needed(want)
+        product, needed = self._product, to.engine.inputs_of(want)
         if product in needed and self.pipeline.engine.key(product) == to.engine.key(product):
             self._after = True
             return False

@@ -6,7 +6,7 @@ from typing import Any, cast, get_args
 
 from pydantic import BaseModel
 
-from ....files.source import Location, Source
+from ....files.yaml.source import Location, Source
 from .key import Forms, Key, Reading
 
 

@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import core_schema
 
 from ....errors import TangibleError
-from ....files.source import Location, Source
+from ....files.yaml.source import Location, Source
 from ....plugins.registry import Registry
 
 

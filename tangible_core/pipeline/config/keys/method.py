@@ -8,7 +8,7 @@ from pydantic import BaseModel
 from ruamel.yaml.comments import CommentedMap
 
 from ....errors import ConfigError, quoted
-from ....files.source import Location
+from ....files.yaml.source import Location
 from ....plugins.interfaces import KINDS
 from ..methods import NamedMethod, choose, named_method
 from .key import Forms, Key, Reading, Unchecked

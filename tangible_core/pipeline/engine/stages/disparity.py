@@ -7,9 +7,9 @@ from functools import cached_property
 from ....data import DisparityMap, Views
 from ....errors import PictureError, TangibleError
 from ....plugins.notes import doubt, note
-from ....scene import scaling, unmatched, view_order
+from ....scene import pair_checks, scaling
+from ....scene.pair_checks import ViewOrder
 from ....scene.scene_files import SceneFiles
-from ....scene.view_order import ViewOrder
 from ..stage import Inputs, MethodStage, no_picture
 from ..working_grid import known_disparity
 
@@ -28,18 +28,20 @@ class DisparityStage(MethodStage):
 
     @cached_property
     def key(self) -> str:
-        code = " ".join(self.code(each.__name__) for each in (scaling, view_order, unmatched))
+        code = " ".join(self.code(each.__name__) for each in (scaling, pair_checks))
         return f"{code} {self._order_is_given} {self.identity[1]} {self.grid.key}"
 
     def make(self, inputs: Inputs) -> DisparityMap:
         views = self.views
-        estimate = self.estimate(self.configured.method.estimate, views)
+        estimate = self.estimate(self.required_choice.method.estimate, views)
         order = self.order(estimate, views)
-        if order is not None and order.said:
-            note(log, order.said, logging.WARNING if order.exchanged else logging.INFO)
+        if order is not None and order.message:
+            note(log, order.message, logging.WARNING if order.exchanged else logging.INFO)
         disparity = self.in_picture_pixels(estimate, exchanged=order is not None and order.exchanged)
         if views.right is not None:
-            reason = unmatched.same_twice(views, disparity) or unmatched.hardly_matched(disparity, self.grid.known)
+            reason = pair_checks.identical_views(views, disparity) or pair_checks.few_matches(
+                disparity, self.grid.known_mask
+            )
             if reason:
                 doubt(log, reason)
         return disparity
@@ -56,15 +58,15 @@ class DisparityStage(MethodStage):
             return None
         original = self.context.scene.views
         offset_px = original.calibration.offset_px if original and original.calibration else 0.0
-        return view_order.view_order(estimate, views.left, offset_px / self.grid.factor)
+        return pair_checks.view_order(estimate, views.left, offset_px / self.grid.factor)
 
     def in_picture_pixels(self, estimate: DisparityMap, exchanged: bool) -> DisparityMap:
         """Return the map on the working grid in pixels of the pictures, unknown where the pictures are.
 
         exchanged: True corrects a map of exchanged views.
         """
-        ordered = view_order.put_right(estimate) if exchanged else estimate
-        return known_disparity(scaling.in_pixels_of(ordered, self.context.scene.shape[1]), self.grid.known)
+        ordered = pair_checks.correct_exchanged(estimate) if exchanged else estimate
+        return known_disparity(scaling.in_pixels_of(ordered, self.context.scene.shape[1]), self.grid.known_mask)
 
     def full_size(self, value: DisparityMap) -> DisparityMap:
         return self.grid.full_disparity(value)

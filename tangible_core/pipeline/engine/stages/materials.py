@@ -42,11 +42,11 @@ class MaterialsStage(Stage):
         config, grid = self.config, self.grid
         if config.by_parts:
             labels = grid.parts(inputs[config.felt_parts], config.felt_parts)
-            ground = transparent_parts(labels, grid.shown)
+            ground = transparent_parts(labels, grid.opaque_mask)
         else:
             labels = scaling.reduced_segments(inputs["segments"], grid.shape)
-            by_method = "segments" not in self.context.brought
-            ground = [labels.count - 1] if by_method and grid.shown is not None else []
+            by_method = "segments" not in self.context.scene_products
+            ground = [labels.count - 1] if by_method and grid.opaque_mask is not None else []
         choice, picture = config.materials, grid.views.left if grid.views else None
         return assignment.assign(
             labels, picture, choice.by, self._library, self._rules, choice.default, grid.scene.shape, ground, self._own

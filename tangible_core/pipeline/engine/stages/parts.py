@@ -21,7 +21,7 @@ class PartsStage(Stage):
     def __init__(self, context: Context) -> None:
         """Raises: ConfigError for configured parts that the scene's own segments do not have."""
         super().__init__(context)
-        segments = context.brought.get("segments")
+        segments = context.scene_products.get("segments")
         if self.config.by_parts and isinstance(segments, SegmentMap):
             self.finish(parts_of(segments))
 
@@ -55,10 +55,10 @@ class PartsStage(Stage):
         cure = (
             "give it a label picture, `segments:` under `scene:`, or name a method under `texture:` that finds segments"
         )
-        return config.complained(((key,), f"parts are pieces of segments, and the scene has none; {cure}"))
+        return config.error_at(((key,), f"parts are pieces of segments, and the scene has none; {cure}"))
 
     @property
-    def listed(self) -> bool:
+    def in_outcomes(self) -> bool:
         return self.config.by_parts
 
 

@@ -52,7 +52,7 @@ class ReliefStage(Stage):
         views, size = self.context.scene.views, self.config.size
         calibration = views.calibration if views else None
         relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes, spans)
-        return flatten_transparent(geometry.smooth(relief, size.smooth_m), self.grid.shown)
+        return flatten_transparent(geometry.smooth(relief, size.smooth_m), self.grid.opaque_mask)
 
     def part_heights(self, parts: PartMap, disparity: DisparityMap | None) -> PartHeights:
         """Return the height of each part, and why. parts, disparity: of any size; both are brought to the grid."""
@@ -61,7 +61,7 @@ class ReliefStage(Stage):
         if disparity is not None:
             disparity = scaling.reduced_disparity(disparity, grid.shape)
         on_grid, given_m = grid.parts(parts, config.felt_parts), config.given_heights_m
-        return part_heights.heights_of(on_grid, config.heights, config.top_m, given_m, disparity, grid.shown)
+        return part_heights.heights_of(on_grid, config.heights, config.top_m, given_m, disparity, grid.opaque_mask)
 
     def _from_parts(self, parts: PartMap, disparity: DisparityMap | None) -> Relief:
         config, grid = self.config, self.grid
@@ -70,4 +70,4 @@ class ReliefStage(Stage):
         warn_missing_heights(heights, config.heights, config.given_heights_m)
         on_grid = grid.parts(parts, config.felt_parts)
         layering = Layering(on_grid, config.size.width_m, config.heights, views.left)
-        return relief_of_layers(layering, heights.heights_m, config.size, grid.shown)
+        return relief_of_layers(layering, heights.heights_m, config.size, grid.opaque_mask)

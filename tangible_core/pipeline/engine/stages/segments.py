@@ -24,9 +24,9 @@ class SegmentsStage(MethodStage):
 
     def make(self, inputs: Inputs) -> SegmentMap:
         views = self.views
-        segments = self.configured.method.segment(views.left)
+        segments = self.required_choice.method.segment(views.left)
         self.check_shape("labels", segments.labels.shape, views.shape)
-        return add_ground_segment(known_segments(segments, self.grid.known), self.grid.shown)
+        return add_ground_segment(known_segments(segments, self.grid.known_mask), self.grid.opaque_mask)
 
     def full_size(self, value: SegmentMap) -> SegmentMap:
         return self.grid.full_segments(value)

@@ -44,5 +44,5 @@ class SimplifiedStage(Stage):
         return missing_segments(self.context)
 
     @property
-    def listed(self) -> bool:
+    def in_outcomes(self) -> bool:
         return self.config.simplify is not None

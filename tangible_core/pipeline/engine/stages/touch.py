@@ -30,7 +30,7 @@ class TouchStage(MethodStage):
         return self.identity[1]
 
     def make(self, inputs: Inputs) -> Touch:
-        chosen, device = self.configured, self.config.felt_device
+        chosen, device = self.required_choice, self.config.felt_device
         surface, limits = inputs["surface"], ""
         if device is not None:
             surface, limits = fit_to_device(surface, self.config, device)

@@ -192,7 +192,7 @@ def test_materials_by_rules_are_read():
 
 def test_completed_configuration_keeps_its_rules():
     text = "scene: builtin/brick\nmaterials: {rules: [{colour: blue, material: water}]}"
-    completed = parse(text).completed()["materials"]
+    completed = parse(text).as_data()["materials"]
     assert completed == {
         "rules": [{"colour": "blue", "material": "water"}], "by": "roughness", "default": "plain", "fit": "device",
     }  # fmt: skip
@@ -286,9 +286,9 @@ def test_completed_configuration_is_read_back_equal(tmp_path: Path):
 
     config = load_config(ROOT / "configs" / "feel.yaml", default_registry())
     with (tmp_path / "done.yaml").open("w") as file:
-        YAML(typ="safe").dump(config.completed(), file)
+        YAML(typ="safe").dump(config.as_data(), file)
     again = load_config(tmp_path / "done.yaml", default_registry())
-    assert again.completed() == config.completed()
+    assert again.as_data() == config.as_data()
     assert again.render.method == config.render.method
 
 
@@ -333,8 +333,8 @@ def test_device_with_a_mapping_is_mapped():
     config = parse(MAPPED)
     assert config.felt_device is not None and config.device is not None
     assert config.felt_device.spec().workspace_m == pytest.approx((0.04, 0.04, 0.04))
-    assert config.completed()["device"] == {"use": "mock", **config.device.method.model_dump(mode="json")}
-    again = parse_config(json.dumps(config.completed()), PATH, default_registry())
+    assert config.as_data()["device"] == {"use": "mock", **config.device.method.model_dump(mode="json")}
+    again = parse_config(json.dumps(config.as_data()), PATH, default_registry())
     assert again.mapping == config.mapping
 
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.errors import ConfigError, TangibleError
-from tangible_core.pipeline.config.editing import REMOVE, edited, said
+from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 
@@ -68,17 +68,17 @@ device: mock
     ],
 )  # fmt: skip
 def test_change_of_a_key_leaves_the_rest(changes: dict, before: str, after: str | None):
-    text = edited(OF_MINE, PATH, changes)
+    text = edit_text(OF_MINE, PATH, changes)
     if after is not None:
         options = "  confidence: 0.5   # half\n" if changes.get("depth.use") else ""
         assert text == OF_MINE.replace(options, "").replace(before, after, 1)
     for comment in ("# of mine", "# beside this file", "# how deep", "# how high", "# hard"):
         assert comment in text
-    assert edited(OF_MINE.replace("\n", "\r\n"), PATH, changes) == text.replace("\n", "\r\n")
+    assert edit_text(OF_MINE.replace("\n", "\r\n"), PATH, changes) == text.replace("\n", "\r\n")
     for key, value in changes.items():
-        assert value in (None, REMOVE) or _at(said(text, PATH), key) == value
-    left = [key for key in said(text, PATH) if key in said(OF_MINE, PATH)]
-    assert left == [key for key in said(OF_MINE, PATH) if key in left]
+        assert value in (None, REMOVE) or _at(read_values(text, PATH), key) == value
+    left = [key for key in read_values(text, PATH) if key in read_values(OF_MINE, PATH)]
+    assert left == [key for key in read_values(OF_MINE, PATH) if key in left]
 
 
 def _at(tree: Any, key: Any) -> Any:
@@ -88,21 +88,21 @@ def _at(tree: Any, key: Any) -> Any:
 
 
 def test_block_of_lines_with_a_new_value_becomes_one_line():
-    text = edited(OF_MINE, PATH, {"depth": {"use": "zncc", "window_px": 9}})
+    text = edit_text(OF_MINE, PATH, {"depth": {"use": "zncc", "window_px": 9}})
     assert "# how deep\ndepth: {use: zncc, window_px: 9}\n\n# how high\n" in text
 
 
 def test_labels_in_changes_become_whole_numbers():
-    text = edited("scene: builtin/brick\n", PATH, {"materials": {"0": "ice"}})
+    text = edit_text("scene: builtin/brick\n", PATH, {"materials": {"0": "ice"}})
     assert text == "scene: builtin/brick\nmaterials: {0: ice}\n"
     assert parse_config(text, PATH, default_registry()).materials.by == {0: "ice"}
 
 
 def test_empty_file_takes_changes():
-    assert edited("", PATH, {"scene": "builtin/brick"}) == "scene: builtin/brick\n"
-    assert edited("# mine", PATH, {"scene.photo": "a.png"}) == "# mine\nscene: {photo: a.png}\n"
-    assert edited("scene: builtin/brick", PATH, {"depth": "zncc"}) == "scene: builtin/brick\ndepth: zncc\n"
-    assert edited("# mine\nscene: builtin/brick\n", PATH, {"scene": REMOVE}) == "# mine\n"
+    assert edit_text("", PATH, {"scene": "builtin/brick"}) == "scene: builtin/brick\n"
+    assert edit_text("# mine", PATH, {"scene.photo": "a.png"}) == "# mine\nscene: {photo: a.png}\n"
+    assert edit_text("scene: builtin/brick", PATH, {"depth": "zncc"}) == "scene: builtin/brick\ndepth: zncc\n"
+    assert edit_text("# mine\nscene: builtin/brick\n", PATH, {"scene": REMOVE}) == "# mine\n"
 
 
 LISTED = "scene: builtin/coins  # mine\nexport: [heights, {use: text, language: de}]  # for others\n"
@@ -121,19 +121,19 @@ LISTED = "scene: builtin/coins  # mine\nexport: [heights, {use: text, language: 
     ],
 )  # fmt: skip
 def test_exporter_changed_by_its_name_keeps_the_list(changes: dict, exporters: str):
-    text = edited(LISTED, PATH, {"scene": "builtin/brick", **changes})
+    text = edit_text(LISTED, PATH, {"scene": "builtin/brick", **changes})
     assert text == f"scene: builtin/brick  # mine\nexport: {exporters}  # for others\n"
 
 
 def test_exporters_stay_where_another_key_changes():
-    assert edited(LISTED, PATH, {"workspace.width_m": 0.1}).startswith(LISTED)
-    assert edited("scene: builtin/coins\n", PATH, {"export.heights.width_m": 0.1}).endswith(
+    assert edit_text(LISTED, PATH, {"workspace.width_m": 0.1}).startswith(LISTED)
+    assert edit_text("scene: builtin/coins\n", PATH, {"export.heights.width_m": 0.1}).endswith(
         "export: [{use: heights, width_m: 0.1}]\n"
     )
 
 
 def test_exporter_files_are_found_from_another_folder(tmp_path: Path):
-    from tangible_core.pipeline.config.editing import moved
+    from tangible_core.pipeline.config.editing import relocate_text
     from tangible_core.pipeline.config.methods import NamedMethod
     from tangible_core.pipeline.config.model import PipelineConfig
     from tangible_core.plugins import Exporter
@@ -150,17 +150,23 @@ def test_exporter_files_are_found_from_another_folder(tmp_path: Path):
         NamedMethod("framed", "", Framed(frame=tmp_path / "frames/oak.svg")),
     )
     config = PipelineConfig(scene="builtin/coins", export=exporters)
-    found = moved(text, tmp_path / "p.yaml", config, tmp_path / "sub" / "p.yaml")
+    found = relocate_text(text, tmp_path / "p.yaml", config, tmp_path / "sub" / "p.yaml")
     assert found == text.replace("frames/", "../frames/")
 
 
 def test_alias_changed_in_one_place_leaves_the_other():
     text = "scene: builtin/brick  # mine\nmapping: &m {scale: 2}\nworkspace: {width_m: &w 0.1, relief_m: *w}\n"
-    assert said(edited(text, PATH, {"workspace.relief_m": 0.2}), PATH)["workspace"] == {"width_m": 0.1, "relief_m": 0.2}
-    assert said(edited(text, PATH, {"workspace.width_m": 0.2}), PATH)["workspace"] == {"width_m": 0.2, "relief_m": 0.1}
-    assert edited(text, PATH, {"mapping.scale": 3}) == text.replace("2", "3")
+    assert read_values(edit_text(text, PATH, {"workspace.relief_m": 0.2}), PATH)["workspace"] == {
+        "width_m": 0.1,
+        "relief_m": 0.2,
+    }
+    assert read_values(edit_text(text, PATH, {"workspace.width_m": 0.2}), PATH)["workspace"] == {
+        "width_m": 0.2,
+        "relief_m": 0.1,
+    }
+    assert edit_text(text, PATH, {"mapping.scale": 3}) == text.replace("2", "3")
     shared = "a: &b {c: 1}\nd: *b\n"
-    assert said(edited(shared, PATH, {"d.c": 2}), PATH) == {"a": {"c": 1}, "d": {"c": 2}}
+    assert read_values(edit_text(shared, PATH, {"d.c": 2}), PATH) == {"a": {"c": 1}, "d": {"c": 2}}
 
 
 @pytest.mark.parametrize(
@@ -169,24 +175,24 @@ def test_alias_changed_in_one_place_leaves_the_other():
         ("scene: [\n", {"want": "touch"}, "p.yaml:2:1"),
         ("- a\n", {"want": "touch"}, "p.yaml:1:1"),
         ("materials: {rules: []}\n", {"materials.rules.0": "x"}, "rules is a list; set it as a whole"),
-        ("scene: a\n", {"": 1}, "is no key"),
-        ("scene: a\n", {"depth..use": 1}, "is no key"),
-        ("scene: a\n", {"x." * 30 + "x": 1}, "is no key"),
+        ("scene: a\n", {"": 1}, "is not a key"),
+        ("scene: a\n", {"depth..use": 1}, "is not a key"),
+        ("scene: a\n", {"x." * 30 + "x": 1}, "is not a key"),
         ("scene: a\n", {"workspace.width_m": 10**70}, "a number of more than 64 digits"),
         ("scene: a\n", {"scene": "x" * 300_000}, "holds more than"),
         ("scene: a\n", {"scene": json.loads("[" * 500 + "]" * 500)}, "more than 20 blocks are nested"),
-        ("scene: a\n", {"depth": {1, 2, PATH.open}}, "what JSON can say"),
+        ("scene: a\n", {"depth": {1, 2, PATH.open}}, "a value that JSON can express"),
     ],
 )
 def test_impossible_change_is_refused(text: str, changes: dict, says: str):
     with pytest.raises(TangibleError, match=says):
-        edited(text, PATH, changes)
+        edit_text(text, PATH, changes)
 
 
 def test_nan_and_dates_become_words_for_json():
-    assert json.dumps(said("workspace: {width_m: .nan, 3: 2001-01-01}\n", PATH), allow_nan=False)
+    assert json.dumps(read_values("workspace: {width_m: .nan, 3: 2001-01-01}\n", PATH), allow_nan=False)
     with pytest.raises(ConfigError):
-        said("scene: {", PATH)
+        read_values("scene: {", PATH)
 
 
 TEXTS = [
@@ -210,16 +216,16 @@ values = st.recursive(
 
 @given(st.sampled_from(TEXTS), st.lists(st.tuples(keys, values | st.just(REMOVE)), min_size=1, max_size=4))
 def test_edited_text_has_the_changes_and_the_rest(text: str, changes: list):
-    tree = said(text, PATH)
+    tree = read_values(text, PATH)
     for key, value in changes:
         try:
             _set(tree, key.split("."), value)
         except ConfigError:
             with pytest.raises(ConfigError, match="is a list"):
-                edited(text, PATH, {key: value})
+                edit_text(text, PATH, {key: value})
             return
-        text = edited(text, PATH, {key: value})
-        assert _json(said(text, PATH)) == _json(tree)
+        text = edit_text(text, PATH, {key: value})
+        assert _json(read_values(text, PATH)) == _json(tree)
 
 
 def _set(tree: dict, parts: list[str], value: Any) -> None:

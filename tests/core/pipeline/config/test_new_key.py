@@ -39,7 +39,7 @@ import tangible_core
 from tangible_core import Pipeline, Scene
 from tangible_core.cli.completing import keys
 from tangible_core.errors import ConfigError
-from tangible_core.pipeline.config.editing import edited
+from tangible_core.pipeline.config.editing import edit_text
 from tangible_core.pipeline.config.markdown import markdown
 from tangible_core.pipeline.config.model import KEYS
 from tangible_core.pipeline.config.keys.key import Forms
@@ -63,11 +63,11 @@ forms = Forms(registry, "tangible-images")
 properties = {name: KEYS[name].schema_of_field(forms) for name in ("title", "grain", "workspace")}
 print(json.dumps({
     "home": tangible_core.__file__,
-    "completed": parse(text).completed(),
-    "again": parse(parse(text).as_yaml()).completed() == parse(text).completed(),
-    "word": parse("scene: builtin/brick\\ngrain: sharp\\n").completed()["grain"],
-    "overridden": parse("scene: builtin/brick\\ngrain: sharp\\n", "grain.size_m=3 mm").completed()["grain"],
-    "edited": edited("scene: builtin/brick\\ngrain: sharp  # mine\\n", path, {"grain.size_m": 0.003}),
+    "completed": parse(text).as_data(),
+    "again": parse(parse(text).as_yaml()).as_data() == parse(text).as_data(),
+    "word": parse("scene: builtin/brick\\ngrain: sharp\\n").as_data()["grain"],
+    "overridden": parse("scene: builtin/brick\\ngrain: sharp\\n", "grain.size_m=3 mm").as_data()["grain"],
+    "edited": edit_text("scene: builtin/brick\\ngrain: sharp  # mine\\n", path, {"grain.size_m": 0.003}),
     "wrong": complaints(lambda: parse(text.replace("2 mm", "2 m").replace("round", "rond"))),
     "unknown": complaints(lambda: parse("scene: builtin/brick\\ngrian: round\\n")),
     "argument": complaints(lambda: Pipeline(scene, grain={"shape": "rond"}, cached=False)),

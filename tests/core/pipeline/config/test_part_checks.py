@@ -6,7 +6,7 @@ import pytest
 
 from tangible_core.errors import Complaint, ConfigError
 from tangible_core.parts import HeightChoice, PartChoice
-from tangible_core.pipeline.config.editing import REMOVE, edited
+from tangible_core.pipeline.config.editing import REMOVE, edit_text
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
@@ -154,8 +154,8 @@ def test_override_keeps_the_name_of_a_part():
 
 def test_edited_part_keeps_its_name():
     text = "scene: builtin/brick  # brick\nparts:\n  0: wall  # behind\n  6: helmet\nheights: given\n"
-    changed = edited(text, PATH, {"parts.6.height_m": 0.004, "heights.round_m": 0.003})
+    changed = edit_text(text, PATH, {"parts.6.height_m": 0.004, "heights.round_m": 0.003})
     assert "  0: wall  # behind\n" in changed
     assert parse(changed).parts == {0: PartChoice(name="wall"), 6: PartChoice(name="helmet", height_m=0.004)}
     assert parse(changed).heights == HeightChoice(by="given", round_m=0.003)
-    assert edited(changed, PATH, {("parts", "6", "height_m"): REMOVE}).count("helmet") == 1
+    assert edit_text(changed, PATH, {("parts", "6", "height_m"): REMOVE}).count("helmet") == 1

@@ -158,7 +158,7 @@ def test_default_of_every_option_is_json(kind: str):
     registry = default_registry()
     for name in registry.names(kind):
         config = parse_config(f"scene: builtin/brick\n{kind}: {name}\n", Path("p.yaml"), registry)
-        assert json.loads(json.dumps(config.completed(), allow_nan=False))[kind]["use"] == name
+        assert json.loads(json.dumps(config.as_data(), allow_nan=False))[kind]["use"] == name
 
 
 def test_page_in_docs_is_current():

@@ -75,7 +75,7 @@ def pipeline(folder: Path, **parts) -> Engine:
 
 def keys(folder: Path, **parts) -> dict[str, str]:
     """Of what is made, each by itself: what it is made from is left out."""
-    return {product: stage.key for product, stage in pipeline(folder, **parts)._stages.items()}
+    return {product: stage.key for product, stage in pipeline(folder, **parts).stages.items()}
 
 
 def forget() -> None:

@@ -479,7 +479,7 @@ class TestFelt:
         np.testing.assert_allclose(surface.height_m, pairs, atol=0.01 / 15)
 
     def test_disparity_on_the_coarse_grid_is_in_pixels_of_the_picture(self, folder: Path):
-        found = pipeline(folder, workspace=self.COARSE).felt("disparity")
+        found = pipeline(folder, workspace=self.COARSE).make_on_grid("disparity")
         assert found.disparity_px.tolist() == [[2.0 * column for column in range(15)]] * 10
 
     def test_what_a_scene_brings_at_full_size_is_felt_as_coarsely(self, folder: Path):

@@ -12,7 +12,7 @@ def report(stopped: str = "", part: str = "", material: str = "") -> ServoReport
     return ServoReport(100, 0.1, state, NO_FORCE, 1.5, 0.0, stopped, part=part, material=material)
 
 
-def test_the_log_has_one_line_a_moment(caplog: pytest.LogCaptureFixture):
+def test_log_has_a_line_for_each_hook(caplog: pytest.LogCaptureFixture):
     caplog.set_level(logging.DEBUG, "tangible_core.plugins.observers.log")
     ran = Outcome("relief", "ran", "asked for", "core", 0.25)
     log.tangible_plan_made(Plan("relief", (ran,)))
@@ -21,8 +21,8 @@ def test_the_log_has_one_line_a_moment(caplog: pytest.LogCaptureFixture):
     log.tangible_stage_finished(Outcome("segments", "failed", "a bug"))
     log.tangible_servo_report(report())
     log.tangible_servo_report(report(part="helmet", material="glass"))
-    said = [(record.levelname, record.getMessage()) for record in caplog.records]
-    assert said == [
+    lines = [(record.levelname, record.getMessage()) for record in caplog.records]
+    assert lines == [
         ("INFO", "plan for relief: relief ran"),
         ("DEBUG", "making relief with core"),
         ("INFO", "relief: ran, asked for (0.250 s)"),
@@ -32,21 +32,21 @@ def test_the_log_has_one_line_a_moment(caplog: pytest.LogCaptureFixture):
     ]
 
 
-def test_progress_writes_to_a_terminal_alone(capsys: pytest.CaptureFixture[str]):
+def test_progress_without_a_terminal_writes_nothing(capsys: pytest.CaptureFixture[str]):
     progress.tangible_stage_started("relief", "core")
     progress.tangible_stage_finished(Outcome("relief", "ran", "asked for"))
     assert capsys.readouterr() == ("", "")
 
 
-def test_progress_says_what_is_written(monkeypatch: pytest.MonkeyPatch):
-    heard = list[str]()
-    monkeypatch.setattr(progress, "_show", heard.append)
+def test_progress_of_an_exporter_shows_writing(monkeypatch: pytest.MonkeyPatch):
+    lines = list[str]()
+    monkeypatch.setattr(progress, "_show", lines.append)
     progress.tangible_stage_started(product=f"{PREFIX}swell", method="swell")
     progress.tangible_stage_started(product="relief", method="core")
-    assert heard == ["writing swell", "making relief with core"]
+    assert lines == ["writing swell", "making relief with core"]
 
 
-def test_progress_shows_one_spinner_and_takes_it_away(monkeypatch: pytest.MonkeyPatch):
+def test_progress_shows_one_spinner_until_the_loop_stops(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     progress.tangible_stage_started("relief", "core")
     progress.tangible_servo_report(report())

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from tangible_core.data import DeviceSpec, Force, HapticState, TickFlag
 from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.servo.guard.guard import couple, guard, restart, wait
-from tangible_core.servo.guard.guarded import guarded
 from tangible_core.servo.guard.layout import ENERGY_J, MOST_DELAY
 from tangible_core.servo.guard.safety import Coupling, Safety, counts
+from tangible_core.servo.ticks.python_tick import guard_touch
 
 SPEC = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
 BARE = {"ramp_s": 0, "passivity": "off"}
@@ -443,7 +443,7 @@ class TestCoupling:
                 return Force(0.0, 0.0, 1.0)
 
         (settings, memory), (_, twin) = (Safety(coupling="auto", **BARE).arrays(SPEC, 0.0) for _ in range(2))
-        allowed = guarded(Asked(), settings, memory)
+        allowed = guard_touch(Asked(), settings, memory)
         for x in (0.0, 0.002):
             state = HapticState((x, 0.0, -0.001), (0.1, 0.0, 0.0), x, 3)
             tool = couple(settings, twin, 0.002, *state.position_m, *state.velocity_m_per_s)

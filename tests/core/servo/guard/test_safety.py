@@ -16,7 +16,7 @@ from tangible_core.servo.guard.safety import (
     Safety,
     effective_damping_n_s_per_m,
     encoder_limit_n_per_m,
-    softness,
+    gain,
     stiffness_limit_n_per_m,
 )
 
@@ -86,13 +86,13 @@ class TestArrays:
     )
     def test_the_share_of_a_law_s_force(self, safety: Safety, stiffness: float, share: float):
         settings, memory = safety.arrays(FALCON, stiffness)
-        assert softness(settings, 0.001) == pytest.approx(share, rel=1e-12)
-        assert memory[layout.SOFTNESS] == softness(settings, 0.001)
+        assert gain(settings, 0.001) == pytest.approx(share, rel=1e-12)
+        assert memory[layout.GAIN] == gain(settings, 0.001)
 
     def test_a_quick_loop_is_no_stiffer_than_the_device(self):
         """At 4 kHz its damping would hold 9600 N/m; its own word is 3000."""
         settings, memory = Safety(ramp_s=0, passivity="off").arrays(FALCON, 5000.0)
-        assert softness(settings, 0.00025) == pytest.approx(3000 / 5000)
+        assert gain(settings, 0.00025) == pytest.approx(3000 / 5000)
         for _ in range(4000):
             left = guard.guard(settings, memory, 0.00025, *[0.0] * 6, 0.0, 0.0, 0.1)
         assert 0.1 * 2400 / 5000 < left[2] <= 0.1 * 3000 / 5000
@@ -102,7 +102,7 @@ class TestArrays:
             settings, _ = Safety(coupling="auto", delay_ticks=delay).arrays(FALCON, 800.0)
             stiffness, damping = settings[[layout.COUPLING, layout.COUPLING_DAMPING]]
             assert (stiffness * 0.001 / 2 + damping) * (1 + 2 * delay) < 1.5
-            assert softness(settings, 0.001) == 1.0
+            assert gain(settings, 0.001) == 1.0
 
     @pytest.mark.parametrize("law", [800.0, 0.0])
     @pytest.mark.parametrize("delay", [0, 1])
@@ -117,7 +117,7 @@ class TestArrays:
 
     def test_a_faster_loop_does_not_make_a_device_stiffer_than_it_is(self):
         settings, _ = Safety().arrays(FALCON, 6000.0)
-        assert softness(settings, 0.0005) == pytest.approx(0.5, rel=1e-12)
+        assert gain(settings, 0.0005) == pytest.approx(0.5, rel=1e-12)
 
     def test_an_automatic_coupling_on_coarse_encoders_is_half_of_what_they_allow(self):
         coarse, _ = Safety(coupling="auto", friction_n=0.015).arrays(FALCON, 800.0)

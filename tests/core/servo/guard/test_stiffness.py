@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from simulated_handle import wall
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, TICK_COLUMNS, DeviceSpec, Force, HapticState, TickFlag
@@ -21,7 +22,6 @@ from tangible_core.servo import Safety, Servo
 from tangible_core.servo.guard import stiffness
 from tangible_core.servo.guard.stiffness import DEPTHS_M, HALVINGS, LAYERS, PLACES, STEP_M, slopes, stiffness_of
 from tangible_core.session import run_simulated
-from tangible_core.testing.handle import wall
 from tangible_core.testing.synthetic.scenes import plane, ramp
 from tangible_devices.mock import Mock
 
@@ -82,7 +82,7 @@ class TestSoftening:
     def test_the_force_loop_and_a_law_that_it_is_given_later(self, plain: Any) -> None:
         device = Mock(hand=None, path="circle", z_m=0.0015)
         with Servo(plain(5000.0), device, AT_ONCE) as servo:
-            assert servo.how.endswith("; Plain does not say its stiffness, 5000 N/m was felt")
+            assert servo.how.endswith("; Plain does not state its stiffness; 5000 N/m was measured")
             until(lambda: servo.report().ticks > 100)
             hard = servo.ring.since(0)[0]
             servo.swap(plain(50.0))
@@ -124,7 +124,7 @@ class TestWhatIsSaid:
     def test_what_is_no_stiffness(self, said: float) -> None:
         touch = spring(5000.0)
         touch.stiffness_n_per_m = said
-        with pytest.raises(BrokenMethod, match=r"^Law says a stiffness of .* N/m; say 0 or more, or None"):
+        with pytest.raises(BrokenMethod, match=r"^Law states a stiffness of .* N/m; state 0 or more, or None"):
             stiffness_of(touch, SPEC)
 
     @pytest.mark.parametrize("name", ["grey-level", "lateral-gradient", "tangible-mask"])
@@ -144,7 +144,7 @@ class TestFelt:
     def test_a_spring(self, k: float) -> None:
         found = stiffness_of(spring(k), SPEC)
         assert found.n_per_m == pytest.approx(k, rel=1e-6)
-        assert found.how == f"Law does not say its stiffness, {k:.4g} N/m was felt"
+        assert found.how == f"Law does not state its stiffness; {k:.4g} N/m was measured"
 
     def test_steep_ground_counts(self) -> None:
         """k (1 + g^2) along itself."""
@@ -250,7 +250,7 @@ class TestTrouble:
         touch.law = law
         found = stiffness_of(touch, SPEC)
         assert found.n_per_m == pytest.approx(900, rel=1e-6)
-        assert found.how.endswith(f"900 N/m was felt; then it raised {type(error).__name__}: {error}")
+        assert found.how.endswith(f"900 N/m was measured; then it raised {type(error).__name__}: {error}")
         assert found.how in caplog.text
 
     def test_a_law_that_cannot_be_copied(self, caplog: pytest.LogCaptureFixture) -> None:
@@ -258,7 +258,7 @@ class TestTrouble:
         touch.lock = threading.Lock()  # pyright: ignore[reportAttributeAccessIssue]
         found = stiffness_of(touch, SPEC)
         assert found.n_per_m == 0
-        assert "0 N/m was felt; then it raised TypeError: cannot pickle" in caplog.text
+        assert "0 N/m was measured; then it raised TypeError: cannot pickle" in caplog.text
 
     def test_a_law_that_does_not_answer_holds_nobody(
         self, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
@@ -278,4 +278,4 @@ class TestTrouble:
         ended.set()
         assert time.monotonic() - begun_s < 20
         assert found.n_per_m == pytest.approx(900, rel=1e-6)
-        assert found.how.endswith("900 N/m was felt; it took longer than 0.3 s")
+        assert found.how.endswith("900 N/m was measured; it took longer than 0.3 s")

@@ -3,10 +3,18 @@
 import numpy as np
 import pytest
 
+from simulated_handle import (
+    HandleLoop,
+    comes_to_rest,
+    exact_stiffness_limit,
+    ride,
+    stiffest_stable_n_per_m,
+    wall,
+)
 from tangible_core.data import DeviceSpec, HapticSurface
+from tangible_core.metrics import Handle
 from tangible_core.plugins.registry import load_method
 from tangible_core.servo.guard.safety import Safety, stiffness_limit_n_per_m
-from tangible_core.testing.handle import Handle, comes_to_rest, ride, stiffest_stable_n_per_m, wall
 
 DAMPING = 2.0
 SPEC = DeviceSpec(100.0, 1e7, DAMPING, (0.08, 0.08, 0.08), 1e-6)
@@ -17,33 +25,12 @@ DELAYS = pytest.mark.parametrize("delay", [0, 1, 2])
 PERIODS = pytest.mark.parametrize("period_s", [0.00025, 0.001, 0.004])
 
 
-def handle(delay: int = 0, **more: float) -> Handle:
-    return Handle(mass_kg=more.pop("mass_kg", 0.1), damping_n_s_per_m=DAMPING, delay_ticks=delay, **more)
+def handle(delay: int = 0, mass_kg: float = 0.1, period_s: float = 0.001, **more: float) -> HandleLoop:
+    return HandleLoop(Handle(mass_kg, DAMPING, period_s), delay_ticks=delay, **more)
 
 
 def limit(delay: int, period_s: float = 0.001) -> float:
     return stiffness_limit_n_per_m(DAMPING, period_s, delay)
-
-
-def exact_limit(held: Handle) -> float:
-    """Where an eigenvalue of the loop on a spring leaves the unit circle: place, speed and the forces on their way."""
-    rate, size = held.damping_n_s_per_m / held.mass_kg, 2 + held.delay_ticks
-    fading = (1 - np.exp(-rate * held.period_s)) / rate
-    loop = np.zeros((size, size))
-    loop[:2, :2] = [[1, fading], [0, 1 - rate * fading]]
-    push = np.array([held.period_s - fading, rate * fading]) / held.damping_n_s_per_m
-    low, high = 1.0, 1e6
-    while high > 1.0001 * low:
-        middle, each = np.sqrt(low * high), loop.copy()
-        each[2:, :] = np.eye(size)[1:-1]
-        if held.delay_ticks:
-            each[2, :] = [-middle] + [0] * (size - 1)
-            each[:2, -1] += push
-        else:
-            each[:2, 0] -= middle * push
-        stable = np.abs(np.linalg.eigvals(each)).max() < 1
-        low, high = (middle, high) if stable else (low, middle)
-    return low
 
 
 @DELAYS
@@ -57,7 +44,8 @@ def test_the_simulated_limit_is_the_formula_s(delay: int, period_s: float):
 @pytest.mark.parametrize("mass_kg", [0.1, 0.5])
 def test_the_simulation_is_right(delay: int, mass_kg: float):
     held = handle(delay, mass_kg=mass_kg, period_s=0.004)
-    assert stiffest_stable_n_per_m(wall, held) == pytest.approx(exact_limit(held), rel=0.01)
+    exact = exact_stiffness_limit(held.handle, delay)
+    assert stiffest_stable_n_per_m(wall, held) == pytest.approx(exact, rel=0.01)
 
 
 def test_a_proxy_on_level_ground_has_the_limit_of_a_spring():

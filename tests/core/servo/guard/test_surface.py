@@ -10,8 +10,8 @@ from tangible_core import load_method
 from tangible_core.data import DeviceSpec, HapticState, TickFlag
 from tangible_core.servo.guard import layout as at
 from tangible_core.servo.guard.guard import guard, restart
-from tangible_core.servo.guard.guarded import guarded
 from tangible_core.servo.guard.safety import SURFACE_M_PER_S, Coupling, Safety
+from tangible_core.servo.ticks.python_tick import guard_touch
 from tangible_core.session import run_simulated
 
 SPEC = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
@@ -25,7 +25,7 @@ class Felt:
     def __init__(self, safety: Safety = STRICT, stiffness_n_per_m: float = STIFF) -> None:
         self.film = MovingPlane(0.01, stiffness_n_per_m)
         self.settings, self.memory = safety.arrays(SPEC, stiffness_n_per_m)
-        self._allowed = guarded(self.film.touch, self.settings, self.memory)
+        self._allowed = guard_touch(self.film.touch, self.settings, self.memory)
         self._at_m = self.force_n = None
         self.work_j, self.damped, self.time_s = 0.0, 0, 0.0
 
@@ -131,7 +131,7 @@ class TestAccount:
         for _ in range(20):
             felt.tick(0.009, 5e-5)
         restart(felt.memory)
-        assert felt.memory[[at.GIVEN_J, at.LIFT_N, at.ROSE_M]].tolist() == [0, 0, 0]
+        assert felt.memory[[at.GIVEN_J, at.SURFACE_FORCE_N, at.LAST_RISE_M]].tolist() == [0, 0, 0]
 
     def test_of_a_surface_that_stands_still_nothing_of_this_has_a_say(self):
         """To the last bit."""
@@ -193,7 +193,7 @@ class TestCoupling:
             felt.tick(hand_m)
         wanted_n = stiffness_n_per_m * (0.01 - hand_m)
         assert 0.1 < felt.force_n < 0.3 * wanted_n
-        assert felt.memory[at.LIFT_N] == pytest.approx(felt.force_n, rel=0.01)
+        assert felt.memory[at.SURFACE_FORCE_N] == pytest.approx(felt.force_n, rel=0.01)
 
 
 def damped_share(

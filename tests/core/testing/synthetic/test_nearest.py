@@ -10,7 +10,7 @@ SMOOTH = ("plane", "ramp", "sphere", "sine", "cone")
 
 
 def hands(name: str, count: int = 40) -> np.ndarray:
-    """Up to 1.5 mm under the surface, on either side of its edges."""
+    """Return hands up to 1.5 mm under the surface, on either side of its edges."""
     random, known = np.random.default_rng(5), SURFACES[name].known((16, 16))
     places = random.uniform(-0.03, 0.03, (count, 2)).tolist()
     return np.array(
@@ -19,8 +19,8 @@ def hands(name: str, count: int = 40) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", [*SMOOTH, "ridge"])
-def test_no_point_of_the_surface_is_nearer(name: str):
-    """Against all points of a fine grid around each hand, each hand on its own."""
+def test_nearest_point_no_other_point_is_nearer(name: str):
+    """Points of a fine grid around each hand are compared, each hand alone."""
     known = SURFACES[name].known((16, 16))
     offsets = np.linspace(-0.004, 0.004, 81)
     for hand in hands(name):
@@ -32,13 +32,13 @@ def test_no_point_of_the_surface_is_nearer(name: str):
 
 
 @pytest.mark.parametrize("name", SMOOTH)
-def test_the_way_to_it_is_along_the_normal(name: str):
+def test_nearest_point_lies_along_the_normal(name: str):
     known = SURFACES[name].known((16, 16))
     for hand, found in zip(hands(name), SURFACES[name].nearest(hands(name)), strict=True):
         assert np.linalg.norm(np.cross(known.normal(*found[:2]), found - hand)) <= 1e-12
 
 
-def test_on_a_ridge_it_stays_on_its_face_until_its_foot_leaves_that():
+def test_nearest_point_on_ridge_stays_on_its_face():
     """Slope 1, 1 mm under the top: the foot on the left is at x / 2 - 0.5 mm, and leaves its face at x = 1 mm."""
     across = np.linspace(-0.004, 0.004, 801)
     way = np.column_stack([across, np.zeros(801), np.full(801, 0.029)])
@@ -62,19 +62,19 @@ def test_on_a_ridge_it_stays_on_its_face_until_its_foot_leaves_that():
         ((0.001, 0.0, -0.001), (0.0, 0.0, 0.0)),  # in the corner
     ],
 )
-def test_on_a_step_that_is_come_upon_from_below(hand: tuple[float, ...], point: tuple[float, ...]):
+def test_nearest_point_on_step_from_below(hand: tuple[float, ...], point: tuple[float, ...]):
     way = np.array([(-0.01, 0.0, 0.001), (-0.001, 0.0, 0.001), hand])
     np.testing.assert_allclose(nearest.on_step(way, 0.004)[2], point, atol=1e-15)
 
 
-def test_on_a_step_that_is_come_upon_from_above():
+def test_nearest_point_on_step_from_above():
     way = np.array([(0.01, 0.0, 0.005), (0.01, 0.0, 0.003), (0.001, 0.0, 0.001), (-0.001, 0.0, -0.001)])
     expected = [(0.01, 0, 0.004), (0.001, 0, 0.004), (-0.001, 0, 0)]
     np.testing.assert_allclose(nearest.on_step(way, 0.004)[1:], expected, atol=1e-15)
 
 
-def test_so_deep_under_a_crest_that_nothing_near_is_nearest():
-    """Beyond the centre of curvature, 1 / (A k^2) = 2.53 mm under the crest, the point above is no minimum."""
+def test_nearest_point_far_below_a_crest_is_unknown():
+    """Beyond the centre of curvature, 1 / (A k^2) = 2.53 mm under the crest, the point above is not a minimum."""
     crest = np.array([0.005, 0.005, 0.008])
     above, beyond = nearest.on_waves(np.array([crest - (0, 0, 0.0025), crest - (0, 0, 0.0026)]), 0.004, 0.02)
     np.testing.assert_allclose(above, crest, atol=1e-12)
@@ -82,7 +82,7 @@ def test_so_deep_under_a_crest_that_nothing_near_is_nearest():
 
 
 @pytest.mark.parametrize("name", SURFACES)
-def test_a_scripted_way(name: str):
+def test_analytic_stroke_scripted_path_is_in_and_out_of_contact(name: str):
     stroke = analytic_stroke(name, 32)
     assert len(stroke.position_m) == LOOPS * LOOP_TICKS + 1
     assert (stroke.position_m[::LOOP_TICKS, 2] > stroke.surface.height_m.max()).all()
@@ -96,7 +96,7 @@ def test_a_scripted_way(name: str):
     assert speeds.mean() < 0.058
 
 
-def test_a_way_of_ones_own_and_what_lies_beside_the_surface():
+def test_analytic_stroke_own_path_is_unknown_outside_the_surface():
     way = np.array([(0.0, 0.0, 0.019), (0.0, 0.0, 0.021), (0.05, 0.0, 0.0), (1.0, 1.0, 0.0)])
     stroke = analytic_stroke("sphere", 16, path_m=way)
     np.testing.assert_allclose(stroke.nearest_m[:2], [(0, 0, 0.02), (0, 0, 0.021)], atol=1e-15)
@@ -104,7 +104,7 @@ def test_a_way_of_ones_own_and_what_lies_beside_the_surface():
 
 
 @pytest.mark.slow
-def test_over_the_relief_of_a_picture_nothing_is_known():
+def test_relief_stroke_nearest_points_are_unknown():
     surface = SURFACES["sine"].known((64, 32)).surface
     stroke = relief_stroke(surface)
     assert np.isnan(stroke.nearest_m).all()

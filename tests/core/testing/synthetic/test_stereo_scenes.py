@@ -1,4 +1,4 @@
-"""Synthetic pairs: what is said of them must hold of their pixels."""
+"""Synthetic pairs: their stated disparity and visibility hold for their pixels."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from tangible_core.testing.synthetic.surfaces import (
     left_view,
     rectangle,
     right_view,
-    slanted,
+    slanted_plane,
     texture,
     true_disparity,
     truly_visible,
@@ -22,11 +22,11 @@ SHAPE = (24, 96)
 
 
 def step(far: float, near: float, edge: int = 60) -> list[Surface]:
-    return [slanted(1, everywhere, far), slanted(2, rectangle(edge - 0.5, -1, 1000, 1000), near)]
+    return [slanted_plane(1, everywhere, far), slanted_plane(2, rectangle(edge - 0.5, -1, 1000, 1000), near)]
 
 
 @pytest.mark.parametrize(("far", "near"), [(3, 8), (0, 17), (5.25, 9.75)])
-def test_the_strip_beside_a_step_is_as_wide_as_the_jump(far: float, near: float):
+def test_visible_occluded_strip_at_a_step_is_as_wide_as_the_jump(far: float, near: float):
     hidden = ~truly_visible(step(far, near), SHAPE)
     columns = np.arange(SHAPE[1])
     beside = (columns - far >= 59.5 - near) & (columns < 60)
@@ -36,8 +36,8 @@ def test_the_strip_beside_a_step_is_as_wide_as_the_jump(far: float, near: float)
         assert beside.sum() == near - far
 
 
-def test_whole_disparities_match_exactly():
-    """Right of x - d is left of x wherever both see the same, but for pixels that an edge crosses."""
+def test_views_whole_disparities_match_exactly():
+    """The right view at x - d equals the left view at x wherever both see the same point."""
     surfaces = step(3, 8)
     left, right = left_view(surfaces, SHAPE), right_view(surfaces, SHAPE)
     rows, columns = np.nonzero(truly_visible(surfaces, SHAPE))
@@ -48,14 +48,14 @@ def test_whole_disparities_match_exactly():
 @pytest.mark.parametrize(
     "surface",
     [
-        slanted(1, everywhere, 6.3),
-        slanted(1, everywhere, 12, 0.08, -0.05),
-        slanted(1, everywhere, 12, -0.2, 0.1),
+        slanted_plane(1, everywhere, 6.3),
+        slanted_plane(1, everywhere, 12, 0.08, -0.05),
+        slanted_plane(1, everywhere, 12, -0.2, 0.1),
         cap(1, (48, 12), 60, 9.5),
         cap(1, (40, 10), 80, 3.0, flatness=1.0),
     ],
 )
-def test_any_disparity_matches_as_the_surface_says(surface: Surface):
+def test_right_view_shows_the_surface_at_its_disparity(surface: Surface):
     """The right view at x - d(x) shows the surface at x: its texture there, and nothing that was resampled."""
     rows, columns = np.indices(SHAPE, np.float64)
     seen = surface.seen_at(columns, rows)
@@ -66,9 +66,9 @@ def test_any_disparity_matches_as_the_surface_says(surface: Surface):
     )
 
 
-def test_a_texture_holds_nothing_that_a_picture_cannot():
+def test_texture_spectrum_is_below_the_nyquist_frequency():
     """The spectrum of the left view ends below its Nyquist frequency: no wave is shorter than 3 px."""
-    grey = left_view([slanted(5, everywhere, 4)], (256, 256)) - 127.5
+    grey = left_view([slanted_plane(5, everywhere, 4)], (256, 256)) - 127.5
     window = np.hanning(256)
     power = np.abs(np.fft.fft2(grey * window[:, None] * window)) ** 2
     frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(256), np.fft.fftfreq(256)))
@@ -77,7 +77,7 @@ def test_a_texture_holds_nothing_that_a_picture_cannot():
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_scenes(name: str):
+def test_synthetic_pair_is_repeatable_and_well_formed(name: str):
     pair = synthetic_pair(name, 160, 120, seed=2)
     again = synthetic_pair(name, 160, 120, seed=2)
     assert pair.digest() == again.digest()
@@ -92,7 +92,7 @@ def test_scenes(name: str):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_the_truth_explains_the_right_view(name: str):
+def test_synthetic_pair_truth_explains_the_right_view(name: str):
     """Linear interpolation of the right view at x - d tells visible pixels from hidden ones."""
     pair = synthetic_pair(name, 200, 120)
     rows, columns = np.indices(pair.truth_px.shape)

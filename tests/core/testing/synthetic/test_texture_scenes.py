@@ -1,4 +1,4 @@
-"""Synthetic segments: what is said of them must hold of their pixels."""
+"""Synthetic segments: their stated labels and textures hold for their pixels."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from tangible_core.testing.synthetic.texture_scenes import (
     builtin_textures,
     curvy_regions,
     folder_textures,
-    scattered,
+    scatter_points,
     smooth_scene,
     texture_mosaic,
 )
@@ -25,7 +25,7 @@ def random(seed: int = 0) -> np.random.Generator:
 
 
 @pytest.mark.parametrize("name", builtin_textures())
-def test_a_texture_follows_from_its_seed(name: str):
+def test_texture_is_repeatable_by_its_seed(name: str):
     family = builtin_textures()[name]
     made = family(SHAPE, random(3))
     np.testing.assert_array_equal(made, family(SHAPE, random(3)))
@@ -35,8 +35,8 @@ def test_a_texture_follows_from_its_seed(name: str):
     assert made.std() > 0
 
 
-def test_grey_tells_nothing():
-    """Every texture holds exactly the same values, and no part of it is brighter than another."""
+def test_without_grey_values_are_the_same_for_all_textures():
+    """Every texture has exactly the same values, and no part is brighter than another."""
     made = [without_grey(family((256, 256), random())) for family in builtin_textures().values()]
     for each in made[1:]:
         np.testing.assert_array_equal(np.sort(each, axis=None), np.sort(made[0], axis=None))
@@ -48,7 +48,7 @@ def test_grey_tells_nothing():
         assert blocks.std(axis=(1, 3)).std() < 0.2 * CONTRAST
 
 
-def test_a_slope_of_light_is_removed():
+def test_without_grey_removes_a_gradient_of_light():
     texture = FAMILIES["grain"]((128, 128), random())
     lit = texture * np.linspace(0.5, 2, 128) + np.linspace(0, 50 * texture.std(), 128)[:, None]
     inside = np.s_[32:-32, 32:-32]
@@ -65,8 +65,8 @@ def test_a_slope_of_light_is_removed():
         ("bricks", 0, 1 / 10),
     ],
 )
-def test_a_pattern_has_the_frequency_that_it_states(name: str, across: float, down: float):
-    """The strongest wave is within a twentieth of a cycle a pixel of it; one of both signs counts."""
+def test_texture_family_has_its_stated_frequency(name: str, across: float, down: float):
+    """The strongest wave is within 0.05 cycles a pixel of the stated one, of either sign."""
     made = FAMILIES[name]((512, 512), random())
     power = np.abs(np.fft.rfft2(made - made.mean())) ** 2
     columns, rows = np.meshgrid(np.fft.rfftfreq(512), np.fft.fftfreq(512))
@@ -75,22 +75,22 @@ def test_a_pattern_has_the_frequency_that_it_states(name: str, across: float, do
 
 
 @pytest.mark.parametrize("shape", [(512, 512), (100, 333), (17, 9)])
-def test_smooth_noise_has_no_mean_and_a_deviation_of_one(shape: tuple[int, int]):
+def test_smooth_noise_has_mean_0_and_deviation_1(shape: tuple[int, int]):
     noise = smooth_noise(shape, random(), 6)
     assert noise.mean() == pytest.approx(0, abs=1e-9)
     assert noise.std() == pytest.approx(1)
     assert np.abs(np.diff(noise, axis=0)).max() < 1
 
 
-def test_scattered_points_keep_apart():
-    points = scattered((100, 200), 12, random())
+def test_scatter_points_keep_a_distance():
+    points = scatter_points((100, 200), 12, random())
     assert points.shape == (12, 2)
     assert (points >= 0).all() and (points < (100, 200)).all()
     gaps = np.linalg.norm(points[:, None] - points, axis=2)[~np.eye(12, dtype=bool)]
     assert gaps.min() > 0.4 * np.sqrt(100 * 200 / 12)
 
 
-def test_regions_are_large_and_their_borders_are_not_straight():
+def test_curvy_regions_are_large_with_short_borders():
     labels = curvy_regions((256, 256), 6, random())
     areas = np.bincount(labels.ravel())
     assert len(areas) == 6
@@ -100,7 +100,7 @@ def test_regions_are_large_and_their_borders_are_not_straight():
 
 @pytest.mark.parametrize("shape", [(64, 64), SHAPE, (128, 40)])
 @pytest.mark.parametrize("segments", [1, 2, 5])
-def test_a_mosaic_has_its_size_and_its_segments(segments: int, shape: tuple[int, int]):
+def test_mosaic_has_the_requested_size_and_segments(segments: int, shape: tuple[int, int]):
     scene = texture_mosaic(segments, shape, seed=2)
     assert scene.picture.shape == scene.labels.shape == shape
     assert (scene.picture.dtype, scene.labels.dtype) == (np.uint8, np.int32)
@@ -110,7 +110,7 @@ def test_a_mosaic_has_its_size_and_its_segments(segments: int, shape: tuple[int,
     assert scene.digest() != texture_mosaic(segments, shape, seed=3).digest()
 
 
-def test_each_segment_of_a_mosaic_is_one_texture():
+def test_mosaic_segment_has_one_texture():
     flat = {f"grey{level}": lambda shape, _, level=level: np.indices(shape).sum(axis=0) % level for level in (3, 4, 5)}
     scene = texture_mosaic(3, SHAPE, seed=1, textures=flat)
     made = [np.rint(without_grey(each(SHAPE, random()))).astype(np.uint8) for each in flat.values()]
@@ -119,7 +119,7 @@ def test_each_segment_of_a_mosaic_is_one_texture():
     assert np.max(fits, axis=1).tolist() == [1, 1, 1]
 
 
-def test_a_picture_too_small_for_all_regions_has_fewer():
+def test_mosaic_small_picture_has_fewer_segments():
     for shape in ((1, 1), (1, 7), (3, 2)):
         scene = texture_mosaic(8, shape)
         assert scene.picture.shape == shape
@@ -127,12 +127,12 @@ def test_a_picture_too_small_for_all_regions_has_fewer():
     assert texture_mosaic(8, (1, 1)).count == 1
 
 
-def test_more_segments_than_textures():
+def test_mosaic_more_segments_than_textures_is_refused():
     with pytest.raises(PictureError, match="a mosaic of 13 needs as many textures, but there are 12; add some"):
         texture_mosaic(13, SHAPE, textures=FAMILIES)
 
 
-def test_a_smooth_scene_is_grey_with_noise():
+def test_smooth_scene_is_grey_with_noise():
     scene = smooth_scene(7, (200, 150), seed=4)
     assert scene.picture.dtype == np.uint8
     assert scene.count == 7
@@ -143,7 +143,7 @@ def test_a_smooth_scene_is_grey_with_noise():
     assert max(np.median(np.abs(each - np.median(each))) for each in inside) <= 12
 
 
-def test_a_folder_of_textures(tmp_path: Path):
+def test_folder_textures_are_cropped_or_mirrored(tmp_path: Path):
     Image.fromarray(np.arange(30 * 20, dtype=np.uint8).reshape(30, 20)).save(tmp_path / "ramp.png")
     Image.fromarray(random().integers(0, 255, (50, 60, 3), dtype=np.uint8)).save(tmp_path / "noise.png")
     tmp_path.joinpath("readme.txt").write_text("no picture")
@@ -157,8 +157,8 @@ def test_a_folder_of_textures(tmp_path: Path):
     assert large.max() <= 1
 
 
-def test_a_folder_without_textures(tmp_path: Path):
-    with pytest.raises(PictureError, match="holds no texture pictures"):
+def test_folder_textures_none_or_flat_is_refused(tmp_path: Path):
+    with pytest.raises(PictureError, match="has no texture pictures"):
         folder_textures(tmp_path)
     Image.fromarray(np.full((8, 8), 7, np.uint8)).save(tmp_path / "flat.png")
     with pytest.raises(PictureError, match=r"flat\.png: is one flat colour, not a texture"):

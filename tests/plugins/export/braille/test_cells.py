@@ -7,18 +7,18 @@ from tangible_core.errors import BrailleError, ConfigError
 from tangible_export.braille import DOT_DIAMETER_M, DOT_PITCH_M, dots, height_m, translate, width_m, wrapped
 
 
-def test_dots_lie_as_the_library_service_says():
+def test_braille_dots_lie_by_nls_specification():
     """Millimetres of NLS Specification 800, 3.2: dots 2.34 apart, cells 6.2, lines 10; y runs down."""
-    found = 1000 * dots((0b111111, 0b000000, 0b100001), (0.01, 0.02))
+    places = 1000 * dots((0b111111, 0b000000, 0b100001), (0.01, 0.02))
     wanted = [(0, 0), (0, 2.34), (0, 4.68), (2.34, 0), (2.34, 2.34), (2.34, 4.68), (12.4, 0), (14.74, 4.68)]
-    assert np.allclose(found, np.add(wanted, (10, 20)), atol=1e-9)
+    assert np.allclose(places, np.add(wanted, (10, 20)), atol=1e-9)
     assert dots(()).shape == dots((0,)).shape == (0, 2)
 
 
 @pytest.mark.parametrize("count", [1, 2, 40])
-def test_width_and_height_hold_all_dots_and_nothing_else(count: int):
-    found = dots((0b111111,) * count)
-    wide, high = np.ptp(found, axis=0) + DOT_DIAMETER_M
+def test_braille_width_and_height_enclose_all_dots(count: int):
+    places = dots((0b111111,) * count)
+    wide, high = np.ptp(places, axis=0) + DOT_DIAMETER_M
     assert width_m((63,) * count) == pytest.approx(wide)
     assert height_m() == pytest.approx(high)
     assert width_m(()) == height_m(0) == 0
@@ -29,7 +29,7 @@ TEXT = "In 1969 the astronaut's helmet stood beside an extraordinarily long tabl
 WIDE_M = width_m((0,) * 16)
 
 
-def test_lines_break_at_spaces_and_lose_nothing():
+def test_wrapped_lines_break_at_spaces_and_keep_all_cells():
     lines = wrapped(TEXT, "en", WIDE_M)
     assert all(len(line) <= 16 for line in lines)
     assert max(map(len, lines)) > 12
@@ -39,25 +39,25 @@ def test_lines_break_at_spaces_and_lose_nothing():
 
 
 @pytest.mark.parametrize("text", ["noted 15 %", "noted 15\u00a0%", "noted 15\u202fmm"])
-def test_a_number_stays_with_its_sign(text: str):
+def test_wrapped_number_stays_with_its_unit(text: str):
     first, second = wrapped(text, "en", width_m((0,) * 9))
     assert (first, second) == (translate("noted", "en"), translate(text[6:], "en"))
 
 
-def test_later_lines_are_indented():
+def test_wrapped_later_lines_are_indented():
     first, *others = wrapped(TEXT, "en", WIDE_M, indent=2)
     assert first[:2] == translate("In", "en")[:2]
     assert all(line[:2] == (0, 0) and line[2] and len(line) <= 16 for line in others)
 
 
-def test_a_word_that_is_too_wide_is_broken_behind_a_hyphen():
+def test_wrapped_wide_word_is_broken_after_a_hyphen():
     ten = width_m((0,) * 10)
     lines = wrapped("extraordinarily", "en", ten)
     assert lines == [translate("extraordi-", "en"), translate("narily", "en")]
     assert all(len(line) <= 10 for line in wrapped(TEXT, "en", ten))
 
 
-def test_no_room_is_said():
+def test_wrapped_without_room_is_refused():
     with pytest.raises(BrailleError, match=r"^'ab': not even its first letter and a hyphen have room in 5 mm of brai"):
         wrapped("ab", "de", 0.005)
     assert wrapped("a b", "de", DOT_PITCH_M + DOT_DIAMETER_M) == [(1,), (3,)]

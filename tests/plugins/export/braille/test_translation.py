@@ -14,7 +14,7 @@ import pytest
 from tangible_core.errors import BrailleError
 from tangible_core.plugins.notes import collected
 from tangible_export.braille import as_ascii, as_unicode, translate, translation, written_by
-from tangible_export.braille.latin import CODES, LETTERS, translated
+from tangible_export.braille.latin import LANGUAGES, LETTERS, code_of, translate_by_table
 from tangible_export.braille.louis import NAMES, TABLES, Louis, louis
 
 ORDINARY = {
@@ -40,10 +40,10 @@ ORDINARY = {
 @pytest.fixture(scope="module")
 def installed() -> Louis:
     """Liblouis, which is there on the machine of CI."""
-    found = louis()
-    if isinstance(found, str):
-        pytest.fail(found) if os.environ.get("CI") else pytest.skip(found)
-    return found
+    library = louis()
+    if isinstance(library, str):
+        pytest.fail(library) if os.environ.get("CI") else pytest.skip(library)
+    return library
 
 
 @pytest.fixture
@@ -64,21 +64,25 @@ def without(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[object], None
 
 
 @pytest.mark.parametrize(("language", "text"), [(each, text) for each in ORDINARY for text in ORDINARY[each]])
-def test_liblouis_and_our_tables_agree(installed: Louis, language: str, text: str):
+def test_liblouis_and_our_tables_agree_on_texts(installed: Louis, language: str, text: str):
     plain = translation._plain(text, language)
-    assert as_unicode(translate(text, language)) == as_unicode(translated(plain, language))
+    assert as_unicode(translate(text, language)) == as_unicode(translate_by_table(plain, language))
 
 
-@pytest.mark.parametrize("language", CODES)
-def test_they_agree_on_every_letter_and_digit(installed: Louis, language: str):
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_liblouis_and_our_tables_agree_on_every_letter_and_digit(installed: Louis, language: str):
     """Small and capital, within words; accents of all languages where theirs stand before the letter."""
-    letters = [*LETTERS, *filter(str.isalpha, CODES[language].signs), *("éèêñčōŭïåç" if CODES[language].marks else "")]
+    letters = [
+        *LETTERS,
+        *filter(str.isalpha, code_of(language).signs),
+        *("éèêñčōŭïåç" if code_of(language).marks else ""),
+    ]
     for word in (word for each in letters for word in (f"a{each}a", f"{each.upper()}a", f"m{each}")):
         if language == "en" and word[0] in "ÆŒ":  # liblouis repeats the sign of capitals within the ligature
             continue
-        assert as_unicode(translate(word, language)) == as_unicode(translated(word, language)), word
+        assert as_unicode(translate(word, language)) == as_unicode(translate_by_table(word, language)), word
     for number in range(1100):
-        assert translate(str(number), language) == translated(str(number), language), number
+        assert translate(str(number), language) == translate_by_table(str(number), language), number
 
 
 @pytest.mark.parametrize(("language", "text", "braille"), [
@@ -90,14 +94,16 @@ def test_they_agree_on_every_letter_and_digit(installed: Louis, language: str):
     ("fr", "Où ?", "⠨⠕⠾⠢"),
     ("pt", "a", "⠁"),
 ])  # fmt: skip
-def test_what_books_of_the_codes_say(without: Callable[[object], None], language: str, text: str, braille: str):
+def test_translation_matches_the_books_of_the_codes(
+    without: Callable[[object], None], language: str, text: str, braille: str
+):
     """With and without liblouis: digits of French are Antoine's, German marks no capitals."""
     assert as_unicode(translate(text, language)) == braille
     without(OSError("not found"))
     assert as_unicode(translate(text, language)) == braille
 
 
-def test_who_wrote_it_is_known(installed: Louis, without: Callable[[object], None]):
+def test_written_by_names_the_translator(installed: Louis, without: Callable[[object], None]):
     assert written_by("de-AT") == f"liblouis {installed.version}, de-g0.utb"
     assert written_by("pt") == f"liblouis {installed.version}, en-ueb-g1.ctb, for want of one for 'pt'"
     without(OSError("not found"))
@@ -137,17 +143,17 @@ def odd(size: int = 4, cells: tuple[int, ...] = (1, 3, 9), works: int = 10**9) -
         (odd(works=0), "cannot use its table en-ueb-g1.ctb"),
     ],
 )
-def test_a_broken_liblouis_is_not_used(without: Callable[[object], None], library: object, why: str):
+def test_broken_liblouis_is_not_used(without: Callable[[object], None], library: object, why: str):
     without(library)
-    assert translate("abcd", "en") == translated("abcd", "en")
+    assert translate("abcd", "en") == translate_by_table("abcd", "en")
     assert why in written_by("en")
 
 
-def test_a_liblouis_that_breaks_later_is_replaced_with_a_note(without: Callable[[object], None]):
+def test_liblouis_breaking_later_is_replaced_with_a_note(without: Callable[[object], None]):
     without(odd(works=len(TABLES)))
     with collected() as notes:
-        assert translate("abcd", "en") == translated("abcd", "en")
-    assert notes == ["braille by a table of our own: liblouis 0.0 cannot use its table en-ueb-g1.ctb"]
+        assert translate("abcd", "en") == translate_by_table("abcd", "en")
+    assert notes == ["braille by our own table: liblouis 0.0 cannot use its table en-ueb-g1.ctb"]
 
 
 @pytest.mark.parametrize("there", [True, False])
@@ -161,7 +167,7 @@ def test_a_liblouis_that_breaks_later_is_replaced_with_a_note(without: Callable[
         ("a\ud800", "en", r"'a\ud800': character 2, '\ud800' (U+D800), is not in "),
     ],
 )
-def test_a_character_without_braille_is_named(
+def test_translation_of_unknown_character_names_it(
     installed: Louis, without: Callable[[object], None], there: bool, text: str, language: str, says: str
 ):
     if not there:
@@ -172,13 +178,13 @@ def test_a_character_without_braille_is_named(
     assert "; spell it with other letters" in str(raised.value)
 
 
-def test_spaces_and_composed_letters_are_alike_to_a_finger():
+def test_translation_unifies_spaces_and_composed_letters():
     assert translate("u\u0308\u00a0a\u00adb\tc", "de") == translate("ü ab c", "de")
     assert translate("", "en") == ()
     assert translate(" ", "fr") == (0,)
 
 
-def test_threads_do_not_disturb_one_another(installed: Louis):
+def test_translation_in_threads_gives_the_same_cells(installed: Louis):
     jobs = [
         (f"{text} {number}", each) for number, (each, texts) in product(range(6), ORDINARY.items()) for text in texts
     ]
@@ -193,7 +199,7 @@ def test_threads_do_not_disturb_one_another(installed: Louis):
         assert all(each == alone for each in pool.map(all_of_them, range(8)))
 
 
-def test_one_thread_at_a_time_is_with_the_library(without: Callable[[object], None]):
+def test_liblouis_is_called_by_one_thread_at_a_time(without: Callable[[object], None]):
     """Seen from within a library, as liblouis itself ends the process where it is disturbed."""
     library, inside, most = odd(), list[None](), list[int]()
     write: Any = library.lou_translateString  # pyright: ignore[reportAttributeAccessIssue]
@@ -212,18 +218,18 @@ def test_one_thread_at_a_time_is_with_the_library(without: Callable[[object], No
     assert set(most) == {1}
 
 
-def test_nothing_is_printed(installed: Louis, capfd: pytest.CaptureFixture[str]):
+def test_liblouis_with_missing_table_prints_nothing(installed: Louis, capfd: pytest.CaptureFixture[str]):
     with pytest.raises(OSError, match=r"cannot use its table nowhere\.ctb"):
         installed._call("abc", "nowhere.ctb", 0)
     assert capfd.readouterr() == ("", "")
 
 
-def test_every_cell_has_its_character_for_embossers():
+def test_as_ascii_has_a_character_for_every_cell():
     cells = tuple(range(64))
     assert len(set(as_ascii(cells))) == 64
     assert as_ascii(translate("Hello, 12.", "en")) == ",HELLO1 #AB4"
 
 
-def test_each_system_has_a_name_for_it():
+def test_liblouis_has_a_name_on_each_system():
     assert {"linux", "darwin", "win32"} == NAMES.keys()
-    assert CODES.keys() == TABLES.keys()
+    assert set(LANGUAGES) == TABLES.keys()

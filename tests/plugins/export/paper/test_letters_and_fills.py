@@ -5,51 +5,51 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import Delaunay
 
-from tangible_export.paper.colouring import coloured
+from tangible_export.paper.colouring import choose_fills
 from tangible_export.paper.fills import KINDS
-from tangible_export.paper.things import LETTERS, MOST_THINGS, key_letters
+from tangible_export.paper.named_parts import LETTERS, MOST_NAMES, key_letters
 
-NAMES = st.lists(st.text("abcxyz éü7Ж", max_size=6), max_size=MOST_THINGS)
+NAMES = st.lists(st.text("abcxyz éü7Ж", max_size=6), max_size=MOST_NAMES)
 
 
 @given(NAMES)
-def test_no_two_names_have_one_letter(names):
+def test_key_letters_are_different_for_all_names(names):
     letters = key_letters(names)
     assert len(letters) == len(set(letters)) == len(names)
     assert {len(each) for each in letters} <= {1 if len(names) <= 26 else 2}
     assert all(set(each) <= set(LETTERS) for each in letters)
 
 
-def test_a_letter_is_the_first_of_the_name_where_it_is_free():
+def test_key_letter_is_the_first_free_letter_of_the_name():
     assert key_letters(["table", "spoon", "saucer", "Übung"]) == ["t", "s", "c", "u"]
     assert key_letters(["apple", "bear"]) == ["p", "b"]  # a single dot is felt as a stray one
 
 
 @given(st.integers(0, 1000), st.integers(4, 60))
-def test_neighbours_in_a_plane_differ(seed, count):
+def test_fills_of_planar_neighbours_differ(seed, count):
     places = np.random.default_rng(seed).random((count, 2))
     start, around = Delaunay(places).vertex_neighbor_vertices
     beside = [set(around[start[n] : start[n + 1]].tolist()) for n in range(count)]
-    kinds, alike = coloured(beside, [list(KINDS)] * count, places[:, 0].tolist())
+    kinds, alike = choose_fills(beside, [list(KINDS)] * count, places[:, 0].tolist())
     assert not alike
     assert all(kinds[one] != kinds[other] for one in range(count) for other in beside[one])
 
 
-def test_few_things_all_differ_and_the_largest_is_blank():
-    kinds, _ = coloured([set()] * 5, [list(KINDS)] * 5, [1, 2, 9, 4, 5])
+def test_fills_of_few_parts_all_differ_and_largest_is_blank():
+    kinds, _ = choose_fills([set()] * 5, [list(KINDS)] * 5, [1, 2, 9, 4, 5])
     assert len(set(kinds)) == 5
     assert kinds[2] == "blank"
 
 
-def test_what_has_no_room_for_a_fill_is_blank_and_its_neighbours_are_not():
-    kinds, alike = coloured([{1}, {0, 2}, {1}], [list(KINDS), ["blank"], ["blank"]], [9, 1, 1])
+def test_fills_without_room_are_blank_and_neighbours_are_filled():
+    kinds, alike = choose_fills([{1}, {0, 2}, {1}], [list(KINDS), ["blank"], ["blank"]], [9, 1, 1])
     assert kinds[0] != "blank"
     assert kinds[1:] == ["blank", "blank"]
     assert not alike  # neither has another
 
 
-def test_those_that_cannot_differ_are_told():
+def test_fills_that_cannot_differ_are_reported():
     everyone = [set(range(6)) - {n} for n in range(6)]
-    kinds, alike = coloured(everyone, [list(KINDS)] * 6, [1.0] * 6)
+    kinds, alike = choose_fills(everyone, [list(KINDS)] * 6, [1.0] * 6)
     assert len(set(kinds)) == 5
     assert len(alike) == 1

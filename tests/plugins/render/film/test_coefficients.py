@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tangible_core.testing.synthetic.rough import rough_surfaces
+from rough_surfaces import rough_surfaces
 from tangible_render.film.coefficients import HIGHEST_M, quick_coefficients
 from tangible_render.film.scratch import MARGIN, RING, Scratch
 from tangible_render.surface.coefficients import spline_coefficients

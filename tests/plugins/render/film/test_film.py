@@ -150,7 +150,7 @@ class TestSlots:
 
     def test_frame_shown_in_one_mapping_pushes_in_another(self):
         path = parcel.pack(start())
-        shown, forces_n = parcel.shared(path), parcel.unpack(path)
+        shown, forces_n = parcel.share(path), parcel.unpack(path)
         shown.show(relief(1), 9)
         before = hold(forces_n, 1)
         after = hold(forces_n, TICKS)[-1]

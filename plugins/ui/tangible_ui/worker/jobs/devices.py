@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.plugins.devices import examined, installed_devices
+from tangible_core.plugins.devices import examine_device, installed_devices
 
 from ..state import WorkerState
 from .table import job
@@ -20,7 +20,7 @@ def devices(state: WorkerState) -> list[dict[str, Any]]:
 @job(quick=True)
 def examine(state: WorkerState, name: str) -> list[dict[str, Any]]:
     """Return what keeps a device from working, and the cure."""
-    return [asdict(each) for each in examined(state.registry, name)]
+    return [asdict(each) for each in examine_device(state.registry, name)]
 
 
 @job(quick=True)

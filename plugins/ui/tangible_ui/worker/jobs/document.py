@@ -8,10 +8,10 @@ from typing import Any, cast
 from ruamel.yaml.error import YAMLError
 
 from tangible_core.errors import Complaint, ConfigError, quoted
-from tangible_core.files.source import parse_value, plain, read_text
 from tangible_core.files.writing import write_text
+from tangible_core.files.yaml.source import parse_value, plain, read_text
 from tangible_core.materials.assignment import load_library
-from tangible_core.pipeline.config.editing import REMOVE, edited, moved, said, with_overrides
+from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values, relocate_text, with_overrides
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.config.schema import json_schema
 from tangible_core.pipeline.starter import MAPS, PICTURES, VIDEOS, are_pictures, starter
@@ -27,7 +27,7 @@ def check(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[st
     """Return what a pipeline file says, alone and with every default filled in, or its errors."""
     values, complaints = None, list[Complaint]()
     try:
-        values = state.config_of(text, path, sets).completed()
+        values = state.config_of(text, path, sets).as_data()
     except ConfigError as error:
         complaints = list(error.complaints)
     return {
@@ -57,7 +57,7 @@ def change(
     """
     loaded = {key: _value(key, value) for key, value in written.items()}
     gone = dict.fromkeys(removed, REMOVE)
-    return check(state, edited(text, path, {**gone, **changes, **loaded}), path, sets)
+    return check(state, edit_text(text, path, {**gone, **changes, **loaded}), path, sets)
 
 
 @job(quick=True)
@@ -85,7 +85,7 @@ def digest_of(text: str) -> str:
 
 def _parse(text: str, path: Path) -> dict[str, Any] | None:
     try:
-        return said(text, path)
+        return read_values(text, path)
     except ConfigError:
         return None
 
@@ -180,13 +180,13 @@ def save(state: WorkerState, text: str, path: Path, out: Path) -> None:
     Raises: OutputError if it cannot be written; ConfigError if it is wrong.
     """
     config = parse_config(text, path, state.registry)
-    write_text(out, moved(text, path, config, out))
+    write_text(out, relocate_text(text, path, config, out))
 
 
 @job(quick=True)
 def exchange(state: WorkerState, text: str, path: Path) -> str:
     """Return the text with left and right exchanged. Raises: ConfigError if the scene is not a pair."""
-    scene = said(text, path).get("scene")
+    scene = read_values(text, path).get("scene")
     if not (isinstance(scene, dict) and {"left", "right"} <= scene.keys()):
         raise ConfigError("the scene is not a pair of pictures, left and right")
-    return edited(text, path, {"scene.left": scene["right"], "scene.right": scene["left"]})
+    return edit_text(text, path, {"scene.left": scene["right"], "scene.right": scene["left"]})

@@ -6,7 +6,7 @@ from typing import Any, cast
 
 from tangible_core.data import HapticSurface
 from tangible_core.errors import ConfigError, quoted
-from tangible_core.files.source import parse_value, plain
+from tangible_core.files.yaml.source import parse_value, plain
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.servo import beacon_to, parcel
 

@@ -10,7 +10,7 @@ import numpy as np
 from tangible_core.data import Outcome, Plan
 from tangible_core.data.products import PRODUCTS
 from tangible_core.errors import TangibleError
-from tangible_core.pipeline.engine.engine import Progress, StageEvent
+from tangible_core.pipeline.engine.stage import Progress, StageEvent
 from tangible_core.pipeline.pipeline import Pipeline
 
 from ..loop_input import loop_input_of
@@ -46,7 +46,7 @@ def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
     """Return the plan's steps, and the products inside a cached one, in the order of making."""
     steps = {each.product: each for each in found.steps}
     if not found.refusal:
-        needed = pipeline.engine.needed(found.want)
+        needed = pipeline.engine.inputs_of(found.want)
         for each in pipeline.outcomes:
             if each.product in needed and each.product not in steps:
                 steps[each.product] = each if each.outcome == "given" else replace(each, outcome="cached", why="")

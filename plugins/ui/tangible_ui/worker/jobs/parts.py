@@ -62,7 +62,7 @@ def parts_open(state: WorkerState, text: str, path: Path, sets: list[str]) -> di
     opened, config = opened_of(state, pipeline), pipeline.config
     at = f"{FOLDER}{digest_of((opened.picture, opened.parts))}"
     leave_files(opened, state.folder / at)
-    by_parts = config.changed(heights=config_heights(config))
+    by_parts = config.with_values(heights=config_heights(config))
     rows, columns = opened.parts.labels.shape
     return {
         "columns": columns,
@@ -179,10 +179,10 @@ def parts_heights(
         raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
     kept = kept_of(state, Pipeline.from_config(config, like=pipeline))
     said = {number: validate(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
-    part_validation.check_parts(config.changed(parts=said), kept.parts, kept.grid.scene.shape[1])
+    part_validation.check_parts(config.with_values(parts=said), kept.parts, kept.grid.scene.shape[1])
     part_validation.check_numbers(config, kept.parts.count)
     known = known_heights(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
-    relief = working_grid.relief_of_layers(kept.layering, known, config.size, kept.grid.shown)
+    relief = working_grid.relief_of_layers(kept.layering, known, config.size, kept.grid.opaque_mask)
     own = part_validation.own_materials(config) if materials is None else dict(enumerate(materials))
     products: dict[str, Record] = {config.felt_parts: kept.parts, "relief": relief}
     if kept.materials is not None:

@@ -60,7 +60,7 @@ def of_parts(config: PipelineConfig, heights: Mapping[str, Any] | None) -> Pipel
     """Return the configuration with a relief of parts whose heights are all given."""
     choice = config_heights(config)
     told = {**choice.model_dump(), **(heights or {}), "by": "given"}
-    return config.changed(heights=validate(HeightChoice, told), parts=config.parts or {})
+    return config.with_values(heights=validate(HeightChoice, told), parts=config.parts or {})
 
 
 def coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
@@ -70,7 +70,7 @@ def coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
     if factor <= felt_factor(columns, size.width_m, size.finest_m):
         return config
     finest_m = (factor + 0.01) * size.width_m / columns
-    return config.changed(workspace=config.workspace.model_copy(update={"finest_m": finest_m}))
+    return config.with_values(workspace=config.workspace.model_copy(update={"finest_m": finest_m}))
 
 
 def validate(section: type[S], said: Mapping[str, Any]) -> S:
@@ -89,7 +89,7 @@ def known_heights(kept: Kept, heights_m: Sequence[float | None], by: str) -> lis
         disparity = at_hand(kept.pipeline, "disparity") if by == "depth" else None
         if by == "depth" and disparity is None:
             raise ConfigError("the picture's depth is not made yet; make it, and heights by depth are felt")
-        recipe = kept.config.changed(heights=validate(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
+        recipe = kept.config.with_values(heights=validate(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
         kept.found_m[by] = ReliefStage(Context(recipe, kept.scene)).part_heights(kept.parts, disparity).heights_m
     found_m = kept.found_m.get(by, ())
     return [found_m[number] if each is None and number < len(found_m) else each or 0.0
@@ -100,14 +100,14 @@ def kept_of(state: WorkerState, pipeline: Pipeline) -> Kept:
     """Return what was kept, as far as it still holds; compute the rest."""
     config, before = pipeline.config, state.kept
     named = {number: PartChoice(name=each.name) for number, each in (config.parts or {}).items() if each.name}
-    bare = config.changed(parts=named, title="", language="en", source=None)
+    bare = config.with_values(parts=named, title="", language="en", source=None)
     if before is not None and before.scene is pipeline.scene and before.config == bare:
         return before
     if wrong := list(wrong_of_parts(config)):
-        raise config.complained(*wrong)
+        raise config.error_at(*wrong)
     made = Pipeline.from_config(bare, like=pipeline)
     grid = working_grid.WorkingGrid(made.scene, bare.size)
-    parts = working_grid.parts_on_grid(made.engine.felt(bare.felt_parts), grid.shape, bare.felt_parts)
+    parts = working_grid.parts_on_grid(made.engine.make_on_grid(bare.felt_parts), grid.shape, bare.felt_parts)
     uses = bare.render is None or bare.render.method.uses_materials
     chosen = made.make("materials") if uses else None
     layering = None if before is None else _same_layering(before, bare, parts, grid)

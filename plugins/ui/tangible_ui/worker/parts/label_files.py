@@ -12,7 +12,7 @@ from jaxtyping import Int32, UInt16
 from tangible_core.errors import ConfigError
 from tangible_core.files.reading import MOST_PIXELS
 from tangible_core.parts.label_picture import label_picture
-from tangible_core.scene.picture_files import MAX_LABELS
+from tangible_core.scene.formats.pictures import MAX_LABELS
 
 NAME = "parts.png"
 GZIP = 31

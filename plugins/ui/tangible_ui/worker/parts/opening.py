@@ -9,9 +9,9 @@ import numpy as np
 from jaxtyping import UInt8
 
 from tangible_core.data import SegmentMap
-from tangible_core.data.parts import PartMap, beside_border
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
+from tangible_core.data.views import PartMap, border_pixels
 from tangible_core.parts import HeightChoice, PartChoice, find_parts, part_sizes
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.engine.part_validation import parts_of
@@ -111,7 +111,7 @@ def _places(parts: PartMap) -> list[tuple[int, int]]:
 
     step = max(1, round((parts.labels.size / MOST_LOOKED_AT) ** 0.5))
     labels = np.pad(parts.labels[::step, ::step], 1, constant_values=-1)
-    inside = (~beside_border(labels)).view(np.uint8)
+    inside = (~border_pixels(labels)).view(np.uint8)
     far = np.asarray(cv2.distanceTransform(inside, cv2.DIST_L2, 3)) + inside
     order = np.argsort(far, axis=None)
     best = np.full(parts.count + 1, -1, np.int64)

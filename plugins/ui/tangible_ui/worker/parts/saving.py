@@ -13,13 +13,13 @@ from jaxtyping import Int32, Shaped, UInt16
 
 from tangible_core.data import PartMap
 from tangible_core.errors import ConfigError, quoted
-from tangible_core.files.parts_block import with_parts
-from tangible_core.files.source import read_text
 from tangible_core.files.writing import atomic_write, write_text
-from tangible_core.pipeline.config.editing import REMOVE, edited, said
+from tangible_core.files.yaml.parts_block import with_parts
+from tangible_core.files.yaml.source import read_text
+from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values
 from tangible_core.pipeline.config.model import PipelineConfig
-from tangible_core.scene.scene import Scene, builtin_files
-from tangible_core.scene.scene_files import BUILTINS, SceneFiles
+from tangible_core.scene.scene import Scene
+from tangible_core.scene.scene_files import BUILTINS, SceneFiles, builtin_files
 
 from .label_files import NAME, is_ours
 from .opening import Opened
@@ -91,7 +91,7 @@ def document_with_parts(
     words: Mapping[str, str | None],
 ) -> str:
     """Return the document's text with these parts; order and other comments stay. Raises: ConfigError."""
-    now = said(text, path)
+    now = read_values(text, path)
     changes: dict[Any, Any] = dict(_scene(now, path, place))
     changes |= {("heights", key): value for key, value in (heights or {}).items()}
     changes |= {(key,): value or REMOVE for key, value in words.items() if value is not None}
@@ -99,21 +99,21 @@ def document_with_parts(
     before = now.get("parts")
     before = before if isinstance(before, dict) else {}
     if not before or len(short.keys() | before.keys()) > MOST_EDITED:
-        return _with_block(edited(text, path, changes), path, short)
+        return _with_block(edit_text(text, path, changes), path, short)
     changes |= {("parts", key): REMOVE for key in before if key not in map(str, short)}
     changes |= {("parts", str(key)): value for key, value in short.items() if before.get(str(key)) != value}
-    return edited(text, path, changes)
+    return edit_text(text, path, changes)
 
 
 def _with_block(text: str, path: Path, parts: Mapping[int, Any]) -> str:
     """Return the text with a line for each part; on one line, in a document that is written so."""
     if not parts:
-        return edited(text, path, {("parts",): REMOVE})
+        return edit_text(text, path, {("parts",): REMOVE})
     try:
         return with_parts(text, path, parts)
     except ConfigError:
-        bare = edited(text, path, {("parts",): REMOVE})
-        return edited(bare, path, {("parts", str(number)): value for number, value in parts.items()})
+        bare = edit_text(text, path, {("parts",): REMOVE})
+        return edit_text(bare, path, {("parts", str(number)): value for number, value in parts.items()})
 
 
 def _short(each: Mapping[str, Any]) -> Any:
@@ -191,9 +191,9 @@ def keep_replaced(place: Path, picture: bytes, store: Path, texts: Sequence[str]
     kept = in_store(store, before)
     moved: dict[str, str] = {}
     for text in dict.fromkeys(texts):
-        scene = said(text, path).get("scene") if place.name in text else None
+        scene = read_values(text, path).get("scene") if place.name in text else None
         if isinstance(scene, dict) and path.parent / str(cast("dict[str, Any]", scene).get("segments")) == place:
-            moved[text] = edited(text, path, {("scene", "segments"): str(kept)})
+            moved[text] = edit_text(text, path, {("scene", "segments"): str(kept)})
     if moved:
         with atomic_write(kept) as file:
             file.write(before)

@@ -111,7 +111,7 @@ def view_segments(pipeline: Pipeline) -> SurfaceView:
     if is_there(pipeline, "relief"):
         relief = pipeline.relief
     else:
-        felt = pipeline.engine.felt("segments")
+        felt = pipeline.engine.make_on_grid("segments")
         shape = pipeline.scene.shape if felt is None else felt.labels.shape
         relief = flat_relief(shape, pipeline.config.size.width_m)
     return _view(pipeline, "segments", relief)
@@ -154,7 +154,7 @@ def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h 
 
 def at_hand(pipeline: Pipeline, product: Product) -> Any:
     """Return a product on the working grid; None if it would have to be made."""
-    return pipeline.engine.felt(product) if is_there(pipeline, product) else None
+    return pipeline.engine.make_on_grid(product) if is_there(pipeline, product) else None
 
 
 def _layers(pipeline: Pipeline) -> dict[str, Layer]:

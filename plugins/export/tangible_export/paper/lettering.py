@@ -1,0 +1,85 @@
+"""Braille on a page: the title, lines of text, and letters in parts, clear of the outlines."""
+# shapely has no types.
+# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import shapely
+from jaxtyping import Float64
+
+from ..braille import DOT_DIAMETER_M, LINE_PITCH_M, Cells, dots, wrapped
+from .marks.svg import BRAILLE_DOT_MM, Braille
+from .sheet import CLEAR_MM, LINE_MM, MARGIN_MM, Sheet
+
+MOST_TITLE_LINES = 4
+"""Largest number of lines in the title of a key; the rest is left out."""
+FREE_MM = 5.0
+"""Distance between a letter and a fill: larger than between other marks, or the dots of a fill are read as part of the
+letter. A convention of ours."""
+
+
+class Words(NamedTuple):
+    """The words of a page that are not names, in one language."""
+
+    key: str
+    """Heading of the list of letters and fills."""
+    corner: str
+    """Text alternative of the corner mark."""
+
+
+WORDS = {
+    "en": Words("key", "upper right corner"),
+    "de": Words("Legende", "Ecke oben rechts"),
+    "fr": Words("légende", "coin supérieur droit"),
+}
+
+
+def words(language: str) -> Words:
+    """Return the words for a language tag such as `de-AT`; English if there are none."""
+    return WORDS.get(language.partition("-")[0].lower(), WORDS["en"])
+
+
+def title_lines(title: str, language: str, sheet: Sheet) -> tuple[list[Cells], bool]:
+    """Return the lines with room above the picture, and whether these are all. Raises: BrailleError as `wrapped`."""
+    lines = wrapped(title, language, sheet.title_width_mm / 1000)
+    room = 1 + int((sheet.spare_mm / 1000 + 1e-9) / LINE_PITCH_M)
+    return lines[:room], len(lines) <= room
+
+
+def title_at(title: str, lines: list[Cells]) -> Braille:
+    """Place a title in the upper left corner of a sheet."""
+    return lines_at(title, lines, MARGIN_MM, MARGIN_MM)
+
+
+def lines_at(text: str, lines: list[Cells], left_mm: float, top_mm: float) -> Braille:
+    """Place lines of braille whose dots begin at this left and upper edge."""
+    edge_m = DOT_DIAMETER_M / 2
+    at = [dots(line, (edge_m, edge_m + row * LINE_PITCH_M)) for row, line in enumerate(lines)]
+    return Braille(text, 1000 * np.concatenate([*at, np.zeros((0, 2))]) + np.array([left_mm, top_mm]))
+
+
+def place_letter(cells: Cells, shape: Any, clear_mm: float = CLEAR_MM) -> Float64[np.ndarray, "n 2"] | None:
+    """Return the dots of a letter within a shape, in millimetres on the page; None where there is no room.
+
+    Each dot keeps `clear_mm` from the outline. The places for the first dot are the intersection of the shrunk shape,
+    moved back by the offset of each dot. In the intersection the point farthest from its edge is taken.
+    """
+    clear = shape.buffer(-(LINE_MM / 2 + clear_mm + BRAILLE_DOT_MM / 2))
+    offsets = 1000 * dots(cells)
+    room = shapely.intersection_all([_move(clear, -each) for each in offsets])
+    pieces = [each for each in shapely.get_parts(room) if each.geom_type == "Polygon" and each.area > 0]
+    if not pieces:
+        return None
+    radii = [shapely.maximum_inscribed_circle(each, tolerance=0.1) for each in pieces]
+    best = max(radii, key=lambda each: each.length)
+    return offsets + np.array(best.coords[0])
+
+
+def around(dots_mm: Float64[np.ndarray, "n 2"]) -> Any:
+    """Return the area around a letter that fills leave free: around its convex hull, as it is read as one shape."""
+    return shapely.MultiPoint(dots_mm).convex_hull.buffer(BRAILLE_DOT_MM / 2 + FREE_MM)
+
+
+def _move(shape: Any, by: Float64[np.ndarray, " 2"]) -> Any:
+    return shapely.transform(shape, lambda at: at + by)

@@ -1,0 +1,112 @@
+"""The SVG of a page: explicit black shapes alone."""
+# shapely has no types.
+# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+from xml.sax.saxutils import escape, quoteattr
+
+import numpy as np
+import shapely
+from jaxtyping import Float64
+
+from ...braille import DOT_DIAMETER_M
+from ..fills import DOT_MM as FILL_DOT_MM
+from ..fills import Fill
+from ..sheet import CORNER_MM, LINE_MM, MARGIN_MM, Sheet
+
+BRAILLE_DOT_MM = 1000 * DOT_DIAMETER_M
+NO_DOTS = np.zeros((0, 2))
+
+
+@dataclass(frozen=True)
+class Braille:
+    """A text in braille: its dots in millimetres on the page."""
+
+    text: str
+    dots_mm: Float64[np.ndarray, "n 2"]
+
+
+@dataclass(frozen=True)
+class Area:
+    """A shape with an outline, perhaps with a fill and a letter."""
+
+    label: str
+    outline: Any
+    """A polygon or multi-polygon of shapely."""
+    fill: Fill = field(default_factory=Fill)
+    letter: Braille | None = None
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A page; its corner mark is drawn with it."""
+
+    sheet: Sheet
+    title: str
+    description: str
+    language: str
+    corner: str
+    """The text alternative of the corner mark."""
+    areas: tuple[Area, ...]
+    texts: tuple[Braille, ...]
+
+
+def svg(drawing: Drawing) -> str:
+    """Return the text of the file. The attribute `data-mark` has a mark's role: outline, fill, braille or corner."""
+    sheet = drawing.sheet
+    width, length = f"{sheet.width_mm:g}", f"{sheet.length_mm:g}"
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{length}mm" '
+        f'viewBox="0 0 {width} {length}" lang={quoteattr(drawing.language)} xml:lang={quoteattr(drawing.language)} '
+        'role="graphics-document document" aria-labelledby="title" aria-describedby="description">',
+        f'<title id="title">{escape(drawing.title)}</title>',
+        f'<desc id="description">{escape(drawing.description)}</desc>',
+        *(_braille(text) for text in drawing.texts),
+        _corner(drawing),
+        *(_area(area) for area in drawing.areas),
+        "</svg>",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _corner(drawing: Drawing) -> str:
+    right, top = drawing.sheet.width_mm - MARGIN_MM, MARGIN_MM
+    corner = np.array([(right - CORNER_MM, top), (right, top), (right, top + CORNER_MM)])
+    return f'<path data-mark="corner" role="img" aria-label={quoteattr(drawing.corner)} d="{_line(corner)}Z"/>'
+
+
+def _area(area: Area) -> str:
+    rings = shapely.get_rings(shapely.get_parts(area.outline))
+    outline = "".join(f"{_line(shapely.get_coordinates(each)[:-1])}Z" for each in rings)
+    inside = [
+        f'<path data-mark="outline" fill="none" stroke="#000" stroke-width="{LINE_MM:g}" stroke-linejoin="round" '
+        f'd="{outline}"/>'
+    ]
+    inside += [_braille(area.letter)] if area.letter else []
+    inside += [_fill(area.fill)] if area.fill else []
+    return "\n".join([f'<g role="img" aria-label={quoteattr(area.label)}>', *inside, "</g>"])
+
+
+def _fill(fill: Fill) -> str:
+    strokes = "".join(_line(shapely.get_coordinates(each)) for each in fill.strokes)
+    if not strokes:
+        return f'<g data-mark="fill">{_discs(fill.dots_mm, FILL_DOT_MM)}</g>'
+    return (
+        f'<path data-mark="fill" fill="none" stroke="#000" stroke-width="{fill.stroke_mm:g}" stroke-linecap="round" '
+        f'stroke-linejoin="round" d="{strokes}"/>'
+    )
+
+
+def _braille(text: Braille) -> str:
+    discs = _discs(text.dots_mm, BRAILLE_DOT_MM)
+    return f'<g data-mark="braille" role="img" aria-label={quoteattr(text.text)}>{discs}</g>'
+
+
+def _discs(at_mm: Iterable[Float64[np.ndarray, " 2"]], diameter_mm: float) -> str:
+    return "".join(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{diameter_mm / 2:.2f}"/>' for x, y in at_mm)
+
+
+def _line(at_mm: Float64[np.ndarray, "n 2"]) -> str:
+    return "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in at_mm)

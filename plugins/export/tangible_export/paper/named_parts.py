@@ -1,0 +1,68 @@
+"""Parts grouped by name, and a letter for each name."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from string import ascii_lowercase
+from unicodedata import normalize
+
+import numpy as np
+
+from tangible_core.data import PartMap, Work
+
+from ..labels import label_of
+
+LETTERS = ascii_lowercase[1:] + ascii_lowercase[0]
+"""Letters in the order of their use. The last, `a`, is a single dot, which a finger takes for a stray one."""
+MOST_NAMES = 100
+"""Largest number of names on a page: their key has nine pages, and nobody remembers more. A convention of ours."""
+
+
+@dataclass(frozen=True)
+class NamedParts:
+    """All parts of one name."""
+
+    name: str
+    numbers: tuple[int, ...]
+    """Numbers of the parts."""
+
+
+def group_by_name(work: Work, parts: PartMap) -> list[NamedParts]:
+    """Return the parts that have a pixel, by name, the largest first."""
+    sizes = np.bincount(parts.labels.ravel(), minlength=parts.count)
+    numbers_of: dict[str, list[int]] = {}
+    for number in np.flatnonzero(sizes).tolist():
+        numbers_of.setdefault(label_of(number, work), []).append(number)
+    groups = [NamedParts(name, tuple(numbers)) for name, numbers in numbers_of.items()]
+    return sorted(groups, key=lambda each: -int(sizes[list(each.numbers)].sum()))
+
+
+def key_letters(names: Sequence[str]) -> list[str]:
+    """Return a different letter for each name: its first letter, else another of its letters, else any.
+
+    Pairs of letters if there are more names than letters; there are pairs for MOST_NAMES.
+    """
+    if len(names) <= len(LETTERS):
+        return _choose([_letters_in(name) for name in names], list(LETTERS))
+    pairs = [first + second for first in LETTERS for second in LETTERS]
+    return _choose([_pairs_in(name) for name in names], pairs)
+
+
+def _choose(wishes: list[list[str]], others: list[str]) -> list[str]:
+    """Return for each name its first wish, unless an earlier name has it; then a later wish, or one of the others."""
+    letters = dict[int, str]()
+    for most in (1, None):
+        for number, own in enumerate(wishes):
+            free = (each for each in (own[:most] if most else [*own, *others]) if each not in letters.values())
+            if number not in letters and (letter := next(free, None)):
+                letters[number] = letter
+    return [letters[number] for number in range(len(wishes))]
+
+
+def _letters_in(name: str) -> list[str]:
+    """Return the letters of a name without accents, and without the `a`."""
+    return [each for each in normalize("NFD", name.lower()) if each in LETTERS[:-1]]
+
+
+def _pairs_in(name: str) -> list[str]:
+    letters = _letters_in(name)
+    return [letters[0] + each for each in letters[1:]] if letters else []

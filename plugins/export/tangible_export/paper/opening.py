@@ -1,0 +1,118 @@
+"""Parts opened, in the sense of morphology, so that a finger has room between their outlines."""
+
+import logging
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float64, Int32, Integer
+from scipy.ndimage import distance_transform_edt, find_objects
+
+from tangible_core.data import PartMap, SegmentMap, Work
+from tangible_core.legibility.widths import measure
+from tangible_core.parts import find_parts, reduced_parts
+from tangible_core.plugins.notes import note
+
+from ..labels import first_labels, label_of
+from .sheet import GAP_MM, LINE_MM
+
+log = logging.getLogger(__name__)
+
+PITCH_M = 0.25e-3
+"""Pitch of the grid of parts, about."""
+COARSE = 2
+"""Factor by which the grid of the opening is coarser."""
+GAP_M = (GAP_MM + LINE_MM) / 1000
+"""Smallest distance between the middles of two outlines."""
+AMPLE = 1.12
+"""Factor on the gap, so that smoothed borders still keep it."""
+ROUNDS = 16
+"""Largest number of rounds of opening."""
+FURTHER = 0.1
+"""Margin around a narrow place that is assigned anew, as a share of the gap. From the third round on the margin grows
+by as much a round, as two parts may otherwise take a place from each other in turns."""
+WIDER = 0.25
+"""The same margin, for a place that was too narrow on the drawn page."""
+VOTING = 0.25
+"""Standard deviation of the Gaussian by which the neighbouring cells vote, as a share of the gap."""
+
+
+def open_parts(work: Work, parts: PartMap, width_m: float) -> PartMap:
+    """Return the parts without places narrower than GAP_M, which go to their neighbours."""
+    rows, columns = parts.labels.shape
+    step = max(1, round(PITCH_M / (width_m / columns)))
+    fine = reduced_parts(parts, (-(-rows // step), -(-columns // step))).labels
+    pitch_m = step * width_m / columns
+    before = np.ascontiguousarray(fine[::COARSE, ::COARSE])
+    after = _open(before, COARSE * pitch_m)
+    changed, coarse = (_enlarge(each, fine.shape) for each in (before != after, after))
+    labels = _without_crumbs(np.where(changed, coarse, fine), pitch_m)
+    _note_lost(work, fine, labels, parts.count)
+    return PartMap(labels, parts.segments)
+
+
+def _enlarge(cells: Integer[np.ndarray, "r c"] | Bool[np.ndarray, "r c"], shape: tuple[int, ...]) -> np.ndarray:
+    return cells.repeat(COARSE, 0).repeat(COARSE, 1)[: shape[0], : shape[1]]
+
+
+def open_at(parts: PartMap, places: Float64[np.ndarray, "n 2"], width_m: float, further: int) -> PartMap:
+    """Return the parts opened at these places.
+
+    places: as shares of the width, from the upper left corner. further: 1 or more; the margin grows with it.
+    """
+    rows, columns = parts.labels.shape
+    pitch_m, narrow = width_m / columns, np.zeros((rows, columns), np.bool_)
+    at = (places * columns).astype(np.int64)
+    narrow[at[:, 1].clip(0, rows - 1), at[:, 0].clip(0, columns - 1)] = True
+    around = (0.5 + WIDER * further) * GAP_M / pitch_m
+    labels = _reassign(parts.labels, narrow, around, around / 2)  # so wide that all neighbours vote on the middle
+    return PartMap(_without_crumbs(labels, pitch_m), parts.segments)
+
+
+def _open(labels: Int32[np.ndarray, "h w"], pitch_m: float) -> Int32[np.ndarray, "h w"]:
+    for turn in range(ROUNDS):
+        widths = measure(labels, pitch_m, AMPLE * GAP_M, quick=True)
+        narrow = widths.narrow | (widths.disc_m < GAP_M)[widths.pieces]
+        if not narrow.any() or narrow.all():
+            break
+        labels = _reassign(labels, narrow, FURTHER * max(1, turn) * GAP_M / pitch_m, VOTING * GAP_M / pitch_m)
+    return labels
+
+
+def _reassign(
+    labels: Int32[np.ndarray, "h w"], narrow: Bool[np.ndarray, "h w"], further: float, sigma: float
+) -> Int32[np.ndarray, "h w"]:
+    """Assign all cells within `further` of a narrow place to the part with the largest share of the cells around."""
+    away = cv2.distanceTransform((~narrow).astype(np.uint8), cv2.DIST_L2, 5) <= further
+    assigned, reach = labels.copy(), int(4 * sigma) + 2
+    for box in find_objects(cv2.connectedComponents(away.astype(np.uint8), connectivity=8)[1]):
+        window = tuple(slice(max(0, each.start - reach), each.stop + reach) for each in box)
+        assigned[window] = _vote(labels[window], away[window], sigma)
+    return assigned
+
+
+def _vote(labels: Int32[np.ndarray, "h w"], away: Bool[np.ndarray, "h w"], sigma: float) -> Int32[np.ndarray, "h w"]:
+    numbers = np.unique(labels[~away])
+    if not numbers.size:
+        return labels
+    votes = np.stack(
+        [cv2.GaussianBlur(((labels == each) & ~away).astype(np.float32), (0, 0), sigma) for each in numbers]
+    )
+    nearest = np.asarray(distance_transform_edt(away, return_distances=False, return_indices=True))
+    winners = np.where(votes.max(axis=0) > 1e-4, numbers[votes.argmax(axis=0)], labels[nearest[0], nearest[1]])
+    return np.where(away, winners, labels).astype(np.int32)
+
+
+def _without_crumbs(labels: Int32[np.ndarray, "h w"], pitch_m: float) -> Int32[np.ndarray, "h w"]:
+    """Assign pieces that are too small for a disc GAP_M wide to their neighbours; the coarse grid may miss them."""
+    pieces = find_parts(SegmentMap(labels)).labels
+    small = np.bincount(pieces.ravel()) < np.pi / 4 * (GAP_M / pitch_m) ** 2
+    return labels if not small.any() or small.all() else _reassign(labels, small[pieces], 0, VOTING * GAP_M / pitch_m)
+
+
+def _note_lost(work: Work, before: Int32[np.ndarray, "h w"], after: Int32[np.ndarray, "h w"], count: int) -> None:
+    there, left = (np.bincount(each.ravel(), minlength=count) > 0 for each in (before, after))
+    if lost := [label_of(number, work) for number in np.flatnonzero(there & ~left).tolist()]:
+        note(
+            log,
+            f"no room for {first_labels(lost)}: narrower than {1000 * GAP_M:.1f} mm between the middles of outlines",
+        )

@@ -1,0 +1,1 @@
+"""The commands, a file each; `check` is with `plugins`."""

@@ -1,0 +1,81 @@
+"""`legible`: whether fingers can read it."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..options import FAILED, Config, Json, NoCache, Sets
+from .run import open_pipeline
+
+if TYPE_CHECKING:
+    from ...legibility import Legibility
+    from ...preflight import Verdict
+
+COLOURS = {"ok": "green", "warn": "yellow", "illegible": "bold red"}
+
+
+class ReadOn(StrEnum):
+    """What a finger reads."""
+
+    swell = "swell"
+    print = "print"
+    pins = "pins"
+    force = "force"
+
+
+def legible(
+    config: Config,
+    medium: Annotated[
+        ReadOn, typer.Option("--for", help="What it is read on: swell paper, a printed solid, pins or a force device.")
+    ],
+    sets: Sets = None,
+    width_m: Annotated[float | None, typer.Option("--width-m", help="Width of the whole there, m.")] = None,
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Check whether fingers can read it, on paper, print, pins or a device.
+
+    Says by the rules of tactile graphics what is ok, what is not and where, and its cure. Writes nothing. Exit 1 if
+    something is illegible.
+    """
+    from ...pipeline.feeling import Feeling
+
+    pipeline = open_pipeline(config, sets or [], not no_cache)
+    verdicts = Feeling(pipeline).legible(medium.value, width_m)
+    width_m = pipeline.config.size.width_m if width_m is None else width_m
+    _print(pipeline.scene.name, medium.value, width_m, verdicts, as_json)
+    if not verdicts.readable:
+        raise typer.Exit(FAILED)
+
+
+def _print(scene: str, medium: str, width_m: float, verdicts: Legibility, as_json: bool) -> None:
+    from rich.markup import escape
+
+    from ...legibility import PROFILES
+    from ...preflight.wording import quantity
+    from .. import show
+
+    if as_json:
+        show.print_json({"scene": scene, "medium": medium, "width_m": width_m, **verdicts.as_data()})
+        return
+    said = next(profile.text for name, profile in PROFILES.items() if name == medium)
+    sentence = f"[{COLOURS[verdicts.grade]}]{escape(verdicts.sentence)}[/]"
+    show.say(f"{escape(scene)}, {quantity(width_m, 'm')} wide, on {said}: {sentence}\n")
+    for verdict in verdicts:
+        show.say(line(verdict))
+    counts = {grade: sum(each.verdict == grade for each in verdicts) for grade in COLOURS}
+    show.say("\n" + ", ".join(f"{n} {name}" for name, n in counts.items()))
+
+
+def line(verdict: Verdict) -> str:
+    """A verdict as text, its cure on a line of its own, with rich's marks."""
+    from rich.markup import escape
+
+    from ...preflight import relation
+
+    said = "; ".join(filter(None, (f"{verdict.of}: {relation(verdict)}", verdict.note, verdict.source)))
+    cure = f"\n{'':>26}cure: {verdict.cure}" if verdict.cure else ""
+    return f"[{COLOURS[verdict.verdict]}]{verdict.verdict:<9}[/] {verdict.check:<15} {escape(said + cure)}"

@@ -1,0 +1,127 @@
+"""`preflight`: what is to be known before a motor moves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..options import FAILED, Config, Json, NoCache, Sets
+from .run import device_of, open_pipeline
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from ...preflight import Flight, Hand, Loop, Preflight, Verdict
+
+COLOURS = {"ok": "green", "warn": "yellow", "unsafe": "bold red"}
+
+
+def preflight(
+    config: Config,
+    sets: Sets = None,
+    fix: Annotated[
+        Path | None, typer.Option("--fix", metavar="OUT.yaml", help="Write a pipeline file that passes.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="With --fix, write over a file that is there.")] = False,
+    seconds: Annotated[float, typer.Option(help="How long to measure this machine's timing, s.")] = 2.0,
+    rate: Annotated[float, typer.Option(help="Rate of the force loop, Hz.")] = 1000.0,
+    speed: Annotated[float, typer.Option(help="Speed of the hand's stroke, m/s.")] = 0.12,
+    press: Annotated[float, typer.Option(help="Pressing force of the hand, N.")] = 3.0,
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Check, before a motor moves, what is safe.
+
+    Says what is ok, what is not, and its cure. Opens no device. Exit 1 if something is unsafe. With --fix, the cures
+    are tried, and a file with what is needed of them is written; if that is not enough, none is, and the exit is 1.
+    """
+    from ...errors import OutputError
+    from ...pipeline.feeling import Feeling
+    from ...preflight import Hand, Loop, judge
+
+    hand, loop = Hand(speed, press), Loop(rate, seconds)
+    if fix is not None and fix.exists() and not force:
+        raise OutputError(f"{fix}: is there already; name another file, or --force writes over it")
+    pipeline = open_pipeline(config, sets or [], not no_cache)
+    device = device_of(pipeline)
+    if fix is None:
+        flight = Feeling(pipeline).flight(hand=hand, loop=loop)
+        verdicts, more = judge(flight), {}
+    else:
+        flight, verdicts, more = _fixed(config, sets or [], hand, loop, fix, not no_cache)
+    _print(pipeline.scene.name, device.name, flight, verdicts, more, as_json)
+    if not verdicts.safe:
+        raise typer.Exit(FAILED)
+
+
+def _fixed(
+    config: Path, sets: Sequence[str], hand: Hand, loop: Loop, out: Path, cached: bool
+) -> tuple[Flight, Preflight, dict[str, Any]]:
+    """What is so after the cures, which are written where they are enough; with what there is to say of them."""
+    from ...files.writing import write_text
+    from ...pipeline.fixing import fix
+
+    found = fix(config, sets, hand, loop, out, cached)
+    if found.verdicts.safe:
+        write_text(out, found.text)
+    return found.flight, found.verdicts, {"file": str(out) if found.verdicts.safe else None, "changes": found.changes}
+
+
+def _print(
+    scene: str, device: str, flight: Flight, verdicts: Preflight, more: Mapping[str, Any], as_json: bool
+) -> None:
+    from dataclasses import asdict
+
+    from rich.markup import escape
+
+    from .. import show
+
+    if as_json:
+        said = {"scene": scene, "device": device, "sentence": verdicts.sentence, "grade": verdicts.grade}
+        rows = [{**asdict(each), "changes": {change.key: change.value for change in each.changes}} for each in verdicts]
+        show.print_json({**said, **more, **_figures(flight), "verdicts": rows})
+        return
+    sentence = f"[{COLOURS[verdicts.grade]}]{escape(verdicts.sentence)}[/]"
+    show.say(f"{escape(scene)} on {escape(device)}: {sentence}\n")
+    for verdict in verdicts:
+        show.say(line(verdict))
+    counts = {grade: sum(each.verdict == grade for each in verdicts) for grade in COLOURS}
+    show.say("\n" + ", ".join(f"{n} {name}" for name, n in counts.items()))
+    if more:
+        changed = "; ".join(f"{key}: {value}" for key, value in more["changes"].items()) or "nothing had to change"
+        written = f"written to {more['file']}" if more["file"] else "tried, which is not enough; nothing was written"
+        show.plain(f"{changed}: {written}")
+
+
+def line(verdict: Verdict) -> str:
+    """A verdict as text, its cure on a line of its own, with rich's marks."""
+    from rich.markup import escape
+
+    from ...preflight import relation
+
+    said = "; ".join(filter(None, (f"{verdict.of}: {relation(verdict)}", verdict.note, verdict.source)))
+    cure = f"\n{'':>20}cure: {verdict.cure}" if verdict.cure else ""
+    return f"[{COLOURS[verdict.verdict]}]{verdict.verdict:<6}[/] {verdict.check:<12} {escape(said + cure)}"
+
+
+def _figures(flight: Flight) -> dict[str, Any]:
+    from dataclasses import asdict
+
+    from ...preflight import PERCENTILES
+
+    late, cost = flight.lateness, flight.cost
+    return {
+        "spec": asdict(flight.spec),
+        "hand": asdict(flight.hand),
+        "period_s": flight.period_s,
+        "jitter": {
+            **{f"{name}_s": late.at(percent) for name, percent in PERCENTILES.items()},
+            "ticks": late.late_s.size,
+            "overruns": late.overruns,
+            "real_time": late.real_time,
+        },
+        "tick": {f"{name}_s": cost.at(percent) for name, percent in PERCENTILES.items()}
+        | {"compiled_s": cost.kernel_s if cost.compiled else None},
+    }

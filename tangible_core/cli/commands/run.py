@@ -1,0 +1,227 @@
+"""`demo`, `run`, `plan`: a pipeline from file to report."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from ..options import Felt, Json, NoCache, Sets
+from ..verbosity import is_quiet
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from ...pipeline.config.methods import NamedMethod
+    from ...pipeline.output.runs import Run
+    from ...pipeline.pipeline import Pipeline
+    from ...plugins.interfaces import HapticDevice
+
+Seconds = Annotated[float, typer.Option(help="Simulated time for which the surface is felt, s.")]
+
+
+def demo(
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/demo].")] = None,
+    seconds: Seconds = 8.0,
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Run the built-in example from picture to force.
+
+    A stereo pair with known depth becomes a surface, which a simulated hand feels.
+    """
+    from importlib.resources import files
+
+    from ...pipeline.config.parsing import parse_config
+    from ...pipeline.engine.cache import Cache
+    from ...pipeline.pipeline import Pipeline
+    from ...plugins.registry import default_registry
+    from .. import show
+
+    text = files("tangible_core").joinpath("demo.yaml").read_text(encoding="utf-8")
+    config = parse_config(text, DEMO, default_registry())
+    pipeline = Pipeline.from_config(config, default_registry(), None if no_cache else Cache())
+    out = out or default_place(DEMO)
+    done = pipeline.run(out, seconds=seconds)
+    _print(done, as_json)
+    _say_if_ended_early(done)
+    if not (as_json or is_quiet()):
+        show.say(NEXT.format(config=out / "config.yaml"))
+
+
+DEMO = Path("tangible demo/demo.yaml")
+"""What the built-in example is called, as if it were a file: nobody's own demo.yaml is taken for it."""
+
+NEXT = """
+Next:
+  tangible plan {config}              what a run does and why, without running it
+  tangible feel {config} --seconds 5  the same surface on the configured device
+  tangible run {config} --set render.use=grey-level   the report's own law, to compare
+  tangible plugins                    what else there is to put into `use:`
+  tangible ui {config}                see it, hear it and feel it with the mouse, on a page in the browser"""
+
+
+def run(
+    config: Felt,
+    sets: Sets = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/NAME].")] = None,
+    seconds: Seconds = 8.0,
+    sheet: Annotated[Literal["png", "svg", "pdf"], typer.Option(help="What the sheet is drawn as.")] = "png",
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Run a pipeline file, or a picture, and write a report.
+
+    A simulated device feels the surface; a real one is never moved: see `feel`.
+    """
+    pipeline = open_pipeline(config, sets or [], not no_cache)
+    done = pipeline.run(out or default_place(config[0]), seconds=seconds, sheet=sheet)
+    _print(done, as_json)
+    _say_if_ended_early(done)
+
+
+def plan(config: Felt, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
+    """Say what `run` would do, and why; run nothing.
+
+    Exit 2 if `run` would refuse.
+    """
+    from ...errors import ConfigError
+    from .. import sentences, show
+
+    plan = open_pipeline(config, sets or [], not no_cache).plan()
+    if as_json:
+        show.print_json(show.as_rows(plan.steps))
+    else:
+        if not plan.refusal:
+            show.sentence(sentences.planned(plan.steps))
+        show.outcomes(plan.steps, ran="to run")
+    if plan.refusal:
+        show.flush()
+        raise ConfigError(f"this cannot be run: {plan.refusal}")
+
+
+def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bool) -> Pipeline:
+    """The pipeline of a file, or of pictures that have none; with or without the user's cache."""
+    from ...errors import ConfigError
+    from ...pipeline.pipeline import load_pipeline
+    from ...pipeline.starter import are_pictures, pipeline_of
+    from .. import show
+
+    files = [config] if isinstance(config, Path) else config
+    if are_pictures(files):
+        pipeline = pipeline_of(files, sets)
+        if not is_quiet():
+            command = shlex.join(["tangible", "new", *map(str, files)])
+            show.note(
+                f"no pipeline file is named, so values that suit the picture are taken: `{command}` writes them down"
+            )
+    elif len(files) > 1:
+        raise ConfigError(f"{', '.join(map(str, files))}: name one pipeline file, one picture, or left and right")
+    else:
+        pipeline = load_pipeline(files[0], sets)
+    if not cached:
+        pipeline.engine.cache = None
+    return pipeline
+
+
+def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
+    """The configured device with its name. Raises: ConfigError if there is none."""
+    from dataclasses import replace
+
+    device, felt = pipeline.config.device, pipeline.config.felt_device
+    if device is None or felt is None:
+        raise pipeline.config.missing("device")
+    return replace(device, method=felt)
+
+
+def default_place(source: Path) -> Path:
+    """Where results go that nobody named a folder for."""
+    from ...pipeline.output.run_folder import default_folder, default_name
+    from .. import show
+
+    folder = default_folder(source)
+    if folder.name != (first := default_name(source)):
+        show.note(
+            f"{folder.parent / first} holds other results, and keeps them; these go to {folder} (`--out` chooses)"
+        )
+    return folder
+
+
+def _print(run: Run, as_json: bool) -> None:
+    from .. import sentences, show
+
+    if as_json:
+        show.print_json({**run.document(), "files": [str(path) for path in run.files]})
+        return
+    if is_quiet():
+        return
+    show.sentence(sentences.made(run))
+    show.outcomes(run.outcomes, f"[bold]{run.scene}[/]")
+    for name, values in run.figures.items():
+        title, lines = LINES[name]
+        show.say(f"\n[bold]{title}[/]")
+        for line in lines(values):
+            show.plain(f"  {line}")
+    show.say("\n[bold]written[/]")
+    for path in run.files:
+        show.plain(f"  {path}")
+
+
+def _say_if_ended_early(run: Run) -> None:
+    """Raises: KeyboardInterrupt if it was Ctrl-C that ended the feeling."""
+    from ...session import INTERRUPTED
+    from .. import show
+
+    if run.recording is None or not run.recording.stopped:
+        return
+    felt_s, why = run.recording.figures()["seconds"], run.recording.stopped
+    show.flush()
+    show.note(f"feeling ended after {felt_s:.1f} s: {why}; recording.npz holds these, and all else was made whole")
+    if why == INTERRUPTED:
+        raise KeyboardInterrupt
+
+
+def _error_lines(figures: Mapping[Any, Any]) -> list[str]:
+    return [
+        f"{figures['bad2']:.0f} % of the picture is off by more than 2 px, or unknown",
+        f"bad1 {figures['bad1']:.2f} %, bad2 {figures['bad2']:.2f} % of pixels over 1 px, 2 px (unknown counts as bad)",
+        f"average {figures['average_px']:.3f} px, rms {figures['rms_px']:.3f} px "
+        f"over the {figures['density']:.1f} % that are known",
+    ]
+
+
+def _material_lines(figures: Mapping[Any, Any]) -> list[str]:
+    return [f"{label}: {each['name']} ({each['why']})" for label, each in figures.items()]
+
+
+def _part_lines(figures: Mapping[Any, Any]) -> list[str]:
+    """What is called how, how high it is, and why; a part without a name by its number alone."""
+    return [
+        f"{number}: {', '.join(_said_of(each))}" + (f" ({each['why']})" if each["why"] else "")
+        for number, each in figures.items()
+    ]
+
+
+def _said_of(part: Mapping[Any, Any]) -> list[str]:
+    height_m = part["height_m"]
+    said = (part["name"], "" if height_m is None else f"{1000 * height_m:.3g} mm high", part["material"])
+    return [each for each in said if each]
+
+
+def _force_lines(figures: Mapping[Any, Any]) -> list[str]:
+    return [
+        f"peak {figures['peak_force_n']:.2f} N, median in contact {figures['median_contact_force_n']:.2f} N, "
+        f"in contact {100 * figures['contact_share']:.0f} % of {figures['seconds']:.1f} s ({figures['ticks']} ticks)"
+    ]
+
+
+LINES: dict[str, tuple[str, Callable[[Mapping[Any, Any]], list[str]]]] = {
+    "disparity": ("error against the truth", _error_lines),
+    "materials": ("materials", _material_lines),
+    "parts": ("parts", _part_lines),
+    "force": ("force along the path", _force_lines),
+    "guard": ("what the guard changed", lambda figures: [figures["says"]]),
+    "hand": ("the hand", lambda figures: [figures["says"]]),
+}

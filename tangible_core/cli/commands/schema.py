@@ -1,0 +1,29 @@
+"""`schema`: what a pipeline file, or a file of materials, may say."""
+
+from typing import Annotated
+
+import typer
+
+
+def schema(
+    markdown: Annotated[bool, typer.Option("--markdown", help="A reference page instead of JSON Schema.")] = False,
+    installed: Annotated[bool, typer.Option("--installed", help="Include the methods of other plugins.")] = False,
+    materials: Annotated[bool, typer.Option("--materials", help="Schema of material files instead.")] = False,
+) -> None:
+    """Print the JSON Schema of pipeline files.
+
+    Editors complete and check files by it.
+    """
+    from ...pipeline.config.markdown import markdown as as_markdown
+    from ...pipeline.config.schema import json_schema, materials_schema
+    from ...runtime.standard_output import stream
+    from ..show import print_json
+
+    if materials:
+        print_json(materials_schema())
+        return
+    found = json_schema(distribution=None if installed else "tangible-images")
+    if markdown:
+        print(as_markdown(found), end="", file=stream())
+    else:
+        print_json(found)

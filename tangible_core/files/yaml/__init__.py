@@ -1,0 +1,1 @@
+"""YAML texts: read within bounds, complained of by line and column, and changed in place."""

@@ -1,0 +1,114 @@
+"""Limits on a YAML text: its depth, its size with aliases expanded, and the length of its numbers."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, cast, final
+
+from ruamel.yaml.constructor import RoundTripConstructor
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+
+MOST_DEPTH = 20
+"""The most levels of nested blocks; files for this program need six."""
+MOST_NODES = 40_000
+"""The most keys, values and blocks with aliases expanded: enough for a rule for each of 4,096 segments."""
+MOST_DIGITS = 64
+"""The most characters of a number, with its sign, point and exponent."""
+
+_NUMBERS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
+
+
+@dataclass
+class _Block:
+    """A mapping or a list that is not closed yet."""
+
+    anchor: str | None
+    is_mapping: bool
+    parts: int = 0
+    nodes: int = 1
+
+
+@final
+@dataclass
+class _Count:
+    """The nodes that were counted so far."""
+
+    open: list[_Block] = field(default_factory=list[_Block])
+    nodes_of: dict[str, int] = field(default_factory=dict[str, int])
+    """The number of nodes that an alias to each closed anchor stands for."""
+
+
+def check_events(events: Iterable[Any]) -> None:
+    """Check the events of a parser one after the other, before a tree is built from them.
+
+    Raises: MarkedYAMLError with the place of a block that is too deep or too large, of an alias inside its own anchor,
+    or of a block as a key, whose hash takes time that doubles with each level.
+    """
+    count = _Count()
+    for event in events:
+        kind = type(event).__name__
+        if kind in ("MappingStartEvent", "SequenceStartEvent"):
+            _open(count, event, kind == "MappingStartEvent")
+        elif kind in ("MappingEndEvent", "SequenceEndEvent"):
+            block = count.open.pop()
+            _add(count, event, block.nodes, block.anchor)
+        elif kind == "AliasEvent":
+            _alias(count, event)
+        elif kind == "ScalarEvent":
+            _add(count, event, 1, event.anchor)
+
+
+def _open(count: _Count, event: Any, is_mapping: bool) -> None:
+    if count.open and _is_key(count.open[-1]):
+        raise _refusal(event, "a key must be a word or a number, not a list or a mapping")
+    if len(count.open) >= MOST_DEPTH:
+        raise _refusal(event, f"more than {MOST_DEPTH} blocks are nested")
+    count.open.append(_Block(event.anchor, is_mapping))
+
+
+def _alias(count: _Count, event: Any) -> None:
+    if any(block.anchor == event.anchor for block in count.open):
+        raise _refusal(event, "an alias refers to a block that contains it")
+    nodes = count.nodes_of.get(event.anchor, 1)  # the parser reports an unknown anchor
+    if nodes > 1 and count.open and _is_key(count.open[-1]):
+        raise _refusal(event, "a key must be a word or a number, not a list or a mapping")
+    _add(count, event, nodes, None)
+
+
+def _add(count: _Count, event: Any, nodes: int, anchor: str | None) -> None:
+    """Add a complete node to the open blocks around it."""
+    if anchor is not None:
+        count.nodes_of[anchor] = nodes
+    if not count.open:
+        return
+    count.open[-1].parts += 1
+    count.open[-1].nodes += nodes
+    if sum(block.nodes for block in count.open) > MOST_NODES:
+        raise _refusal(event, f"there are more than {MOST_NODES} values, aliases expanded")
+
+
+def _is_key(block: _Block) -> bool:
+    return block.is_mapping and block.parts % 2 == 0
+
+
+def _refusal(event: Any, problem: str) -> MarkedYAMLError:
+    return MarkedYAMLError(None, None, problem, event.start_mark)
+
+
+@final
+class BoundedConstructor(RoundTripConstructor):
+    """A constructor that limits the length of numbers, keeps dates as text, and gives the place of other errors."""
+
+    def construct_non_recursive_object(self, node: Any, tag: str | None = None) -> Any:
+        """Return the value of a node."""
+        if node.tag in _NUMBERS and len(node.value) > MOST_DIGITS:
+            raise MarkedYAMLError(None, None, f"a number of more than {MOST_DIGITS} digits", node.start_mark)
+        try:
+            return cast(Any, super()).construct_non_recursive_object(node, tag)
+        except YAMLError:
+            raise
+        except Exception as error:  # such as ValueError, for `!!int word`
+            raise MarkedYAMLError(None, None, f"it cannot be parsed: {error}", node.start_mark) from error
+
+
+_bounded: Any = BoundedConstructor
+_bounded.add_constructor("tag:yaml.org,2002:timestamp", _bounded.construct_yaml_str)  # YAML 1.2 has no dates

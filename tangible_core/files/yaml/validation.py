@@ -1,0 +1,76 @@
+"""Errors of pydantic about a block of YAML: in plain words, and at locations that the block has."""
+
+from collections.abc import Iterable, Iterator
+from typing import Any, cast, get_args
+
+from pydantic import BaseModel, ValidationError
+
+Location = tuple[Any, ...]
+"""Keys and indices from the top of the file."""
+PLAIN_WORDS = {
+    "dict_type": "Input should be a mapping, such as {key: value}",
+    "model_type": "Input should be a mapping, such as {key: value}",
+    "list_type": "Input should be a list, such as [1, 2]",
+    "tuple_type": "Input should be a list, such as [1, 2]",
+    "path_type": "Input should be the path of a file",
+    "int_parsing": "Input should be a valid integer",
+    "float_parsing": "Input should be a valid number",
+}
+"""Messages in place of pydantic's, which name types of Python, by the type of its error."""
+_WANTED = "Input should be "
+
+
+def plain_errors(error: ValidationError, block: Any) -> list[dict[str, Any]]:
+    """Return pydantic's errors with plain messages and locations that the block has.
+
+    Of an option that may have several forms, only the errors of the form that fits best are kept. Errors at one
+    location become one: `Input should be greater than 0, or 'auto'`.
+    """
+    errors: list[dict[str, Any]] = [{**each, "loc": _location_in(block, each["loc"])} for each in error.errors()]
+    locations: list[Location] = [each["loc"] for each in errors]
+    deepest = [each for each in errors if not any(_is_within(other, each["loc"]) for other in locations)]
+    joined = dict[tuple[Location, str], dict[str, Any]]()
+    for each in deepest:
+        text = str(PLAIN_WORDS.get(each["type"]) or each["msg"].removeprefix("Value error, "))
+        key = (each["loc"], "" if text.startswith(_WANTED) else text)
+        if key in joined and key[1] == "":
+            text = f"{joined[key]['msg']}, or {text.removeprefix(_WANTED)}"
+        joined[key] = {**each, "msg": text}
+    return list(joined.values())
+
+
+def _is_within(inner: Location, outer: Location) -> bool:
+    return len(inner) > len(outer) and inner[: len(outer)] == outer
+
+
+def _location_in(block: Any, location: Location) -> Location:
+    """Return a location without the names that pydantic gives to the forms of an option that has several."""
+    node: Any = block
+    parts = list[Any]()
+    for part in location:
+        if isinstance(part, str) and not isinstance(node, dict) and part != "[key]":
+            continue
+        parts.append(part)
+        if isinstance(node, dict | list) and has(node, part):
+            node = cast(Any, node)[part]
+    return tuple(parts)
+
+
+def has(node: Any, part: Any) -> bool:
+    """Return True if a mapping has this key, or a list this index."""
+    return part in node if isinstance(node, dict) else isinstance(part, int) and part < len(node)
+
+
+def model_at(model: type[BaseModel], location: Iterable[Any]) -> type[BaseModel]:
+    """Return the innermost model on the way to a location in a model."""
+    for part in location:
+        if isinstance(part, str) and part in model.model_fields:
+            model = next(_models_in(model.model_fields[part].annotation), model)
+    return model
+
+
+def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _models_in(part)

@@ -1,0 +1,61 @@
+"""Calibrations of single devices, stored in the user's configuration folder by serial number."""
+
+import os
+from pathlib import Path
+from typing import TypeVar
+from urllib.parse import quote
+
+from pydantic import BaseModel, ValidationError
+
+from ..errors import DeviceError
+from ..files.paths import as_path
+from ..files.reading import MOST_TEXT_BYTES, read_bytes
+from ..files.writing import write_text
+
+M = TypeVar("M", bound=BaseModel)
+
+
+def calibration_path(device: str, serial: str) -> Path:
+    """Return the path of a unit's calibration; units of a kind without serial numbers share one."""
+    if named := os.environ.get("TANGIBLE_CONFIG_DIR"):
+        folder = as_path(named, "TANGIBLE_CONFIG_DIR")
+    else:
+        from platformdirs import user_config_path
+
+        folder = user_config_path("tangible-images")
+    return folder / "devices" / f"{device}-{quote(serial, safe='') or 'any'}.json"
+
+
+def any_calibration(device: str) -> bool:
+    """Tell whether any calibration was saved for this kind of device; if not, its serial number is not needed."""
+    return any(calibration_path(device, "").parent.glob(f"{device}-*.json"))
+
+
+def save_calibration(device: str, serial: str, values: BaseModel) -> Path:
+    """Save a unit's calibration atomically, in place of the previous one; return its path.
+
+    Raises: OutputError if the place cannot be written.
+    """
+    path = calibration_path(device, serial)
+    write_text(path, values.model_dump_json(indent=2) + "\n")
+    return path
+
+
+def load_calibration(device: str, serial: str, model: type[M]) -> M | None:
+    """Load a unit's calibration; None if none was saved.
+
+    Raises: DeviceError naming the file if it cannot be read or does not fit: a wrong calibration is never ignored.
+    """
+    path = calibration_path(device, serial)
+    try:
+        return model.model_validate_json(read_bytes(path, MOST_TEXT_BYTES))
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise DeviceError(f"{path}: cannot be read: {error.strerror}; make it readable, or remove it") from error
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(map(str, first["loc"])) or "the file"
+        raise DeviceError(
+            f"{path}: {place}: {first['msg']}; run `tangible devices calibrate {device}` again, or remove the file"
+        ) from error

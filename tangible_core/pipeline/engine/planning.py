@@ -1,0 +1,67 @@
+"""Plans: the outcome of each product, foreseen before anything is made."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from ...data import Note, Outcome
+from .cache import Notes
+from .stage import Stage
+
+if TYPE_CHECKING:
+    from .engine import Engine
+
+REQUESTED = "requested"
+NEEDED = "needed for"
+NOT_NEEDED = "not needed for what was requested"
+WITHIN_CACHED = "within a cached product"
+SAME = "same method, options and inputs as before"
+
+
+def foresee(engine: Engine, product: str, why: str, steps: dict[str, Outcome]) -> dict[str, Outcome]:
+    """Add the outcomes of a product and, before it, of the products that it needs; return all steps."""
+    stage = engine.stages.get(product)
+    if product in steps:
+        return steps
+    if stage is None:
+        if product in engine.scene_products:
+            why, notes = engine.source_of(product)
+            steps[product] = Outcome(product, "given", why, notes=notes)
+    elif stage.skip:
+        steps[product] = Outcome(product, "skipped", stage.skip, stage.method)
+    elif (cache := engine.cache_for(stage)) and engine.key(product) in cache:
+        notes = notes_within(cache.notes(engine.key(product)), product)
+        steps[product] = Outcome(product, "cached", with_notes(notes, SAME), stage.method, notes=notes)
+    elif stage.refusal is not None:
+        steps[product] = Outcome(product, "refused", str(stage.refusal), stage.method)
+    else:
+        for name in stage.needs:
+            foresee(engine, name, f"{NEEDED} {product}", steps)
+            if any(each.outcome == "refused" for each in steps.values()):
+                return steps
+        notes = notes_ahead(stage)
+        steps[product] = Outcome(product, "ran", with_notes(notes, why), stage.method, notes=notes)
+    return steps
+
+
+def not_needed(stage: Stage, notes: Sequence[Note]) -> Outcome:
+    """Return the outcome of a product that no request needed; with notes, it is within a cached product."""
+    why = with_notes(notes, WITHIN_CACHED) if notes else NOT_NEEDED
+    return Outcome(stage.product, "skipped", why, stage.method, notes=tuple(notes))
+
+
+def notes_ahead(stage: Stage) -> tuple[Note, ...]:
+    """Return the stage's note on work that this scene does not need."""
+    return (Note(stage.note),) if stage.note else ()
+
+
+def notes_within(kept: Notes, product: str) -> tuple[Note, ...]:
+    """Return the notes on a cached product, and the warnings and doubts on the products that it was made from."""
+    within = (each for name in sorted(kept) if name != product for each in kept[name] if each.kind != "decision")
+    return (*kept.get(product, ()), *within)
+
+
+def with_notes(notes: Iterable[Note], why: str) -> str:
+    """Append the texts of notes to a reason."""
+    return "; ".join([why, *(each.text for each in notes)])

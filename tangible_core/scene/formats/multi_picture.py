@@ -1,0 +1,75 @@
+"""Files with several pictures in them: pages, frames of an animation, the two views of a stereo camera."""
+# pyright: reportUnknownMemberType=false
+# (Pillow has no types for what it keeps of several pictures)
+
+import re
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+Notify = Callable[[str], None]
+"""A callback that takes remarks on a file, such as that it holds further pictures."""
+
+MOST_PAGES = 100
+"""Largest number of pages of a TIFF that are counted."""
+NOT_A_PAGE = 0b101
+"""Bits of a TIFF's NewSubfileType that mark a smaller copy, or a mask, of another page."""
+_SUBFILE, _MP_ENTRIES = 254, 0xB002  # tags of TIFF and of the Multi-Picture Format
+_MP_HEAD = re.compile(rb"MPF\0(?:II\*\0|MM\0\*)")
+
+
+def ignore(_: str) -> None:
+    """Drop a remark."""
+
+
+def count_pictures(image: "Image") -> int:
+    """Count the pictures in an open file, without smaller copies, thumbnails and gain maps; stand at the first one."""
+    try:
+        if image.format == "MPO":
+            return max(1, len(view_numbers(image)))
+        return _pages(image) if image.format == "TIFF" else int(getattr(image, "n_frames", 1))
+    except Exception:  # noqa: BLE001 - damage behind the first picture does not spoil the first one
+        return 1
+    finally:
+        image.seek(0)
+
+
+def _pages(image: "Image") -> int:
+    pages = 1
+    for number in range(1, MOST_PAGES):
+        try:
+            image.seek(number)
+        except EOFError:
+            break
+        pages += not cast(Any, image).tag_v2.get(_SUBFILE, 0) & NOT_A_PAGE
+    return pages
+
+
+class Part(NamedTuple):
+    """A picture of a Multi-Picture file: its type, and its bytes."""
+
+    kind: str
+    data: bytes
+
+
+def multi_pictures(image: "Image", data: bytes) -> list[Part]:
+    """Return the pictures of a Multi-Picture file (CIPA DC-007), the first one included; none for another file."""
+    if image.format != "MPO":
+        return []
+    head = _MP_HEAD.search(data)
+    start = head.end() - 4 if head else 0
+    entries = cast(Any, image).mpinfo[_MP_ENTRIES]
+    starts = [start + each["DataOffset"] if each["DataOffset"] else 0 for each in entries]
+    return [
+        Part(str(each["Attribute"]["MPType"]), data[at : at + each["Size"]])
+        for each, at in zip(entries, starts, strict=True)
+    ]
+
+
+def view_numbers(image: "Image") -> list[int]:
+    """Return the numbers of those pictures of a Multi-Picture file that show the scene from different places."""
+    entries = cast(Any, image).mpinfo[_MP_ENTRIES]
+    kinds = [str(each["Attribute"]["MPType"]) for each in entries]
+    return [number for number, kind in enumerate(kinds) if "Disparity" in kind or "Multi-Angle" in kind]

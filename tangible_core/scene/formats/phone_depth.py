@@ -1,0 +1,131 @@
+"""The depth that a phone stored in a portrait: Google's GDepth and Dynamic Depth, and the JPEGs of iPhones.
+
+Not supported: HEIC, for which Pillow has no decoder, and Samsung's data behind the JPEG.
+Sources: developers.google.com/depthmap-metadata; developer.android.com, Dynamic Depth 1.0; CIPA DC-007 (Multi-Picture
+Format), whose second picture is described by Apple's `pixeldatainfo`; Adobe, XMP part 3 (extended XMP).
+"""
+
+import re
+import struct
+from base64 import b64decode
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from jaxtyping import Float32
+
+from ...data.pictures import size_in_words, to_grey
+from ...errors import PictureError, shown
+from ...runtime.opencv import plain_opencv
+from .decoding import bytes_of, decode, look_at, orientation, upright
+from .multi_picture import Notify, ignore, multi_pictures
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+_XMP, _EXTENDED = b"http://ns.adobe.com/xap/1.0/\0", b"http://ns.adobe.com/xmp/extension/\0"
+_GUID = 32
+_APP1, _SCAN, _ALONE = 0xE1, 0xDA, (0x01, *range(0xD0, 0xD8))
+_DATA = re.compile(rb'GDepth:Data\s{0,9}(?:=\s{0,9}(")|(>))')
+_ITEM = re.compile(rb"<Container:Item\b[^>]{0,600}>")
+_ITEMS = 1 << 20
+"""Bytes of metadata in which a list of container items is searched: this bounds the time on any file."""
+_SEMANTIC = re.compile(rb'Item:Semantic\s*=\s*"([^"]*)"')
+_LENGTHS = re.compile(rb'Item:(?:Length|Padding)\s*=\s*"(\d{1,10})"')
+_AUXILIARY = re.compile(rb'AuxiliaryImageType\s*(?:=\s*"|>)\s*(disparity|depth)\b')
+
+
+class PhoneDepth(NamedTuple):
+    """A depth map inside a photo."""
+
+    picture: bytes
+    """A grey picture as a file of its own."""
+    near_is_light: bool
+    kind: str
+    """Name of the format."""
+
+
+def read_phone_depth(path: Path, shape: tuple[int, int], notify: Notify = ignore) -> Float32[np.ndarray, "h w"] | None:
+    """Read the nearness, 0 far to 1 near, that a phone stored in its photo of (h, w); None if there is none."""
+    data = bytes_of(path)
+    if not data.startswith(b"\xff\xd8"):
+        return None
+    try:
+        turn, depth = look_at(path, data, lambda image: (orientation(image), phone_depth(image, data)))
+        return None if depth is None else _nearness(path, depth, turn, shape, notify)
+    except (PictureError, ValueError, struct.error) as error:
+        notify(f"the depth map in {path.name} is damaged and left out: {shown(str(error))}")
+        return None
+
+
+def _nearness(
+    path: Path, depth: PhoneDepth, turn: int, shape: tuple[int, int], notify: Notify
+) -> Float32[np.ndarray, "h w"]:
+    import cv2
+
+    picture = decode(path, depth.picture)
+    grey = np.ascontiguousarray(upright(to_grey(picture), turn))
+    notify(
+        f"{path.name} holds a depth map of {size_in_words(grey)} ({depth.kind}), which is used; "
+        "`photo_depth: false` leaves it out"
+    )
+    with plain_opencv():
+        near = np.asarray(cv2.resize(grey, shape[::-1], interpolation=cv2.INTER_LINEAR))
+    return near if depth.near_is_light else 1 - near
+
+
+def phone_depth(image: "Image", data: bytes) -> PhoneDepth | None:
+    """Find the depth map in an open JPEG; None if there is none. Raises: ValueError or struct.error if damaged."""
+    xmp = _xmp(data)
+    if found := _DATA.search(xmp):
+        end = xmp.find(b'"' if found[1] else b"<", found.end())
+        return PhoneDepth(b64decode(xmp[found.end() : max(end, found.end())]), False, "GDepth")
+    if item := _depth_item(xmp, data):
+        return PhoneDepth(item, False, "Dynamic Depth")
+    for part in multi_pictures(image, data)[1:]:
+        if found := _AUXILIARY.search(_xmp(part.data)):
+            return PhoneDepth(part.data, found[1] == b"disparity", "an iPhone's")
+    return None
+
+
+def _xmp(data: bytes) -> bytes:
+    """Return a JPEG's metadata, followed by its extended XMP, which did not fit into one segment."""
+    plain, extended = b"", bytearray()
+    for segment in _segments(data):
+        if segment.startswith(_XMP):
+            plain += segment[len(_XMP) :]
+        elif segment.startswith(_EXTENDED):
+            size, at = struct.unpack_from(">II", segment, len(_EXTENDED) + _GUID)
+            part = segment[len(_EXTENDED) + _GUID + 8 :]
+            if size > len(data) or at + len(part) > size:
+                raise ValueError("the length of its extended XMP is wrong")
+            extended.extend(bytes(max(0, at + len(part) - len(extended))))
+            extended[at : at + len(part)] = part
+    return plain + bytes(extended)
+
+
+def _segments(data: bytes) -> Iterator[bytes]:
+    """Yield the application segments (APP1) before the scan."""
+    at = 2
+    while at + 4 <= len(data) and data[at] == 0xFF and data[at + 1] != _SCAN:
+        kind = data[at + 1]
+        if kind in _ALONE or kind == 0xFF:
+            at += 1 if kind == 0xFF else 2
+            continue
+        (length,) = struct.unpack_from(">H", data, at + 2)
+        if kind == _APP1:
+            yield data[at + 4 : at + 2 + length]
+        at += 2 + length
+
+
+def _depth_item(xmp: bytes, data: bytes) -> bytes | None:
+    """Return the item of a container that is its depth; items follow one another up to the end of the file."""
+    end = len(data)
+    for item in reversed(_ITEM.findall(xmp, 0, _ITEMS)):
+        semantic = _SEMANTIC.search(item)
+        start = end - sum(map(int, _LENGTHS.findall(item)))
+        if semantic and semantic[1] in (b"Depth", b"DepthMap") and 0 < start < end:
+            return data[start:end]
+        end = start
+    return None

@@ -1,0 +1,149 @@
+"""Pictures, maps of numbers, true disparities and label pictures in files."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal, cast
+
+import numpy as np
+from jaxtyping import Float32, Int32
+from pydantic import Field
+
+from ...data.pictures import check_finite, check_picture, opaque
+from ...errors import PictureError
+from .decoding import bytes_of, values_of
+from .multi_picture import Notify, ignore
+from .tiff_tags import TIFF, stated_nodata
+
+TruthScale = Annotated[float, Field(gt=0, allow_inf_nan=False)] | Literal["sintel"]
+NonFinite = Literal["error", "mask"]
+
+MAX_LABELS = 4096
+"""Largest number of labels in a label picture; a picture with more colours is taken for a photo."""
+
+
+def read_picture(path: Path, non_finite: NonFinite = "error", notify: Notify = ignore) -> np.ndarray:
+    """Read a picture file as (h, w[, 3|4]) RGB(A), upright by its EXIF orientation: uint8, uint16, or its own dtype.
+
+    A palette becomes colours, transparency a fourth channel. `.npy` and `.npz` files hold the array itself.
+    non_finite: NaN and infinity raise an error, or, for `mask`, stay in the array.
+    notify: receives a remark if the file holds more pictures, of which the first is taken.
+    Raises: PictureError if the file is missing, not a picture, damaged, cut short or too large.
+    """
+    return picture_of(values_of(path, bytes_of(path), notify), str(path), non_finite)
+
+
+def picture_of(values: np.ndarray, name: str, non_finite: NonFinite = "error") -> np.ndarray:
+    """Return an array as `read_picture` does. Raises: PictureError if it is not a picture, or holds NaN or infinity."""
+    if non_finite == "error":
+        return check_picture(values, name)
+    check_picture(np.nan_to_num(values), name)
+    return values
+
+
+def read_map(path: Path, notify: Notify = ignore) -> Float32[np.ndarray, "h w"]:
+    """Read a map of numbers: .npy, .npz, .pfm, .tif, or the raw values of any grey picture.
+
+    NaN stands for infinity, for transparent pixels, and for a GeoTIFF's value for no data (GDAL's tag).
+    Raises: PictureError as `read_picture`, or if there is more than one number a pixel.
+    """
+    data = bytes_of(path)
+    values = map_of(values_of(path, data, notify), str(path))
+    nodata = stated_nodata(data) if data[:4] in TIFF else None
+    if nodata is None:
+        return values
+    known = without(values, nodata)
+    if missing := np.count_nonzero(np.isnan(known)) - np.count_nonzero(np.isnan(values)):
+        notify(f"{100 * missing / known.size:.1f} % of {path.name} is {nodata:g}, its value for no data")
+    return known
+
+
+def map_of(values: np.ndarray, name: str) -> Float32[np.ndarray, "h w"]:
+    """Return an array as `read_map` does, NaN where it is masked.
+
+    Raises: PictureError if there is more than one number a pixel.
+    """
+    masked: Any = values if np.ma.isMaskedArray(values) and values.dtype.kind in "buif" else None
+    if masked is not None:
+        values = cast(np.ndarray, masked.astype(np.float64).filled(np.nan))
+    shown = opaque(values) if values.ndim == 3 and values.shape[2] == 4 else None
+    if values.ndim == 3 and values.shape[2] in (3, 4) and not np.any(values[..., :3] != values[..., :1]):
+        values = values[..., 0]
+    if values.ndim != 2 or values.size == 0 or values.dtype.kind not in "buif":
+        raise PictureError(
+            f"{name}: a map must have one number per pixel, (h, w), not {values.shape} of {values.dtype}"
+        )
+    with np.errstate(over="ignore"):
+        numbers = values.astype(np.float32)
+    known = np.isfinite(numbers) if shown is None else np.isfinite(numbers) & shown
+    return np.where(known, numbers, np.float32(np.nan))
+
+
+def without(values: Float32[np.ndarray, "h w"], *nodata: float) -> Float32[np.ndarray, "h w"]:
+    """Replace these values of a map, rounded to 32 bits, by NaN."""
+    with np.errstate(over="ignore"):
+        marks = np.array(nodata, np.float64).astype(np.float32)
+    return np.where(np.isin(values, marks), np.float32(np.nan), values)
+
+
+def read_labels(path: Path, notify: Notify = ignore) -> Int32[np.ndarray, "h w"]:
+    """Read a label picture as 0..n-1, each of them present, in the order of its grey values, indices or colours.
+
+    Raises: PictureError as `read_picture`, or if it holds too many labels to be a label picture.
+    """
+    return labels_of(values_of(path, bytes_of(path), notify, indices=True), str(path))
+
+
+def labels_of(values: np.ndarray, name: str) -> Int32[np.ndarray, "h w"]:
+    """Return an array as `read_labels` does. Raises: PictureError if it has too many labels, or is not a picture."""
+    if values.ndim == 3 and values.dtype.kind == "u" and values.shape[2] <= 4:
+        values = values.astype(np.uint64) @ (1 << 16 * np.arange(values.shape[2], dtype=np.uint64))
+    if values.ndim != 2 or values.size == 0 or values.dtype.kind not in "buif":
+        raise PictureError(
+            f"{name}: a label picture must have one label per pixel, not {values.shape} of {values.dtype}"
+        )
+    check_finite(values, name)
+    distinct, labels = _rank(values)
+    if distinct.size > MAX_LABELS:
+        raise PictureError(
+            f"{name}: holds {distinct.size} labels, but at most {MAX_LABELS} are allowed; give each segment one flat "
+            "colour and save the picture losslessly, as PNG"
+        )
+    return labels.reshape(values.shape).astype(np.int32, copy=False)
+
+
+def _rank(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the distinct values in order, and the rank of each value; np.unique takes seconds on a large picture."""
+    if values.dtype.kind != "u" or values.dtype.itemsize > 2:
+        return np.unique(values, return_inverse=True)
+    present = np.bincount(values.reshape(-1)) > 0
+    return np.flatnonzero(present), (np.cumsum(present, dtype=np.int32) - 1)[values]
+
+
+def read_truth(path: Path, scale: TruthScale | None = None, notify: Notify = ignore) -> Float32[np.ndarray, "h w"]:
+    """Read true disparity, in pixels, NaN where unknown, as the kits of benchmarks store it.
+
+    scale: None for numbers in pixels; the number of file units a pixel, where 0 or less is unknown; or `sintel` for
+    red * 4 + green / 64 + blue / 16384, which cannot mark unknown pixels.
+    Raises: PictureError as `read_map`.
+    """
+    if scale == "sintel":
+        return truth_of(values_of(path, bytes_of(path), notify), str(path), scale)
+    return _in_pixels(read_map(path, notify), scale)
+
+
+def truth_of(values: np.ndarray, name: str, scale: TruthScale | None = None) -> Float32[np.ndarray, "h w"]:
+    """Return an array as `read_truth` does. Source: the kit of MPI Sintel, sintel_io.py. Raises: PictureError."""
+    if scale != "sintel":
+        return _in_pixels(map_of(values, name), scale)
+    if values.ndim != 3 or values.shape[2] != 3 or values.dtype != np.uint8:
+        raise PictureError(
+            f"{name}: Sintel's disparities are pictures of three channels of 8 bits, not {values.shape} of "
+            f"{values.dtype}; leave `truth_scale: sintel` out"
+        )
+    red, green, blue = np.moveaxis(values.astype(np.float32), 2, 0)
+    return 4 * red + green / 64 + blue / 16384
+
+
+def _in_pixels(stored: Float32[np.ndarray, "h w"], scale: float | None) -> Float32[np.ndarray, "h w"]:
+    if scale is None:
+        return stored
+    return np.where(stored > 0, stored / np.float32(scale), np.float32(np.nan))

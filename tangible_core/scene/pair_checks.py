@@ -1,0 +1,155 @@
+"""Checks of a pair's disparity: exchanged views, the same picture twice, hardly any match.
+
+In a pair in the right order, a larger disparity is nearer. With its views exchanged, every disparity has the other
+sign, so that parallel cameras give negative ones throughout. But so does a pair in order whose pictures were shifted
+against each other, as those of a stereo card. Occlusion decides: between two depths, a strip of one view is hidden in
+the other, and belongs to the farther surface. The contour, and with it an edge in the picture, is at the end of the
+strip that touches the nearer surface.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float32
+
+from ..data import DisparityMap, Views
+from ..data.pictures import to_grey
+
+MATCHED = 0.15
+"""Confidence above which a disparity was matched, not filled in."""
+NEGATIVE_PX = -2.0
+"""Disparities count as negative throughout if all but one in twenty are below this."""
+MOST_ROWS = 512
+"""Largest number of rows that are examined, evenly spread."""
+LEAST_STEP_PX = 3.0
+"""Smallest step between two depths that is examined."""
+STEP_SHARE = 0.4
+"""Largest difference between a step and the width of its strip, as a share of the step; 2 px are always allowed."""
+CLEARER, LEAST_EDGE = 1.5, 0.01
+"""Factor by which the edge at one end of a strip must exceed the other, plus this share of white."""
+LEAST_MATCHED_TO_JUDGE = 0.2
+"""Smallest matched share of the picture for a judgement on the order."""
+FEWEST, MAJORITY, MAJORITY_MIXED = 100, 1.8, 2.5
+"""Fewest strips that decide, and the ratio of votes that overrules the signs: negative throughout, and mixed, which are
+taken as in order. Real pairs reach 2.0 to 16."""
+LEAST_MATCHED = 0.25
+"""Share of the picture below which hardly anything was matched: good pairs reach 0.5 to 0.9, noise 0.02 to 0.12."""
+
+
+class ViewOrder(NamedTuple):
+    """The order of two views as their disparity shows it."""
+
+    exchanged: bool
+    message: str
+    """A remark for the user; empty if there is none."""
+
+
+IN_ORDER = ViewOrder(False, "")
+
+
+class _Votes(NamedTuple):
+    """Numbers of strips whose contour shows that a larger disparity is nearer, and that it is farther."""
+
+    in_order: int
+    exchanged: int
+
+
+def view_order(disparity: DisparityMap, left: np.ndarray, offset_px: float = 0.0) -> ViewOrder:
+    """Judge from a disparity map whether its views were exchanged.
+
+    left: the picture that the map belongs to. offset_px: added to a disparity before it is converted to a distance.
+    """
+    if disparity.unit != "px":
+        return IN_ORDER
+    count = min(MOST_ROWS, left.shape[0])
+    rows = np.arange(count) * left.shape[0] // count
+    values, confidence = disparity.disparity_px[rows], disparity.confidence[rows]
+    matched = np.isfinite(values) & (confidence > MATCHED)
+    if matched.mean() < LEAST_MATCHED_TO_JUDGE:
+        return IN_ORDER
+    low, high = np.percentile(values[matched], [5, 95])
+    if low > NEGATIVE_PX:
+        return IN_ORDER
+    votes = _votes(np.where(matched, values, np.float32(np.nan)), to_grey(left[rows]))
+    if high < NEGATIVE_PX:
+        return _of_negative(votes, explained=bool(low + offset_px > 0))
+    if sum(votes) < FEWEST or votes.exchanged < MAJORITY_MIXED * votes.in_order:
+        return IN_ORDER
+    return _as_exchanged(f"{votes.exchanged} of {sum(votes)} contours occlude as in exchanged views")
+
+
+def _of_negative(votes: _Votes, explained: bool) -> ViewOrder:
+    """Judge a map whose disparities are all negative. explained: the known cameras cause negative disparities."""
+    if explained:
+        return IN_ORDER
+    if sum(votes) >= FEWEST and votes.in_order >= MAJORITY * votes.exchanged:
+        reason = f"{votes.in_order} of {sum(votes)} contours occlude as in this order"
+        return ViewOrder(False, f"every disparity is negative, and yet left and right are in order: {reason}")
+    return _as_exchanged("every disparity is negative")
+
+
+def _as_exchanged(reason: str) -> ViewOrder:
+    return ViewOrder(
+        True,
+        f"left and right seem to be exchanged: {reason}. The depth was corrected, and belongs to the picture that is "
+        "named left. Exchange the two names; or, if they are in order, write `order: as-named` under `scene:`",
+    )
+
+
+def correct_exchanged(disparity: DisparityMap) -> DisparityMap:
+    """Return the map of exchanged views with larger disparities nearer, for the same picture."""
+    return DisparityMap(-disparity.disparity_px, disparity.confidence, disparity.unit)
+
+
+def _votes(values: Float32[np.ndarray, "h w"], grey: Float32[np.ndarray, "h w"]) -> _Votes:
+    """Count the strips for either order. values: NaN where nothing was matched."""
+    known_rows, known_columns = np.nonzero(~np.isnan(values))
+    same_row = known_rows[1:] == known_rows[:-1]
+    row, before, after = (each[same_row] for each in (known_rows[1:], known_columns[:-1], known_columns[1:]))
+    step, width = values[row, after] - values[row, before], after - before - 1
+    fits = (step >= LEAST_STEP_PX) & (np.abs(width - step) <= np.maximum(2, STEP_SHARE * step))
+    inside = (before >= 3) & (after < values.shape[1] - 3)
+    row, before, after = (each[fits & inside] for each in (row, before, after))
+    slope = _slope(grey)
+    at_before, at_after = slope[row, before], slope[row, after]
+    return _Votes(
+        int(np.count_nonzero(at_after > CLEARER * at_before + LEAST_EDGE)),
+        int(np.count_nonzero(at_before > CLEARER * at_after + LEAST_EDGE)),
+    )
+
+
+def _slope(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
+    """Return the steepest slope along the row within one pixel."""
+    slope = np.zeros_like(grey)
+    slope[:, 1:-1] = np.abs(grey[:, 2:] - grey[:, :-2]) / 2
+    steepest = slope.copy()
+    np.maximum(steepest[:, 1:], slope[:, :-1], out=steepest[:, 1:])
+    np.maximum(steepest[:, :-1], slope[:, 1:], out=steepest[:, :-1])
+    return steepest
+
+
+def identical_views(views: Views, disparity: DisparityMap) -> str:
+    """Return a warning if depth was matched between a picture and itself; empty otherwise."""
+    if disparity.unit != "px" or views.right is None or not np.array_equal(views.left, views.right):
+        return ""
+    return (
+        "left and right are one and the same picture: nothing has moved between them, so no depth can be seen and the "
+        "surface is flat. Name the two pictures of a pair, taken from side by side, or this one alone as a photo"
+    )
+
+
+def few_matches(disparity: DisparityMap, known: Bool[np.ndarray, "h w"] | None = None) -> str:
+    """Return a warning, with likely causes and cures, for a map that is mostly filled in; empty otherwise.
+
+    known: mask of the pixels at which the picture shows something.
+    """
+    matched = np.isfinite(disparity.disparity_px) & (disparity.confidence > MATCHED)
+    shown = matched if known is None else matched[known]
+    if disparity.unit != "px" or shown.size == 0 or (share := float(shown.mean())) >= LEAST_MATCHED:
+        return ""
+    return (
+        f"hardly anything matches in the two pictures: a depth was found for {share:.0%} of the left one, and the rest "
+        "is filled in. Check that both show the same scene at the same time, from side by side and equally sharp, and "
+        "that left and right are not exchanged; rectify pictures of cameras that did not look in parallel "
+        "(`rectify: auto`); search a wider range (`max_disparity_px`); or try another depth method"
+    )

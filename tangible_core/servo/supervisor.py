@@ -1,0 +1,192 @@
+"""The loop's process as seen by its host: it is started, listened to, watched, and killed if it stands still."""
+
+import logging
+import queue
+import signal
+import subprocess
+import threading
+from contextlib import suppress
+from typing import IO, Any, TypeVar, final
+
+import numpy as np
+
+from ..errors import DeviceError
+from ..plugins.interfaces import HapticDevice
+from ..runtime.child_process import command
+from .framing import End, Refusal, Start, receive, send, sendable
+from .ring import COUNT, LAST, STOP, Ring
+
+log = logging.getLogger(__name__)
+COMPILING_S = 300.0
+"""Longest time until the first tick; compiling everything takes a tenth of it."""
+STOPPING_S = 3.0
+"""Time after which a loop that was stopped and has not ended is killed."""
+LOOK_EVERY_S, STANDSTILL_S, STANDSTILL_PERIODS = 0.05, 0.2, 4
+"""Interval of checking for new ticks; a loop without one for this time, and for this number of periods, is killed."""
+STOOD_STILL = "the force loop stood still: its force law or its device did not answer, or its process was stopped"
+OVER = "the time is over"
+NOT_STARTED = "no force loop was started; use it in `with Servo(...) as servo:`"
+Reply = TypeVar("Reply")
+
+
+@final
+class LoopProcess:
+    """The process of one force loop, and the threads of the host that listen to it and watch it."""
+
+    def __init__(self, device: HapticDevice, period_s: float) -> None:
+        self._device, self._period_s = device, period_s
+        self._replies: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._child: subprocess.Popen[bytes] | None = None
+        self._listener: threading.Thread | None = None
+        self._over = threading.Event()
+        self.why = ""
+        """The reason for which the host ends the loop."""
+        self.ended: End | None = None
+        """The last message, once the loop is over."""
+
+    def start(self, ring: Ring, start: Start) -> None:
+        """Start the process in the background; `reply` waits for it."""
+        self._listener = threading.Thread(target=self._listen, args=(ring, start), daemon=True)
+        self._listener.start()
+
+    def watch(self, ring: Ring) -> None:
+        """Watch from now on that ticks go on."""
+        threading.Thread(target=self._watch, args=(ring.header,), daemon=True).start()
+
+    def end(self) -> None:
+        """End the process: by a closed pipe, or by a kill if it does not end in time."""
+        if self._listener is not None and self._listener.is_alive():
+            self._close_pipe()
+            self._listener.join(STOPPING_S)
+            self._kill("it did not end when it was stopped")
+            self._listener.join()
+
+    @property
+    def child(self) -> subprocess.Popen[bytes]:
+        """The process. Raises: DeviceError if it was not started."""
+        if self._child is None:
+            raise DeviceError(NOT_STARTED)
+        return self._child
+
+    def send(self, message: Any) -> None:
+        """Send a message. Raises: DeviceError, or a plugin's error, if the loop has ended."""
+        try:
+            send(_pipe(self.child.stdin), message)
+        except (OSError, ValueError) as error:  # the process is gone, or the host closed the pipe
+            self._over.wait()  # then the reason is known
+            raise self.failure() from error
+
+    def reply(self, kind: type[Reply]) -> Reply:
+        """Return the next reply. Raises: DeviceError, or a plugin's error, if it is a refusal or the loop has ended."""
+        try:
+            message = self._replies.get(timeout=COMPILING_S)
+        except queue.Empty:
+            raise DeviceError(
+                f"the force loop has not answered for {COMPILING_S:g} s; see what the device prints"
+            ) from None
+        if isinstance(message, Refusal):
+            raise message.error
+        if not isinstance(message, kind):
+            raise self.failure()
+        return message
+
+    def failure(self) -> Exception:
+        """Return the error for a call after the end of the loop."""
+        ended = self.ended or End(OVER)
+        return ended.error or DeviceError(f"the force loop has ended: {ended.stopped or OVER}")
+
+    def _close_pipe(self) -> None:
+        if self._child is not None:
+            with suppress(OSError):  # messages that were not sent are not needed any more
+                _pipe(self._child.stdin).close()
+
+    def _kill(self, why: str) -> None:
+        if self._child is not None and self._child.poll() is None:
+            log.warning("the force loop's process is killed: %s", why)
+            self._child.kill()
+
+    def _listen(self, ring: Ring, start: Start) -> None:
+        """Start the process and take its messages until it is gone; nothing interrupts this thread."""
+        try:
+            ended = self._run(ring, start)
+        except Exception as error:  # noqa: BLE001 - passed to the thread that waits for a reply
+            ended = End("", sendable(error))
+        ring.header[STOP] = 1
+        self.ended = ended
+        self._replies.put(ended)
+        self._over.set()
+
+    def _run(self, ring: Ring, start: Start) -> End:
+        if hasattr(signal, "pthread_sigmask"):  # the process receives no Ctrl-C before it can ignore it
+            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        words = command(f"{__package__}.child")
+        try:
+            self._child = child = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        except OSError as error:
+            raise DeviceError(f"no process can be started for the force loop: {error.strerror or error}") from error
+        with _pipe(child.stdout) as replies:
+            if ring.header[STOP]:
+                self._close_pipe()
+            with suppress(OSError, ValueError):  # the process is gone, or the pipe was closed
+                send(_pipe(child.stdin), start)
+            ended = self._receive_until_end(replies)
+            ring.header[STOP] = 1
+            self._close_pipe()
+            code = self._wait_for_exit(child)
+        if ended is None:
+            self._release_device()
+        return ended or End(self.why or f"the force loop's process died (exit code {code})")
+
+    def _wait_for_exit(self, child: subprocess.Popen[bytes]) -> int:
+        """Return the exit code of a process that has sent its last message; kill it if it does not end."""
+        with suppress(subprocess.TimeoutExpired):
+            return child.wait(STOPPING_S)
+        self._kill("it did not end when it was stopped")
+        return child.wait()
+
+    def _receive_until_end(self, replies: IO[bytes]) -> End | None:
+        """Pass replies on until the last message, and return that; None if the process is gone without one."""
+        try:
+            while (message := receive(replies)) is not None:
+                if isinstance(message, End):
+                    return End(message.stopped or self.why, message.error)
+                self._replies.put(message)
+        except Exception as error:  # noqa: BLE001 - the plugin's error may not be readable here
+            return End("", sendable(error))
+        return None
+
+    def _watch(self, header: np.ndarray) -> None:
+        """Kill a loop that stands still, or does not end when it is stopped."""
+        seen, looks = -1, 0
+        standstill_s = max(STANDSTILL_S, STANDSTILL_PERIODS * self._period_s)
+        while not self._over.wait(LOOK_EVERY_S):  # looks are counted, not seconds, as this process may have stood still
+            ending = header[STOP] or header[COUNT] >= header[LAST]
+            looks = looks + 1 if header[COUNT] == seen else 0
+            seen = int(header[COUNT])
+            if looks * LOOK_EVERY_S >= (STOPPING_S if ending else standstill_s):
+                self.why = self.why or STOOD_STILL
+                self._kill(self.why)
+                return
+
+    def _release_device(self) -> None:
+        """Take the force from a device whose loop was killed: some hold the last force until the next command."""
+        if self._device.spec().simulated:
+            return
+        done = threading.Event()
+        threading.Thread(target=_open_and_close, args=(self._device, done), daemon=True).start()
+        if not done.wait(STOPPING_S):
+            log.warning("the device does not answer and may still hold its last force; switch it off")
+
+
+def _open_and_close(device: HapticDevice, done: threading.Event) -> None:
+    try:
+        device.open().close()
+    except Exception as error:  # noqa: BLE001 - whatever the driver raises, the user has to know
+        log.warning("the device may still hold its last force: %s; switch it off", error)
+    finally:
+        done.set()
+
+
+def _pipe(end: IO[bytes] | None) -> IO[bytes]:
+    assert end is not None  # the process was started with both pipes
+    return end

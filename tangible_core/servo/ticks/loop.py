@@ -1,0 +1,191 @@
+"""The force loop for a device and a force law: all compiled, with a compiled tick, or with a tick in Python."""
+
+import time
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from ...compiled.touch import FRAME, CompiledLink, CompiledTouch, moving_of
+from ...data import TICK_COLUMNS, HapticState, TickFlag
+from ...plugins.interfaces import Link, Touch
+from ..ring import (
+    COUNT,
+    LEAD_NS,
+    MARKS,
+    NEXT_NS,
+    PERIOD_NS,
+    PREVIOUS_NS,
+    SPINS,
+    START_NS,
+    STOP,
+    SWAP,
+    Ring,
+)
+from .python_tick import guard_touch
+from .schedule import begin_tick, going
+
+SECOND_NS = 1_000_000_000
+Sections = tuple[np.ndarray, ...]
+"""The sections of a ring that kernels write to: header, sums, late, period, contact, stamps, ticks."""
+Limits = tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]
+"""Settings and memory of a guard, and the arrays of a `BeaconMemory`."""
+Timed = Callable[[int, int], None]
+"""(at_ns, late_ns): does one tick, which began at at_ns, late_ns late."""
+FAR = HapticState((0.0, 0.0, 1.0))
+"""A place in free air, above any surface."""
+
+
+class Loop(NamedTuple):
+    """A loop that is ready to run, once."""
+
+    run: Callable[[], None]
+    how: str
+    """A sentence about the kind of loop."""
+
+
+class Kernel(NamedTuple):
+    """A generator of `cycle`, and the two numbers that it reads."""
+
+    ticks: Iterator[bool]
+    now: np.ndarray
+
+    def end(self) -> None:
+        """Run the generator to its end, so that it releases its arguments."""
+        from .cycle import NO_MORE
+
+        self.now[:] = NO_MORE
+        next(self.ticks, None)
+
+
+def prepare(link: Link, touch: Touch, ring: Ring, settings: np.ndarray) -> Loop:
+    """Return the fastest loop for this device and force law, with all kernels compiled or loaded."""
+    from ..guard import guard
+    from . import clock, cycle
+
+    cast(Any, guard).restart(np.zeros_like(ring.guard))  # `take_over` needs it between two ticks
+    kernels = cast(Any, cycle)
+    row = np.full(len(TICK_COLUMNS), np.nan)
+    shared, limits = sections(ring), (settings, ring.guard, ring.beacon.arrays)
+    if not isinstance(link, CompiledLink) or not isinstance(touch, CompiledTouch):
+        return Loop(_timed_loop(*_plain_tick(link, touch, limits, shared, row), shared[0]), "the tick is in Python")
+    fixed = (*_kernels(link, touch), limits)
+    state = np.zeros(cycle.STATE)
+    if clock.SLEEPS and not link.exchanges:
+        ticking = clock.clock()
+        kernels.run(ticking, *fixed, _stopped_sections(shared), state, row)
+        return Loop(lambda: kernels.run(ticking, *fixed, shared, state, row), "the whole loop is compiled")
+    kernel = _start_generator(kernels.ticks, *fixed, shared, state, row)
+
+    def exchange_then_tick(at_ns: int, late_ns: int) -> None:
+        link.exchange()
+        kernel.now[:] = at_ns, late_ns
+        next(kernel.ticks)
+
+    return Loop(_timed_loop(exchange_then_tick, kernel, shared[0]), "the tick is compiled, Python calls the device")
+
+
+def sections(ring: Ring) -> Sections:
+    """Return the sections of a ring that kernels write to."""
+    return ring.header, ring.sums, ring.late, ring.period, ring.contact, ring.stamps, ring.ticks
+
+
+def start_clock(header: np.ndarray, real_time: bool) -> None:
+    """Schedule the first tick a period from now."""
+    header[START_NS] = time.monotonic_ns() + header[PERIOD_NS]
+    header[NEXT_NS] = header[START_NS]
+    header[SPINS] = real_time
+
+
+def take_over(ring: Ring) -> None:
+    """Go on with a new scene, whose force fades in; this ends a beacon, which pulled to a part of the scene before."""
+    from ..guard import guard
+
+    cast(Any, guard).restart(ring.guard)
+    ring.beacon.leave()
+    ring.header[MARKS] |= int(TickFlag.SWAPPED)
+    ring.header[SWAP] = 0
+
+
+def _kernels(link: CompiledLink, touch: CompiledTouch) -> tuple[Any, Any]:
+    from ...compiled.kernels import Address
+
+    read, write, of_link = link.kernels()
+    return (of_link, Address(read), Address(write)), (
+        touch.fixed,
+        touch.address(),
+        touch.memory,
+        touch.moving,
+    )
+
+
+def _stopped_sections(shared: Sections) -> Sections:
+    """Return the sections with a header that stops a loop before its first tick."""
+    header = np.zeros_like(shared[0])
+    header[STOP] = 1
+    return header, *shared[1:]
+
+
+def _start_generator(generator: Callable[..., Iterator[bool]], *arguments: Any) -> Kernel:
+    """Start a generator of `cycle`, so that it is compiled or loaded now, not in the first tick."""
+    first, kernel = (Kernel(generator(*arguments, now), now) for now in np.zeros((2, 2), np.int64))
+    first.end()
+    return kernel
+
+
+def _plain_tick(
+    link: Link,
+    touch: Touch,
+    limits: Limits,
+    shared: Sections,
+    row: np.ndarray,
+) -> tuple[Timed, Kernel]:
+    """Return a tick for a device or a force law that is not a kernel.
+
+    The law computes one force in free air now, so that whatever it compiles is compiled before the first tick.
+    """
+    from . import cycle
+
+    proxy, moving = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan), moving_of(touch)
+    settings, memory, beacon = limits
+    header, allowed_force = shared[0], guard_touch(touch, settings, memory, beacon)
+    touch.force(FAR)
+    kernel = _start_generator(cast(Any, cycle).finish_ticks, shared, row)
+
+    def tick(at_ns: int, late_ns: int) -> None:
+        period_s = (at_ns - header[PREVIOUS_NS] if header[COUNT] else header[PERIOD_NS]) / SECOND_NS
+        state = link.read()
+        force, flags = allowed_force(state, period_s)
+        link.write(force)
+        began = (at_ns - header[START_NS]) / SECOND_NS, late_ns / SECOND_NS
+        motion = *state.position_m, *state.velocity_m_per_s, *proxy, *link.applied
+        row[:] = (*began, *motion, flags, state.buttons, moving[FRAME])
+        kernel.now[:] = at_ns, late_ns
+        next(kernel.ticks)
+
+    return tick, kernel
+
+
+def _timed_loop(tick: Timed, kernel: Kernel, header: np.ndarray) -> Callable[[], None]:
+    """Return a loop in Python around a tick, at whose end the kernel ends too."""
+
+    def run() -> None:
+        try:
+            while going(header):
+                tick(*_begin(header))
+        finally:
+            kernel.end()
+
+    return run
+
+
+def _begin(header: np.ndarray) -> tuple[int, int]:
+    """Wait for the next tick, as `cycle.begin`, in a loop in Python."""
+    due_ns, lead_ns = header[[NEXT_NS, LEAD_NS]].tolist()
+    at_ns = time.monotonic_ns()
+    if at_ns < due_ns - lead_ns:
+        time.sleep((due_ns - lead_ns - at_ns) / SECOND_NS)
+        at_ns = time.monotonic_ns()
+    while at_ns < due_ns:
+        at_ns = time.monotonic_ns()
+    return at_ns, int(begin_tick(header, at_ns))

@@ -1,0 +1,14 @@
+"""The kernel of the null force law. Imports numba: its users import this module inside their verbs."""
+
+# ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
+# pyright: basic
+
+from numba import float64, njit, types
+
+from ...compiled.compiling import KERNEL
+
+
+@njit(types.UniTuple(float64, 3)(*[float64] * 6), **KERNEL)
+def tick(x, y, z, vx, vy, vz):
+    """Return zero force."""
+    return 0.0, 0.0, 0.0

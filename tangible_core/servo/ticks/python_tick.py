@@ -1,0 +1,43 @@
+"""The force of a tick behind its guard, for loops in Python."""
+
+from collections.abc import Callable
+from typing import Any, cast
+
+import numpy as np
+
+from ...compiled.touch import RISE_M, moving_of
+from ...data import Force, HapticState
+from ...plugins.interfaces import Touch
+from ..guard import layout
+
+GuardedForce = Callable[[HapticState, float], tuple[Force, int]]
+"""(state, seconds since the state before) -> the allowed force, and the sum of its `TickFlag`s."""
+
+
+def guard_touch(
+    touch: Touch, settings: np.ndarray, memory: np.ndarray, beacon: tuple[np.ndarray, ...] | None = None
+) -> GuardedForce:
+    """Return a function that asks the touch for its force and passes on what the guard allows.
+
+    settings, memory: arrays of `Safety.arrays`. beacon: arrays of a `BeaconMemory`, whose pull is added to the force.
+    """
+    from ..guard import guard
+
+    couple, allow = cast(Any, guard).couple, cast(Any, guard).guard
+    moving = moving_of(touch)
+    pull: Any = None
+    if beacon is not None:
+        from .. import beacon_kernels
+
+        pull = cast(Any, beacon_kernels).pull
+
+    def allowed_force(state: HapticState, period_s: float) -> tuple[Force, int]:
+        device = *state.position_m, *state.velocity_m_per_s
+        x, y, z, vx, vy, vz = couple(settings, memory, period_s, *device)
+        wanted = touch.force(HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons))
+        memory[layout.RISE_M] = moving[RISE_M]
+        flags = 0 if beacon is None else pull(*beacon, memory, period_s, x, y, vx, vy, state.buttons)
+        fx, fy, fz, guard_flags = allow(settings, memory, period_s, *device, *wanted)
+        return Force(fx, fy, fz), flags | guard_flags
+
+    return allowed_force

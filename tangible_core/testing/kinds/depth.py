@@ -1,0 +1,160 @@
+"""Checks of a depth estimator."""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from ...data import DisparityMap, Views
+from ...errors import ModelAbsent, PictureError, TangibleError
+from ...plugins.interfaces import DepthEstimator
+from ..checks import Check, demand, refuses
+from ..synthetic.scenes import wall
+from ..variants import TINY, coarse_variants, exact_variants
+
+WALL_PX = 6.0
+
+
+def map_is_well_formed(method: DepthEstimator) -> None:
+    """Check that disparity and confidence are read-only float32 (h, w) of the left view's size, confidence in 0..1."""
+    views = wall(WALL_PX)
+    found = method.estimate(views)
+    demand(type(found) is DisparityMap, f"estimate returns {type(found).__name__}, not DisparityMap")
+    for name, values in (("disparity_px", found.disparity_px), ("confidence", found.confidence)):
+        demand(values.dtype == np.float32, f"{name} is {values.dtype}, not float32")
+        demand(values.shape == views.shape, f"{name} is {values.shape}, the left view {views.shape}")
+        demand(not values.flags.writeable, f"{name} can be written to")
+    demand(not np.isinf(found.disparity_px).any(), "a disparity is infinite; write NaN where it is unknown")
+    low, high = float(found.confidence.min()), float(found.confidence.max())
+    demand(low >= 0 and high <= 1, f"confidence runs from {low:g} to {high:g}, not within 0..1")  # NaN fails too
+
+
+def wall_is_found(method: DepthEstimator) -> None:
+    """Check that a textured wall shifted by 6 px is found: half of it is known, with a median error of 0.5 px at most.
+
+    A method for one picture cannot see the shift: its map must lie within 0..1, where 1 is nearest.
+    """
+    found = method.estimate(wall(WALL_PX))
+    known = found.disparity_px[np.isfinite(found.disparity_px)]
+    share = known.size / found.disparity_px.size
+    demand(share >= 0.5, f"{share:.0%} of the wall is known; a texture this clear allows at least half")
+    if found.unit == "relative":
+        demand(
+            known.min() >= 0 and known.max() <= 1, f"nearness runs from {known.min():g} to {known.max():g}, not 0..1"
+        )
+        return
+    error = float(np.median(np.abs(known - WALL_PX)))
+    demand(error <= 0.5, f"the wall is shifted by {WALL_PX:g} px; the median error is {error:.3g} px")
+
+
+def same_views_same_map(method: DepthEstimator) -> None:
+    """Check that two runs on equal views agree to the last bit: results are cached, compared and repeated."""
+    first, second = method.estimate(wall()), type(method)(**dict(method)).estimate(wall())
+    demand(first.digest() == second.digest(), "two runs on equal views differ; seed what is random")
+
+
+def views_are_not_written_to(method: DepthEstimator) -> None:
+    """Check that the input pictures are not changed: other stages read them too."""
+    views = wall()
+    pair = np.array(views.left), np.array(views.right)
+    before = views.digest()
+    method.estimate(Views(*pair))
+    demand(Views(*pair).digest() == before, "estimate writes to its input; work on a copy")
+
+
+def every_picture_type_is_taken(method: DepthEstimator) -> None:
+    """Check that 8 and 16 bits, floats, RGBA and any memory layout give nearly the same map.
+
+    Pictures with less information must give a map of the right size.
+    """
+    views = wall(WALL_PX)
+    expected = method.estimate(views)
+    for name, pair in _variants(views, exact_variants):
+        _demand_agreement(expected, method.estimate(pair), name)
+    for name, pair in _variants(views, coarse_variants):
+        shape = method.estimate(pair).disparity_px.shape
+        demand(shape == views.shape, f"{name} pictures of {views.shape} give a map of {shape}")
+
+
+def any_size_is_taken(method: DepthEstimator) -> None:
+    """Check that views of any size, even one pixel, give a map of their size, or a TangibleError with the reason.
+
+    The map may be all NaN.
+    """
+    for shape in TINY:
+        try:
+            found = method.estimate(wall(1.0, shape))
+        except TangibleError:
+            continue
+        demand(found.disparity_px.shape == shape, f"views of {shape} give a map of {found.disparity_px.shape}")
+
+
+def flat_pair_claims_nothing(method: DepthEstimator) -> None:
+    """Check that at most 5 % of a pair of one colour, which matches at any shift, is known with a confidence above 0.
+
+    A method for one picture claims no shift; it must only give finite values or NaN.
+    """
+    flat = np.full((64, 160, 3), 128, np.uint8)
+    found = method.estimate(Views(flat, flat.copy()))
+    demand(not np.isinf(found.disparity_px).any(), "a disparity is infinite; write NaN where it is unknown")
+    claimed = float(np.mean(np.isfinite(found.disparity_px) & (found.confidence > 0)))
+    demand(
+        found.unit == "relative" or claimed <= 0.05,
+        f"{claimed:.0%} of a pair without any texture is claimed as known; give NaN or confidence 0",
+    )
+
+
+def one_view_is_answered(method: DepthEstimator) -> None:
+    """Check that one view gives a relative map, or else a TangibleError, and that `needs_pair` is true for the latter.
+
+    A plan reads `needs_pair`.
+    """
+    try:
+        found = method.estimate(Views(wall().left))
+    except ModelAbsent:
+        raise
+    except TangibleError:
+        demand(
+            method.needs_pair, "it raises without a right view; write `needs_pair: ClassVar[bool] = True` in its class"
+        )
+        return
+    demand(not method.needs_pair, "one view gives a map, though the class has `needs_pair = True`; leave that out")
+    demand(found.unit == "relative", "one view gives a map in px; without a second view only relative is known")
+
+
+def nan_is_refused(method: DepthEstimator) -> None:
+    """Check that a picture with NaN raises PictureError and nothing else, before or in the method."""
+    left = np.asarray(wall().left / 255, np.float32)
+    left[3, 5] = np.nan
+    refuses(PictureError, "a picture with NaN", lambda: method.estimate(Views(left, wall().right)))
+
+
+def _variants(
+    views: Views, variants: Callable[[np.ndarray], Iterator[tuple[str, np.ndarray]]]
+) -> Iterator[tuple[str, Views]]:
+    right = views.left if views.right is None else views.right
+    for (name, one), (_, other) in zip(variants(views.left), variants(right), strict=True):
+        yield name, Views(one, other)
+
+
+def _demand_agreement(expected: DisparityMap, found: DisparityMap, name: str) -> None:
+    known, again = np.isfinite(expected.disparity_px), np.isfinite(found.disparity_px)
+    differ = float(np.mean(np.logical_xor(known, again)))
+    demand(differ <= 0.05, f"as {name}, {differ:.0%} of the pixels change between known and unknown")
+    both = np.logical_and(known, again)
+    if both.any():
+        apart = float(np.median(np.abs(expected.disparity_px[both] - found.disparity_px[both])))
+        most = 0.02 if expected.unit == "relative" else 0.5
+        demand(apart <= most, f"as {name}, the median disparity differs by {apart:.3g} ({expected.unit})")
+
+
+CHECKS: tuple[Check, ...] = (
+    map_is_well_formed,
+    wall_is_found,
+    same_views_same_map,
+    views_are_not_written_to,
+    every_picture_type_is_taken,
+    any_size_is_taken,
+    flat_pair_claims_nothing,
+    one_view_is_answered,
+    nan_is_refused,
+)

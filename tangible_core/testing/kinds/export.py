@@ -1,0 +1,172 @@
+"""Checks of an exporter."""
+
+import time
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import chdir, contextmanager
+from dataclasses import replace
+from datetime import UTC, datetime
+from math import isfinite
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from unittest.mock import patch
+
+import numpy as np
+
+from ...data import Record, Work, digest_of
+from ...data.products import EXPORTABLE
+from ...errors import BrokenMethod, TangibleError
+from ...plugins.interfaces import Exporter
+from ..checks import Check, CheckFailure, demand
+from ..variants import coarse_variants, exact_variants
+from .exporter_inputs import plain_work, works
+from .whole_files import demand_whole
+
+STEM = "still-life"
+ASPECTS = (1e-3, 0.7, 1.0, 4 / 3, 1e3)
+"""Widths over lengths of pictures that exporters must accept."""
+WIDTHS_M = (1e-6, 10.0)
+A_DAY_S = 86_400.0
+
+
+def needs_are_products(method: Exporter) -> None:
+    """Check that `needs` names each product once, and only products that exporters can get."""
+    odd = [each for each in method.needs if each not in EXPORTABLE]
+    demand(not odd, f"needs names {', '.join(odd)}; an exporter may need {', '.join(EXPORTABLE)}")
+    demand(len(set(method.needs)) == len(method.needs), "needs names a product twice")
+
+
+def width_is_a_length(method: Exporter) -> None:
+    """Check that `picture_width_m` is None or a length of 1e-6 to 10 m, for a picture of any shape."""
+    low, high = WIDTHS_M
+    for aspect in ASPECTS:
+        width_m = method.picture_width_m(aspect)
+        fine = width_m is None or (isfinite(width_m) and low <= width_m <= high)
+        demand(fine, f"picture_width_m({aspect:g}) is {width_m!r}; a width is from {low:g} to {high:g} m, or None")
+
+
+def plain_scene_is_written(method: Exporter) -> None:
+    """Check that a plain scene of three parts becomes whole files, named by the stem, whose paths `write` returns.
+
+    The exporter must read no product that is not in its `needs`.
+    """
+    with _write(method, plain_work(method)) as files:
+        demand(files, "write returns no path; it must return those of all files that it wrote")
+
+
+def nothing_else_is_left(method: Exporter) -> None:
+    """Check that `write` returns the path of every file that it wrote, and writes none outside of its folder."""
+    with TemporaryDirectory() as place:
+        folder = Path(place) / "files"
+        folder.mkdir()
+        current = folder.with_name("current")
+        current.mkdir()
+        with chdir(current):
+            paths = method.write(plain_work(method), folder / STEM)
+        left = {path for path in Path(place).rglob("*") if path not in (folder, current)} - set(paths)
+        names = ", ".join(sorted(path.name for path in left))
+        demand(not left, f"it leaves {names}, which write does not return; remove files that are not exported")
+
+
+def same_work_same_files(method: Exporter) -> None:
+    """Check that two runs, a day apart, write the same names and the same bytes: files are compared and archived."""
+    first = _bytes_of(method, plain_work(method))
+    with patch("time.time", _tomorrow):
+        second = _bytes_of(type(method)(**dict(method)), plain_work(method))
+    demand(first.keys() == second.keys(), f"two runs write {', '.join(first)}, and then {', '.join(second)}")
+    changed = [name for name in first if first[name] != second[name]]
+    demand(not changed, f"{', '.join(changed)} differs from run to run; leave out the time, and seed what is random")
+    dated = [name for name, data in first.items() if any(day in data for day in _today())]
+    demand(not dated, f"{', '.join(dated)} contains the date of its writing; leave the date out")
+
+
+def work_is_not_written_to(method: Exporter) -> None:
+    """Check that the input products and picture are not changed: other exporters read them too."""
+    work = plain_work(method)
+    picture = np.array(work.picture)
+    work = replace(work, picture=picture)
+    before = _digest(work)
+    with _write(method, work):
+        demand(_digest(work) == before, "write changes its input; work on a copy")
+
+
+def every_work_is_answered(method: Exporter) -> None:
+    """Check that any work, flat, tiny, without parts, in any script, gives whole files or a TangibleError.
+
+    A BrokenMethod counts as a failure.
+    """
+    for name, work in works(method):
+        _write_or_refuse(method, work, name)
+
+
+def every_picture_type_is_taken(method: Exporter) -> None:
+    """Check that 8 and 16 bits, floats, RGBA, grey and any memory layout give whole files, or a TangibleError."""
+    plain = plain_work(method)
+    assert plain.picture is not None
+    with _write(method, plain) as files:
+        expected = len(files)
+    for name, picture in exact_variants(plain.picture):
+        with _write(method, replace(plain, picture=picture)) as files:
+            demand(len(files) == expected, f"a picture of {name} gives {len(files)} files, of 8 bits {expected}")
+    for name, picture in coarse_variants(plain.picture):
+        _write_or_refuse(method, replace(plain, picture=picture), f"a picture of {name}")
+
+
+def _write_or_refuse(method: Exporter, work: Work, name: str) -> None:
+    """Demand whole files of a work, or a TangibleError."""
+    try:
+        with _write(method, work):
+            pass
+    except (CheckFailure, BrokenMethod) as error:
+        raise CheckFailure(f"{name}: {error}") from error
+    except TangibleError:
+        return
+    except Exception as error:
+        raise CheckFailure(f"{name}: raises {type(error).__name__}: {error}; raise a TangibleError") from error
+
+
+@contextmanager
+def _write(method: Exporter, work: Work) -> Generator[Sequence[Path]]:
+    """Write the files of a work to a temporary folder, and demand that each is whole."""
+    with TemporaryDirectory() as place:
+        stem = Path(place) / STEM
+        files = method.write(work, stem)
+        for each in files:
+            demand(isinstance(each, Path), f"write returns {each!r}; it must return a tuple of Path")  # pyright: ignore[reportUnnecessaryIsInstance]
+            fits = each.parent == stem.parent and each.name.startswith(stem.name)
+            demand(fits, f"write returns {each}, which is not the stem with an ending")
+            demand(each.is_file() and not each.is_symlink(), f"write returns {each.name}, but there is no such file")
+            demand_whole(each)
+        demand(len(set(files)) == len(files), "write returns a path twice")
+        yield files
+
+
+def _bytes_of(method: Exporter, work: Work) -> Mapping[str, bytes]:
+    with _write(method, work) as files:
+        return {path.name: path.read_bytes() for path in files}
+
+
+def _digest(work: Work) -> str:
+    parts: list[Record | np.ndarray | None] = [*work.products.values(), work.picture]
+    return " ".join(digest_of(each) for each in parts if each is not None)
+
+
+def _tomorrow(now: float = time.time()) -> float:
+    return now + A_DAY_S
+
+
+def _today() -> list[bytes]:
+    """Return today's date in the forms that files use, in UTC and local time."""
+    days = (datetime.now(UTC), datetime.now().astimezone())
+    return [day.strftime(form).encode() for day in days for form in ("%Y-%m-%d", "%Y%m%d", "D:%Y%m%d", "%a %b %d %Y")]
+
+
+CHECKS: tuple[Check, ...] = (
+    needs_are_products,
+    width_is_a_length,
+    plain_scene_is_written,
+    nothing_else_is_left,
+    same_work_same_files,
+    work_is_not_written_to,
+    every_work_is_answered,
+    every_picture_type_is_taken,
+)

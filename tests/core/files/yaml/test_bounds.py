@@ -1,0 +1,160 @@
+"""Hostile YAML: each text gives one complaint with its place, quickly."""
+
+from pathlib import Path
+
+import pytest
+
+from hostile import LAUGHS, YAML_BOMBS
+from tangible_core.errors import MOST_IN_LINE, MOST_LINES, ConfigError
+from tangible_core.files.reading import MOST_TEXT_BYTES
+from tangible_core.files.yaml import bounds
+from tangible_core.files.yaml.bounds import MOST_DEPTH, MOST_DIGITS, MOST_NODES
+from tangible_core.files.yaml.source import Source, parse_source
+from tangible_core.materials.files import parse_materials
+from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.plugins.registry import default_registry
+from tangible_core.scene.formats.pictures import MAX_LABELS
+
+PATH = Path("here/p.yaml")
+
+
+def parse(text: str) -> Source:
+    return parse_source(text, PATH, "what it is")
+
+
+def complaint(text: str) -> str:
+    with pytest.raises(ConfigError) as error:
+        parse(text)
+    (line,) = str(error.value).splitlines()
+    assert line.isprintable()
+    return line
+
+
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize("name", YAML_BOMBS)
+def test_yaml_bomb_as_a_pipeline_gives_few_short_complaints(name: str):
+    with pytest.raises(ConfigError) as error:
+        parse_config(YAML_BOMBS[name], PATH, default_registry())
+    lines = str(error.value).splitlines()
+    assert len(lines) <= MOST_LINES + 1
+    assert all(line.isprintable() and len(line) <= MOST_IN_LINE for line in lines)
+    assert lines[0].startswith("here/p.yaml:")
+
+
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize("name", YAML_BOMBS)
+def test_yaml_bomb_as_materials_gives_few_short_complaints(name: str):
+    with pytest.raises(ConfigError) as error:
+        parse_materials(YAML_BOMBS[name], PATH, {})
+    assert len(str(error.value)) <= (MOST_LINES + 1) * (MOST_IN_LINE + 1)
+
+
+def deep(levels: int) -> str:
+    return "x: " + "[" * (levels - 1) + "1" + "]" * (levels - 1)
+
+
+def test_nested_blocks_beyond_the_depth_limit_are_refused():
+    assert parse(deep(MOST_DEPTH)).tree
+    assert complaint(deep(MOST_DEPTH + 1)) == f"here/p.yaml:1:23: more than {MOST_DEPTH} blocks are nested"
+
+
+def test_values_beyond_the_count_limit_are_refused(monkeypatch: pytest.MonkeyPatch):
+    """The mapping, a key, the list, and its items."""
+    monkeypatch.setattr(bounds, "MOST_NODES", 100)
+    assert parse(f"x: [{'1,' * 97}]").tree
+    assert "more than 100 values" in complaint(f"x: [{'1,' * 98}]")
+    assert "more than 100 values" in complaint("\n".join(f"x{number}: 1" for number in range(50)))
+
+
+def test_alias_counts_as_all_nodes_that_it_stands_for(monkeypatch: pytest.MonkeyPatch):
+    """The mapping, two keys, a list of 9 in it, and another list of what is left."""
+    monkeypatch.setattr(bounds, "MOST_NODES", 100)
+    text = f"a: &a [{'1,' * 9}]\nb: [{{}}]"
+    assert len(parse(text.format("*a," * 8 + "1," * 6)).tree["b"]) == 14
+    assert "values, aliases expanded" in complaint(text.format("*a," * 8 + "1," * 7))
+    assert "values, aliases expanded" in complaint(text.format("*a," * 9))
+
+
+def test_rules_for_the_most_segments_stay_within_the_limits():
+    text = "rules:\n" + "".join(f"- {{segment: {label}, material: ice}}\n" for label in range(MAX_LABELS))
+    assert len(text) < MOST_TEXT_BYTES
+    assert 5 * MAX_LABELS + 3 < MOST_NODES
+
+
+def test_anchor_defined_twice_means_the_last_definition():
+    text = f"a: &a [{'1,' * 300}]\nb: &a [1]\nc: [{'*a,' * 1000}]"
+    assert len(parse(text).tree["c"]) == 1000
+
+
+def test_aliases_are_expanded():
+    tree = parse("a: &a {b: 1}\nc: *a\nd: {<<: *a, e: 2}\nf: &f word\n*f : 3\n").tree
+    assert (tree["c"]["b"], tree["d"]["b"], tree["d"]["e"], tree["word"]) == (1, 1, 2, 3)
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [("a: &a [*a]", "1:8"), ("a: &a {b: [1, *a]}", "1:15"), ("a: &a {<<: *a}", "1:12"), ("&a\nb: *a", "2:4")],
+)
+def test_alias_inside_its_own_anchor_is_refused_with_its_place(text: str, place: str):
+    assert complaint(text) == f"here/p.yaml:{place}: an alias refers to a block that contains it"
+
+
+@pytest.mark.parametrize("text", ["? [a]\n: b", "{[a]: b}", "? {a: b}\n: c", "a: &a [1]\n*a : c", "? " * 20])
+def test_key_that_is_a_block_is_refused(text: str):
+    assert "a key must be a word or a number" in complaint(text)
+
+
+def test_number_with_too_many_digits_is_refused():
+    assert parse("x: " + "9" * MOST_DIGITS).tree["x"] == int("9" * MOST_DIGITS)
+    assert complaint("x: " + "9" * (MOST_DIGITS + 1)) == f"here/p.yaml:1:4: a number of more than {MOST_DIGITS} digits"
+    assert "digits" in complaint("x: 0." + "9" * MOST_DIGITS)
+    assert parse("x: '" + "9" * 5000 + "'").tree["x"] == "9" * 5000
+
+
+@pytest.mark.parametrize("text", ["2024-01-01", "2024-13-45", "2024-02-30T99:99:99Z", "0000-00-00"])
+def test_date_is_read_as_text(text: str):
+    assert parse(f"photo: {text}").tree["photo"] == text
+
+
+@pytest.mark.parametrize("text", ["!!int word", "!!float word", "!!binary zzz", "!!bool 7", "!!null x"])
+def test_value_that_contradicts_its_tag_is_refused_with_its_place(text: str):
+    try:
+        parse(f"x: {text}")
+    except ConfigError as error:
+        assert str(error).startswith("here/p.yaml:1:4: ")
+
+
+def test_text_with_too_many_bytes_is_refused(tmp_path: Path):
+    from tangible_core.files.yaml.source import read_text
+
+    (tmp_path / "a.yaml").write_text("x: 1\n" + "#" * (MOST_TEXT_BYTES - 5))
+    assert parse(read_text(tmp_path / "a.yaml")).tree == {"x": 1}
+    (tmp_path / "a.yaml").write_text("x: 1\n" + "#" * (MOST_TEXT_BYTES - 4))
+    with pytest.raises(ConfigError, match=r"a\.yaml: cannot be read as text: it holds more than 0\.25 MB"):
+        read_text(tmp_path / "a.yaml")
+    assert complaint("#" * (MOST_TEXT_BYTES + 1)) == "here/p.yaml: it holds more than 0.25 MB"
+
+
+def test_billion_laughs_has_nine_lines():
+    assert len(LAUGHS.splitlines()) == 9
+
+
+@pytest.mark.parametrize(
+    ("override", "reason"),
+    [
+        ("scene=" + "[" * 500, "blocks are nested"),
+        ("scene=*a", "undefined alias"),
+        ("scene=" + "9" * 5000, "digits"),
+        ("x" * 5000, "write key.key=value"),
+        (".".join("a" * (MOST_DEPTH + 1)) + "=1", "write key.key=value"),
+        ("9" * 5000 + "=1", ""),
+        ("²=1", ""),
+    ],
+)
+def test_hostile_override_gives_one_short_complaint(override: str, reason: str):
+    with pytest.raises(ConfigError) as error:
+        parse_config("scene: builtin/brick", PATH, default_registry(), [override])
+    (line,) = str(error.value).splitlines()
+    assert line.startswith("--set ")
+    assert reason in line
+    assert len(line) < 500

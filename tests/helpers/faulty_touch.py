@@ -1,0 +1,65 @@
+"""A law in plain Python for trying a force loop: it pushes steadily, and does something wrong in one of its ticks."""
+
+import os
+import sys
+import time
+from typing import Any, Literal, NoReturn, final
+
+import numpy as np
+
+from tangible_core.data import NO_FORCE, Force, HapticState
+from tangible_core.plugins.touch import PlainTouch
+
+Fault = Literal["none", "blocks", "exits", "odd error", "does not arrive", "begins slowly", "knows itself"]
+
+
+class OddError(Exception):
+    """An error that pickles and cannot be unpickled, as many libraries have them."""
+
+    def __init__(self, what: str, where: str) -> None:
+        super().__init__(f"{what} in {where}")
+
+
+@final
+class FaultyTouch(PlainTouch):
+    """1 N upwards below the height of 0, until a tick in which the law blocks, ends the program or raises.
+
+    One that "does not arrive" can be sent to another process, and not be made there. One that "begins slowly" takes
+    half a second when it is asked first, as what compiles itself does; one that "knows itself" is part of a circle.
+    """
+
+    stiffness_n_per_m = 0.0
+
+    def __init__(self, fault: Fault = "none", at: int = 100) -> None:
+        self._fault: Fault = fault
+        self._at = at
+        self._ticks = 0
+        self._asked = False
+        self._itself = (self, np.ones(100_000)) if fault == "knows itself" else None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_lost if self._fault == "does not arrive" else FaultyTouch), (self._fault, self._at)
+
+    def force(self, state: HapticState) -> Force:
+        """Raises: OddError, or SystemExit, where that is the fault."""
+        if self._fault == "begins slowly" and not self._asked:
+            time.sleep(0.5)
+        self._asked = True
+        if state.position_m[2] >= 0:
+            return NO_FORCE
+        self._ticks += 1
+        if self._ticks == self._at:
+            self._fail()
+        return Force(0.0, 0.0, 1.0)
+
+    def _fail(self) -> None:
+        if self._fault == "blocks":
+            time.sleep(3600)
+        if self._fault == "exits":
+            sys.exit(3)
+        if self._fault == "odd error":
+            raise OddError("a fault", "the law")
+
+
+def _lost(*_: object) -> NoReturn:
+    raise LookupError(f"the law's data is not in process {os.getpid()}")

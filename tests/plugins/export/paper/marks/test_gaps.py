@@ -1,0 +1,70 @@
+"""The gaps measured on pages whose gaps are known."""
+
+import pytest
+
+from tangible_core.errors import BrokenMethod
+from tangible_export.paper.marks.gaps import too_near
+from tangible_export.paper.marks.reading import read
+
+SIZE = 'width="80mm" height="60mm" viewBox="0 0 80 60"'
+
+
+def near(shapes: str):
+    return too_near(read(f'<svg xmlns="http://www.w3.org/2000/svg" {SIZE}>{shapes}</svg>'))
+
+
+def disc(x: float, y: float, what: str = "fill") -> str:
+    return f'<g data-mark="{what}" aria-label="{what} {x}"><circle cx="{x}" cy="{y}" r="1"/></g>'
+
+
+def line(*at: tuple[float, float], closed: bool = True) -> str:
+    path = "M" + "L".join(f"{x} {y}" for x, y in at) + ("Z" if closed else "")
+    return f'<path data-mark="outline" aria-label="part" fill="none" stroke="#000" stroke-width="1" d="{path}"/>'
+
+
+@pytest.mark.parametrize(("x", "y"), [(1.0, 0.0), (0.0, 1.0), (0.6, 0.8), (-0.8, 0.6)])
+@pytest.mark.parametrize("gap_mm", [3.0, 3.1, 3.35, 3.5])
+def test_gap_is_measured_within_a_pixel_in_any_direction(gap_mm, x, y):
+    pairs = near(disc(40, 30) + disc(40 + x * (2 + gap_mm), 30 + y * (2 + gap_mm)))
+    if gap_mm > 3.2:
+        assert not pairs
+    else:
+        assert [each.gap_mm for each in pairs] == pytest.approx([gap_mm], abs=0.11)
+
+
+def test_gap_between_dots_counts_between_texts_only():
+    dots = '<circle cx="40" cy="30" r="0.72"/><circle cx="42.34" cy="30" r="0.72"/>'
+    assert not near(f'<g data-mark="braille">{dots}</g>')
+    one, other = (f'<g data-mark="braille" aria-label="{n}">{dot}/></g>' for n, dot in enumerate(dots.split("/>")[:2]))
+    assert [each.gap_mm for each in near(one + other)] == pytest.approx([0.9], abs=0.11)
+
+
+def test_gap_of_touching_marks_is_zero():
+    [pair] = near(disc(40, 30) + disc(41.5, 30, "braille"))
+    assert pair.gap_mm == 0
+    [pair] = near(line((10, 10), (70, 10), (70, 50), (10, 50)) + disc(40, 11))
+    assert pair.gap_mm == 0
+    assert not near(line((10, 10), (40, 10), (40, 50), (10, 50)) + line((40, 10), (70, 10), (70, 50), (40, 50)))
+
+
+def test_gap_within_one_net_of_outlines_is_measured():
+    neck = [(10, 10), (70, 10), (70, 50), (42, 50), (42, 24), (10, 24)]
+    assert not near(line(*neck))
+    throat = [(10, 10), (70, 10), (70, 50), (10, 50), (10, 33), (40, 33), (40, 30), (10, 30)]
+    pairs = near(line(*throat))
+    assert pairs
+    assert min(each.gap_mm for each in pairs) == pytest.approx(2, abs=0.4)
+    assert all(each.between_outlines for each in pairs)
+
+
+def test_gap_of_enclosed_outline_is_measured_to_its_frame():
+    frame = line((10, 10), (70, 10), (70, 50), (10, 50))
+    assert not near(frame + line((15, 15), (65, 15), (65, 45), (15, 45)))
+    pairs = near(frame + line((13, 15), (65, 15), (65, 45), (13, 45)))
+    assert min(each.gap_mm for each in pairs) == pytest.approx(2, abs=0.25)
+
+
+@pytest.mark.parametrize("shapes", ["<text>a</text>", '<path d="M0 0h5z"/>', "<pattern/>", '<rect width="9"/>'])
+def test_reading_svg_with_other_elements_is_refused(shapes):
+    with pytest.raises(BrokenMethod):
+        near(shapes)

@@ -10,11 +10,11 @@ import pytest
 from tangible_core import load_method
 from tangible_core.data import Material, Relief
 from tangible_core.errors import GeometryError, OutputError
-from tangible_core.haptic_textures import compile_textures
-from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.metrics import absolute_error
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
+from tangible_render.haptic_textures import compile_textures
+from tangible_render.haptic_textures.heights import texture_height
 from tangible_ui.serving.routes import read_window
 from tangible_ui.worker.jobs import making
 from tangible_ui.worker.jobs import surface as textures

@@ -10,19 +10,19 @@ from hypothesis import strategies as st
 
 from tangible_core.data import Material
 from tangible_core.errors import MaterialError
-from tangible_core.haptic_textures import (
+from tangible_core.materials.assignment import library
+from tangible_render.haptic_textures import (
     compile_textures,
     peak_wavelength_m,
     radial_spectrum,
     sample_tile,
     stroke,
 )
-from tangible_core.haptic_textures.forces import STATE, along, texture_force
-from tangible_core.haptic_textures.heights import GONE, WHOLE, kept, texture_height
-from tangible_core.haptic_textures.spectrum import line_spectrum
-from tangible_core.haptic_textures.table import DRAG, STIFFNESS, SWING
-from tangible_core.haptic_textures.waves import WAVES, waves
-from tangible_core.materials.assignment import library
+from tangible_render.haptic_textures.forces import STATE, along, texture_force
+from tangible_render.haptic_textures.heights import GONE, WHOLE, kept, texture_height
+from tangible_render.haptic_textures.spectrum import line_spectrum
+from tangible_render.haptic_textures.table import DRAG, STIFFNESS, SWING
+from tangible_render.haptic_textures.waves import WAVES, waves
 
 TICK_S = 0.001
 GRAIN_M, ROUGH_M = 1e-3, 1e-4

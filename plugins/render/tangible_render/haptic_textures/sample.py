@@ -3,8 +3,9 @@
 import numpy as np
 from jaxtyping import Float32
 
-from ..data import Material
-from ..errors import MaterialError
+from tangible_core.data import Material
+from tangible_core.errors import MaterialError
+
 from .waves import waves
 
 FINEST = 3

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import Material
+from tangible_core.data import Material
+
 from .waves import WAVES, waves
 
 COUNT, DRAG, STIFFNESS, DYNAMIC, SWING, PER_M = range(6)

@@ -19,7 +19,8 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 from numba.np.arrayobj import populate_array
 
-from ..compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner
+
 from .table import COUNT, HEAD
 from .waves import WAVES
 

@@ -5,8 +5,9 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import Material
-from ..errors import MaterialError
+from tangible_core.data import Material
+from tangible_core.errors import MaterialError
+
 from .table import STIFFNESS, compile_textures
 
 

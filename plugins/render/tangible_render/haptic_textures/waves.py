@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import Material, Texture
+from tangible_core.data import Material, Texture
 
 WAVES = 24
 """The most of a material; each costs the servo its share."""

@@ -8,7 +8,8 @@ import math
 import numpy as np
 from numba import float64, int64, njit, types
 
-from ..compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner
+
 from .heights import COSINE, SINE, TEXTURES, kept, series, texture_height
 from .table import DRAG, DYNAMIC, PER_M, STIFFNESS, SWING
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from tangible_core.data import HapticSurface, Material
-from tangible_core.haptic_textures import radial_spectrum, sample_tile, stroke
-from tangible_core.haptic_textures.spectrum import Spectrum, line_spectrum
+from tangible_render.haptic_textures import radial_spectrum, sample_tile, stroke
+from tangible_render.haptic_textures.spectrum import Spectrum, line_spectrum
 
 from .drawing.sheet import write_sheet
 from .panels import Panel

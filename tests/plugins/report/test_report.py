@@ -35,7 +35,6 @@ from tangible_core.data import (
 )
 from tangible_core.errors import OutputError, PictureError
 from tangible_core.files.json_text import write_figures
-from tangible_core.haptic_textures import peak_wavelength_m
 from tangible_core.materials.assignment import library
 from tangible_core.metrics import disparity_errors
 from tangible_core.plugins import hooks
@@ -43,6 +42,7 @@ from tangible_core.plugins.hooks import Panel, hookimpl
 from tangible_core.plugins.notes import collected
 from tangible_core.plugins.registry import Registry
 from tangible_core.session import Recording
+from tangible_render.haptic_textures import peak_wavelength_m
 from tangible_report import block
 from tangible_report.description import describe
 from tangible_report.drawing.layout import ROW_IN, TALLEST_IN, Cell, _height, arrange

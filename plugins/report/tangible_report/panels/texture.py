@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter, NullLocator
 
 from tangible_core.data import Material
-from tangible_core.haptic_textures import Stroke
-from tangible_core.haptic_textures.spectrum import Spectrum
+from tangible_render.haptic_textures import Stroke
+from tangible_render.haptic_textures.spectrum import Spectrum
 
 from ..style import INK, OKABE_ITO
 

@@ -1,4 +1,4 @@
-"""The ticks of a force loop that runs, each handed on once: what a recording is made of."""
+"""The drain of a ring: passes each tick of a running force loop on once, such as to a recording."""
 
 import logging
 from collections.abc import Callable
@@ -12,24 +12,24 @@ log = logging.getLogger(__name__)
 
 
 @final
-class Keeper:
-    """Hands each tick of a loop to `keep`, once, in tables of `data.TICK_COLUMNS`, as a `Writer` appends them.
+class RingDrain:
+    """A drain that passes each tick of a loop to `keep` once, in tables of `data.TICK_COLUMNS`, as for a `Writer`.
 
-    Whoever owns the loop looks now and then: at least every few seconds, as a ring holds eight of them, and once more
-    when the loop has ended. Other scenes that are felt on the same loop change nothing. For one loop and one thread at
-    a time: better one where no Ctrl-C ends a look half done, as nobody would know which ticks are kept.
+    The owner of the loop calls `look` at least every few seconds, as a ring holds eight seconds, and once more after
+    the loop has ended. Swapped scenes make no difference. Use it for one loop and from one thread at a time, preferably
+    a thread that Ctrl-C cannot interrupt, as otherwise it is unknown which ticks were passed on.
     """
 
     def __init__(self, servo: Servo, keep: Callable[[np.ndarray], None], first: int = 0) -> None:
-        """first: number of the tick to begin with, such as `servo.ring.count` for those from now on."""
+        """Begin with the tick of number `first`, such as `servo.ring.count` for all ticks from now on."""
         self._servo, self._keep = servo, keep
         self._next = first
 
     def look(self) -> None:
-        """Hand on what came since the last look. The log says how many ticks came too long ago, and are lost.
+        """Pass on the ticks since the last call; logs how many were overwritten before, and so are lost.
 
-        Raises: whatever `keep` does, as OutputError on a full disk; the loop goes on, and these ticks are handed on
-        again by the next look.
+        Raises: whatever `keep` raises, such as OutputError on a full disk; the loop goes on, and the next call passes
+        these ticks on again.
         """
         rows, following = self._servo.ring.since(self._next)
         if lost := following - self._next - len(rows):

@@ -1,4 +1,4 @@
-"""The columns of ticks by what they are of: time, position, force."""
+"""The columns of ticks, grouped into arrays: time, position, force and so on."""
 
 from collections.abc import Mapping
 
@@ -19,9 +19,9 @@ ARRAYS: dict[str, int | slice] = {
     "buttons": 15,
     "frame": 16,
 }
-"""Where each property of a recording, and array of an .npz, stands in a row of `TICK_COLUMNS`."""
+"""Columns in a row of `TICK_COLUMNS` of each property of a recording and array of an .npz."""
 NEEDED = ("time_s", "position_m", "velocity_m_per_s", "force_n")
-"""What each recording has; the rest may be unknown:"""
+"""Arrays that every recording has; the others may be unknown."""
 UNKNOWN = {
     "late_s": 0.0,
     "proxy_x_m": np.nan,
@@ -31,24 +31,25 @@ UNKNOWN = {
     "buttons": 0.0,
     "frame": np.nan,
 }
+"""Values of columns that are not known."""
 
 
-def unknown(count: int) -> Float64[np.ndarray, "n columns"]:
-    """Ticks of which nothing is known."""
+def unknown_rows(count: int) -> Float64[np.ndarray, "n columns"]:
+    """Return rows in which nothing is known."""
     return np.tile([UNKNOWN.get(name, 0.0) for name in TICK_COLUMNS], (count, 1))
 
 
-def joined(arrays: Mapping[str, np.ndarray]) -> Float64[np.ndarray, "n columns"]:
-    """Rows of `TICK_COLUMNS` from `ARRAYS` by name; those that are left out, but not `NEEDED`, were not known.
+def join_arrays(arrays: Mapping[str, np.ndarray]) -> Float64[np.ndarray, "n columns"]:
+    """Join `ARRAYS`, by name, to rows of `TICK_COLUMNS`; arrays that are not `NEEDED` may be left out as unknown.
 
-    Raises: OutputError if the arrays are not of one length, KeyError if a name is missing or unknown.
+    Raises: OutputError if the arrays differ in length, KeyError if a name is missing or unknown.
     """
-    rows = unknown(arrays["time_s"].size)
+    rows = unknown_rows(arrays["time_s"].size)
     for name in (*NEEDED, *(arrays.keys() - NEEDED)):
         part = rows[:, ARRAYS[name]]
         if arrays[name].dtype.kind not in "biuf":
-            raise OutputError(f"{name} holds {arrays[name].dtype.name} and no numbers")
+            raise OutputError(f"{name} holds {arrays[name].dtype.name}, not numbers")
         if arrays[name].shape != part.shape:
-            raise OutputError(f"{name} is {arrays[name].shape}; with these times it is {part.shape}")
+            raise OutputError(f"{name} has shape {arrays[name].shape}; with these times it must be {part.shape}")
         part[:] = arrays[name]
     return rows

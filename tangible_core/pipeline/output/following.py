@@ -4,7 +4,7 @@ import numpy as np
 
 from ...mapping import mapped, over, wanted
 from ...plugins.interfaces import HapticDevice
-from ...session import EVERY, Followed, Recording, followed
+from ...session import EVERY, Recording, TrackingError, tracking_error
 from ..engine.engine import Engine
 
 
@@ -14,7 +14,7 @@ def felt_device(engine: Engine, device: HapticDevice | None = None) -> HapticDev
     return felt and over(felt, engine.make("surface").extent_m)
 
 
-def how_followed(engine: Engine, felt: HapticDevice | None, seen: Recording) -> Followed:
+def how_followed(engine: Engine, felt: HapticDevice | None, seen: Recording) -> TrackingError:
     """How the hand followed the path of a device of `felt_device`. seen: one of `EVERY` ticks."""
     path_m = felt and wanted(felt, np.arange(len(seen.rows)) * EVERY)
-    return followed(seen, path_m, engine.make("surface"))
+    return tracking_error(seen, path_m, engine.make("surface"))

@@ -15,7 +15,7 @@ from ...files.json_text import write_figures
 from ...files.writing import write_text
 from ...metrics import disparity_errors
 from ...plugins.interfaces import Touch
-from ...session import EVERY, About, Recording, materials_text, names_text, run_simulated, telling_parts
+from ...session import EVERY, About, Recording, materials_text, names_text, run_simulated, with_parts
 from ..engine.cache import write_record
 from ..engine.engine import Engine
 from ..engine.warm_up import FELT, rehearsal
@@ -152,10 +152,10 @@ def _felt(
     device = felt_device(engine)
     if device is None or not device.spec().simulated:
         return None
-    said = about(engine).stamped()
+    said = about(engine).with_versions()
     if engine.beside is not None:
         engine.beside.wait(FELT)
-    told = telling_parts(engine.make_on_grid("surface"), on_report) if on_report else None
+    told = with_parts(engine.make_on_grid("surface"), on_report) if on_report else None
     recording = run_simulated(touch, device, seconds, told, engine.config.safety)
     return replace(recording, about=said)
 

@@ -1,4 +1,4 @@
-"""The range of nearness that spans the reliefs of a film: kept, so that the relief does not breathe."""
+"""The range of nearness that spans the reliefs of a film: it changes slowly, so that the relief does not pulsate."""
 
 import math
 from typing import final
@@ -6,7 +6,7 @@ from typing import final
 from ...scene.geometry import ValueRange
 
 ADAPTS_S = 10.0
-"""Time constant in which the range follows what is seen: 10 mm of relief then move by 1 mm/s at most."""
+"""Time constant with which the range follows the frames: a relief of 10 mm then moves by 1 mm/s at most."""
 
 
 @final
@@ -18,9 +18,9 @@ class Scale:
         self._time_s = time_s
 
     def look(self, seen: ValueRange, time_s: float) -> None:
-        """What a frame at this time of the film shows.
+        """Follow the range of a frame at this time of the film; the first that is not empty is adopted at once.
 
-        The first range that is not empty is taken as it is: a film may begin in the dark.
+        That is for films that begin in the dark.
         """
         share = 1 - math.exp(-max(0.0, time_s - self._time_s) / ADAPTS_S)
         self._time_s = time_s

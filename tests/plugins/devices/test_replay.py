@@ -107,7 +107,7 @@ def test_recordings_that_cannot_be_played(tmp_path: Path, change, complaint: str
 
 def test_files_that_cannot_be_read(tmp_path: Path):
     (tmp_path / "text.nc").write_text("no recording")
-    for name, complaint in (("none.nc", "cannot be read"), ("text.nc", "is no recording")):
+    for name, complaint in (("none.nc", "cannot be read"), ("text.nc", "is not a recording")):
         with pytest.raises(DeviceError, match=complaint):
             Replay(file=tmp_path / name).open()
 

@@ -9,7 +9,7 @@ from typing import Any
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.files.writing import write_text
 from tangible_core.servo import Beacon, parcel
-from tangible_core.session import called
+from tangible_core.session import part_label
 
 from ..feeling.feeling import Felt
 from ..state.laws import Choice, Tally
@@ -55,7 +55,7 @@ async def beacon(desk: Desk, tab: Tab | None, part: int | None) -> dict[str, Any
     made = await desk.maker.quick("beacon", **document, part=part)
     found: Beacon = await asyncio.to_thread(parcel.unpack, Path(made["parcel"]))
     await asyncio.to_thread(desk.feeling.pull_to, found)
-    return _tell(desk, found.part, called(found.part, found.name))
+    return _tell(desk, found.part, part_label(found.part, found.name))
 
 
 def _tell(desk: Desk, part: int | None, name: str) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from tangible_core.data import TICK_COLUMNS
 from tangible_core.data.records import digest_of
 from tangible_core.errors import OutputError
 from tangible_core.pipeline.feeling import Feeling
-from tangible_core.session import Recording, beside, compared
+from tangible_core.session import Recording, compare_recordings, compare_replay
 from tangible_core.session.recording_files import SUFFIXES
 
 from ...framing import FLAG_BITS
@@ -80,7 +80,7 @@ def _shown(bench: Bench, found: Recording, path: str) -> dict[str, Any]:
 @job(quick=True)
 def compare_records(bench: Bench, path: Path, other: Path) -> dict[str, Any]:
     """Two recordings, place by place along their paths. Raises: OutputError for a file that is no recording."""
-    return beside(Recording.load(path), Recording.load(other))
+    return compare_recordings(Recording.load(path), Recording.load(other))
 
 
 @job()
@@ -90,7 +90,7 @@ def try_law(bench: Bench, path: Path, text: str, document: Path, sets: list[str]
     after = Feeling(bench.pipeline_of(text, document, sets)).replay(before)
     out = _free(folder, f"{path.stem} with {after.about.renderer}")
     after.save(out)
-    return {**_shown(bench, after, str(out)), "compared": compared(before, after)}
+    return {**_shown(bench, after, str(out)), "compared": compare_replay(before, after)}
 
 
 def _free(folder: Path, name: str) -> Path:

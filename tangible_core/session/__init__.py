@@ -1,12 +1,9 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
-from .beside import compare_recordings
-from .following import EVERY, TickSampler, TrackingError, tracking_error
-from .in_turn import Slot, run_kiosk
+from .guard_summary import guard_summary
 from .keeper import RingDrain
-from .limited import guard_summary
+from .kiosk import Slot, run_kiosk
 from .live import figures, keeping, run_in_real_time
-from .loop import run_simulated
 from .parts_felt import (
     BeaconFelt,
     PartFelt,
@@ -22,10 +19,13 @@ from .parts_felt import (
     with_parts,
 )
 from .recording import INTERRUPTED, STOPPED, Recording, failure
-from .recording_files import check_record_path
-from .replay import compare_replay, replay, unaltered_forces
-from .tick_file import About
-from .writer import Writer
+from .recording.comparison import compare_recordings
+from .recording.files import check_record_path
+from .recording.replay import compare_replay, replay, unaltered_forces
+from .recording.tick_file import About
+from .recording.writer import Writer
+from .simulated import run_simulated
+from .tracking_error import EVERY, TickSampler, TrackingError, tracking_error
 
 beside, Keeper, Turn, run_in_turn = compare_recordings, RingDrain, Slot, run_kiosk
 """Former names of these four."""

@@ -16,8 +16,8 @@ from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Beacon, Safety, Servo
 from .keeper import RingDrain
 from .recording import INTERRUPTED, STOPPED, Recording
-from .tick_file import About
-from .writer import Writer
+from .recording.tick_file import About
+from .recording.writer import Writer
 
 LOOK_EVERY_S = 0.05
 """Interval at which ticks are taken from the loop's ring, and so the most that a crash can lose of a recording."""

@@ -22,7 +22,7 @@ from tangible_core.servo.ring import STOP
 from tangible_core.servo.ticks import cycle
 from tangible_core.servo.ticks.loop import sections
 from tangible_core.session import INTERRUPTED, Recording, RingDrain, figures, keeping, run_in_real_time
-from tangible_core.session.tick_file import About
+from tangible_core.session.recording.tick_file import About
 
 pytestmark = pytest.mark.usefixtures("patient")
 

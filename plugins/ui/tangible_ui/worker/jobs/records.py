@@ -10,7 +10,7 @@ from tangible_core.data.records import digest_of
 from tangible_core.errors import OutputError
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.session import Recording, compare_recordings, compare_replay
-from tangible_core.session.recording_files import SUFFIXES
+from tangible_core.session.recording.files import SUFFIXES
 
 from ...framing import FLAG_BITS
 from ..state import Bench

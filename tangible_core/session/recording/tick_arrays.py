@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import TICK_COLUMNS
-from ..errors import OutputError
+from ...data import TICK_COLUMNS
+from ...errors import OutputError
 
 ARRAYS: dict[str, int | slice] = {
     "time_s": 0,

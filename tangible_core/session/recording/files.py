@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import TICK_COLUMNS
-from ..errors import OutputError, shown
-from ..files.arrays import Archive
-from ..files.reading import check_file, read_bytes
-from ..files.writing import atomic_write
+from ...data import TICK_COLUMNS
+from ...errors import OutputError, shown
+from ...files.arrays import Archive
+from ...files.reading import check_file, read_bytes
+from ...files.writing import atomic_write
 from . import tick_file
 from .tick_arrays import ARRAYS, NEEDED, UNKNOWN, join_arrays, unknown_rows
 from .tick_file import NO_INFORMATION, About

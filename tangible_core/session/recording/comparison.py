@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float64
 
-from ..errors import check_positive
-from ..metrics.forces import force_errors
+from ...errors import check_positive
+from ...metrics.forces import force_errors
 from .recording import Recording
 
 NEAR_M = 1e-3

@@ -20,7 +20,7 @@ from ..servo.guard.stiffness import stiffness_of
 from ..servo.reports import brief_report
 from ..servo.ticks.python_tick import GuardedForce, guard_touch
 from .recording import INTERRUPTED, STOPPED, Recording
-from .replay import proxy_of
+from .recording.replay import proxy_of
 
 log = logging.getLogger(__name__)
 MOST_TICKS = 3_600_000

@@ -16,7 +16,8 @@ from scipy.io import netcdf_file
 from hostile import npz_bomb
 from tangible_core.data import TICK_COLUMNS, HapticSurface, TickFlag
 from tangible_core.errors import OutputError
-from tangible_core.session import About, Recording, check_record_path, netcdf, run_simulated, tick_file
+from tangible_core.session import About, Recording, check_record_path, run_simulated
+from tangible_core.session.recording import netcdf, tick_file
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
 

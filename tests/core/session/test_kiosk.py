@@ -14,7 +14,7 @@ from tangible_core.data import NO_FORCE, TICK_COLUMNS, Force, HapticState, Servo
 from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import PlainTouch, Touch
 from tangible_core.servo import OVER, Safety
-from tangible_core.session import INTERRUPTED, STOPPED, Slot, in_turn, run_kiosk
+from tangible_core.session import INTERRUPTED, STOPPED, Slot, kiosk, run_kiosk
 
 AT_ONCE = Safety(ramp_s=0, max_step_n=10, stale_s=1.0, passivity="off")  # late ticks change nothing
 pytestmark = pytest.mark.usefixtures("patient")
@@ -29,7 +29,7 @@ def proxy(height_m: float = 0.002) -> Touch:
 @pytest.fixture
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """A device is looked for again without a pause."""
-    monkeypatch.setattr(in_turn, "FIRST_PAUSE_S", 0.01)
+    monkeypatch.setattr(kiosk, "FIRST_PAUSE_S", 0.01)
 
 
 @pytest.mark.slow
@@ -154,10 +154,10 @@ def test_ctrl_c_while_it_waits() -> None:
 
 
 def test_a_reason_is_told_once_and_looked_into_less_and_less(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(in_turn, "FIRST_PAUSE_S", 1e-3)
-    monkeypatch.setattr(in_turn, "LONGEST_PAUSE_S", 3e-3)
+    monkeypatch.setattr(kiosk, "FIRST_PAUSE_S", 1e-3)
+    monkeypatch.setattr(kiosk, "LONGEST_PAUSE_S", 3e-3)
     said: list[str] = []
-    session = in_turn._Kiosk([], Circling(), None, 1.0, None, None, None, said.append)
+    session = kiosk._Kiosk([], Circling(), None, 1.0, None, None, None, said.append)
     pauses: list[float] = []
     for why in ("it is out", "it is out", "it is in use"):
         pauses.append(session._pause_s)

@@ -22,7 +22,7 @@ from .film import Player, Reliefs
 from .live import LOOK_EVERY_S, ignore, watch_loop
 from .parts_felt import with_part
 from .recording import INTERRUPTED, STOPPED
-from .tick_arrays import ARRAYS
+from .recording.tick_arrays import ARRAYS
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
 """First and longest pause between two searches for a device; each is twice as long, as a search starts a process."""

@@ -8,9 +8,9 @@ from typing import Self, final
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import TICK_COLUMNS
-from ..errors import OutputError
-from ..files.writing import open_alone
+from ...data import TICK_COLUMNS
+from ...errors import OutputError
+from ...files.writing import open_alone
 from . import netcdf, tick_file
 from .tick_file import NO_INFORMATION, About
 

@@ -11,8 +11,8 @@ from typing import Any, Self, cast
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import TICK_COLUMNS, TickFlag
-from ..data.ticks import BEACON_SHIFT
+from ...data import TICK_COLUMNS, TickFlag
+from ...data.ticks import BEACON_SHIFT
 from . import netcdf
 from .netcdf import Variable
 from .tick_arrays import ARRAYS, unknown_rows

@@ -7,10 +7,10 @@ from typing import Any, cast
 
 import numpy as np
 
-from ..compiled.touch import CompiledTouch
-from ..data import UNTOUCHED, HapticState, TickFlag
-from ..metrics.forces import force_errors
-from ..plugins.interfaces import Touch
+from ...compiled.touch import CompiledTouch
+from ...data import UNTOUCHED, HapticState, TickFlag
+from ...metrics.forces import force_errors
+from ...plugins.interfaces import Touch
 from .recording import Recording
 from .tick_arrays import ARRAYS
 
@@ -25,7 +25,7 @@ def replay(touch: Touch, recording: Recording) -> Recording:
     """
     proxy_m, force_n = np.full((2, len(recording.rows), 3), np.nan)
     if isinstance(touch, CompiledTouch):
-        from ..compiled import kernels
+        from ...compiled import kernels
 
         law = touch.address(), touch.fixed, touch.memory
         states = np.hstack([recording.position_m, recording.velocity_m_per_s])

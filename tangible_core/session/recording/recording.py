@@ -7,13 +7,13 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float64, Int64
 
-from ..data import TICK_COLUMNS, Record, TickFlag
-from ..data.ticks import BEACON_SHIFT
-from ..errors import DeviceError, OutputError
-from ..files.paths import as_path
-from . import recording_files
-from .limited import flag_counts, guard_summary
-from .recording_files import RecordingContents
+from ...data import TICK_COLUMNS, Record, TickFlag
+from ...data.ticks import BEACON_SHIFT
+from ...errors import DeviceError, OutputError
+from ...files.paths import as_path
+from ..guard_summary import flag_counts, guard_summary
+from . import files
+from .files import RecordingContents
 from .tick_arrays import ARRAYS, join_arrays
 from .tick_file import NO_INFORMATION, About
 
@@ -150,7 +150,7 @@ class Recording(Record):
 
         Raises: OutputError for another suffix, or if the place cannot be written.
         """
-        recording_files.write(as_path(path), RecordingContents(self.rows, self.stopped, self.about))
+        files.write(as_path(path), RecordingContents(self.rows, self.stopped, self.about))
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Self:
@@ -159,7 +159,7 @@ class Recording(Record):
         It needs memory for all ticks: half a gigabyte for an hour at 1 kHz.
         Raises: OutputError if the file cannot be read, is not a recording, or is larger than `reading.MOST_BYTES`.
         """
-        return cls(*recording_files.read(as_path(path)))
+        return cls(*files.read(as_path(path)))
 
 
 def failure(ticks: int, stopped: str) -> DeviceError:

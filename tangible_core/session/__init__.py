@@ -1,9 +1,8 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
 from .guard_summary import guard_summary
-from .keeper import RingDrain
 from .kiosk import Slot, run_kiosk
-from .live import figures, keeping, run_in_real_time
+from .live import RingDrain, figures, keeping, run_in_real_time
 from .parts_felt import (
     BeaconFelt,
     PartFelt,

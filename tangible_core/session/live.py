@@ -1,12 +1,13 @@
 """A session in real time: the force loop in its own process, watched and recorded from this one."""
 
+import logging
 import time
 from collections.abc import Callable, Generator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 
@@ -14,15 +15,43 @@ from ..data import UNTOUCHED, FilmFelt, ServoReport, TickFlag
 from ..plugins.interfaces import Film, HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Beacon, Safety, Servo
-from .keeper import RingDrain
 from .recording import INTERRUPTED, STOPPED, Recording
 from .recording.tick_file import About
 from .recording.writer import Writer
 
+log = logging.getLogger(__name__)
 LOOK_EVERY_S = 0.05
 """Interval at which ticks are taken from the loop's ring, and so the most that a crash can lose of a recording."""
 REPORT_EVERY_S = 0.1
 """Interval of the reports."""
+
+
+@final
+class RingDrain:
+    """A drain that passes each tick of a loop to `keep` once, in tables of `data.TICK_COLUMNS`, as for a `Writer`.
+
+    The owner of the loop calls `look` at least every few seconds, as a ring holds eight seconds, and once more after
+    the loop has ended. Swapped scenes make no difference. Use it for one loop and from one thread at a time, preferably
+    a thread that Ctrl-C cannot interrupt, as otherwise it is unknown which ticks were passed on.
+    """
+
+    def __init__(self, servo: Servo, keep: Callable[[np.ndarray], None], first: int = 0) -> None:
+        """Begin with the tick of number `first`, such as `servo.ring.count` for all ticks from now on."""
+        self._servo, self._keep = servo, keep
+        self._next = first
+
+    def look(self) -> None:
+        """Pass on the ticks since the last call; logs how many were overwritten before, and so are lost.
+
+        Raises: whatever `keep` raises, such as OutputError on a full disk; the loop goes on, and the next call passes
+        these ticks on again.
+        """
+        rows, following = self._servo.ring.since(self._next)
+        if lost := following - self._next - len(rows):
+            log.warning("%d ticks were overwritten before they could be recorded; the machine is too busy", lost)
+        if len(rows):
+            self._keep(rows)
+        self._next = following
 
 
 def run_in_real_time(

@@ -1,5 +1,6 @@
 """The frames of a video as reliefs of one scale, one after the other."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from types import TracebackType
@@ -12,11 +13,12 @@ from ...errors import ConfigError
 from ...plugins.notes import silently
 from ...scene.geometry import ValueRange
 from ...scene.video.frames import VideoFrame, VideoFrames
-from .scale import Scale
 from .steady import Steady
 
 LOOK_EVERY, LOOK_PIXELS = 8, 4
 """Interval, in frames, of measuring the range of nearness; and step, in pixels, of the thinned map for it."""
+ADAPTS_S = 10.0
+"""Time constant with which the range follows the frames: a relief of 10 mm then moves by 1 mm/s at most."""
 
 
 class FrameMaker(ABC):
@@ -45,6 +47,28 @@ class FrameRelief(NamedTuple):
     number: int
     time_s: float
     relief: Relief
+
+
+@final
+class Scale:
+    """The range of the first frame, which follows that of later ones slowly."""
+
+    def __init__(self, first: ValueRange, time_s: float = 0.0) -> None:
+        self.spans = first
+        self._time_s = time_s
+
+    def look(self, seen: ValueRange, time_s: float) -> None:
+        """Follow the range of a frame at this time of the film; the first that is not empty is adopted at once.
+
+        That is for films that begin in the dark.
+        """
+        share = 1 - math.exp(-max(0.0, time_s - self._time_s) / ADAPTS_S)
+        self._time_s = time_s
+        if not self.spans.low < self.spans.high:
+            self.spans = seen
+        elif seen.low < seen.high:
+            low, high = (then + share * (now - then) for then, now in zip(self.spans, seen, strict=True))
+            self.spans = ValueRange(low, high)
 
 
 @final

@@ -8,7 +8,7 @@ from tangible_core.data import DisparityMap
 from tangible_core.errors import ConfigError, GeometryError
 from tangible_core.scene.geometry import ValueRange
 from tangible_core.session.film import FrameMaker, Reliefs
-from tangible_core.session.film.scale import ADAPTS_S, Scale
+from tangible_core.session.film.reliefs import ADAPTS_S, Scale
 
 GROUND = np.full((8, 12), 20.0)
 BOX = GROUND.copy()

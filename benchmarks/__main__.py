@@ -9,7 +9,7 @@ from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 
-from tangible_bench.machine import machine
+from tangible_bench.measuring.machine import machine
 
 from .figures import MissedError
 

@@ -7,11 +7,11 @@ from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 
-from tangible_bench.config import load_comparison
-from tangible_bench.plan import measurements
-from tangible_bench.run import look, run
-from tangible_bench.summary import Cell, cells
-from tangible_bench.table import Results, tables
+from tangible_bench.config.reading import load_comparison
+from tangible_bench.measuring.plan import measurements
+from tangible_bench.measuring.run import look, run
+from tangible_bench.results.summary import Cell, cells
+from tangible_bench.results.table import Results, tables
 from tangible_core.plugins.interfaces import DepthEstimator
 from tangible_core.plugins.registry import default_registry
 from tangible_depth.opencv_sgbm import OpenCVSGBM

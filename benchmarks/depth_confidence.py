@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tangible_bench.depth import measure
+from tangible_bench.tasks.depth import measure
 from tangible_core.metrics import sparsification_errors
 from tangible_depth.opencv_sgbm import OpenCVSGBM
 from tangible_depth.semi_global import SemiGlobal

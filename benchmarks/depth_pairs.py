@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tangible_bench.depth import range_px
-from tangible_bench.depth_scenes import DepthScene
+from tangible_bench.tasks.depth import range_px
+from tangible_bench.tasks.depth_scenes import DepthScene
 from tangible_core.data import Views
 from tangible_core.testing.synthetic.stereo_scenes import SCENES, KnownPair
 from tangible_depth.search.pairs import Pair, grey_pair

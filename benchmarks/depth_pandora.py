@@ -28,7 +28,7 @@ PIPELINE = {
 
 def figures(rounds: int = 2) -> list[Figure]:
     """Error and time of both on the builtin pair."""
-    from tangible_bench.depth import fill, measure
+    from tangible_bench.tasks.depth import fill, measure
 
     what, bound = "against pandora: census5 + SGM + vfit, motorcycle", "less error, <= 1/50 of its time"
     scene = real()["motorcycle"]

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from functools import partial
 
-from tangible_bench.depth import PERTURBATIONS, fill, measure
+from tangible_bench.tasks.depth import PERTURBATIONS, fill, measure
 from tangible_core.plugins.interfaces import DepthEstimator
 from tangible_core.testing.synthetic.stereo_scenes import KnownPair
 from tangible_depth.opencv_sgbm import OpenCVSGBM

@@ -8,7 +8,7 @@ import numpy as np
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.metrics import disparity_errors
-from tangible_core.scene.scaling import enlarged, felt_factor, reduced
+from tangible_core.scene.scaling import enlarge_disparity, felt_factor, reduce_views
 from tangible_depth.opencv_sgbm import OpenCVSGBM
 from tangible_depth.rectify.rectification import rectify
 from tangible_depth.semi_global import SemiGlobal
@@ -118,7 +118,7 @@ def skips(scene: KnownScene) -> Iterator[Skip]:
 
 def _felt(views: Views, finest_m: float) -> DisparityMap:
     factor = felt_factor(views.shape[1], 0.01, finest_m)
-    return enlarged(SemiGlobal().estimate(reduced(views, factor)), views.shape)
+    return enlarge_disparity(SemiGlobal().estimate(reduce_views(views, factor)), views.shape)
 
 
 def _rectified(views: Views, tolerance_px: float) -> DisparityMap:

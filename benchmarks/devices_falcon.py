@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from tangible_devices.falcon import framing, kinematics, packet, tick
+from tangible_devices.falcon.kernels import framing, kinematics, packet, tick
 
 from .figures import Figure, part
 from .tests_path import falcon_streams
 
 POINTS = 100_000
 forward, inverse, jacobian, torques = kinematics.forward, kinematics.inverse, kinematics.jacobian, kinematics.torques
-read, write, receive, saturated = tick.read, tick.write, framing.receive, packet.saturated
+read, write, receive, saturate = tick.read, tick.write, framing.receive, packet.saturate
 
 
 def figures() -> Iterator[Figure]:
@@ -126,7 +126,7 @@ def _worst(tips, forces):  # noqa: ANN001, ANN202
     for i in range(len(tips)):
         x, y, z = tips[i, 0], tips[i, 1], tips[i, 2]
         first, second, third = torques(jacobian(*inverse(x, y, z), x, y, z), (forces[i, 0], forces[i, 1], forces[i, 2]))
-        a, b, c, factor = saturated(-1e4 * first, -1e4 * second, -1e4 * third)
+        a, b, c, factor = saturate(-1e4 * first, -1e4 * second, -1e4 * third)
         wrong += (a * first > 0) + (b * second > 0) + (c * third > 0)
         wrong += max(abs(a), abs(b), abs(c)) > packet.MOST_COUNTS
         if 0.0 < factor < 1.0:

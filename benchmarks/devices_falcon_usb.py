@@ -11,12 +11,12 @@ import numpy as np
 import usb.core
 
 from tangible_core.data import NO_FORCE, Force
-from tangible_devices.falcon import firmware
 from tangible_devices.falcon.calibration import Calibration
 from tangible_devices.falcon.link import FalconLink
-from tangible_devices.falcon.port import IN, OUT, Port
 from tangible_devices.falcon.simulator import bus as simulated
-from tangible_devices.falcon.simulator.firmware_image import synthetic_image
+from tangible_devices.falcon.simulator.falcons import synthetic_image
+from tangible_devices.falcon.usb import firmware
+from tangible_devices.falcon.usb.port import IN, OUT, Port
 
 from .figures import Figure, part
 from .tests_path import falcon_bus, falcon_streams
@@ -40,7 +40,7 @@ def _firmware() -> Figure:
         ("dropped", falcon_bus.Line("drop", 2000)),
         ("late", falcon_bus.Line(late_reply=30)),
     ):
-        firmware.running(falcon_bus.opener_of(falcon_bus.bus_of(line)), image).close()
+        firmware.open_running(falcon_bus.opener_of(falcon_bus.bus_of(line)), image).close()
         told.append(f"{name}: {line.resets}")
     return Figure("firmware with a byte of the echo spoilt: attempts", "loads", ", ".join(told), True)
 

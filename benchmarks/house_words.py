@@ -1,10 +1,12 @@
-"""The words of the source: bare participles as names of functions, and docstrings that open with a function word.
+"""The words of the source: bare participles as names of functions, docstrings that open with a function word, and
+turns of phrase that have a plainer form.
 
 `python -m benchmarks.house_words [--list] [PATH ...]` counts them below these paths, by default in all Python that is
 shipped; `--list` names each place.
 """
 
 import ast
+import re
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -36,6 +38,22 @@ IRREGULAR = frozenset(_IRREGULAR.split())
 _VERBS = "cut feed fit heed hit let need put read run seed set shed shut speed split spread"
 VERBS = frozenset(_VERBS.split())
 """Participles that are imperatives as well, and words on -ed that are not participles."""
+
+PLAINER = {
+    r"(is|are|was|were|be|been) told(?! apart)": "log, report, print, show",
+    r"(is|are|was|were|be|been) said(?! to)": "log, report, print, show",
+    r"puts? right": "correct",
+    r"(?<!there )(?<!here )(is|are|was|were) no(?! \w+er\b| more\b| less\b| worse\b)": "is not a",
+    r"(?<!there )(?<!here )(is|are|was|were) none of (its|his|theirs|ours)": "is not one of",
+    r"of one's own": "custom",
+    r"so many(?! that)": "n",
+    r"what is felt": "the surface, the touch",
+    r"(handed|handing) on": "pass, export",
+    r"asked for": "requested",
+    r"whoever": "people who, a program that",
+}
+"""Turns of phrase of which a reader has to think twice, as regular expressions, and the plainer words for each."""
+_PLAINER = re.compile("|".join(rf"\b(?:{each})\b" for each in PLAINER), re.IGNORECASE)
 
 
 class Place(NamedTuple):
@@ -108,6 +126,23 @@ def opens_badly(text: str) -> bool:
     return first.strip("\"'`(),.:;").lower() in FUNCTION_WORDS
 
 
+def turns_of_phrase(path: Path) -> Iterator[Place]:
+    """Yield the turns of phrase in a file that have a plainer form: in the texts of Python, or in every line."""
+    text = path.read_text(encoding="utf-8")
+    texts = strings_of(ast.parse(text)) if path.suffix == ".py" else enumerate(text.splitlines(), 1)
+    for line, each in texts:
+        words = " ".join(each.split())
+        for match in _PLAINER.finditer(words):
+            yield Place(path, line, words[max(0, match.start() - 40) : match.end() + 40])
+
+
+def strings_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Yield the line and the text of every string, docstrings and messages included."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.lineno, node.value
+
+
 def docstrings_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
     """Yield the line and the text of every docstring, those of constants and fields included."""
     for node in ast.walk(tree):
@@ -134,6 +169,8 @@ if __name__ == "__main__":
     wanted = [Path(each) for each in sys.argv[1:] if each != "--list"] or shipped()
     counted = count_words(wanted)
     if "--list" in sys.argv:
-        for place in (*counted.participles, *counted.openers):
+        files = [file for each in wanted for file in ([each] if each.is_file() else sorted(each.rglob("*.py")))]
+        turns = [place for file in files for place in turns_of_phrase(file)]
+        for place in (*counted.participles, *counted.openers, *turns):
             print(f"{place.path}:{place.line}: {place.text}")
     print(counted)

@@ -11,10 +11,10 @@ from pathlib import Path
 from time import perf_counter
 
 from tangible_bench.comparing import Step, compare
-from tangible_bench.config import parse_comparison
-from tangible_bench.machine import machine
-from tangible_bench.summary import Line
-from tangible_bench.task import load_task
+from tangible_bench.config.reading import parse_comparison
+from tangible_bench.measuring.machine import machine
+from tangible_bench.results.summary import Line
+from tangible_bench.tasks.task import load_task
 from tangible_core.metrics import measured
 from tangible_core.metrics.measured import Kinds, Measured
 from tangible_core.plugins.registry import default_registry

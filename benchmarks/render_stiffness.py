@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from tangible_bench.render import DELAYS, limits
+from tangible_bench.tasks.render import DELAYS, limits
 from tangible_core.metrics import HANDLE
 from tangible_core.plugins.interfaces import ForceRenderer
 from tangible_core.servo.guard.safety import stiffness_limit_n_per_m

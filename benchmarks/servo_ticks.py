@@ -20,8 +20,8 @@ from tangible_core.servo import Ring, Safety
 from tangible_core.servo.ring import PERIOD_NS
 from tangible_core.servo.ticks import cycle
 from tangible_core.servo.ticks.loop import sections
-from tangible_devices.falcon import framing, kinematics, packet, tick
 from tangible_devices.falcon.calibration import Calibration
+from tangible_devices.falcon.kernels import framing, kinematics, packet, tick
 
 from .figures import Figure
 

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 
-from tangible_bench.damage import noise
+from tangible_bench.tasks.damage import noise
 from tangible_core.metrics import segment_errors
 from tangible_core.plugins.registry import default_registry, load_method
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tangible_core.data import Views
 from tangible_core.metrics import segment_errors
-from tangible_core.scene.scaling import enlarged_segments, felt_factor, reduced
+from tangible_core.scene.scaling import enlarged_segments, felt_factor, reduce_views
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 
 from .figures import table
@@ -104,5 +104,5 @@ def _labels(label: str, scene: KnownSegments, **options: object) -> np.ndarray:
 
 def _felt(scene: KnownSegments, finest_m: float) -> np.ndarray:
     h, w = scene.labels.shape
-    small = reduced(Views(scene.picture), felt_factor(w, SURFACE_M, finest_m)).left
+    small = reduce_views(Views(scene.picture), felt_factor(w, SURFACE_M, finest_m)).left
     return enlarged_segments(found("gabor", small, scene.count), (h, w)).labels

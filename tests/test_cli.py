@@ -56,7 +56,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_run_makes_everything_and_says_so(folder: Path):
+def test_run_of_a_pair_makes_every_product_and_reports_it(folder: Path):
     words = [TANGIBLE, "run", "p.yaml", "--seconds", "1"]
     done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=240)
     assert done.returncode == 0, done.stderr
@@ -72,7 +72,7 @@ def test_run_makes_everything_and_says_so(folder: Path):
     assert outcomes["surface"] == outcomes["disparity"] == "cached"
 
 
-def test_json_is_all_that_is_on_standard_output(folder: Path):
+def test_run_with_json_prints_json_alone(folder: Path):
     done = tangible("run", "p.yaml", "--seconds", 1, "--json", "--no-cache", cwd=folder)
     document = json.loads(done.stdout)
     assert document["figures"]["disparity"]["bad2"] < 40
@@ -86,7 +86,7 @@ def test_plan_runs_nothing(folder: Path):
     assert not (folder / "out").exists()
 
 
-def test_plan_says_what_run_will_refuse_and_run_leaves_nothing(folder: Path):
+def test_plan_of_a_scene_that_cannot_run_reports_the_refusal(folder: Path):
     one = ("p.yaml", "--set", "scene={photo: left.png}", "--set", "depth={use: semi-global}")
     said = mistake("plan", *one, cwd=folder)
     assert said.startswith("this cannot be run: depth method semi-global needs two views, and the scene ")
@@ -106,7 +106,7 @@ def test_feel_records_every_tick(folder: Path):
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_feel_asks_first_where_hardly_anything_matched(folder: Path, monkeypatch: pytest.MonkeyPatch):
+def test_feel_with_hardly_any_matches_asks_first(folder: Path, monkeypatch: pytest.MonkeyPatch):
     from pictures import write_png
 
     write_png(folder / "right.png", np.random.default_rng(9).integers(0, 255, (64, 96), dtype=np.uint8))
@@ -148,7 +148,7 @@ def test_materials_shows_values_and_sources():
     assert ice["source"]
 
 
-def test_one_material_is_shown_with_units_and_sources():
+def test_materials_show_prints_units_and_sources():
     done = tangible("materials", "show", "sand", cwd=Path())
     assert done.returncode == 0, done.stderr
     for word in ("stiffness_n_per_m", "N/m", "HaTT, sandpaper, 140 Hz", "guess", "stochastic: noise", "140 Hz"):
@@ -159,7 +159,7 @@ def test_one_material_is_shown_with_units_and_sources():
     assert json.loads(tangible("materials", "show", "ice", "--json", cwd=Path()).stdout)["vibration_hz"] is None
 
 
-def test_materials_are_drawn_a_picture_each(tmp_path: Path):
+def test_materials_draw_writes_a_picture_for_each(tmp_path: Path):
     (tmp_path / "mine.yaml").write_text("ice: {stiffness_n_per_m: 1000}\n")
     words = ("draw", "ice", "rubber", "--out", "made/here", "--library", "mine.yaml", "--json")
     done = tangible("materials", *words, cwd=tmp_path)
@@ -183,7 +183,7 @@ def test_materials_are_drawn_a_picture_each(tmp_path: Path):
         (("draw", "ice", "--out", "bad.yaml/x"), "cannot be written"),
     ],
 )
-def test_mistakes_with_materials(words: tuple[str, ...], said: str, tmp_path: Path):
+def test_materials_with_a_mistake_reports_it(words: tuple[str, ...], said: str, tmp_path: Path):
     (tmp_path / "bad.yaml").write_text("ice: {grain_mm: 1}\n")
     assert said in mistake("materials", *words, cwd=tmp_path)
     assert not list(tmp_path.glob("**/*.png"))
@@ -197,7 +197,7 @@ def test_schema_prints_json_and_a_page():
     assert "`stiffness_n_per_m`" in page
 
 
-def test_log_levels_can_be_set_by_name(folder: Path):
+def test_log_level_of_one_logger_is_set_by_name(folder: Path):
     word = "tangible_core.plugins.observers.log"
     quiet = tangible("plan", "p.yaml", cwd=folder).stderr
     told = tangible("plan", "p.yaml", "--log-level", f"{word}=info", cwd=folder).stderr
@@ -206,7 +206,7 @@ def test_log_levels_can_be_set_by_name(folder: Path):
     assert "no level is named 'loud'" in mistake("plan", "p.yaml", "--log-level", "loud", cwd=folder)
 
 
-def test_a_check_that_the_law_itself_declares_to_fail_is_told_and_no_failure(monkeypatch: pytest.MonkeyPatch):
+def test_check_of_a_declared_failure_reports_it_and_succeeds(monkeypatch: pytest.MonkeyPatch):
     from tangible_render import Penalty
 
     done = tangible("check", "render", "penalty", cwd=Path())
@@ -220,7 +220,7 @@ def test_a_check_that_the_law_itself_declares_to_fail_is_told_and_no_failure(mon
     assert {each["name"]: each["passed"] for each in odd} == {"springs_are_exact": False, "pickle_is_small": True}
 
 
-def test_a_check_that_fails_ends_with_1(folder: Path):
+def test_check_that_fails_exits_with_1(folder: Path):
     assert tangible("check", "device", "mock", cwd=folder).returncode == 0
     assert "unknown" in mistake("check", "depht", "x", cwd=folder) or "did you mean" in mistake(
         "check", "depht", "x", cwd=folder
@@ -249,7 +249,7 @@ def test_a_check_that_fails_ends_with_1(folder: Path):
         ),
     ],
 )
-def test_a_mistake_costs_one_clear_line(folder: Path, change: str, said: str):
+def test_pipeline_file_with_a_mistake_gives_one_clear_line(folder: Path, change: str, said: str):
     from pictures import write_png
 
     (folder / "cut.png").write_bytes((folder / "left.png").read_bytes()[:2000])
@@ -260,7 +260,7 @@ def test_a_mistake_costs_one_clear_line(folder: Path, change: str, said: str):
     assert len(message.splitlines()) == 1, message
 
 
-def test_a_one_pixel_picture_is_felt(folder: Path):
+def test_picture_of_one_pixel_is_felt(folder: Path):
     from pictures import write_png
 
     write_png(folder / "dot.png", np.zeros((1, 1), np.uint8))
@@ -269,7 +269,7 @@ def test_a_one_pixel_picture_is_felt(folder: Path):
     assert done.returncode == 0, done.stderr
 
 
-def test_a_folder_that_cannot_be_written_stops_before_the_work(folder: Path):
+def test_output_folder_that_cannot_be_written_stops_the_run_at_once(folder: Path):
     (folder / "file").write_text("")
     message = mistake("run", "p.yaml", "--out", "file/out", cwd=folder)
     assert "cannot be written" in message
@@ -280,17 +280,17 @@ def test_a_folder_that_cannot_be_written_stops_before_the_work(folder: Path):
 @pytest.mark.parametrize(
     "words", [("feel",), ("feel", "x.yaml", "--secondss", "3"), ("nope",), ("feel", "x.yaml", "--seconds", "x")]
 )
-def test_a_wrong_call_is_the_users_mistake(folder: Path, words: tuple[str, ...]):
+def test_command_line_with_a_mistake_exits_with_2(folder: Path, words: tuple[str, ...]):
     mistake(*words, cwd=folder)
 
 
 @pytest.mark.parametrize("seconds", ["0", "-1", "nan", "-inf"])
-def test_a_time_that_is_none(folder: Path, seconds: str):
+def test_seconds_without_a_meaning_exit_with_2(folder: Path, seconds: str):
     assert "seconds" in mistake("feel", "p.yaml", "--seconds", seconds, cwd=folder)
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_what_was_recorded_is_replayed_through_any_law(folder: Path):
+def test_recording_is_replayed_through_any_force_law(folder: Path):
     felt = ("feel", "p.yaml", "--set", "safety.ramp_s=0", "--seconds", 1, "--record", "hand.nc")
     assert tangible(*felt, cwd=folder).returncode == 0
     same = tangible("replay", "hand.nc", "p.yaml", cwd=folder)
@@ -309,7 +309,7 @@ def test_what_was_recorded_is_replayed_through_any_law(folder: Path):
     assert played.returncode == 0, played.stderr
 
 
-def test_recordings_that_are_not_there_or_were_cut_off(folder: Path):
+def test_recording_missing_or_cut_off_is_reported(folder: Path):
     from tangible_core.session import Recording
 
     assert "cannot be read" in mistake("replay", "none.nc", "p.yaml", cwd=folder)
@@ -320,7 +320,7 @@ def test_recordings_that_are_not_there_or_were_cut_off(folder: Path):
     assert "the recording ended early: the cable is out" in done.stderr
 
 
-def test_a_killed_recording_is_readable(folder: Path):
+def test_recording_of_a_killed_session_is_readable(folder: Path):
     from tangible_core.session import Recording
 
     words = [TANGIBLE, "feel", "p.yaml", "--seconds", "6000", "--record", "hand.nc", "--json"]
@@ -340,7 +340,7 @@ def test_a_killed_recording_is_readable(folder: Path):
     assert "max_disparity_px: 16" in recording.about.configuration
 
 
-def test_ctrl_c_ends_with_130_and_nothing_half_written(folder: Path):
+def test_ctrl_c_exits_with_130_and_leaves_no_half_written_file(folder: Path):
     words = [*HEARING, TANGIBLE, "feel", "p.yaml", "--seconds", "600", "--record", "hand.npz", "--json"]
     process = subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     growing = folder / "hand.npz.nc"
@@ -360,7 +360,9 @@ def test_ctrl_c_ends_with_130_and_nothing_half_written(folder: Path):
     assert not [path for path in folder.iterdir() if path.name.startswith(".")]
 
 
-def test_ctrl_c_while_a_run_feels_ends_with_130_and_says_what_is_kept(folder: Path, monkeypatch: pytest.MonkeyPatch):
+def test_ctrl_c_while_a_run_feels_exits_with_130_and_reports_what_is_kept(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+):
     from tangible_core.pipeline.output import runs
     from tangible_core.session import INTERRUPTED, Recording, run_simulated
 
@@ -381,7 +383,7 @@ def test_ctrl_c_while_a_run_feels_ends_with_130_and_says_what_is_kept(folder: Pa
     assert (folder / "out/p/sheet.png").exists()
 
 
-def test_a_reader_that_goes_away_is_no_error(folder: Path):
+def test_output_to_a_closed_pipe_is_not_an_error(folder: Path):
     done = subprocess.run(
         f"{TANGIBLE} schema --markdown | head -1", shell=True, cwd=folder, capture_output=True, text=True
     )
@@ -390,12 +392,12 @@ def test_a_reader_that_goes_away_is_no_error(folder: Path):
 
 
 @pytest.mark.parametrize("words", ["--help", "run --help", "plugins"])
-def test_nobody_reads_at_all(folder: Path, words: str):
+def test_output_without_a_reader_is_not_an_error(folder: Path, words: str):
     done = subprocess.run(f"{TANGIBLE} {words} | head -c 0", shell=True, cwd=folder, capture_output=True, text=True)
     assert done.stderr == ""
 
 
-def test_what_stands_in_brackets_is_shown(capsys: pytest.CaptureFixture[str]):
+def test_text_in_brackets_is_printed_as_it_is(capsys: pytest.CaptureFixture[str]):
     """Rich takes [word] for a mark: an outcome's reason may be a list of options, or a path."""
     show.outcomes([Outcome("surface", "ran", "made from [seen/2]", "core")])
     show.plain("out[1]/sheet.png")
@@ -447,7 +449,7 @@ class Faulty(ForceRenderer):
         ("feel", "render={use: faulty, fault: odd}", "Odd: a fault in the law"),
     ],
 )
-def test_a_plugin_neither_ends_the_program_nor_hangs_it(folder: Path, command: str, change: str, said: str):
+def test_plugin_that_exits_or_hangs_does_not_end_the_program(folder: Path, command: str, change: str, said: str):
     points = {"tangible.depth": {"quits": "acme:Quits"}, "tangible.render": {"faulty": "acme:Faulty"}}
     site = distribution(folder / "site", "acme", points, acme=ACME)
     words = [TANGIBLE, command, "p.yaml", "--set", change, "--seconds", "600", "--no-cache"]

@@ -20,14 +20,14 @@ HOUSES = {path.name: path for path in [ROOT / "tangible_core", *sorted(ROOT.glob
 
 
 @pytest.mark.parametrize("house", HOUSES)
-def test_the_architecture_page_names_every_room(house):
+def test_architecture_page_names_every_room(house):
     page = ROOT.joinpath("docs/architecture.md").read_text(encoding="utf-8")
     [part] = re.findall(rf"^### {house}\n(.*?)(?=^##|\Z)", page, re.DOTALL | re.MULTILINE)
     rooms = {path.parent.relative_to(HOUSES[house]).as_posix() for path in HOUSES[house].rglob("*/__init__.py")}
     assert set(re.findall(r"^\| `(.+)/` \| \S", part, re.MULTILINE)) == rooms
 
 
-def test_the_architecture_page_draws_the_floors_as_they_are():
+def test_architecture_page_draws_the_floors_as_they_are():
     page = ROOT.joinpath("docs/architecture.md").read_text(encoding="utf-8")
     contracts = tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]["contracts"]
     floors = [contract["layers"] for contract in contracts if contract["type"] == "layers"]
@@ -44,7 +44,7 @@ def test_links_lead_somewhere(page):
 @pytest.mark.parametrize(
     "name", ["acme_tangible/blocks.py", "acme_tangible/diary.py", "tests/test_acme.py", "blocks.yaml"]
 )
-def test_the_plugin_page_shows_the_example_as_it_is(name):
+def test_plugin_page_shows_the_example_as_it_is(name):
     shown = PLUGIN_PAGE.read_text(encoding="utf-8")
     assert ROOT.joinpath("examples/third_party", name).read_text(encoding="utf-8").strip() in shown
 
@@ -65,17 +65,17 @@ def test_the_plugin_page_shows_the_example_as_it_is(name):
         ("write-an-exporter.md", "exporter/tests/test_acme_contours.py"),
     ],
 )
-def test_the_pages_on_single_kinds_show_their_examples_as_they_are(page, name):
+def test_pages_on_single_kinds_show_their_examples_as_they_are(page, name):
     shown = ROOT.joinpath("docs", page).read_text(encoding="utf-8")
     assert ROOT.joinpath("examples", name).read_text(encoding="utf-8").strip() in shown
 
 
 @pytest.mark.parametrize("moment", sorted(name for name in vars(hooks.Specs) if name.startswith("tangible_")))
-def test_the_plugin_page_names_every_moment(moment):
+def test_plugin_page_names_every_hook(moment):
     assert f"`{moment}(" in PLUGIN_PAGE.read_text(encoding="utf-8")
 
 
-def test_the_page_on_materials_shows_what_the_program_takes(tmp_path: Path):
+def test_materials_page_shows_valid_files(tmp_path: Path):
     from tangible_core.pipeline.config.parsing import parse_config
     from tangible_core.plugins.registry import default_registry
 
@@ -87,7 +87,7 @@ def test_the_page_on_materials_shows_what_the_program_takes(tmp_path: Path):
         parse_config(f"scene: builtin/brick\n{text}", tmp_path / "p.yaml", default_registry())
 
 
-def test_the_page_on_handing_on_shows_what_the_program_takes(tmp_path: Path):
+def test_export_page_shows_valid_files(tmp_path: Path):
     from tangible_core.pipeline.config.parsing import parse_config
     from tangible_core.plugins.registry import default_registry
 
@@ -98,7 +98,7 @@ def test_the_page_on_handing_on_shows_what_the_program_takes(tmp_path: Path):
         parse_config(scene + text, tmp_path / "p.yaml", default_registry())
 
 
-def test_the_page_on_recordings_reads_and_writes_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_recordings_page_reads_and_writes_recordings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     blocks = re.findall(r"```python\n(.*?)```", ROOT.joinpath("docs/recordings.md").read_text("utf-8"), re.DOTALL)
     write, *read = sorted(blocks, key=lambda block: "Writer" not in block)
     monkeypatch.chdir(tmp_path)
@@ -109,12 +109,12 @@ def test_the_page_on_recordings_reads_and_writes_them(tmp_path: Path, monkeypatc
         exec(block, {})
 
 
-def test_the_page_on_recordings_names_every_column():
+def test_recordings_page_names_every_column():
     page = ROOT.joinpath("docs/recordings.md").read_text("utf-8")
     assert all(f"`{name}`" in page for name in TICK_COLUMNS)
 
 
-def test_the_page_on_the_force_loop_feels(capsys: pytest.CaptureFixture[str]):
+def test_force_loop_page_runs_as_shown(capsys: pytest.CaptureFixture[str]):
     page = ROOT.joinpath("docs/servo.md").read_text("utf-8")
     pulled, shown, felt = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     exec(pulled, {})
@@ -126,7 +126,7 @@ def test_the_page_on_the_force_loop_feels(capsys: pytest.CaptureFixture[str]):
     assert capsys.readouterr().out.startswith("200 ")
 
 
-def test_the_page_on_devices_shows_what_the_program_takes():
+def test_devices_page_shows_valid_files():
     from tangible_core.pipeline.config.parsing import parse_config
     from tangible_core.plugins.registry import default_registry
 
@@ -141,7 +141,7 @@ def test_the_page_on_devices_shows_what_the_program_takes():
 
 
 @pytest.mark.slow
-def test_the_page_on_videos_plays_them(tmp_path: Path):
+def test_video_page_plays_its_examples(tmp_path: Path):
     import cv2
     import numpy as np
 

@@ -27,7 +27,7 @@ def build(pages: Path, site: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
-def test_the_site_is_built_and_needs_nothing_from_elsewhere(tmp_path: Path):
+def test_docs_site_builds_and_loads_nothing_from_elsewhere(tmp_path: Path):
     built = build(DOCS, tmp_path)
     assert built.returncode == 0, built.stderr
     page = tmp_path.joinpath("html/reference/methods.html").read_text("utf-8")
@@ -37,7 +37,7 @@ def test_the_site_is_built_and_needs_nothing_from_elsewhere(tmp_path: Path):
     assert not [word for word in fetched for page in pages if word in page]
 
 
-def test_what_leads_nowhere_fails_the_build(tmp_path: Path):
+def test_docs_site_with_a_dead_link_fails_to_build(tmp_path: Path):
     pages = tmp_path / "docs"
     pages.mkdir()
     pages.joinpath("conf.py").write_text(DOCS.joinpath("conf.py").read_text("utf-8"))
@@ -56,7 +56,7 @@ def entry_points(kind: str) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("kind", KIND_NAMES)
-def test_the_reference_has_every_method(kind):
+def test_reference_has_every_method(kind):
     page = DOCS.joinpath("reference/methods.md").read_text("utf-8").splitlines()
     classes = [place.replace(":", ".") for place in entry_points(f"tangible.{kind}").values()]
     assert not [name for name in classes if f".. autoclass:: {name}" not in page]

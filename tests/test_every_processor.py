@@ -102,7 +102,7 @@ def test_results_are_the_same_on_every_processor_and_with_any_number_of_threads(
 
 
 @pytest.mark.parametrize("folder", ["tangible_core", "plugins"])
-def test_no_sum_is_left_to_a_compiler_or_a_blas(folder: str):
+def test_sums_are_not_left_to_a_compiler_or_a_blas(folder: str):
     complaints = [
         f"{path.relative_to(ROOT)}:{node.lineno}: {what}"
         for path in sorted(ROOT.joinpath(folder).rglob("*.py"))

@@ -52,13 +52,13 @@ def done(folder: Path, about: str) -> list[str]:
     return said
 
 
-def test_every_command_of_the_page_is_tried():
+def test_export_page_commands_are_all_tried():
     assert len(COMMANDS) == 6
     assert all(any(about in each for about in ("plate.yaml", "left", "hills.yaml")) for each in COMMANDS)
 
 
 @pytest.mark.slow
-def test_a_photograph_of_a_museum_is_legible_and_becomes_a_page_and_a_plate(tmp_path: Path, keep):
+def test_museum_photograph_becomes_a_legible_page_and_plate(tmp_path: Path, keep):
     astronaut = drawn("astronaut")
     write_png(tmp_path / "astronaut.png", astronaut.picture)
     (tmp_path / "parts.png").write_bytes(label_picture(astronaut.parts.labels))
@@ -72,7 +72,7 @@ def test_a_photograph_of_a_museum_is_legible_and_becomes_a_page_and_a_plate(tmp_
 
 
 @pytest.mark.slow
-def test_a_pair_becomes_a_plate(tmp_path: Path, keep):
+def test_pair_becomes_a_plate(tmp_path: Path, keep):
     views = Scene.builtin("motorcycle").views
     assert views is not None and views.right is not None
     write_png(tmp_path / "left.png", views.left)
@@ -84,7 +84,7 @@ def test_a_pair_becomes_a_plate(tmp_path: Path, keep):
 
 
 @pytest.mark.slow
-def test_a_map_of_heights_becomes_a_plate(tmp_path: Path, keep):
+def test_height_map_becomes_a_plate(tmp_path: Path, keep):
     Image.fromarray(hills(300, 400)).save(tmp_path / "hills.tif")
     (tmp_path / "hills.yaml").write_text(MAP)
     done(tmp_path, "hills.yaml")

@@ -60,13 +60,13 @@ pytestmark = pytest.mark.timeout(120)
 
 @pytest.mark.parametrize("name", ["aliases", "keys of keys"])
 @pytest.mark.parametrize("words", [("plan",), ("run",), ("compare",), ("materials", "show", "ice", "--library")])
-def test_yaml_by_every_command_that_reads_it(refused, folder: Path, name: str, words: tuple[str, ...]):
+def test_hostile_yaml_is_refused_by_every_command(refused, folder: Path, name: str, words: tuple[str, ...]):
     (folder / "bomb.yaml").write_text(YAML_BOMBS[name])
     assert refused(*words, "bomb.yaml").startswith("bomb.yaml")
 
 
 @pytest.mark.parametrize("name", ["a number of 5000 digits", "a date that is none", "a text without end"])
-def test_yaml_that_ended_in_a_traceback_or_a_screen_of_text(refused, folder: Path, name: str):
+def test_hostile_yaml_is_refused_in_one_line(refused, folder: Path, name: str):
     (folder / "bomb.yaml").write_text(YAML_BOMBS[name])
     assert refused("plan", "bomb.yaml").startswith("bomb.yaml:")
 
@@ -83,11 +83,11 @@ def test_yaml_that_ended_in_a_traceback_or_a_screen_of_text(refused, folder: Pat
         ("sce\x1b[31mne=1\n2", "unknown key"),
     ],
 )
-def test_an_override(refused, folder: Path, text: str, said: str):
+def test_hostile_override_is_refused(refused, folder: Path, text: str, said: str):
     assert said in refused("plan", "p.yaml", "--set", text)
 
 
-def test_maps_and_pictures(refused, folder: Path):
+def test_hostile_maps_and_pictures_are_refused(refused, folder: Path):
     npz_bomb(folder / "a.npz", a=(20_000, 20_000))
     tiff(folder / "b.tif", SIDE, SIDE)
     tiff(folder / "c.tif", SIDE, SIDE, bits=16, samples=3, sample_format=1)
@@ -100,7 +100,7 @@ def test_maps_and_pictures(refused, folder: Path):
     assert "89 mega" in refused("run", "p.yaml", "--set", "scene={photo: b.tif}")
 
 
-def test_recordings(refused, folder: Path):
+def test_hostile_recordings_are_refused(refused, folder: Path):
     npz_bomb(folder / "a.npz", time_s=(60_000_000,), position_m=(60_000_000, 3))
     npz(folder / "b.npz", zipfile.ZIP_LZMA, time_s=npy_header((1,)) + bytes(8))
     (folder / "c.csv").write_text(TICKS + "x" * 1_000_000 + ",0" * 10 + "\n")
@@ -111,7 +111,7 @@ def test_recordings(refused, folder: Path):
         assert refused("replay", name, "p.yaml").startswith(f"{name}: ")
 
 
-def test_results(refused, folder: Path):
+def test_hostile_results_are_refused(refused, folder: Path):
     (folder / "a.jsonl").write_text("[" * 100_000 + "]" * 100_000 + "\n")
     (folder / "b.jsonl").write_text('{"key": ' + "9" * 5000 + "}\n")
     (folder / "zero.jsonl").symlink_to("/dev/zero")
@@ -121,12 +121,12 @@ def test_results(refused, folder: Path):
 
 
 @pytest.mark.parametrize("words", [("plan",), ("compare",), ("materials", "--library")])
-def test_what_is_no_file(refused, folder: Path, words: tuple[str, ...]):
+def test_path_that_is_not_a_file_is_refused(refused, folder: Path, words: tuple[str, ...]):
     os.mkfifo(folder / "pipe.yaml")
     (folder / "zero.yaml").symlink_to("/dev/zero")
     for name in ("pipe.yaml", "zero.yaml"):
         assert "not a file but a folder or a device" in refused(*words, name)
 
 
-def test_a_name_that_a_terminal_would_obey(refused, folder: Path):
+def test_file_name_with_control_characters_is_printed_escaped(refused, folder: Path):
     assert refused("plan", "a\n\x1b[31mb.yaml").startswith(r"a\n\x1b[31mb.yaml: there is no such file")

@@ -52,7 +52,7 @@ def run(*words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, *words], cwd=ROOT, capture_output=True, text=True, check=False)
 
 
-def test_a_file_imports_only_from_the_floors_below():
+def test_files_import_only_from_the_floors_below():
     ran = run(
         "-c", "from importlinter.cli import lint_imports; raise SystemExit(lint_imports(no_cache=True, no_logo=True))"
     )
@@ -60,7 +60,7 @@ def test_a_file_imports_only_from_the_floors_below():
 
 
 @pytest.mark.parametrize("words", [None, [], ["--help"], ["plugins"], ["plugins", "--json"], ["run", "--help"]])
-def test_listing_is_light(words):
+def test_listing_imports_nothing_heavy(words):
     """None of what is heavy is imported, and no method's module either."""
     call = "" if words is None else f"sys.argv[1:] = {words}; from tangible_core.cli import main; main()"
     code = f"import atexit, sys, tangible_core; atexit.register(lambda: print(*sys.modules, file=sys.stderr)); {call}"
@@ -88,13 +88,13 @@ def test_folders_of_tests_mirror_rooms(tests: str, house: Path):
         assert {Path(path.stem.removeprefix("test_")) for path in folder.glob("test_*.py")} <= rooms
 
 
-def test_every_test_is_in_a_house_of_its_own():
+def test_tests_lie_in_the_folder_of_their_house():
     there = {path.relative_to(ROOT / "tests").parts[0] for path in ROOT.joinpath("tests").rglob("test_*.py")}
     assert {name for name in there if not name.endswith(".py")} == {"benchmarks", "core", "plugins", "ui"}
     assert not list(ROOT.joinpath("tests/plugins").glob("test_*.py"))
 
 
-def test_every_call_is_checked_while_tests_run():
+def test_calls_of_every_module_are_checked():
     """But for modules that say why not; `find_spec` asks who would load one, and loads none."""
     houses = {
         each.rpartition("/")[2]: ROOT / each
@@ -106,7 +106,7 @@ def test_every_call_is_checked_while_tests_run():
     assert {name for name in names if not isinstance(find_spec(name).loader, CheckingLoader)} == UNCHECKED.keys()
 
 
-def test_a_wrong_call_is_noticed_in_a_family_and_beside_kernels():
+def test_call_with_a_wrong_type_raises():
     """By a copy, of which nothing was called before: first calls alone are checked."""
     spec = find_spec("tangible_texture.regions.basins")
     copy = module_from_spec(spec)
@@ -117,7 +117,7 @@ def test_a_wrong_call_is_noticed_in_a_family_and_beside_kernels():
         copy.basins(np.zeros((2, 2), np.float32), [0.0], "one")
 
 
-def test_nobody_is_told_to_delete_what_was_compiled():
+def test_texts_never_advise_to_delete_compiled_kernels():
     """What a compiled kernel depends on is known: tangible_core/provenance."""
     texts = [*ROOT.glob("*.md"), *ROOT.joinpath("docs").rglob("*.md")]
     texts += [path for each in (ROOT / "tangible_core", ROOT / "plugins") for path in each.rglob("*.py")]
@@ -125,14 +125,14 @@ def test_nobody_is_told_to_delete_what_was_compiled():
 
 
 @pytest.mark.parametrize("moment", MOMENTS)
-def test_every_hook_is_documented_and_tested(moment):
+def test_hooks_are_documented_and_tested(moment):
     assert len(getattr(hooks.Specs, moment).__doc__ or "") > 20
     tests = [path for path in ROOT.joinpath("tests").rglob("test_*.py") if path != Path(__file__)]
     assert any(moment in path.read_text() for path in tests), f"no test names {moment}"
 
 
 @pytest.mark.parametrize("moment", MOMENTS)
-def test_every_hook_is_called_somewhere(moment):
+def test_hooks_are_called_somewhere(moment):
     houses = [ROOT.joinpath("tangible_core"), REPORT]
     rooms = [path for house in houses for path in house.rglob("*.py") if "observers" not in path.parts]
     assert any(f'"{moment}"' in path.read_text() for path in rooms), f"nothing in the core or the report calls {moment}"
@@ -170,24 +170,24 @@ def registered():
     return {(kind, target) for kind in KIND_NAMES for target in groups.get(f"tangible.{kind}", {}).values()}
 
 
-def test_every_concrete_method_is_registered():
+def test_concrete_methods_are_registered():
     assert sorted(concrete_methods()) == sorted(registered())
 
 
-def test_every_method_lives_in_its_family():
+def test_methods_live_in_their_family():
     for kind, target in registered():
         homes = (PACKAGES[kind], REPORT) if kind == "export" else (PACKAGES[kind],)
         assert target.partition(".")[0] in {each.name for each in homes}, f"{target} is registered as {kind}"
 
 
-def test_every_method_is_in_the_file_named_after_it():
+def test_methods_are_in_the_file_named_after_them():
     for _, target in registered():
         module, _, cls = target.partition(":")
         assert module.rpartition(".")[2].replace("_", "") == cls.lower(), target
 
 
 @pytest.mark.parametrize("kind", KIND_NAMES)
-def test_a_method_is_final_and_inherits_from_interfaces_alone(kind):
+def test_methods_are_final_and_inherit_from_interfaces_alone(kind):
     """From interfaces of the core, or from an abstract class of its family that inherits from these."""
     capabilities = {Drawing, Skippable, Serviceable, Adjustable, Attended, Scripted, Reshaping, Following, Filming}
     for each in default_registry().listings:
@@ -198,12 +198,12 @@ def test_a_method_is_final_and_inherits_from_interfaces_alone(kind):
             assert interfaces <= {KINDS[kind], *capabilities}, each.target
 
 
-def test_what_is_installed_is_what_the_project_says():
+def test_installed_methods_are_those_of_the_project():
     ours = {(each.kind, each.target) for each in default_registry().listings if each.distribution == "tangible-images"}
     assert ours == registered()
 
 
-def test_every_fixed_name_resolves():
+def test_fixed_names_resolve():
     for name in tangible_core.__all__:
         value = getattr(tangible_core, name)
         assert name in (getattr(value, "__name__", ""), "hookimpl")
@@ -223,12 +223,12 @@ def test_type_checkers_see_the_same_names_as_programs(package):
 
 
 @pytest.mark.parametrize("kind", ["depth", "texture", "render", "device"])
-def test_every_method_is_exported_by_its_family(kind):
+def test_methods_are_exported_by_their_family(kind):
     targets = PROJECT["project"]["entry-points"][f"tangible.{kind}"].values()
     assert all(getattr(import_module(each.split(".")[0]), each.split(":")[1]) for each in targets)
 
 
-def test_the_schema_in_configs_is_current():
+def test_schema_in_configs_is_current():
     from tangible_core.pipeline.config.schema import json_schema
 
     assert ROOT.joinpath("configs/tangible.schema.json").read_text() == json.dumps(json_schema(), indent=2) + "\n", (
@@ -237,13 +237,13 @@ def test_the_schema_in_configs_is_current():
 
 
 @pytest.mark.parametrize("package", ["tangible_core", *(path.name for path in PACKAGES.values())])
-def test_every_package_is_typed_and_documented(package):
+def test_packages_are_typed_and_documented(package):
     module = import_module(package)
     assert module.__doc__
     assert Path(module.__file__).with_name("py.typed").exists()
 
 
-def test_every_dependency_has_its_reason():
+def test_dependencies_have_their_reasons():
     reasons = ROOT.joinpath("docs/decisions/0002-dependencies.md").read_text()
     for dependency in PROJECT["project"]["dependencies"]:
         name = re.split(r"[^\w.-]", dependency)[0]
@@ -251,7 +251,8 @@ def test_every_dependency_has_its_reason():
 
 
 @pytest.mark.parametrize(
-    "house", ["plugins/authoring", "plugins/depth", "plugins/export", "plugins/render", "plugins/texture"]
+    "house",
+    ["plugins/authoring", "plugins/depth", "plugins/devices", "plugins/export", "plugins/render", "plugins/texture"],
 )
 def test_docstrings_open_with_a_verb_or_a_noun(house):
     """The rest of the house follows; `python -m benchmarks.house_words --list` names what is left."""

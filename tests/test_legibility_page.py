@@ -44,7 +44,7 @@ def coloured(parts: PartMap, by: tuple[int, ...]) -> np.ndarray:
 
 
 @pytest.mark.slow
-def test_the_colours_of_a_cup_become_parts_that_pass(keep):
+def test_colours_of_a_cup_become_legible_parts(keep):
     picture = drawn("coffee").picture
     parts = by_colour(picture)
     found = simplify(parts, WIDTH_M, SimplifyChoice(), (), picture)
@@ -55,7 +55,7 @@ def test_the_colours_of_a_cup_become_parts_that_pass(keep):
     keep("coffee", picture, coloured(parts, parts.segments), coloured(found, found.segments))
 
 
-def test_parts_that_were_drawn_lose_what_is_too_thin(keep):
+def test_drawn_parts_lose_what_is_too_thin(keep):
     motorcycle = drawn("motorcycle")
     numbers = tuple(range(motorcycle.parts.count))
     with collected() as notes:

@@ -39,7 +39,7 @@ def keep(tmp_path: Path) -> Callable[[str, Image.Image], None]:
 
 
 @pytest.mark.slow
-def test_a_photograph_becomes_a_relief_of_named_parts(
+def test_photograph_becomes_a_relief_of_named_parts(
     tmp_path: Path, keep: Callable[[str, Image.Image], None], monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setenv("COLUMNS", "110")

@@ -63,7 +63,7 @@ def environment(tmp_path_factory: pytest.TempPathFactory) -> Environment:
     return environment
 
 
-def test_it_is_listed_beside_ours(environment, tmp_path):
+def test_third_party_plugin_is_listed(environment, tmp_path):
     ran = environment.run("plugins", "--json", cwd=tmp_path)
     assert ran.returncode == 0, ran.stderr
     rows = {(row["kind"], row["name"]): row for row in json.loads(ran.stdout)}
@@ -73,20 +73,20 @@ def test_it_is_listed_beside_ours(environment, tmp_path):
     assert "acme-blocks" in environment.run("plugins", cwd=tmp_path).stdout
 
 
-def test_it_conforms(environment, tmp_path):
+def test_third_party_plugin_conforms(environment, tmp_path):
     ran = environment.run("check", "depth", "acme-blocks", cwd=tmp_path)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert "0 failed" in ran.stdout
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name)
-def test_its_own_tests_pass(environment, tmp_path, example):
+def test_third_party_tests_pass(environment, tmp_path, example):
     command = [environment.python, "-m", "pytest", "-q", "-p", "no:cacheprovider", example / "tests"]
     ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stdout + ran.stderr
 
 
-def test_a_law_and_a_device_work_together(environment, tmp_path):
+def test_third_party_force_law_and_device_work_together(environment, tmp_path):
     """The example's surface is felt with the example's law on the example's device."""
     law = ["--set", "render.use=acme-cushion-compiled"]
     ran = environment.run("feel", DEVICE / "handle.yaml", *law, "--seconds", "0.5", cwd=tmp_path)
@@ -96,7 +96,7 @@ def test_a_law_and_a_device_work_together(environment, tmp_path):
     assert float(figures["peak_force_n"]) > 0
 
 
-def test_a_pipeline_is_exported_with_it(environment, tmp_path):
+def test_third_party_exporter_exports_a_pipeline(environment, tmp_path):
     tmp_path.joinpath("map.yaml").write_text("scene: {height: map.npy}\nexport: [acme-contours]\n")
     np.save(tmp_path / "map.npy", np.hypot(*np.indices((12, 20))))
     ran = environment.run("export", "map.yaml", "--out", "out", cwd=tmp_path)
@@ -104,7 +104,7 @@ def test_a_pipeline_is_exported_with_it(environment, tmp_path):
     assert 'width="80.000mm" height="48.000mm"' in tmp_path.joinpath("out/map.svg").read_text()
 
 
-def test_a_pipeline_uses_it_and_its_observer_hears(environment, tmp_path):
+def test_third_party_method_and_observer_take_part_in_a_pipeline(environment, tmp_path):
     diary = tmp_path / "diary.txt"
     ran = environment.run("run", EXAMPLE / "blocks.yaml", "--out", "out", cwd=tmp_path, ACME_DIARY=str(diary))
     assert ran.returncode == 0, ran.stdout + ran.stderr
@@ -113,7 +113,7 @@ def test_a_pipeline_uses_it_and_its_observer_hears(environment, tmp_path):
     assert heard["surface"].startswith("ran")
 
 
-def test_a_misspelt_option_of_its_has_a_place_and_a_hint(environment, tmp_path):
+def test_third_party_option_misspelt_is_reported_with_place_and_hint(environment, tmp_path):
     tmp_path.joinpath("wrong.yaml").write_text(
         "scene: builtin/motorcycle\nwant: surface\ndepth: {use: acme-blocks, windw_px: 9}\n"
     )
@@ -124,7 +124,7 @@ def test_a_misspelt_option_of_its_has_a_place_and_a_hint(environment, tmp_path):
     assert "Traceback" not in ran.stderr
 
 
-def test_a_broken_plugin_beside_it_harms_nobody(environment, tmp_path):
+def test_broken_plugin_leaves_the_others_working(environment, tmp_path):
     """Installed as a folder of its own on the path: it cannot be imported, its hooks neither."""
     methods = {"broken": "broken:Method", "acme-blocks": "broken:Blocks"}
     points = {"tangible.depth": methods, "tangible.hooks": {"broken": "broken"}}
@@ -143,7 +143,7 @@ def test_a_broken_plugin_beside_it_harms_nobody(environment, tmp_path):
     assert environment.run("check", "depth", "acme-tangible/acme-blocks", cwd=tmp_path, **there).returncode == 0
 
 
-def test_the_example_is_short():
+def test_third_party_example_is_short():
     for example, most in zip(EXAMPLES, (60, 150, 180, 90), strict=True):
         lines = [line for path in example.rglob("*.py") for line in path.read_text().splitlines()]
         assert len(lines) < most

@@ -21,7 +21,7 @@ def maker() -> ModuleType:
     return module
 
 
-def test_the_notebook_is_that_of_the_script(maker: ModuleType):
+def test_notebook_is_that_of_the_script(maker: ModuleType):
     script = (EXAMPLES / "tour.py").read_text(encoding="utf-8")
     assert (EXAMPLES / "tour.ipynb").read_text(encoding="utf-8") == maker.notebook(script), (
         "run: python examples/notebook.py"
@@ -40,7 +40,7 @@ def run_cell(module: ModuleType, number: int, text: str) -> object:
     return eval(compile(ast.Expression(last.value), name, "eval"), vars(module))
 
 
-def test_it_runs_and_shows_what_it_makes(maker: ModuleType, monkeypatch: pytest.MonkeyPatch):
+def test_notebook_runs_and_shows_its_products(maker: ModuleType, monkeypatch: pytest.MonkeyPatch):
     from matplotlib import pyplot
 
     module = ModuleType("tour")

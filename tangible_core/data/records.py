@@ -33,7 +33,7 @@ class Record:
     def _repr_html_(self) -> str:
         """Return a small picture with units, for a notebook."""
         home = __name__.partition(".")[0]
-        return import_module(f"{home}.pipeline.output.notebook").as_html(self)  # the drawing lies on a higher floor
+        return import_module(f"{home}.pipeline.output.showing").as_html(self)  # the drawing lies on a higher floor
 
     def digest(self) -> str:
         """Return the XXH3-128 of the content: the same in every process, and equal for equal content."""

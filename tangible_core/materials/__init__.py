@@ -1,1 +1,1 @@
-"""Materials: their library, and which segment gets which."""
+"""The library of materials, and the assignment of materials to segments."""

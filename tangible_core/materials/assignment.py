@@ -1,7 +1,7 @@
-"""The library of materials, and which segment gets which.
+"""The library of materials, and the assignment of materials to segments.
 
-A photograph does not tell how things feel (over 100 photographed surfaces, what a picture predicts of friction and
-vibration explains next to nothing: R^2 is 0.07 and -0.06). So materials are assigned by name, by rules that a person
+A photograph does not show how things feel (over 100 photographed surfaces, friction and vibration predicted from the
+picture explain next to nothing: R^2 is 0.07 and -0.06). So materials are assigned by name, by rules that a person
 writes, or by relative roughness, which is a convention: rougher to the eye becomes rougher to the hand.
 """
 
@@ -22,30 +22,30 @@ from .files import parse_materials, read_materials
 from .rules import Choice, MaterialRule, apply_rules, noun_of, parts_of
 
 NEUTRAL = "plain"
-"""The material of segments that no material is named for."""
+"""Material of segments for which none is named."""
 
 LADDER = ("ice", "metal", "paper", "leather", "wood", "cloth", "sand", "stone", "brick")
-"""From smooth to rough: what assigning by roughness chooses from."""
+"""Materials for assignment by roughness, from smooth to rough."""
 
 
 def load_library(path: Path | None = None) -> Mapping[str, Material]:
-    """Materials by name: those that are shipped, and those of a YAML file of your own, which adds to them.
+    """Load materials by name: the shipped ones, and those of a YAML file, which adds to them or changes them.
 
-    A name that is shipped needs only the values that change. Raises: ConfigError with every complaint, one a line,
-    each with file:line:column.
+    A shipped name needs only the values that change. Raises: ConfigError with every complaint, one a line, each with
+    file:line:column.
     """
     return library() if path is None else read_materials(path, library())
 
 
 @cache
 def library() -> Mapping[str, Material]:
-    """The materials that are shipped, by name."""
+    """Return the shipped materials by name."""
     text = files("tangible_core.materials").joinpath("materials.yaml").read_text(encoding="utf-8")
     return parse_materials(text, Path("materials.yaml"), {})
 
 
 def find(name: str, library: Mapping[str, Material]) -> Material:
-    """The material of this name. Raises: MaterialError with the names that are there."""
+    """Return the material of this name. Raises: MaterialError with the known names."""
     if name not in library:
         raise MaterialError(
             f"no material is named {quoted(name)}{did_you_mean(str(name), library)}; there are {', '.join(library)}"
@@ -64,19 +64,18 @@ def assign(
     ground: Collection[int] = (),
     own: Mapping[int, str] | None = None,
 ) -> MaterialMap:
-    """One material a segment, or a part where parts are given, and why.
+    """Assign a material, with a reason, to each segment, or to each part if parts are given.
 
-    own: by number, the materials of parts that are said with the parts themselves: they go before all else.
+    own: materials by number that stand with the parts themselves; they decide first.
     rules: decide next, the first that fits (see `apply_rules`).
-    by: what decides where no rule fits. A map from a segment's label to material; `rules`, nothing; or `roughness`,
-    which ranks all of these in this picture by `relative_roughness` and spreads them evenly over `LADDER`, the
-    smoothest to ice, the roughest to brick. Equally rough ones share a rank; one rank alone says nothing, and gives the
-    default.
-    default: the material of what nothing decides.
+    by: decides the rest. A map from a segment's label to material; `rules`, nothing; or `roughness`, which ranks the
+    rest by `relative_roughness` in this picture and spreads it evenly over `LADDER`, the smoothest to ice, the roughest
+    to brick. Equally rough segments share a rank; a single rank gives the default.
+    default: the material of undecided segments.
     shape: see `apply_rules`.
-    ground: where the picture is transparent: these get the default, and have no roughness.
+    ground: segments where the picture is transparent: they get the default, and have no roughness.
     Raises: MaterialError for a name, a label or a point that does not exist, or for `roughness` or a colour without a
-    picture of the segments' size; PictureError if the picture is none.
+    picture of the segments' size; PictureError if the picture is not one.
     """
     noun = noun_of(segments)
     chosen = {label: (name, f"{noun} {label}: its own -> {name}") for label, name in (own or {}).items()}
@@ -95,24 +94,24 @@ def assign(
 
 def _roughness(segments: SegmentMap | PartMap, picture: np.ndarray | None) -> Float64[np.ndarray, "n"]:
     if picture is None or picture.shape[:2] != segments.labels.shape:
-        given = "there is none" if picture is None else f"it is {picture.shape[:2]}"
+        actual = "there is none" if picture is None else f"it is {picture.shape[:2]}"
         raise MaterialError(
-            f"materials by roughness need the picture of the segments, {segments.labels.shape}, and {given}; "
+            f"materials by roughness need the picture of the segments, {segments.labels.shape}, and {actual}; "
             "name the materials instead, such as {0: ice, 1: sand}"
         )
     return relative_roughness(segments, picture)
 
 
 def relative_roughness(segments: SegmentMap | PartMap, picture: np.ndarray) -> Float64[np.ndarray, "n"]:
-    """How rough each segment looks within this picture; the same at any brightness and contrast.
+    """Measure how rough each segment looks within this picture; independent of brightness and contrast.
 
-    The median over the segment of the local standard deviation of grey, which is taken after removing the local mean,
-    in a square window of 1/64 of the picture's shorter side (at least 3 pixels), as a share of the standard deviation
-    of the whole picture, to three decimals.
+    The roughness is the median over the segment of the local standard deviation of grey, in a square window of 1/64 of
+    the picture's shorter side (at least 3 pixels), as a share of the standard deviation of the whole picture, to three
+    decimals.
     """
     grey = to_grey(picture).astype(np.float64)
     spread = float(grey.std())
-    if spread <= 1e-6 * float(np.abs(grey).max()):  # what rounding makes of one colour
+    if spread <= 1e-6 * float(np.abs(grey).max()):  # rounding errors of a single colour
         return np.zeros(segments.count)
     grey = (grey - grey.mean()) / spread
     side = max(3, min(grey.shape) // 64 | 1)

@@ -1,4 +1,4 @@
-"""The eleven basic colour names of English, by hue, chroma and lightness: what one calls a part of a picture."""
+"""The eleven basic colour names of English, by hue, chroma and lightness, for segments of a picture."""
 
 from functools import cache
 from typing import Literal, get_args
@@ -14,22 +14,22 @@ Colour = Literal["black", "grey", "white", "red", "orange", "brown", "yellow", "
 COLOURS: tuple[Colour, ...] = get_args(Colour)
 
 GREY_CHROMA, BLACK_L, WHITE_L = 10.0, 20.0, 85.0
-"""In CIELAB (D65): duller is grey; of that, darker is black and lighter is white."""
+"""Bounds in CIELAB (D65): duller colours are grey; darker greys are black and lighter ones white."""
 HUES: tuple[tuple[float, Colour], ...] = (
     (20, "pink"), (48, "red"), (85, "orange"), (118, "yellow"), (195, "green"), (308, "blue"), (335, "purple"),
     (360, "pink"),
 )  # fmt: skip
-"""Each name and the angle up to which it goes, in degrees of CIELAB's hue. The borders lie between the answers of the
-XKCD colour survey (2010), of which every plain, light, pale, bright, dull, dusty and dark one keeps its name."""
+"""The upper angle of each name, in degrees of CIELAB's hue. The borders lie between the answers of the XKCD colour
+survey (2010); every plain, light, pale, bright, dull, dusty and dark answer keeps its name."""
 BROWN_CHROMA = 52.0
-"""An orange duller than this is called brown."""
-_BITS = 5
+"""Chroma below which orange is called brown."""
+_BITS = 5  # of each channel, by which colours are looked up
 
 
 def segment_colours(segments: SegmentMap | PartMap, picture: np.ndarray) -> list[tuple[Colour, float]]:
-    """Of each segment or part the name that most of its pixels have, and their share; the first in COLOURS of two.
+    """Return, for each segment or part, the most frequent name and its share; the first in COLOURS of two.
 
-    The picture is of the segments' size. Raises: PictureError if it is none.
+    The picture has the segments' size. Raises: PictureError if it is not a picture.
     """
     red, green, blue = np.moveaxis(to_rgb8(picture) >> (8 - _BITS), -1, 0).astype(np.uint16)
     names = _names()[(red << 2 * _BITS) | (green << _BITS) | blue]
@@ -41,7 +41,7 @@ def segment_colours(segments: SegmentMap | PartMap, picture: np.ndarray) -> list
 
 
 def colour_names(lab: Float[np.ndarray, "n 3"]) -> UInt8[np.ndarray, " n"]:
-    """The names of colours in CIELAB, as their places in COLOURS.
+    """Name colours in CIELAB, by their indices in COLOURS.
 
     >>> [COLOURS[name] for name in colour_names(np.array([[32.3, 79.2, -107.9], [40.0, 15.0, 30.0]]))]
     ['blue', 'brown']
@@ -60,7 +60,7 @@ def colour_names(lab: Float[np.ndarray, "n 3"]) -> UInt8[np.ndarray, " n"]:
 
 @cache
 def _names() -> UInt8[np.ndarray, " n"]:
-    """The name of each cell of the RGB cube, from its middle."""
+    """Return the name of each cell of the RGB cube, from its middle."""
     import cv2
 
     steps = (np.arange(1 << _BITS, dtype=np.float32) + 0.5) / (1 << _BITS)

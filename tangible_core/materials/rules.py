@@ -1,4 +1,4 @@
-"""Rules by which segments, or their parts, get their materials: a list, of which the first that fits wins."""
+"""Rules that assign materials to segments or parts: a list, of which the first that fits wins."""
 
 import logging
 from collections.abc import Mapping, Sequence
@@ -15,22 +15,22 @@ log = logging.getLogger(__name__)
 
 Place = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Choice = tuple[str, str]
-"""The name of a material, and why it was chosen."""
+"""The name of a material, and the reason for the choice."""
 
 
 class MaterialRule(BaseModel):
-    """A material, and which segments or parts it is for: one of `segment`, `part`, `at` and `colour`."""
+    """A material, and the segments or parts that get it, by one of `segment`, `part`, `at` and `colour`."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     segment: Annotated[int, Field(ge=0)] | None = None
-    """The segment with this label, as numbered in the report; all of its parts, where there are parts."""
+    """The segment with this label, as numbered in the report; all of its parts, if there are parts."""
     part: Annotated[int, Field(ge=0)] | str | None = None
     """The part with this number, or of this name in `parts:`."""
     at: tuple[Place, Place] | None = None
     """The segment or part at this pixel of the left picture: [x, y], counted from the upper left corner."""
     colour: Colour | None = None
-    """Every segment or part whose most frequent colour this is, by hue, chroma and lightness in CIELAB."""
+    """The most frequent colour of a segment or part, by hue, chroma and lightness in CIELAB; all such ones get it."""
     material: str
     """Name of the material for these segments or parts."""
 
@@ -45,7 +45,7 @@ class MaterialRule(BaseModel):
 
 
 def noun_of(segments: SegmentMap | PartMap) -> str:
-    """What each of them is called."""
+    """Return the noun for one of them."""
     return "part" if isinstance(segments, PartMap) else "segment"
 
 
@@ -55,14 +55,14 @@ def apply_rules(
     picture: np.ndarray | None,
     shape: tuple[int, int] | None = None,
 ) -> Mapping[int, Choice]:
-    """The segments, or the parts, that some rule is for. A rule that is for none is logged.
+    """Return the choices of the rules for segments or parts; log a rule that fits none.
 
-    rules: those of parts by number. shape: (h, w) of the picture in whose pixels points are given, where segments and
-    picture are a reduced one's.
-    Raises: MaterialError, with every complaint, for a segment, a part or a point that is not there, or a colour without
-    a picture of the segments' size.
+    rules: with parts by number, not by name. shape: (h, w) of the picture in whose pixels points are given, if segments
+    and picture are reduced.
+    Raises: MaterialError, with every complaint, for a segment, a part or a point that does not exist, or a colour
+    without a picture of the segments' size.
     """
-    found: dict[int, Choice] = {}
+    choices: dict[int, Choice] = {}
     complaints: list[str] = []
     noun = noun_of(segments)
     for number, rule in enumerate(rules, 1):
@@ -74,16 +74,16 @@ def apply_rules(
         if not fits:
             log.warning("materials: rule %d: no %s is %s", number, noun, rule.colour)
         for label, why in fits.items():
-            found.setdefault(label, (rule.material, f"{noun} {label}: rule {number}, {why} -> {rule.material}"))
+            choices.setdefault(label, (rule.material, f"{noun} {label}: rule {number}, {why} -> {rule.material}"))
     if complaints:
         raise MaterialError(*complaints)
-    return found
+    return choices
 
 
 def _fits(
     rule: MaterialRule, segments: SegmentMap | PartMap, picture: np.ndarray | None, shape: tuple[int, ...]
 ) -> dict[int, str]:
-    """Labels, and why the rule is for them."""
+    """Return the labels that a rule fits, each with the reason."""
     if rule.segment is not None:
         return _of_segment(rule.segment, segments)
     if rule.part is not None:
@@ -97,11 +97,11 @@ def _fits(
 
 
 def parts_of(segment: int, parts: PartMap) -> list[int]:
-    """The parts of a segment. Raises: MaterialError if there is no such segment."""
-    found = [number for number, each in enumerate(parts.segments) if each == segment]
-    if not found:
+    """Return the parts of a segment. Raises: MaterialError if there is no such segment."""
+    numbers = [number for number, each in enumerate(parts.segments) if each == segment]
+    if not numbers:
         raise MaterialError(f"there is no segment {segment}; the segments are 0 to {max(parts.segments)}")
-    return found
+    return numbers
 
 
 def _of_segment(segment: int, segments: SegmentMap | PartMap) -> dict[int, str]:

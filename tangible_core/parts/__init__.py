@@ -1,4 +1,4 @@
-"""The parts of a picture: found in its segments, given a height each, and made a relief of."""
+"""The parts of a picture: connected regions of its segments, their heights, and the relief made of them."""
 
 from .borders import shared_borders as shared_borders
 from .depth import depth_heights as depth_heights

@@ -1,4 +1,4 @@
-"""The borders between parts as lines: polygons that share them to the bit."""
+"""Borders between parts as polygons, which share their lines to the bit."""
 # shapely has no types.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
@@ -13,20 +13,20 @@ from ..errors import BrokenMethod, GeometryError
 from .find import find_parts
 
 Sides = Int64[np.ndarray, "n"]
-"""Something of each side of a pixel that lies between two parts."""
+"""A number for each side of a pixel between two parts."""
 DOWN, RIGHT = np.array([0, 1, 0, -1]), np.array([1, 0, -1, 0])
-"""From one corner of a pixel to the next, by the way that is taken: 0 right, 1 down, 2 left, 3 up."""
+"""Steps from one corner of a pixel to the next, by direction: 0 right, 1 down, 2 left, 3 up."""
 BELOW, BEHIND = np.array([0, 1, 1, 0]), np.array([1, 1, 0, 0])
-"""Of the four pixels around a corner, by the way from it: the one ahead to the left, from the upper left one."""
+"""Offset from the upper left pixel at a corner to the pixel ahead on the left, by direction."""
 
 
 def shared_borders(parts: PartMap, width_m: float, tolerance_m: float) -> tuple[Any, ...]:
-    """A polygon for each part, by its number: two that are neighbours share the line between them to the bit.
+    """Return a polygon for each part, by its number: two neighbours share the line between them to the bit.
 
     There is no gap and no overlap; holes stay holes; the picture's rim stays a rectangle. Lines run along the sides of
-    pixels, and lose each corner whose triangle with the two beside it is smaller than tolerance_m squared, the smallest
-    first, as long as no line crosses another. So the stairs of pixels become lines about as near as the tolerance, and
-    what is narrower than twice that, such as the tip of a tongue, may be cut off. 0 keeps every corner.
+    pixels, and lose each corner whose triangle with the two next to it is smaller than tolerance_m squared, the
+    smallest first, as long as no line crosses another. So the stairs of pixels become lines about as near as the
+    tolerance, and places narrower than twice that, such as the tip of a tongue, may be cut off. 0 keeps every corner.
     Parameters: tolerance_m >= 0; width_m, of the whole picture.
     Returns: shapely's polygons, in metres, in the frame of the surface: x to the right, y away from the user, origin in
     the middle. A part of several pieces, of a reduced map, is a multipolygon, and one without a pixel an empty polygon.
@@ -45,10 +45,10 @@ def shared_borders(parts: PartMap, width_m: float, tolerance_m: float) -> tuple[
         polygons = shapely.coverage_simplify(polygons, tolerance_m * columns / width_m, simplify_boundary=False)
     middle, pitch_m = np.array([columns, rows]) / 2, width_m / columns * np.array([1, -1])
 
-    def placed(at: Float64[np.ndarray, "k 2"]) -> Float64[np.ndarray, "k 2"]:
+    def in_metres(at: Float64[np.ndarray, "k 2"]) -> Float64[np.ndarray, "k 2"]:
         return (at - middle) * pitch_m
 
-    return _gathered(shapely, shapely.transform(polygons, placed), np.asarray(pieces.segments), parts.count)
+    return _gather(shapely, shapely.transform(polygons, in_metres), np.asarray(pieces.segments), parts.count)
 
 
 def _shapely() -> Any:
@@ -59,32 +59,30 @@ def _shapely() -> Any:
 
 
 def _rings(parts: PartMap) -> tuple[Float64[np.ndarray, "k 2"], Int64[np.ndarray, "k"], Int64[np.ndarray, "m"]]:
-    """Corners (x, y) of closed lines, in pixels from the upper left; the line of each; and the part of each line.
+    """Return corners (x, y) of closed lines, in pixels from the upper left; the line of each; the part of each line.
 
     A line has its part on its right. The lines of a part follow each other, the outer one first.
     """
-    whole = np.pad(parts.labels, 1, constant_values=-1)  # so that a corner's upper left pixel has the corner's place
+    whole = np.pad(parts.labels, 1, constant_values=-1)  # so that a corner and its upper left pixel have one index
     corners = parts.labels.shape[1] + 1
     keys, part = _sides(whole, corners)
     start, way = np.divmod(keys, 4)
     row, column = np.divmod(start, corners)
     to_row, to_column = row + DOWN[way], column + RIGHT[way]
-    on = _turned(whole, part, to_row, to_column, way)
+    on = _next_direction(whole, part, to_row, to_column, way)
     following = np.searchsorted(keys, (to_row * corners + to_column) * 4 + on)
     first, left = _along(following)
-    kept = _meet(whole, row, column)
-    kept[following[on != way]] = True
-    order = np.lexsort(
-        (-left, first, part)
-    )  # a part's first side of all, from its topmost corner, is of its outer line
-    order = order[kept[order]]
+    is_corner = _meet(whole, row, column)
+    is_corner[following[on != way]] = True
+    order = np.lexsort((-left, first, part))  # a part's first side, at its topmost corner, is of its outer line
+    order = order[is_corner[order]]
     begins = np.diff(first[order], prepend=-1) != 0
     at = np.stack([column[order], row[order]], axis=1).astype(np.float64)
     return at, np.cumsum(begins) - 1, part[order][begins]
 
 
 def _sides(whole: Int32[np.ndarray, "r c"], corners: int) -> tuple[Int64[np.ndarray, "n"], Int64[np.ndarray, "n"]]:
-    """The sides of pixels between two parts, once for each: 4 times its first corner + way, in order; and the part."""
+    """Return sides of pixels between parts, once for each part: 4 * first corner + direction, sorted; and the part."""
     row, column = np.nonzero(whole[:-1, 1:-1] != whole[1:, 1:-1])
     corner = row * corners + column
     keys, parts = [4 * corner, 4 * (corner + 1) + 2], [whole[row + 1, column + 1], whole[row, column + 1]]
@@ -98,11 +96,11 @@ def _sides(whole: Int32[np.ndarray, "r c"], corners: int) -> tuple[Int64[np.ndar
     return key[order], part[order]
 
 
-def _turned(whole: Int32[np.ndarray, "r c"], part: Sides, row: Sides, column: Sides, way: Sides) -> Sides:
-    """The way on from a corner: left, straight on or right, the first that has the part on its right.
+def _next_direction(whole: Int32[np.ndarray, "r c"], part: Sides, row: Sides, column: Sides, way: Sides) -> Sides:
+    """Return the direction from a corner: left, straight on or right, the first that has the part on its right.
 
-    So where two pixels of a part touch at a corner alone, a line of the part goes over from one to the other, and none
-    passes a corner twice.
+    So where two pixels of a part touch only at a corner, the line passes from one to the other, and no line passes a
+    corner twice.
     """
     behind = (way + 1) % 4
     left = whole[row + BELOW[way], column + BEHIND[way]] == part
@@ -111,9 +109,9 @@ def _turned(whole: Int32[np.ndarray, "r c"], part: Sides, row: Sides, column: Si
 
 
 def _along(following: Sides) -> tuple[Sides, Sides]:
-    """Of sides that follow each other in rings: the least of each one's ring, and how far it is to the last before it.
+    """Return, for sides that follow each other in rings, the least of each side's ring, and the steps to its end.
 
-    By doubling: after n rounds 2^n sides are looked over from each.
+    Pointer doubling: n rounds look 2^n sides ahead.
     """
     first, ahead = np.arange(following.size), following
     while not np.array_equal(nearest := np.minimum(first, first[ahead]), first):
@@ -126,22 +124,22 @@ def _along(following: Sides) -> tuple[Sides, Sides]:
 
 
 def _meet(whole: Int32[np.ndarray, "r c"], row: Sides, column: Sides) -> Bool[np.ndarray, "n"]:
-    """Whether more than two sides of pixels between parts meet at a corner."""
+    """Return the mask of corners at which more than two sides between parts meet."""
     around = [whole[row + down, column + right] for down, right in zip(BELOW, BEHIND, strict=True)]
     sides = [one != other for one, other in zip(around, around[1:] + around[:1], strict=True)]
     return np.count_nonzero(sides, axis=0) > 2
 
 
-def _gathered(shapely: Any, polygons: Any, part: Sides, count: int) -> tuple[Any, ...]:
-    """One geometry a part, of all its pieces."""
+def _gather(shapely: Any, polygons: Any, part: Sides, count: int) -> tuple[Any, ...]:
+    """Collect the pieces of each part in one geometry."""
     if np.array_equal(part, np.arange(count)):
         return tuple(polygons)
     order = np.argsort(part, kind="stable")
     pieces = np.split(polygons[order], np.searchsorted(part[order], np.arange(1, count)))
-    return tuple(_joined(shapely, each) for each in pieces)
+    return tuple(_geometry(shapely, each) for each in pieces)
 
 
-def _joined(shapely: Any, pieces: Any) -> Any:
+def _geometry(shapely: Any, pieces: Any) -> Any:
     if not len(pieces):
         return shapely.Polygon()
     return pieces[0] if len(pieces) == 1 else shapely.multipolygons(pieces)

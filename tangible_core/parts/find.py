@@ -1,4 +1,4 @@
-"""The connected parts of a picture's segments, and where they are."""
+"""Connected parts of a picture's segments."""
 # scikit-image has no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
@@ -10,28 +10,26 @@ from ..data.views import PartMap
 
 
 def find_parts(segments: SegmentMap) -> PartMap:
-    """The connected pieces of the segments: pixels of one segment that share a side are of one part.
+    """Find the connected regions of the segments: pixels of one segment that share a side belong to one part.
 
-    Parts are numbered by their first pixels, row by row. So the parts and their numbers are the same in a picture that
-    is enlarged by whole pixels, and whatever the segments are numbered; the last of them do not move if a new part
-    comes after them.
+    Parts are numbered by their first pixels, row by row. So their numbers do not depend on the labels of the segments
+    or on enlargement by whole pixels, and a new part behind the last one does not change the others.
     """
     from skimage.measure import label
 
     none = int(segments.labels.min()) - 1
-    found = np.asarray(label(segments.labels, connectivity=1, background=none))
-    parts = found.astype(np.int32)
+    parts = np.asarray(label(segments.labels, connectivity=1, background=none)).astype(np.int32)
     parts -= 1
     flat = parts.reshape(-1)
-    known = np.maximum.accumulate(flat)  # numbers come in the order of first pixels, so a first pixel is a new maximum
-    first = np.flatnonzero(np.diff(known, prepend=np.int32(-1)))
+    largest = np.maximum.accumulate(flat)  # numbers are in the order of first pixels: each new maximum is a first pixel
+    first = np.flatnonzero(np.diff(largest, prepend=np.int32(-1)))
     return PartMap(parts, tuple(segments.labels.reshape(-1)[first].tolist()))
 
 
 def reduced_parts(parts: PartMap, shape: tuple[int, int]) -> PartMap:
-    """The parts of a picture on a coarser grid of (r, c), with the same numbers: those of the middle pixels.
+    """Reduce parts to a coarser grid of (r, c), by the middle pixel of each cell, with the same numbers.
 
-    A part that would be lost, as it lies between these, keeps one cell; one that has no pixel has none here.
+    A part that has no middle pixel keeps one cell; a part without pixels has none.
     """
     whole = parts.labels
     if whole.shape == shape:
@@ -46,12 +44,12 @@ def reduced_parts(parts: PartMap, shape: tuple[int, int]) -> PartMap:
 
 
 def part_sizes(parts: PartMap) -> Int[np.ndarray, "n"]:
-    """Pixels of each part."""
+    """Count the pixels of each part."""
     return np.bincount(parts.labels.reshape(-1), minlength=parts.count)
 
 
 def _first_pixels(parts: PartMap) -> Int[np.ndarray, "n"]:
-    """Index of each part's first pixel, row by row; that of the last pixel for a part without any."""
+    """Return the index of each part's first pixel, row by row; of the last pixel for a part without pixels."""
     flat = parts.labels.reshape(-1)
     first = np.full(parts.count, flat.size - 1, np.int64)
     first[flat[::-1]] = np.arange(flat.size - 1, -1, -1)

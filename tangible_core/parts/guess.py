@@ -1,4 +1,4 @@
-"""Heights of parts by where they are and whose their borders are: a guess, for a person to correct."""
+"""Heights of parts guessed from place, size and border ownership, for a person to correct."""
 
 import numpy as np
 from jaxtyping import Float64, Int64
@@ -10,28 +10,28 @@ from .heights import PartHeights
 from .neighbours import Neighbours, in_front, neighbours
 
 FOOT, MIDDLE, RIM, SIZE, ENCLOSED, FRONT = 0.7, 0.3, 1.5, 0.1, 0.25, 0.5
-"""How much nearness each sign is worth: the height of a part's foot and of its middle in the picture, its share of the
-upper and the side rims and of the picture, whether another encloses it, whether it hides another. Chosen on three
+"""Weights of the cues to nearness: the height of a part's foot and of its middle in the picture, its share of the upper
+and the side rims, its share of the picture, enclosure by another part, occlusion of another part. Chosen on three
 pictures whose depth is known (`python -m benchmarks parts`)."""
 OWN = 0.5
-"""The weight of a part's own signs, against those of what it lies beside, which count 1."""
+"""Weight of a part's own cues; those of its neighbours have weight 1."""
 ROUNDS = 40
+"""Number of relaxation steps."""
 SURE, MOST_NAMED = 0.3, 3
-"""From here on it is said who hides whom, and how many of them."""
+"""Smallest certainty of an occlusion that the reasons name, and how many they name."""
 LONGEST_PX = 1000
-"""Of the grid on which this is seen."""
+"""Longest side of the grid on which the cues are measured, pixels."""
 SPECK = 0.001
-"""Of the picture: what is smaller takes no step of its own."""
+"""Share of the picture below which a part shares a neighbour's height step."""
 
 
 def guess_heights(parts: PartMap, top_m: float) -> PartHeights:
-    """A height for each part by size, place and border ownership: in even steps from 0 to top_m, in their order.
+    """Guess a height for each part by size, place and border ownership: even steps from 0 to top_m, in their order.
 
-    What stands low in a picture is near, and what fills much of its upper and side rims, or much of all of it, is far.
+    Parts low in a picture are near; parts that fill much of its upper and side rims, or of the whole picture, are far.
     Where three parts meet, the one whose border runs straight on hides the two others; a part that another encloses is
-    in front of it. Nearness is what suits these signs best: each part is as near as its own signs say and as its
-    neighbours' nearness and what is between them says. Nobody knows what is shown: a table may come to lie before what
-    stands on it.
+    in front of it. Nearness is the best fit to these cues: a mean of a part's own cues, and of its neighbours' nearness
+    with the cues between them. The cues do not know what is shown: a table may come to lie before the things on it.
     """
     parts = reduced_parts(parts, _coarse(parts.labels.shape))
     sizes = part_sizes(parts)
@@ -39,13 +39,13 @@ def guess_heights(parts: PartMap, top_m: float) -> PartHeights:
     own = FOOT * foot + MIDDLE * middle - RIM * rim - SIZE * sizes / parts.labels.size
     beside = neighbours(parts)
     sure = in_front(parts, beside)
-    nearness = _settled(own, beside, FRONT * sure + ENCLOSED * _enclosed(beside, parts.count))
-    rank, steps = _ranked(nearness, sizes)
+    nearness = _relax(own, beside, FRONT * sure + ENCLOSED * _enclosure(beside, parts.count))
+    rank, steps = _rank(nearness, sizes)
     heights_m = top_m * rank / max(1, steps - 1)
     reasons = (
         f"guessed, {at + 1} of {steps} from the back: it reaches down to {100 * low:.0f} % of the picture's height and "
-        f"has {100 * edge:.0f} % of its upper and side rims{said}"
-        for at, low, edge, said in zip(rank.tolist(), foot, rim, _said(beside, sure, parts.count), strict=True)
+        f"has {100 * edge:.0f} % of its upper and side rims{overlap}"
+        for at, low, edge, overlap in zip(rank.tolist(), foot, rim, _overlaps(beside, sure, parts.count), strict=True)
     )
     return PartHeights(tuple(heights_m.tolist()), tuple(reasons))
 
@@ -53,7 +53,7 @@ def guess_heights(parts: PartMap, top_m: float) -> PartHeights:
 def _places(
     parts: PartMap, sizes: Int64[np.ndarray, "n"]
 ) -> tuple[Float64[np.ndarray, "n"], Float64[np.ndarray, "n"], Float64[np.ndarray, "n"]]:
-    """How far down 95 % of a part's pixels are, and their mean, from 0 to 1; its share of the upper and side rims."""
+    """Return a part's row of the 95th percentile and its mean row, 0 to 1; its share of the upper and side rims."""
     labels, (rows, columns) = parts.labels, parts.labels.shape
     lines = np.repeat(np.arange(rows, dtype=np.int64), columns)
     lowest = np.sort(labels.reshape(-1).astype(np.int64) * rows + lines) % rows
@@ -63,32 +63,32 @@ def _places(
     return foot, middle, np.bincount(rim, minlength=parts.count) / rim.size
 
 
-def _enclosed(beside: Neighbours, count: int) -> Float64[np.ndarray, "m"]:
-    """Of each pair, 1 where `high` has no other neighbour than `low`, -1 for the contrary, 0 for neither or both."""
+def _enclosure(beside: Neighbours, count: int) -> Float64[np.ndarray, "m"]:
+    """Return, for each pair, 1 if `low` is the only neighbour of `high`, -1 for the reverse, 0 for neither or both."""
     many = np.bincount(beside.low, minlength=count) + np.bincount(beside.high, minlength=count)
     return (many[beside.high] == 1).astype(np.float64) - (many[beside.low] == 1)
 
 
-def _settled(
+def _relax(
     own: Float64[np.ndarray, "n"], beside: Neighbours, nearer: Float64[np.ndarray, "m"]
 ) -> Float64[np.ndarray, "n"]:
-    """Nearness of each part, between its own and its neighbours' with how much nearer `high` is of each pair.
+    """Relax the nearness of each part between its own and its neighbours', given how much nearer `high` of a pair is.
 
-    Of two parts with a long common border more is known, by the root of its length.
+    A pair weighs by the root of the length of its common border.
     """
     weight = np.sqrt(beside.sides.astype(np.float64))
     count = own.size
     whole = np.bincount(beside.low, weight, count) + np.bincount(beside.high, weight, count)
-    found = own
+    nearness = own
     for _ in range(ROUNDS):
-        told = np.bincount(beside.low, weight * (found[beside.high] - nearer), count)
-        told += np.bincount(beside.high, weight * (found[beside.low] + nearer), count)
-        found = np.where(whole > 0, (OWN * own + told / np.maximum(whole, 1)) / (OWN + 1), own)
-    return found
+        sums = np.bincount(beside.low, weight * (nearness[beside.high] - nearer), count)
+        sums += np.bincount(beside.high, weight * (nearness[beside.low] + nearer), count)
+        nearness = np.where(whole > 0, (OWN * own + sums / np.maximum(whole, 1)) / (OWN + 1), own)
+    return nearness
 
 
-def _said(beside: Neighbours, sure: Float64[np.ndarray, "m"], count: int) -> list[str]:
-    """For each part, whom it hides and who hides it, most sure first, three at most."""
+def _overlaps(beside: Neighbours, sure: Float64[np.ndarray, "m"], count: int) -> list[str]:
+    """Describe, for each part, the parts that it hides and that hide it, the most certain first."""
     hides: list[list[int]] = [[] for _ in range(count)]
     hidden: list[list[int]] = [[] for _ in range(count)]
     for pair in np.argsort(-np.abs(sure), kind="stable").tolist():
@@ -98,19 +98,19 @@ def _said(beside: Neighbours, sure: Float64[np.ndarray, "m"], count: int) -> lis
         behind, front = ends if sure[pair] > 0 else ends[::-1]
         hides[front].append(behind)
         hidden[behind].append(front)
-    return [_listed("it is in front of", a) + _listed("it is behind", b) for a, b in zip(hides, hidden, strict=True)]
+    return [_list("it is in front of", a) + _list("it is behind", b) for a, b in zip(hides, hidden, strict=True)]
 
 
-def _listed(verb: str, parts: list[int]) -> str:
-    """Such as `; it is behind parts 1, 2 and 5`; nothing for no part."""
+def _list(verb: str, parts: list[int]) -> str:
+    """Return words such as `; it is behind parts 1, 2 and 5`; nothing for no part."""
     *others, last = map(str, parts[:MOST_NAMED] or [""])
     if not last:
         return ""
     return f"; {verb} parts {', '.join(others)} and {last}" if others else f"; {verb} part {last}"
 
 
-def _ranked(nearness: Float64[np.ndarray, "n"], sizes: Int64[np.ndarray, "n"]) -> tuple[Int64[np.ndarray, "n"], int]:
-    """The place of each part from the back, and how many places there are: a speck shares its neighbour's."""
+def _rank(nearness: Float64[np.ndarray, "n"], sizes: Int64[np.ndarray, "n"]) -> tuple[Int64[np.ndarray, "n"], int]:
+    """Return the rank of each part from the back, and the number of ranks; a speck has that of the part behind it."""
     order = np.argsort(nearness, kind="stable")
     large = sizes >= SPECK * sizes.sum()
     takes = large if large.any() else np.ones_like(large)
@@ -120,5 +120,5 @@ def _ranked(nearness: Float64[np.ndarray, "n"], sizes: Int64[np.ndarray, "n"]) -
 
 
 def _coarse(shape: tuple[int, int]) -> tuple[int, int]:
-    """A size at which all of this is seen as well: the same for a picture that is enlarged by whole pixels."""
+    """Return a reduced shape for the cues: the same for a picture that is enlarged by whole pixels."""
     return reduced_shape(shape, -(-max(shape) // LONGEST_PX))

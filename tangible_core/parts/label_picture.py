@@ -1,4 +1,4 @@
-"""Parts as a picture to paint on: a colour each, and colours to spare for new ones."""
+"""Label pictures to edit in a paint program: a colour for each part, and spare colours for new parts."""
 
 from functools import cache
 from io import BytesIO
@@ -9,19 +9,20 @@ from jaxtyping import Int32, UInt8
 from ..runtime.opencv import plain_opencv
 
 MOST_IN_PALETTE = 256
+"""Largest number of colours in the palette of a PNG."""
 SPARE = 24
-"""Colours of the palette that no part has: a paint program that keeps to the palette has them for new parts."""
+"""Number of unused colours in the palette, for new parts in a paint program that keeps to the palette."""
 STEPS = 21
-"""Of red, green and blue each, among which colours are chosen: more of them than a label picture may have labels."""
+"""Levels of red, green and blue among which colours are chosen: more colours than a label picture may have labels."""
 DARKEST, LIGHTEST, MOST_CHROMA = 30.0, 92.0, 85.0
-"""In CIELAB: black and white are what a paint program begins with, and the strongest colours hurt beside each other."""
+"""Bounds of the colours in CIELAB: black and white are a paint program's defaults, and strong colours glare."""
 
 
 def label_picture(labels: Int32[np.ndarray, "h w"]) -> bytes:
-    """A PNG with a colour for each label, which is read back as the same segments (`formats.pictures.read_labels`).
+    """Write a PNG with a colour for each label, which `formats.pictures.read_labels` reads as the same segments.
 
-    Labels are from 0 on, at most `formats.pictures.MAX_LABELS`. It has a palette, in which no brush can mix two colours
-    at a border; with more than 256 labels it has red, green and blue.
+    Labels start at 0, and number at most `formats.pictures.MAX_LABELS`. The PNG has a palette, so that no brush mixes
+    two colours at a border; with more than 256 labels it has red, green and blue.
     """
     from PIL import Image
 
@@ -38,7 +39,7 @@ def label_picture(labels: Int32[np.ndarray, "h w"]) -> bytes:
 
 @cache
 def distinct_colours(count: int) -> UInt8[np.ndarray, "n 3"]:
-    """So many colours, each as far as can be, in CIELAB, from all before it; those of fewer are the first of them.
+    """Choose n colours, each as far as possible, in CIELAB, from all before it; fewer colours are the first of these.
 
     Source: Gonzalez, Clustering to minimize the maximum intercluster distance (1985).
     """
@@ -56,6 +57,6 @@ def distinct_colours(count: int) -> UInt8[np.ndarray, "n 3"]:
     while len(chosen) < count:
         chosen.append(int(far.argmax()))
         far = np.minimum(far, np.linalg.norm(lab - lab[chosen[-1]], axis=1))
-    found = colours[chosen]
-    found.flags.writeable = False
-    return found
+    distinct = colours[chosen]
+    distinct.flags.writeable = False
+    return distinct

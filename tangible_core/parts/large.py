@@ -1,4 +1,4 @@
-"""Segments of any method made few and large: pieces for a person to name, not hundreds of specks."""
+"""Merging of segments into few large parts, for a person to name."""
 
 from typing import NamedTuple
 
@@ -13,29 +13,30 @@ from .find import find_parts
 from .neighbours import neighbours
 
 LIGHTNESS_IN_BYTES = (100 / 255, 1.0, 1.0)
+"""Factors from OpenCV's CIELAB in bytes to units of CIELAB."""
 Each = Float[np.ndarray, "n"]
 
 
 def large_parts(segments: SegmentMap, picture: np.ndarray, least_px: float, most: int) -> PartMap:
-    """The parts of the segments, of which none is a speck, and at most so many.
+    """Merge the parts of the segments until none is a speck, and at most `most` are left.
 
-    A speck, a part that holds no disc least_px wide, is joined to the neighbour that it shares most of its border with
-    and is most like in colour (CIELAB). Then, while there are more than `most`, those two neighbours are joined that
-    add least to the spread of the colours within parts (Ward, Hierarchical grouping to optimize an objective function,
-    1963). One part is left where all of the picture is narrower.
-    Raises: PictureError for what is no picture, or one of another size.
+    A speck, a part that holds no disc least_px wide, joins the neighbour with the longest common border and the most
+    similar colour (CIELAB). Then, while there are more than `most`, those two neighbours join that increase the spread
+    of the colours within parts least (Ward, Hierarchical grouping to optimize an objective function, 1963). One part is
+    left if the whole picture is narrower than least_px.
+    Raises: PictureError for an array that is not a picture, or of another size.
     """
     check_same_shape("the picture", picture[..., 0] if picture.ndim == 3 else picture, "its segments", segments.labels)
     parts, colours = find_parts(segments), _colours(picture)
     while parts.count > 1 and (specks := disc_widths(parts) < least_px).any():
-        parts = _joined(parts, _with_their_neighbours(parts, colours, specks))
+        parts = _relabel(parts, _join_specks(parts, colours, specks))
     if parts.count > most:
-        parts = _joined(parts, _merged(parts, colours, most))
+        parts = _relabel(parts, _join_similar(parts, colours, most))
     return find_parts(SegmentMap(parts.labels))
 
 
 def disc_widths(parts: PartMap) -> Each:
-    """Diameter of the largest disc within each part, in pixels; the picture's rim is a border."""
+    """Return the diameter of the largest disc within each part, in pixels; the picture's rim is a border."""
     import cv2
 
     inside = ~border_pixels(np.pad(parts.labels, 1, constant_values=-1))
@@ -47,7 +48,7 @@ def disc_widths(parts: PartMap) -> Each:
 
 
 def _colours(picture: np.ndarray) -> UInt8[np.ndarray, "h w 3"]:
-    """CIELAB in bytes, as OpenCV packs it: finer differences than these make no part."""
+    """Convert to CIELAB in bytes, as OpenCV packs it; finer differences do not matter here."""
     import cv2
 
     with plain_opencv():
@@ -66,10 +67,10 @@ def _means(parts: PartMap, colours: UInt8[np.ndarray, "h w 3"]) -> _Means:
     return _Means(size_px, np.stack(sums, axis=1) / size_px[:, None] * LIGHTNESS_IN_BYTES)
 
 
-def _with_their_neighbours(
+def _join_specks(
     parts: PartMap, colours: UInt8[np.ndarray, "h w 3"], specks: Bool[np.ndarray, "n"]
 ) -> Int[np.ndarray, "n"]:
-    """The part that each becomes one with; specks that choose each other become one, which may be large enough."""
+    """Return the part that each part joins; specks that choose each other join, and may be large enough then."""
     low, high, sides = neighbours(parts)
     first, second = np.concatenate([low, high]), np.concatenate([high, low])
     sides = np.concatenate([sides, sides])
@@ -93,8 +94,8 @@ def _root(root: Int[np.ndarray, "n"], number: int) -> int:
     return number
 
 
-def _merged(parts: PartMap, colours: UInt8[np.ndarray, "h w 3"], most: int) -> Int[np.ndarray, "n"]:
-    """The part that each belongs to when the most alike neighbours were joined until so many were left."""
+def _join_similar(parts: PartMap, colours: UInt8[np.ndarray, "h w 3"], most: int) -> Int[np.ndarray, "n"]:
+    """Return the part that each part joins when the most similar neighbours join until `most` are left."""
     size_px, colour = _means(parts, colours)
     near = np.zeros((parts.count, parts.count), np.bool_)
     low, high, _ = neighbours(parts)
@@ -115,7 +116,7 @@ def _merged(parts: PartMap, colours: UInt8[np.ndarray, "h w 3"], most: int) -> I
     return belongs
 
 
-def _joined(parts: PartMap, belongs: Int[np.ndarray, "n"]) -> PartMap:
-    """The parts when each belongs to another one, in any order."""
+def _relabel(parts: PartMap, belongs: Int[np.ndarray, "n"]) -> PartMap:
+    """Replace each part by the one that it joins, with numbers in order."""
     names, numbers = np.unique(belongs, return_inverse=True)
     return PartMap(numbers.astype(np.int32)[parts.labels], tuple(range(names.size)))

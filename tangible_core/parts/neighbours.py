@@ -1,4 +1,4 @@
-"""Which parts lie beside each other, and which of two is in front as far as their borders tell."""
+"""Neighbouring parts, and which of two is in front as far as T-junctions of their borders show."""
 
 from math import sqrt
 from typing import NamedTuple
@@ -9,15 +9,15 @@ from jaxtyping import Bool, Float64, Int32, Int64
 from ..data import PartMap
 
 REACH = 0.012
-"""Radius of the disc in which the angles at a junction are measured, of the picture's diagonal."""
+"""Radius of the disc in which the angles at a junction are measured, as a share of the picture's diagonal."""
 MOST_JUNCTIONS, ACROSS = 20_000, 15
-"""Junctions that are looked at, spread over all there are, and points across the disc of each."""
+"""Largest number of junctions that are examined, evenly chosen, and points across the disc of each."""
 STRAIGHT, THIN = 0.15, 0.08
-"""How far from half of the disc a part that is in front may be, and how much of it each of the three is at least."""
+"""Largest difference of a front part's share of the disc from a half, and smallest share of each of the three parts."""
 
 
 class Neighbours(NamedTuple):
-    """Pairs of parts with a common border, in order: `low` is the smaller number of each, `high` the larger."""
+    """Pairs of parts with a common border, in order: `low` is the smaller number of a pair, `high` the larger."""
 
     low: Int64[np.ndarray, "m"]
     high: Int64[np.ndarray, "m"]
@@ -26,13 +26,13 @@ class Neighbours(NamedTuple):
 
 
 def neighbours(parts: PartMap) -> Neighbours:
-    """Every pair of parts that share sides of pixels."""
+    """List the pairs of parts that share sides of pixels."""
     labels = parts.labels
     pairs = np.concatenate(
         [_pairs(labels[:, :-1], labels[:, 1:], parts.count), _pairs(labels[:-1], labels[1:], parts.count)]
     )
-    found, sides = np.unique(pairs, return_counts=True)
-    low, high = np.divmod(found, parts.count)
+    keys, sides = np.unique(pairs, return_counts=True)
+    low, high = np.divmod(keys, parts.count)
     return Neighbours(low, high, sides.astype(np.int64))
 
 
@@ -43,10 +43,10 @@ def _pairs(one: np.ndarray, other: np.ndarray, count: int) -> Int64[np.ndarray, 
 
 
 def in_front(parts: PartMap, beside: Neighbours) -> Float64[np.ndarray, "m"]:
-    """Of each pair, how surely `high` is in front of `low`, from -1 for the contrary to 1; 0 where nothing tells.
+    """Return, for each pair, the certainty that `high` is in front of `low`, -1 for the reverse to 1; 0 if unknown.
 
     Where three parts meet, the one whose border runs straight on hides the border of the two others, which ends there.
-    One that passes a quarter of a turn or more from straight tells nothing.
+    The certainty falls with the border's angle, to 0 where it is far from straight.
     Source: Guzman, Decomposition of a visual scene into three-dimensional bodies, 1968 (the T-junction).
     """
     three, share = _junctions(parts.labels)
@@ -61,14 +61,16 @@ def in_front(parts: PartMap, beside: Neighbours) -> Float64[np.ndarray, "m"]:
         front, behind = three[rows, nearest], three[:, each]
         wanted = np.minimum(front, behind) * parts.count + np.maximum(front, behind)
         pair = np.minimum(np.searchsorted(keys, wanted), keys.size - 1)
-        told = np.where(keys[pair] == wanted, sure, 0)  # 0 too for the one in front itself, and where corners touch
-        votes += np.bincount(pair, np.where(front > behind, told, -told), keys.size)
-        weight += np.bincount(pair, told, keys.size)
+        vote = np.where(
+            keys[pair] == wanted, sure, 0
+        )  # 0 for the front part itself, and for parts that touch at a corner
+        votes += np.bincount(pair, np.where(front > behind, vote, -vote), keys.size)
+        weight += np.bincount(pair, vote, keys.size)
     return votes / weight
 
 
 def _junctions(labels: Int32[np.ndarray, "h w"]) -> tuple[Int64[np.ndarray, "k 3"], Float64[np.ndarray, "k 3"]]:
-    """The three parts of each corner of pixels at which so many meet, and their shares of a disc around it."""
+    """Return the three parts at each corner of pixels at which three meet, and their shares of a disc around it."""
     rows, columns = labels.shape
     radius = max(2, round(REACH * sqrt(rows * rows + columns * columns)))
     row, column = np.nonzero(_three_meet(labels))
@@ -86,7 +88,7 @@ def _junctions(labels: Int32[np.ndarray, "h w"]) -> tuple[Int64[np.ndarray, "k 3
 
 
 def _three_meet(labels: Int32[np.ndarray, "h w"]) -> Bool[np.ndarray, "r c"]:
-    """Corners, each right of and below a pixel, at which three different parts meet."""
+    """Return the mask of corners, right of and below a pixel, at which three different parts meet."""
     across, along = labels[:, 1:] != labels[:, :-1], labels[1:] != labels[:-1]
     sides = across[:-1].astype(np.uint8) + across[1:] + along[:, :-1] + along[:, 1:]
     one, other = labels[:-1, :-1] == labels[1:, 1:], labels[:-1, 1:] == labels[1:, :-1]
@@ -94,7 +96,7 @@ def _three_meet(labels: Int32[np.ndarray, "h w"]) -> Bool[np.ndarray, "r c"]:
 
 
 def _disc(radius: int) -> tuple[Int64[np.ndarray, "k"], Int64[np.ndarray, "k"]]:
-    """Rows and columns of points of a disc around the corner right of and below a pixel, evenly spread."""
+    """Return rows and columns of even points of a disc around the corner right of and below a pixel."""
     places = np.unique(np.rint(np.linspace(-radius + 1, radius, min(ACROSS, 2 * radius))).astype(np.int64))
     down, right = np.meshgrid(places, places, indexing="ij")
     within = (2 * down - 1) ** 2 + (2 * right - 1) ** 2 <= (2 * radius) ** 2

@@ -37,9 +37,8 @@ from .config.methods import check_kind, named_method
 from .engine.engine import Engine
 from .engine.film import film_of, reliefs_of
 from .engine.stages.touch import fit_to_device
-from .output.following import felt_device, how_followed
 from .output.legible import legible, of_width
-from .output.runs import about
+from .output.runs import about, felt_device, how_followed
 
 T = TypeVar("T")
 NO_ROWS = np.empty((0, len(TICK_COLUMNS)))

@@ -45,7 +45,7 @@ from .config.parsing import config_of, load_config
 from .engine.cache import Cache
 from .engine.engine import Engine
 from .engine.stage import Progress
-from .engine.warm_up import rehearsal
+from .engine.warm_up import warm_up
 from .feeling import Feeling, FeelOptions
 from .output.exporting import Export, chosen_exporters, export
 from .output.runs import Run, Sheet, make_run
@@ -199,7 +199,7 @@ class Pipeline:
         progress: hears of every stage as it begins and ends. stop: set from another thread, it ends the work.
         Raises: TangibleError for what a user can put right, Stopped after `stop`, and whatever a plugin raises.
         """
-        watched, beside = self.engine.watching(progress, stop), rehearsal(self.engine, want or self.config.want)
+        watched, beside = self.engine.watching(progress, stop), warm_up(self.engine, want or self.config.want)
         with watched, beside as self.engine.beside:
             return self.engine.make(want)
 

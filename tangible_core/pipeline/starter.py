@@ -18,7 +18,7 @@ from ..plugins.registry import default_registry
 from ..runtime.opencv import plain_opencv
 from ..scene.formats.decoding import PICTURES as PICTURES
 from ..scene.formats.decoding import VIDEOS as VIDEOS
-from ..scene.formats.height_maps import said_of
+from ..scene.formats.height_maps import read_heights_metadata
 from ..scene.scene import Scene
 from .config.parsing import parse_config
 from .engine.cache import Cache
@@ -93,7 +93,7 @@ def _is_builtin(path: Path) -> bool:
 
 def _is_map(path: Path) -> bool:
     """By its name, or by what it says of itself. Raises: PictureError if that is nonsense."""
-    return path.suffix.lower() in MAPS or said_of(path) is not None
+    return path.suffix.lower() in MAPS or read_heights_metadata(path) is not None
 
 
 def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:

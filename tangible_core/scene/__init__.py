@@ -1,1 +1,1 @@
-"""Scenes and their pictures, calibrations and geometry."""
+"""Scenes, stereo rigs, and the geometry from disparity to relief."""

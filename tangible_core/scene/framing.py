@@ -1,50 +1,61 @@
-"""What of a picture is felt, and which way round: crop, turn, invert, clip, and what is no data."""
+"""The part of a picture that becomes the surface, and its orientation: crop, rotation, inversion, clipping, no data."""
 
 from collections.abc import Mapping
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Bool, Float32
 
-from ..data.pictures import luma, opaque, size_in_words
+from ..data.pictures import fill_from_nearest, luma, opaque, size_in_words
 from ..errors import PictureError
-from .formats.height_maps import Measured, said_of
+from .formats.height_maps import MeasuredSize, read_heights_metadata
 from .formats.pictures import without
 from .scene_files import SceneFiles
 
 SAMPLED = 4_000_000
-"""Pixels of a photo that percentiles are taken of, about."""
+"""Approximate number of pixels of a photo from which percentiles are computed."""
 
 
-def framed(held: Mapping[str, np.ndarray], files: SceneFiles) -> dict[str, np.ndarray]:
-    """All parts of a scene cropped and turned; then the photo or the heights as `files` says.
+def apply_framing(parts: Mapping[str, np.ndarray], files: SceneFiles) -> dict[str, np.ndarray]:
+    """Crop and rotate all parts of a scene; then invert and clip the photo or the heights, as `files` has it.
 
     Raises: PictureError for a crop beyond the picture.
     """
-    found = {part: _turned(_cropped(values, files), files.rotate) for part, values in held.items()}
+    framed = {part: _rotate(_crop(values, files), files.rotate) for part, values in parts.items()}
     if files.main == "height":
-        found["height"] = _heights(found["height"], files)
+        framed["height"] = _heights(framed["height"], files)
     elif files.main == "photo":
-        found["photo"] = _tones(found["photo"], files)
-    return found
+        framed["photo"] = _tones(framed["photo"], files)
+    return framed
 
 
-def measured(files: SceneFiles) -> Measured | None:
-    """The size that a height map says it has, of the part that is felt; None for a map of any other numbers.
+def measured_size(files: SceneFiles) -> MeasuredSize | None:
+    """Return the size that a height map states, of its cropped part; None without metadata, and for an inverted map.
 
-    One that is turned upside down (`invert`) is a map of any other numbers, too.
-    Raises: PictureError if what it says is nonsense.
+    Raises: PictureError for metadata with wrong values.
     """
-    said = None if files.height is None or files.invert else said_of(files.height)
-    if said is None:
+    metadata = None if files.height is None or files.invert else read_heights_metadata(files.height)
+    if metadata is None:
         return None
-    whole = said.measured
-    _, _, columns, rows = files.crop or (0, 0, said.columns, said.rows)
-    size_m = whole.width_m * columns / said.columns, whole.length_m * rows / said.rows
+    whole = metadata.size
+    _, _, columns, rows = files.crop or (0, 0, metadata.columns, metadata.rows)
+    size_m = whole.width_m * columns / metadata.columns, whole.length_m * rows / metadata.rows
     width_m, length_m = size_m[::-1] if files.rotate in (90, 270) else size_m
-    return Measured(width_m, length_m, whole.high_m)
+    return MeasuredSize(width_m, length_m, whole.high_m)
 
 
-def _cropped(values: np.ndarray, files: SceneFiles) -> np.ndarray:
+def cut_out(picture: np.ndarray, name: str) -> tuple[np.ndarray, Bool[np.ndarray, "h w"]]:
+    """Drop the fourth channel of a picture and fill what it hides; return also the mask of opaque pixels.
+
+    Raises: PictureError if the whole picture is transparent.
+    """
+    shown = opaque(picture)
+    if not shown.any():
+        raise PictureError(f"{name}: all of the picture is transparent; there is nothing to feel")
+    colours = np.ascontiguousarray(picture[..., :3])
+    return colours if shown.all() else fill_from_nearest(colours, shown), shown
+
+
+def _crop(values: np.ndarray, files: SceneFiles) -> np.ndarray:
     if files.crop is None:
         return values
     x, y, width, height = files.crop
@@ -56,7 +67,7 @@ def _cropped(values: np.ndarray, files: SceneFiles) -> np.ndarray:
     return np.ascontiguousarray(values[y : y + height, x : x + width])
 
 
-def _turned(values: np.ndarray, clockwise_deg: int) -> np.ndarray:
+def _rotate(values: np.ndarray, clockwise_deg: int) -> np.ndarray:
     return np.ascontiguousarray(np.rot90(values, -clockwise_deg // 90)) if clockwise_deg else values
 
 
@@ -70,17 +81,17 @@ def _heights(values: Float32[np.ndarray, "h w"], files: SceneFiles) -> Float32[n
 
 
 def _tones(picture: np.ndarray, files: SceneFiles) -> np.ndarray:
-    """Every channel within the percentiles of the brightness, and turned round: light becomes dark."""
+    """Clip every channel to percentiles of the brightness, and exchange light and dark."""
     if files.clip is None and not files.invert:
         return picture
-    found = picture.copy()
-    tones = found if found.ndim == 2 else found[..., :3]
+    changed = picture.copy()
+    tones = changed if changed.ndim == 2 else changed[..., :3]
     if files.clip is not None and tones.dtype != np.bool_:
         low, high = _range(picture, files.clip)
         np.clip(tones, low, high, out=tones)
     if files.invert:
         tones[...] = ~tones if tones.dtype.kind in "bu" else max(1.0, float(np.nanmax(tones, initial=0))) - tones
-    return found
+    return changed
 
 
 def _range(picture: np.ndarray, percent: tuple[float, float]) -> np.ndarray:

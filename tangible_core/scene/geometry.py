@@ -1,4 +1,4 @@
-"""From disparity to a relief in metres, and between the picture's frame and the workspace (see `data` for both)."""
+"""Geometry from disparity to a relief in metres, and between the frames of picture and workspace (see `data`)."""
 
 from typing import Literal, NamedTuple, TypeVar
 
@@ -10,13 +10,13 @@ from ..errors import GeometryError
 from ..runtime.opencv import plain_opencv
 
 Holes = Literal["fill", "cut"]
-"""What becomes of unknown places: `fill` takes the farther neighbour in the row, `cut` goes down to the base plane."""
+"""Treatment of unknown places: `fill` takes the farther neighbour in the row, `cut` goes down to the base plane."""
 
 RANGE_PERCENT = (0.5, 99.5)
-"""The part of a measured map that spans the relief; what lies beyond, mostly wrong matches, is clipped."""
+"""Percentiles of an estimated map between which the relief spans; values beyond, mostly wrong matches, are clipped."""
 
 TINY, HUGE = 1e-30, 1e30
-"""Beyond these, what is done with a float32 may leave its range."""
+"""Magnitudes beyond which operations on a float32 may leave its range."""
 
 Coordinate = TypeVar("Coordinate", float, np.ndarray)
 
@@ -31,7 +31,7 @@ class ValueRange(NamedTuple):
 def disparity_to_depth(
     disparity_px: Float[np.ndarray, "h w"], focal_px: float, baseline_m: float, offset_px: float = 0.0
 ) -> Float32[np.ndarray, "h w"]:
-    """Depth along the optical axis, Z = f B / (d + offset).
+    """Return the depth along the optical axis, Z = f B / (d + offset).
 
     Parameters: disparity_px (h, w), NaN where unknown; focal_px > 0; baseline_m > 0; offset_px, the difference of the
     principal points' columns, right minus left.
@@ -49,12 +49,12 @@ def disparity_to_depth(
 
 
 def fill_rows(values: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h w"]:
-    """Holes (NaN) filled from the background: what is hidden in one view belongs to what lies behind.
+    """Fill holes (NaN) from the background, as places hidden in one view belong to the surface behind.
 
     Each hole takes the smaller, that is the farther, of its two known neighbours in the row, or the only one; a row
-    without any takes the nearest row that has some, the upper one of two.
+    without known values takes the nearest row with some, the upper one of two.
     Returns: (h, w) without NaN; the array itself if it has no hole.
-    Raises: GeometryError if nothing is known.
+    Raises: GeometryError if every value is unknown.
     Source: Hirschmueller, PAMI 2008, sec. 2.5 (occlusions are filled from the lower disparity).
 
     >>> fill_rows(np.float32([[1, np.nan, 3]]))
@@ -73,7 +73,7 @@ def fill_rows(values: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h w"]:
 
 
 def _neighbours(unknown: Shaped[np.ndarray, "h w"]) -> tuple[Int[np.ndarray, "h w"], Int[np.ndarray, "h w"]]:
-    """Column of the last known value up to each place (-1: none), and of the first one from there (w: none)."""
+    """Return the column of the last known value up to each place (-1: none), and of the next one (w: none)."""
     width = unknown.shape[1]
     columns = np.arange(width, dtype=np.int32)
     before = np.maximum.accumulate(np.where(unknown, np.int32(-1), columns), axis=1)
@@ -82,7 +82,7 @@ def _neighbours(unknown: Shaped[np.ndarray, "h w"]) -> tuple[Int[np.ndarray, "h 
 
 
 def _nearest(known: Shaped[np.ndarray, "n"]) -> Int[np.ndarray, "n"]:
-    """Index of the nearest known place, the lower one of two."""
+    """Return the index of the nearest known place, the lower one of two."""
     places, index = np.flatnonzero(known), np.arange(known.size)
     after = np.searchsorted(places, index)
     low, high = places[np.maximum(after - 1, 0)], places[np.minimum(after, places.size - 1)]
@@ -97,11 +97,11 @@ def make_relief(
     holes: Holes = "fill",
     spans: ValueRange | None = None,
 ) -> Relief:
-    """The relief of a disparity map: the far end at 0, the near end at relief_m, pixels square.
+    """Make the relief of a disparity map: the far end at 0, the near end at relief_m, pixels square.
 
     With a calibration and a disparity in pixels, heights are linear in depth; otherwise in disparity. A disparity at or
-    beyond infinity is far. spans: the range of nearness that spans the relief, that of this map (`nearness_range`)
-    where nothing is said; what lies beyond is clipped.
+    beyond infinity is far. spans: the range of nearness that spans the relief, by default that of this map
+    (`nearness_range`); nearness beyond it is clipped.
     Raises: GeometryError if width_m or relief_m is not positive, or if no depth is known.
     """
     nearness = _nearness(disparity, calibration)
@@ -109,16 +109,16 @@ def make_relief(
 
 
 def nearness_range(disparity: DisparityMap, calibration: Calibration | None) -> ValueRange:
-    """Between percentiles of what is known (RANGE_PERCENT): disparity, or depth with its sign where it is calibrated.
+    """Return the range of known nearness between RANGE_PERCENT: disparity, or, with a calibration, negative depth.
 
-    Its ends are one where the map is constant: the relief is then flat at 0.
+    Both ends are equal if the map is constant: the relief is then flat at 0.
     Raises: GeometryError if no depth is known.
     """
     return _range_of(_nearness(disparity, calibration), RANGE_PERCENT)
 
 
 def _nearness(disparity: DisparityMap, calibration: Calibration | None) -> Float[np.ndarray, "h w"]:
-    """What grows towards the viewer, NaN where unknown. Raises: GeometryError if no depth is known."""
+    """Return values that grow towards the viewer, NaN where unknown. Raises: GeometryError if no depth is known."""
     nearness = disparity.disparity_px
     if calibration is not None and disparity.unit == "px":
         depth = disparity_to_depth(nearness, calibration.focal_px, calibration.baseline_m, calibration.offset_px)
@@ -132,7 +132,7 @@ def _nearness(disparity: DisparityMap, calibration: Calibration | None) -> Float
 
 
 def scale_heights(heights: Shaped[np.ndarray, "h w"], width_m: float, relief_m: float, holes: Holes = "fill") -> Relief:
-    """The relief of a height map in any unit: its lowest place at 0, its highest at relief_m, pixels square.
+    """Make the relief of a height map in any unit: its lowest place at 0, its highest at relief_m, pixels square.
 
     Places that are NaN or infinite are holes.
     Raises: GeometryError if width_m or relief_m is not positive, or if no height is known.
@@ -144,7 +144,7 @@ def scale_heights(heights: Shaped[np.ndarray, "h w"], width_m: float, relief_m: 
 
 
 def flat_relief(shape: tuple[int, int], width_m: float) -> Relief:
-    """A relief of height 0 with (h, w) square cells. Raises: GeometryError if it is empty or width_m not positive."""
+    """Make a relief of height 0 with (h, w) square cells. Raises: GeometryError if empty or width_m is not positive."""
     rows, columns = shape
     return Relief(np.zeros(shape, np.float32), (width_m, width_m * rows / max(columns, 1)))
 
@@ -164,7 +164,7 @@ def _relief(
 
 
 def _range_of(values: Float[np.ndarray, "h w"], percent: tuple[float, float]) -> ValueRange:
-    """Percentiles of the known values, or all of them where these do not differ; the ends are one of a constant map."""
+    """Return percentiles of the known values, or their extremes if these are equal; one value for a constant map."""
     known = values[np.isfinite(values)]
     size = np.max(np.abs(known)) or 1.0  # divided out first: the largest floats have no difference
     parts = known.astype(np.float64) / size
@@ -177,12 +177,12 @@ def _range_of(values: Float[np.ndarray, "h w"], percent: tuple[float, float]) ->
 
 
 def _unit_range(values: Float[np.ndarray, "h w"], spans: ValueRange) -> Float[np.ndarray, "h w"]:
-    """Values clipped to a range and mapped to 0..1; 0 where that is empty."""
+    """Clip values to a range and map them to 0..1; 0 if the range is empty."""
     size = max(abs(spans.low), abs(spans.high)) or 1.0
     low, high = spans.low / size, spans.high / size
     if not low < high:
         return np.zeros(values.shape)
-    if not (spans.high - spans.low > TINY and size < HUGE):  # whose difference, or whose share, is no float32
+    if not (spans.high - spans.low > TINY and size < HUGE):  # their difference, or their share, would not be a float32
         values, spans = values.astype(np.float64) / size, ValueRange(low, high)
     with np.errstate(over="ignore"):
         part = (values - values.dtype.type(spans.low)) * values.dtype.type(1 / (spans.high - spans.low))
@@ -192,7 +192,7 @@ def _unit_range(values: Float[np.ndarray, "h w"], spans: ValueRange) -> Float[np
 def picture_to_workspace(
     column: Coordinate, row: Coordinate, shape: tuple[int, int], extent_m: tuple[float, float]
 ) -> tuple[Coordinate, Coordinate]:
-    """Where a place of an (h, w) picture lies on a surface of this extent: (x_m, y_m).
+    """Return the position (x_m, y_m) of a place of an (h, w) picture on a surface of this extent.
 
     Pixel centres are at whole numbers and each pixel is a cell of the surface, so the picture's left edge is column
     -0.5. Row 0 is far from the user, at the largest y.
@@ -207,7 +207,7 @@ def picture_to_workspace(
 def workspace_to_picture(
     x_m: Coordinate, y_m: Coordinate, shape: tuple[int, int], extent_m: tuple[float, float]
 ) -> tuple[Coordinate, Coordinate]:
-    """The inverse of `picture_to_workspace`: (column, row), not rounded.
+    """Return (column, row), not rounded: the inverse of `picture_to_workspace`.
 
     >>> workspace_to_picture(-0.02, 0.0, (1, 2), (0.08, 0.04))
     (0.0, 0.0)
@@ -217,10 +217,10 @@ def workspace_to_picture(
 
 
 def resample(relief: Relief, shape: tuple[int, int]) -> Relief:
-    """The same surface on another grid of (h, w) cells; extent and metres stay.
+    """Resample the surface on another grid of (h, w) cells; extent and metres stay.
 
     Each cell is taken as a tilted facet whose mean is its height, and each new height is the mean over its cell. So
-    the volume stays, a plane stays that plane, nothing overshoots between cells, and finer and back is the same.
+    the volume stays, a plane stays that plane, nothing overshoots between cells, and refining and back is the same.
     Raises: GeometryError if the shape has no cell.
     Source: van Leer, J. Comput. Phys. 32 (1979), the monotonised central slope.
     """
@@ -231,7 +231,7 @@ def resample(relief: Relief, shape: tuple[int, int]) -> Relief:
 
 
 def _resample_columns(heights: Float64[np.ndarray, "h w"], count: int) -> Float64[np.ndarray, "h n"]:
-    """Means over `count` equal cells a row, as differences of the integral of the facets up to the new edges."""
+    """Return means over `count` equal cells a row, as differences of the facets' integral at the new edges."""
     width = heights.shape[1]
     if width == count:
         return heights
@@ -244,7 +244,7 @@ def _resample_columns(heights: Float64[np.ndarray, "h w"], count: int) -> Float6
 
 
 def _tilts(heights: Float64[np.ndarray, "h w"]) -> Float64[np.ndarray, "h w"]:
-    """Rise across each cell: the central difference, held so that no facet leaves the range of its neighbours."""
+    """Return the rise across each cell: the central difference, limited to the range of the neighbours."""
     if heights.shape[1] == 1:
         return np.zeros_like(heights)
     steps = np.diff(heights, axis=1)
@@ -256,9 +256,9 @@ def _tilts(heights: Float64[np.ndarray, "h w"]) -> Float64[np.ndarray, "h w"]:
 
 
 def smooth(relief: Relief, sigma_m: float) -> Relief:
-    """The relief rounded by a Gaussian of this standard deviation in metres, its borders extended constantly.
+    """Smooth the relief by a Gaussian of this standard deviation in metres, its borders extended constantly.
 
-    Noise of matching is rough where the thing itself is not, and a force law that follows slopes multiplies it.
+    Matching noise is rough where the real surface is not, and a force law that follows slopes amplifies it.
     Raises: GeometryError if sigma_m is negative or not finite.
     """
     if not 0 <= sigma_m < np.inf:
@@ -276,7 +276,7 @@ def smooth(relief: Relief, sigma_m: float) -> Relief:
 
 
 def slopes(relief: Relief) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
-    """Slopes dh/dx and dh/dy in the workspace frame, metres per metre: y runs away from the user, against the rows.
+    """Return slopes dh/dx and dh/dy in the workspace frame, metres per metre; y runs away from the user, against rows.
 
     Central differences, one-sided at the border; 0 along an axis of one cell.
     """
@@ -292,7 +292,7 @@ def _difference(heights: Float32[np.ndarray, "h w"], pitch_m: float, axis: int) 
 
 
 def normals(relief: Relief) -> Float32[np.ndarray, "h w 3"]:
-    """Unit normals (x, y, z) out of the surface, in the workspace frame."""
+    """Return unit normals (x, y, z) out of the surface, in the workspace frame."""
     across, along = slopes(relief)
     up = np.stack([-across, -along, np.ones_like(across)], axis=2)
     return up / np.linalg.norm(up, axis=2, keepdims=True)

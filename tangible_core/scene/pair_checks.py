@@ -1,10 +1,10 @@
-"""Whether left and right were exchanged, as their disparities and what hides what tell.
+"""Checks of a pair's disparity: exchanged views, the same picture twice, hardly any match.
 
-In a pair in the right order, a larger disparity is nearer. With its views exchanged every disparity has the other sign,
-so that parallel cameras give negative ones throughout. But so does a pair in order whose pictures were shifted against
-each other, as a stereo card's are. What settles it is occlusion: between two depths, a strip of one view is hidden in
-the other, and belongs to what lies behind. The contour, and with it an edge in the picture, is where the strip meets
-what lies in front.
+In a pair in the right order, a larger disparity is nearer. With its views exchanged, every disparity has the other
+sign, so that parallel cameras give negative ones throughout. But so does a pair in order whose pictures were shifted
+against each other, as those of a stereo card. Occlusion decides: between two depths, a strip of one view is hidden in
+the other, and belongs to the farther surface. The contour, and with it an edge in the picture, is at the end of the
+strip that touches the nearer surface.
 """
 
 from typing import NamedTuple
@@ -18,44 +18,46 @@ from ..data.pictures import to_grey
 MATCHED = 0.15
 """Confidence above which a disparity was matched, not filled in."""
 NEGATIVE_PX = -2.0
-"""Disparities are negative throughout if all but one in twenty are below this."""
+"""Disparities count as negative throughout if all but one in twenty are below this."""
 MOST_ROWS = 512
-"""Rows that are looked at, evenly spread."""
+"""Largest number of rows that are examined, evenly spread."""
 LEAST_STEP_PX = 3.0
-"""Height of a step between two depths from which it is looked at; and by how much, or by which share, the strip beside
-it may differ from it in width."""
+"""Smallest step between two depths that is examined."""
 STEP_SHARE = 0.4
+"""Largest difference between a step and the width of its strip, as a share of the step; 2 px are always allowed."""
 CLEARER, LEAST_EDGE = 1.5, 0.01
-"""An edge at one end of a strip counts if it is so many times the one at the other end, and this part of white more."""
+"""Factor by which the edge at one end of a strip must exceed the other, plus this share of white."""
 LEAST_MATCHED_TO_JUDGE = 0.2
-"""Part of the picture that must be matched before anything is said."""
+"""Smallest matched share of the picture for a judgement on the order."""
 FEWEST, MAJORITY, MAJORITY_MIXED = 100, 1.8, 2.5
-"""Strips that are heard, and how many times as many must speak against what the signs say; the signs of a pair with
-disparities of either sign say nothing, and it is taken as in order. Real pairs reach 2.0 to 16."""
+"""Fewest strips that decide, and the ratio of votes that overrules the signs: negative throughout, and mixed, which are
+taken as in order. Real pairs reach 2.0 to 16."""
+LEAST_MATCHED = 0.25
+"""Share of the picture below which hardly anything was matched: good pairs reach 0.5 to 0.9, noise 0.02 to 0.12."""
 
 
 class ViewOrder(NamedTuple):
-    """What was found out about the order of two views."""
+    """The order of two views as their disparity shows it."""
 
     exchanged: bool
-    said: str
-    """In words; empty where there is nothing to say."""
+    message: str
+    """A remark for the user; empty if there is none."""
 
 
 IN_ORDER = ViewOrder(False, "")
 
 
 class _Votes(NamedTuple):
-    """Strips whose contour lies where a larger disparity is nearer, and where it is farther."""
+    """Numbers of strips whose contour shows that a larger disparity is nearer, and that it is farther."""
 
     in_order: int
     exchanged: int
 
 
 def view_order(disparity: DisparityMap, left: np.ndarray, offset_px: float = 0.0) -> ViewOrder:
-    """Whether the views were exchanged that this map was found in.
+    """Judge from a disparity map whether its views were exchanged.
 
-    left: the picture that the map belongs to. offset_px: what is added to a disparity before it is a distance.
+    left: the picture that the map belongs to. offset_px: added to a disparity before it is converted to a distance.
     """
     if disparity.unit != "px":
         return IN_ORDER
@@ -73,34 +75,34 @@ def view_order(disparity: DisparityMap, left: np.ndarray, offset_px: float = 0.0
         return _of_negative(votes, explained=bool(low + offset_px > 0))
     if sum(votes) < FEWEST or votes.exchanged < MAJORITY_MIXED * votes.in_order:
         return IN_ORDER
-    return _exchanged(f"{votes.exchanged} of {sum(votes)} contours hide what they hide in exchanged views alone")
+    return _as_exchanged(f"{votes.exchanged} of {sum(votes)} contours occlude as in exchanged views")
 
 
 def _of_negative(votes: _Votes, explained: bool) -> ViewOrder:
-    """Where every disparity is negative. explained: the cameras are known, and give such ones."""
+    """Judge a map whose disparities are all negative. explained: the known cameras cause negative disparities."""
     if explained:
         return IN_ORDER
     if sum(votes) >= FEWEST and votes.in_order >= MAJORITY * votes.exchanged:
-        hide = f"{votes.in_order} of {sum(votes)} contours hide what they hide in this order alone"
-        return ViewOrder(False, f"every disparity is negative, and yet left and right are in order: {hide}")
-    return _exchanged("every disparity is negative")
+        reason = f"{votes.in_order} of {sum(votes)} contours occlude as in this order"
+        return ViewOrder(False, f"every disparity is negative, and yet left and right are in order: {reason}")
+    return _as_exchanged("every disparity is negative")
 
 
-def _exchanged(reason: str) -> ViewOrder:
+def _as_exchanged(reason: str) -> ViewOrder:
     return ViewOrder(
         True,
-        f"left and right seem to be exchanged: {reason}. The depth was put right, and lies under the picture that is "
+        f"left and right seem to be exchanged: {reason}. The depth was corrected, and belongs to the picture that is "
         "named left. Exchange the two names; or, if they are in order, write `order: as-named` under `scene:`",
     )
 
 
-def put_right(disparity: DisparityMap) -> DisparityMap:
-    """The map of exchanged views with larger disparities nearer, still of the picture that it was found for."""
+def correct_exchanged(disparity: DisparityMap) -> DisparityMap:
+    """Return the map of exchanged views with larger disparities nearer, for the same picture."""
     return DisparityMap(-disparity.disparity_px, disparity.confidence, disparity.unit)
 
 
 def _votes(values: Float32[np.ndarray, "h w"], grey: Float32[np.ndarray, "h w"]) -> _Votes:
-    """values: NaN where nothing was matched."""
+    """Count the strips for either order. values: NaN where nothing was matched."""
     known_rows, known_columns = np.nonzero(~np.isnan(values))
     same_row = known_rows[1:] == known_rows[:-1]
     row, before, after = (each[same_row] for each in (known_rows[1:], known_columns[:-1], known_columns[1:]))
@@ -117,7 +119,7 @@ def _votes(values: Float32[np.ndarray, "h w"], grey: Float32[np.ndarray, "h w"])
 
 
 def _slope(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
-    """The steepest slope along the row within one pixel."""
+    """Return the steepest slope along the row within one pixel."""
     slope = np.zeros_like(grey)
     slope[:, 1:-1] = np.abs(grey[:, 2:] - grey[:, :-2]) / 2
     steepest = slope.copy()
@@ -126,12 +128,8 @@ def _slope(grey: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:
     return steepest
 
 
-LEAST_MATCHED = 0.25
-"""Part of the picture below which hardly anything was matched: good pairs reach 0.5 to 0.9, noise 0.02 to 0.12."""
-
-
-def same_twice(views: Views, disparity: DisparityMap) -> str:
-    """What to say of a depth that was asked of one picture twice; empty of two pictures, or where one is enough."""
+def identical_views(views: Views, disparity: DisparityMap) -> str:
+    """Return a warning if depth was matched between a picture and itself; empty otherwise."""
     if disparity.unit != "px" or views.right is None or not np.array_equal(views.left, views.right):
         return ""
     return (
@@ -140,10 +138,10 @@ def same_twice(views: Views, disparity: DisparityMap) -> str:
     )
 
 
-def hardly_matched(disparity: DisparityMap, known: Bool[np.ndarray, "h w"] | None = None) -> str:
-    """What to say of a map that is mostly filled in, with likely causes and cures; empty where enough was matched.
+def few_matches(disparity: DisparityMap, known: Bool[np.ndarray, "h w"] | None = None) -> str:
+    """Return a warning, with likely causes and cures, for a map that is mostly filled in; empty otherwise.
 
-    known: where the picture shows anything.
+    known: mask of the pixels at which the picture shows something.
     """
     matched = np.isfinite(disparity.disparity_px) & (disparity.confidence > MATCHED)
     shown = matched if known is None else matched[known]
@@ -152,6 +150,6 @@ def hardly_matched(disparity: DisparityMap, known: Bool[np.ndarray, "h w"] | Non
     return (
         f"hardly anything matches in the two pictures: a depth was found for {share:.0%} of the left one, and the rest "
         "is filled in. Check that both show the same scene at the same time, from side by side and equally sharp, and "
-        "that left and right are not exchanged; let pictures of cameras that did not look in parallel be turned "
+        "that left and right are not exchanged; rectify pictures of cameras that did not look in parallel "
         "(`rectify: auto`); search a wider range (`max_disparity_px`); or try another depth method"
     )

@@ -1,4 +1,4 @@
-"""A pair taken by two known cameras: turned so that its rows correspond; depth then comes out in metres."""
+"""Rectification of a pair from two calibrated cameras, so that its rows correspond and depth comes out in metres."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -16,17 +16,17 @@ COEFFICIENTS: dict[Distortion, tuple[int, ...]] = {
     "radial-tangential": (0, 4, 5, 8, 12, 14),
     "equidistant": (0, 4),
 }
-"""How many of them a model of the lens may have."""
+"""Numbers of distortion coefficients that each lens model may have."""
 GROWTH = 2.0
-"""The turned picture is at most so many times as wide and as high as it was."""
+"""Largest width and height of a rectified picture, as a multiple of the raw one."""
 
 
 @dataclass(frozen=True, eq=False)
 class Camera(Record):
-    """One camera: K in pixels, (3, 3), and the distortion of its lens.
+    """A camera: K in pixels, (3, 3), and the distortion of its lens.
 
     distortion: OpenCV's k1, k2, p1, p2[, k3 ...] (radial-tangential), or k1 to k4 of a fisheye (equidistant).
-    Raises: GeometryError if these are no camera's.
+    Raises: GeometryError for values that no camera has.
     """
 
     matrix: Float64[np.ndarray, "3 3"]
@@ -38,10 +38,10 @@ class Camera(Record):
         matrix = self.matrix
         if matrix.shape != (3, 3) or not np.isfinite(matrix).all() or min(matrix[0, 0], matrix[1, 1]) <= 0:
             raise GeometryError(f"a camera matrix is K, (3, 3), with positive focal lengths, not {quoted(matrix)}")
-        known = COEFFICIENTS[self.model]
-        if self.distortion.ndim != 1 or self.distortion.size not in known or not np.isfinite(self.distortion).all():
+        counts = COEFFICIENTS[self.model]
+        if self.distortion.ndim != 1 or self.distortion.size not in counts or not np.isfinite(self.distortion).all():
             raise GeometryError(
-                f"a {self.model} lens has {' or '.join(map(str, known))} finite coefficients, not "
+                f"a {self.model} lens has {' or '.join(map(str, counts))} finite coefficients, not "
                 f"{quoted(self.distortion)}"
             )
 
@@ -50,7 +50,7 @@ class Camera(Record):
 class StereoRig(Record):
     """Two cameras: a point X_left in metres is X_right = rotation X_left + translation_m.
 
-    Raises: GeometryError if the rotation is none, or the right camera does not stand to the right of the left one.
+    Raises: GeometryError if the rotation is not one, or the right camera is not to the right of the left one.
     """
 
     left: Camera
@@ -73,7 +73,7 @@ class StereoRig(Record):
 
     @property
     def centre_m(self) -> tuple[float, float, float]:
-        """Where the right camera stands, seen from the left one."""
+        """The position of the right camera in the frame of the left one."""
         x, y, z = (-np.einsum("ji,j->i", self.rotation, self.translation_m)).tolist()
         return x, y, z
 
@@ -82,28 +82,28 @@ class RectifiedViews(NamedTuple):
     """A pair whose rows correspond."""
 
     views: Views
-    """With the calibration that gives Z = f B / d."""
+    """The rectified pair, with the calibration that gives Z = f B / d."""
     known: Bool[np.ndarray, "h w"]
-    """Where the turned left picture shows anything."""
+    """Mask of the pixels at which the rectified left picture shows the raw one."""
 
 
-def turned(views: Views, rig: StereoRig) -> RectifiedViews:
-    """A raw pair free of distortion, its rows along the baseline, on a canvas that holds the left picture.
+def rectify_views(views: Views, rig: StereoRig) -> RectifiedViews:
+    """Rectify a raw pair: no distortion, rows along the baseline, a canvas that holds the left picture.
 
-    The new axes are the baseline, and the mean viewing direction made square to it. Depth is along the new axis.
-    Raises: PictureError if there is only one view; GeometryError if the cameras look so that no canvas holds a picture.
+    The new axes are the baseline, and the mean viewing direction made orthogonal to it. Depth is along the new axis.
+    Raises: PictureError if there is only one view; GeometryError if no canvas holds a picture of these cameras.
     Source: Fusiello, Trucco & Verri, A compact algorithm for rectification of stereo pairs, 2000; OpenCV's
     initUndistortRectifyMap for the lenses.
     """
-    return Turning(rig, views.shape).of(views)
+    return Rectifier(rig, views.shape).rectify(views)
 
 
 @final
-class Turning:
-    """What `turned` does to the pairs of one rig and size, found once for many of them."""
+class Rectifier:
+    """The maps of `rectify_views` for one rig and size, computed once for many pairs."""
 
     def __init__(self, rig: StereoRig, shape: tuple[int, int]) -> None:
-        """shape: (h, w) of each picture. Raises: GeometryError as `turned`."""
+        """shape: (h, w) of each picture. Raises: GeometryError as `rectify_views`."""
         axes = _axes(np.array(rig.centre_m), looking=rig.rotation[2] + [0, 0, 1])
         focal = float((rig.left.matrix[1, 1] + rig.right.matrix[1, 1]) / 2)
         camera = np.array([[focal, 0, rig.left.matrix[0, 2]], [0, focal, rig.left.matrix[1, 2]], [0, 0, 1.0]])
@@ -112,11 +112,11 @@ class Turning:
         self._right = _places(rig.right, np.einsum("ij,kj->ik", axes, rig.rotation), camera, size)
         self._calibration = Calibration(focal, _length(np.array(rig.centre_m)))
 
-    def of(self, views: Views) -> RectifiedViews:
-        """A pair of the size that was said. Raises: PictureError if there is only one view."""
+    def rectify(self, views: Views) -> RectifiedViews:
+        """Rectify a pair of this size. Raises: PictureError if there is only one view."""
         if views.right is None:
             raise PictureError("a stereo rig takes two views; give a right one")
-        left, right = _warped(views.left, *self._left), _warped(views.right, *self._right)
+        left, right = _warp(views.left, *self._left), _warp(views.right, *self._right)
         columns, rows = self._left
         height, width = views.shape
         inside = (columns > -0.5) & (columns < width - 0.5) & (rows > -0.5) & (rows < height - 0.5)
@@ -124,7 +124,7 @@ class Turning:
 
 
 def _axes(baseline: np.ndarray, looking: np.ndarray) -> Float64[np.ndarray, "3 3"]:
-    """Rows: unit vectors along the baseline, square to it and the view, and the new viewing direction."""
+    """Return unit vectors as rows: along the baseline, orthogonal to it and the view, and the new viewing direction."""
     x = baseline / _length(baseline)
     y = np.cross(looking, x)
     y /= max(_length(y), np.finfo(np.float64).tiny)
@@ -132,18 +132,18 @@ def _axes(baseline: np.ndarray, looking: np.ndarray) -> Float64[np.ndarray, "3 3
 
 
 def _canvas(lens: Camera, axes: np.ndarray, camera: np.ndarray, shape: tuple[int, int]) -> tuple[int, int]:
-    """Width and height that hold the turned left picture; its camera's centre is moved accordingly.
+    """Return the width and height that hold the rectified left picture; move the centre in `camera` accordingly.
 
-    Raises: GeometryError if the picture is turned behind the camera.
+    Raises: GeometryError if a part of the picture comes to lie behind the camera.
     """
     rows, columns = shape
     across, down = np.linspace(0, columns - 1, 33), np.linspace(0, rows - 1, 33)
     border = [np.column_stack([across, np.full(33, y)]) for y in (0, rows - 1)]
     border += [np.column_stack([np.full(33, x), down]) for x in (0, columns - 1)]
-    seen = undistorted(np.vstack(border), lens, axes, camera)
+    seen = undistort_points(np.vstack(border), lens, axes, camera)
     if not np.isfinite(seen).all():
-        raise GeometryError("the cameras look along their baseline or apart; such a pair cannot be turned to one row")
-    seen = np.round(seen, 6)  # so that no last bit decides on a row more
+        raise GeometryError("the cameras look along their baseline or apart; such a pair cannot be rectified")
+    seen = np.round(seen, 6)  # so that a last bit does not add a row
     low, high = np.floor(seen.min(axis=0)), np.ceil(seen.max(axis=0))
     middle, most = (low + high) / 2, GROWTH * np.array([columns, rows])
     low, high = np.maximum(low, np.floor(middle - most / 2)), np.minimum(high, np.ceil(middle + most / 2))
@@ -152,10 +152,10 @@ def _canvas(lens: Camera, axes: np.ndarray, camera: np.ndarray, shape: tuple[int
     return width, height
 
 
-def undistorted(
+def undistort_points(
     points_px: Float64[np.ndarray, "n 2"], lens: Camera, axes: np.ndarray, camera: np.ndarray
 ) -> Float64[np.ndarray, "n 2"]:
-    """Where points of a raw picture are seen by the camera without distortion, its axes turned; NaN behind it."""
+    """Return points of a raw picture as the camera without distortion, with these axes, sees them; NaN behind it."""
     import cv2
 
     undo: Any = cv2.fisheye.undistortPoints if lens.model == "equidistant" else cv2.undistortPoints
@@ -167,7 +167,7 @@ def undistorted(
 
 
 class _Places(NamedTuple):
-    """Where each pixel of a turned picture is in the raw one."""
+    """The position in the raw picture of each pixel of a rectified one."""
 
     columns: Float32[np.ndarray, "h w"]
     rows: Float32[np.ndarray, "h w"]
@@ -181,24 +181,24 @@ def _places(lens: Camera, axes: np.ndarray, camera: np.ndarray, size: tuple[int,
         return _Places(*find(lens.matrix, _coefficients(lens), axes, camera, size, cv2.CV_32FC1))
 
 
-def _warped(picture: np.ndarray, columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
+def _warp(picture: np.ndarray, columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
     import cv2
 
     if picture.dtype.name not in ("uint8", "uint16", "float32", "float64"):
         picture = picture.astype(np.float32)
     with plain_opencv():
         raw = np.ascontiguousarray(picture)
-        found = cv2.remap(raw, columns, rows, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
-    return np.clip(found, picture.min(), picture.max(), out=found)
+        warped = cv2.remap(raw, columns, rows, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
+    return np.clip(warped, picture.min(), picture.max(), out=warped)
 
 
 def _coefficients(lens: Camera) -> np.ndarray:
     return lens.distortion if lens.distortion.size else np.zeros(4)
 
 
-def _is_rotation(turn: np.ndarray) -> bool:
-    straight = np.allclose(np.einsum("ik,jk->ij", turn, turn), np.eye(3), atol=1e-6)
-    return bool(straight and np.sum(np.cross(turn[0], turn[1]) * turn[2]) > 0)
+def _is_rotation(matrix: np.ndarray) -> bool:
+    straight = np.allclose(np.einsum("ik,jk->ij", matrix, matrix), np.eye(3), atol=1e-6)
+    return bool(straight and np.sum(np.cross(matrix[0], matrix[1]) * matrix[2]) > 0)
 
 
 def _length(vector: np.ndarray) -> float:

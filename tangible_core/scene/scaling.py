@@ -1,4 +1,4 @@
-"""Pictures and maps at a size that can be felt, and what is found in them at the size of the pictures again."""
+"""Reduction of pictures and maps to a size that can be felt, and enlargement of results to the pictures' size."""
 
 import numpy as np
 from jaxtyping import Bool, Float32, Int32
@@ -8,9 +8,9 @@ from ..runtime.opencv import plain_opencv
 
 
 def felt_factor(columns: int, width_m: float, finest_m: float) -> float:
-    """By how much a picture of so many columns can be reduced before a pixel is wider than finest_m; at least 1.
+    """Return the factor by which a picture can be reduced before a pixel is wider than finest_m; at least 1.
 
-    In steps of a half, so that a new pixel is a mean of whole and half ones.
+    In steps of a half, so that a new pixel is a mean of whole and half pixels.
 
     >>> felt_factor(6000, 0.08, 3e-5), felt_factor(4032, 0.08, 3e-5), felt_factor(741, 0.08, 3e-5)
     (2.0, 1.5, 1)
@@ -19,13 +19,13 @@ def felt_factor(columns: int, width_m: float, finest_m: float) -> float:
 
 
 def reduced_shape(shape: tuple[int, int], factor: float) -> tuple[int, int]:
-    """Rows and columns of what is reduced to 1/factor; at least one of each."""
+    """Return the rows and columns of a picture reduced to 1/factor; at least one of each."""
     rows, columns = (max(1, round(side / factor)) for side in shape)
     return rows, columns
 
 
-def reduced(views: Views, factor: float) -> Views:
-    """Views of 1/factor of the size, each pixel a mean over its area; without calibration, whose pixels are others."""
+def reduce_views(views: Views, factor: float) -> Views:
+    """Reduce views to 1/factor, each pixel a mean over its area; the calibration, in other pixels, is dropped."""
     if factor == 1:
         return views
     rows, columns = reduced_shape(views.shape, factor)
@@ -34,7 +34,7 @@ def reduced(views: Views, factor: float) -> Views:
 
 
 def reduced_map(values: Float32[np.ndarray, "h w"], shape: tuple[int, int]) -> Float32[np.ndarray, "r c"]:
-    """A smaller map of (r, c), each value a mean of what is known in its area; NaN where that is less than half."""
+    """Reduce a map to (r, c), each value the mean of the known values in its area; NaN if less than half is known."""
     if values.shape == shape:
         return values
     known = np.isfinite(values)
@@ -48,12 +48,12 @@ def reduced_map(values: Float32[np.ndarray, "h w"], shape: tuple[int, int]) -> F
 
 
 def reduced_mask(known: Bool[np.ndarray, "h w"], shape: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
-    """A smaller mask of (r, c), where at least half of an area is."""
+    """Reduce a mask to (r, c), True where at least half of an area is True."""
     return known if known.shape == shape else _mean(known.astype(np.float32), *shape) >= 0.5
 
 
 def reduced_disparity(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
-    """The disparity of the pictures, in their pixels still, on a coarser grid of (r, c)."""
+    """Reduce disparity to a coarser grid of (r, c); its unit stays pixels of the pictures."""
     if disparity.disparity_px.shape == shape:
         return disparity
     values = reduced_map(disparity.disparity_px, shape)
@@ -61,7 +61,7 @@ def reduced_disparity(disparity: DisparityMap, shape: tuple[int, int]) -> Dispar
 
 
 def reduced_segments(segments: SegmentMap, shape: tuple[int, int]) -> SegmentMap:
-    """The segments of the pictures on a coarser grid of (r, c): of the middle pixels, but none is lost."""
+    """Reduce segments to a coarser grid of (r, c), by the middle pixel of each cell; no segment is lost."""
     whole = segments.labels
     if whole.shape == shape:
         return segments
@@ -74,7 +74,7 @@ def reduced_segments(segments: SegmentMap, shape: tuple[int, int]) -> SegmentMap
 
 
 def in_pixels_of(disparity: DisparityMap, columns: int) -> DisparityMap:
-    """The disparity of reduced views, on their grid, in pixels of the pictures, which have so many columns."""
+    """Convert disparity of reduced views, on their grid, to pixels of the pictures, which have this many columns."""
     if disparity.unit != "px" or disparity.disparity_px.shape[1] == columns:
         return disparity
     scale = np.float32(columns / disparity.disparity_px.shape[1])
@@ -82,19 +82,19 @@ def in_pixels_of(disparity: DisparityMap, columns: int) -> DisparityMap:
 
 
 def on_grid(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
-    """The same disparity on a finer grid of (h, w); between its places it is linear."""
+    """Interpolate disparity on a finer grid of (h, w), linearly; its values stay."""
     if disparity.disparity_px.shape == shape:
         return disparity
-    return DisparityMap(_resized(disparity.disparity_px, shape), _resized(disparity.confidence, shape), disparity.unit)
+    return DisparityMap(_resize(disparity.disparity_px, shape), _resize(disparity.confidence, shape), disparity.unit)
 
 
-def enlarged(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
-    """The disparity of reduced views for views of (h, w), in their pixels; between pixels it is linear."""
+def enlarge_disparity(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
+    """Convert disparity of reduced views to the grid and the pixels of views of (h, w), linearly."""
     return on_grid(in_pixels_of(disparity, shape[1]), shape)
 
 
 def enlarged_segments(segments: SegmentMap, shape: tuple[int, int]) -> SegmentMap:
-    """The segments of a reduced picture for one of (h, w): of the nearest pixel, in the same order of labels."""
+    """Enlarge the segments of a reduced picture to (h, w), by the nearest pixel, in the same order of labels."""
     import cv2
 
     if segments.labels.shape == shape:
@@ -105,7 +105,7 @@ def enlarged_segments(segments: SegmentMap, shape: tuple[int, int]) -> SegmentMa
 
 
 def enlarged_parts(parts: PartMap, shape: tuple[int, int]) -> PartMap:
-    """The parts of a reduced picture for one of (h, w): of the nearest pixel, with the same numbers."""
+    """Enlarge the parts of a reduced picture to (h, w), by the nearest pixel, with the same numbers."""
     return parts if parts.labels.shape == shape else PartMap(_nearest(parts.labels, shape), parts.segments)
 
 
@@ -126,8 +126,8 @@ def _mean(picture: np.ndarray, rows: int, columns: int) -> np.ndarray:
         return np.asarray(cv2.resize(picture, (columns, rows), interpolation=cv2.INTER_AREA))
 
 
-def _resized(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
-    """Linear between known values; beside a hole, the nearest one."""
+def _resize(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Interpolate linearly between known values; next to a hole, take the nearest value."""
     import cv2
 
     size = shape[1], shape[0]

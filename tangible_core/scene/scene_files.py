@@ -1,15 +1,16 @@
-"""A scene in files: which files, and what is known of the cameras."""
+"""The block `scene:` of a pipeline file: its files and their options, builtin scenes, and readers of other forms."""
 
 import re
-from collections.abc import Collection, Mapping
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from ..data import Calibration
 from ..data.quantities import Quantities
-from ..errors import did_you_mean, quoted
+from ..errors import PictureError, did_you_mean, quoted
 from .formats.pictures import NonFinite, TruthScale
 
 Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -25,17 +26,16 @@ _NEEDS = {
     **{"relief_m": "height", "rig": "left", "rig_unit_m": "rig", "nodata": "height"},
     **{"truth_scale": "truth", "fps": "video", "repeat": "video"},
 }
-_ALONE = ("rotate", "invert", "clip")
-_BESIDE_VIDEO = ("video", "layout", "fps", "segments", "crop", "repeat")
-_BESIDE_PAIRS = ("focal_px", "baseline_m", "offset_px", "rig", "rig_unit_m", "order")
-"""Beside a video whose frames are pairs."""
+_OF_ONE_VIEW = ("rotate", "invert", "clip")
+_OF_VIDEOS = ("video", "layout", "fps", "segments", "crop", "repeat")
+_OF_VIDEO_PAIRS = ("focal_px", "baseline_m", "offset_px", "rig", "rig_unit_m", "order")
 _OF_VIEWS = ("disparity", "truth", "truth_scale", "focal_px", "baseline_m", "offset_px")
 
 
 def _video(value: object) -> object:
-    """Raises: ValueError for what names no video."""
+    """Check the source of a video. Raises: ValueError."""
     if isinstance(value, str) and re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", value):
-        raise ValueError("no address is opened: save the video, and name its file")
+        raise ValueError("addresses are not opened: save the video, and name its file")
     if isinstance(value, bool) or value == "" or not isinstance(value, str | Path | int | None):
         raise ValueError(_WHAT_VIDEO)
     if isinstance(value, int) and not 0 <= value <= LAST_CAMERA:
@@ -55,40 +55,39 @@ class SceneFiles(Quantities):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     left: Path | None = None
-    """Left view of a rectified pair."""
+    """The left view of a rectified pair."""
     right: Path | None = None
-    """Right view of a rectified pair, of the same size."""
+    """The right view of a rectified pair, of the same size."""
     stereo: Path | None = None
     """A rectified pair in one file: two halves of a picture, a .jps file, or the two pictures of an .mpo file."""
     video: VideoSource | None = None
     """A video file, a folder of pictures in the order of their numbers, or the number of a camera, from 0.
-    `tangible feel` plays it; everything else takes its first frame."""
+    `tangible feel` plays it; everything else uses its first frame."""
     fps: Fps | None = None
-    """Frames of the video a second. When left out, what the file or the camera says, and 30 for a folder."""
+    """Frames of the video a second. When left out, the rate that the file or the camera states, and 30 for a folder."""
     repeat: bool = True
-    """Whether the video begins again at its end."""
+    """Start the video again at its end."""
     layout: VideoLayout | None = None
-    """How the halves of `stereo`, or of each frame of `video`, lie: `side-by-side`, the left view on the left;
+    """Arrangement of the halves of `stereo`, or of each frame of `video`: `side-by-side`, the left view on the left;
     `cross-eyed`, the left view on the right; `top-bottom`, the left view on top; `mono`, for a video of one view. When
-    left out, as the file says, and otherwise side-by-side (.jps: cross-eyed); a video's, mono."""
+    left out, the one that the file states, and otherwise side-by-side (.jps: cross-eyed; a video: mono)."""
     photo: Path | None = None
     """A single picture."""
     photo_depth: bool = True
-    """Whether the depth that a phone kept in the photo is taken, where there is one; no depth is estimated then."""
+    """Use the depth map that a phone stored in the photo, if there is one; no depth is estimated then."""
     height: Path | None = None
     """A height map in any unit, larger values standing higher: a grey picture, .npy, .pfm or .tif; or heights in
-    millimetres as the exporter `heights` writes them, which keep their size: .json, or the picture beside it. No depth
+    millimetres as the exporter `heights` writes them, which keep their size: .json, or the picture next to it. No depth
     is estimated."""
     disparity: Path | None = None
     """A disparity map of the left view or the photo, in pixels, NaN where unknown. No depth is estimated."""
     segments: Path | None = None
     """A label picture: one colour or number per segment. No texture is segmented."""
     truth: Path | None = None
-    """Ground-truth disparity of the left view, in pixels, NaN or infinite where unknown; used for error figures
-    only."""
+    """Ground-truth disparity of the left view, in pixels, NaN or infinite where unknown; only for error figures."""
     truth_scale: TruthScale | None = None
-    """What a pixel of disparity is in the file `truth`, 0 being unknown there: 256 in KITTI's, 4 in Middlebury's of
-    2003, `sintel` for Sintel's three channels. When left out, its numbers are pixels."""
+    """Value in the file `truth` that stands for one pixel of disparity, where 0 is unknown: 256 for KITTI, 4 for
+    Middlebury 2003, `sintel` for Sintel's three channels. When left out, its numbers are pixels."""
     focal_px: Length | None = None
     """Focal length of the rectified cameras, in pixels; with `baseline_m`, the relief is proportional to depth."""
     baseline_m: Length | None = None
@@ -103,25 +102,25 @@ class SceneFiles(Quantities):
     relief_m: Length | None = None
     """Height of the relief made from a height map; by default that of `workspace`."""
     order: Literal["as-named"] | None = None
-    """`as-named`: left and right are in order, whatever is found out. When left out, views that show to be exchanged
-    are put right: larger disparities of the view named left are then nearer, and it is said."""
+    """`as-named`: left and right are in order, and not checked. When left out, the depth of exchanged views is
+    corrected, with a warning: larger disparities of the view named left are then nearer."""
 
     crop: tuple[Start, Start, Count, Count] | None = None
-    """The part that is felt, [x, y, width, height] in pixels of the upright picture, x and y from its upper left
-    corner. All files of the scene are cropped alike; points of materials count from the part's corner."""
+    """The part to use, [x, y, width, height] in pixels of the upright picture, x and y from its upper left corner. All
+    files of the scene are cropped alike; points of materials count from the part's corner."""
     rotate: Literal[0, 90, 180, 270] = 0
-    """Turn a photo, a video of one view, or a height map so many degrees clockwise, after cropping."""
+    """Clockwise rotation of a photo, a video of one view, or a height map, in degrees, after cropping."""
     invert: bool = False
-    """Turn light and dark of a photo or a video round, or high and low of a height map."""
+    """Exchange light and dark of a photo or a video, or high and low of a height map."""
     nodata: Number | tuple[Number, ...] | None = None
-    """Values of a height map that mean that nothing is known there, such as -9999. One that the file states itself
-    (GDAL's tag of a GeoTIFF) needs no mention."""
+    """Values of a height map that stand for no data, such as -9999. The one that a GeoTIFF states itself (GDAL's tag)
+    is used anyway."""
     clip: tuple[Percent, Percent] | None = None
-    """Percentiles between which a photo's brightness or a map's heights are kept, such as [1, 99]: what lies beyond
-    becomes the nearer of them, so that a few spikes do not take up the whole relief."""
+    """Percentiles to which a photo's brightness or a map's heights are clipped, such as [1, 99], so that a few spikes
+    do not take up the whole relief."""
     non_finite: NonFinite = "error"
-    """What to do with NaN and infinity in a picture. `error`: stop, and name the first such pixel. `mask`: fill from
-    the nearest pixel, and leave the disparity unknown and the segment's confidence 0 there."""
+    """Treatment of NaN and infinity in a picture. `error`: stop, and name the first such pixel. `mask`: fill from the
+    nearest pixel, and leave the disparity unknown and the segment's confidence 0 there."""
 
     @model_validator(mode="after")
     def _one_scene(self) -> Self:
@@ -131,7 +130,7 @@ class SceneFiles(Quantities):
         given += [] if self.repeat else ["repeat"]
         if "video" in given:
             given += [] if self.non_finite == "error" else ["non_finite"]
-            self._check_video([*given, *(name for name in ("crop", *_ALONE) if getattr(self, name))])
+            self._check_video([*given, *(name for name in ("crop", *_OF_ONE_VIEW) if getattr(self, name))])
             return self
         kinds = [kind for kind in (("left", "right"), ("stereo",), ("photo",), ("height",)) if set(kind) & set(given)]
         if self.stereo and (idle := [name for name in ("left", "right", "photo", "height") if name in given]):
@@ -141,40 +140,40 @@ class SceneFiles(Quantities):
             raise ValueError(f"a scene is either left and right, or photo, or height, or video; this one gives {named}")
         self._check_needs(given)
         if "layout" in given and (not self.stereo or self.layout == "mono"):
-            raise ValueError("layout needs stereo beside it, or video; mono is for a video")
+            raise ValueError("layout needs stereo or video; mono is for a video")
         if idle := self.rig and [name for name in given if name in _OF_VIEWS or name == "segments"]:
-            raise ValueError(f"rig says what the cameras are, and turns the pictures; leave out {', '.join(idle)}")
+            raise ValueError(f"rig gives the cameras and rectifies the pictures; leave out {', '.join(idle)}")
         if idle := self.height and [name for name in given if name in _OF_VIEWS]:
             raise ValueError(f"height already gives all heights; leave out {', '.join(idle)}")
         self._check_framing()
         return self
 
     def _check_needs(self, given: Collection[str]) -> None:
-        """Raises: ValueError for what says nothing alone."""
+        """Check that an option stands with the one that it needs. Raises: ValueError."""
         for name, other in _NEEDS.items():
             if name in given and other not in given:
-                raise ValueError(f"{name} needs {other} beside it")
+                raise ValueError(f"{name} needs {other}")
 
     def _check_video(self, given: Collection[str]) -> None:
-        """Raises: ValueError for what cannot stand beside a video."""
+        """Check the options of a video. Raises: ValueError."""
         self._check_needs(set(given) | ({"left"} if self.rig else set()))
         mono = self.layout in (None, "mono")
-        fitting = {*_BESIDE_VIDEO, *(("rotate", "invert") if mono else _BESIDE_PAIRS)}
+        fitting = {*_OF_VIDEOS, *(("rotate", "invert") if mono else _OF_VIDEO_PAIRS)}
         idle = [name for name in given if name not in fitting]
-        if mono and idle and set(idle) <= set(_BESIDE_PAIRS):
-            raise ValueError(f"{', '.join(idle)} is for two views; say how they lie in the video: layout: side-by-side")
+        if mono and idle and set(idle) <= set(_OF_VIDEO_PAIRS):
+            raise ValueError(f"{', '.join(idle)} is for two views; give their layout, such as layout: side-by-side")
         if not mono and idle and set(idle) <= {"rotate", "invert"}:
             raise ValueError(f"{' and '.join(idle)} is for one view: the rows of a pair's views belong together")
         if idle:
-            raise ValueError(f"a video gives all that is seen; leave out {', '.join(idle)}")
+            raise ValueError(f"a video gives the whole scene; leave out {', '.join(idle)}")
         if self.rig and (idle := [name for name in given if name in (*_OF_VIEWS, "segments", "crop")]):
-            raise ValueError(f"rig says what the cameras are, and turns the pictures; leave out {', '.join(idle)}")
+            raise ValueError(f"rig gives the cameras and rectifies the pictures; leave out {', '.join(idle)}")
 
     def _check_framing(self) -> None:
-        """Raises: ValueError for what cannot be done with this kind of scene."""
+        """Check crop, rotate, invert and clip for this kind of scene. Raises: ValueError."""
         if self.clip is not None and not self.clip[0] < self.clip[1]:
             raise ValueError(f"clip is [low, high] with low < high, not {list(self.clip)}")
-        if self.main in ("left", "stereo") and (idle := [name for name in _ALONE if getattr(self, name)]):
+        if self.main in ("left", "stereo") and (idle := [name for name in _OF_ONE_VIEW if getattr(self, name)]):
             raise ValueError(
                 f"{' and '.join(idle)} is for a photo or a height map: the rows of a pair's views belong together"
             )
@@ -183,14 +182,14 @@ class SceneFiles(Quantities):
 
     @property
     def main(self) -> Literal["left", "stereo", "photo", "height", "video"]:
-        """The field that says what kind of scene this is, and whose size the others share."""
+        """The field that decides the kind of scene, and whose size the others share."""
         if self.video is not None:
             return "video"
         return "left" if self.left else "stereo" if self.stereo else "photo" if self.photo else "height"
 
     @property
     def calibration(self) -> Calibration | None:
-        """The cameras, where they are known."""
+        """The calibration of the cameras, if it is known."""
         if self.focal_px is None or self.baseline_m is None:
             return None
         return Calibration(self.focal_px, self.baseline_m, self.offset_px or 0.0)
@@ -211,9 +210,44 @@ BUILTINS: Mapping[str, SceneFiles] = {
 (Scharstein et al., GCPR 2014) at a quarter of its size, with the calibration in `skimage.data.stereo_motorcycle`."""
 
 
+class SceneReader(Quantities, ABC):
+    """A form of the block `scene:` that stands for files; its fields are the keys of the block.
+
+    A package names its readers in the entry-point group `tangible.scene`. The name of the entry point is the key that
+    only blocks of this form have, such as `set` in `scene: {set: kitti-2015, name: 000000_10}`.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    @abstractmethod
+    def files(self) -> SceneFiles:
+        """Find the files of the scene. Raises: TangibleError."""
+
+    @classmethod
+    def suggest(cls, key: str, block: Mapping[str, Any]) -> Iterable[str]:
+        """Return values of this key for the completion in a shell; block: the keys of `scene:` given so far."""
+        return ()
+
+
+def builtin_files(name: str) -> SceneFiles:
+    """Return the files of a builtin scene, with absolute paths. Raises: PictureError without scikit-image."""
+    files, folder = BUILTINS[name], scikit_image_data()
+    return files.model_copy(update={part: folder / path for part, path in files if isinstance(path, Path)})
+
+
+def scikit_image_data() -> Path:
+    """Return the data folder of scikit-image, whose own functions would download missing files."""
+    from importlib.util import find_spec
+
+    spec = find_spec("skimage")
+    if spec is None or not spec.submodule_search_locations:
+        raise PictureError("builtin scenes come inside scikit-image, which is not installed: pip install scikit-image")
+    return Path(spec.submodule_search_locations[0]) / "data"
+
+
 def unknown_scene(name: str) -> str:
-    """What to say of a name that is not builtin."""
+    """Return the complaint about a name that is not builtin."""
     return (
         f"no scene is named {quoted(name)}{did_you_mean(name, BUILTINS)}; builtin are {', '.join(sorted(BUILTINS))}; "
-        "for files of your own write {photo: FILE}, {left: FILE, right: FILE} or {height: FILE}"
+        "for your own files write {photo: FILE}, {left: FILE, right: FILE} or {height: FILE}"
     )

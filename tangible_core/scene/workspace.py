@@ -1,4 +1,4 @@
-"""The size of what is felt, and what suits a scene where nothing is said."""
+"""The size of the surface under the hand, and its defaults for each kind of scene."""
 
 from typing import Annotated, Literal, NamedTuple
 
@@ -10,9 +10,9 @@ from .scene import Scene
 from .scene_files import BUILTINS, SceneFiles
 
 SceneKind = Literal["photograph", "depth", "heights"]
-"""What a relief is made of: the brightness of one picture, depth (of a pair, or a map of it), or a height map."""
+"""Source of a relief: the brightness of one picture, depth (of a pair, or a depth map), or a height map."""
 ReliefKind = SceneKind | Literal["parts"]
-"""Or of parts, each of its own height."""
+"""Source of a relief, or parts, each with a height."""
 
 SUITS: dict[ReliefKind, tuple[float, float]] = {
     "photograph": (0.004, 0.0015),
@@ -20,9 +20,9 @@ SUITS: dict[ReliefKind, tuple[float, float]] = {
     "heights": (0.02, 0.0),
     "parts": (0.006, 0.0005),
 }
-"""Height and smoothing, metres. An edge from black to white is then no steeper than h / (s sqrt(2 pi)): 1.06 in a
-photograph, where every line is one, and 2 between the nearest and the farthest of a pair. A height map stays as it
-is, and so do the borders of parts, but for the edge of a wall."""
+"""Default height and smoothing, metres. An edge from black to white is then no steeper than h / (s sqrt(2 pi)): 1.06
+in a photograph, where every line is such an edge, and 2 between the nearest and the farthest place of a pair. A height
+map is not smoothed, and the borders of parts only enough to soften a wall's edge."""
 
 
 class Section(Quantities):
@@ -32,7 +32,7 @@ class Section(Quantities):
 
 
 class FeltSize(NamedTuple):
-    """A workspace in which everything is said."""
+    """A workspace with every value decided."""
 
     width_m: float
     relief_m: float
@@ -42,25 +42,24 @@ class FeltSize(NamedTuple):
 
 
 class Workspace(Section):
-    """The size of what is felt."""
+    """The size of the surface under the hand."""
 
     width_m: Annotated[float, Field(ge=1e-6, le=10, allow_inf_nan=False)] = 0.08
     """Width of the surface under the hand."""
     relief_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
-    """Height of the nearest point above the farthest; null for what suits the scene: 0.004 for a photograph, whose
-    brightness is no depth, 0.01 for depth, 0.02 for a height map, 0.006 for parts with `heights:`."""
+    """Height of the nearest point above the farthest; null for a default by the scene: 0.004 for a photograph, whose
+    brightness is not depth, 0.01 for depth, 0.02 for a height map, 0.006 for parts with `heights:`."""
     smooth_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] | None = None
-    """Standard deviation of a Gaussian that smooths an estimated relief, as matching noise would feel like grit; null
-    for what suits the scene: 0.0015 for a photograph, 0.002 for depth, 0.0005 for parts with `heights:`. A height
-    map is never smoothed."""
+    """Standard deviation of a Gaussian that smooths an estimated relief, whose matching noise would feel like grit;
+    null for a default by the scene: 0.0015 for a photograph, 0.002 for depth, 0.0005 for parts with `heights:`. A
+    height map is never smoothed."""
     finest_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 3e-5
-    """Finest detail that is kept: larger pictures are reduced to it first. A Falcon resolves 0.03 mm; 0 keeps every
-    pixel."""
+    """Finest detail to keep: larger pictures are first reduced to it. A Falcon resolves 0.03 mm; 0 keeps all pixels."""
     holes: Literal["fill", "cut"] = "fill"
-    """Where the depth is unknown: `fill` with the background beside it, or `cut` down to the base plane."""
+    """Treatment of unknown depth: `fill` from the background next to it, or `cut` down to the base plane."""
 
     def size(self, kind: ReliefKind) -> FeltSize:
-        """With what suits a relief of this kind where nothing is said.
+        """Return this workspace with the defaults for a relief of this kind.
 
         >>> Workspace(relief_m=0.006).size("photograph")[1:3]
         (0.006, 0.0015)
@@ -72,7 +71,7 @@ class Workspace(Section):
 
 
 def kind_of(scene: str | SceneFiles | Scene) -> SceneKind:
-    """What the relief of a scene is made of, as its files say it before one of them is read."""
+    """Return the source of a scene's relief, from the names of its files alone."""
     if isinstance(scene, Scene) and scene.files is not None:
         scene = scene.files
     if isinstance(scene, str):

@@ -94,7 +94,7 @@ def listed(tree: Path, *entries: str) -> Path:
     return tree
 
 
-def test_what_became_of_each(tree: Path):
+def test_run_of_a_list_reports_the_fate_of_each_mutant(tree: Path):
     listed(tree, KILLED, SURVIVES, ELSEWHERE, EQUIVALENT, CONTRADICTED, HANGS, UNSEEN)
     before = {path: path.read_bytes() for path in tree.rglob("*") if path.is_file()}
     results = list(run(tree, mutants(tree), jobs=2, patience_s=1))
@@ -116,7 +116,7 @@ def test_what_became_of_each(tree: Path):
     assert {path: path.read_bytes() for path in tree.rglob("*") if path.is_file()} == before
 
 
-def test_tests_that_fail_without_any_fault(tree: Path):
+def test_tests_that_fail_without_a_fault_are_reported(tree: Path):
     listed(tree, entry("the smaller one", "a > b", "a < b", "tests/test_toy.py::test_wrong"))
     with pytest.raises(UnreadyError, match=r"toys: its tests fail without any fault:(.|\n)*test_wrong"):
         next(run(tree, mutants(tree), jobs=1))
@@ -138,7 +138,7 @@ def test_tests_that_fail_without_any_fault(tree: Path):
         ("name: x\n", "toys.yaml: "),
     ],
 )
-def test_a_list_that_does_not_fit(tree: Path, wrong: str, said: str):
+def test_list_that_does_not_fit_the_code_is_refused(tree: Path, wrong: str, said: str):
     with pytest.raises(StaleError, match=said):
         mutants(listed(tree, KILLED if wrong.startswith("-") else "", wrong))
 
@@ -180,5 +180,5 @@ def free(file: IO[str]) -> bool:
     return True
 
 
-def test_every_list_fits_the_code_as_it_is():
+def test_lists_fit_the_code_as_it_is():
     assert mutants(ROOT)

@@ -24,7 +24,7 @@ def standing(*overruns: int) -> list[Round]:
     return [counted({3: 4000}, each) for each in overruns]
 
 
-def test_a_tick_is_late_from_200_us_on():
+def test_tick_is_late_from_200_us_on():
     assert counted({0: 900, 199: 90, 200: 6, 4095: 4}).late_percent == pytest.approx(1.0)
     assert counted({}).late_percent == 0
 
@@ -35,7 +35,7 @@ def test_rounds_together_have_all_their_ticks():
     assert both.late_us == (10.0, 300.0, 300.0, 7000.0)
 
 
-def test_the_share_of_late_ticks_is_the_median_of_the_rounds():
+def test_share_of_late_ticks_is_the_median_of_the_rounds():
     """One round that the machine stood still in decides nothing."""
     assert no_later(of(1.0, 1.1, 90.0), of(1.0, 1.0, 1.0))
     assert not no_later(of(1.3, 1.3, 0.0), of(1.0, 1.0, 1.0))
@@ -44,7 +44,7 @@ def test_the_share_of_late_ticks_is_the_median_of_the_rounds():
 @pytest.mark.parametrize(
     ("mine", "other", "met"), [(1.2, 1.0, True), (1.21, 1.0, False), (0.1, 0.0, True), (0.11, 0.0, False)]
 )
-def test_a_fifth_more_is_no_later_and_neither_is_a_tenth_of_a_point(mine: float, other: float, met: bool):
+def test_share_within_a_fifth_or_a_tenth_of_a_point_is_not_later(mine: float, other: float, met: bool):
     assert no_later(of(mine), of(other)) == met
 
 
@@ -54,18 +54,18 @@ def test_chance_is_every_exchange_within_the_pairs():
     assert chance_of([0] * 8, [0] * 8) == 1.0
 
 
-def test_a_little_more_in_every_round_is_more():
+def test_difference_in_every_round_is_significant():
     assert not no_more_overruns(standing(*[3] * 8), standing(*[2] * 8))
     assert not no_more_overruns(standing(4, 9, 3, 7, 5, 6, 4, 8), standing(2, 8, 3, 5, 4, 5, 3, 7))
 
 
-def test_one_standstill_is_chance_and_fewer_is_no_more():
+def test_single_standstill_is_chance():
     assert no_more_overruns(standing(300, 0, 0, 1, 0, 0, 0, 0), standing(0, 0, 1, 0, 0, 0, 0, 0))
     assert no_more_overruns(standing(*[0] * 8), standing(*[0] * 8))
     assert no_more_overruns(standing(*[1] * 8), standing(*[2] * 8))
 
 
-def test_a_row_says_the_median_share_and_the_quantiles_of_all():
+def test_row_has_the_median_share_and_the_quantiles_of_all():
     found = rows({"a loop": [counted({20: 999, 400: 1}, 1, 0.0004), counted({20: 1000}), counted({20: 1000})]})
     assert found == [("a loop", "0.000 %", "20 us", "20 us", "20 us", "400 us", "1")]
     assert len(found[0]) == len(HEADINGS)

@@ -43,7 +43,7 @@ def test_lines_of_all_workers_are_read(tmp_path: Path):
     assert tests.seconds_of_tests(tmp_path) == {"a": 1.5, "b": 2.0, "c": 0.25}
 
 
-def test_the_bounds_of_rooms_that_have_one_leave_room_for_the_others():
+def test_bounds_of_rooms_leave_time_for_the_others():
     root = Path(tests.__file__).parents[1]
     assert all(root.joinpath(name).is_dir() for name in tests.BUDGET_S)
     assert sum(tests.BUDGET_S.values()) < 600

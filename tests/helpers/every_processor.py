@@ -21,7 +21,6 @@ from tangible_core import load_method
 from tangible_core.compiled import threads
 from tangible_core.data import DisparityMap, HapticSurface, Relief, SegmentMap, Views, digest_of
 from tangible_core.data.pictures import to_grey, to_rgb8
-from tangible_core.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke
 from tangible_core.materials.assignment import library, relative_roughness
 from tangible_core.materials.colours import segment_colours
 from tangible_core.metrics import (
@@ -47,13 +46,14 @@ from tangible_core.plugins.interfaces import Filming
 from tangible_core.plugins.registry import default_registry
 from tangible_core.preflight.bumps import feature_m
 from tangible_core.scene.geometry import make_relief, normals, resample, slopes, smooth
-from tangible_core.scene.scaling import enlarged, enlarged_segments, reduced
+from tangible_core.scene.scaling import enlarge_disparity, enlarged_segments, reduce_views
 from tangible_core.scene.scene import Scene
 from tangible_depth.rectify.alignment import aligning_lenses
 from tangible_depth.rectify.rectification import rectify
 from tangible_depth.rectify.rectified_pair import warp_pair
 from tangible_depth.sparse.harris import harris_response
 from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_matches
+from tangible_render.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke
 
 Found = Iterator[tuple[str, Any]]
 SIZE = slice(90, 346), slice(200, 520)
@@ -180,11 +180,11 @@ def reliefs() -> Found:
     yield "relief, slopes", slopes(relief)
     yield "relief, normals", normals(relief)
     yield "relief, features", feature_m(relief, 0.0032)
-    small = reduced(pair(), 3)
+    small = reduce_views(pair(), 3)
     yield "views, reduced", small
-    yield "views of 16 bits, reduced", reduced(Views(pair().left.astype(np.uint16) * 257), 3)
-    yield "views of floats, reduced", reduced(Views(np.asarray(pair().left / 255, np.float32)), 3)
-    yield "disparity, enlarged", enlarged(load_method("depth", "semi-global")().estimate(small), pair().shape)
+    yield "views of 16 bits, reduced", reduce_views(Views(pair().left.astype(np.uint16) * 257), 3)
+    yield "views of floats, reduced", reduce_views(Views(np.asarray(pair().left / 255, np.float32)), 3)
+    yield "disparity, enlarged", enlarge_disparity(load_method("depth", "semi-global")().estimate(small), pair().shape)
     segments = SegmentMap(labels(), np.asarray(mosaic() / 255, np.float32))
     yield "segments, enlarged", enlarged_segments(segments, (300, 331))
     yield "relative roughness", relative_roughness(segments, mosaic())

@@ -9,15 +9,14 @@ import numpy as np
 from tangible_devices.falcon.falcon import Falcon
 from tangible_devices.falcon.link import FalconLink
 from tangible_devices.falcon.opening import open_falcon
-from tangible_devices.falcon.port import Port, open_port
 from tangible_devices.falcon.simulator.body import Body
 from tangible_devices.falcon.simulator.bus import Bus, Unit
 from tangible_devices.falcon.simulator.chip import PAYLOAD_BYTES, Chip
 from tangible_devices.falcon.simulator.clock import SimulatedClock
-from tangible_devices.falcon.simulator.falcons import simulated_falcon
+from tangible_devices.falcon.simulator.falcons import simulated_falcon, synthetic_image
 from tangible_devices.falcon.simulator.faults import Fault
-from tangible_devices.falcon.simulator.firmware_image import synthetic_image
 from tangible_devices.falcon.simulator.processor import Processor
+from tangible_devices.falcon.usb.port import Port, open_port
 from tangible_devices.hand import VirtualHand
 from tangible_devices.paths import press, walk
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from tangible_devices.falcon import framing, packet, tick
+from tangible_devices.falcon.kernels import framing, packet, tick
 
 receive, read, encode, counts_of = framing.receive, tick.read, packet.encode, packet.decode
 SENT, WHOLE = 9, 2

@@ -23,11 +23,11 @@ class GivenFrames(VideoFrames):
         self.closed = False
 
     @property
-    def ended(self) -> bool:
+    def at_end(self) -> bool:
         return self._number >= len(self._given)
 
     def next(self) -> VideoFrame | None:
-        if self.ended:
+        if self.at_end:
             return None
         number, self._number = self._number, self._number + 1
         views = self._given[number]

@@ -11,8 +11,8 @@ from tangible_core.files.yaml.parts_block import part_lines
 from tangible_core.parts import HeightChoice
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.pipeline.starter import SIDE_MM, in_yaml
-from tangible_core.scene.scene import Scene, builtin_files
-from tangible_core.scene.scene_files import SceneFiles
+from tangible_core.scene.scene import Scene
+from tangible_core.scene.scene_files import SceneFiles, builtin_files
 
 from .listed_parts import ListedPart
 

@@ -1,4 +1,4 @@
-"""How much memory a piece of work takes at its peak."""
+"""The peak memory of a piece of work, and the memory that an object keeps."""
 
 import ctypes
 import gc
@@ -15,12 +15,12 @@ _UNIT = 1 if sys.platform == "darwin" else 1024
 
 
 def start_peak() -> Callable[[], int | None]:
-    """Begin to watch; the function that comes back tells by how many bytes the process has grown at most since.
+    """Start to watch memory; return a function that returns the largest growth of the process since, in bytes.
 
-    On Linux the kernel's mark of the highest resident size is reset first (proc(5), `clear_refs`, and `VmHWM`), after
-    what was freed has gone back to the system. `ru_maxrss` alone would not do: a child starts with its parent's mark,
-    and the mark never falls. Elsewhere it is all there is, and growth below an earlier peak does not show;
-    on Windows there is nothing: None.
+    On Linux, freed memory is given back to the system and the kernel's mark of the highest resident size is reset
+    (proc(5), `clear_refs`, and `VmHWM`). `ru_maxrss` is not enough: a child starts with its parent's mark, and the
+    mark never falls. On other systems there is only `ru_maxrss`, where growth below an earlier peak does not show; on
+    Windows there is nothing, and the function returns None.
     """
     gc.collect()
     if sys.platform == "linux" and _reset():
@@ -33,24 +33,24 @@ def start_peak() -> Callable[[], int | None]:
 
 
 def held_bytes(make: Callable[[], object]) -> int:
-    """How many bytes what a call gives keeps from others, as Python and NumPy count what they allocate.
+    """Return the number of bytes that the result of a call keeps, as Python and NumPy count their allocations.
 
-    Exact and the same each time, unlike a process's size; what other libraries allocate by themselves does not show.
+    Unlike the size of a process, it is exact and repeatable; allocations of other libraries do not show.
     """
     gc.collect()
     tracemalloc.start()
     try:
-        made = make()
+        result = make()
         gc.collect()
         held, _ = tracemalloc.get_traced_memory()
-        del made
+        del result
         return held
     finally:
         tracemalloc.stop()
 
 
 def _reset() -> bool:
-    with suppress(AttributeError):  # not glibc: nothing to give back by hand
+    with suppress(AttributeError):  # not glibc: there is no such call
         ctypes.CDLL(None).malloc_trim(0)
     try:
         _CLEAR.write_text("5")

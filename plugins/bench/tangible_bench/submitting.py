@@ -1,4 +1,4 @@
-"""The disparity maps of a comparison's methods, as benchmarks take them; nothing is measured but one call's time."""
+"""Submissions: the disparity maps of a comparison's methods in the formats of benchmarks, with the time of one call."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -10,34 +10,34 @@ import numpy as np
 from tangible_core.errors import ConfigError, OutputError, PictureError, TangibleError
 from tangible_core.plugins.failures import sentence
 
-from .config import Comparison
+from .config.methods import Entry
+from .config.reading import Comparison
 from .datasets.submissions import WRITERS, write_submission
-from .depth import Pair, estimate
-from .depth_scenes import DepthScene
-from .entries import Entry
+from .tasks.depth import Pair, estimate
+from .tasks.depth_scenes import DepthScene
 
 
 @dataclass(frozen=True)
 class Submitted:
-    """What became of a method on a pair."""
+    """The result of a method on a pair."""
 
     method: str
     scene: str
     files: tuple[Path, ...] = ()
     seconds: float = 0.0
     error: str = ""
-    """Why there is no file; empty if there are."""
+    """The reason why there are no files; empty if there are some."""
 
 
 def submit(
     comparison: Comparison, folder: Path, started: Callable[[str, str], None] = lambda method, scene: None
 ) -> Iterator[Submitted]:
-    """Every method on every pair of a set that takes submissions, one after the other; each pair's files as they come.
+    """Run every method on every pair of a set that takes submissions, write the files and yield each result.
 
     Each method is called twice on its first pair, so that imports and compilation are not in its time. `fill:` is
-    heeded, perturbations are not.
-    started: hears of the method and the scene before each.
-    Raises: ConfigError if no scene is of such a set, OutputError if the folder cannot be written.
+    applied, perturbations are not.
+    started: called before each run with the method and the scene.
+    Raises: ConfigError if no scene is from such a set, OutputError if the folder cannot be written.
     """
     scenes = {
         name: spec
@@ -45,41 +45,40 @@ def submit(
         if isinstance(spec, DepthScene) and spec.set is not None and spec.set in WRITERS
     }
     if not scenes:
-        raise ConfigError(f"{comparison.path}: no scene is of a set that takes submissions: {', '.join(WRITERS)}")
+        raise ConfigError(f"{comparison.path}: no scene is from a set that takes submissions: {', '.join(WRITERS)}")
     warm = set[str]()
     for name, spec in scenes.items():
         pair = spec.open()
         for entry in comparison.methods:
             started(entry.label, name)
             try:
-                yield _one(comparison, folder, entry, name, spec, pair, warm)
+                yield _submit_pair(comparison, folder, entry, name, spec, pair, warm)
             except (OutputError, ConfigError):
                 raise
             except Exception as error:  # noqa: BLE001 - whatever a method raises is that method's result
-                yield Submitted(
-                    entry.label, name, error=str(error) if isinstance(error, TangibleError) else sentence(error)
-                )
+                message = str(error) if isinstance(error, TangibleError) else sentence(error)
+                yield Submitted(entry.label, name, error=message)
 
 
-def _one(
+def _submit_pair(
     comparison: Comparison, folder: Path, entry: Entry, name: str, spec: DepthScene, pair: Pair, warm: set[str]
 ) -> Submitted:
     assert spec.set is not None
-    (listed,) = spec.listed()
-    method = entry.method_for({key: tell(pair) for key, tell in comparison.task.given.items()})
+    (standard_pair,) = spec.list_pairs()
+    method = entry.method_for({key: fact_of(pair) for key, fact_of in comparison.task.given.items()})
     if entry.label not in warm:
         estimate(method, pair)  # pyright: ignore[reportArgumentType] - of the kind that is compared
         warm.add(entry.label)
-    began = perf_counter()
-    found = estimate(method, pair)  # pyright: ignore[reportArgumentType]
-    seconds = perf_counter() - began
+    start_s = perf_counter()
+    disparity = estimate(method, pair)  # pyright: ignore[reportArgumentType]
+    seconds = perf_counter() - start_s
     for key, labels in comparison.finishes.items():
         if entry.label in labels:
-            found = comparison.task.finishes[key](found)
-    if found.unit != "px" or found.disparity_px.shape != pair.views.shape:
+            disparity = comparison.task.finishes[key](disparity)
+    disparity_px, unit = np.asarray(disparity.disparity_px), disparity.unit
+    if unit != "px" or disparity_px.shape != pair.views.shape:
         raise PictureError(
-            f"its disparity is in {found.unit}, {found.disparity_px.shape}; to be submitted are px, {pair.views.shape}"
+            f"its disparity is in {unit}, {disparity_px.shape}; a submission needs px, {pair.views.shape}"
         )
-    disparity_px = np.asarray(found.disparity_px)
-    files = write_submission(folder, spec.set, entry.label, listed, disparity_px, seconds)
+    files = write_submission(folder, spec.set, entry.label, standard_pair, disparity_px, seconds)
     return Submitted(entry.label, name, files, seconds)

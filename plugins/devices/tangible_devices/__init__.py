@@ -1,4 +1,4 @@
-"""Devices: what has a position and gives a force. Each method is imported when it is first used."""
+"""Devices, which have a position and give a force. Each method is imported when it is first used."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""A virtual hand: a mass on a spring towards where it wants to be, with limited strength to press."""
+"""A virtual hand: a mass on a spring towards its target, with limited strength to press."""
 
 import cmath
 import math
@@ -11,7 +11,7 @@ from tangible_core.data.quantities import Quantities
 
 
 class VirtualHand(Quantities):
-    """What a hand on the device is like: m a = F - b v + k (target - x), pressing down with limited strength.
+    """The model of a hand on the device: m a = F - b v + k (target - x), pressing down with limited strength.
 
     The defaults are of the order of a relaxed hand holding a handle.
     """
@@ -25,13 +25,12 @@ class VirtualHand(Quantities):
     stiffness_n_per_m: Annotated[float, Field(ge=0.1, le=1e6)] = 300.0
     """Stiffness of the spring that pulls the hand to its target."""
     press_n: Annotated[float, Field(ge=0, le=1000)] = 1.5
-    """Greatest pressing force, however far below the surface the target is, so that the hand rides over hills and
-    valleys."""
+    """Greatest pressing force, however far below the surface the target is: the hand follows hills and valleys."""
 
 
 @final
 class MovingHand:
-    """A hand in motion, one period at a time, exactly for a force and a target that are held over the period."""
+    """A hand in motion, one period at a time; exact if the force and the target are constant during the period."""
 
     def __init__(self, hand: VirtualHand, position_m: Vector, period_s: float) -> None:
         self.position_m = position_m
@@ -41,7 +40,7 @@ class MovingHand:
         self._motion = free_motion(hand, period_s)
 
     def step(self, target_m: Vector, force: Force) -> None:
-        """Move on by one period under the device's force, towards the target."""
+        """Move by one period under the device's force, towards the target."""
         down = max(target_m[2], self.position_m[2] - self._reach_down_m)
         rests = [target + push / self._stiffness for target, push in zip((*target_m[:2], down), force, strict=True)]
         moved = [self._along_axis(*axis) for axis in zip(self.position_m, self.velocity_m_per_s, rests, strict=True)]
@@ -55,9 +54,9 @@ class MovingHand:
 
 
 def free_motion(hand: VirtualHand, period_s: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """The matrix that takes (x, v) about the point of rest one period on: exp(T [[0, 1], [-k/m, -b/m]]).
+    """Return the matrix that moves (x, v), relative to the point of rest, by a period: exp(T [[0, 1], [-k/m, -b/m]]).
 
-    Exact, so that the hand alone is stable for every mass, damping, stiffness and period.
+    It is exact, so that the hand alone is stable for every mass, damping, stiffness and period.
     Source: the damped oscillator, m x'' + b x' + k x = 0, with roots -a +- r, a = b / 2m, r^2 = a^2 - k/m.
     """
     square = hand.stiffness_n_per_m / hand.mass_kg

@@ -12,7 +12,7 @@ from tangible_core.data import DeviceSpec, Force, HapticState, Vector
 from tangible_core.plugins.interfaces import HapticDevice, Link, Scripted
 
 from .hand import MovingHand, VirtualHand
-from .paths import DRAWN, Stroke, read_csv, walk, within
+from .paths import DRAWN, Stroke, path_size, read_csv, walk
 from .simulated import LIKE_A_FALCON, SimulatedLink
 
 Height = Annotated[float, Field(ge=-1, le=1)]
@@ -23,23 +23,22 @@ MOST_M = (0.06, 0.04)
 class Mock(HapticDevice, Scripted):
     """A hand that follows a path, in simulated time: every read is one period later.
 
-    With a virtual hand (the default) the path is where the hand wants to be: below the surface, so that it leans on
-    whatever is there and the force pushes it back. Without one (`hand: null`) the tip is on the path exactly, whatever
-    the force. Not exclusive: every `open` is a device of its own, at the start of its path. Its limits are a Novint
-    Falcon's.
+    With a virtual hand (the default) the path is the target of the hand. It lies below the surface, so that the hand
+    presses and the force pushes it back. Without one (`hand: null`) the tip is exactly on the path, whatever the force.
+    Not exclusive: every `open` gives a new device at the start of its path. Its limits are a Novint Falcon's.
     """
 
     path: Literal["raster", "circle", "spiral", "press", "csv"] = "raster"
-    """Path of the hand: over the surface, straight down and up, or as recorded in `csv_file`."""
+    """Path of the hand: over the surface, straight down and up, or recorded in `csv_file`."""
     csv_file: Path | None = None
     """Recorded path with columns time_s, x_m, y_m, z_m; played once, linear between rows, then held at its end."""
     size_m: tuple[Size, Size] | None = None
     """Width and length of raster, circle and spiral, which are centred; null: 60 x 40 mm, or three quarters of
-    a surface that is smaller."""
+    a smaller surface."""
     lines: Annotated[int, Field(ge=2, le=200)] = 8
     """Number of lines of the raster, or turns of the spiral."""
     z_m: Height = -0.005
-    """Height of the path above the base plane; below the surface, the hand presses. Of `press`, the lowest point."""
+    """Height of the path above the base plane; below the surface, the hand presses. The lowest point of `press`."""
     lift_m: Height = 0.03
     """Height at which `press` and a virtual hand start."""
     speed_m_per_s: Annotated[float, Field(ge=1e-6, le=1000)] = 0.08
@@ -62,19 +61,19 @@ class Mock(HapticDevice, Scripted):
         return self
 
     def spec(self) -> DeviceSpec:
-        """A Novint Falcon's limits, as in CHAI3D's tables; positions are not rounded, which a picometre stands for."""
+        """Return the limits of a Novint Falcon."""
         return LIKE_A_FALCON
 
     def open(self) -> Link:
-        """A new simulated device. Raises: DeviceError if the CSV file cannot be read or makes no sense."""
+        """Open a new simulated device. Raises: DeviceError if the CSV file cannot be read or is invalid."""
         return SimulatedLink("mock", Motion(self, self._stroke()).step)
 
     def over(self, extent_m: tuple[float, float]) -> "Mock":
-        """The same, its path within this width and length, unless it has a `size_m`."""
-        return self if self.size_m else self.model_copy(update={"size_m": within(extent_m, MOST_M)})
+        """Return the device with its path within this width and length, unless it has a `size_m`."""
+        return self if self.size_m else self.model_copy(update={"size_m": path_size(extent_m, MOST_M)})
 
     def wanted(self, ticks: Int64[np.ndarray, " n"]) -> Float64[np.ndarray, "n 3"]:
-        """The path at these reads, its tremor included."""
+        """Return the path at these reads, with its tremor."""
         hand = Motion(self, self._stroke())
         return np.array([hand.target(tick) for tick in ticks.tolist()]).reshape(-1, 3)
 
@@ -87,7 +86,7 @@ class Mock(HapticDevice, Scripted):
 
 @final
 class Motion:
-    """A hand on its way."""
+    """The motion of a hand along its path."""
 
     def __init__(self, options: Mock, stroke: Stroke) -> None:
         self._stroke = stroke
@@ -98,7 +97,7 @@ class Motion:
         self._hand = options.hand and MovingHand(options.hand, (x, y, max(z, options.lift_m)), options.period_s)
 
     def step(self, held: Force) -> HapticState:
-        """The first state is at time 0; each further one is a period later, under the force held until then."""
+        """Return the next state, a period later, under the force held until then; the first state is at time 0."""
         self._tick += 1
         position = self.target(self._tick)
         if self._hand is None:
@@ -110,7 +109,7 @@ class Motion:
         return HapticState(self._hand.position_m, self._hand.velocity_m_per_s, self._tick * self._period_s)
 
     def target(self, tick: int) -> Vector:
-        """Where the hand wants to be."""
+        """Return the target of the hand."""
         x, y, z = self._stroke.at(tick)
         dx, dy, dz = self._tremor.at(tick * self._period_s)
         return x + dx, y + dy, z + dz
@@ -118,7 +117,7 @@ class Motion:
 
 @final
 class Tremor:
-    """Three sines an axis, 8 to 12 Hz, the band of physiological tremor; together never over the amplitude."""
+    """Tremor as three sines an axis, 8 to 12 Hz, the band of physiological tremor; the sum is within the amplitude."""
 
     def __init__(self, amplitude_m: float, seed: int) -> None:
         numbers = np.random.default_rng(seed)
@@ -128,7 +127,7 @@ class Tremor:
         self._each_m = amplitude_m / 3
 
     def at(self, time_s: float) -> Vector:
-        """How far the hand is off its path."""
+        """Return the hand's deviation from its path."""
         if not self._each_m:
             return 0.0, 0.0, 0.0
         x, y, z = (self._each_m * sum(math.sin(rate * time_s + phase) for rate, phase in axis) for axis in self._waves)

@@ -1,4 +1,4 @@
-"""Where a scripted hand wants to be: closed strokes walked at one speed, and recordings read from a CSV file."""
+"""Paths of a scripted hand: closed strokes at constant speed, and recordings read from a CSV file."""
 
 import csv
 import io
@@ -19,25 +19,25 @@ from tangible_core.files.reading import read_bytes
 
 Points = Float64[np.ndarray, "n 3"]
 COLUMNS = ("time_s", "x_m", "y_m", "z_m")
-"""What a CSV file has, at least; others are passed over."""
+"""Columns that a CSV file must have; others are ignored."""
 
 
 @final
 @dataclass(frozen=True)
 class Stroke:
-    """Points and the times they are passed, straight in between; the first time is 0.
+    """Points and their times, with straight lines in between; the first time is 0.
 
-    A closed stroke takes a whole number of ticks and repeats exactly; another one stays at its ends.
+    A closed stroke takes a whole number of ticks and repeats exactly; an open one stays at its ends.
     """
 
     times_s: tuple[float, ...]
     points_m: tuple[Vector, ...]
     period_s: float
     lap_ticks: int | None
-    """Ticks until a closed stroke repeats; None for one that does not."""
+    """Ticks until a closed stroke repeats; None for an open one."""
 
     def at(self, tick: int) -> Vector:
-        """Position at a tick; negative ones are before the start."""
+        """Return the position at a tick; negative ticks are before the start."""
         if self.lap_ticks is None:
             time_s = min(max(tick, 0) * self.period_s, self.times_s[-1])
         else:
@@ -51,9 +51,9 @@ class Stroke:
 
 
 def walk(points_m: Points, speed_m_per_s: float, period_s: float) -> Stroke:
-    """A closed stroke through these points, the last joined to the first, at one speed.
+    """Return a closed stroke through these points, the last joined to the first, at constant speed.
 
-    The speed is the nearest below it at which a lap takes a whole number of periods.
+    The speed is reduced so that a lap takes a whole number of periods.
     """
     closed = np.vstack([points_m, points_m[:1]])
     lengths = np.linalg.norm(np.diff(closed, axis=0), axis=1)
@@ -64,27 +64,27 @@ def walk(points_m: Points, speed_m_per_s: float, period_s: float) -> Stroke:
 
 
 def raster(size_m: tuple[float, float], lines: int, low_m: float, high_m: float) -> Points:
-    """Lines to the right and back to the left, from far to near."""
+    """Return lines to the right and back to the left, from far to near."""
     y = np.repeat(np.linspace(size_m[1] / 2, -size_m[1] / 2, lines), 2)
     x = np.resize([-0.5, 0.5, 0.5, -0.5], 2 * lines) * size_m[0]
     return np.column_stack([x, y, np.full(2 * lines, low_m)])
 
 
 def circle(size_m: tuple[float, float], lines: int, low_m: float, high_m: float) -> Points:
-    """An ellipse of this size, counter-clockwise from the right; off the true one by under 2e-6 of its size."""
+    """Return an ellipse of this size, counter-clockwise from the right; its error is below 2e-6 of its size."""
     turn = np.linspace(0, 2 * np.pi, 1000, endpoint=False)
     return _around(size_m, turn, np.ones(1000), low_m)
 
 
 def spiral(size_m: tuple[float, float], lines: int, low_m: float, high_m: float) -> Points:
-    """From the centre outwards in evenly spaced turns, and back the same way."""
+    """Return a spiral from the centre outwards in evenly spaced turns, and back the same way."""
     turn = np.linspace(0, 2 * np.pi * lines, 250 * lines)
     out = _around(size_m, turn, np.linspace(0, 1, 250 * lines), low_m)
     return np.vstack([out, out[-2:0:-1]])
 
 
 def press(size_m: tuple[float, float], lines: int, low_m: float, high_m: float) -> Points:
-    """Straight down at the centre, and up again."""
+    """Return a line straight down at the centre, and up again."""
     return np.array([[0.0, 0.0, high_m], [0.0, 0.0, low_m]])
 
 
@@ -97,19 +97,19 @@ DRAWN: dict[str, Callable[[tuple[float, float], int, float, float], Points]] = {
 """Paths by name; each takes size_m, lines, low_m and high_m."""
 
 
-OVER = 0.75
-"""Of a surface's width and length a path takes at most so much: hands overshoot."""
+LARGEST_SHARE = 0.75
+"""Largest share of a surface's width and length that a path takes, as hands overshoot."""
 
 
-def within(extent_m: tuple[float, float], most_m: tuple[float, float]) -> tuple[float, float]:
-    """Width and length of a path over a surface of this size: the greatest, or less where the surface is small."""
-    return min(OVER * extent_m[0], most_m[0]), min(OVER * extent_m[1], most_m[1])
+def path_size(extent_m: tuple[float, float], most_m: tuple[float, float]) -> tuple[float, float]:
+    """Return width and length of a path over a surface of this size: the greatest, or less if the surface is small."""
+    return min(LARGEST_SHARE * extent_m[0], most_m[0]), min(LARGEST_SHARE * extent_m[1], most_m[1])
 
 
 def read_csv(path: Path, period_s: float) -> Stroke:
-    """A recorded stroke, played once: columns time_s, x_m, y_m, z_m, one row a moment, times rising.
+    """Read a recorded stroke, played once: columns time_s, x_m, y_m, z_m, one row a moment, times rising.
 
-    Raises: DeviceError naming the file, the line and what to put right.
+    Raises: DeviceError that names the file, the line and the correction.
     """
     try:
         lines = csv.DictReader(io.StringIO(read_bytes(path).decode("utf-8-sig"), newline=""))
@@ -137,8 +137,8 @@ def _vectors(points_m: np.ndarray) -> tuple[Vector, ...]:
     return tuple((x, y, z) for x, y, z in points_m.tolist())
 
 
-def _check_columns(path: Path, found: Iterable[str]) -> None:
-    names = [name for name in found if name]
+def _check_columns(path: Path, columns: Iterable[str]) -> None:
+    names = [name for name in columns if name]
     for column in COLUMNS:
         if column not in names:
             hint = did_you_mean(column, names) or f"; there are {', '.join(names) or 'none'}"

@@ -1,4 +1,4 @@
-"""A device in simulated time whose tip goes where a recorded one went."""
+"""A device in simulated time whose tip repeats a recorded motion."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -17,25 +17,25 @@ from .simulated import LIKE_A_FALCON, SimulatedLink
 class Replay(HapticDevice):
     """A recording's positions, velocities and buttons, a tick a read, whatever the force; then held at its end.
 
-    Time is the recording's own, with its jitter. Ticks that are not finite are passed over. Not exclusive: every `open`
+    Time is the recording's own, with its jitter. Ticks that are not finite are skipped. Not exclusive: every `open`
     starts at the first tick. Its limits are a Novint Falcon's.
     """
 
     file: Path | None = None
-    """The recording: .nc, .npz or .csv. Without one, the hand moves down to the base plane and up within a second."""
+    """Recording to play: .nc, .npz or .csv; null: the hand moves down to the base plane and up within a second."""
 
     def spec(self) -> DeviceSpec:
-        """A Novint Falcon's limits, as in CHAI3D's tables; positions are not rounded, which a picometre stands for."""
+        """Return the limits of a Novint Falcon."""
         return replace(LIKE_A_FALCON, buttons=4)
 
     def open(self) -> Link:
-        """From its start. Raises: DeviceError if the recording cannot be read, is empty, or its time stands still."""
+        """Start at the first tick. Raises: DeviceError if the file is unreadable or empty, or its time stands still."""
         return SimulatedLink("replay", Playback(_stroke() if self.file is None else _load(self.file)).step)
 
 
 @final
 class Playback:
-    """A recording on its way."""
+    """The state of a recording that is being played."""
 
     def __init__(self, recording: Recording) -> None:
         self._rows = recording.rows
@@ -43,7 +43,7 @@ class Playback:
         self._tick = -1
 
     def step(self, held: Force) -> HapticState:
-        """The next state, whatever is held; after the last one the tip rests, and time goes on by the usual period."""
+        """Return the next state, whatever the force; after the last one the tip rests, and time advances regularly."""
         self._tick += 1
         rests = max(0, self._tick - len(self._rows) + 1)
         time_s, _, x, y, z, vx, vy, vz, *_, buttons, _ = self._rows[self._tick - rests].tolist()
@@ -66,7 +66,7 @@ def _load(file: Path) -> Recording:
 
 
 def _stroke() -> Recording:
-    """30 mm straight down at the centre, and up again, as smooth as a swing."""
+    """Return a sinusoidal motion at the centre, 30 mm straight down and up again."""
     time_s = np.arange(1001) * 0.001
     turn = 2 * np.pi * time_s
     z_m, vz = 0.015 * (1 + np.cos(turn)), -0.03 * np.pi * np.sin(turn)

@@ -1,4 +1,4 @@
-"""What devices without a motor share: the limits of a Novint Falcon, and a link that only holds what is written."""
+"""The common parts of devices without a motor: the limits of a Novint Falcon, and a link that holds the last force."""
 
 from collections.abc import Callable
 from typing import final
@@ -14,7 +14,7 @@ LIKE_A_FALCON = DeviceSpec(
     resolution_m=1e-12,
     simulated=True,
 )
-"""As in CHAI3D's tables; positions are not rounded, which a picometre stands for."""
+"""Limits of a Novint Falcon, as in CHAI3D's tables; a resolution of a picometre, as positions are not rounded."""
 
 
 @final
@@ -22,13 +22,13 @@ class SimulatedLink(Link):
     """A simulated device in use."""
 
     def __init__(self, name: str, move: Callable[[Force], HapticState]) -> None:
-        """move: the next state, under the force that has been held since the last one."""
+        """move: returns the next state, given the force that was held since the last one."""
         super().__init__(f"the {name} device", LIKE_A_FALCON.max_force_n)
         self._move = move
         self._applied = NO_FORCE
 
     def _read(self) -> HapticState:
-        """The next state, under the force sent last."""
+        """Return the next state, under the force sent last."""
         return self._move(self._applied)
 
     def _send(self, force: Force) -> None:
@@ -41,4 +41,4 @@ class SimulatedLink(Link):
         return self._applied
 
     def _release(self) -> None:
-        """Nothing is held."""
+        """Do nothing, as there is no device."""

@@ -12,7 +12,7 @@ from tangible_core.data import Relief, Work
 from tangible_core.files.writing import atomic_write, write_text
 from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import note
-from tangible_core.scene.formats.height_maps import MM, HeightsSaid, levels
+from tangible_core.scene.formats.height_maps import MM, HeightsMetadata, levels
 
 log = logging.getLogger(__name__)
 
@@ -56,9 +56,9 @@ class Heights(Exporter):
         return text, png, tiff
 
 
-def _describe(work: Work, file: str) -> HeightsSaid:
+def _describe(work: Work, file: str) -> HeightsMetadata:
     (rows, columns), (width_m, length_m) = work.relief.height_m.shape, work.relief.extent_m
-    return HeightsSaid(
+    return HeightsMetadata(
         title=work.title, language=work.language, file=file, columns=columns, rows=rows,
         width_mm=width_m * MM, length_mm=length_m * MM,
         high_mm=float(work.relief.height_m.max()) * MM, low_mm=0, step_mm=1,
@@ -72,7 +72,7 @@ def _write_png(path: Path, numbers: np.ndarray) -> None:
         Image.fromarray(numbers).save(file, "PNG")
 
 
-def _write_tiff(path: Path, relief: Relief, description: HeightsSaid) -> None:
+def _write_tiff(path: Path, relief: Relief, description: HeightsMetadata) -> None:
     from PIL import Image
 
     text = json.dumps(description.model_dump(), ensure_ascii=True)  # a tag of plain letters

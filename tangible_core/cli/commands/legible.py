@@ -61,7 +61,7 @@ def _print(scene: str, medium: str, width_m: float, verdicts: Legibility, as_jso
     if as_json:
         show.print_json({"scene": scene, "medium": medium, "width_m": width_m, **verdicts.as_data()})
         return
-    said = next(profile.said for name, profile in PROFILES.items() if name == medium)
+    said = next(profile.text for name, profile in PROFILES.items() if name == medium)
     sentence = f"[{COLOURS[verdicts.grade]}]{escape(verdicts.sentence)}[/]"
     show.say(f"{escape(scene)}, {quantity(width_m, 'm')} wide, on {said}: {sentence}\n")
     for verdict in verdicts:

@@ -1,1 +1,1 @@
-"""The words of descriptions, a file a language: the same keys with the same placeholders in each."""
+"""The words of descriptions, a file for each language, with the same keys and placeholders."""

@@ -64,7 +64,7 @@ WORDS: Mapping[str, str] = {
     "small parts": "{count} kleinere Teile, zusammen {share} % des Bildes, sind nicht aufgeführt.",
     "small part": "Ein kleinerer Teil, {share} % des Bildes, ist nicht aufgeführt.",
 }
-"""Of a place, the key is its third from the top and its third from the left."""
+"""Texts by key; the key of a place is its third from the top and its third from the left."""
 
 MATERIALS: Mapping[str, str] = {
     "plain": "schlichtes Material",
@@ -85,7 +85,4 @@ MATERIALS: Mapping[str, str] = {
     "grass": "Gras",
     "water": "Wasser",
 }
-"""Materials of the library by their names; others go by their own."""
-
-FELT = MATERIALS
-"""What comes after `like`."""
+"""Names of the library's materials."""

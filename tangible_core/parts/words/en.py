@@ -64,7 +64,7 @@ WORDS: Mapping[str, str] = {
     "small parts": "{count} smaller parts, {share} % of the picture together, are left out.",
     "small part": "One smaller part, {share} % of the picture, is left out.",
 }
-"""Of a place, the key is its third from the top and its third from the left."""
+"""Texts by key; the key of a place is its third from the top and its third from the left."""
 
 MATERIALS: Mapping[str, str] = {
     "plain": "plain material",
@@ -85,7 +85,4 @@ MATERIALS: Mapping[str, str] = {
     "grass": "grass",
     "water": "water",
 }
-"""Materials of the library by their names; others go by their own."""
-
-FELT = MATERIALS
-"""What comes after `like`."""
+"""Names of the library's materials."""

@@ -64,7 +64,7 @@ WORDS: Mapping[str, str] = {
     "small parts": "{count} parties plus petites, {share} % de l'image en tout, ne sont pas décrites.",
     "small part": "Une partie plus petite, {share} % de l'image, n'est pas décrite.",
 }
-"""Of a place, the key is its third from the top and its third from the left."""
+"""Texts by key; the key of a place is its third from the top and its third from the left."""
 
 MATERIALS: Mapping[str, str] = {
     "plain": "matière neutre",
@@ -85,9 +85,9 @@ MATERIALS: Mapping[str, str] = {
     "grass": "herbe",
     "water": "eau",
 }
-"""Materials of the library by their names; others go by their own."""
+"""Names of the library's materials."""
 
-FELT: Mapping[str, str] = {
+AFTER_LIKE: Mapping[str, str] = {
     "plain": "une matière neutre",
     "ice": "de la glace",
     "glass": "du verre",
@@ -106,4 +106,4 @@ FELT: Mapping[str, str] = {
     "grass": "de l'herbe",
     "water": "de l'eau",
 }
-"""What comes after `like`."""
+"""Names of the materials with their articles, as they follow `like`."""

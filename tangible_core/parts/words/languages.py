@@ -1,4 +1,4 @@
-"""The languages that descriptions have words in."""
+"""The languages of descriptions, and sentences from their tables of words."""
 
 import logging
 import re
@@ -18,24 +18,24 @@ class Table(NamedTuple):
     """The words of one language."""
 
     words: Mapping[str, str]
-    """By key, with places for what is filled in."""
+    """Texts by key, with placeholders."""
     materials: Mapping[str, str]
     """Names of the library's materials."""
-    felt: Mapping[str, str]
-    """The same as they stand after `feels like`."""
+    after_like: Mapping[str, str]
+    """Names of the materials in the form that follows `feels like`."""
     no_break_before: str = ""
-    """Marks that the space before them keeps on their line."""
+    """Marks before which a space does not break."""
 
 
 TABLES: Mapping[Language, Table] = {
-    "en": Table(en.WORDS, en.MATERIALS, en.FELT),
-    "de": Table(de.WORDS, de.MATERIALS, de.FELT),
-    "fr": Table(fr.WORDS, fr.MATERIALS, fr.FELT, ":;%"),
+    "en": Table(en.WORDS, en.MATERIALS, en.MATERIALS),
+    "de": Table(de.WORDS, de.MATERIALS, de.MATERIALS),
+    "fr": Table(fr.WORDS, fr.MATERIALS, fr.AFTER_LIKE, ":;%"),
 }
 
 
 def language_of(tag: str) -> Language:
-    """The language of the words for what is tagged so: English where there are none in its own.
+    """Return the language of the words for this tag: English if the language has none.
 
     >>> language_of("de-AT"), language_of("pt")
     ('de', 'en')
@@ -48,7 +48,7 @@ def language_of(tag: str) -> Language:
 
 
 def spoken_language(tag: str, log: logging.Logger) -> Language:
-    """`language_of`, with a note where English stands in for a language that has no words here."""
+    """Return `language_of`, and note where English stands in for a language without words."""
     language = language_of(tag)
     if language != tag.partition("-")[0].lower():
         note(log, f"described in English: there are no words for the language {quoted(tag)}; {_there_are()}")
@@ -61,7 +61,7 @@ def _there_are() -> str:
 
 
 def part_label(part: str | int, language: str = "en") -> str:
-    """What a part is called on a page, in a key or aloud: its name, or its number where nobody named it.
+    """Return the label of a part on a page, in a key or aloud: its name, or its number if it has none.
 
     language: a tag, as of a pipeline.
 
@@ -69,48 +69,48 @@ def part_label(part: str | int, language: str = "en") -> str:
     ('helmet', 'part 3', 'Teil 3')
     """
     if isinstance(part, str):
-        return written(part)
+        return one_line(part)
     return Words(language_of(language))("part number", number=part)
 
 
-def written(text: str) -> str:
-    """Somebody's words as a page has them: all of them on one line, without what is no character of a text.
+def one_line(text: str) -> str:
+    """Return a text on one line, without control characters and surrogates.
 
-    >>> written(" two\\n lines\\x07")
+    >>> one_line(" two\\n lines\\x07")
     'two lines'
     """
     return " ".join("".join(each for each in text if each.isspace() or category(each) not in ("Cc", "Cs")).split())
 
 
 class Words:
-    """What is said in one language."""
+    """The words of one language."""
 
     def __init__(self, language: Language) -> None:
         self.language: Language = language
         self._table = TABLES[language]
 
     def __call__(self, key: str, **parts: object) -> str:
-        """What stands under this key, with these parts in their places."""
+        """Return the text of this key, its placeholders filled."""
         text = self._table.words[key]
         if marks := self._table.no_break_before:
             text = re.sub(f" ([{marks}])", "\u00a0\\1", text)
         return text.format(**parts)
 
     def material(self, name: str) -> str:
-        """The name of a material."""
+        """Return the name of a material."""
         return self._table.materials.get(name) or shown(name)
 
-    def felt(self, name: str, given: Callable[[str], str] = shown) -> str:
-        """A material as it stands after `feels like`. given: writes the name of one that the library does not have."""
-        return self._table.felt.get(name) or given(name)
+    def material_after_like(self, name: str, given: Callable[[str], str] = shown) -> str:
+        """Return a material as it follows `feels like`. given: converts a name that is not in the library."""
+        return self._table.after_like.get(name) or given(name)
 
     def number(self, value: float) -> str:
-        """Two digits, and all of a whole number."""
+        """Format a number with two digits, or all of a whole number above 100."""
         rounded = float(f"{value:.2g}") if value < 100 else float(round(value))
         text = f"{rounded:.12f}".rstrip("0").rstrip(".")
         return text.replace(".", self("point"))
 
-    def together(self, parts: list[str]) -> str:
-        """One after the other."""
+    def join(self, parts: list[str]) -> str:
+        """Join texts with commas and `and`."""
         *most, last = parts
         return f"{', '.join(most)} {self('and')} {last}" if most else last

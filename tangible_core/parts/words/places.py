@@ -1,4 +1,4 @@
-"""Where something lies in a picture: in thirds of it, or halves."""
+"""The place of a part in a picture, in words for thirds and halves."""
 
 import numpy as np
 from jaxtyping import Bool
@@ -6,13 +6,13 @@ from jaxtyping import Bool
 from .languages import Language, Words
 
 MOSTLY, NEARLY = 0.6, 0.8
-"""Share of a part that lies in one third of the picture, or in one half, for that side to be named."""
+"""Smallest share of a part in one third of the picture, or in one half, for that side to be named."""
 NOWHERE = "- -"
-"""Key of a part that is on no side."""
+"""Key of a part without a side."""
 
 
 def place_in_words(part: Bool[np.ndarray, "h w"], language: Language = "en") -> str:
-    """Where most of a part of a picture lies; empty where that is on no side.
+    """Describe where most of a part lies; empty if it has no side.
 
     >>> place_in_words(np.eye(6) > 0), place_in_words(np.tri(6, dtype=bool) & (np.arange(6) < 2))
     ('', 'on the left')
@@ -22,22 +22,22 @@ def place_in_words(part: Bool[np.ndarray, "h w"], language: Language = "en") -> 
 
 
 def place_of(part: np.ndarray) -> str:
-    """Where most of a part lies: the key of its third of the picture from the top, and from the left."""
+    """Return the key of the third of the picture, from the top and from the left, with most of a part."""
     return place_of_counts(part.sum(axis=1), part.sum(axis=0))
 
 
 def place_of_counts(down: np.ndarray, across: np.ndarray) -> str:
-    """`place_of` a part by how much of it lies in every row, and in every column."""
+    """Return the same key from the pixels of a part in every row, and in every column."""
     return f"{_third(down)} {_third(across)}"
 
 
 def _third(counts: np.ndarray) -> str:
-    """The third that holds most of what is counted along one side, or the half: 0, 1, 2, or `-` for none."""
+    """Return the third, or the half, of one side with most of the counts: 0, 1, 2, or `-` for none."""
     if counts.size < 3:
         return "-"
-    held = np.bincount(3 * np.arange(counts.size) // counts.size, weights=counts) / counts.sum()
-    best = int(held.argmax())
-    if held[best] >= MOSTLY:
+    shares = np.bincount(3 * np.arange(counts.size) // counts.size, weights=counts) / counts.sum()
+    best = int(shares.argmax())
+    if shares[best] >= MOSTLY:
         return str(best)
     half = counts.size // 2
     first, second = counts[:half].sum() / counts.sum(), counts[-half:].sum() / counts.sum()

@@ -17,11 +17,11 @@ from ruamel.yaml import YAML
 from ...data.products import Product
 from ...errors import ConfigError
 from ...files.yaml.source import Source
-from ...legibility.choice import SimplifyChoice
-from ...mapping import WorkspaceMapping, mapped
+from ...legibility import SimplifyChoice
+from ...mapping import WorkspaceMapping, map_device
 from ...parts import HeightChoice, PartChoice
 from ...plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter
-from ...scene.formats.height_maps import Measured
+from ...scene.formats.height_maps import MeasuredSize
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
 from ...scene.workspace import FeltSize, Workspace, kind_of
@@ -109,7 +109,7 @@ class PipelineConfig(BaseModel):
 
     path: Annotated[Path | None, Unchecked()] = None
     """The file that the configuration stands in; None for a configuration that was made in Python."""
-    measured: Annotated[Measured | None, Unchecked()] = None
+    measured: Annotated[MeasuredSize | None, Unchecked()] = None
     """The size that the scene's heights have by their own account."""
     source: Annotated[Source | None, Unchecked()] = Field(default=None, repr=False)
     """The file with the places of its keys."""
@@ -161,7 +161,7 @@ class PipelineConfig(BaseModel):
     @property
     def felt_device(self) -> HapticDevice | None:
         """The device as the picture sees it, by the mapping; None where none is configured."""
-        return None if self.device is None else mapped(self.device.method, self.mapping)
+        return None if self.device is None else map_device(self.device.method, self.mapping)
 
     def missing(self, kind: str) -> ConfigError:
         """Return the complaint for a method that is needed and not named."""

@@ -9,7 +9,7 @@ from ruamel.yaml.comments import CommentedSeq
 from ...errors import ArgumentError, PictureError, did_you_mean
 from ...files.yaml.source import Location, Source, parse_override, parse_source, read_text
 from ...plugins.registry import Registry
-from ...scene.framing import measured
+from ...scene.framing import measured_size
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
 from .keys import MethodList, Reading
@@ -94,6 +94,6 @@ def _override(source: Source, text: str) -> None:
 
 def _size_of_heights(source: Source, scene: Any) -> Any:
     try:
-        return measured(scene) if isinstance(scene, SceneFiles) else None
+        return measured_size(scene) if isinstance(scene, SceneFiles) else None
     except PictureError as error:
         return source.complain(("scene", "height"), str(error))

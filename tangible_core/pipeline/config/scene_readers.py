@@ -8,7 +8,7 @@ from typing import Any
 from ...errors import BrokenMethod, shown
 from ...plugins.naming import origin
 from ...runtime.failure_log import where_kept
-from ...scene.scene_reader import SceneReader
+from ...scene.scene_files import SceneReader
 
 GROUP = "tangible.scene"
 

@@ -1,9 +1,9 @@
-"""Records on disk, found by the key of what made them.
+"""The cache: records on disk by the keys of their making.
 
-One file an entry, `<key>.npz`: readable by numpy.load, checked by the archive's CRC when it is read. It holds what was
-noticed when the record was made, and when all that it is made from was. Files appear whole
-(written beside and renamed), so two processes can share a folder; a damaged entry is deleted and made again. Beside
-them lies a tally of their bytes, so that the folder is listed only where it may be full.
+An entry is a file `<key>.npz`, readable by numpy.load and checked by the archive's CRC when it is read. It holds the
+record, and the notes on it and on all products that it was made from. Files appear whole (written next to their place
+and renamed), so processes can share a folder; a damaged entry is deleted and made again. A tally of their bytes lies
+in the folder, so that the folder is listed only where it may be full.
 """
 
 import json
@@ -30,42 +30,42 @@ log = logging.getLogger(__name__)
 
 DEFAULT_BYTES = 2 << 30
 LEFT = 7 / 8
-"""Of what a cache may hold, so much is left once it was full: the next so many results fit without counting."""
+"""The share of the limit that is left after pruning: the next results then fit without counting the files."""
 TALLY = ".tally"
 MOST_NUMBERS = 1 << 17
-"""Of a longer tally, nothing is known: whoever counts anew makes it short."""
+"""The numbers of a tally that are read; a longer one is unknown, and counting the folder again makes it short."""
 NOTES = "notes"
 _OURS = re.compile(r"[0-9a-f]{32,64}\.npz|\.[0-9a-f]{32,64}\.npz\..+")
-"""Names of entries, and of what is not whole yet: the folder may hold files of somebody else."""
+"""The names of entries and of unfinished ones: the folder may hold other files too."""
 _unwritable: set[Path] = set()
-"""Folders that were complained of: each once, not for each result."""
+"""Folders of which the log has a warning: one for each folder, not for each result."""
 KEPT = frozenset(name for name, each in vars(data).items() if is_dataclass(each))
-"""What an entry may be made of."""
+"""The names of the classes that an entry may be made of."""
 
 
 Notes = Mapping[str, tuple[Note, ...]]
-"""By product."""
+"""Notes by product."""
 
 
 class Entry(NamedTuple):
-    """A record, and what was noticed when it and all that it is made from were made."""
+    """A record with the notes on it and on all products that it was made from."""
 
     record: Record
     notes: Notes
 
 
 class Tally:
-    """A file of numbers whose sum is the bytes in the folder: what was counted, and after it what each writer added.
+    """A file of numbers whose sum is the size of the folder in bytes: a count, and after it each writer's additions.
 
-    Eight bytes are appended at once, which no other writer comes between, so there is no lock. What a process that is
-    killed does not add is missed until the folder is counted anew, and what is written twice is counted twice.
+    Eight bytes are appended at once, and no other writer comes between, so there is no lock. The addition of a killed
+    process is missing until the folder is counted again, and an entry that is written twice is counted twice.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
 
     def add(self, size: int) -> int | None:
-        """The sum with this; None where it is not known, and the folder must be counted.
+        """Add a size and return the sum; None where it is unknown, and the folder must be counted.
 
         Raises: OSError if the file cannot be read or written.
         """
@@ -76,22 +76,22 @@ class Tally:
         try:
             os.write(file, size.to_bytes(8, "little"))
             os.lseek(file, 0, os.SEEK_SET)
-            told = os.read(file, 8 * MOST_NUMBERS)
+            content = os.read(file, 8 * MOST_NUMBERS)
         finally:
             os.close(file)
-        if len(told) % 8 or len(told) in (8, 8 * MOST_NUMBERS):  # its own alone, or more than is read
+        if len(content) % 8 or len(content) in (8, 8 * MOST_NUMBERS):  # this number alone, or more than is read
             return None
-        numbers = np.frombuffer(told, "<i8")
+        numbers = np.frombuffer(content, "<i8")
         return None if numbers.min() < 0 else int(numbers.sum())
 
     def begin(self, total: int) -> None:
-        """What was counted: the first number. Raises: OutputError if the file cannot be written."""
+        """Start with a counted size. Raises: OutputError if the file cannot be written."""
         with atomic_write(self.path) as file:
             file.write(total.to_bytes(8, "little"))
 
 
 class Cache:
-    """A folder of records, bounded in size: the entries used longest ago go first."""
+    """A folder of records, bounded in size: the entries used longest ago are deleted first."""
 
     def __init__(self, folder: Path | None = None, max_bytes: int = DEFAULT_BYTES) -> None:
         self.folder = default_folder() if folder is None else folder
@@ -105,12 +105,12 @@ class Cache:
             return False
 
     def get(self, key: str) -> Record | None:
-        """The record of this key, or None if there is none or it is damaged (then it is deleted and said)."""
+        """Return the record of this key; None without one. A damaged one is deleted, with a warning."""
         entry = self.entry(key)
         return entry and entry.record
 
     def entry(self, key: str) -> Entry | None:
-        """As `get`, with the notes."""
+        """Return the record of this key with its notes, as `get`."""
         path = self._path(key)
         try:
             entry = read_entry(path)
@@ -125,19 +125,19 @@ class Cache:
         return entry
 
     def notes(self, key: str) -> Notes:
-        """The notes of this key alone, for a plan; none where there is no such entry, or it is damaged."""
+        """Return only the notes of this key, for a plan; none where there is no such entry, or it is damaged."""
         try:
             check_file(self._path(key))
             with self._path(key).open("rb") as file:
                 return _notes(Archive(file).read([NOTES])[NOTES])
-        except Exception:  # noqa: BLE001 - a damaged file can provoke any; `get` says so
+        except Exception:  # noqa: BLE001 - a damaged file can provoke any; `get` logs it
             return {}
 
     def put(self, key: str, record: Record, notes: Notes | None = None) -> None:
-        """Keep a record; a cache that cannot be written costs a warning, never the result."""
+        """Keep a record; where the cache cannot be written, there is a warning and no error."""
         try:
             write_record(self._path(key), record, notes or {})
-            held = self._tally.add(_used(self._path(key))[1])
+            held = self._tally.add(_use_and_size(self._path(key))[1])
             if held is None or held > self.max_bytes:
                 self._prune()
         except (OutputError, OSError) as error:
@@ -146,25 +146,25 @@ class Cache:
                 log.warning("results are not cached: %s; TANGIBLE_CACHE_DIR names another cache", error)
 
     def _is_there(self) -> bool:
-        """Whether there is a folder to hold entries; of what stands in its place, `put` complains."""
+        """Return True if the cache is a folder; about anything else in its place `put` warns."""
         try:
             return self.folder.is_dir()
         except OSError:
             return False
 
     def size(self) -> tuple[int, int]:
-        """How many results are kept, and how many bytes they take; what a killed writer left behind counts too."""
-        sizes = [_used(path)[1] for path in self._files()]
+        """Return the number of results and their size in bytes, with unfinished files of killed processes."""
+        sizes = [_use_and_size(path)[1] for path in self._files()]
         return len(sizes), sum(sizes)
 
     def clear(self) -> tuple[int, int]:
-        """Delete every result, and nothing else; how many that were, and their bytes.
+        """Delete every result, and nothing else, and return their number and bytes.
 
-        Raises: OutputError for one that cannot be deleted.
+        Raises: OutputError for a result that cannot be deleted.
         """
         freed: list[int] = []
         for path in self._files():
-            size = _used(path)[1]
+            size = _use_and_size(path)[1]
             try:
                 path.unlink(missing_ok=True)
             except OSError as error:
@@ -180,7 +180,7 @@ class Cache:
         return self.folder / f"{key}.npz"
 
     def _prune(self) -> None:
-        entries = [(*_used(path), path) for path in self.folder.glob("*.npz")]
+        entries = [(*_use_and_size(path), path) for path in self.folder.glob("*.npz")]
         held = sum(size for _, size, _ in entries)
         if held > self.max_bytes:
             for _, size, path in sorted(entries):
@@ -193,7 +193,7 @@ class Cache:
 
 
 def default_folder() -> Path:
-    """$TANGIBLE_CACHE_DIR, or the user's cache folder."""
+    """Return $TANGIBLE_CACHE_DIR, or the user's cache folder."""
     if named := os.environ.get("TANGIBLE_CACHE_DIR"):
         return as_path(named, "TANGIBLE_CACHE_DIR")
     from platformdirs import user_cache_path
@@ -202,7 +202,7 @@ def default_folder() -> Path:
 
 
 def write_record(path: Path, record: Record, notes: Notes | None = None) -> None:
-    """A record as an .npz: its arrays by name, and the rest in `record` and `notes` as JSON.
+    """Write a record as an .npz: its arrays by name, and the rest in `record` and `notes` as JSON.
 
     Raises: OutputError if the place cannot be written.
     """
@@ -216,12 +216,12 @@ def write_record(path: Path, record: Record, notes: Notes | None = None) -> None
 
 
 def read_record(path: Path) -> Record:
-    """The record that `write_record` wrote. Raises: FileNotFoundError, or ValueError and its like when damaged."""
+    """Read a record of `write_record`. Raises: FileNotFoundError; ValueError or other errors if it is damaged."""
     return read_entry(path).record
 
 
 def read_entry(path: Path) -> Entry:
-    """What `write_record` wrote. Raises: as `read_record`."""
+    """Read a record and its notes. Raises: as `read_record`."""
     check_file(path)
     with path.open("rb") as file:
         archive = Archive(file)
@@ -229,19 +229,18 @@ def read_entry(path: Path) -> Entry:
     notes: Notes = _notes(arrays.pop(NOTES)) if NOTES in arrays else {}
     record = _unpack(json.loads(arrays.pop("record").tobytes()), arrays)
     if not isinstance(record, Record):
-        raise ValueError(f"holds no record, but {quoted(record)}")
+        raise ValueError(f"has {quoted(record)} in place of a record")
     return Entry(record, notes)
 
 
 def _notes(packed: np.ndarray) -> Notes:
-    return {
-        str(product): tuple(_note(*each) for each in found) for product, found in json.loads(packed.tobytes()).items()
-    }
+    notes = json.loads(packed.tobytes())
+    return {str(product): tuple(_note(*each) for each in of_product) for product, of_product in notes.items()}
 
 
 def _note(text: Any, kind: Any) -> Note:
     if not isinstance(text, str) or kind not in get_args(NoteKind):
-        raise ValueError(f"holds no note, but {quoted([text, kind])}")
+        raise ValueError(f"has {quoted([text, kind])} in place of a note")
     return Note(text, kind)
 
 
@@ -273,7 +272,7 @@ def _unpack(tree: Any, arrays: Mapping[str, np.ndarray]) -> Any:
 
 
 def _remove(path: Path) -> None:
-    """A damaged entry. A folder that holds something is somebody's: it stays, and `put` complains of it."""
+    """Delete a damaged entry. A folder with something in it stays, as it is not ours, and `put` warns about it."""
     with suppress(OSError):
         if path.is_dir() and not path.is_symlink():
             path.rmdir()
@@ -281,9 +280,10 @@ def _remove(path: Path) -> None:
             path.unlink()
 
 
-def _used(path: Path) -> tuple[float, int]:
+def _use_and_size(path: Path) -> tuple[float, int]:
+    """Return the time of the last use and the size in bytes."""
     try:
-        found = path.stat()
+        status = path.stat()
     except FileNotFoundError:  # another process dropped it
         return 0.0, 0
-    return found.st_mtime, found.st_size
+    return status.st_mtime, status.st_size

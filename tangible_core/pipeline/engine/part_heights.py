@@ -1,4 +1,4 @@
-"""The height that each part gets in a relief of parts."""
+"""The height of each part in a relief of parts."""
 
 import logging
 from collections.abc import Mapping
@@ -14,9 +14,9 @@ from .working_grid import transparent_parts
 log = logging.getLogger(__name__)
 
 FINEST_DIGITS = 5
-"""Of a height that was found, in metres: a hundredth of a millimetre is less than a hand feels, and is easy to read."""
+"""The decimals of a computed height in metres: a hundredth of a millimetre cannot be felt, and is easy to read."""
 MOST_NAMED = 8
-"""Parts in a note."""
+"""The most parts that a note names."""
 
 
 def heights_of(
@@ -27,15 +27,14 @@ def heights_of(
     disparity: DisparityMap | None = None,
     shown: Bool[np.ndarray, "h w"] | None = None,
 ) -> PartHeights:
-    """The height of each part, and why: the given ones, and for the others what the recipe finds.
+    """Return the height of each part with its reason: the given heights, and computed ones for the other parts.
 
-    top_m: the greatest that is found. disparity: on the grid of the parts; None where there is none to be found.
-    shown: where the picture is opaque; what is transparent lies at 0.
+    top_m: the greatest computed height. disparity: on the grid of the parts; None without depth.
+    shown: True where the picture is opaque; transparent parts lie at 0.
     """
-    found = _found(parts, heights, max(0.0, top_m), disparity)
-    said = dict(enumerate(zip(found.heights_m, found.reasons, strict=True)))
-    heights_m = {number: min(round(height_m, FINEST_DIGITS), top_m) for number, (height_m, _) in said.items()}
-    reasons = {number: why for number, (_, why) in said.items()}
+    computed = _compute(parts, heights, max(0.0, top_m), disparity)
+    heights_m = {number: min(round(each, FINEST_DIGITS), top_m) for number, each in enumerate(computed.heights_m)}
+    reasons = dict(enumerate(computed.reasons))
     for number in transparent_parts(parts, shown):
         heights_m[number], reasons[number] = 0.0, "transparent in the picture"
     for number, height_m in given_m.items():
@@ -43,7 +42,7 @@ def heights_of(
     return PartHeights(tuple(heights_m.values()), tuple(reasons.values()))
 
 
-def _found(parts: PartMap, heights: HeightChoice, top_m: float, disparity: DisparityMap | None) -> PartHeights:
+def _compute(parts: PartMap, heights: HeightChoice, top_m: float, disparity: DisparityMap | None) -> PartHeights:
     if heights.by == "guess":
         return guess_heights(parts, top_m)
     if heights.by == "depth" and disparity is not None:
@@ -52,31 +51,27 @@ def _found(parts: PartMap, heights: HeightChoice, top_m: float, disparity: Dispa
     return PartHeights((0.0,) * parts.count, (why,) * parts.count)
 
 
-def warn_missing_heights(found: PartHeights, heights: HeightChoice, given_m: Mapping[int, float]) -> None:
-    """Note what nobody said: a guess is a warning."""
-    left = [number for number, why in enumerate(found.reasons) if number not in given_m and "transparent" not in why]
+def warn_missing_heights(result: PartHeights, heights: HeightChoice, given_m: Mapping[int, float]) -> None:
+    """Note the parts without a given height; guessed heights are a warning."""
+    left = [number for number, why in enumerate(result.reasons) if number not in given_m and "transparent" not in why]
     if not left:
         return
+    count = len(result.reasons)
+    parts = f"all {count} parts" if len(left) == count > 1 else in_words(left)
     if heights.by == "guess":
         note(
             log,
-            f"the heights of {_of(left, found)} are guessed, as a picture does not tell what stands in front of what; "
-            "correct them in parts-guessed.yaml, which a run leaves in its folder, or give them: "
-            "`heights: {by: given}`",
+            f"the heights of {parts} are guessed, as a picture does not show which parts are in front; correct them in "
+            "parts-guessed.yaml, which a run leaves in its folder, or give them: `heights: {by: given}`",
             logging.WARNING,
         )
     elif heights.by == "given":
         lies = "lies" if len(left) == 1 else "lie"
-        note(log, f"no height is given for {_of(left, found)}, which {lies} at 0")
-
-
-def _of(numbers: list[int], found: PartHeights) -> str:
-    count = len(found.reasons)
-    return f"all {count} parts" if len(numbers) == count > 1 else in_words(numbers)
+        note(log, f"no height is given for {parts}, which {lies} at 0")
 
 
 def in_words(numbers: list[int]) -> str:
-    """Parts in a sentence, the first of many.
+    """Name parts in a sentence, the first of many.
 
     >>> in_words([3]), in_words([3, 5, 7])
     ('part 3', 'parts 3, 5 and 7')

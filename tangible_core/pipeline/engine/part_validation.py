@@ -1,4 +1,4 @@
-"""What a configuration says of parts, against the parts that a picture has."""
+"""Checks of the configured parts against the parts of the picture."""
 
 import logging
 from collections.abc import Iterator
@@ -19,36 +19,36 @@ from ..config.part_names import Wrong, names_of, numbers_of, part_in_words
 log = logging.getLogger(__name__)
 
 MOST_PARTS = 4096
-"""As many as a label picture may have labels: more, and they are the grain of a photograph."""
+"""The most parts, as many as a label picture may have labels: more are the grain of a photograph."""
 FEW_PIXELS, FEW_SHARE = 9, 1e-5
-"""What is smaller, or a smaller share of the picture, is rather a slip of the brush than a part."""
+"""The least size of a part, in pixels and as a share of the picture: smaller ones are slips of the brush."""
 MOST_SLIPS = 3
-"""Small parts whose places are said."""
+"""The most small parts whose places a warning has."""
 
 
 @lru_cache(maxsize=1)
 def parts_of(segments: SegmentMap) -> PartMap:
-    """The parts of segments; the last ones are kept. Raises: PictureError if there are too many to be felt."""
-    found = find_parts(segments)
-    if found.count > MOST_PARTS:
+    """Find the parts of segments; the last result is remembered. Raises: PictureError for more than MOST_PARTS."""
+    parts = find_parts(segments)
+    if parts.count > MOST_PARTS:
         raise PictureError(
-            f"the segments fall into {found.count} parts, and at most {MOST_PARTS} are felt; paint each part in one "
-            "flat colour and save the picture losslessly, as PNG, or have fewer and smoother segments made"
+            f"the segments fall into {parts.count} parts, and at most {MOST_PARTS} can be felt; paint each part in one "
+            "flat colour and save the picture losslessly, as PNG, or choose fewer and smoother segments"
         )
-    return found
+    return parts
 
 
 def warn_small_parts(parts: PartMap) -> None:
-    """Warn of parts of a few pixels. They stay parts, as the numbers of all others would change."""
+    """Warn about parts of a few pixels. They stay parts, as the numbers of all others would change."""
     sizes = part_sizes(parts)
     small = np.flatnonzero(sizes < max(FEW_PIXELS, FEW_SHARE * parts.labels.size)).tolist()
     if not small:
         return
-    said = [f"part {each} at {place_of(parts, each)} ({_pixels(int(sizes[each]))})" for each in small[:MOST_SLIPS]]
+    texts = [f"part {each} at {place_of(parts, each)} ({_pixels(int(sizes[each]))})" for each in small[:MOST_SLIPS]]
     more = f", and {len(small) - MOST_SLIPS} more" if len(small) > MOST_SLIPS else ""
-    few = "one part is hardly there" if len(small) == 1 else f"{len(small)} parts are hardly there"
-    cure = "paint over them, or have smoother segments made; the numbers of the parts behind them then change"
-    note(log, f"{few}: {', '.join(said)}{more}; {cure}", logging.WARNING)
+    few = "one part has few pixels" if len(small) == 1 else f"{len(small)} parts have few pixels"
+    cure = "paint over them, or choose smoother segments; the numbers of the parts after them then change"
+    note(log, f"{few}: {', '.join(texts)}{more}; {cure}", logging.WARNING)
 
 
 def _pixels(count: int) -> str:
@@ -56,9 +56,9 @@ def _pixels(count: int) -> str:
 
 
 def place_of(parts: PartMap, number: int, scale: float = 1.0) -> str:
-    """A pixel in a part, as far inside as its middle row lets it be: [x, y].
+    """Return a pixel in a part, in the middle of its middle row, as text: [x, y].
 
-    scale: pixels of the picture a pixel of the map.
+    scale: pixels of the picture for a pixel of the map.
     """
     rows, columns = np.nonzero(parts.labels == number)
     if not rows.size:
@@ -70,22 +70,22 @@ def place_of(parts: PartMap, number: int, scale: float = 1.0) -> str:
 
 
 def check_parts(config: PipelineConfig, parts: PartMap, columns: int) -> None:
-    """What is said of parts must be of parts that are there, and fit the workspace.
+    """Refuse numbers of parts that do not exist, and heights over the workspace.
 
-    columns: of the picture, in whose pixels places are said. Raises: ConfigError with every complaint.
+    columns: of the picture, in whose pixels messages give places. Raises: ConfigError with every complaint.
     """
     if wrong := [*_wrong_numbers(config, parts.count), *_wrong_heights(config, parts, columns)]:
         raise config.error_at(*wrong)
 
 
 def check_numbers(config: PipelineConfig, count: int) -> None:
-    """Raises: ConfigError for what is said of parts beyond so many."""
+    """Refuse numbers of parts from `count` on. Raises: ConfigError with every complaint."""
     if wrong := list(_wrong_numbers(config, count)):
         raise config.error_at(*wrong)
 
 
 def _wrong_numbers(config: PipelineConfig, count: int) -> Iterator[Wrong]:
-    there = f"the parts are 0 to {count - 1}" if count > 1 else "there is one alone, 0"
+    there = f"the parts are 0 to {count - 1}" if count > 1 else "the only part is 0"
     there = f"{there} (`tangible parts` draws them with their numbers)"
     names = config.part_names
     for number in config.parts or {}:
@@ -117,7 +117,7 @@ def _mm(length_m: float) -> str:
 
 
 def number_rules(config: PipelineConfig) -> tuple[MaterialRule, ...]:
-    """The rules for materials, with the numbers of parts in place of their names."""
+    """Return the rules for materials with the numbers of parts in place of their names."""
     numbers = numbers_of(config.parts or {})
     return tuple(
         rule.model_copy(update={"part": numbers[rule.part.strip()]}) if isinstance(rule.part, str) else rule
@@ -126,21 +126,21 @@ def number_rules(config: PipelineConfig) -> tuple[MaterialRule, ...]:
 
 
 def own_materials(config: PipelineConfig) -> dict[int, str]:
-    """Of the parts that say theirs, by number."""
+    """Return the materials of the parts that name one, by number."""
     return {number: each.material for number, each in (config.parts or {}).items() if each.material is not None}
 
 
-def add_names_to_reasons(config: PipelineConfig, found: MaterialMap) -> MaterialMap:
-    """With the names of the parts in the reasons."""
-    reasons = list(found.reasons)
+def add_names_to_reasons(config: PipelineConfig, materials: MaterialMap) -> MaterialMap:
+    """Add the names of parts to the reasons."""
+    reasons = list(materials.reasons)
     for number, name in config.part_names.items():
         if number < len(reasons):
             reasons[number] = part_in_words(number, name) + reasons[number].removeprefix(part_in_words(number))
-    return replace(found, reasons=tuple(reasons))
+    return replace(materials, reasons=tuple(reasons))
 
 
-def add_names_to_surface(config: PipelineConfig, found: HapticSurface) -> HapticSurface:
-    """With the names of its parts. Raises: ConfigError for parts that are not there."""
-    count = len(found.names or ())
+def add_names_to_surface(config: PipelineConfig, surface: HapticSurface) -> HapticSurface:
+    """Add the names of its parts. Raises: ConfigError for parts that do not exist."""
+    count = len(surface.names or ())
     check_numbers(config, count)
-    return replace(found, names=names_of(config.parts or {}, count))
+    return replace(surface, names=names_of(config.parts or {}, count))

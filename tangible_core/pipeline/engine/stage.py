@@ -1,4 +1,4 @@
-"""The base of all stages: how one product is made of a scene by a configuration.
+"""The base of all stages: each makes one product from a scene by a configuration.
 
 A stage stands in `stages/PRODUCT.py`, as the class `ProductStage`; the table `tangible_core.data.products.PRODUCTS`
 names the product.
@@ -67,7 +67,7 @@ class Context:
 
 
 class Stage(ABC):
-    """How one product is made: from which inputs, when it is skipped, and what its cached result depends on."""
+    """The making of one product: its inputs, the reason to skip it, and the key of its cached result."""
 
     product: ClassVar[str]
     cached: ClassVar[bool] = True

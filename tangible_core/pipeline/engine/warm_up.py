@@ -1,7 +1,7 @@
-"""What a pipeline will do after its depth, done in haste on a part of its picture, so that the kernels are compiled.
+"""The warm-up: the stages after the depth, run on a crop in a background process, so that their kernels are compiled.
 
-It runs in a process beside the one that makes the real thing, and what it finds is thrown away. Only the types of
-arrays must be what the pipeline will have, as kernels are compiled for those.
+Its results are discarded. Only the types of its arrays must be those of the pipeline, as kernels are compiled for
+types.
 """
 
 from collections.abc import Iterator
@@ -17,15 +17,17 @@ from ..config.model import PipelineConfig
 from .engine import Engine
 
 MOST_PX = 768
-"""Rows and columns of the picture that are looked at."""
+"""The most rows and columns of the crop."""
 STRIPES = 6
-"""Segments of a made-up map: enough for every material that a rule may choose."""
+"""Segments of the made-up map: enough for every material that a rule may choose."""
 FELT = "felt"
+"""The name of the simulated session, the last step of the warm-up."""
 SECONDS = 0.02
+"""The length of the simulated session, s: some ticks are enough to compile its loop."""
 
 
-def rehearsal(engine: Engine, want: str) -> Beside:
-    """For a block in which the engine makes this product: what it compiles later is compiled beside it."""
+def warm_up(engine: Engine, want: str) -> Beside:
+    """Return a block in which the engine makes this product, while its later kernels are compiled in the background."""
     return Beside(lambda: _work(engine, want))
 
 
@@ -40,12 +42,12 @@ def _work(engine: Engine, want: str) -> Work | None:
     rows, columns = (slice(max(0, (size - MOST_PX) // 2), (size + MOST_PX) // 2) for size in views.shape)
     part = Views(np.ascontiguousarray(views.left[rows, columns]))
     names = frozenset(["segments"] * segments + ["touch", FELT] * touch)
-    said = config.with_values(scene=Scene("rehearsal", part), simplify=None)
-    return Work(names, rehearse, (said, part, segments, touch))
+    crop_config = config.with_values(scene=Scene("rehearsal", part), simplify=None)
+    return Work(names, run_stages, (crop_config, part, segments, touch))
 
 
-def rehearse(config: PipelineConfig, views: Views, segments: bool, touch: bool) -> Iterator[str]:
-    """Segment, make the touch of a made-up surface, feel it; after each it is named, as the pipeline's product is."""
+def run_stages(config: PipelineConfig, views: Views, segments: bool, touch: bool) -> Iterator[str]:
+    """Segment, make the touch of a made-up surface, and run it; yield the name of each step when it is done."""
     if segments and config.texture is not None:
         config.texture.method.segment(views.left)
         yield "segments"

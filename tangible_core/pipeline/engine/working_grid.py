@@ -38,7 +38,7 @@ class WorkingGrid:
     @cached_property
     def views(self) -> Views | None:
         """The pictures; without calibration where they are reduced."""
-        return None if self.scene.views is None else scaling.reduced(self.scene.views, self.factor)
+        return None if self.scene.views is None else scaling.reduce_views(self.scene.views, self.factor)
 
     @cached_property
     def known_mask(self) -> Bool[np.ndarray, "h w"] | None:

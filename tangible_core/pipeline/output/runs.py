@@ -8,22 +8,33 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
+import numpy as np
+
 from ...data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Record, ServoReport, Work
 from ...data.products import IN_REPORT
 from ...errors import ConfigError, OutputError
 from ...files.json_text import write_figures
 from ...files.writing import write_text
+from ...mapping import intended_path, map_device, over
 from ...metrics import disparity_errors
-from ...plugins.interfaces import Touch
-from ...session import EVERY, About, Recording, materials_text, names_text, run_simulated, with_parts
+from ...plugins.interfaces import HapticDevice, Touch
+from ...session import (
+    EVERY,
+    About,
+    Recording,
+    TrackingError,
+    materials_text,
+    names_text,
+    run_simulated,
+    tracking_error,
+    with_parts,
+)
 from ..engine.cache import write_record
 from ..engine.engine import Engine
-from ..engine.warm_up import FELT, rehearsal
-from .following import felt_device, how_followed
-from .notebook import png_html
+from ..engine.warm_up import FELT, warm_up
 from .parts_text import part_heights, to_correct
 from .run_folder import CONFIG, GUESSED, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
-from .showing import can_draw, drawing
+from .showing import can_draw, drawing, png_html
 
 Sheet = Literal["png", "svg", "pdf"]
 """What a sheet can be drawn as."""
@@ -90,7 +101,7 @@ def make_run(
     """
     engine.check(want)
     check_folder(out, engine.config.path)
-    with rehearsal(engine, want) as engine.beside:
+    with warm_up(engine, want) as engine.beside:
         value = engine.make_on_grid(want)
         products = {name: engine.make_on_grid(name) for name in IN_REPORT if name in engine.inputs_of(want)}
         products[want] = value
@@ -144,6 +155,18 @@ def about(engine: Engine) -> About:
         text = f"# {error}"
     parts, materials = names_text(engine.config.part_names), materials_text(engine.make_on_grid("surface"))
     return About(names["device"], names["render"], text, parts=parts, materials=materials)
+
+
+def felt_device(engine: Engine, device: HapticDevice | None = None) -> HapticDevice | None:
+    """This or the configured device as the picture sees it, a path of its own over the surface; None where none is."""
+    felt = engine.config.felt_device if device is None else map_device(device, engine.config.mapping)
+    return felt and over(felt, engine.make("surface").extent_m)
+
+
+def how_followed(engine: Engine, felt: HapticDevice | None, seen: Recording) -> TrackingError:
+    """How the hand followed the path of a device of `felt_device`. seen: one of `EVERY` ticks."""
+    path_m = felt and intended_path(felt, np.arange(len(seen.rows)) * EVERY)
+    return tracking_error(seen, path_m, engine.make("surface"))
 
 
 def _felt(

@@ -1,4 +1,4 @@
-"""The pixels of picture files, decoded within limits. Whatever is wrong with a file is one PictureError."""
+"""The pixels of picture files, decoded within limits; whatever is wrong with a file is one PictureError."""
 
 import logging
 import struct
@@ -15,7 +15,7 @@ from ...errors import PictureError, did_you_mean, shown
 from ...files import arrays
 from ...files.reading import TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
 from ...runtime.opencv import silent_opencv
-from .multi_picture import Say, count_pictures, unsaid
+from .multi_picture import Notify, count_pictures, ignore
 from .tiff_tags import TIFF, Shape, tiff_size
 
 if TYPE_CHECKING:
@@ -26,35 +26,32 @@ log = logging.getLogger(__name__)
 T = TypeVar("T")
 
 FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "WEBP", "PPM", "JPEG2000")
-"""What Pillow may read. Some that it also knows run other programs (EPS) or cannot be told from noise (TGA)."""
+"""Formats that Pillow may read. Others that it knows run programs (EPS) or cannot be told from noise (TGA)."""
 
 PICTURES = frozenset(
     (".png", ".jpg", ".jpeg", ".jp2", ".webp", ".bmp", ".gif", ".tif", ".tiff", ".ppm", ".pgm", ".heic", ".avif")
 )
-"""Ends of names that are taken for a picture's; any other one is a pipeline file's."""
+"""Suffixes of pictures; a file with another one, unless it is a video, is read as a pipeline file."""
 
 VIDEOS = frozenset((".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".wmv", ".ogv", ".3gp", ".mts"))
-"""And for a video's."""
+"""Suffixes of videos."""
 
 _ORIENTATION, _BITS_PER_SAMPLE = 0x0112, 0x0102  # tags of EXIF and of TIFF
 
 
-def values_of(path: Path, data: bytes, say: Say, indices: bool = False) -> np.ndarray:
-    """The array that a file of these bytes holds. Raises: PictureError."""
+def values_of(path: Path, data: bytes, notify: Notify, indices: bool = False) -> np.ndarray:
+    """Return the array that a file of these bytes holds; indices: keep the palette's indices. Raises: PictureError."""
     if path.suffix.lower() in (".npy", ".npz"):
         return _array(path, data)
-    return decode(path, data, indices, say)
+    return decode(path, data, indices, notify)
 
 
 def bytes_of(path: Path) -> bytes:
-    """The whole of a file. Raises: PictureError, with the cure, where there is none or it cannot be read."""
+    """Return the content of a file. Raises: PictureError, with the cure, if it is missing or cannot be read."""
     try:
         data = read_bytes(path)
     except (FileNotFoundError, NotADirectoryError) as error:
-        if not path.parent.is_dir():
-            raise PictureError(f"{path}: there is no folder {path.parent}; check the path") from error
-        near = did_you_mean(path.name, (each.name for each in path.parent.iterdir()))
-        raise PictureError(f"{path}: there is no such file{near}") from error
+        raise absent(path, "file") from error
     except OSError as error:
         raise PictureError(
             f"{path}: cannot be read: {error.strerror or error}; check the path and its permissions"
@@ -62,6 +59,14 @@ def bytes_of(path: Path) -> bytes:
     if not data:
         raise PictureError(f"{path}: the file is empty; copy or download it again")
     return data
+
+
+def absent(path: Path, what: str) -> PictureError:
+    """Return the error for a path at which nothing is, with a similar name from its folder as a hint."""
+    if not path.parent.is_dir():
+        return PictureError(f"{path}: there is no folder {path.parent}; check the path")
+    near = did_you_mean(path.name, (each.name for each in path.parent.iterdir()))
+    return PictureError(f"{path}: there is no such {what}{near}")
 
 
 def _array(path: Path, data: bytes) -> np.ndarray:
@@ -75,28 +80,28 @@ def _array(path: Path, data: bytes) -> np.ndarray:
         ) from error
 
 
-def decode(path: Path, data: bytes, indices: bool = False, say: Say = unsaid, frame: int = 0) -> np.ndarray:
-    """By Pillow, which says what is wrong with a file; by OpenCV where there are more bits than Pillow keeps."""
-    with _said_of(path):
-        return _decoded(path, data, indices, say, frame)
+def decode(path: Path, data: bytes, indices: bool = False, notify: Notify = ignore, frame: int = 0) -> np.ndarray:
+    """Decode a picture: with Pillow, which reports faults, or with OpenCV where Pillow would drop bits."""
+    with _picture_errors(path):
+        return _decode(path, data, indices, notify, frame)
 
 
 def look_at(path: Path, data: bytes, look: Callable[["Image"], T]) -> T:
-    """What is to be seen in a file before its pixels are decoded."""
+    """Return what `look` finds in an open file whose pixels are not decoded yet."""
     from PIL import Image
 
-    with _said_of(path), Image.open(BytesIO(data), formats=FORMATS) as image:
+    with _picture_errors(path), Image.open(BytesIO(data), formats=FORMATS) as image:
         return look(image)
 
 
 @contextmanager
-def _said_of(path: Path) -> Generator[None]:
-    """Whatever is wrong with a file becomes a PictureError."""
+def _picture_errors(path: Path) -> Generator[None]:
+    """Turn whatever is wrong with a file into a PictureError."""
     from PIL import Image, UnidentifiedImageError
 
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of tags that it passes over
+            warnings.simplefilter("ignore")  # on tags that Pillow skips
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             yield
     except UnidentifiedImageError as error:
@@ -118,33 +123,30 @@ def _too_large(path: Path, why: object) -> PictureError:
     return PictureError(f"{path}: {why}; make it smaller first")
 
 
-def _decoded(path: Path, data: bytes, indices: bool, say: Say, frame: int) -> np.ndarray:
+def _decode(path: Path, data: bytes, indices: bool, notify: Notify, frame: int) -> np.ndarray:
     from PIL import Image, UnidentifiedImageError
 
     if data[:4] in TIFF:
-        check_size(*tiff_size(data))  # Pillow does not look at tiles, which may be larger than the picture
+        check_size(*tiff_size(data))  # Pillow does not check tiles, which may be larger than the picture
     try:
         image = Image.open(BytesIO(data), formats=FORMATS)
     except UnidentifiedImageError:
         if data[:4] not in TIFF[:2]:
             raise
-        return _picture_by_opencv(path, data)
+        return _decode_with_opencv(path, data)
     with image:
         if (count := count_pictures(image)) > 1 and not frame:
-            say(f"{path.name} holds {count} pictures, of which the first is taken{_cure(image)}")
+            cure = "; for both views write `stereo:`" if image.format == "MPO" else ""
+            notify(f"{path.name} holds {count} pictures, of which the first is taken{cure}")
         image.seek(frame)
         check_size((image.height, image.width, len(image.getbands())), 4)
         image.load()
-        values = _picture_by_opencv(path, data) if _is_deep_colour(image, data) else _values(image, indices)
+        values = _decode_with_opencv(path, data) if _is_deep_colour(image, data) else _values(image, indices)
         return np.ascontiguousarray(upright(values, orientation(image)))
 
 
-def _cure(image: "Image") -> str:
-    return "; for both views write `stereo:`" if image.format == "MPO" else ""
-
-
 def _is_deep_colour(image: "Image", data: bytes) -> bool:
-    """Whether Pillow would cut 16 bits a channel down to 8."""
+    """Tell whether Pillow would cut 16 bits a channel down to 8."""
     from PIL.TiffImagePlugin import TiffImageFile
 
     if isinstance(image, TiffImageFile):
@@ -165,7 +167,7 @@ def _values(image: "Image", indices: bool) -> np.ndarray:
 
 
 def orientation(image: "Image") -> int:
-    """What EXIF says of how the camera was held; 1 where it says nothing that can be read."""
+    """Return the orientation of the camera by EXIF; 1, upright, if there is none that can be read."""
     try:
         return image.getexif().get(_ORIENTATION, 1)
     except Exception as error:  # noqa: BLE001 - a picture is worth more than its damaged tags
@@ -174,7 +176,7 @@ def orientation(image: "Image") -> int:
 
 
 def upright(values: np.ndarray, orientation: int) -> np.ndarray:
-    """Source: EXIF 2.3, tag 0x0112: where the picture's first row and column belong."""
+    """Turn and mirror a picture by its orientation. Source: EXIF 2.3, tag 0x0112."""
     if orientation in (5, 6, 7, 8):
         values = values.swapaxes(0, 1)
     if orientation in (3, 4, 7, 8):
@@ -184,14 +186,14 @@ def upright(values: np.ndarray, orientation: int) -> np.ndarray:
     return values
 
 
-def _picture_by_opencv(path: Path, data: bytes) -> np.ndarray:
-    """A PNG or a TIFF. What OpenCV decodes is not limited, so that headers are looked at before."""
+def _decode_with_opencv(path: Path, data: bytes) -> np.ndarray:
+    """Decode a PNG or a TIFF. OpenCV has no limit on sizes, so the headers are checked first."""
     import cv2
 
     if data.startswith(b"\x89PNG"):
         check_size(*_png_size(data))
     try:
-        with silent_opencv():  # what is wrong is said below, in one line
+        with silent_opencv():  # the error below reports the fault in one line
             values: np.ndarray | None = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     except cv2.error:
         values = None
@@ -203,6 +205,6 @@ def _picture_by_opencv(path: Path, data: bytes) -> np.ndarray:
 
 
 def _png_size(data: bytes) -> tuple[Shape, int]:
-    """Shape and bytes a value at most, by the first chunk."""
+    """Return the largest shape and bytes a value that the first chunk of a PNG allows."""
     width, height = struct.unpack_from(">II", data, 16)
     return (height, width, 4), 2

@@ -1,7 +1,6 @@
-"""Heights in millimetres: a picture, and what its numbers mean, so that it is read as high and as wide as it was.
+"""Height maps in millimetres: a picture, and metadata that state its size, so that heights and widths are kept.
 
-The meaning is a JSON text. It stands in a file of its own beside a PNG of 16 bits, and in a TIFF of floating-point
-numbers itself (tag 270, ImageDescription).
+The metadata are a JSON text: a file next to a PNG of 16 bits, or tag 270 (ImageDescription) of a floating-point TIFF.
 """
 
 import json
@@ -22,16 +21,16 @@ from .tiff_tags import TIFF, stated_description
 FORMATS = "tangible heights "
 FORMAT = "tangible heights 1"
 LEVELS = 0xFFFF
-"""The number of the highest place in a picture of 16 bits."""
+"""Number of the highest place in a picture of 16 bits."""
 MM = 1000.0
-"""In a metre."""
+"""Millimetres in a metre."""
 Millimetres = Annotated[float, Field(gt=0, le=10 * MM, allow_inf_nan=False)]
 Height = Annotated[float, Field(ge=0, le=10 * MM, allow_inf_nan=False)]
 Count = Annotated[int, Field(ge=1)]
 
 
-class HeightsSaid(BaseModel):
-    """What the numbers of a picture mean: a height is `low_mm` and `step_mm` for each 1."""
+class HeightsMetadata(BaseModel):
+    """The meaning of a picture's numbers: the height of a number is `low_mm` plus `step_mm` times the number."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -39,28 +38,28 @@ class HeightsSaid(BaseModel):
     title: str = ""
     language: str = "en"
     file: str
-    """The picture."""
+    """Name of the picture."""
     exact: str = ""
-    """A TIFF of the same heights, beside the picture; empty where there is none, and where the picture is that one."""
+    """Name of a TIFF with the same heights next to the picture; empty if there is none, or if the picture is it."""
     columns: Count
     rows: Count
     width_mm: Millimetres
     length_mm: Millimetres
     high_mm: Height
-    """Of the highest place."""
+    """Height of the highest place."""
     low_mm: Height
-    """What the number 0 stands for."""
+    """Height of the number 0."""
     step_mm: Height
-    """How much higher the next number is."""
+    """Height between one number and the next."""
 
     @property
-    def measured(self) -> "Measured":
-        """The size, in metres."""
-        return Measured(self.width_mm / MM, self.length_mm / MM, self.high_mm / MM)
+    def size(self) -> "MeasuredSize":
+        """The size in metres."""
+        return MeasuredSize(self.width_mm / MM, self.length_mm / MM, self.high_mm / MM)
 
 
-class Measured(NamedTuple):
-    """The size that a height map says it has, metres."""
+class MeasuredSize(NamedTuple):
+    """The size that a height map states, metres."""
 
     width_m: float
     length_m: float
@@ -68,7 +67,7 @@ class Measured(NamedTuple):
 
 
 def levels(relief: Relief) -> tuple[UInt16[np.ndarray, "h w"], float, float]:
-    """The heights as numbers of 16 bits, the lowest as 0 and the highest as `LEVELS`; with `low_mm` and `step_mm`."""
+    """Return the heights as numbers of 16 bits, the lowest as 0, the highest as `LEVELS`; `low_mm` and `step_mm`."""
     heights_mm = relief.height_m.astype(np.float64) * MM
     low_mm, high_mm = float(heights_mm.min()), float(heights_mm.max())
     step_mm = (high_mm - low_mm) / LEVELS
@@ -76,66 +75,66 @@ def levels(relief: Relief) -> tuple[UInt16[np.ndarray, "h w"], float, float]:
     return numbers.astype(np.uint16), low_mm, step_mm
 
 
-def said_of(path: Path) -> HeightsSaid | None:
-    """What is said of the heights in a file: by itself, if it is a JSON text or a TIFF; by the JSON text beside a PNG.
+def read_heights_metadata(path: Path) -> HeightsMetadata | None:
+    """Read the metadata of a height map: those in a JSON text or a TIFF, or in the JSON text next to a PNG.
 
-    None where nothing is, and for a file that cannot be read, of which its reader complains.
-    Raises: PictureError for a text that is to say it, and says nonsense.
+    Returns: None if there are none, or if the file cannot be read, which the reader of its picture reports.
+    Raises: PictureError for metadata with wrong values.
     """
     kind = path.suffix.lower()
     try:
         if kind == ".json":
-            return _parsed(read_bytes(path, MOST_TEXT_BYTES), path)
+            return _parse(read_bytes(path, MOST_TEXT_BYTES), path)
         if kind == ".png":
-            beside = path.with_suffix(".json")
-            said = _parsed(read_bytes(beside, MOST_TEXT_BYTES), beside)
-            return said if said is not None and said.file == path.name else None
+            text_path = path.with_suffix(".json")
+            metadata = _parse(read_bytes(text_path, MOST_TEXT_BYTES), text_path)
+            return metadata if metadata is not None and metadata.file == path.name else None
         if kind in (".tif", ".tiff"):
-            return _parsed(_description(path), path)
+            return _parse(_description(path), path)
     except OSError:
         return None
     return None
 
 
-def picture_said(path: Path, said: HeightsSaid) -> tuple[Path, HeightsSaid]:
-    """The picture that a JSON text speaks of, the exact one if it is there; with what is said of that.
+def find_picture(path: Path, metadata: HeightsMetadata) -> tuple[Path, HeightsMetadata]:
+    """Return the picture of a JSON text, the exact one if it is there, with its metadata.
 
-    Raises: PictureError for one that is not beside the text.
+    Raises: PictureError for a picture in another folder.
     """
     if path.suffix.lower() != ".json":
-        return path, said
-    for name in filter(None, (said.exact, said.file)):
+        return path, metadata
+    for name in filter(None, (metadata.exact, metadata.file)):
         if Path(name).name != name:
             raise PictureError(f"{path}: names the picture {quoted(name)}; it must be a file beside this one")
-    exact = path.with_name(said.exact) if said.exact else path
-    if exact != path and exact.is_file() and (its := said_of(exact)) is not None:
-        return exact, its
-    return path.with_name(said.file), said
+    exact = path.with_name(metadata.exact) if metadata.exact else path
+    if exact != path and exact.is_file() and (own := read_heights_metadata(exact)) is not None:
+        return exact, own
+    return path.with_name(metadata.file), metadata
 
 
-def in_metres(numbers: np.ndarray, said: HeightsSaid, path: Path) -> Float32[np.ndarray, "h w"]:
-    """The heights that the numbers of a picture stand for. Raises: PictureError if it is of another size than said."""
-    if numbers.shape != (said.rows, said.columns):
+def in_metres(numbers: np.ndarray, metadata: HeightsMetadata, path: Path) -> Float32[np.ndarray, "h w"]:
+    """Convert a picture's numbers to heights. Raises: PictureError if its size differs from the metadata."""
+    if numbers.shape != (metadata.rows, metadata.columns):
         raise PictureError(
-            f"{path}: is {size_in_words(numbers)}, and is said to be {said.columns} x {said.rows}; export the heights "
-            "again, or take the text away from it"
+            f"{path}: is {size_in_words(numbers)}, but its metadata state {metadata.columns} x {metadata.rows}; "
+            "export the heights again, or remove the metadata"
         )
-    return ((numbers.astype(np.float64) * said.step_mm + said.low_mm) / MM).astype(np.float32)
+    return ((numbers.astype(np.float64) * metadata.step_mm + metadata.low_mm) / MM).astype(np.float32)
 
 
 def _description(path: Path) -> bytes:
-    """Of a TIFF, by its tags alone. Raises: OSError."""
+    """Read the description of a TIFF from its tags alone. Raises: OSError."""
     check_file(path)
     with path.open("rb") as file:
         try:
             with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
                 return stated_description(data) if data[:4] in TIFF else b""
-        except ValueError:  # it is empty
+        except ValueError:  # an empty file cannot be mapped
             return b""
 
 
-def _parsed(text: bytes, path: Path) -> HeightsSaid | None:
-    """Raises: PictureError."""
+def _parse(text: bytes, path: Path) -> HeightsMetadata | None:
+    """Parse metadata; None for any other text. Raises: PictureError."""
     try:
         plain = json.loads(text)
     except (ValueError, RecursionError):
@@ -143,7 +142,7 @@ def _parsed(text: bytes, path: Path) -> HeightsSaid | None:
     if not isinstance(plain, dict) or not str(cast("dict[Any, Any]", plain).get("format")).startswith(FORMATS):
         return None
     try:
-        return HeightsSaid.model_validate(plain)
+        return HeightsMetadata.model_validate(plain)
     except ValidationError as error:
         first = error.errors()[0]
         place, what = ".".join(map(str, first["loc"])), first["msg"]

@@ -1,6 +1,6 @@
 """Files with several pictures in them: pages, frames of an animation, the two views of a stereo camera."""
 # pyright: reportUnknownMemberType=false
-# (Pillow leaves what it keeps of several pictures without types)
+# (Pillow has no types for what it keeps of several pictures)
 
 import re
 from collections.abc import Callable
@@ -9,31 +9,28 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-Say = Callable[[str], None]
-"""Is told what was noticed in a file."""
+Notify = Callable[[str], None]
+"""A callback that takes remarks on a file, such as that it holds further pictures."""
 
 MOST_PAGES = 100
-"""Of a TIFF that are counted."""
+"""Largest number of pages of a TIFF that are counted."""
 NOT_A_PAGE = 0b101
-"""Bits of a TIFF's NewSubfileType: a smaller copy, and a mask, of another page."""
+"""Bits of a TIFF's NewSubfileType that mark a smaller copy, or a mask, of another page."""
 _SUBFILE, _MP_ENTRIES = 254, 0xB002  # tags of TIFF and of the Multi-Picture Format
 _MP_HEAD = re.compile(rb"MPF\0(?:II\*\0|MM\0\*)")
 
 
-def unsaid(_: str) -> None:
-    """Nobody listens."""
+def ignore(_: str) -> None:
+    """Drop a remark."""
 
 
 def count_pictures(image: "Image") -> int:
-    """How many there are in a file that was opened; smaller copies, thumbnails and maps of gain are none.
-
-    The first one is the one that stands open afterwards.
-    """
+    """Count the pictures in an open file, without smaller copies, thumbnails and gain maps; stand at the first one."""
     try:
         if image.format == "MPO":
             return max(1, len(view_numbers(image)))
         return _pages(image) if image.format == "TIFF" else int(getattr(image, "n_frames", 1))
-    except Exception:  # noqa: BLE001 - what is damaged behind the first one costs nothing
+    except Exception:  # noqa: BLE001 - damage behind the first picture does not spoil the first one
         return 1
     finally:
         image.seek(0)
@@ -51,18 +48,18 @@ def _pages(image: "Image") -> int:
 
 
 class Part(NamedTuple):
-    """A picture of a Multi-Picture file: what it is, and its bytes."""
+    """A picture of a Multi-Picture file: its type, and its bytes."""
 
     kind: str
     data: bytes
 
 
 def multi_pictures(image: "Image", data: bytes) -> list[Part]:
-    """The pictures of a Multi-Picture file (CIPA DC-007), the first one too; none of another file."""
+    """Return the pictures of a Multi-Picture file (CIPA DC-007), the first one included; none for another file."""
     if image.format != "MPO":
         return []
-    found = _MP_HEAD.search(data)
-    start = found.end() - 4 if found else 0
+    head = _MP_HEAD.search(data)
+    start = head.end() - 4 if head else 0
     entries = cast(Any, image).mpinfo[_MP_ENTRIES]
     starts = [start + each["DataOffset"] if each["DataOffset"] else 0 for each in entries]
     return [
@@ -72,7 +69,7 @@ def multi_pictures(image: "Image", data: bytes) -> list[Part]:
 
 
 def view_numbers(image: "Image") -> list[int]:
-    """Which pictures of a Multi-Picture file show the scene from several places, in their order."""
+    """Return the numbers of those pictures of a Multi-Picture file that show the scene from different places."""
     entries = cast(Any, image).mpinfo[_MP_ENTRIES]
     kinds = [str(each["Attribute"]["MPType"]) for each in entries]
     return [number for number, kind in enumerate(kinds) if "Disparity" in kind or "Multi-Angle" in kind]

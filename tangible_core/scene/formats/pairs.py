@@ -1,4 +1,4 @@
-"""Both views of a pair in one file."""
+"""Pairs whose two views stand in one file."""
 
 from pathlib import Path
 from typing import Literal, NamedTuple
@@ -8,7 +8,7 @@ import numpy as np
 from ...data.pictures import size_in_words
 from ...errors import PictureError
 from .decoding import bytes_of, decode, look_at, values_of
-from .multi_picture import Say, unsaid, view_numbers
+from .multi_picture import Notify, ignore, view_numbers
 from .pictures import NonFinite, picture_of
 
 Layout = Literal["side-by-side", "cross-eyed", "top-bottom"]
@@ -21,10 +21,12 @@ class Pair(NamedTuple):
     right: np.ndarray
 
 
-def read_pair(path: Path, layout: Layout | None = None, non_finite: NonFinite = "error", say: Say = unsaid) -> Pair:
-    """Left and right view of one file: the two pictures of an .mpo file, or the halves of one picture.
+def read_pair(
+    path: Path, layout: Layout | None = None, non_finite: NonFinite = "error", notify: Notify = ignore
+) -> Pair:
+    """Read the left and right view of one file: the two pictures of an .mpo file, or the halves of one picture.
 
-    layout: how the halves lie; when left out, as a .jps file says.
+    layout: the order of the halves; None: the order that a .jps file states.
     Raises: PictureError as `read_picture`, or if there are no halves.
     """
     data = bytes_of(path)
@@ -33,12 +35,12 @@ def read_pair(path: Path, layout: Layout | None = None, non_finite: NonFinite = 
         if len(numbers) > 1:
             left, right = (picture_of(decode(path, data, frame=each), str(path), non_finite) for each in numbers[:2])
             return Pair(left, right)
-    whole = picture_of(values_of(path, data, say), str(path), non_finite)
+    whole = picture_of(values_of(path, data, notify), str(path), non_finite)
     return halves(whole, layout or _stated_layout(path, data), str(path))
 
 
 def halves(picture: np.ndarray, layout: Layout | None, name: str) -> Pair:
-    """The views of a picture that holds both; a row or column in the middle is left out where their number is odd.
+    """Divide a picture into its two views; a middle row or column is dropped if their number is odd.
 
     Raises: PictureError if there are no halves.
     """
@@ -52,7 +54,7 @@ def halves(picture: np.ndarray, layout: Layout | None, name: str) -> Pair:
 
 
 def _stated_layout(path: Path, data: bytes) -> Layout:
-    """How a .jps file says that its halves lie; without that, right before left, as its viewers squint.
+    """Return the layout that a .jps file states; by default cross-eyed for .jps, side by side otherwise.
 
     Source: the descriptor in its APP3 segment, as ExifTool has it: flags, layout and type, a byte each.
     """

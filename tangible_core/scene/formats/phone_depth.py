@@ -1,8 +1,8 @@
-"""The depth that a phone kept in its portrait: Google's GDepth and Dynamic Depth, and the JPEGs of iPhones.
+"""The depth that a phone stored in a portrait: Google's GDepth and Dynamic Depth, and the JPEGs of iPhones.
 
-Not read: HEIC, for which Pillow has no decoder, and what Samsung keeps behind its JPEGs.
+Not supported: HEIC, for which Pillow has no decoder, and Samsung's data behind the JPEG.
 Sources: developers.google.com/depthmap-metadata; developer.android.com, Dynamic Depth 1.0; CIPA DC-007 (Multi-Picture
-Format), whose second picture says in Apple's `pixeldatainfo` what it is; Adobe, XMP part 3 (extended XMP).
+Format), whose second picture is described by Apple's `pixeldatainfo`; Adobe, XMP part 3 (extended XMP).
 """
 
 import re
@@ -19,7 +19,7 @@ from ...data.pictures import size_in_words, to_grey
 from ...errors import PictureError, shown
 from ...runtime.opencv import plain_opencv
 from .decoding import bytes_of, decode, look_at, orientation, upright
-from .multi_picture import Say, multi_pictures, unsaid
+from .multi_picture import Notify, ignore, multi_pictures
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -30,54 +30,53 @@ _APP1, _SCAN, _ALONE = 0xE1, 0xDA, (0x01, *range(0xD0, 0xD8))
 _DATA = re.compile(rb'GDepth:Data\s{0,9}(?:=\s{0,9}(")|(>))')
 _ITEM = re.compile(rb"<Container:Item\b[^>]{0,600}>")
 _ITEMS = 1 << 20
-"""Bytes of metadata in which a list of parts is looked for; patterns take a bounded time on any file."""
+"""Bytes of metadata in which a list of container items is searched: this bounds the time on any file."""
 _SEMANTIC = re.compile(rb'Item:Semantic\s*=\s*"([^"]*)"')
 _LENGTHS = re.compile(rb'Item:(?:Length|Padding)\s*=\s*"(\d{1,10})"')
 _AUXILIARY = re.compile(rb'AuxiliaryImageType\s*(?:=\s*"|>)\s*(disparity|depth)\b')
 
 
 class PhoneDepth(NamedTuple):
-    """A grey picture of how near things are, or how far."""
+    """A depth map inside a photo."""
 
     picture: bytes
-    """A file of its own."""
+    """A grey picture as a file of its own."""
     near_is_light: bool
     kind: str
-    """What it is called."""
+    """Name of the format."""
 
 
-def read_phone_depth(path: Path, shape: tuple[int, int], say: Say = unsaid) -> Float32[np.ndarray, "h w"] | None:
-    """How near things are in a phone's photo of (h, w), 0 far to 1 near, where it was kept; None where it was not."""
+def read_phone_depth(path: Path, shape: tuple[int, int], notify: Notify = ignore) -> Float32[np.ndarray, "h w"] | None:
+    """Read the nearness, 0 far to 1 near, that a phone stored in its photo of (h, w); None if there is none."""
     data = bytes_of(path)
     if not data.startswith(b"\xff\xd8"):
         return None
     try:
-        turn, found = look_at(path, data, lambda image: (orientation(image), phone_depth(image, data)))
-        return None if found is None else _nearness(path, found, turn, shape, say)
+        turn, depth = look_at(path, data, lambda image: (orientation(image), phone_depth(image, data)))
+        return None if depth is None else _nearness(path, depth, turn, shape, notify)
     except (PictureError, ValueError, struct.error) as error:
-        say(f"the depth map in {path.name} is damaged and left out: {shown(str(error))}")
+        notify(f"the depth map in {path.name} is damaged and left out: {shown(str(error))}")
         return None
 
 
-def _nearness(path: Path, found: PhoneDepth, turn: int, shape: tuple[int, int], say: Say) -> Float32[np.ndarray, "h w"]:
+def _nearness(
+    path: Path, depth: PhoneDepth, turn: int, shape: tuple[int, int], notify: Notify
+) -> Float32[np.ndarray, "h w"]:
     import cv2
 
-    picture = decode(path, found.picture)
+    picture = decode(path, depth.picture)
     grey = np.ascontiguousarray(upright(to_grey(picture), turn))
-    say(
-        f"{path.name} holds a depth map of {size_in_words(grey)} ({found.kind}), which is taken; "
+    notify(
+        f"{path.name} holds a depth map of {size_in_words(grey)} ({depth.kind}), which is used; "
         "`photo_depth: false` leaves it out"
     )
     with plain_opencv():
         near = np.asarray(cv2.resize(grey, shape[::-1], interpolation=cv2.INTER_LINEAR))
-    return near if found.near_is_light else 1 - near
+    return near if depth.near_is_light else 1 - near
 
 
 def phone_depth(image: "Image", data: bytes) -> PhoneDepth | None:
-    """What a JPEG that was opened holds; None if there is none.
-
-    Raises: ValueError or struct.error where it is damaged.
-    """
+    """Find the depth map in an open JPEG; None if there is none. Raises: ValueError or struct.error if damaged."""
     xmp = _xmp(data)
     if found := _DATA.search(xmp):
         end = xmp.find(b'"' if found[1] else b"<", found.end())
@@ -91,7 +90,7 @@ def phone_depth(image: "Image", data: bytes) -> PhoneDepth | None:
 
 
 def _xmp(data: bytes) -> bytes:
-    """The metadata of a JPEG, and behind it what did not fit into one segment."""
+    """Return a JPEG's metadata, followed by its extended XMP, which did not fit into one segment."""
     plain, extended = b"", bytearray()
     for segment in _segments(data):
         if segment.startswith(_XMP):
@@ -100,14 +99,14 @@ def _xmp(data: bytes) -> bytes:
             size, at = struct.unpack_from(">II", segment, len(_EXTENDED) + _GUID)
             part = segment[len(_EXTENDED) + _GUID + 8 :]
             if size > len(data) or at + len(part) > size:
-                raise ValueError("its extended XMP is of another length than it says")
+                raise ValueError("the length of its extended XMP is wrong")
             extended.extend(bytes(max(0, at + len(part) - len(extended))))
             extended[at : at + len(part)] = part
     return plain + bytes(extended)
 
 
 def _segments(data: bytes) -> Iterator[bytes]:
-    """Those for applications, up to where the picture begins."""
+    """Yield the application segments (APP1) before the scan."""
     at = 2
     while at + 4 <= len(data) and data[at] == 0xFF and data[at + 1] != _SCAN:
         kind = data[at + 1]
@@ -121,7 +120,7 @@ def _segments(data: bytes) -> Iterator[bytes]:
 
 
 def _depth_item(xmp: bytes, data: bytes) -> bytes | None:
-    """The part of a container that is its depth: parts stand one behind the other, up to the end of the file."""
+    """Return the item of a container that is its depth; items follow one another up to the end of the file."""
     end = len(data)
     for item in reversed(_ITEM.findall(xmp, 0, _ITEMS)):
         semantic = _SEMANTIC.search(item)

@@ -1,9 +1,9 @@
-"""Calibrations of two cameras as OpenCV and Kalibr write them."""
+"""Calibrations of two cameras, in the formats of OpenCV and Kalibr."""
 
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from jaxtyping import Float64
@@ -20,7 +20,7 @@ OPENCV = {
     "rotation": ("R", "rotation"),
     "translation": ("T", "translation"),
 }
-"""Names that each part goes by in files of OpenCV's stereoCalibrate."""
+"""Keys of each part in files of OpenCV's stereoCalibrate."""
 LENSES: Mapping[str, Distortion] = {
     "radtan": "radial-tangential",
     "plumb_bob": "radial-tangential",
@@ -28,22 +28,28 @@ LENSES: Mapping[str, Distortion] = {
     "equi": "equidistant",
     "none": "radial-tangential",
 }
-"""Kalibr's models of lenses."""
+"""Kalibr's lens models."""
 
 
-def read_rig(path: Path, unit_m: float = 1.0) -> tuple[StereoRig, tuple[int, int] | None]:
-    """The cameras of a file, and the width and height of the pictures that they were calibrated with, if it says so.
+class RigFile(NamedTuple):
+    """Two cameras, and the width and height of the pictures that they were calibrated with, if the file states them."""
 
-    A file of OpenCV's has M1, D1, M2, D2, R and T (or the like); one of Kalibr's has cam0 and cam1. unit_m: metres that
-    one unit of the translation is: 0.001 where the chessboard was measured in millimetres.
-    Raises: ConfigError if the file cannot be read or lacks a part, GeometryError for numbers that are no cameras.
+    cameras: StereoRig
+    size: tuple[int, int] | None
+
+
+def read_rig(path: Path, unit_m: float = 1.0) -> RigFile:
+    """Read the cameras of a file: M1, D1, M2, D2, R and T (or the like) by OpenCV, cam0 and cam1 by Kalibr.
+
+    unit_m: metres in one unit of the translation, 0.001 if the chessboard was measured in millimetres.
+    Raises: ConfigError if the file cannot be read or lacks a part, GeometryError for numbers that no camera has.
     """
-    text = re.sub(r"\A%YAML:1\.0\s*\n", "", read_text(path))  # OpenCV's head, which YAML does not know
+    text = re.sub(r"\A%YAML:1\.0\s*\n", "", read_text(path))  # OpenCV's head, which is not YAML
     tree = parse_source(text, path, "a calibration of two cameras is a mapping, as OpenCV or Kalibr write it").tree
     try:
         if "cam0" in tree and "cam1" in tree:
             return _of_kalibr(path, tree["cam0"], tree["cam1"], unit_m)
-        return _of_opencv(path, tree, unit_m), None
+        return RigFile(_of_opencv(path, tree, unit_m), None)
     except GeometryError as error:
         raise GeometryError(f"{path}: {error}") from error
 
@@ -58,7 +64,7 @@ def _of_opencv(path: Path, tree: Mapping[Any, Any], unit_m: float) -> StereoRig:
 
 
 def _matrix(path: Path, tree: Mapping[Any, Any], part: str, names: Sequence[str]) -> Float64[np.ndarray, "..."]:
-    """A matrix as OpenCV writes it: rows, cols, data."""
+    """Return a matrix that OpenCV wrote as rows, cols and data."""
     block = next((tree[name] for name in names if name in tree), None)
     if not isinstance(block, Mapping) or not {"rows", "cols", "data"} <= cast("Mapping[str, Any]", block).keys():
         raise ConfigError(
@@ -75,28 +81,28 @@ def _shape(path: Path, part: str, block: Mapping[str, Any]) -> tuple[int, int]:
     return rows, columns
 
 
-def _of_kalibr(path: Path, left: Any, right: Any, unit_m: float) -> tuple[StereoRig, tuple[int, int] | None]:
+def _of_kalibr(path: Path, left: Any, right: Any, unit_m: float) -> RigFile:
     cameras = _camera(path, "cam0", left), _camera(path, "cam1", right)
     pose = _numbers(path, "cam1.T_cn_cnm1", right.get("T_cn_cnm1"))
     if pose.shape != (4, 4):
         raise ConfigError(f"{path}: cam1.T_cn_cnm1 is the 4 x 4 pose of cam1 to cam0, not {quoted(pose.tolist())}")
     size = _numbers(path, "cam0.resolution", left.get("resolution", []))
     rig = StereoRig(*cameras, pose[:3, :3].copy(), unit_m * pose[:3, 3])
-    return rig, (int(size[0]), int(size[1])) if size.shape == (2,) else None
+    return RigFile(rig, (int(size[0]), int(size[1])) if size.shape == (2,) else None)
 
 
 def _camera(path: Path, name: str, block: Any) -> Camera:
-    found = cast("Mapping[str, Any]", block if isinstance(block, Mapping) else {"camera_model": block})
-    if found.get("camera_model", "pinhole") != "pinhole":
+    keys = cast("Mapping[str, Any]", block if isinstance(block, Mapping) else {"camera_model": block})
+    if keys.get("camera_model", "pinhole") != "pinhole":
         raise ConfigError(f"{path}: {name} is a camera with camera_model pinhole, not {quoted(block)}")
-    lens = str(found.get("distortion_model", "none"))
+    lens = str(keys.get("distortion_model", "none"))
     if lens not in LENSES:
         raise ConfigError(f"{path}: {name}.distortion_model: {quoted(lens)} is not one of {', '.join(LENSES)}")
-    intrinsics = _numbers(path, f"{name}.intrinsics", found.get("intrinsics"))
+    intrinsics = _numbers(path, f"{name}.intrinsics", keys.get("intrinsics"))
     if intrinsics.shape != (4,):
         raise ConfigError(f"{path}: {name}.intrinsics is [fu, fv, pu, pv], not {quoted(intrinsics.tolist())}")
     fu, fv, pu, pv = intrinsics.tolist()
-    coefficients = _numbers(path, f"{name}.distortion_coeffs", found.get("distortion_coeffs", []))
+    coefficients = _numbers(path, f"{name}.distortion_coeffs", keys.get("distortion_coeffs", []))
     return Camera(np.array([[fu, 0, pu], [0, fv, pv], [0, 0, 1.0]]), coefficients, LENSES[lens])
 
 
@@ -104,4 +110,4 @@ def _numbers(path: Path, part: str, values: Any) -> Float64[np.ndarray, "..."]:
     try:
         return np.array(values if values is not None else [], np.float64)
     except (TypeError, ValueError) as error:
-        raise ConfigError(f"{path}: {part} is made of numbers, not {quoted(values)}") from error
+        raise ConfigError(f"{path}: {part} must be numbers, not {quoted(values)}") from error

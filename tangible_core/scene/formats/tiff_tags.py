@@ -1,4 +1,7 @@
-"""What a TIFF states before its pixels: their size, and which value means no data."""
+"""Tags of a TIFF that are needed before its pixels: their size, the value for no data, and the description.
+
+Every read is bounded, so that a hostile file costs neither time nor memory.
+"""
 
 import struct
 from collections.abc import Iterator
@@ -7,20 +10,20 @@ from mmap import mmap
 from typing import Any, NamedTuple
 
 TIFF = (b"II*\0", b"MM\0*", b"MM*\0", b"II\0*", b"MM\0+", b"II+\0")
-"""How one begins for Pillow; OpenCV knows the first two."""
+"""First bytes of a TIFF for Pillow; OpenCV knows the first two."""
 TAG_TYPES = {1: "B", 3: "H", 4: "I", 16: "Q"}
-"""Of a TIFF's whole numbers, as `struct` calls them."""
+"""Types of a TIFF's whole numbers, as `struct` names them."""
 GDAL_NODATA, LONGEST_NUMBER = 42113, 64
 DESCRIPTION, LONGEST_TEXT = 270, 250_000
 MOST_TAGS, MOST_SAMPLES = 65_535, 16
-"""Of a TIFF and of a pixel in one that are looked at; four samples are read."""
+"""Largest number of tags that are read, and of samples a pixel; four samples are decoded."""
 
 Shape = tuple[int, int, int]
 Buffer = bytes | mmap
 
 
 class _Tag(NamedTuple):
-    """One of a TIFF: its number, type and count, and where its value stands, or where it says that this stands."""
+    """A tag: its number, type and count, and the position of its value, or of the value's offset."""
 
     number: int
     kind: int
@@ -29,21 +32,21 @@ class _Tag(NamedTuple):
 
 
 def tiff_size(data: bytes) -> tuple[Shape, int]:
-    """Shape and bytes a value, by the tags of the first directory: the largest, where a tag is there twice.
+    """Return the shape and the bytes a value, by the first directory: the largest value of a repeated tag.
 
     Source: TIFF 6.0, section 2 and 15 (tiles, which are decoded whole).
     """
-    said = {256: 1, 257: 1, 258: 1, 277: 1, 322: 1, 323: 1}
+    sizes = {256: 1, 257: 1, 258: 1, 277: 1, 322: 1, 323: 1}
     for tag in _tiff_tags(data):
-        if tag.number in said:
-            found = _tag_values(data, tag, f"{min(tag.length, MOST_SAMPLES)}{TAG_TYPES[tag.kind]}")
-            said[tag.number] = max(said[tag.number], *found)
-    rows, columns = max(said[257], said[323]), max(said[256], said[322])
-    return (rows, columns, said[277]), -(-said[258] // 8)
+        if tag.number in sizes:
+            values = _tag_values(data, tag, f"{min(tag.length, MOST_SAMPLES)}{TAG_TYPES[tag.kind]}")
+            sizes[tag.number] = max(sizes[tag.number], *values)
+    rows, columns = max(sizes[257], sizes[323]), max(sizes[256], sizes[322])
+    return (rows, columns, sizes[277]), -(-sizes[258] // 8)
 
 
 def _tiff_tags(data: Buffer) -> Iterator[_Tag]:
-    """Those of the first directory. Source: TIFF 6.0, section 2; BigTIFF, whose numbers have 8 bytes."""
+    """Yield the tags of the first directory. Source: TIFF 6.0, section 2; BigTIFF, whose numbers have 8 bytes."""
     order, big = _order(data)
     first, many, place = ("Q", "Q", "Q") if big else ("I", "H", "I")
     (at,) = struct.unpack_from(order + first, data, 8 if big else 4)
@@ -59,13 +62,12 @@ def _tiff_tags(data: Buffer) -> Iterator[_Tag]:
 
 
 def _tag_values(data: Buffer, tag: _Tag, values: str) -> tuple[Any, ...]:
-    """What `struct` reads at a tag; short values stand in the directory itself."""
+    """Unpack the value of a tag in the format `values` of `struct`; a short value stands in the directory itself."""
     order, big = _order(data)
     place = "Q" if big else "I"
     short = struct.calcsize(order + values) <= struct.calcsize(place)
-    return struct.unpack_from(
-        order + values, data, tag.at if short else struct.unpack_from(order + place, data, tag.at)[0]
-    )
+    at = tag.at if short else struct.unpack_from(order + place, data, tag.at)[0]
+    return struct.unpack_from(order + values, data, at)
 
 
 def _order(data: Buffer) -> tuple[str, bool]:
@@ -73,20 +75,23 @@ def _order(data: Buffer) -> tuple[str, bool]:
 
 
 def stated_nodata(data: bytes) -> float | None:
-    """The number that stands for no data in a GeoTIFF, where it can be read. Source: GDAL's tag 42113, a text."""
+    """Return the value for no data of a GeoTIFF, if it can be read. Source: GDAL's tag 42113, a text."""
     with suppress(ValueError, struct.error):
-        for tag in _tiff_tags(data):
-            if tag.number == GDAL_NODATA:
-                (text,) = _tag_values(data, tag, f"{min(tag.length, LONGEST_NUMBER)}s")
-                return float(text.split(b"\0")[0])
+        return float(_text(data, GDAL_NODATA, LONGEST_NUMBER))
     return None
 
 
 def stated_description(data: Buffer) -> bytes:
-    """The text of a TIFF on what it shows, without its end; empty where there is none. Source: TIFF 6.0, section 8."""
+    """Return the description in a TIFF; empty if there is none. Source: TIFF 6.0, section 8."""
     with suppress(ValueError, struct.error):
-        for tag in _tiff_tags(data):
-            if tag.number == DESCRIPTION:
-                (text,) = _tag_values(data, tag, f"{min(tag.length, LONGEST_TEXT)}s")
-                return text.split(b"\0")[0]
+        return _text(data, DESCRIPTION, LONGEST_TEXT)
+    return b""
+
+
+def _text(data: Buffer, number: int, longest: int) -> bytes:
+    """Return the text of a tag up to its NUL; empty without the tag. Raises: ValueError or struct.error if damaged."""
+    for tag in _tiff_tags(data):
+        if tag.number == number:
+            (text,) = _tag_values(data, tag, f"{min(tag.length, longest)}s")
+            return text.split(b"\0")[0]
     return b""

@@ -1,1 +1,1 @@
-"""Videos and cameras: their frames, one after the other."""
+"""Videos and cameras, read frame by frame."""

@@ -1,4 +1,4 @@
-"""A camera, frame by frame: a thread keeps the newest picture, so that nobody waits for the camera's own pace."""
+"""The frames of a camera: a thread keeps the newest picture, so that readers need not follow the camera's pace."""
 
 import sys
 from pathlib import Path
@@ -11,21 +11,21 @@ from jaxtyping import UInt8
 
 from ...errors import PictureError, shown
 from . import capture as video_capture
-from .capture import USUAL_FPS, Capture, OpenCamera, grabbed, retrieved, stated_fps
+from .capture import USUAL_FPS, Capture, OpenCamera, grab, retrieve, stated_fps
 from .frames import VideoFrame, VideoFrames, ViewsOf
 
 FIRST_S = 15.0
-"""For a camera to give its first picture; some take seconds to find their exposure."""
+"""Time-out for the first picture, seconds; some cameras take seconds to adjust their exposure."""
 NEXT_S = 5.0
-"""For each one after that."""
+"""Time-out for each further picture, seconds."""
 AGAIN_S = 0.5
-"""Between two attempts to reach a camera that was unplugged."""
+"""Pause between two attempts to reach an unplugged camera, seconds."""
 SLICE_S = 0.2
-"""Of waiting for it: in between, a signal is heard, which some systems do not let through to who waits."""
+"""Longest single wait, seconds: some systems deliver a signal only between two waits."""
 MOST_DAMAGED = 30
-"""Pictures in a row, before a camera counts as lost."""
+"""Number of damaged pictures in a row after which a camera counts as lost."""
 ENDED_S = 0.8
-"""That an end waits for the thread; one that hangs in the camera's driver ends when it comes back."""
+"""Time that `close` waits for the thread, seconds; if the camera's driver hangs, the thread ends when it returns."""
 
 
 class _Shot(NamedTuple):
@@ -36,14 +36,14 @@ class _Shot(NamedTuple):
 
 @final
 class CameraFrames(VideoFrames):
-    """What a camera sees. One that is unplugged is said once, and looked for again until it is closed."""
+    """The frames of a camera. An unplugged camera is reported once, and searched for until it is closed."""
 
     def __init__(
         self, number: int, fps: float | None, views_of: ViewsOf, open_capture: OpenCamera | None = None
     ) -> None:
-        """fps: asked of the camera. open_capture: what opens it, for tests.
+        """fps: requested from the camera. open_capture: replaces `open_camera` in tests.
 
-        Raises: PictureError if there is none, or it gives no picture.
+        Raises: PictureError if the camera is missing or delivers no picture.
         """
         super().__init__(fps or USUAL_FPS, views_of)
         self._camera, self._asked_fps = number, fps
@@ -51,8 +51,8 @@ class CameraFrames(VideoFrames):
         self._changed, self._closed = Condition(), Event()
         self._newest: _Shot | None = None
         self._lost: PictureError | None = None
-        """What is wrong with the camera now; None once it was said."""
-        self._taken, self._had, self._first_s = 0, -1, 0.0
+        """The current fault of the camera; None once it was raised."""
+        self._taken, self._read_number, self._first_s = 0, -1, 0.0
         self._thread = Thread(target=self._watch, name=f"camera {number}", daemon=True)
         self._thread.start()
         try:
@@ -62,23 +62,23 @@ class CameraFrames(VideoFrames):
             raise
 
     @property
-    def ended(self) -> bool:
-        """Whether it was closed: a camera has no end."""
+    def at_end(self) -> bool:
+        """True once it was closed: a camera has no end."""
         return self._closed.is_set()
 
     def next(self) -> VideoFrame | None:
-        """Waits for the next picture. Raises: PictureError if none comes for seconds, or, once, if it is lost."""
+        """Wait for the next picture. Raises: PictureError if none comes for seconds, or, once, for a lost camera."""
         self._wait(NEXT_S)
-        return None if self.ended else self._newer()
+        return None if self.at_end else self._newer()
 
     def at(self, time_s: float) -> VideoFrame | None:
-        """The newest picture, whatever the time. Raises: PictureError, once, if the camera is lost."""
+        """Return the newest picture, whatever the time. Raises: PictureError, once, if the camera is lost."""
         with self._changed:
             self._raise_lost()
-        return None if self.ended else self._newer()
+        return None if self.at_end else self._newer()
 
     def close(self) -> None:
-        """Within a second, also while the camera's driver hangs: then it is given back when that goes on."""
+        """Close the camera within a second; if its driver hangs, it is released when the driver returns."""
         if self._closed.is_set():
             return
         self._closed.set()
@@ -87,48 +87,48 @@ class CameraFrames(VideoFrames):
         self._thread.join(ENDED_S)
 
     def _wait(self, most_s: float) -> None:
-        """Until there is a newer picture. Raises: PictureError if none comes, or the camera is lost."""
+        """Wait until there is a newer picture. Raises: PictureError if none comes, or the camera is lost."""
         until_s = monotonic() + most_s
         with self._changed:
             while monotonic() < until_s:
-                if self._changed.wait_for(lambda: self._is_newer() or self._lost or self.ended, SLICE_S):
+                if self._changed.wait_for(lambda: self._is_newer() or self._lost or self.at_end, SLICE_S):
                     return self._raise_lost()
         raise PictureError(
-            f"camera {self._camera}: gives no picture; check its cable, and that no other program uses it"
+            f"camera {self._camera}: delivers no picture; check its cable, and that no other program uses it"
         )
 
     def _is_newer(self) -> bool:
-        return self._newest is not None and self._newest.number > self._had
+        return self._newest is not None and self._newest.number > self._read_number
 
     def _raise_lost(self) -> None:
-        """Raises: PictureError, once, if the camera is lost and there is no picture left from before."""
+        """Raise the fault of a lost camera, once, when no unread picture is left. Raises: PictureError."""
         if self._lost is not None and not self._is_newer():
             lost, self._lost = self._lost, None
             raise lost
 
     def _newer(self) -> VideoFrame | None:
         shot = self._newest
-        if shot is None or shot.number <= self._had:
+        if shot is None or shot.number <= self._read_number:
             return None
-        self.skipped += shot.number - self._had - 1
-        self._had = shot.number
+        self.skipped += shot.number - self._read_number - 1
+        self._read_number = shot.number
         return self._frame(shot.number, shot.taken_s - self._first_s, shot.picture, f"camera {self._camera}")
 
     def _watch(self) -> None:
-        """The thread: as long as it is not closed, the newest picture, or, once, what is wrong."""
-        said = False
+        """Keep the newest picture, or, once, the fault, until closed; the body of the thread."""
+        reported = False
         while not self._closed.is_set():
             taken = self._taken
             lost = self._follow()
-            said &= self._taken == taken
-            if not said:
+            reported &= self._taken == taken
+            if not reported:
                 with self._changed:
-                    self._lost, said = lost, True
+                    self._lost, reported = lost, True
                     self._changed.notify_all()
             self._closed.wait(AGAIN_S)
 
     def _follow(self) -> PictureError:
-        """Take pictures until that fails; why it did."""
+        """Take pictures until that fails; return the reason."""
         taken, capture = self._taken, None
         try:
             capture = self._open(self._camera, self._asked_fps)
@@ -137,7 +137,7 @@ class CameraFrames(VideoFrames):
                 self._take_all(capture)
         except PictureError as error:
             return error
-        except Exception as error:  # noqa: BLE001 - a driver can provoke any, and the reader is to hear of it
+        except Exception as error:  # noqa: BLE001 - a driver can raise any, and the reader must get it
             return PictureError(f"camera {self._camera}: {shown(str(error))}; check its cable")
         finally:
             if capture is not None:
@@ -145,14 +145,14 @@ class CameraFrames(VideoFrames):
         if self._taken == taken:
             return self._absent()
         return PictureError(
-            f"camera {self._camera}: was unplugged, or another program took it; plug it in again, and it goes on"
+            f"camera {self._camera}: was unplugged, or another program took it; plug it in again to go on"
         )
 
     def _take_all(self, capture: Capture) -> None:
         damaged = 0
-        while damaged < MOST_DAMAGED and not self._closed.is_set() and grabbed(capture):
+        while damaged < MOST_DAMAGED and not self._closed.is_set() and grab(capture):
             taken_s = monotonic()
-            if (picture := retrieved(capture, f"camera {self._camera}")) is None:
+            if (picture := retrieve(capture, f"camera {self._camera}")) is None:
                 damaged += 1
                 continue
             damaged = 0
@@ -165,12 +165,12 @@ class CameraFrames(VideoFrames):
 
     def _absent(self) -> PictureError:
         here = ", ".join(map(str, _cameras()))
-        cure = f"name one of those that are: {here}" if here else "check its cable, and that no other program uses it"
-        return PictureError(f"camera {self._camera}: there is none of this number, or it is in use; {cure}")
+        cure = f"name one of the others: {here}" if here else "check its cable, and that no other program uses it"
+        return PictureError(f"camera {self._camera}: does not exist, or is in use; {cure}")
 
 
 def _cameras() -> list[int]:
-    """The numbers of the cameras that the system tells of."""
+    """Return the numbers of the cameras that the system lists."""
     if sys.platform != "linux":
         return []
     names = (each.name.removeprefix("video") for each in Path("/dev").glob("video*"))

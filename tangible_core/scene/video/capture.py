@@ -1,4 +1,4 @@
-"""What OpenCV plays: video files and cameras, opened within limits and without a word on standard error."""
+"""Video files and cameras through OpenCV, opened within limits and silent on standard error."""
 
 import os
 import stat
@@ -11,53 +11,52 @@ import numpy as np
 from jaxtyping import UInt8
 
 from ...data.pictures import to_rgb8
-from ...errors import PictureError, did_you_mean
+from ...errors import PictureError
 from ...files.reading import TooLargeError, check_size
 from ...runtime.opencv import silent_opencv
 from ...runtime.threads import processors, thread_limit
+from ..formats.decoding import absent
 
 USUAL_FPS = 30.0
-"""Of a folder, and where nothing that makes sense is said."""
+"""Frames a second of a folder, and of a source that states no plausible rate."""
 LEAST_FPS, MOST_FPS = 0.1, 480.0
-"""Between these, a rate that a file or a camera says of itself is believed; some say 0, or the ticks of their clock."""
-
-
+"""Bounds of a plausible rate; some sources state 0, or the ticks of their clock."""
 MOST_THREADS = 4
-"""Of a decoder: each holds frames of its own."""
+"""Largest number of threads of a decoder, as each holds frames of its own."""
 
 
 class Capture(Protocol):
-    """What is used of cv2.VideoCapture."""
+    """The part of cv2.VideoCapture that is used here."""
 
     def isOpened(self) -> bool:
-        """Whether there is anything to play."""
+        """Tell whether there are frames to read."""
         ...
 
     def grab(self) -> bool:
-        """Go to the next frame; whether there is one."""
+        """Go to the next frame; tell whether there is one."""
         ...
 
     def retrieve(self) -> tuple[bool, Any]:
-        """Whether the frame is whole, and its picture in BGR."""
+        """Return whether the frame is whole, and its picture in BGR."""
         ...
 
     def get(self, propId: int, /) -> float:
-        """What is known of it, by a number of OpenCV's."""
+        """Return a property by its number in OpenCV."""
         ...
 
     def release(self) -> None:
-        """Give it back."""
+        """Close the source."""
         ...
 
 
 OpenCamera = Callable[[int, float | None], Capture]
-"""(number, frames a second or None) -> a camera, opened or not."""
+"""A function that opens a camera by its number, with frames a second or None; it may fail to open."""
 
 
 def open_file(path: Path) -> Capture:
-    """A video file that has pictures. Raises: PictureError for any other file, and for one whose frames are too large.
+    """Open a video file. Raises: PictureError for a file without frames, and for one whose frames are too large.
 
-    By FFmpeg alone: OpenCV's other readers take the digits in a name for the numbers of pictures.
+    Only FFmpeg is used: OpenCV's other readers take the digits in a name for the numbers of pictures.
     """
     import cv2
 
@@ -67,7 +66,7 @@ def open_file(path: Path) -> Capture:
         capture = cast(Capture, cv2.VideoCapture(str(path.absolute()), cv2.CAP_FFMPEG, threads))
     if not capture.isOpened():
         raise PictureError(
-            f"{path}: is no video that this program can play, or has no pictures; convert it to an .mp4 with H.264"
+            f"{path}: is not a video that this program can play, or has no frames; convert it to an .mp4 with H.264"
         )
     size = round(capture.get(cv2.CAP_PROP_FRAME_HEIGHT)), round(capture.get(cv2.CAP_PROP_FRAME_WIDTH))
     check_frame(size, path)
@@ -75,7 +74,7 @@ def open_file(path: Path) -> Capture:
 
 
 def open_camera(number: int, fps: float | None) -> Capture:
-    """A camera by its number, opened or not."""
+    """Open a camera by its number; check `isOpened` afterwards."""
     import cv2
 
     with silent_opencv():
@@ -85,14 +84,14 @@ def open_camera(number: int, fps: float | None) -> Capture:
     return cast(Capture, capture)
 
 
-def grabbed(capture: Capture) -> bool:
-    """Whether there is a next frame, which is now the one to retrieve."""
+def grab(capture: Capture) -> bool:
+    """Go to the next frame, to be retrieved; tell whether there is one."""
     with silent_opencv():
         return bool(capture.grab())
 
 
-def retrieved(capture: Capture, name: object) -> UInt8[np.ndarray, "h w 3"] | None:
-    """The frame that was grabbed, in RGB; None for one that is damaged. Raises: PictureError for one too large."""
+def retrieve(capture: Capture, name: object) -> UInt8[np.ndarray, "h w 3"] | None:
+    """Return the grabbed frame in RGB; None if it is damaged. Raises: PictureError if it is too large."""
     import cv2
 
     with silent_opencv():
@@ -107,7 +106,7 @@ def retrieved(capture: Capture, name: object) -> UInt8[np.ndarray, "h w 3"] | No
 
 
 def stated_fps(capture: Capture) -> float | None:
-    """The frames a second that a file or a camera says it has; None for nonsense."""
+    """Return the frames a second that a file or a camera states; None for an implausible rate."""
     import cv2
 
     fps = capture.get(cv2.CAP_PROP_FPS)
@@ -115,7 +114,7 @@ def stated_fps(capture: Capture) -> float | None:
 
 
 def stated_count(capture: Capture) -> int | None:
-    """How many frames a file says it has; None where it does not say."""
+    """Return the number of frames that a file states; None if it states none."""
     import cv2
 
     count = capture.get(cv2.CAP_PROP_FRAME_COUNT)
@@ -123,38 +122,35 @@ def stated_count(capture: Capture) -> int | None:
 
 
 def position_s(capture: Capture) -> float:
-    """When the file says that the grabbed frame is due; anything, where it does not say."""
+    """Return the time stamp of the grabbed frame; any number if the file has none."""
     import cv2
 
     return capture.get(cv2.CAP_PROP_POS_MSEC) / 1000
 
 
 def check_frame(shape: tuple[int, ...], name: object) -> None:
-    """Raises: PictureError for a frame that is larger than a picture may be."""
+    """Check the size of a frame. Raises: PictureError if it is larger than a picture may be."""
     try:
         check_size((*shape[:2], 4), 1)
     except TooLargeError as error:
-        raise PictureError(f"{name}: a frame of it {error}; make the video smaller first") from error
+        raise PictureError(f"{name}: a frame {error}; make the video smaller first") from error
 
 
 def _check_is_file(path: Path) -> None:
-    """Raises: PictureError, with the cure, where there is none that can be read."""
+    """Check that a file is there and can be read. Raises: PictureError, with the cure."""
     try:
-        found = path.stat()
+        status = path.stat()
         readable = os.access(path, os.R_OK)
     except (FileNotFoundError, NotADirectoryError) as error:
-        if not path.parent.is_dir():
-            raise PictureError(f"{path}: there is no folder {path.parent}; check the path") from error
-        near = did_you_mean(path.name, (each.name for each in path.parent.iterdir()))
-        raise PictureError(f"{path}: there is no such file or folder{near}") from error
+        raise absent(path, "file or folder") from error
     except (OSError, ValueError) as error:
         raise PictureError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(status.st_mode):
         raise PictureError(
             f"{path}: is a device or a pipe, not a video file; name a file, a folder of pictures, or a camera by its "
             "number (video: 0)"
         )
-    if not found.st_size:
+    if not status.st_size:
         raise PictureError(f"{path}: the file is empty; copy or download it again")
     if not readable:
         raise PictureError(f"{path}: cannot be read: Permission denied; check its permissions")

@@ -1,4 +1,4 @@
-"""The frames of a video, one after the other or as they are due."""
+"""The interface of a video that is read in order or by time."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -11,60 +11,60 @@ from ...data.pictures import size_in_words
 from ...errors import PictureError
 
 ViewsOf = Callable[[np.ndarray], Views]
-"""A picture as the views that it holds."""
+"""A function from a stored picture to its views."""
 
 
 class VideoFrame(NamedTuple):
-    """One frame of a video."""
+    """A frame of a video."""
 
     number: int
-    """From 0, of the source; where a video begins again, numbers go on."""
+    """Number of the frame, from 0; it goes on counting when the video starts again."""
     time_s: float
-    """When it is due, from the first."""
+    """Time at which the frame is due, seconds after the first."""
     views: Views
 
 
 class VideoFrames(ABC):
-    """The frames of a video that was opened: a context manager, for one reader in one thread.
+    """The frames of an open video: a context manager, for one reader in one thread.
 
-    What is wrong with a frame is said once: the call that comes upon it raises, and the next one goes on behind it.
+    A faulty frame is reported once: the call that reads it raises, and the next call goes on after it.
     """
 
     def __init__(self, fps: float, views_of: ViewsOf) -> None:
-        """fps: frames a second, about. views_of: what becomes of each picture."""
+        """fps: approximate frames a second. views_of: converts each picture."""
         self.fps = fps
         self.skipped = 0
-        """Frames that were passed over, as a later one was due or they were damaged."""
+        """Number of frames that were skipped because a later one was due, or because they were damaged."""
         self.size: tuple[int, int] | None = None
-        """(h, w) of each frame as it is stored; None until the first one came, which decides."""
+        """Shape (h, w) of each stored frame; None until the first frame decides it."""
         self.count: int | None = None
-        """How many frames there are, as a file says; None where nobody knows."""
+        """Number of frames that the file states; None if unknown."""
         self._views_of = views_of
-        self._said: set[str] = set()
+        self._raised: set[str] = set()
 
     @property
     @abstractmethod
-    def ended(self) -> bool:
-        """Whether no frame will come any more."""
+    def at_end(self) -> bool:
+        """True if no frame is left."""
 
     @abstractmethod
     def next(self) -> VideoFrame | None:
-        """The next frame in order, of a camera the next that comes; None at the end.
+        """Return the next frame in order, or the next one that a camera takes; None at the end.
 
-        Raises: PictureError for one that cannot be read, or of another size than the first.
+        Raises: PictureError for a frame that cannot be read, or that differs in size from the first.
         """
 
     @abstractmethod
     def at(self, time_s: float) -> VideoFrame | None:
-        """The latest frame that is due by then, of a camera the newest; those before it are skipped.
+        """Return the latest frame that is due at this time, or a camera's newest; earlier frames are skipped.
 
-        None at the end, or where none is due that was not had before. Times do not go back.
+        Returns: None at the end, or if no new frame is due. Times do not go back.
         Raises: PictureError as `next`.
         """
 
     @abstractmethod
     def close(self) -> None:
-        """Give back what is open. A second time does nothing."""
+        """Close the source. A second call does nothing."""
 
     def __enter__(self) -> Self:
         return self
@@ -73,7 +73,7 @@ class VideoFrames(ABC):
         self.close()
 
     def _frame(self, number: int, time_s: float, picture: np.ndarray, name: object) -> VideoFrame:
-        """Raises: PictureError for another size than the first frame's."""
+        """Make a frame of a picture. Raises: PictureError if its size differs from the first frame's."""
         self.size = self.size or picture.shape[:2]
         if picture.shape[:2] != self.size:
             first = size_in_words(np.empty(self.size, np.bool_))
@@ -83,8 +83,8 @@ class VideoFrames(ABC):
             )
         return VideoFrame(number, time_s, self._views_of(picture))
 
-    def _say_once(self, kind: str, error: PictureError) -> None:
-        """Raises: this error, where none of its kind was raised before."""
-        if kind not in self._said:
-            self._said.add(kind)
+    def _raise_once(self, kind: str, error: PictureError) -> None:
+        """Raise an error, if none of its kind was raised before."""
+        if kind not in self._raised:
+            self._raised.add(kind)
             raise error

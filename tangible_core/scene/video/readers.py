@@ -1,4 +1,4 @@
-"""A video file, and a folder of pictures, frame by frame."""
+"""The frames of a video file, and of a folder of pictures."""
 
 import re
 from collections.abc import Iterator
@@ -14,34 +14,34 @@ from ...data.pictures import opaque, to_rgb8
 from ...errors import PictureError
 from ..formats.decoding import PICTURES
 from ..formats.pictures import read_picture
-from .capture import USUAL_FPS, Capture, grabbed, open_file, position_s, retrieved, stated_count, stated_fps
+from .capture import USUAL_FPS, Capture, grab, open_file, position_s, retrieve, stated_count, stated_fps
 from .frames import VideoFrame, VideoFrames, ViewsOf
 
 LONGEST_S = 60.0
-"""Between two frames of a file, by its time stamps; more is no time that somebody meant."""
+"""Longest time between two frames of a file, seconds; a larger step of the time stamps is taken for an error."""
 EARLY_S = 1e-6
-"""What sums of times may be off by."""
+"""Tolerance for rounding in sums of times, seconds."""
 UNEVEN = 0.25
-"""Share of the time between two frames by which time stamps of an even rate are off: they are whole milliseconds."""
+"""Largest error of a time stamp at an even rate, as a share of the frame time: stamps are whole milliseconds."""
 CATCH_UP_S = 0.1
-"""Time to pass frames over in one call. A file that decodes more slowly than it plays is then felt more slowly."""
+"""Longest time to skip frames in one call, seconds. A file that decodes too slowly then plays more slowly."""
 SHORT = 0.1
-"""Share of its frames that a file may lack before it counts as cut short: what it says is often an estimate."""
+"""Share of frames that may be missing before a file counts as cut short: the stated count is often an estimate."""
 
 
 @final
 class FileFrames(VideoFrames):
     """The frames of a video file.
 
-    One that is skipped is decoded, as the next ones are made of it, but not converted to colours, which takes as long,
-    where it is certain that the next one is due as well: by a rate that was said, or by time stamps that were even in a
-    whole round before. A frame that stands for seconds is never missed.
+    A skipped frame is decoded, as later frames depend on it, but not converted to colours, which takes as long. This
+    needs certainty that the next frame is due as well: by a requested rate, or by time stamps that were even over the
+    whole file before. A frame that stands for seconds is never missed.
     """
 
     def __init__(self, path: Path, fps: float | None, repeat: bool, views_of: ViewsOf) -> None:
-        """fps: frames a second, instead of when the file says that they are due.
+        """fps: frames a second, instead of the file's time stamps.
 
-        Raises: PictureError if it is no video.
+        Raises: PictureError if it is not a video.
         """
         self._capture: Capture | None = open_file(path)
         super().__init__(fps or stated_fps(self._capture) or USUAL_FPS, views_of)
@@ -54,39 +54,39 @@ class FileFrames(VideoFrames):
         self._ended = False
 
     @property
-    def ended(self) -> bool:
-        """Whether the last frame was had, and it does not begin again."""
+    def at_end(self) -> bool:
+        """True if the last frame was read and the video does not start again."""
         return self._ended
 
     def next(self) -> VideoFrame | None:
-        """The next frame that is whole. Raises: PictureError, once, for a damaged one, or a file that is cut short."""
+        """Return the next whole frame. Raises: PictureError, once, for a damaged one, or a file that is cut short."""
         while self._waiting or self._advance():
             if (frame := self._take()) is not None:
                 return frame
         return None
 
     def at(self, time_s: float) -> VideoFrame | None:
-        """The latest that is due; where there are too many to skip in a tenth of a second, a former one, and from there
-        on all come later. Raises: PictureError as `next`.
+        """Return the latest frame that is due; if there are too many to skip in a tenth of a second, an earlier one,
+        after which all frames come later. Raises: PictureError as `next`.
         """
-        found: VideoFrame | None = None
+        latest: VideoFrame | None = None
         began_s = monotonic()
         while self._waiting or self._advance():
             due_s = self._due_s + self._late_s
             if due_s > time_s + EARLY_S:
                 break
-            weary = monotonic() - began_s > CATCH_UP_S
-            if not weary and self._another_by(time_s):
+            too_slow = monotonic() - began_s > CATCH_UP_S
+            if not too_slow and self._another_by(time_s):
                 self._waiting = False
                 self.skipped += 1
                 continue
             if (frame := self._take()) is not None:
-                self.skipped += found is not None
-                found = frame
-            if weary:
+                self.skipped += latest is not None
+                latest = frame
+            if too_slow:
                 self._late_s += time_s - due_s
                 break
-        return found
+        return latest
 
     def close(self) -> None:
         """Close the file."""
@@ -94,7 +94,7 @@ class FileFrames(VideoFrames):
         self._release()
 
     def _another_by(self, time_s: float) -> bool:
-        """Whether the frame after the one that was grabbed is due by then, too."""
+        """Tell whether the frame after the grabbed one is due at this time, too."""
         last = self.count is not None and self._in_round >= self.count and not self._repeat
         return self._known_even and not last and self._due_s + self._late_s + (1 + UNEVEN) / self.fps <= time_s
 
@@ -103,7 +103,7 @@ class FileFrames(VideoFrames):
         while not self._ended:
             if self._capture is None:
                 self._capture = open_file(self._path)
-            if grabbed(self._capture):
+            if grab(self._capture):
                 self._time(self._capture)
                 self._waiting = True
                 return True
@@ -111,7 +111,7 @@ class FileFrames(VideoFrames):
         return False
 
     def _time(self, capture: Capture) -> None:
-        """When the frame that was grabbed is due."""
+        """Compute when the grabbed frame is due."""
         stamp_s, usual_s = position_s(capture), 1 / self.fps
         step_s = stamp_s - self._stamp_s if self._in_round and self._timed else usual_s
         if not 0 < step_s <= LONGEST_S:
@@ -123,29 +123,29 @@ class FileFrames(VideoFrames):
         self._in_round += 1
 
     def _take(self) -> VideoFrame | None:
-        """What was grabbed, as a frame; None for a damaged one. Raises: PictureError, once, for a damaged one."""
+        """Return the grabbed frame; None for a damaged one. Raises: PictureError, once, for a damaged one."""
         self._waiting = False
-        picture = None if self._capture is None else retrieved(self._capture, self._path)
+        picture = None if self._capture is None else retrieve(self._capture, self._path)
         if picture is None:
             self.skipped += 1
             self._damaged += 1
-            said = f"{self._path}: frame {self._in_round - 1} is damaged and left out; copy or download the file again"
-            self._say_once("damaged", PictureError(said))
+            fault = f"{self._path}: frame {self._in_round - 1} is damaged and left out; copy or download the file again"
+            self._raise_once("damaged", PictureError(fault))
             return None
         return self._frame(self._grabbed - 1, self._due_s, picture, self._path)
 
     def _end_round(self) -> None:
-        """Behind the last frame. Raises: PictureError if there was none; once, if there should be more."""
-        held, damaged = self._in_round, self._damaged
+        """Handle the end of the file. Raises: PictureError if it had no frame; once, if frames are missing."""
+        count, damaged = self._in_round, self._damaged
         self._known_even = self._even
         self._in_round = self._damaged = 0
         self._release()
         self._ended = not self._repeat
-        if held == damaged:
-            raise PictureError(f"{self._path}: no frame of it can be played; convert it to an .mp4 with H.264")
-        if self.count is not None and held + 2 < self.count * (1 - SHORT):
-            said = f"{self._path}: is damaged or cut short after {held} of {self.count} frames; copy it again"
-            self._say_once("short", PictureError(said))
+        if count == damaged:
+            raise PictureError(f"{self._path}: none of its frames can be played; convert it to an .mp4 with H.264")
+        if self.count is not None and count + 2 < self.count * (1 - SHORT):
+            fault = f"{self._path}: is damaged or cut short after {count} of {self.count} frames; copy it again"
+            self._raise_once("short", PictureError(fault))
 
     def _release(self) -> None:
         if self._capture is not None:
@@ -155,10 +155,10 @@ class FileFrames(VideoFrames):
 
 @final
 class FolderFrames(VideoFrames):
-    """The pictures of a folder, in the order of the numbers in their names; only those that are felt are read."""
+    """The pictures of a folder, in the order of the numbers in their names; skipped ones are not read."""
 
     def __init__(self, folder: Path, fps: float | None, repeat: bool, views_of: ViewsOf) -> None:
-        """fps: 30 a second by default. Raises: PictureError if there is no picture in it."""
+        """fps: 30 a second by default. Raises: PictureError if the folder has no picture."""
         super().__init__(fps or USUAL_FPS, views_of)
         self._pictures = pictures_of(folder)
         self.count = len(self._pictures)
@@ -166,21 +166,21 @@ class FolderFrames(VideoFrames):
         self._number = 0
 
     @property
-    def ended(self) -> bool:
-        """Whether the last picture was had, and it does not begin again."""
+    def at_end(self) -> bool:
+        """True if the last picture was read and the video does not start again."""
         return self._number >= len(self._pictures) and not self._repeat
 
     def next(self) -> VideoFrame | None:
-        """The next picture that is whole. Raises: PictureError, once, for a damaged one; if none of them is whole."""
+        """Return the next whole picture. Raises: PictureError, once, for a damaged one; if none is whole."""
         for _ in self._pictures:
-            if self.ended:
+            if self.at_end:
                 return None
             if (frame := self._read()) is not None:
                 return frame
         raise PictureError(f"{self._folder}: none of its {len(self._pictures)} pictures can be read; copy them again")
 
     def at(self, time_s: float) -> VideoFrame | None:
-        """The latest that is due; None if that one is damaged. Raises: PictureError as `next`."""
+        """Return the latest picture that is due; None if it is damaged. Raises: PictureError as `next`."""
         due = floor((time_s + EARLY_S) * self.fps)
         due = due if self._repeat else min(due, len(self._pictures) - 1)
         if due < self._number:
@@ -190,11 +190,11 @@ class FolderFrames(VideoFrames):
         return self._read()
 
     def close(self) -> None:
-        """Nothing comes any more; no file is open."""
+        """Stop; no file is open."""
         self._number, self._repeat = len(self._pictures), False
 
     def _read(self) -> VideoFrame | None:
-        """The next picture; None for a damaged one. Raises: PictureError, once, for a damaged one."""
+        """Read the next picture; None for a damaged one. Raises: PictureError, once, for a damaged one."""
         number = self._number
         self._number += 1
         path = self._pictures[number % len(self._pictures)]
@@ -202,31 +202,33 @@ class FolderFrames(VideoFrames):
             picture = as_frame(read_picture(path))
         except PictureError as error:
             self.skipped += 1
-            self._say_once("damaged", error)
+            self._raise_once("damaged", error)
             return None
         return self._frame(number, number / self.fps, picture, path)
 
 
 def pictures_of(folder: Path) -> list[Path]:
-    """The pictures in a folder, in the order of the numbers in their names. Raises: PictureError if there is none."""
+    """List the pictures in a folder, in the order of the numbers in their names. Raises: PictureError without one."""
     try:
-        found = [each for each in folder.iterdir() if each.suffix.lower() in PICTURES and not each.name.startswith(".")]
+        pictures = [
+            each for each in folder.iterdir() if each.suffix.lower() in PICTURES and not each.name.startswith(".")
+        ]
     except OSError as error:
         raise PictureError(f"{folder}: cannot be read: {error.strerror or error}; check its permissions") from error
-    if not found:
+    if not pictures:
         raise PictureError(f"{folder}: holds no picture; name a folder of pictures (.png, .jpg, .tif), or a video file")
-    return sorted(found, key=lambda each: list(_natural(each.name)))
+    return sorted(pictures, key=lambda each: list(_natural(each.name)))
 
 
 def _natural(name: str) -> Iterator[tuple[int, str]]:
-    """What names are sorted by: numbers as numbers, so that 10 comes after 9; at last, the name as it is."""
+    """Yield the sort key of a name: numbers as numbers, so that 10 comes after 9; last, the name itself."""
     for part in re.findall(r"[0-9]+|[^0-9]+", name):
         yield (int(part), "") if part.isdecimal() and len(part) < 1000 else (-1, part.lower())
     yield (-1, name)
 
 
 def as_frame(picture: np.ndarray) -> UInt8[np.ndarray, "h w c"]:
-    """Any picture in eight bits: RGB, and a fourth channel that is 0 or 255 where it has one."""
+    """Convert a picture to eight bits: RGB, and a fourth channel of 0 or 255 if it has one."""
     if picture.shape[2:] != (4,):
         return to_rgb8(picture)
     shown = opaque(picture)[..., None] * np.uint8(255)

@@ -214,7 +214,7 @@ class ByClock:
             self._again_s = time_s + self._frame_s
             if self._screen.waits:
                 self._screen.repeat()
-            if self._next is None and not self._reliefs.frames.ended:
+            if self._next is None and not self._reliefs.frames.at_end:
                 self._next = self._read()
 
     def with_counts(self, on_report: Callable[[ServoReport], None]) -> Callable[[ServoReport], None]:

@@ -1,4 +1,4 @@
-"""Names of colours: as people gave them in a survey, and as a segment has them."""
+"""Colour names, compared with a survey, and the colours of segments."""
 
 import cv2
 import numpy as np
@@ -24,7 +24,7 @@ def name_of(rgb: tuple[float, float, float]) -> str:
 
 
 @pytest.mark.parametrize("name", SURVEY)
-def test_names_are_those_that_people_gave(name: str):
+def test_colour_names_agree_with_the_survey(name: str):
     expected, rgb = SURVEY[name]
     assert name_of(rgb) == expected
 
@@ -41,11 +41,11 @@ def test_names_are_those_that_people_gave(name: str):
         ((0.6, 0.25, 0.2), "red"),
     ],
 )
-def test_plain_cases(rgb: tuple[float, float, float], expected: str):
+def test_colour_names_of_plain_cases(rgb: tuple[float, float, float], expected: str):
     assert name_of(rgb) == expected
 
 
-def test_a_segment_has_the_colour_of_most_of_its_pixels():
+def test_segment_colour_is_that_of_most_pixels():
     picture = np.zeros((2, 8, 3), np.uint8)
     picture[:, :3] = (0, 0, 255)
     picture[:, 3:4] = (255, 0, 0)
@@ -55,7 +55,7 @@ def test_a_segment_has_the_colour_of_most_of_its_pixels():
 
 
 @pytest.mark.parametrize("dtype", ["uint8", "uint16", "float64", "bool"])
-def test_any_picture_will_do(dtype: str):
+def test_segment_colours_take_any_picture(dtype: str):
     labels = SegmentMap(np.zeros((1, 1), np.int32))
     white = {"uint8": 255, "uint16": 65535, "float64": 1.0, "bool": True}[dtype]
     for shape in ((1, 1), (1, 1, 3), (1, 1, 4)):

@@ -1,4 +1,4 @@
-"""The library of materials, its files, and which segment gets which."""
+"""The library of materials, its files, and the assignment of materials to segments."""
 
 from dataclasses import MISSING, fields, replace
 from pathlib import Path
@@ -16,18 +16,18 @@ MUD = "mud: {stiffness_n_per_m: 300, damping_n_s_per_m: 2, static_friction: 0.6,
 
 
 def stripes(count: int, size: int = 40) -> SegmentMap:
-    """Upright segments, side by side."""
+    """Return upright segments, side by side."""
     return SegmentMap(np.repeat(np.arange(count, dtype=np.int32), size)[None].repeat(size, axis=0))
 
 
 def checkers(*amplitudes: float, size: int = 40) -> np.ndarray:
-    """A segment a column: a checkerboard of this amplitude about 0.5."""
+    """Return a picture of stripes, each a checkerboard of its amplitude about 0.5."""
     rows, columns = np.indices((size, size * len(amplitudes)))
     return 0.5 + np.where((rows + columns) % 2, 1, -1) * np.repeat(amplitudes, size)
 
 
 def complaints(tmp_path: Path, text: str) -> list[str]:
-    """What is said about a library file, without its folder."""
+    """Return the complaints about a library file, without its folder."""
     path = tmp_path / "mine.yaml"
     path.write_text(text)
     with pytest.raises(ConfigError) as error:
@@ -51,26 +51,26 @@ class TestLibrary:
             assert library()[name].grain_m == pytest.approx(0.12 / hertz, rel=0.01), name
 
     @pytest.mark.parametrize("material", library().values(), ids=lambda each: each.name)
-    def test_a_desktop_device_can_render_it(self, material: Material):
+    def test_library_material_is_within_a_desktop_device(self, material: Material):
         assert material.stiffness_n_per_m <= (900 if material.roughness_m else 3000)
         assert 0 < material.damping_n_s_per_m <= 5
         assert material.source
 
-    def test_names_are_those_of_the_file(self):
+    def test_material_names_are_those_of_the_file(self):
         assert all(name == material.name for name, material in library().items())
         others = {"glass", "rubber", "foam", "carpet", "skin", "grass", "water"}
         assert set(library()) == {NEUTRAL, *LADDER, *others}
 
     @pytest.mark.parametrize("material", library().values(), ids=lambda each: each.name)
-    def test_of_every_value_it_is_said_where_it_comes_from(self, material: Material):
+    def test_every_value_has_a_source(self, material: Material):
         sources = sources_of(material)
         assert [*sources] == [*VALUES]
         assert all(sources.values())
 
-    def test_every_model_of_texture_is_used(self):
+    def test_every_texture_model_is_used(self):
         assert {each.texture for each in library().values()} == set(TEXTURES)
 
-    def test_the_neutral_material_has_no_friction_and_no_texture(self):
+    def test_neutral_material_has_no_friction_and_no_texture(self):
         plain = library()[NEUTRAL]
         assert (plain.static_friction, plain.dynamic_friction, plain.roughness_m) == (0, 0, 0)
 
@@ -79,18 +79,18 @@ class TestLibrary:
         assert roughness == sorted(roughness)
         assert len(set(roughness)) == len(LADDER)
 
-    def test_it_is_read_once_and_cannot_be_changed(self):
+    def test_library_is_read_once_and_read_only(self):
         assert load_library() is library()
         with pytest.raises(TypeError):
             library()["ice"] = library()["sand"]  # type: ignore[index]
 
-    def test_a_misspelt_name_is_explained(self):
+    def test_misspelt_material_name_gets_a_suggestion(self):
         with pytest.raises(MaterialError, match=r"'icee' \(did you mean 'ice'\?\); there are plain, ice, glass"):
             find("icee", library())
 
 
 class TestOwnFile:
-    def test_adds_to_the_library(self, tmp_path: Path):
+    def test_file_adds_a_material(self, tmp_path: Path):
         path = tmp_path / "mine.yaml"
         path.write_text(MUD)
         more = load_library(path)
@@ -98,19 +98,19 @@ class TestOwnFile:
         assert [*more] == [*library(), "mud"]
         assert "mud" not in library()
 
-    def test_changes_some_values_of_a_shipped_material(self, tmp_path: Path):
+    def test_file_changes_some_values_of_a_shipped_material(self, tmp_path: Path):
         path = tmp_path / "mine.yaml"
         path.write_text("ice: {stiffness_n_per_m: 1.2e3}\n")
         ice = load_library(path)["ice"]
         source = f"stiffness_n_per_m: mine.yaml; {library()['ice'].source}"
         assert ice == replace(library()["ice"], stiffness_n_per_m=1200.0, source=source)
 
-    def test_source_may_be_said_for_each_value(self, tmp_path: Path):
+    def test_file_may_state_a_source_for_each_value(self, tmp_path: Path):
         path = tmp_path / "mine.yaml"
         path.write_text("ice:\n  dynamic_friction: 0.02\n  source:\n    dynamic_friction: my rig\n    others: guess\n")
         assert load_library(path)["ice"].source == "dynamic_friction: my rig; others: guess"
 
-    def test_all_complaints_come_at_once_each_with_its_place(self, tmp_path: Path):
+    def test_all_complaints_come_at_once_with_their_places(self, tmp_path: Path):
         text = (
             "ice: {stifness_n_per_m: 3, damping_n_s_per_m: -1}\n"
             "mud:\n  stiffness_n_per_m: .nan\n  grain_m: fine\n  static_friction: yes\n  source: {grain: x}\n"
@@ -119,15 +119,15 @@ class TestOwnFile:
             "wood: {dynamic_friction: 0.9}\n"
             "glas: {source: 4}\n"
         )
-        found = complaints(tmp_path, text)
+        lines = complaints(tmp_path, text)
         places = ["1:28", "1:7", "3:3", "5:3", "4:3", "6:12", "2:1", "7:1", "8:1", "9:1", "10:8", "10:1"]
-        assert [each.split(": ", 1)[0] for each in found] == [f"mine.yaml:{place}" for place in places]
-        assert "ice.damping_n_s_per_m: Input should be greater than or equal to 0, not -1" in found[0]
-        assert "ice.stifness_n_per_m: unknown option (did you mean 'stiffness_n_per_m'?)" in found[1]
-        assert "which is not a property (did you mean 'grain_m'?)" in found[5]
-        assert "dynamic_friction 0.9 is above static_friction 0.26" in found[9]
+        assert [each.split(": ", 1)[0] for each in lines] == [f"mine.yaml:{place}" for place in places]
+        assert "ice.damping_n_s_per_m: Input should be greater than or equal to 0, not -1" in lines[0]
+        assert "ice.stifness_n_per_m: unknown option (did you mean 'stiffness_n_per_m'?)" in lines[1]
+        assert "which is not a property (did you mean 'grain_m'?)" in lines[5]
+        assert "dynamic_friction 0.9 is above static_friction 0.26" in lines[9]
         missing = "stiffness_n_per_m, damping_n_s_per_m, static_friction, dynamic_friction are missing"
-        assert found[11].endswith(f"glas: {missing} (did you mean 'glass'?)")
+        assert lines[11].endswith(f"glas: {missing} (did you mean 'glass'?)")
 
     @pytest.mark.parametrize(
         ("text", "complaint"),
@@ -151,15 +151,15 @@ class TestOwnFile:
             ),
         ],
     )
-    def test_what_is_no_library(self, tmp_path: Path, text: str, complaint: str):
+    def test_text_that_is_not_a_library_is_refused(self, tmp_path: Path, text: str, complaint: str):
         assert complaints(tmp_path, text)[0].startswith(complaint)
 
-    def test_a_misspelt_texture_is_explained(self, tmp_path: Path):
-        (said,) = complaints(tmp_path, "ice: {texture: periodical}\n")
-        assert said.startswith("mine.yaml:1:7: ice.texture: Input should be 'smooth', 'periodic', ")
-        assert said.endswith("(did you mean 'periodic'?)")
+    def test_misspelt_texture_gets_a_suggestion(self, tmp_path: Path):
+        (line,) = complaints(tmp_path, "ice: {texture: periodical}\n")
+        assert line.startswith("mine.yaml:1:7: ice.texture: Input should be 'smooth', 'periodic', ")
+        assert line.endswith("(did you mean 'periodic'?)")
 
-    def test_where_each_value_comes_from(self, tmp_path: Path):
+    def test_sources_of_each_value_are_told_apart(self, tmp_path: Path):
         path = tmp_path / "mine.yaml"
         path.write_text(MUD + "ice: {grain_m: 0.002, texture: smooth}\nglass: {source: my rig}\n")
         mine = load_library(path)
@@ -170,18 +170,18 @@ class TestOwnFile:
         assert ice["dynamic_friction"] == "physics.info/friction, ice on steel"
         assert ice["stiffness_n_per_m"] == "guess"
 
-    def test_what_a_file_may_say_is_what_a_material_has(self):
+    def test_keys_of_a_file_are_the_fields_of_a_material(self):
         assert set(MaterialBlock.model_fields) == {each.name for each in fields(Material)} - {"name"}
         for each in fields(Material):
             if each.default is not MISSING and each.name != "source":
                 assert MaterialBlock.model_fields[each.name].default == each.default
 
-    def test_a_misspelt_file_is_explained(self, tmp_path: Path):
+    def test_misspelt_file_gets_a_suggestion(self, tmp_path: Path):
         (tmp_path / "mine.yaml").write_text(MUD)
         with pytest.raises(ConfigError, match=r"mime.yaml: there is no such file \(did you mean 'mine.yaml'\?\)"):
             load_library(tmp_path / "mime.yaml")
 
-    def test_what_is_no_text_is_explained(self, tmp_path: Path):
+    def test_file_that_is_not_text_is_refused(self, tmp_path: Path):
         (tmp_path / "mine.yaml").write_bytes(b"\xff\xfe\x00")
         for path in (tmp_path / "mine.yaml", tmp_path):
             with pytest.raises(ConfigError, match="cannot be read as text"):
@@ -194,12 +194,12 @@ class TestByName:
         assert [each.name for each in found.materials] == ["ice", "sand", "ice"]
         assert found.reasons == ("segment 0: named ice", "segment 1: named sand", "segment 2: named ice")
 
-    def test_a_label_left_out_is_neutral(self):
+    def test_unnamed_label_is_neutral(self):
         found = assign(stripes(2), None, {1: "sand"}, library())
         assert [each.name for each in found.materials] == ["plain", "sand"]
         assert found.reasons[0] == "segment 0: not named -> plain"
 
-    def test_wrong_labels_and_names_are_all_told(self):
+    def test_wrong_labels_and_names_are_all_reported(self):
         with pytest.raises(MaterialError) as error:
             assign(stripes(3), None, {0: "icee", 3: "sand", -1: "sand"}, library())
         first, second, third = str(error.value).splitlines()
@@ -209,7 +209,7 @@ class TestByName:
 
 
 class TestByRoughness:
-    def test_the_rougher_gets_the_rougher_material(self):
+    def test_rougher_segment_gets_the_rougher_material(self):
         picture = checkers(0.3, 0.0, 0.1)
         found = assign(stripes(3), picture, "roughness", library())
         assert [each.name for each in found.materials] == ["brick", "ice", "wood"]
@@ -220,7 +220,7 @@ class TestByRoughness:
             f"segment 2: roughness rank 2 of 3 ({0.1 / spread * np.sqrt(80 / 81):.3f}) -> wood",
         )
 
-    def test_a_shadow_is_no_roughness(self):
+    def test_shadow_does_not_change_the_roughness(self):
         rows, columns = np.indices((60, 120))
         picture = np.where(columns < 60, columns / 60, 0.5 + 0.05 * np.where((rows + columns) % 2, 1, -1))
         assert [each.name for each in assign(stripes(2, 60), picture, "roughness", library()).materials] == [
@@ -234,7 +234,7 @@ class TestByRoughness:
         assert "rank 2 of 2" in found.reasons[0]
 
     @pytest.mark.parametrize("picture", [checkers(0.2, 0.2), np.zeros((40, 80)), np.full((40, 80, 3), 0.3)])
-    def test_one_rank_says_nothing(self, picture: np.ndarray):
+    def test_single_rank_gives_the_neutral_material(self, picture: np.ndarray):
         found = assign(stripes(2), picture, "roughness", library())
         assert [each.name for each in found.materials] == [NEUTRAL, NEUTRAL]
 
@@ -244,11 +244,11 @@ class TestByRoughness:
         assert rungs == [0, 1, 1, 2, 3, 4, 4, 5, 6, 7, 7, 8]
 
     @pytest.mark.parametrize("scale", [1e-20, 1.0, 1e20])
-    def test_scale_does_not_matter(self, scale: float):
+    def test_roughness_ranks_do_not_depend_on_the_scale(self, scale: float):
         picture = checkers(0.05, 0.3, 0.1)
         assert np.array_equal(relative_roughness(stripes(3), picture * scale), relative_roughness(stripes(3), picture))
 
-    def test_type_does_not_matter(self):
+    def test_roughness_ranks_do_not_depend_on_the_dtype(self):
         eight = np.rint(checkers(0.05, 0.3, 0.1) * 255).astype(np.uint8)
         expected = assign(stripes(3), eight, "roughness", library()).digest()
         colour = np.repeat(eight[..., None], 3, axis=2)
@@ -257,8 +257,8 @@ class TestByRoughness:
             assert assign(stripes(3), variant, "roughness", library()).digest() == expected
 
     @pytest.mark.parametrize(("shape", "side"), [((40, 90), 3), ((300, 256), 5), ((704, 800), 11)])
-    def test_its_window_is_a_64th_of_the_shorter_side(self, shape: tuple[int, int], side: int):
-        """And at least three pixels: the median of the deviation in windows, by the plain formula."""
+    def test_roughness_window_is_a_64th_of_the_shorter_side(self, shape: tuple[int, int], side: int):
+        """Compare with the plain formula: the median of the deviation in windows of at least three pixels."""
         picture = np.random.default_rng(2).random(shape)
         picture[:, shape[1] // 2 :] **= 6
         labels = np.zeros(shape, np.int32)
@@ -269,16 +269,16 @@ class TestByRoughness:
         expected = [np.median(deviations[labels == label]) for label in (0, 1)]
         assert relative_roughness(SegmentMap(labels), picture) == pytest.approx(expected, abs=6e-4)
 
-    def test_a_single_pixel(self):
+    def test_roughness_of_a_single_pixel_is_zero(self):
         found = assign(SegmentMap(np.zeros((1, 1), np.int32)), np.ones((1, 1)), "roughness", library())
         assert found.reasons == ("segment 0: roughness rank 1 of 1 (0.000) -> plain",)
 
-    def test_it_needs_the_picture(self):
+    def test_roughness_without_a_picture_is_refused(self):
         for picture in (None, np.zeros((3, 4))):
             with pytest.raises(MaterialError, match=r"need the picture of the segments, \(40, 80\)"):
                 assign(stripes(2), picture, "roughness", library())
 
-    def test_a_picture_with_a_hole_is_refused(self):
+    def test_roughness_of_a_picture_with_nan_is_refused(self):
         picture = checkers(0.1, 0.2)
         picture[3, 5] = np.nan
         with pytest.raises(PictureError, match="row 3, column 5"):
@@ -299,7 +299,7 @@ def rules(*texts: dict) -> list[MaterialRule]:
 
 
 class TestByRules:
-    def test_the_first_that_fits_wins(self):
+    def test_first_fitting_rule_wins(self):
         segments, picture = quarters()
         given = rules(
             {"segment": 3, "material": "sand"},
@@ -320,12 +320,12 @@ class TestByRules:
     @pytest.mark.parametrize(
         ("at", "label"), [([19.4, 19.4], 0), ([19.6, 19.4], 1), ([19.4, 19.6], 2), ([39, 39], 3), ([0, 39.4], 2)]
     )
-    def test_a_point_lies_in_the_pixel_whose_centre_is_nearest(self, at: list[float], label: int):
-        """Centres are at whole numbers."""
+    def test_point_selects_the_pixel_with_the_nearest_centre(self, at: list[float], label: int):
+        """Select a pixel; centres are at whole numbers."""
         found = assign(quarters()[0], None, "rules", library(), rules({"at": at, "material": "ice"}))
         assert [each.name for each in found.materials].index("ice") == label
 
-    def test_the_rest_is_by_name_or_by_roughness(self):
+    def test_rest_is_decided_by_name_or_by_roughness(self):
         given = rules({"segment": 1, "material": "glass"})
         found = assign(stripes(3), None, {1: "sand", 2: "wood"}, library(), given)
         assert [each.name for each in found.materials] == ["plain", "glass", "wood"]
@@ -334,11 +334,11 @@ class TestByRules:
         assert [each.name for each in ruled.materials] == ["brick", "glass", "wood"]
         assert ruled.reasons[::2] == alone.reasons[::2]
 
-    def test_where_rules_decide_everything_roughness_needs_no_picture(self):
+    def test_roughness_needs_no_picture_if_rules_decide_everything(self):
         given = rules(*({"segment": label, "material": "ice"} for label in range(2)))
         assert [each.name for each in assign(stripes(2), None, "roughness", library(), given).materials] == ["ice"] * 2
 
-    def test_a_colour_is_that_of_most_pixels(self):
+    def test_colour_rule_follows_most_pixels(self):
         segments, picture = quarters()
         picture[:9, :20] = (200, 30, 30)
         found = assign(segments, picture, "rules", library(), rules({"colour": "blue", "material": "water"}))
@@ -347,16 +347,16 @@ class TestByRules:
         found = assign(segments, picture, "rules", library(), rules({"colour": "blue", "material": "water"}))
         assert found.reasons[0] == "segment 0: not named -> plain"
 
-    def test_a_rule_for_nothing_is_logged(self, caplog: pytest.LogCaptureFixture):
+    def test_rule_that_fits_nothing_is_logged(self, caplog: pytest.LogCaptureFixture):
         assign(*quarters(), "rules", library(), rules({"colour": "pink", "material": "skin"}))
         assert caplog.messages == ["materials: rule 1: no segment is pink"]
 
     @pytest.mark.parametrize("point", [[0, 0], [19.4, 19.4], [-0.0, 0.4]])
-    def test_a_point_is_a_pixel_of_the_picture(self, point: list):
+    def test_point_counts_in_pixels_of_the_picture(self, point: list):
         found = assign(*quarters(), "rules", library(), rules({"at": point, "material": "ice"}))
         assert [each.name for each in found.materials] == ["ice", "plain", "plain", "plain"]
 
-    def test_every_rule_that_is_wrong_is_told(self):
+    def test_every_wrong_rule_is_reported(self):
         given = rules(
             {"segment": 4, "material": "ice"}, {"at": [40, 3], "material": "ice"}, {"colour": "red", "material": "ice"}
         )
@@ -368,6 +368,6 @@ class TestByRules:
         assert third.startswith("materials: rule 3: a rule by colour needs the segmented picture")
 
     @pytest.mark.parametrize("rule", [{}, {"segment": 0, "colour": "red"}])
-    def test_a_rule_says_one_thing(self, rule: dict):
+    def test_rule_with_two_selectors_or_none_is_refused(self, rule: dict):
         with pytest.raises(ValueError, match="takes one of segment, part, at and colour"):
             MaterialRule.model_validate({**rule, "material": "ice"})

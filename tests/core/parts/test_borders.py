@@ -1,4 +1,4 @@
-"""Borders as lines that two parts share: nothing between them, nothing twice, and near the sides of the pixels."""
+"""Borders as shared lines: no gap, no overlap, near the sides of the pixels."""
 
 import sys
 
@@ -22,25 +22,25 @@ def parts_of(labels) -> PartMap:
 
 
 def in_pixels(labels, tolerance_px: float = 0) -> np.ndarray:
-    """Polygons, a metre a pixel."""
+    """Return the polygons in a frame of one metre a pixel."""
     parts = parts_of(labels)
     return np.array(shared_borders(parts, float(parts.labels.shape[1]), tolerance_px))
 
 
 def segments_of(polygons) -> list[bytes]:
-    """Every straight piece of every line, its ends in order, to the bit."""
-    found: list[bytes] = []
+    """Return the bytes of every straight piece of every line, its ends in order."""
+    pieces: list[bytes] = []
     for ring in shapely.get_rings(shapely.get_parts(polygons)):
         at = shapely.get_coordinates(ring)
         ends = np.stack([at[:-1], at[1:]], axis=1)
         swap = (ends[:, 0, 0] > ends[:, 1, 0]) | ((ends[:, 0, 0] == ends[:, 1, 0]) & (ends[:, 0, 1] > ends[:, 1, 1]))
         ends[swap] = ends[swap][:, ::-1]
-        found += [each.tobytes() for each in ends]
-    return found
+        pieces += [each.tobytes() for each in ends]
+    return pieces
 
 
 def check_whole(polygons, rows: int, columns: int) -> None:
-    """No gap, no overlap, each line between two parts in both to the bit, the rim a rectangle."""
+    """Check for gaps, overlaps, lines that two parts do not share to the bit, and a rim that is not a rectangle."""
     assert shapely.is_valid(polygons).all()
     assert shapely.coverage_is_valid(polygons)
     assert shapely.area(polygons).sum() == pytest.approx(rows * columns, rel=1e-12)
@@ -54,7 +54,7 @@ def check_whole(polygons, rows: int, columns: int) -> None:
 
 
 @given(SMALL, st.sampled_from([0, 0.4, 1, 3]))
-def test_parts_lie_side_by_side_without_gap_and_overlap(labels, tolerance_px):
+def test_polygons_cover_the_picture_without_gap_and_overlap(labels, tolerance_px):
     polygons = in_pixels(labels, tolerance_px)
     check_whole(polygons, *labels.shape)
     sizes = np.bincount(parts_of(labels).labels.reshape(-1))
@@ -71,7 +71,7 @@ def _sides(part: np.ndarray) -> int:
 
 
 @given(SMALL)
-def test_every_pixel_lies_in_the_polygon_of_its_part(labels):
+def test_polygon_of_a_part_contains_its_pixels(labels):
     polygons = in_pixels(labels)
     rows, columns = labels.shape
     row, column = np.indices(labels.shape)
@@ -79,14 +79,14 @@ def test_every_pixel_lies_in_the_polygon_of_its_part(labels):
     assert shapely.contains(polygons[parts_of(labels).labels], middles).all()
 
 
-def test_metres_run_right_and_away_from_the_user():
+def test_polygons_are_in_metres_to_the_right_and_away_from_the_user():
     parts = parts_of([[0, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 0]])
     assert shared_borders(parts, 0.08, 0)[1].bounds == pytest.approx((0, -0.01, 0.02, 0.01))
     parts = parts_of([[1, 0, 0, 0], [0, 0, 0, 0]])
     assert shared_borders(parts, 0.08, 0)[0].bounds == pytest.approx((-0.04, 0, -0.02, 0.02))
 
 
-def test_holes_are_kept_and_what_is_in_them():
+def test_holes_and_parts_inside_them_are_kept():
     ring = np.zeros((40, 60), np.int32)
     ring[5:35, 10:50] = 1
     ring[10:30, 20:30] = ring[10:30, 35:45] = 2
@@ -96,7 +96,7 @@ def test_holes_are_kept_and_what_is_in_them():
         assert shapely.area(polygons).tolist() == [2400 - 1200, 1200 - 400, 200, 200]
 
 
-def test_a_part_of_one_pixel_is_never_less_than_a_triangle():
+def test_part_of_one_pixel_keeps_an_area():
     labels = np.zeros((9, 9), np.int32)
     labels[4, 4] = 1
     assert shapely.area(in_pixels(labels)[1]) == 1
@@ -104,14 +104,14 @@ def test_a_part_of_one_pixel_is_never_less_than_a_triangle():
     assert shapely.area(in_pixels([[0]], 5)).tolist() == [1]
 
 
-def test_in_a_pattern_of_a_chessboard_every_square_is_its_own():
+def test_chessboard_squares_are_separate_polygons():
     board = np.indices((6, 7)).sum(axis=0) % 2
     polygons = in_pixels(board)
     assert shapely.area(polygons).tolist() == [1] * 42
     check_whole(polygons, 6, 7)
 
 
-def test_a_part_that_touches_itself_at_a_corner_has_a_hole_there():
+def test_part_that_touches_itself_at_a_corner_has_a_hole_there():
     labels = [[0, 0, 0, 0], [0, 1, 1, 0], [0, 1, 0, 1], [0, 1, 1, 1]]
     polygons = in_pixels(labels)
     assert shapely.get_num_interior_rings(polygons).tolist() == [0, 1, 0]
@@ -132,14 +132,14 @@ def test_stairs_become_lines_within_the_tolerance():
 
 
 @pytest.mark.parametrize("name", ["astronaut", "motorcycle"])
-def test_what_is_wider_than_the_tolerance_stays(name):
-    """Of each part, what lies deeper in it than half as much again as the tolerance."""
+def test_places_wider_than_the_tolerance_stay(name):
+    """Compare the interior of each part, deeper than one and a half tolerances."""
     parts = drawn(name).parts
     plain, simple = (np.array(shared_borders(parts, 0.16, tolerance_m)) for tolerance_m in (0, 0.001))
     assert shapely.area(shapely.difference(shapely.buffer(plain, -0.0015), simple)).max() < 1e-12
 
 
-def test_parts_of_a_coarser_grid_keep_their_numbers():
+def test_polygons_of_a_coarser_grid_keep_their_numbers():
     labels = np.zeros((40, 40), np.int32)
     labels[:, 19:21] = 1
     labels[17:23, 19:21] = 2
@@ -149,19 +149,19 @@ def test_parts_of_a_coarser_grid_keep_their_numbers():
     assert [each.area for each in polygons] == [np.count_nonzero(few.labels == part) * 1 for part in range(few.count)]
 
 
-def test_a_number_of_several_pieces_or_of_none_is_a_geometry_too():
+def test_part_of_several_pieces_or_none_is_a_geometry():
     parts = PartMap(np.int32([[2, 0, 2]]), (0, 1, 2))
     one, none, two = shared_borders(parts, 3.0, 0)
     assert (one.area, none.is_empty, two.geom_type, two.area) == (1, True, "MultiPolygon", 2)
 
 
 @pytest.mark.parametrize(("width_m", "tolerance_m"), [(0, 0), (-1, 0), (np.nan, 0), (0.08, -1), (0.08, np.nan)])
-def test_lengths_that_are_none_are_said(width_m, tolerance_m):
+def test_wrong_lengths_are_refused(width_m, tolerance_m):
     with pytest.raises(GeometryError, match="lengths in metres"):
         shared_borders(parts_of([[0, 1]]), width_m, tolerance_m)
 
 
-def test_without_shapely_it_is_said_how_to_install_it(monkeypatch):
+def test_missing_shapely_names_its_installation(monkeypatch):
     monkeypatch.setitem(sys.modules, "shapely", None)
     with pytest.raises(BrokenMethod, match=r"pip install 'tangible-images\[export\]'"):
         shared_borders(parts_of([[0, 1]]), 0.08, 0)

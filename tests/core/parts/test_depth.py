@@ -18,7 +18,7 @@ VALUES = st.one_of(st.floats(width=32), st.sampled_from([0.0, -0.0, 1.0, -1.0, n
 
 
 def stripes(*disparities_px: float, rows: int = 20, width: int = 10) -> tuple[PartMap, DisparityMap]:
-    """Parts side by side, each of one disparity."""
+    """Return parts side by side, each with one disparity."""
     labels = np.broadcast_to(np.arange(len(disparities_px)).repeat(width), (rows, width * len(disparities_px)))
     parts = find_parts(SegmentMap(labels.astype(np.int32)))
     return parts, DisparityMap(np.float32(disparities_px)[parts.labels])
@@ -38,12 +38,12 @@ def test_heights_are_linear_in_disparity_from_the_farthest_to_the_nearest():
     assert depth_heights(*stripes(30, 10, 20), 0.004).heights_m == pytest.approx((0.004, 0, 0.002))
 
 
-def test_parts_are_told_apart_that_are_of_one_segment():
+def test_parts_of_one_segment_have_their_own_heights():
     labels = np.zeros((10, 30), np.int32)
     labels[:, 10:20] = 1
     disparity = np.where(np.arange(30) < 20, 5, 50).astype(np.float32) * np.ones((10, 1), np.float32)
-    found = depth_heights(find_parts(SegmentMap(labels)), DisparityMap(disparity), 0.004)
-    assert found.heights_m == (0, 0, 0.004)
+    heights = depth_heights(find_parts(SegmentMap(labels)), DisparityMap(disparity), 0.004)
+    assert heights.heights_m == (0, 0, 0.004)
 
 
 def test_wrong_matches_in_less_than_half_of_a_part_change_nothing():
@@ -53,34 +53,34 @@ def test_wrong_matches_in_less_than_half_of_a_part_change_nothing():
     assert depth_heights(parts, DisparityMap(wrong), 0.004) == depth_heights(parts, disparity, 0.004)
 
 
-def test_a_speck_with_a_wrong_depth_does_not_press_the_others_flat():
+def test_speck_with_a_wrong_depth_does_not_flatten_the_others():
     parts, disparity = stripes(10, 20, 30)
     labels, values = parts.labels.copy(), disparity.disparity_px.copy()
     labels[5, 5], values[5, 5] = 3, 900
-    found = depth_heights(find_parts(SegmentMap(labels)), DisparityMap(values), 0.004)
-    assert sorted(found.heights_m) == pytest.approx([0, 0.002, 0.004, 0.004])
+    heights = depth_heights(find_parts(SegmentMap(labels)), DisparityMap(values), 0.004)
+    assert sorted(heights.heights_m) == pytest.approx([0, 0.002, 0.004, 0.004])
 
 
-def test_a_part_of_unknown_depth_lies_behind():
+def test_part_of_unknown_depth_lies_behind():
     parts, disparity = stripes(30, 20, np.nan, np.nan, 10, 40)
-    found = depth_heights(parts, disparity, 0.003)
-    assert found.heights_m == pytest.approx((0.002, 0.001, 0.001, 0, 0, 0.003))
-    assert found.reasons[1].startswith("its median disparity is 20 px, known of 100 % of it")
-    assert "known nowhere" in found.reasons[2]
+    heights = depth_heights(parts, disparity, 0.003)
+    assert heights.heights_m == pytest.approx((0.002, 0.001, 0.001, 0, 0, 0.003))
+    assert heights.reasons[1].startswith("its median disparity is 20 px, known of 100 % of it")
+    assert "known nowhere" in heights.reasons[2]
 
 
 @pytest.mark.parametrize("disparity_px", [7.0, np.nan])
-def test_where_all_is_as_deep_or_nothing_known_all_is_flat(disparity_px):
+def test_equal_or_unknown_depths_give_heights_of_zero(disparity_px):
     assert depth_heights(*stripes(disparity_px, disparity_px), 0.004).heights_m == (0, 0)
 
 
-def test_a_disparity_of_another_size_is_said():
+def test_disparity_of_another_size_is_refused():
     with pytest.raises(PictureError, match="19 x 20 and the map of the parts is 20 x 20"):
         depth_heights(stripes(1, 2)[0], DisparityMap(np.zeros((20, 19), np.float32)), 0.004)
 
 
-def test_the_order_of_depth_is_kept():
-    """Of the motorcycle, by parts that were drawn: as good as one height a part can be."""
+def test_heights_keep_the_order_of_true_depth():
+    """Compare drawn parts of the motorcycle: 0.78 is near the best that one height a part can reach."""
     parts, truth = drawn("motorcycle").parts, Scene.builtin("motorcycle").truth
     assert truth is not None
     heights = np.float32(depth_heights(parts, DisparityMap(truth), 0.004).heights_m)[parts.labels]

@@ -1,4 +1,4 @@
-"""The connected parts of a picture: which they are, their numbers, and that these stay."""
+"""Connected parts of a picture, and the stability of their numbers."""
 
 import numpy as np
 from hypothesis import given
@@ -15,36 +15,36 @@ def parts_of(labels) -> np.ndarray:
     return find_parts(SegmentMap(np.asarray(labels, np.int32))).labels
 
 
-def flooded(labels: np.ndarray) -> np.ndarray:
-    """Parts by filling each from its first pixel, row by row."""
-    found = np.full(labels.shape, -1, np.int32)
+def flood(labels: np.ndarray) -> np.ndarray:
+    """Number the parts by filling each from its first pixel, row by row."""
+    numbers = np.full(labels.shape, -1, np.int32)
     count = 0
     for start in np.ndindex(labels.shape):
-        if found[start] >= 0:
+        if numbers[start] >= 0:
             continue
         waiting = [start]
         while waiting:
             row, column = place = waiting.pop()
-            if not (0 <= row < labels.shape[0] and 0 <= column < labels.shape[1]) or found[place] >= 0:
+            if not (0 <= row < labels.shape[0] and 0 <= column < labels.shape[1]) or numbers[place] >= 0:
                 continue
             if labels[place] == labels[start]:
-                found[place] = count
+                numbers[place] = count
                 waiting += [(row + 1, column), (row - 1, column), (row, column + 1), (row, column - 1)]
         count += 1
-    return found
+    return numbers
 
 
 @given(SMALL)
-def test_parts_are_what_a_flood_from_each_first_pixel_finds(labels):
-    found = find_parts(SegmentMap(labels))
-    assert np.array_equal(found.labels, flooded(labels))
-    assert found.labels.dtype == np.int32
-    assert found.segments == tuple(int(labels[found.labels == part][0]) for part in range(found.count))
-    assert part_sizes(found).tolist() == [np.count_nonzero(found.labels == part) for part in range(found.count)]
+def test_parts_equal_those_of_a_flood_fill(labels):
+    parts = find_parts(SegmentMap(labels))
+    assert np.array_equal(parts.labels, flood(labels))
+    assert parts.labels.dtype == np.int32
+    assert parts.segments == tuple(int(labels[parts.labels == part][0]) for part in range(parts.count))
+    assert part_sizes(parts).tolist() == [np.count_nonzero(parts.labels == part) for part in range(parts.count)]
 
 
 @given(SMALL, st.integers(1, 4), st.permutations(range(4)))
-def test_parts_stay_when_a_picture_is_enlarged_or_its_segments_are_numbered_otherwise(labels, times, order):
+def test_part_numbers_do_not_depend_on_size_or_segment_labels(labels, times, order):
     parts = parts_of(labels)
     assert np.array_equal(
         parts_of(np.kron(labels, np.ones((times, times), np.int32))), parts.repeat(times, 0).repeat(times, 1)
@@ -52,11 +52,11 @@ def test_parts_stay_when_a_picture_is_enlarged_or_its_segments_are_numbered_othe
     assert np.array_equal(parts_of(np.asarray(order, np.int32)[labels]), parts)
 
 
-def test_corners_do_not_hold_parts_together():
+def test_corners_do_not_connect_parts():
     assert parts_of([[0, 1], [1, 0]]).tolist() == [[0, 1], [2, 3]]
 
 
-def test_a_coarser_grid_keeps_the_numbers_and_loses_no_part():
+def test_coarser_grid_keeps_numbers_and_parts():
     labels = np.zeros((40, 60), np.int32)
     labels[:, 30:] = 1
     labels[5, 7] = 2  # between the middle pixels

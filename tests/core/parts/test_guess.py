@@ -1,4 +1,4 @@
-"""Heights that are guessed: by size, place and whose a border is."""
+"""Heights guessed from size, place and border ownership."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def parts_of(labels) -> PartMap:
 
 
 def discs(*centres: tuple[int, int], shape: tuple[int, int] = (200, 300), radius: int = 40) -> np.ndarray:
-    """Discs at [x, y] before a ground, each over those before it."""
+    """Return labels of discs at [x, y] on a ground, each over the earlier ones."""
     row, column = np.indices(shape)
     labels = np.zeros(shape, np.int32)
     for number, (x, y) in enumerate(centres, 1):
@@ -24,14 +24,14 @@ def discs(*centres: tuple[int, int], shape: tuple[int, int] = (200, 300), radius
     return labels
 
 
-def guessed(labels: np.ndarray) -> dict[int, float]:
-    """Heights by label."""
+def guess(labels: np.ndarray) -> dict[int, float]:
+    """Guess heights by label."""
     parts = parts_of(labels)
     return dict(zip(parts.segments, guess_heights(parts, 0.004).heights_m, strict=True))
 
 
 def sure_of(labels: np.ndarray) -> dict[tuple[int, int], float]:
-    """By pair of labels, how surely the second is in front."""
+    """Return the certainty, by pair of labels, that the second is in front."""
     parts = parts_of(labels)
     beside = neighbours(parts)
     of = np.asarray(parts.segments)
@@ -39,9 +39,9 @@ def sure_of(labels: np.ndarray) -> dict[tuple[int, int], float]:
     return {tuple(sorted((low, high))): sure if low < high else -sure for low, high, sure in pairs}
 
 
-def test_neighbours_and_the_lengths_of_their_borders():
-    found = neighbours(parts_of([[0, 0, 1], [0, 2, 1], [3, 3, 3]]))
-    assert list(zip(*(each.tolist() for each in found), strict=True)) == [
+def test_neighbours_are_listed_with_the_lengths_of_their_borders():
+    pairs = neighbours(parts_of([[0, 0, 1], [0, 2, 1], [3, 3, 3]]))
+    assert list(zip(*(each.tolist() for each in pairs), strict=True)) == [
         (0, 1, 1), (0, 2, 2), (0, 3, 1), (1, 2, 1), (1, 3, 1), (2, 3, 1),
     ]  # fmt: skip
 
@@ -49,63 +49,63 @@ def test_neighbours_and_the_lengths_of_their_borders():
 @pytest.mark.parametrize(
     ("first", "second"), [((120, 100), (170, 100)), ((170, 90), (120, 110)), ((150, 130), (150, 80))]
 )
-def test_of_two_that_overlap_the_one_whose_border_runs_on_is_in_front(first, second):
+def test_disc_whose_border_runs_on_is_in_front(first, second):
     labels = discs(first, second)
     assert sure_of(labels)[1, 2] > 0.4
-    heights_m = guessed(labels)
+    heights_m = guess(labels)
     assert heights_m[0] < heights_m[1] < heights_m[2]
 
 
-def test_corners_of_a_pattern_without_a_front_tell_nothing():
-    """Three parts that meet at equal angles, and four that meet in a cross."""
+def test_symmetric_junctions_decide_nothing():
+    """Judge three parts that meet at equal angles, and four that meet in a cross."""
     row, column = np.indices((120, 120)) - 59.5
     thirds = ((np.arctan2(row, column) + np.pi) / (2 * np.pi / 3)).astype(int)
     assert max(map(abs, sure_of(thirds).values())) < 0.2
     assert not any(sure_of((row > 0) + 2 * (column > 0)).values())
 
 
-def test_who_is_low_in_the_picture_is_near_and_who_holds_its_rims_is_far():
+def test_low_part_is_near_and_part_at_the_rims_is_far():
     labels = np.zeros((120, 160), np.int32)
     labels[90:110, 20:60] = 1
     labels[20:40, 80:120] = 2
-    heights_m = guessed(labels)
+    heights_m = guess(labels)
     assert heights_m[0] == 0
     assert heights_m[2] < heights_m[1] == 0.004
 
 
-def test_what_another_encloses_is_in_front_of_it():
+def test_enclosed_part_is_in_front():
     labels = discs((150, 100), radius=60)
     labels[60:75, 140:160] = 2
-    heights_m = guessed(labels)
+    heights_m = guess(labels)
     assert heights_m[0] < heights_m[1] < heights_m[2]
 
 
-def test_a_picture_of_twice_the_pixels_is_guessed_alike():
+def test_guess_does_not_depend_on_the_resolution():
     few = guess_heights(drawn("coffee").parts, 0.004)
-    labels = drawn("coffee").parts.labels.repeat(2, axis=0).repeat(2, axis=1)  # beyond which it is reduced again
+    labels = drawn("coffee").parts.labels.repeat(2, axis=0).repeat(2, axis=1)  # large enough to be reduced again
     assert guess_heights(parts_of(labels), 0.004) == few
 
 
-def test_specks_take_no_step_of_their_own():
+def test_specks_take_no_height_step():
     labels = discs((120, 100), (170, 100))
     with_specks = labels.copy()
     with_specks[::20, ::20] = 3
-    plain, found = guessed(labels), guessed(with_specks)
-    assert {label: found[label] for label in plain} == pytest.approx(plain)
+    plain, speckled = guess(labels), guess(with_specks)
+    assert {label: speckled[label] for label in plain} == pytest.approx(plain)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 7), (7, 1), (300, 2)])
-def test_one_part_lies_at_0(shape):
+def test_guess_of_a_single_part_is_zero(shape):
     assert guess_heights(parts_of(np.zeros(shape)), 0.004).heights_m == (0,)
 
 
-def test_every_pixel_a_part_of_its_own_is_guessed_too():
+def test_guess_takes_a_part_for_every_pixel():
     found = guess_heights(parts_of(np.arange(30 * 40).reshape(30, 40)), 0.004)
     assert len(found.heights_m) == len(found.reasons) == 1200
     assert (min(found.heights_m), max(found.heights_m)) == (0, 0.004)
 
 
-def test_each_reason_says_where_a_part_is_and_whom_it_hides():
+def test_reasons_name_the_place_of_a_part_and_what_it_hides():
     found = guess_heights(parts_of(discs((120, 100), (170, 100))), 0.004)
     assert found.reasons == (
         "guessed, 1 of 3 from the back: it reaches down to 96 % of the picture's height and has 100 % of its upper and "
@@ -118,13 +118,13 @@ def test_each_reason_says_where_a_part_is_and_whom_it_hides():
 
 
 @pytest.mark.parametrize(("name", "least"), [("astronaut", 0.8), ("coffee", 0.8)])
-def test_a_guess_is_near_the_heights_that_a_person_gave(name, least):
+def test_guess_is_near_the_heights_that_a_person_gave(name, least):
     _, parts, _, heights_m = drawn(name)
     guess = np.float32(guess_heights(parts, 0.004).heights_m)[parts.labels]
     assert spearmanr(guess.ravel(), np.float32(heights_m)[parts.labels].ravel())[0] > least
 
 
-def test_a_guess_has_about_the_order_of_the_depth():
+def test_guess_has_about_the_order_of_true_depth():
     parts, truth = drawn("motorcycle").parts, Scene.builtin("motorcycle").truth
     assert truth is not None
     guess = np.float32(guess_heights(parts, 0.004).heights_m)[parts.labels]

@@ -1,4 +1,4 @@
-"""Parts as a picture to paint on."""
+"""Label pictures to edit in a paint program."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from tangible_core.scene.formats.pictures import read_labels
 
 
 @pytest.mark.parametrize("count", [1, 2, 12, 255, 256, 257, 1000])
-def test_what_is_written_is_read_back_as_the_same_parts(count: int, tmp_path: Path):
+def test_label_picture_is_read_back_as_the_same_parts(count: int, tmp_path: Path):
     labels = (np.arange(count * 6, dtype=np.int32) // 6).reshape(count, 6)
     (tmp_path / "parts.png").write_bytes(label_picture(labels))
     found = find_parts(SegmentMap(read_labels(tmp_path / "parts.png")))
@@ -25,7 +25,7 @@ def test_what_is_written_is_read_back_as_the_same_parts(count: int, tmp_path: Pa
     assert len(colours) == count and not image.has_transparency_data
 
 
-def test_a_program_that_makes_colours_of_the_palette_keeps_the_parts(tmp_path: Path):
+def test_label_picture_saved_in_rgb_keeps_the_parts(tmp_path: Path):
     labels = np.repeat(np.repeat(np.array([[3, 1, 0], [2, 2, 0]], np.int32), 4, axis=0), 4, axis=1)
     (tmp_path / "parts.png").write_bytes(label_picture(labels))
     Image.open(tmp_path / "parts.png").convert("RGB").save(tmp_path / "saved.png")
@@ -33,14 +33,14 @@ def test_a_program_that_makes_colours_of_the_palette_keeps_the_parts(tmp_path: P
     assert (before.labels == after.labels).all(), "numbers go by first pixels, not by colours"
 
 
-def test_the_palette_has_colours_to_spare_for_new_parts():
+def test_palette_has_spare_colours_for_new_parts():
     from io import BytesIO
 
     image = Image.open(BytesIO(label_picture(np.array([[0, 1]], np.int32))))
     assert image.palette is not None and len(image.palette.palette) == 3 * (2 + SPARE)
 
 
-def test_colours_are_told_apart_and_those_of_few_are_the_first_of_many():
+def test_distinct_colours_differ_and_few_are_the_first_of_many():
     few, many = distinct_colours(12), distinct_colours(40)
     assert (many[:12] == few).all()
     lab = cv2.cvtColor(few[None].astype(np.float32) / 255, cv2.COLOR_RGB2LAB)[0]

@@ -1,4 +1,4 @@
-"""Segments made few and large, for a person to name."""
+"""Segments merged into few large parts."""
 
 import numpy as np
 import pytest
@@ -12,13 +12,13 @@ RED, ROSE, BLUE = (200, 30, 30), (210, 60, 60), (30, 30, 200)
 
 
 def in_three(rows: int = 30, columns: int = 60) -> tuple[SegmentMap, np.ndarray]:
-    """Red, rose and blue from left to right, a third each."""
+    """Return thirds of red, rose and blue, from left to right."""
     third = np.arange(columns) * 3 // columns
     labels = np.tile(third.astype(np.int32), (rows, 1))
     return SegmentMap(labels), np.array((RED, ROSE, BLUE), np.uint8)[labels]
 
 
-def test_a_speck_goes_to_the_neighbour_that_it_is_most_like():
+def test_speck_joins_its_most_similar_neighbour():
     segments, picture = in_three()
     labels = segments.labels.copy()
     labels[10:13, 38:42] = 3
@@ -30,7 +30,7 @@ def test_a_speck_goes_to_the_neighbour_that_it_is_most_like():
     assert kept.count == 4, "it is as wide as a part must be"
 
 
-def test_specks_become_one_part_where_together_they_are_large_enough():
+def test_specks_that_are_large_together_become_one_part():
     rows, columns = np.indices((40, 40)) // 4
     mosaic = (rows * 10 + columns).astype(np.int32)
     picture = np.random.default_rng(1).integers(0, 255, (100, 3)).astype(np.uint8)[mosaic]
@@ -38,7 +38,7 @@ def test_specks_become_one_part_where_together_they_are_large_enough():
     assert 1 < found.count < 100 and (disc_widths(found) >= 8).all()
 
 
-def test_of_too_many_parts_those_most_alike_become_one():
+def test_most_similar_parts_join_when_there_are_too_many():
     segments, picture = in_three()
     found = large_parts(segments, picture, least_px=2, most=2)
     assert found.count == 2
@@ -53,7 +53,7 @@ def test_colour_counts_as_much_as_lightness():
     assert (found.labels == np.array([0, 1, 1])[segments.labels]).all(), "a red and a grey of one lightness stay apart"
 
 
-def test_numbers_are_those_of_first_pixels_and_the_same_in_a_picture_twice_as_large():
+def test_part_numbers_follow_first_pixels_at_any_resolution():
     rng = np.random.default_rng(3)
     coarse = rng.integers(0, 6, (6, 8)).astype(np.int32)
     labels = np.repeat(np.repeat(coarse, 5, axis=0), 5, axis=1)
@@ -70,18 +70,18 @@ def test_numbers_are_those_of_first_pixels_and_the_same_in_a_picture_twice_as_la
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 40), (40, 1), (3, 3)])
-def test_a_picture_narrower_than_a_speck_is_one_part(shape: tuple[int, int]):
+def test_picture_narrower_than_a_speck_is_one_part(shape: tuple[int, int]):
     labels = np.arange(shape[0] * shape[1]).reshape(shape).astype(np.int32)
     assert large_parts(SegmentMap(labels), np.zeros(shape, np.uint8), least_px=5, most=12).count == 1
 
 
-def test_a_disc_is_as_wide_as_its_part():
+def test_disc_width_is_the_width_of_a_stripe():
     labels = np.zeros((40, 60), np.int32)
     labels[:, 20:] = 1
     assert disc_widths(find_parts(SegmentMap(labels))) == pytest.approx([20, 40], abs=1.5)
 
 
-def test_a_picture_of_another_size_is_refused():
+def test_picture_of_another_size_is_refused():
     segments, picture = in_three()
     with pytest.raises(PictureError, match="must be of one size"):
         large_parts(segments, picture[:-1], least_px=5, most=12)

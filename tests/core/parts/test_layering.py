@@ -1,4 +1,4 @@
-"""A relief of parts: what it is at borders, in the middle and on the ground, whatever the picture's size and kind."""
+"""The relief of parts: borders, middle and ground, for any size and kind of picture."""
 
 import numpy as np
 import pytest
@@ -18,35 +18,35 @@ def parts_of(labels) -> PartMap:
 
 
 def disc(radius_px: float, side: int = 120) -> np.ndarray:
-    """Of 1 on a ground of 0, around the middle of the picture."""
+    """Return labels of a disc of 1 on a ground of 0, in the middle of the picture."""
     row, column = np.indices((side, side)) - (side - 1) / 2
     return (row**2 + column**2 < radius_px**2).astype(np.int32)
 
 
-def enlarged(array: np.ndarray, times: int = 2) -> np.ndarray:
+def enlarge(array: np.ndarray, times: int = 2) -> np.ndarray:
     return array.repeat(times, axis=0).repeat(times, axis=1)
 
 
-def test_the_distance_to_a_straight_border_is_exact():
+def test_distance_to_a_straight_border_is_exact():
     halves = np.zeros((30, 50), np.int32)
     halves[:, 20:] = 1
     assert np.array_equal(border_distance(parts_of(halves))[7], np.abs(np.arange(50) - 19.5))
 
 
-def test_the_distance_to_a_round_border_is_that_to_the_circle():
+def test_distance_to_a_round_border_is_that_to_the_circle():
     row, column = np.indices((120, 120)) - 59.5
     off_px = border_distance(parts_of(disc(40))) - np.abs(np.hypot(row, column) - 40)
     assert np.abs(off_px).max() < 0.75  # half of a pixel's diagonal
 
 
-def test_the_distance_is_to_the_nearest_border_of_all():
+def test_distance_is_to_the_nearest_border():
     row, column = np.indices((40, 60))
     walls = (column >= 11).astype(np.int32) + (column >= 50) + (row >= 30)
     expected = np.minimum(np.minimum(np.abs(column - 10.5), np.abs(column - 49.5)), np.abs(row - 29.5))
     assert np.array_equal(border_distance(parts_of(walls)), expected)
 
 
-def test_a_part_is_at_its_height_at_the_rim_and_rises_by_a_quarter_of_a_circle():
+def test_part_rises_from_its_height_by_a_quarter_of_a_circle():
     halves = np.zeros((4, 200), np.int32)
     halves[:, 100:] = 1
     profile = Layering(parts_of(halves), 0.2, PLAIN).relief([0, 0.003]).height_m[2].astype(float)
@@ -55,7 +55,7 @@ def test_a_part_is_at_its_height_at_the_rim_and_rises_by_a_quarter_of_a_circle()
     assert profile[100:] == pytest.approx(0.003 + 0.0015 * np.sqrt(1 - (1 - from_border_m) ** 2), abs=1e-8)
 
 
-def test_a_low_part_rises_by_no_more_than_its_height_so_that_nothing_jumps():
+def test_low_part_bulges_by_at_most_its_height():
     layering = Layering(parts_of(disc(40)), 0.08, PLAIN)
     ground, low, higher = (layering.relief([0, height]).height_m for height in (0, 1e-6, 0.0004))
     assert not ground.any()
@@ -64,7 +64,7 @@ def test_a_low_part_rises_by_no_more_than_its_height_so_that_nothing_jumps():
     assert np.array_equal(higher == 0, disc(40) == 0)
 
 
-def test_a_height_moves_its_own_part_alone():
+def test_height_changes_its_own_part_only():
     row, column = np.indices((40, 60))
     layering = Layering(parts_of((column >= 20).astype(int) + (column >= 40)), 0.08, GIVEN, (row * column / 2400))
     before, after = (layering.relief([0.001, height, 0.002]).height_m for height in (0, 0.004))
@@ -75,11 +75,11 @@ def test_a_height_moves_its_own_part_alone():
 
 
 @pytest.mark.parametrize("by_hand", ["astronaut", "coffee"])
-def test_a_picture_of_twice_the_pixels_gives_the_same_relief_within_a_pixel(by_hand):
+def test_relief_does_not_depend_on_the_resolution(by_hand):
     picture, parts, _, heights_m = drawn(by_hand)
     labels, (rows, columns) = parts.labels, parts.labels.shape
     once = Layering(parts, 0.08, GIVEN, picture).relief(heights_m).height_m
-    twice = Layering(parts_of(enlarged(labels)), 0.08, GIVEN, enlarged(picture)).relief(heights_m).height_m
+    twice = Layering(parts_of(enlarge(labels)), 0.08, GIVEN, enlarge(picture)).relief(heights_m).height_m
     mean = twice.reshape(rows, 2, columns, 2).mean(axis=(1, 3))  # over what is one pixel of the smaller picture
     around = np.lib.stride_tricks.sliding_window_view(np.pad(once, 1, mode="edge"), (3, 3)).reshape(rows, columns, 9)
     rim = np.where(border_distance(parts) < 1, np.float32(heights_m)[labels], np.inf)  # which lies within this pixel
@@ -88,7 +88,7 @@ def test_a_picture_of_twice_the_pixels_gives_the_same_relief_within_a_pixel(by_h
     assert np.median(np.abs(mean - once)) < 2e-6
 
 
-def test_detail_lies_off_the_borders_and_within_its_height():
+def test_detail_stays_off_the_borders_and_within_its_height():
     picture, parts, _, heights_m = drawn("astronaut")
     with_detail, without = (Layering(parts, 0.16, each, picture).relief(heights_m).height_m for each in (GIVEN, PLAIN))
     detail = with_detail - without
@@ -101,7 +101,7 @@ def test_detail_lies_off_the_borders_and_within_its_height():
     assert with_detail.max() <= max(heights_m) + GIVEN.bulge_m + GIVEN.detail_m / 2 + 1e-8
 
 
-def test_the_detail_of_a_large_picture_is_that_of_the_same_one_small():
+def test_detail_does_not_depend_on_the_resolution():
     picture = np.kron(np.random.default_rng(0).integers(0, 255, (50, 80)), np.ones((16, 16))).astype(np.uint8)
     parts = parts_of(np.zeros(picture.shape))
     whole = Layering(parts, 0.08, GIVEN, picture).relief([0.001]).height_m
@@ -110,7 +110,7 @@ def test_the_detail_of_a_large_picture_is_that_of_the_same_one_small():
 
 
 def as_kinds(grey: np.ndarray) -> dict[str, np.ndarray]:
-    """The same picture in each way in which one may be stored."""
+    """Return the same picture in each dtype and number of channels."""
     colour = np.repeat(grey[..., None], 3, axis=2)
     opaque = np.full((*grey.shape, 1), 255, np.uint8)
     return {
@@ -124,7 +124,7 @@ def as_kinds(grey: np.ndarray) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize("kind", as_kinds(np.zeros((1, 1), np.uint8)))
-def test_every_kind_of_picture_gives_the_same_relief(kind):
+def test_every_dtype_gives_the_same_relief(kind):
     grey = np.random.default_rng(0).integers(0, 255, (60, 60)).astype(np.uint8)
     layering = Layering(parts_of(disc(20, 60)), 0.08, GIVEN, as_kinds(grey)[kind])
     expected = Layering(parts_of(disc(20, 60)), 0.08, GIVEN, grey).relief([0, 0.002]).height_m
@@ -133,7 +133,7 @@ def test_every_kind_of_picture_gives_the_same_relief(kind):
     assert np.abs(found - expected).max() < 1e-8
 
 
-def test_black_and_white_is_a_picture_and_one_shade_has_no_detail():
+def test_detail_exists_for_black_and_white_and_not_for_one_shade():
     plain = Layering(parts_of(disc(20, 60)), 0.08, GIVEN).relief([0, 0.002]).height_m
     shade = Layering(parts_of(disc(20, 60)), 0.08, GIVEN, np.full((60, 60, 3), 77, np.uint8)).relief([0, 0.002])
     assert np.array_equal(shade.height_m, plain)
@@ -142,20 +142,20 @@ def test_black_and_white_is_a_picture_and_one_shade_has_no_detail():
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1), (5, 7)])
-def test_one_part_is_flat_at_its_height(shape):
+def test_single_part_is_flat_at_its_height(shape):
     relief = Layering(parts_of(np.zeros(shape)), 0.08, GIVEN, np.zeros(shape)).relief([0.003])
     assert np.all(relief.height_m == np.float32(0.003))
     assert relief.extent_m == pytest.approx((0.08, 0.08 * shape[0] / shape[1]))
 
 
-def test_a_relief_without_rounding_is_of_steps():
+def test_relief_without_rounding_has_steps():
     steps = HeightChoice(by="given", round_m=0, detail_m=0)
     found = Layering(parts_of(disc(20, 60)), 0.08, steps).relief([0, 0.002]).height_m
     assert set(found.ravel().tolist()) == {0, float(np.float32(0.002) + np.float32(0.0015))}
 
 
 @pytest.mark.parametrize(
-    ("picture", "told"),
+    ("picture", "message"),
     [
         (np.full((60, 60), np.nan, np.float32), "NaN"),
         (np.zeros((60, 61), np.uint8), "61 x 60"),
@@ -164,20 +164,20 @@ def test_a_relief_without_rounding_is_of_steps():
         (np.zeros((60, 60), np.int64), "int64"),
     ],
 )
-def test_what_is_no_picture_of_these_parts_is_said(picture, told):
-    with pytest.raises(PictureError, match=told):
+def test_picture_that_does_not_fit_the_parts_is_refused(picture, message):
+    with pytest.raises(PictureError, match=message):
         Layering(parts_of(disc(20, 60)), 0.08, GIVEN, picture)
 
 
 @pytest.mark.parametrize(
-    ("heights_m", "told"),
+    ("heights_m", "message"),
     [([0.001], "2 parts and 1 heights"), ([0, np.nan], "part 1"), ([-0.001, 0], "part 0"), ([0, np.inf], "part 1")],
 )
-def test_heights_that_are_none_are_said(heights_m, told):
-    with pytest.raises(GeometryError, match=told):
+def test_wrong_heights_are_refused(heights_m, message):
+    with pytest.raises(GeometryError, match=message):
         Layering(parts_of(disc(20, 60)), 0.08, GIVEN).relief(heights_m)
 
 
-def test_a_width_that_is_none_is_said():
+def test_wrong_width_is_refused():
     with pytest.raises(GeometryError, match="width_m"):
         Layering(parts_of(disc(20, 60)), 0, GIVEN)

@@ -437,7 +437,7 @@ class TestComplaints:
         grain = np.indices((2 * ROWS, 2 * COLUMNS)).sum(axis=0) % 2  # each pixel a part
         made = Pipeline(scene(grain, np.zeros(grain.shape)), heights="guess", cached=False)
         with pytest.raises(
-            PictureError, match=r"the segments fall into \d+ parts, and at most 4096 are felt; paint each"
+            PictureError, match=r"the segments fall into \d+ parts, and at most 4096 can be felt; paint each"
         ):
             made.plan("surface")
 
@@ -467,8 +467,8 @@ class TestComplaints:
         (slip,) = notes(made, "parts")
         assert slip.kind == "warning"
         assert slip.text == (
-            "2 parts are hardly there: part 1 at [50, 2] (1 pixel), part 5 at [2, 30] (1 pixel); paint over them, or "
-            "have smoother segments made; the numbers of the parts behind them then change"
+            "2 parts have few pixels: part 1 at [50, 2] (1 pixel), part 5 at [2, 30] (1 pixel); paint over them, or "
+            "choose smoother segments; the numbers of the parts after them then change"
         )
 
 

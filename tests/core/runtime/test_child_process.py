@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from distributions import distribution
-from tangible_bench.config import parse_comparison
-from tangible_bench.plan import measurements
-from tangible_bench.run import look, run
+from tangible_bench.config.reading import parse_comparison
+from tangible_bench.measuring.plan import measurements
+from tangible_bench.measuring.run import look, run
 from tangible_core import HapticSurface, load_method
 from tangible_core.errors import BrokenMethod
 from tangible_core.plugins.registry import Registry

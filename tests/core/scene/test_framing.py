@@ -1,4 +1,4 @@
-"""What of a picture is felt: crop, turn, invert, clip, no data, transparency."""
+"""Framing of a picture: crop, rotation, inversion, clipping, no data, transparency."""
 
 from pathlib import Path
 
@@ -21,38 +21,38 @@ class TestHeights:
         assert found is not None
         return found
 
-    def test_a_part_counted_from_the_upper_left_corner(self):
+    def test_crop_counts_from_the_upper_left_corner(self):
         assert self.of(crop=[1, 0, 3, 2]).tolist() == [[1, 2, 3], [5, 6, 7]]
 
-    def test_turned_clockwise_after_cropping(self):
+    def test_rotate_turns_clockwise_after_cropping(self):
         assert self.of(rotate=90).tolist() == [[8, 4, 0], [9, 5, 1], [10, 6, 2], [11, 7, 3]]
         assert self.of(rotate=270).tolist() == [[3, 7, 11], [2, 6, 10], [1, 5, 9], [0, 4, 8]]
         assert self.of(crop=[1, 0, 2, 1], rotate=180).tolist() == [[2, 1]]
 
-    def test_high_becomes_low(self):
+    def test_invert_exchanges_high_and_low(self):
         relief = Pipeline(Scene.of(height=HEIGHTS, invert=True), cached=False).relief.height_m
         assert (relief[0, 0], relief[2, 3]) == (np.float32(0.02), 0)
 
     @pytest.mark.parametrize("nodata", [-9999, [-9999, 1e20], -9999.0])
-    def test_no_data_is_unknown_and_no_depth_of_ten_kilometres(self, nodata):
+    def test_nodata_values_become_unknown(self, nodata):
         torn = HEIGHTS.copy()
         torn[1, 1] = -9999
         found = self.of(torn, nodata=nodata)
         assert np.isnan(found).tolist() == (torn == -9999).tolist()
         assert np.nanmin(found) == 0
 
-    def test_a_value_that_32_bits_round_is_the_same_one(self):
+    def test_nodata_values_are_compared_in_32_bits(self):
         lowest = float(np.finfo(np.float32).min)
         assert np.isnan(self.of(np.array([[lowest, 0.1, 1]]), nodata=[-3.4028235e38, 0.1])).tolist() == [[1, 1, 0]]
 
-    def test_spikes_are_clipped(self):
+    def test_clip_cuts_spikes(self):
         spiked = np.linspace(0, 1, 1000).reshape(20, 50)
         spiked[3, 3] = 1e6
         found = self.of(spiked, clip=[1, 99])
         assert found.max() == pytest.approx(0.99, abs=0.005)
         assert found.min() == pytest.approx(0.01, abs=0.005)
 
-    def test_what_is_transparent_is_unknown(self):
+    def test_transparent_heights_are_unknown(self):
         grey = np.repeat(HEIGHTS.astype(np.uint8)[..., None], 4, axis=2)
         grey[..., 3] = 255
         grey[0, 3, 3] = 0
@@ -65,10 +65,10 @@ class TestPhotos:
         assert views is not None
         return views.left
 
-    def test_a_part_and_a_turn(self):
+    def test_photo_is_cropped_and_rotated(self):
         np.testing.assert_array_equal(self.of(crop=[1, 1, 2, 2], rotate=90), np.rot90(PHOTO[1:3, 1:3], -1))
 
-    def test_labels_and_disparity_are_cropped_and_turned_with_it(self):
+    def test_labels_and_disparity_are_cropped_and_rotated_with_the_photo(self):
         labels = np.uint8([[0, 0, 0, 0], [0, 0, 7, 9], [0, 0, 7, 9]])
         scene = Scene.of(photo=PHOTO, segments=labels, disparity=HEIGHTS, crop=[2, 1, 2, 2], rotate=90)
         assert scene.segments is not None and scene.disparity is not None
@@ -84,18 +84,18 @@ class TestPhotos:
             (np.array([[True, False]]), [[False, True]]),
         ],
     )
-    def test_light_becomes_dark(self, photo, inverted):
+    def test_invert_exchanges_light_and_dark(self, photo, inverted):
         found = self.of(photo, invert=True)
         assert found.tolist() == inverted
         assert found.dtype == photo.dtype
 
-    def test_brightness_is_kept_between_percentiles(self):
+    def test_clip_limits_brightness_to_percentiles(self):
         photo = np.linspace(50, 150, 1000).astype(np.uint8).reshape(20, 50)
         photo[0, 0], photo[5, 5] = 0, 255
         found = self.of(photo, clip=[5, 95])
         assert (found.min(), found.max()) == (54, 145)
 
-    def test_what_cannot_be_seen_says_nothing_of_brightness(self):
+    def test_clip_ignores_transparent_pixels(self):
         photo = np.full((10, 10, 4), 100, np.uint8)
         photo[0, 1:4, :3] = 110
         photo[..., 3] = 255
@@ -105,7 +105,7 @@ class TestPhotos:
 
 
 class TestTransparency:
-    """A disc cut out of a picture: half of it light, half dark, and white where nothing is seen."""
+    """A disc cut out of a picture: half of it light, half dark, on transparent white."""
 
     @pytest.fixture
     def cut_out(self) -> np.ndarray:
@@ -115,7 +115,7 @@ class TestTransparency:
         picture[x * x + y * y > 0.5] = (255, 255, 255, 0)
         return picture
 
-    def test_nothing_lies_under_it_but_flat_ground_without_a_material_of_its_own(self, cut_out: np.ndarray):
+    def test_transparent_area_becomes_flat_ground_of_plain_material(self, cut_out: np.ndarray):
         hidden = cut_out[..., 3] == 0
         pipeline = Pipeline(
             Scene.of(photo=cut_out), depth=Luminance(), texture=Gradient(smallest_px=20), cached=False,
@@ -134,13 +134,13 @@ class TestTransparency:
         [why] = [each.why for each in pipeline.outcomes if each.product == "views"]
         assert why.endswith(f"{100 * hidden.mean():.0f} % of the array given as photo is transparent: flat ground")
 
-    def test_a_material_may_be_named_for_the_ground(self, cut_out: np.ndarray):
+    def test_ground_takes_the_material_named_for_it(self, cut_out: np.ndarray):
         parts = {"depth": Luminance(), "texture": Gradient(smallest_px=20), "cached": False}
         surface = Pipeline(Scene.of(photo=cut_out), **parts, materials={2: "ice"}).surface
         assert [each.name for each in surface.materials] == ["plain", "plain", "ice"]
 
-    def test_another_outline_over_the_same_colours_is_not_answered_from_the_cache(self):
-        """One half of a corner is transparent, the other is not finite; and the other way round."""
+    def test_cache_key_depends_on_the_outline(self):
+        """Two photos: in one a corner pixel is transparent and its neighbour not finite, in the other the reverse."""
         photos = [np.full((8, 8, 4), 0.5), np.full((8, 8, 4), 0.5)]
         for photo, (clear, torn) in zip(photos, [(0, 1), (1, 0)], strict=True):
             photo[4:, :, :3] = 0.2
@@ -151,54 +151,54 @@ class TestTransparency:
         assert pipelines[0].views.digest() == pipelines[1].views.digest()
         assert pipelines[0].engine.key("segments") != pipelines[1].engine.key("segments")
 
-    def test_opaque_pictures_are_what_they_were_without_their_fourth_channel(self):
+    def test_opaque_picture_loses_its_fourth_channel_only(self):
         rgba = np.dstack([PHOTO, np.full(PHOTO.shape[:2], 128, np.uint8)])
         scene = Scene.of(photo=rgba)
         np.testing.assert_array_equal(scene.views.left, PHOTO)
         assert scene.shown is None and scene.known is None
 
-    def test_a_picture_without_a_pixel_to_see(self):
+    def test_transparent_picture_is_refused(self):
         with pytest.raises(PictureError, match="all of the picture is transparent; there is nothing to feel"):
             Scene.of(photo=np.zeros((3, 3, 4), np.uint8))
 
 
 @pytest.mark.parametrize(
-    ("parts", "says"),
+    ("parts", "message"),
     [
         ({"crop": [2, 0, 3, 3]}, r"crop \[2, 0, 3, 3\] reaches beyond the picture, which is 4 x 3"),
         ({"crop": [0, 1, 1, 3]}, r"crop \[0, 1, 1, 3\] reaches beyond"),
     ],
 )
-def test_a_crop_beyond_the_picture_is_said(parts, says):
-    with pytest.raises(PictureError, match=says):
+def test_crop_beyond_the_picture_is_refused(parts, message):
+    with pytest.raises(PictureError, match=message):
         Scene.of(height=HEIGHTS, **parts)
 
 
 @pytest.mark.parametrize(
-    ("parts", "says"),
+    ("parts", "message"),
     [
         ({"photo": PHOTO, "crop": [0, 0, 0, 3]}, "scene.crop.2: Input should be greater than or equal to 1"),
         ({"photo": PHOTO, "crop": [0, 0, 3]}, "scene.crop.3: Field required"),
         ({"photo": PHOTO, "rotate": 45}, "scene.rotate: Input should be 0, 90, 180 or 270"),
         ({"photo": PHOTO, "clip": [99, 1]}, r"^scene: clip is \[low, high\] with low < high"),
-        ({"photo": PHOTO, "nodata": 0}, "nodata needs height beside it"),
-        ({"photo": PHOTO, "layout": "top-bottom"}, "layout needs stereo beside it"),
+        ({"photo": PHOTO, "nodata": 0}, "nodata needs height"),
+        ({"photo": PHOTO, "layout": "top-bottom"}, "layout needs stereo"),
         ({"left": PHOTO, "right": PHOTO, "rotate": 90, "invert": True}, "rotate and invert is for a photo or a height"),
         ({"stereo": PHOTO, "photo": PHOTO}, "stereo already gives both views; leave out photo"),
     ],
 )
-def test_what_makes_no_sense_is_said(parts, says):
-    with pytest.raises(ConfigError, match=says):
+def test_wrong_options_are_refused(parts, message):
+    with pytest.raises(ConfigError, match=message):
         Scene.of(**parts)
 
 
-def test_what_an_array_masks_is_unknown():
+def test_masked_heights_are_unknown():
     scene = Scene.of(height=np.ma.masked_equal(HEIGHTS, HEIGHTS[0, 1]))
     assert scene.height is not None
     np.testing.assert_array_equal(np.isnan(scene.height), HEIGHTS[0, 1] == HEIGHTS)
 
 
-def test_the_same_words_in_a_file(tmp_path: Path):
+def test_pipeline_file_takes_the_same_options(tmp_path: Path):
     np.save(tmp_path / "dem.npy", HEIGHTS)
     text = "scene: {height: dem.npy, crop: [1, 0, 3, 2], rotate: 180, invert: true, nodata: [6], clip: [0, 90]}\n"
     (tmp_path / "p.yaml").write_text(text)
@@ -214,7 +214,7 @@ def test_the_same_words_in_a_file(tmp_path: Path):
     assert "p.yaml:3:3: scene.rotate: Input should be 0, 90, 180 or 270, not 45" in second
 
 
-def test_a_phone_held_upright_is_cropped_as_it_is_seen(tmp_path: Path):
+def test_crop_applies_to_the_upright_picture(tmp_path: Path):
     exif = Image.Exif()
     exif[0x0112] = 6
     Image.fromarray(PHOTO).save(tmp_path / "p.png", exif=exif)

@@ -48,11 +48,11 @@ def test_depth_is_focal_length_times_baseline_over_disparity():
     assert found.tolist() == [[4, 8, 16]]
 
 
-def test_depth_takes_the_offset_of_the_principal_points():
+def test_depth_uses_the_offset_of_the_principal_points():
     assert disparity_to_depth(np.float32([[50]]), 1000, 0.2, offset_px=50).tolist() == [[2]]
 
 
-def test_depth_is_unknown_where_the_disparity_is_or_is_not_positive():
+def test_depth_is_unknown_where_disparity_is_unknown_or_not_positive():
     assert np.isnan(disparity_to_depth(np.float32([[NAN, 0, -3]]), 1000, 0.2)).all()
 
 
@@ -61,7 +61,7 @@ def test_depth_of_the_tiniest_disparity_is_infinite_without_a_warning():
 
 
 @pytest.mark.parametrize(("focal_px", "baseline_m"), [(0, 1), (-1, 1), (1, 0), (1, -1), (NAN, 1), (np.inf, 1)])
-def test_depth_refuses_what_is_no_camera(focal_px, baseline_m):
+def test_depth_refuses_impossible_cameras(focal_px, baseline_m):
     with pytest.raises(GeometryError, match="focal_px > 0 and baseline_m > 0"):
         disparity_to_depth(np.float32([[1]]), focal_px, baseline_m)
 
@@ -69,35 +69,35 @@ def test_depth_refuses_what_is_no_camera(focal_px, baseline_m):
 # ---------------------------------------------------------------------------------------------------- holes
 
 
-def test_a_hole_takes_the_farther_of_its_neighbours():
+def test_hole_takes_its_farther_neighbour():
     assert fill_rows(np.float32([[5, NAN, NAN, 3, NAN, 7]])).tolist() == [[5, 3, 3, 3, 3, 7]]
 
 
-def test_a_hole_at_the_border_takes_its_only_neighbour():
+def test_hole_at_the_border_takes_its_only_neighbour():
     assert fill_rows(np.float32([[NAN, 4, 5, NAN]])).tolist() == [[4, 4, 5, 5]]
 
 
-def test_an_empty_row_takes_the_nearest_row_the_upper_one_of_two():
+def test_empty_row_takes_the_nearest_row_the_upper_one_of_two():
     rows = [[NAN], [1], [NAN], [2], [NAN], [NAN]]
     assert fill_rows(np.float32(rows)).ravel().tolist() == [1, 1, 1, 2, 2, 2]
 
 
-def test_an_empty_row_is_filled_from_a_filled_one():
+def test_empty_row_is_filled_from_a_filled_row():
     assert fill_rows(np.float32([[NAN, 2, NAN], [NAN, NAN, NAN]])).tolist() == [[2, 2, 2], [2, 2, 2]]
 
 
-def test_without_holes_the_array_itself_comes_back():
+def test_fill_rows_without_holes_returns_the_array_itself():
     values = np.float32([[1, 2]])
     assert fill_rows(values) is values
 
 
-def test_nothing_known_cannot_be_filled():
+def test_fill_rows_without_known_values_raises():
     with pytest.raises(GeometryError, match="every value is unknown"):
         fill_rows(np.full((2, 3), NAN, np.float32))
 
 
 @given(hnp.arrays(np.float32, SHAPES, elements=st.sampled_from([NAN, -1.0, 0.0, 2.0, -np.inf])))
-def test_filling_follows_its_rule_pixel_by_pixel(values):
+def test_fill_rows_equals_a_slow_version(values):
     if np.isnan(values).all():
         return
     before = values.copy()
@@ -117,39 +117,39 @@ def test_filling_follows_its_rule_pixel_by_pixel(values):
 # ---------------------------------------------------------------------------------------------------- relief
 
 
-def test_without_calibration_heights_are_linear_in_disparity():
+def test_relief_without_calibration_is_linear_in_disparity():
     relief = make_relief(disparity([0, 1, 2, 4]), None, width_m=0.08, relief_m=0.02)
     assert relief.height_m.dtype == np.float32
     np.testing.assert_allclose(relief.height_m, [[0, 0.005, 0.01, 0.02]], atol=4e-4)  # percentiles of four values
     assert relief.extent_m == (0.08, 0.02)
 
 
-def test_with_calibration_heights_are_linear_in_depth():
+def test_relief_with_calibration_is_linear_in_depth():
     camera = Calibration(focal_px=100, baseline_m=0.1)
     relief = make_relief(disparity(*[[10, 5, 2.5]] * 500), camera, 0.06, 0.03)  # at 1, 2 and 4 m
     np.testing.assert_allclose(relief.height_m, [[0.03, 0.02, 0]] * 500, atol=1e-7)
 
 
-def test_the_offset_of_the_principal_points_counts():
+def test_relief_uses_the_offset_of_the_principal_points():
     """Of a camera whose d + offset is 10, 5 and 2.5 px: at 1, 2 and 4 m."""
     camera = Calibration(focal_px=100, baseline_m=0.1, offset_px=30)
     relief = make_relief(disparity(*[[-20, -25, -27.5]] * 500), camera, 0.06, 0.03)
     np.testing.assert_allclose(relief.height_m, [[0.03, 0.02, 0]] * 500, atol=1e-7)
 
 
-def test_a_relative_disparity_has_no_depth_even_with_a_calibration():
+def test_relief_of_relative_disparity_ignores_the_calibration():
     camera = Calibration(focal_px=100, baseline_m=0.1)
     relief = make_relief(disparity(*[[0, 0.5, 1]] * 500, unit="relative"), camera, 0.06, 0.02)
     np.testing.assert_allclose(relief.height_m, [[0, 0.01, 0.02]] * 500, atol=1e-8)
 
 
-def test_what_lies_at_or_beyond_infinity_is_far_and_not_a_hole():
+def test_disparity_at_or_beyond_infinity_is_far_and_not_a_hole():
     camera = Calibration(focal_px=100, baseline_m=0.1)
     relief = make_relief(disparity(*[[5, 10, 0, -3, 10]] * 500), camera, 0.06, 0.02)
     np.testing.assert_allclose(relief.height_m, [[0, 0.02, 0, 0, 0.02]] * 500, atol=1e-8)
 
 
-def test_wrong_matches_do_not_stretch_the_range():
+def test_range_ignores_wrong_matches():
     values = np.tile(np.linspace(10, 20, 100, dtype=np.float32), (100, 1))
     clean = make_relief(DisparityMap(values), None, 0.1, 0.02).height_m
     wrong = values.copy()
@@ -160,14 +160,14 @@ def test_wrong_matches_do_not_stretch_the_range():
     assert spoilt[1, 0] == 0
 
 
-def test_half_a_percent_at_each_end_is_clipped():
+def test_range_clips_half_a_percent_at_each_end():
     """Of 2001 equally spaced values the ten least are as low as the next, and the ten greatest as high."""
     values = np.random.default_rng(3).permutation(2001).astype(np.float32)
     heights = make_relief(DisparityMap(values[None]), None, 0.1, 0.0198).height_m[0]
     np.testing.assert_allclose(heights, np.clip(values - 10, 0, 1980) * 1e-5, atol=1e-9)
 
 
-def test_holes_do_not_count_for_the_range():
+def test_range_ignores_holes():
     """Nor what they are filled with: 2001 values in one row, and more rows of the least alone."""
     values = np.full((3, 2001), NAN, np.float32)
     values[0] = np.arange(2001)
@@ -178,7 +178,7 @@ def test_holes_do_not_count_for_the_range():
         assert not heights[1:].any()
 
 
-def test_something_smaller_than_the_percentiles_still_stands_out_of_a_flat_wall():
+def test_thing_smaller_than_the_percentiles_stands_out_of_a_flat_wall():
     values = np.full((100, 100), 7, np.float32)
     values[50, 50] = 9
     heights = make_relief(DisparityMap(values), None, 0.1, 0.02).height_m
@@ -187,7 +187,7 @@ def test_something_smaller_than_the_percentiles_still_stands_out_of_a_flat_wall(
 
 
 @pytest.mark.parametrize("value", [1e-30, 7.3, 1e30])
-def test_values_that_only_rounding_tells_apart_are_one(value):
+def test_values_equal_up_to_rounding_make_a_flat_relief(value):
     twice = np.float32([[value, np.nextafter(np.float32(value), np.float32(np.inf))]])
     assert not make_relief(DisparityMap(twice), None, 0.1, 0.02).height_m.any()
     assert not scale_heights(twice, 0.1, 0.02).height_m.any()
@@ -195,7 +195,7 @@ def test_values_that_only_rounding_tells_apart_are_one(value):
 
 @pytest.mark.parametrize("camera", [None, Calibration(100, 0.1)])
 @pytest.mark.parametrize("shape", [(1, 1), (1, 5), (4, 3)])
-def test_a_constant_map_is_flat_at_zero(camera, shape):
+def test_constant_map_is_flat_at_zero(camera, shape):
     relief = make_relief(DisparityMap(np.full(shape, 7.3, np.float32)), camera, 0.1, 0.02)
     assert not relief.height_m.any()
 
@@ -212,18 +212,18 @@ def test_holes_are_filled_from_the_background_or_cut_to_the_base():
 
 @pytest.mark.parametrize("values", [[[NAN, NAN]], [[-np.inf, NAN]]])
 @pytest.mark.parametrize("holes", ["fill", "cut"])
-def test_no_known_depth_makes_no_relief(values, holes):
+def test_relief_without_known_depth_raises(values, holes):
     with pytest.raises(GeometryError, match="no depth is known anywhere"):
         make_relief(disparity(*values), None, 0.1, 0.02, holes)
 
 
-def test_everything_at_infinity_makes_no_relief():
+def test_relief_of_depth_at_infinity_raises():
     with pytest.raises(GeometryError, match="not swapped"):
         make_relief(disparity([-3, -2]), Calibration(100, 0.1), 0.1, 0.02)
 
 
 @pytest.mark.parametrize(("width_m", "relief_m"), [(0, 1), (-1, 1), (1, 0), (1, -1), (NAN, 1), (1, np.inf)])
-def test_sizes_are_positive(width_m, relief_m):
+def test_relief_refuses_sizes_that_are_not_positive(width_m, relief_m):
     with pytest.raises(GeometryError, match="positive lengths in metres"):
         make_relief(disparity([1, 2]), None, width_m, relief_m)
     with pytest.raises(GeometryError, match="positive lengths in metres"):
@@ -246,34 +246,34 @@ def test_any_disparities_give_heights_in_range_or_one_error(values, holes, calib
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.int32, np.float32, np.float64])
-def test_a_height_map_runs_from_the_base_to_the_relief(dtype):
+def test_height_map_runs_from_the_base_to_the_relief(dtype):
     relief = scale_heights(np.array([[10, 20], [30, 50]], dtype), 0.1, 0.02)
     np.testing.assert_allclose(relief.height_m, [[0, 0.005], [0.01, 0.02]], rtol=1e-6)
     assert relief.extent_m == (0.1, 0.1)
 
 
-def test_the_greatest_heights_there_are():
+def test_height_map_with_the_largest_floats_keeps_its_shape():
     most = np.finfo(np.float64).max
     assert scale_heights(np.array([[-most, 0, most]]), 0.1, 0.02).height_m == pytest.approx(np.array([[0, 0.01, 0.02]]))
 
 
-def test_a_height_map_in_yes_and_no():
+def test_height_map_of_booleans_has_two_heights():
     assert scale_heights(np.array([[False, True]]), 0.1, 0.5).height_m.tolist() == [[0, 0.5]]
 
 
-def test_holes_of_a_height_map_follow_the_same_rule():
+def test_height_map_holes_are_filled_or_cut():
     heights = np.array([[3, NAN, 2, np.inf, 1]])
     assert scale_heights(heights, 0.1, 1.0).height_m.tolist() == [[1, 0.5, 0.5, 0, 0]]
     assert scale_heights(heights, 0.1, 1.0, "cut").height_m.tolist() == [[1, 0, 0.5, 0, 0]]
 
 
-def test_peaks_of_a_height_map_are_not_clipped():
+def test_height_map_peaks_are_not_clipped():
     heights = np.zeros((100, 100))
     heights[3, 4], heights[5, 6] = 1, 2
     assert scale_heights(heights, 0.1, 0.02).height_m[3, 4] == np.float32(0.01)
 
 
-def test_a_height_map_without_a_height_is_refused():
+def test_height_map_without_known_heights_raises():
     with pytest.raises(GeometryError, match="holds only NaN or infinity"):
         scale_heights(np.full((3, 3), NAN), 0.1, 0.02)
 
@@ -289,7 +289,7 @@ def test_any_height_map_gives_heights_in_range_or_one_error(heights):
     assert relief.height_m.max() <= np.float32(0.02)
 
 
-def test_a_flat_relief_has_square_cells():
+def test_flat_relief_has_square_cells():
     relief = flat_relief((2, 4), 0.08)
     assert not relief.height_m.any()
     assert relief.pitch_m == (0.02, 0.02)
@@ -300,7 +300,7 @@ def test_a_flat_relief_has_square_cells():
 # ---------------------------------------------------------------------------------------------------- frames
 
 
-def test_the_pictures_corners_are_the_workspaces():
+def test_picture_corners_are_workspace_corners():
     shape, extent = (30, 40), (0.08, 0.06)
     assert picture_to_workspace(-0.5, -0.5, shape, extent) == pytest.approx((-0.04, 0.03))
     assert picture_to_workspace(39.5, 29.5, shape, extent) == pytest.approx((0.04, -0.03))
@@ -314,7 +314,7 @@ def test_row_zero_is_far_and_columns_run_to_the_right():
 
 
 @given(st.floats(-100, 100), st.floats(-100, 100), SHAPES, st.tuples(st.floats(0.01, 1), st.floats(0.01, 1)))
-def test_there_and_back_is_the_same_place(column, row, shape, extent):
+def test_workspace_to_picture_inverts_picture_to_workspace(column, row, shape, extent):
     back = workspace_to_picture(*picture_to_workspace(column, row, shape, extent), shape, extent)
     assert back == pytest.approx((column, row), abs=1e-9)
 
@@ -323,7 +323,7 @@ def test_there_and_back_is_the_same_place(column, row, shape, extent):
 
 
 @given(SHAPES, SHAPES, st.floats(-2, 2), st.floats(-2, 2))
-def test_a_plane_stays_that_plane_on_any_grid(shape, other, across, along):
+def test_resampled_plane_is_the_same_plane(shape, other, across, along):
     across, along = across * (shape[1] > 1), along * (shape[0] > 1)
     again = resample(plane(shape, across, along), other)
     wanted = plane(other, across, along)
@@ -340,24 +340,24 @@ def test_resampling_keeps_the_volume_and_stays_above_the_base(heights, shape):
 
 
 @given(hnp.arrays(np.float32, SHAPES, elements=st.floats(0, 100, width=32)), st.integers(1, 4), st.integers(1, 4))
-def test_finer_and_back_is_the_same(heights, down, across):
+def test_resampling_finer_and_back_changes_nothing(heights, down, across):
     relief = Relief(heights, (0.1, 0.2))
     finer = resample(relief, (heights.shape[0] * down, heights.shape[1] * across))
     np.testing.assert_allclose(resample(finer, heights.shape).height_m, heights, rtol=1e-5, atol=2e-5)
 
 
-def test_its_own_shape_changes_nothing():
+def test_resampling_to_the_same_shape_changes_nothing():
     heights = np.random.default_rng(0).random((5, 7), np.float32) * np.float32(1e-30)
     np.testing.assert_array_equal(resample(Relief(heights, (1, 1)), (5, 7)).height_m, heights)
 
 
-def test_coarser_cells_are_means_of_the_finer_ones():
+def test_coarser_cells_are_means_of_finer_cells():
     heights = np.arange(16, dtype=np.float32).reshape(4, 4) ** 2
     means = heights.reshape(2, 2, 2, 2).mean(axis=(1, 3))
     np.testing.assert_allclose(resample(Relief(heights, (1, 1)), (2, 2)).height_m, means, rtol=1e-6)
 
 
-def test_a_cliff_stays_a_cliff():
+def test_resampled_cliff_does_not_overshoot():
     heights = np.repeat(np.float32([[0, 0, 1, 1]]), 2, axis=0)
     assert resample(Relief(heights, (1, 1)), (2, 8)).height_m.tolist() == [[0, 0, 0, 0, 1, 1, 1, 1]] * 2
 
@@ -373,12 +373,12 @@ def test_a_cliff_stays_a_cliff():
         ([2, 1, 1.5], [1, 1]),
     ],
 )
-def test_no_facet_leaves_the_range_of_its_neighbours(heights, halves):
+def test_facets_stay_in_the_range_of_their_neighbours(heights, halves):
     relief = Relief(np.float32([heights]), (1, 1))
     assert resample(relief, (1, 6)).height_m[0, 2:4] == pytest.approx(halves)
 
 
-def test_a_smooth_surface_is_met_closely_from_half_its_grid():
+def test_smooth_surface_is_approximated_from_half_its_grid():
     def bump(shape):
         columns, rows = np.meshgrid(np.arange(shape[1]), np.arange(shape[0]))
         x, y = picture_to_workspace(columns, rows, shape, (1.0, 1.0))
@@ -389,7 +389,7 @@ def test_a_smooth_surface_is_met_closely_from_half_its_grid():
 
 
 @pytest.mark.parametrize("shape", [(0, 4), (4, 0), (-1, 2)])
-def test_a_grid_has_cells(shape):
+def test_resampling_to_no_cells_raises(shape):
     with pytest.raises(GeometryError, match="at least one cell"):
         resample(flat_relief((2, 2), 0.1), shape)
 
@@ -398,7 +398,7 @@ def test_a_grid_has_cells(shape):
 
 
 @pytest.mark.parametrize("shape", [(60, 80), (120, 160), (120, 80)])
-def test_a_wave_falls_by_what_the_gaussian_says_at_any_resolution(shape):
+def test_smoothed_wave_falls_as_the_gaussian_predicts_at_any_resolution(shape):
     extent_m, sigma_m, wave_m = (0.08, 0.06), 0.001, 0.01
     columns, rows = np.meshgrid(np.arange(shape[1]), np.arange(shape[0]))
     x, y = picture_to_workspace(columns, rows, shape, extent_m)
@@ -411,7 +411,7 @@ def test_a_wave_falls_by_what_the_gaussian_says_at_any_resolution(shape):
 
 @pytest.mark.parametrize("sigma_px", [0.4, 0.6, 0.9])
 @pytest.mark.parametrize("across", [True, False])
-def test_under_a_pixel_it_is_smoothed_as_far_as_it_is_sampled(sigma_px, across):
+def test_smoothing_under_a_pixel_acts_where_it_is_sampled(sigma_px, across):
     """A wave of 8 cells falls by what the Gaussian's samples say; along cells twenty times as long, nothing happens."""
     wave = np.cos(np.arange(64) * np.pi / 4) * np.ones((64, 1))
     shape_m = (0.064, 1.28) if across else (1.28, 0.064)
@@ -426,12 +426,12 @@ def test_under_a_pixel_it_is_smoothed_as_far_as_it_is_sampled(sigma_px, across):
     assert left < 0.98
 
 
-def test_level_ground_stays_level_up_to_its_borders():
+def test_smoothed_level_ground_stays_level_up_to_its_borders():
     level = Relief(np.full((6, 9), 0.01, np.float32), (0.09, 0.06))
     np.testing.assert_allclose(smooth(level, 0.02).height_m, 0.01, rtol=1e-5)
 
 
-def test_what_needs_no_smoothing_is_left_alone():
+def test_smoothing_by_nothing_returns_the_relief_itself():
     relief = Relief(np.random.default_rng(0).random((5, 7), np.float32), (0.07, 0.05))
     assert smooth(relief, 0.0) is relief
     assert smooth(relief, 1e-5) is relief
@@ -441,7 +441,7 @@ def test_what_needs_no_smoothing_is_left_alone():
 
 
 @pytest.mark.parametrize("sigma_m", [-0.001, np.nan, np.inf])
-def test_a_smoothing_that_is_none(sigma_m):
+def test_smoothing_refuses_negative_and_infinite_lengths(sigma_m):
     with pytest.raises(GeometryError, match="sigma_m"):
         smooth(flat_relief((2, 2), 0.1), sigma_m)
 
@@ -461,7 +461,7 @@ def test_slopes_and_normals_of_a_plane_are_exact_in_the_workspace_frame(shape, a
     np.testing.assert_allclose(normals(relief), np.broadcast_to(up, (*shape, 3)), atol=1e-4)
 
 
-def test_a_surface_that_rises_away_from_the_user_has_a_positive_slope_in_y():
+def test_surface_rising_away_from_the_user_has_a_positive_slope_in_y():
     relief = Relief(np.float32([[1, 1], [0, 0]]), (1.0, 1.0))
     across, along = slopes(relief)
     assert not across.any()
@@ -471,7 +471,7 @@ def test_a_surface_that_rises_away_from_the_user_has_a_positive_slope_in_y():
 
 @pytest.mark.parametrize("camera", [None, Calibration(500.0, 0.1)])
 @pytest.mark.parametrize("holes", ["fill", "cut"])
-def test_a_range_that_is_given_makes_the_relief_that_it_is_found_for(camera, holes):
+def test_relief_with_its_own_range_given_is_unchanged(camera, holes):
     values = np.random.default_rng(4).uniform(2, 60, (20, 30)).astype(np.float32)
     values[3, 4:9] = np.nan
     found = DisparityMap(values)
@@ -480,13 +480,13 @@ def test_a_range_that_is_given_makes_the_relief_that_it_is_found_for(camera, hol
     assert np.array_equal(make_relief(found, camera, 0.08, 0.01, holes, spans).height_m, alone.height_m)
 
 
-def test_what_is_beyond_a_range_that_is_given_is_clipped_and_nothing_else_moves():
+def test_relief_with_a_given_range_clips_values_beyond_it_only():
     values = np.tile(np.arange(10, dtype=np.float32), (4, 1))
     made = make_relief(DisparityMap(values), None, 0.08, 0.01, spans=ValueRange(2, 6))
     assert np.allclose(made.height_m[0], 0.01 * np.clip((np.arange(10) - 2) / 4, 0, 1))
 
 
-def test_the_range_of_a_constant_map_is_empty_and_its_relief_flat():
+def test_range_of_a_constant_map_is_empty():
     flat = DisparityMap(np.full((4, 5), 7, np.float32))
     spans = nearness_range(flat, None)
     assert spans.low == spans.high == 7

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tangible_core.data import Views
 from tangible_core.errors import ConfigError, GeometryError, PictureError
 from tangible_core.scene.formats.rigs import read_rig
-from tangible_core.scene.rig import Camera, StereoRig, turned, undistorted
+from tangible_core.scene.rig import Camera, StereoRig, rectify_views, undistort_points
 from tangible_core.scene.scene import Scene
 
 SHAPE = 90, 120
@@ -61,15 +61,15 @@ def axes_of(cameras: StereoRig) -> np.ndarray:
     turn=st.tuples(*[st.floats(-0.08, 0.08)] * 3),
     move=st.tuples(st.floats(-0.3, -0.05), st.floats(-0.03, 0.03), st.floats(-0.03, 0.03)),
 )
-def test_rows_and_depth_are_exact(lens, turn, move):
+def test_rectified_points_share_rows_and_give_exact_depth(lens, turn, move):
     cameras = rig(turn, move, lens)
-    calibration = turned(Views(BLANK, BLANK), cameras).views.calibration
+    calibration = rectify_views(Views(BLANK, BLANK), cameras).views.calibration
     assert calibration is not None
     points = np.random.default_rng(0).uniform([-0.3, -0.25, 1], [0.3, 0.25, 3], (50, 3))
     axes, camera = axes_of(cameras), np.diag([calibration.focal_px, calibration.focal_px, 1.0])
-    left = undistorted(seen(points, cameras.left), cameras.left, axes, camera)
+    left = undistort_points(seen(points, cameras.left), cameras.left, axes, camera)
     theirs = points @ cameras.rotation.T + cameras.translation_m
-    right = undistorted(seen(theirs, cameras.right), cameras.right, axes @ cameras.rotation.T, camera)
+    right = undistort_points(seen(theirs, cameras.right), cameras.right, axes @ cameras.rotation.T, camera)
     assert left[:, 1] == pytest.approx(right[:, 1], abs=1e-3)
     disparity = (left - right)[:, 0]
     assert calibration.focal_px * calibration.baseline_m / disparity == pytest.approx(points @ axes[2], rel=1e-3)
@@ -77,7 +77,7 @@ def test_rows_and_depth_are_exact(lens, turn, move):
 
 
 @pytest.mark.parametrize("lens", LENSES)
-def test_pictures_go_where_their_points_go(lens: str):
+def test_rectified_pictures_follow_their_points(lens: str):
     """Bright dots of a scene at one depth are found on one row in both turned pictures."""
     cameras = rig(lens=lens)
     dots = np.array([[x, y, 1.5] for x in (-0.4, 0.0, 0.4) for y in (-0.25, 0.25)])
@@ -88,7 +88,7 @@ def test_pictures_go_where_their_points_go(lens: str):
         for x, y in seen(points, camera):
             picture += np.exp(-((columns - x) ** 2 + (rows - y) ** 2) / 8).astype(np.float32)
         views.append(np.clip(picture, 0, 1))
-    found = turned(Views(*views), cameras)
+    found = rectify_views(Views(*views), cameras)
     assert found.known.shape == found.views.shape and found.known.mean() > 0.5
     assert found.views.right is not None and found.views.right.shape == found.views.shape
     rows_lit = [np.sort(peaks(each)[:, 0]) for each in (found.views.left, found.views.right)]
@@ -110,20 +110,20 @@ def peaks(picture: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, bool, np.float32])
 @pytest.mark.parametrize("channels", [(), (3,), (4,)])
-def test_any_picture(dtype, channels):
+def test_rectified_pictures_keep_dtype_and_channels(dtype, channels):
     picture = (np.random.default_rng(0).random((*SHAPE, *channels)) > 0.5).astype(dtype)
-    found = turned(Views(picture, picture), rig(lens="radial")).views
+    found = rectify_views(Views(picture, picture), rig(lens="radial")).views
     assert found.left.shape[2:] == channels
     assert found.left.max() <= picture.max()
 
 
-def test_one_view_is_no_pair():
+def test_rectifying_one_view_raises():
     with pytest.raises(PictureError, match="two views"):
-        turned(Views(BLANK), rig())
+        rectify_views(Views(BLANK), rig())
 
 
 @pytest.mark.parametrize("move", [(0.1, 0, 0), (0.0, 0.0, -0.5), (-0.01, 0.2, 0.0)])
-def test_a_right_camera_that_stands_elsewhere(move):
+def test_rig_with_the_right_camera_elsewhere_raises(move):
     with pytest.raises(GeometryError, match="exchange left and right, or check the translation"):
         rig((0, 0, 0), move)
 
@@ -137,7 +137,7 @@ def test_a_right_camera_that_stands_elsewhere(move):
         ("translation_m", np.array([np.inf, 0, 0]), "metres"),
     ],
 )
-def test_what_is_no_rig_is_refused(part, value, words):
+def test_rig_refuses_wrong_rotation_and_translation(part, value, words):
     good = rig()
     parts = {name: getattr(good, name) for name in ("left", "right", "rotation", "translation_m")}
     with pytest.raises(GeometryError, match=words):
@@ -153,7 +153,7 @@ def test_what_is_no_rig_is_refused(part, value, words):
         (np.eye(3), np.full(4, np.nan), "coefficients"),
     ],
 )
-def test_what_is_no_camera_is_refused(matrix, distortion, words):
+def test_camera_refuses_wrong_matrix_and_distortion(matrix, distortion, words):
     with pytest.raises(GeometryError, match=words):
         Camera(matrix, distortion)
 
@@ -192,7 +192,7 @@ def write_opencv(path: Path, cameras: StereoRig, unit_m: float = 1.0) -> None:
 
 class TestFiles:
     @pytest.mark.parametrize("unit_m", [1.0, 0.001])
-    def test_opencv(self, tmp_path: Path, unit_m: float):
+    def test_opencv_file_gives_the_same_rig(self, tmp_path: Path, unit_m: float):
         cameras = rig(lens="radial")
         write_opencv(tmp_path / "rig.yml", cameras, unit_m)
         found, size = read_rig(tmp_path / "rig.yml", unit_m)
@@ -204,7 +204,7 @@ class TestFiles:
         np.testing.assert_allclose(found.translation_m, cameras.translation_m, atol=1e-12)
 
     @pytest.mark.parametrize("model", ["radtan", "equidistant"])
-    def test_kalibr(self, tmp_path: Path, model: str):
+    def test_kalibr_file_gives_the_same_rig(self, tmp_path: Path, model: str):
         (tmp_path / "camchain.yaml").write_text(KALIBR.format(model=model, coefficients=list(FISHEYE)))
         found, size = read_rig(tmp_path / "camchain.yaml")
         assert size == (120, 90)
@@ -213,7 +213,7 @@ class TestFiles:
         assert found.translation_m.tolist() == [-0.1, 0.01, 0.005]
 
     @pytest.mark.parametrize(
-        ("text", "said"),
+        ("text", "message"),
         [
             ("M1: 3\n", "rig.yml: has no left matrix (M1, K1"),
             ("a: [1\n", "rig.yml:2:1"),
@@ -225,17 +225,17 @@ class TestFiles:
             ("cam0: 5\ncam1: {}\n", "cam0 is a camera with camera_model pinhole, not 5"),
             ("cam0: {camera_model: omni}\ncam1: {}\n", "cam0 is a camera with camera_model pinhole"),
             (KALIBR.format(model="fov", coefficients=[]), "distortion_model: 'fov' is not one of radtan"),
-            (KALIBR.format(model="radtan", coefficients=["x"]), "distortion_coeffs is made of numbers"),
+            (KALIBR.format(model="radtan", coefficients=["x"]), "distortion_coeffs must be numbers"),
             (KALIBR.format(model="radtan", coefficients=[1]), "rig.yml: a radial-tangential lens has 0 or 4"),
             (KALIBR.format(model="none", coefficients=[]).replace("110.0, ", ""), "is [fu, fv, pu, pv]"),
             (KALIBR.format(model="none", coefficients=[]).replace("T_cn_cnm1", "T"), "is the 4 x 4 pose of cam1"),
         ],
     )
-    def test_what_is_none(self, tmp_path: Path, text: str, said: str):
+    def test_wrong_calibration_file_raises(self, tmp_path: Path, text: str, message: str):
         (tmp_path / "rig.yml").write_text(text)
         with pytest.raises((ConfigError, GeometryError)) as caught:
             read_rig(tmp_path / "rig.yml")
-        assert said in str(caught.value)
+        assert message in str(caught.value)
 
 
 class TestScene:
@@ -246,7 +246,7 @@ class TestScene:
         write_opencv(tmp_path / "rig.yml", rig(lens="radial"))
         return tmp_path
 
-    def test_files_and_arrays_are_the_same(self, folder: Path):
+    def test_rig_from_a_file_equals_rig_from_arrays(self, folder: Path):
         left, right = (np.load(folder / f"{name}.npy") for name in ("left", "right"))
         of_files = Scene.of(left=folder / "left.npy", right=folder / "right.npy", rig=folder / "rig.yml")
         of_arrays = Scene.of(left=left, right=right, rig=rig(lens="radial"))
@@ -256,7 +256,7 @@ class TestScene:
         assert of_files.views.calibration.baseline_m == pytest.approx(np.linalg.norm((-0.1, 0.01, 0.005)))
         assert of_files.known is not None and not of_files.known.all()
 
-    def test_in_a_pipeline_file(self, folder: Path):
+    def test_pipeline_file_takes_a_rig(self, folder: Path):
         from tangible_core import load_pipeline
 
         (folder / "p.yaml").write_text("scene: {left: left.npy, right: right.npy, rig: rig.yml, rig_unit_m: 0.5}\n")
@@ -264,22 +264,22 @@ class TestScene:
         assert views is not None and views.calibration is not None
         assert views.calibration.baseline_m == pytest.approx(np.linalg.norm((-0.05, 0.005, 0.0025)))
 
-    def test_pictures_of_another_size(self, folder: Path):
+    def test_rig_for_another_picture_size_raises(self, folder: Path):
         (folder / "rig.yml").write_text(KALIBR.format(model="none", coefficients=[]).replace("[120, 90]", "[752, 480]"))
         with pytest.raises(PictureError, match=r"left\.npy is not 752 x 480"):
             Scene.of(left=folder / "left.npy", right=folder / "right.npy", rig=folder / "rig.yml")
 
     @pytest.mark.parametrize(
-        ("more", "said"),
+        ("options", "message"),
         [
-            ({"truth": np.ones(SHAPE)}, "rig says what the cameras are.*leave out truth"),
+            ({"truth": np.ones(SHAPE)}, "rig gives the cameras.*leave out truth"),
             ({"segments": np.ones(SHAPE, int)}, "leave out segments"),
         ],
     )
-    def test_what_does_not_go_with_it(self, folder: Path, more: dict, said: str):
-        with pytest.raises(ConfigError, match=said):
-            Scene.of(left=BLANK, right=BLANK, rig=folder / "rig.yml", **more)
+    def test_rig_with_incompatible_options_raises(self, folder: Path, options: dict, message: str):
+        with pytest.raises(ConfigError, match=message):
+            Scene.of(left=BLANK, right=BLANK, rig=folder / "rig.yml", **options)
 
-    def test_a_rig_needs_a_pair(self, folder: Path):
-        with pytest.raises(ConfigError, match="rig needs left beside it"):
+    def test_rig_without_a_pair_raises(self, folder: Path):
+        with pytest.raises(ConfigError, match="rig needs left"):
             Scene.of(photo=BLANK, rig=folder / "rig.yml")

@@ -2,14 +2,14 @@ import numpy as np
 import pytest
 
 from tangible_core.data import Calibration, DisparityMap, SegmentMap, Views
-from tangible_core.scene.scaling import enlarged, enlarged_segments, felt_factor, reduced
+from tangible_core.scene.scaling import enlarge_disparity, enlarged_segments, felt_factor, reduce_views
 
 
 @pytest.mark.parametrize(
     ("columns", "width_m", "finest_m", "factor"),
     [(6000, 0.08, 3e-5, 2), (8000, 0.08, 3e-5, 3), (2666, 0.08, 3e-5, 1), (6000, 0.08, 0.0, 1), (1, 0.08, 0.1, 1)],
 )
-def test_a_pixel_stays_at_or_under_the_finest_detail(columns, width_m, finest_m, factor):
+def test_felt_factor_keeps_pixels_at_or_under_the_finest_detail(columns, width_m, finest_m, factor):
     assert felt_factor(columns, width_m, finest_m) == factor
     assert factor == 1 or factor * width_m / columns <= finest_m
 
@@ -22,32 +22,32 @@ def test_reduced_pixels_are_means(dtype, channels):
         rng.random((4, 6, *channels)) if dtype in (np.float32, np.float64) else rng.integers(0, 2, (4, 6, *channels))
     )
     picture = np.repeat(np.repeat(small, 3, axis=0), 3, axis=1).astype(dtype)
-    half = reduced(Views(picture, picture, Calibration(1000.0, 0.1)), 3)
+    half = reduce_views(Views(picture, picture, Calibration(1000.0, 0.1)), 3)
     scale = 255 if dtype == np.bool_ else 1
     np.testing.assert_allclose(half.left, small * scale, atol=1e-6)
     assert half.right is not None
     assert half.shape == (4, 6)
 
 
-def test_nothing_to_reduce_is_nothing_done():
+def test_scaling_to_the_same_size_returns_the_record_itself():
     views = Views(np.zeros((3, 4), np.uint8))
-    assert reduced(views, 1) is views
+    assert reduce_views(views, 1) is views
     disparity = DisparityMap(np.zeros((3, 4), np.float32))
-    assert enlarged(disparity, (3, 4)) is disparity
+    assert enlarge_disparity(disparity, (3, 4)) is disparity
 
 
-def test_a_plane_comes_back_in_the_pixels_of_the_pictures():
+def test_enlarged_plane_is_in_pixels_of_the_pictures():
     columns = np.arange(60, dtype=np.float32)
     small = DisparityMap(np.tile(4 + 0.1 * columns, (20, 1)))
-    large = enlarged(small, (40, 120)).disparity_px
+    large = enlarge_disparity(small, (40, 120)).disparity_px
     wanted = 2 * (4 + 0.1 * ((np.arange(120) + 0.5) / 2 - 0.5))  # pixel centres of both sizes
     np.testing.assert_allclose(large[:, 2:-2], np.tile(wanted, (40, 1))[:, 2:-2], rtol=1e-5)
 
 
-def test_a_hole_stays_a_hole_and_takes_nothing_beside_it():
+def test_enlarged_hole_stays_a_hole_of_its_size():
     values = np.full((4, 6), 5.0, np.float32)
     values[1, 2] = np.nan
-    large = enlarged(DisparityMap(values), (8, 12))
+    large = enlarge_disparity(DisparityMap(values), (8, 12))
     unknown = np.isnan(large.disparity_px)
     assert unknown[2:4, 4:6].all()
     assert unknown.sum() == 4
@@ -55,18 +55,21 @@ def test_a_hole_stays_a_hole_and_takes_nothing_beside_it():
     assert large.confidence.shape == (8, 12)
 
 
-def test_what_is_relative_is_not_scaled():
-    assert enlarged(DisparityMap(np.full((2, 2), 0.5, np.float32), unit="relative"), (4, 4)).disparity_px.max() == 0.5
+def test_enlarged_relative_disparity_keeps_its_values():
+    assert (
+        enlarge_disparity(DisparityMap(np.full((2, 2), 0.5, np.float32), unit="relative"), (4, 4)).disparity_px.max()
+        == 0.5
+    )
 
 
-def test_one_pixel():
-    assert reduced(Views(np.zeros((1, 1), np.uint8)), 3).shape == (1, 1)
+def test_reduced_pixel_stays_a_pixel():
+    assert reduce_views(Views(np.zeros((1, 1), np.uint8)), 3).shape == (1, 1)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (2, 9), (5, 7), (64, 33)])
 @pytest.mark.parametrize("factor", [1, 2, 3])
-def test_segments_come_back_with_every_label(shape, factor):
-    small = reduced(Views(np.zeros(shape, np.uint8)), factor).shape
+def test_enlarged_segments_keep_every_label(shape, factor):
+    small = reduce_views(Views(np.zeros(shape, np.uint8)), factor).shape
     labels = np.arange(small[0] * small[1], dtype=np.int32).reshape(small)
     found = enlarged_segments(SegmentMap(labels, np.full(small, 0.25, np.float32)), shape)
     assert found.labels.dtype == np.int32
@@ -75,7 +78,7 @@ def test_segments_come_back_with_every_label(shape, factor):
     assert np.all(found.confidence == 0.25)
 
 
-def test_segments_stay_where_they_are():
+def test_enlarged_segments_stay_in_place():
     labels = np.array([[0, 0, 1], [2, 1, 1]], np.int32)
     whole = np.kron(labels, np.ones((4, 4), np.int32))
     assert np.array_equal(enlarged_segments(SegmentMap(labels), whole.shape).labels, whole)

@@ -34,7 +34,7 @@ def complaint(**files):
     return caught.value.errors()[0]["msg"]
 
 
-# What a scene block may say
+# The block of a scene
 
 
 @pytest.mark.parametrize(
@@ -49,17 +49,17 @@ def complaint(**files):
         ({"disparity": "a"}, "disparity"),
     ],
 )
-def test_a_scene_is_exactly_one_of_pair_photo_and_height(files, named):
+def test_scene_is_exactly_one_of_pair_photo_and_height(files, named):
     assert complaint(**files).endswith(f"either left and right, or photo, or height, or video; this one gives {named}")
 
 
 @pytest.mark.parametrize(
     ("files", "message"),
     [
-        ({"photo": "a", "focal_px": 3}, "focal_px needs baseline_m beside it"),
-        ({"photo": "a", "baseline_m": 3}, "baseline_m needs focal_px beside it"),
-        ({"photo": "a", "offset_px": 3}, "offset_px needs focal_px beside it"),
-        ({"photo": "a", "relief_m": 3}, "relief_m needs height beside it"),
+        ({"photo": "a", "focal_px": 3}, "focal_px needs baseline_m"),
+        ({"photo": "a", "baseline_m": 3}, "baseline_m needs focal_px"),
+        ({"photo": "a", "offset_px": 3}, "offset_px needs focal_px"),
+        ({"photo": "a", "relief_m": 3}, "relief_m needs height"),
         ({"height": "a", "truth": "b"}, "height already gives all heights; leave out truth"),
         ({"height": "a", "disparity": "b"}, "leave out disparity"),
         ({"photo": "a", "focal_px": 0, "baseline_m": 1}, "greater than 0"),
@@ -67,16 +67,16 @@ def test_a_scene_is_exactly_one_of_pair_photo_and_height(files, named):
         ({"photo": 3}, "not a valid path"),
     ],
 )
-def test_what_does_not_go_together_is_said(files, message):
+def test_incompatible_files_are_refused(files, message):
     assert message in complaint(**files)
 
 
-def test_every_key_is_described():
+def test_every_key_has_a_description():
     properties = SceneFiles.model_json_schema()["properties"]
     assert all(each["description"] for each in properties.values())
 
 
-def test_the_block_survives_json():
+def test_scene_files_survive_json():
     files = BUILTINS["builtin/motorcycle"]
     assert SceneFiles.model_validate_json(files.model_dump_json()) == files
 
@@ -84,7 +84,7 @@ def test_the_block_survives_json():
 # Builtin scenes
 
 
-def test_the_motorcycle_is_a_calibrated_pair_with_its_truth():
+def test_motorcycle_is_a_calibrated_pair_with_truth():
     scene = Scene.read("builtin/motorcycle", Path("anywhere"))
     assert scene.name == "builtin/motorcycle"
     assert scene.views.left.shape == scene.views.right.shape == (500, 741, 3)
@@ -97,7 +97,7 @@ def test_the_motorcycle_is_a_calibrated_pair_with_its_truth():
     assert scene.disparity is None and scene.segments is None
 
 
-def test_the_truth_belongs_to_the_left_view():
+def test_motorcycle_truth_belongs_to_the_left_view():
     scene = Scene.read("builtin/motorcycle", Path())
     rows, columns = np.nonzero(scene.truth > 0)
     target = np.rint(columns - scene.truth[rows, columns]).astype(int)
@@ -125,14 +125,14 @@ def test_builtin_scenes_need_no_network(name, monkeypatch):
         ("", "builtin/"),
     ],
 )
-def test_an_unknown_name_says_what_there_is(name, hint):
+def test_unknown_scene_name_lists_the_builtin_scenes(name, hint):
     with pytest.raises(ConfigError, match="no scene is named") as caught:
         Scene.read(name, Path())
     assert hint in str(caught.value)
     assert "builtin/gravel" in str(caught.value)
 
 
-def test_without_scikit_image_it_is_named(monkeypatch):
+def test_builtin_scene_without_scikit_image_names_it(monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(PictureError, match="pip install scikit-image"):
         Scene.read("builtin/brick", Path())
@@ -141,7 +141,7 @@ def test_without_scikit_image_it_is_named(monkeypatch):
 # Scenes in files
 
 
-def test_paths_start_at_the_folder_unless_they_are_absolute(folder):
+def test_relative_paths_start_at_the_folder(folder):
     files = SceneFiles(left="left.png", right=folder / "right.png")
     scene = Scene.read(files, folder)
     np.testing.assert_array_equal(scene.views.left, PICTURE)
@@ -151,13 +151,13 @@ def test_paths_start_at_the_folder_unless_they_are_absolute(folder):
     assert scene.truth is None
 
 
-def test_a_calibration_needs_no_offset(folder):
+def test_calibration_needs_no_offset(folder):
     files = SceneFiles(left="left.png", right="right.png", focal_px=100, baseline_m=0.1)
     camera = Scene.read(files, folder).views.calibration
     assert (camera.focal_px, camera.baseline_m, camera.offset_px) == (100, 0.1, 0)
 
 
-def test_a_photo_brings_what_it_is_given_with(folder):
+def test_photo_brings_its_disparity_and_segments(folder):
     write_png(folder / "labels.png", np.repeat(np.uint8([[0, 0, 0, 9, 9, 9]]), 4, axis=0))
     files = SceneFiles(photo="photo.png", disparity="map.npy", segments="labels.png", truth="map.npy")
     scene = Scene.read(files, folder)
@@ -170,13 +170,13 @@ def test_a_photo_brings_what_it_is_given_with(folder):
     assert scene.views.right is None
 
 
-def test_the_truth_cannot_be_changed(folder):
+def test_truth_is_read_only(folder):
     scene = Scene.read(SceneFiles(photo="photo.png", truth="map.npy"), folder)
     with pytest.raises(ValueError, match="read-only"):
         scene.truth[0, 0] = 1
 
 
-def test_a_height_map_brings_its_relief_and_no_views(folder):
+def test_height_map_brings_its_relief_and_no_views(folder):
     scene = Scene.read(SceneFiles(height="map.npy"), folder)
     assert scene.views is None
     relief = scene.brings(**SIZE)["relief"]
@@ -185,12 +185,12 @@ def test_a_height_map_brings_its_relief_and_no_views(folder):
     assert relief.extent_m == pytest.approx((0.08, 0.08 * 4 / 6))
 
 
-def test_a_height_map_may_say_how_high_it_is(folder):
+def test_height_map_may_state_its_relief(folder):
     scene = Scene.read(SceneFiles(height="map.npy", relief_m=0.005), folder)
     assert scene.brings(**SIZE)["relief"].height_m.max() == np.float32(0.005)
 
 
-def test_holes_of_a_height_map_follow_the_rule_that_is_asked_for(folder):
+def test_height_map_holes_are_filled_or_cut(folder):
     np.save(folder / "holes.npy", [[2, NAN, 1, 0]])
     files = SceneFiles(height="holes.npy")
     filled, cut = (
@@ -200,7 +200,7 @@ def test_holes_of_a_height_map_follow_the_rule_that_is_asked_for(folder):
     assert (filled, cut) == ([[1, 0.5, 0.5, 0]], [[1, 0, 0.5, 0]])
 
 
-def test_a_height_map_of_nothing_is_refused(folder):
+def test_height_map_without_known_heights_is_refused(folder):
     np.save(folder / "nothing.npy", np.full((3, 3), NAN))
     with pytest.raises(GeometryError, match="holds only NaN or infinity"):
         Scene.read(SceneFiles(height="nothing.npy"), folder).brings(**SIZE)
@@ -219,20 +219,20 @@ def test_a_height_map_of_nothing_is_refused(folder):
         ({"height": "map.npy", "segments": "wide.png"}, ("wide.png (segments)", "map.npy (height)")),
     ],
 )
-def test_two_sizes_are_named_with_their_files(folder, files, named):
+def test_parts_of_two_sizes_are_named_with_their_files(folder, files, named):
     with pytest.raises(PictureError, match="all parts of a scene must be of one size") as caught:
         Scene.read(SceneFiles(**files), folder)
     assert all(each in str(caught.value) for each in named)
 
 
 @pytest.mark.parametrize("key", ["photo", "height"])
-def test_a_file_that_is_not_there_is_named(folder, key):
+def test_missing_file_is_named(folder, key):
     with pytest.raises(PictureError, match="there is no such file"):
         Scene.read(SceneFiles(**{key: "nothing.png"}), folder)
 
 
 @pytest.mark.parametrize("as_file", [True, False])
-def test_a_truth_in_the_encoding_of_its_kit(as_file: bool, tmp_path: Path):
+def test_truth_is_decoded_by_its_scale(as_file: bool, tmp_path: Path):
     """A scale, with 0 unknown; or Sintel's three channels."""
     grey = np.uint16([[0, 256, 640]])
     packed = np.uint8([[[0, 0, 0], [1, 32, 0], [2, 0, 64]]])
@@ -248,5 +248,5 @@ def test_a_truth_in_the_encoding_of_its_kit(as_file: bool, tmp_path: Path):
     np.testing.assert_array_equal(scene.truth, [[0, 4.5, 8 + 64 / 16384]])
     with pytest.raises(PictureError, match="three channels of 8 bits, not"):
         Scene.of(left=view, right=view, truth=grey_of, truth_scale="sintel")
-    with pytest.raises(ConfigError, match="truth_scale needs truth beside it"):
+    with pytest.raises(ConfigError, match="truth_scale needs truth"):
         Scene.of(left=view, right=view, truth_scale=4)

@@ -32,7 +32,7 @@ def segment(content: bytes, marker: int = 0xE1) -> bytes:
 
 class TestSeveralPictures:
     @pytest.mark.parametrize("kind", ["TIFF", "GIF", "PNG", "WEBP"])
-    def test_the_first_is_taken_and_it_is_said(self, tmp_path: Path, kind: str):
+    def test_file_of_several_pictures_gives_the_first_with_a_note(self, tmp_path: Path, kind: str):
         path = tmp_path / f"several.{kind.lower()}"
         options = {"lossless": True} if kind == "WEBP" else {}
         first, *others = (Image.fromarray(each) for each in (LEFT, RIGHT, RIGHT // 2))
@@ -41,7 +41,7 @@ class TestSeveralPictures:
         np.testing.assert_array_equal(scene.views.left, LEFT)
         assert scene.notes == (f"several.{kind.lower()} holds 3 pictures, of which the first is taken",)
 
-    def test_smaller_copies_of_a_page_are_no_pictures(self, tmp_path: Path):
+    def test_smaller_copies_of_a_page_are_not_counted(self, tmp_path: Path):
         page, small = (Image.fromarray(each) for each in (LEFT, LEFT[::2, ::2]))
         tags = TiffImagePlugin.ImageFileDirectory_v2()
         tags[254] = 1
@@ -49,7 +49,7 @@ class TestSeveralPictures:
         page.save(tmp_path / "pyramid.tif", save_all=True, append_images=[small])
         assert Scene.of(photo=tmp_path / "pyramid.tif").notes == ()
 
-    def test_one_picture_is_not_worth_a_word(self, tmp_path: Path):
+    def test_file_of_one_picture_gives_no_note(self, tmp_path: Path):
         Image.fromarray(LEFT).save(tmp_path / "one.png")
         assert Scene.of(photo=tmp_path / "one.png").notes == ()
 
@@ -64,7 +64,7 @@ class TestPairs:
             ("top-bottom", np.vstack([LEFT, RIGHT])),
         ],
     )
-    def test_the_halves_are_the_views(self, tmp_path: Path, layout, whole):
+    def test_halves_of_a_picture_are_the_views(self, tmp_path: Path, layout, whole):
         Image.fromarray(whole).save(tmp_path / "both.png")
         for given in (whole, tmp_path / "both.png"):
             views = Scene.of(stereo=given, layout=layout).views
@@ -80,14 +80,14 @@ class TestPairs:
         ],
         ids=["nothing", "right first", "left first"],
     )
-    def test_a_jps_file_says_which_half_is_which(self, tmp_path: Path, state: bytes, order):
+    def test_jps_file_states_the_order_of_its_halves(self, tmp_path: Path, state: bytes, order):
         data = jpeg(np.hstack([np.kron(each, np.ones((16, 16, 1), np.uint8)) for each in order]))
         (tmp_path / "pair.jps").write_bytes(data[:2] + (segment(state, 0xE3) if state else b"") + data[2:])
         views = Scene.of(stereo=tmp_path / "pair.jps").views
         assert np.abs(views.left[8::16, 8::16].astype(int) - LEFT).max() < 12
         assert np.abs(views.right[8::16, 8::16].astype(int) - RIGHT).max() < 12
 
-    def test_the_two_pictures_of_an_mpo_file(self, tmp_path: Path):
+    def test_mpo_file_gives_two_views_or_one_photo(self, tmp_path: Path):
         shades = [np.full((32, 48, 3), each, np.uint8) for each in (40, 200)]
         write_mpo(tmp_path / "pair.mpo", shades, 0x020002)
         views = Scene.of(stereo=tmp_path / "pair.mpo").views
@@ -98,7 +98,7 @@ class TestPairs:
             "pair.mpo holds 2 pictures, of which the first is taken; for both views write `stereo:`",
         )
 
-    def test_a_thumbnail_is_no_view_and_no_news(self, tmp_path: Path):
+    def test_thumbnail_is_neither_view_nor_note(self, tmp_path: Path):
         write_mpo(tmp_path / "phone.jpg", [np.full((32, 48, 3), each, np.uint8) for each in (40, 200)], 0x010001)
         assert Scene.of(photo=tmp_path / "phone.jpg").notes == ()
         assert Scene.of(stereo=tmp_path / "phone.jpg").views.shape == (32, 24)
@@ -108,13 +108,13 @@ class TestPairs:
         np.testing.assert_array_equal(views.left, LEFT[2:6, 1:4])
         np.testing.assert_array_equal(views.right, RIGHT[2:6, 1:4])
 
-    def test_a_column_has_no_halves(self):
+    def test_column_without_halves_is_refused(self):
         with pytest.raises(PictureError, match="1 x 6 pixels have no two halves; give left and right"):
             Scene.of(stereo=LEFT[:, :1])
 
 
 def write_mpo(path: Path, pictures: list[np.ndarray], kind: int) -> None:
-    """As Pillow writes it, with another kind of pictures in its directory."""
+    """Write pictures with Pillow, then change their type in the directory of the file."""
     first, *others = (Image.fromarray(each) for each in pictures)
     first.save(path, format="MPO", save_all=True, append_images=others, quality=95)
     data = bytearray(path.read_bytes())
@@ -131,7 +131,7 @@ PHOTO = np.full((24, 32, 3), 90, np.uint8)
 
 
 def gdepth(depth: bytes) -> bytes:
-    """What fits into a segment, and the rest in two that stand in the wrong order."""
+    """Return a JPEG whose depth is in extended XMP: two segments, in the wrong order."""
     text = b'<x GDepth:Format="RangeInverse" GDepth:Near="1" GDepth:Far="9" GDepth:Data="' + b64encode(depth) + b'"/>'
     half = len(text) // 2
     parts = [(half, text[half:]), (0, text[:half])]
@@ -154,15 +154,15 @@ def dynamic(depth: bytes) -> bytes:
 
 
 def iphone(depth: bytes) -> bytes:
-    """Near is light in it."""
-    told = b"<apdi:AuxiliaryImageType>disparity</apdi:AuxiliaryImageType>"
+    """Return a JPEG with a disparity map, in which near is light."""
+    xmp = b"<apdi:AuxiliaryImageType>disparity</apdi:AuxiliaryImageType>"
     file = io.BytesIO()
     Image.fromarray(PHOTO).save(
         file, format="MPO", save_all=True, append_images=[Image.fromarray(255 - RAMP)], quality=95
     )
     data = file.getvalue()
     start = data.rindex(b"\xff\xd8\xff")
-    extra = segment(b"http://ns.adobe.com/xap/1.0/\0" + told)
+    extra = segment(b"http://ns.adobe.com/xap/1.0/\0" + xmp)
     grown = bytearray(data[: start + 2] + extra + data[start + 2 :])
     size = struct.pack("<I", len(data) - start)
     at = grown.index(size, grown.index(b"MPF\0"))
@@ -171,9 +171,9 @@ def iphone(depth: bytes) -> bytes:
 
 
 class TestPhoneDepth:
-    @pytest.mark.parametrize("kept", [gdepth, dynamic, iphone])
-    def test_it_is_the_scene_s_disparity_and_nothing_is_estimated(self, tmp_path: Path, kept):
-        (tmp_path / "portrait.jpg").write_bytes(kept(jpeg(RAMP)))
+    @pytest.mark.parametrize("write", [gdepth, dynamic, iphone])
+    def test_phone_depth_becomes_the_disparity_of_the_scene(self, tmp_path: Path, write):
+        (tmp_path / "portrait.jpg").write_bytes(write(jpeg(RAMP)))
         scene = Scene.of(photo=tmp_path / "portrait.jpg")
         assert scene.disparity is not None and scene.disparity.unit == "relative"
         near = scene.disparity.disparity_px
@@ -181,15 +181,15 @@ class TestPhoneDepth:
         np.testing.assert_allclose(near[12], np.clip(1 - (np.arange(32) + 0.5 - 1) / 30, 0, 1), atol=0.03)
         [note] = scene.notes
         assert note.startswith("portrait.jpg holds a depth map of 16 x 12 (")
-        assert note.endswith("which is taken; `photo_depth: false` leaves it out")
+        assert note.endswith("which is used; `photo_depth: false` leaves it out")
 
-    def test_it_can_be_left_out_and_gives_way_to_one_that_is_given(self, tmp_path: Path):
+    def test_phone_depth_can_be_left_out_or_replaced(self, tmp_path: Path):
         (tmp_path / "portrait.jpg").write_bytes(gdepth(jpeg(RAMP)))
         assert Scene.of(photo=tmp_path / "portrait.jpg", photo_depth=False).disparity is None
         given = Scene.of(photo=tmp_path / "portrait.jpg", disparity=np.ones((24, 32))).disparity
         assert given.unit == "px"
 
-    def test_it_is_turned_as_the_photo_is(self, tmp_path: Path):
+    def test_phone_depth_is_rotated_with_the_photo(self, tmp_path: Path):
         exif = Image.Exif()
         exif[0x0112] = 6
         data = gdepth(jpeg(RAMP))
@@ -203,7 +203,7 @@ class TestPhoneDepth:
     @pytest.mark.parametrize(
         "broken", [gdepth(b"no picture"), gdepth(jpeg(RAMP)).replace(b"A" * 32 + b"\0\0", b"A" * 32 + b"\xff\0")]
     )
-    def test_what_is_damaged_costs_a_word_and_not_the_photo(self, tmp_path: Path, broken: bytes):
+    def test_damaged_phone_depth_gives_a_note_and_the_photo(self, tmp_path: Path, broken: bytes):
         (tmp_path / "portrait.jpg").write_bytes(broken)
         scene = Scene.of(photo=tmp_path / "portrait.jpg")
         assert scene.disparity is None
@@ -211,8 +211,8 @@ class TestPhoneDepth:
         assert scene.notes[0].startswith("the depth map in portrait.jpg is damaged and left out: ")
 
     @pytest.mark.parametrize("text", [b"<Container:Item ", b'GDepth:Data="', b"GDepth:Data=" + 99 * b" "])
-    def test_what_was_written_to_take_for_ever_does_not(self, tmp_path: Path, text: bytes):
-        """Ten megabytes of beginnings without an end: a pattern that looks for it from each takes hours."""
+    def test_hostile_metadata_is_searched_in_bounded_time(self, tmp_path: Path, text: bytes):
+        """Read ten megabytes of unfinished beginnings, from each of which a naive pattern would search to the end."""
         content = text * (10_000_000 // len(text))
         parts = [(at, content[at : at + 65_000]) for at in range(0, len(content), 65_000)]
         head = b"http://ns.adobe.com/xmp/extension/\0" + b"A" * 32
@@ -224,7 +224,7 @@ class TestPhoneDepth:
 
 class TestNoData:
     @pytest.mark.parametrize("mode", ["float32", "int16"])
-    def test_what_a_geotiff_states_is_unknown(self, tmp_path: Path, mode: str):
+    def test_geotiff_nodata_becomes_unknown_with_a_note(self, tmp_path: Path, mode: str):
         heights = np.arange(12, dtype=mode).reshape(3, 4)
         heights[1, 2] = -9999
         tags = TiffImagePlugin.ImageFileDirectory_v2()
@@ -232,11 +232,11 @@ class TestNoData:
         Image.fromarray(heights).save(tmp_path / "dem.tif", tiffinfo=tags)
         scene = Scene.of(height=tmp_path / "dem.tif")
         assert np.argwhere(np.isnan(scene.height)).tolist() == [[1, 2]]
-        assert scene.notes == ("8.3 % of dem.tif is -9999, which it states to be no data",)
+        assert scene.notes == ("8.3 % of dem.tif is -9999, its value for no data",)
         assert scene.brings(0.08, 0.02)["relief"].height_m.max() == np.float32(0.02)
 
     @pytest.mark.parametrize(("text", "number"), [("-3.4028234663852886e+38", -3.4028234663852886e38), ("n/a", None)])
-    def test_it_is_a_text(self, tmp_path: Path, text: str, number: float | None):
+    def test_geotiff_nodata_is_read_from_a_text(self, tmp_path: Path, text: str, number: float | None):
         tags = TiffImagePlugin.ImageFileDirectory_v2()
         tags[42113] = text
         Image.fromarray(np.zeros((2, 2), np.float32)).save(tmp_path / "dem.tif", tiffinfo=tags)
@@ -244,10 +244,10 @@ class TestNoData:
         assert stated_nodata(data) == number
         assert all(stated_nodata(data[:end]) in (number, None) for end in range(8, len(data)))
 
-    def test_one_that_no_height_has_is_not_worth_a_word(self, tmp_path: Path):
+    def test_geotiff_nodata_that_no_height_has_gives_no_note(self, tmp_path: Path):
         tags = TiffImagePlugin.ImageFileDirectory_v2()
         tags[42113] = "nan"
         Image.fromarray(np.ones((2, 2), np.float32)).save(tmp_path / "dem.tif", tiffinfo=tags)
-        said = []
-        assert read_map(tmp_path / "dem.tif", said.append).min() == 1
-        assert said == []
+        notes = []
+        assert read_map(tmp_path / "dem.tif", notes.append).min() == 1
+        assert notes == []

@@ -1,4 +1,4 @@
-"""A map in which hardly anything was matched."""
+"""Warnings about disparity maps of pairs that hardly match, and of one picture twice."""
 
 import json
 from pathlib import Path
@@ -10,41 +10,41 @@ import pytest
 from tangible_core import Pipeline, Scene
 from tangible_core.data import DisparityMap, Views
 from tangible_core.plugins import DepthEstimator
-from tangible_core.scene.pair_checks import hardly_matched, same_twice
+from tangible_core.scene.pair_checks import few_matches, identical_views
 
 SHAPE = 10, 20
 
 
 def matched(share: float, **kind: str) -> DisparityMap:
-    """So much of it, from the top, with a confidence."""
+    """Return a map of which this share, from the top, was matched."""
     confidence = np.full(SHAPE, 0.1, np.float32)
     confidence[: round(share * SHAPE[0])] = 0.9
     return DisparityMap(np.full(SHAPE, 5, np.float32), confidence, **kind)  # pyright: ignore[reportArgumentType]
 
 
-def test_it_is_said_where_most_of_the_map_is_filled_in():
-    assert "found for 20% of the left one" in hardly_matched(matched(0.2))
-    assert hardly_matched(matched(0.3)) == ""
-    assert hardly_matched(matched(0.2, unit="relative")) == ""
+def test_few_matches_warns_where_most_of_the_map_is_filled_in():
+    assert "found for 20% of the left one" in few_matches(matched(0.2))
+    assert few_matches(matched(0.3)) == ""
+    assert few_matches(matched(0.2, unit="relative")) == ""
 
 
-def test_what_shows_nothing_does_not_count():
+def test_few_matches_ignores_unknown_pixels():
     known = np.zeros(SHAPE, bool)
-    assert hardly_matched(matched(0.2), known) == ""
+    assert few_matches(matched(0.2), known) == ""
     known[:4] = True
-    assert hardly_matched(matched(0.2), known) == ""
+    assert few_matches(matched(0.2), known) == ""
     known[:] = True
-    assert hardly_matched(matched(0.2), known)
+    assert few_matches(matched(0.2), known)
 
 
-def test_one_picture_twice_is_said():
+def test_identical_views_are_reported():
     left, right = np.random.default_rng(1).random((2, *SHAPE))
     twice = Scene.of(left=left, right=left.copy()).views
     two = Scene.of(left=left, right=right).views
     assert twice is not None and two is not None
-    assert "one and the same picture: " in same_twice(twice, matched(1))
-    assert same_twice(two, matched(1)) == ""
-    assert same_twice(twice, matched(1, unit="relative")) == ""
+    assert "one and the same picture: " in identical_views(twice, matched(1))
+    assert identical_views(two, matched(1)) == ""
+    assert identical_views(twice, matched(1, unit="relative")) == ""
     same = Pipeline(Scene.of(left=left, right=left), depth=Guesses(), cached=False)
     same.make("disparity")
     [doubt] = same.outcomes.doubts
@@ -52,13 +52,13 @@ def test_one_picture_twice_is_said():
 
 
 class Guesses(DepthEstimator):
-    """Matches nothing."""
+    """A method that matches nothing."""
 
     def estimate(self, views: Views) -> DisparityMap:
         return DisparityMap(np.ones(views.shape, np.float32), np.zeros(views.shape, np.float32))
 
 
-def test_it_is_in_the_log_the_outcomes_and_the_title_of_the_sheet(
+def test_few_matches_appear_in_log_outcomes_and_sheet_title(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ):
     from tangible_core.pipeline.output import runs

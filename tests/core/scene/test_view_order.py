@@ -1,11 +1,11 @@
-"""Views that were exchanged, told by signs and by what hides what."""
+"""Exchanged views, recognised by the signs of disparities and by occlusion."""
 
 import numpy as np
 import pytest
 
 from tangible_core import Pipeline, Scene
 from tangible_core.data import DisparityMap
-from tangible_core.scene.pair_checks import put_right, view_order
+from tangible_core.scene.pair_checks import correct_exchanged, view_order
 from tangible_depth import SemiGlobal
 
 SHAPE = 120, 200
@@ -13,8 +13,8 @@ BOX = slice(80, 130)
 """Columns of a light box that stands before a dark wall."""
 
 
-def seen(box_px: float, wall_px: float) -> tuple[DisparityMap, np.ndarray]:
-    """The map of a box before a wall, unknown where the other view does not show the wall, and its picture."""
+def box_and_wall(box_px: float, wall_px: float) -> tuple[DisparityMap, np.ndarray]:
+    """Return the map of a box before a wall, unknown where the other view does not show the wall, and its picture."""
     width = round(abs(box_px - wall_px))
     hidden = slice(BOX.start - width, BOX.start) if box_px > wall_px else slice(BOX.stop, BOX.stop + width)
     values, picture = np.full(SHAPE, wall_px, np.float32), np.full(SHAPE, 40, np.uint8)
@@ -23,48 +23,48 @@ def seen(box_px: float, wall_px: float) -> tuple[DisparityMap, np.ndarray]:
 
 
 @pytest.mark.parametrize(
-    ("box_px", "wall_px", "exchanged", "said"),
+    ("box_px", "wall_px", "exchanged", "message"),
     [
         (40, 10, False, ""),
         (10, -20, False, ""),
         (-10, -40, False, "every disparity is negative, and yet left and right are in order: 120 of 120 contours"),
-        (-40, -10, True, "left and right seem to be exchanged: every disparity is negative. The depth was put right"),
-        (-20, 10, True, "left and right seem to be exchanged: 120 of 120 contours hide"),
+        (-40, -10, True, "left and right seem to be exchanged: every disparity is negative. The depth was corrected"),
+        (-20, 10, True, "left and right seem to be exchanged: 120 of 120 contours occlude"),
     ],
     ids=["in order", "converging", "shifted", "exchanged", "exchanged and converging"],
 )
-def test_what_hides_what_tells_the_order(box_px: float, wall_px: float, exchanged: bool, said: str):
-    found = view_order(*seen(box_px, wall_px))
-    assert found.exchanged == exchanged
-    assert found.said.startswith(said) and bool(found.said) == bool(said)
+def test_view_order_follows_occlusion(box_px: float, wall_px: float, exchanged: bool, message: str):
+    order = view_order(*box_and_wall(box_px, wall_px))
+    assert order.exchanged == exchanged
+    assert order.message.startswith(message) and bool(order.message) == bool(message)
 
 
-def test_where_nothing_hides_the_signs_tell_it_unless_the_cameras_explain_them():
+def test_view_order_without_occlusion_follows_signs_unless_cameras_explain_them():
     flat, picture = DisparityMap(np.full(SHAPE, -8, np.float32)), np.zeros(SHAPE, np.uint8)
     assert view_order(flat, picture).exchanged
     assert not view_order(flat, picture, offset_px=31.0).exchanged
-    assert view_order(*seen(-40, -10), offset_px=31.0).exchanged
+    assert view_order(*box_and_wall(-40, -10), offset_px=31.0).exchanged
 
 
-def test_neither_a_map_without_unit_nor_one_of_noise_says_anything():
+def test_view_order_of_relative_or_uncertain_maps_has_no_message():
     values = np.full(SHAPE, -8, np.float32)
     relative = DisparityMap(values, unit="relative")
     unsure = DisparityMap(values, np.full(SHAPE, 0.1, np.float32))
-    assert not any(view_order(each, np.zeros(SHAPE, np.uint8)).said for each in (relative, unsure))
+    assert not any(view_order(each, np.zeros(SHAPE, np.uint8)).message for each in (relative, unsure))
 
 
-def test_what_was_put_right_has_the_other_signs():
-    found = put_right(seen(-40, -10)[0])
-    assert np.nanmax(found.disparity_px) == 40 and np.isnan(found.disparity_px).any()
+def test_correct_exchanged_changes_the_signs():
+    corrected = correct_exchanged(box_and_wall(-40, -10)[0])
+    assert np.nanmax(corrected.disparity_px) == 40 and np.isnan(corrected.disparity_px).any()
 
 
-def test_exchanged_views_are_felt_as_the_others_and_it_is_said():
+def test_exchanged_views_give_the_same_relief_with_a_warning():
     views = Scene.builtin("motorcycle").views
     assert views is not None and views.right is not None
     truth = np.nan_to_num(Scene.builtin("motorcycle").truth, posinf=0)
-    for left, right, said in ((views.left, views.right, False), (views.right, views.left, True)):
+    for left, right, warned in ((views.left, views.right, False), (views.right, views.left, True)):
         pipeline = Pipeline(Scene.of(left=left, right=right), depth=SemiGlobal(), cached=False)
         assert np.corrcoef(pipeline.relief.height_m.ravel(), truth.ravel())[0, 1] > 0.5
         [outcome] = [each for each in pipeline.outcomes if each.product == "disparity"]
-        assert ("left and right seem to be exchanged" in outcome.why) == said
-        assert any(each.kind == "warning" for each in outcome.notes) == said
+        assert ("left and right seem to be exchanged" in outcome.why) == warned
+        assert any(each.kind == "warning" for each in outcome.notes) == warned

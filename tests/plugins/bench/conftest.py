@@ -11,7 +11,7 @@ import pytest
 
 from ctrl_c import HEARING
 from distributions import distribution
-from tangible_bench.worker import answer
+from tangible_bench.measuring.worker import answer
 from tangible_core.plugins.registry import Registry
 from tangible_core.runtime.child_process import Place
 
@@ -153,8 +153,8 @@ def cells_here(registry: Registry, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def measure_here(patch: pytest.MonkeyPatch) -> None:
     """As `cells_here`, of the methods that are installed."""
-    patch.setattr("tangible_bench.worker.gc", SimpleNamespace(collect=lambda: None, freeze=lambda: None))
-    patch.setattr("tangible_bench.run._outcome", lambda wanted, _: answer(Place(*wanted.place), wanted.job))
+    patch.setattr("tangible_bench.measuring.worker.gc", SimpleNamespace(collect=lambda: None, freeze=lambda: None))
+    patch.setattr("tangible_bench.measuring.run._outcome", lambda wanted, _: answer(Place(*wanted.place), wanted.job))
 
 
 Command = Callable[..., "subprocess.Popen[str]"]

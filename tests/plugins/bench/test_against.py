@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from tangible_bench.against import compare
-from tangible_bench.rows import Row
+from tangible_bench.measuring.rows import Row
+from tangible_bench.results.regressions import find_regressions
 from tangible_core.errors import ResultsError
 
 ROW = Row("k", "depth", "m", "m", {}, "d 1", "s", "digest", "none", (), 0, {}, {"processor": "p"})
@@ -21,7 +21,7 @@ def rows(seconds: list[float], method: str = "m", bad2: float | None = 5.0, memo
 
 
 def worse(before: list[Row], after: list[Row]) -> list[str]:
-    return [each.what for each in compare(before, after).worse]
+    return [each.what for each in find_regressions(before, after).worse]
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,7 @@ def test_time(before: list[float], after: list[float], expected: list[str]):
 
 
 def test_the_rule_of_time_is_three_standard_deviations():
-    verdict = compare(rows([0.9, 1.0, 1.1]), rows([1.6, 1.7, 1.8]))
+    verdict = find_regressions(rows([0.9, 1.0, 1.1]), rows([1.6, 1.7, 1.8]))
     assert verdict.worse[0].allowed == pytest.approx(3 * 2**0.5 * 1.4826 * 0.1)
     assert (verdict.worse[0].before, verdict.worse[0].after) == (1.0, 1.7)
 
@@ -67,7 +67,7 @@ def test_memory():
 
 
 def test_a_method_that_fails_now():
-    (found,) = compare(rows([1.0]), [replace(ROW, error="gone")]).worse
+    (found,) = find_regressions(rows([1.0]), [replace(ROW, error="gone")]).worse
     assert (found.what, found.why) == ("fails", "gone")
     assert worse([replace(ROW, error="gone")], rows([1.0])) == []
     assert worse([replace(ROW, error="gone")], [replace(ROW, error="still")]) == []
@@ -81,7 +81,7 @@ def test_with_a_common_baseline_times_are_ratios_and_machines_may_differ():
 
 
 def test_what_is_in_one_file_only_is_said():
-    verdict = compare(rows([1.0]) + rows([1.0], "gone"), rows([1.0]) + rows([1.0], "new"))
+    verdict = find_regressions(rows([1.0]) + rows([1.0], "gone"), rows([1.0]) + rows([1.0], "new"))
     assert verdict.compared == 1
     assert verdict.missing == ("gone | s | none", "new | s | none")
 
@@ -98,4 +98,4 @@ def test_what_is_in_one_file_only_is_said():
 )
 def test_files_that_cannot_be_compared(after: list[Row], why: str):
     with pytest.raises(ResultsError, match=why):
-        compare(rows([1.0]), after)
+        find_regressions(rows([1.0]), after)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tangible_bench.config import load_comparison
-from tangible_bench.rows import Row, append, read_rows
+from tangible_bench.config.reading import load_comparison
+from tangible_bench.measuring.rows import Row, append, read_rows
 from tangible_core.plugins.registry import default_registry
 
 ROOT = Path(__file__).parents[3]

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from tangible_bench.comparing import ComparisonOutcome, Step, compare, read_comparison
-from tangible_bench.config import parse_comparison
-from tangible_bench.rows import read_rows
+from tangible_bench.config.reading import parse_comparison
+from tangible_bench.measuring.rows import read_rows
 from tangible_core.errors import ResultsError, Stopped
 from tangible_core.plugins.registry import Registry
 

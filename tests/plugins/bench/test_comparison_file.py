@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tangible_bench.config import Comparison, load_comparison, parse_comparison
+from tangible_bench.config.reading import Comparison, load_comparison, parse_comparison
 from tangible_core.errors import ConfigError
 from tangible_core.plugins.registry import Registry
 
@@ -129,13 +129,13 @@ baseline: constat
         (
             "compare: depth\nmethods: [{use: ranged, given: [seed]}]\nscenes: [synthetic/bars]\n",
             "2:25",
-            "'seed' to this",
+            "gives 'seed' to this",
         ),
         ("compare: depth\nmethods: [{use: ranged, given: 3}]\nscenes: [synthetic/bars]\n", "2:25", "max_disparity_px"),
         ("compare: depth\nmethods: [{use: half, given: [value_px]}]\nscenes: [synthetic/bars]\n", "2:23", "nothing"),
-        (GOOD + "perturb: [loud]\n", "4:11", "write none, or such as"),
+        (GOOD + "perturb: [loud]\n", "4:11", "write none, or for example"),
         (GOOD + "perturb: [{noise: loud}]\n", "4:12", "not 'loud'"),
-        (GOOD + "out: [1]\n", "4:1", "a folder is wanted"),
+        (GOOD + "out: [1]\n", "4:1", "must be a folder"),
         (GOOD.replace("synthetic/steps", "motorcycle"), "3:10", "no scene is named 'motorcycle'"),
         (GOOD.replace("synthetic/steps", "{folder: nowhere}"), "3:10", "neither it nor a folder in it holds left.png"),
         (GOOD.replace("synthetic/steps", "synthetic/steps, synthetic/steps"), "3:27", "two scenes are called"),
@@ -183,7 +183,7 @@ def test_a_folder_without_truth(registry: Registry, tmp_path: Path):
     write_pair(tmp_path / "a", np.ones((8, 9), np.float32), "npy")
     (tmp_path / "a" / "disparity.npy").unlink()
     (tmp_path / "c.yaml").write_text(GOOD.replace("synthetic/steps", "{folder: a}"))
-    from tangible_bench.plan import measurements
+    from tangible_bench.measuring.plan import measurements
 
     with pytest.raises(ConfigError, match=r"a: has no true disparity; put disparity\.npz"):
         measurements(load_comparison(tmp_path / "c.yaml", registry))

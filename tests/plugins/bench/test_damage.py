@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tangible_bench import damage
-from tangible_bench.depth import PERTURBATIONS
+from tangible_bench.tasks import damage
+from tangible_bench.tasks.depth import PERTURBATIONS
 from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 
 GREY = np.full((64, 64), 100, np.uint8)

@@ -7,9 +7,8 @@ import pytest
 import dask_imported  # noqa: F401
 from command_line import tangible
 from tangible_bench.comparing import ComparisonOutcome, Step, compare
-from tangible_bench.config import parse_comparison
-from tangible_bench.errors_only import errors_only
-from tangible_bench.rows import read_rows
+from tangible_bench.config.reading import errors_only, parse_comparison
+from tangible_bench.measuring.rows import read_rows
 from tangible_core.plugins.registry import Registry
 
 FILE = """
@@ -47,7 +46,7 @@ def test_errors_are_those_of_timed_measurements_and_times_are_empty(registry: Re
             assert "its worker died of it" in (cell.error or "")
         else:
             assert (cell.error or "").partition("; ")[0] == (before.error or "").partition("; ")[0]
-    assert found.results.failed == timed.results.failed == ["raises", "fails", "dies"]
+    assert found.results.methods_without_result == timed.results.methods_without_result == ["raises", "fails", "dies"]
     rows = read_rows(tmp_path / "out-errors/results.jsonl")
     assert not rows.keys() & read_rows(tmp_path / "out/results.jsonl").keys()
     assert {row.seconds for row in rows.values()} == {None}

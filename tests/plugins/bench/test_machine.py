@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tangible_bench.machine import machine
+from tangible_bench.measuring.machine import machine
 from tangible_bench.memory import held_bytes, start_peak
 
 

@@ -10,11 +10,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from tangible_bench import plan
-from tangible_bench.config import Comparison, parse_comparison
-from tangible_bench.plan import measurements
-from tangible_bench.rows import Row, append, mend, read_rows
-from tangible_bench.run import look, run
+from tangible_bench.config.reading import Comparison, parse_comparison
+from tangible_bench.measuring import plan
+from tangible_bench.measuring.plan import measurements
+from tangible_bench.measuring.rows import Row, append, mend, read_rows
+from tangible_bench.measuring.run import look, run
 from tangible_core.errors import ConfigError, OutputError, ResultsError
 from tangible_core.plugins.registry import Registry
 
@@ -74,7 +74,7 @@ def test_an_option_that_the_scene_tells(registry: Registry, tmp_path: Path):
 def test_an_option_that_a_method_cannot_be_told(registry: Registry, tmp_path: Path):
     wanted = comparison(registry, "{use: ranged, given: [max_disparity_px]}")
     with pytest.raises(
-        ConfigError, match=r"ranged cannot be told .* less than or equal to 1000; leave out its `given:`"
+        ConfigError, match=r"ranged cannot be given .* less than or equal to 1000; leave out its `given:`"
     ):
         wanted.methods[0].method_for({"max_disparity_px": 2000})
 
@@ -324,7 +324,7 @@ def test_a_worker_does_not_outlive_the_comparison(tangible, tmp_path: Path, end:
     _, noise = process.communicate()
     if end == signal.SIGINT:
         assert process.returncode == 130, noise
-        assert "the same command goes on from there" in noise
+        assert "the same command continues from there" in noise
     worker = int(pid_file.read_text())
     wait_for(lambda: not alive(worker))
     assert [row.method for row in read_rows(tmp_path / "out" / "results.jsonl").values()] == ["constant"]

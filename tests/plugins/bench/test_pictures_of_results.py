@@ -11,11 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
 
-from tangible_bench.labels import place_labels
-from tangible_bench.plot import draw_plot
-from tangible_bench.summary import Cell
-from tangible_bench.table import Results
-from tangible_bench.task import load_task
+from tangible_bench.results.labels import place_labels
+from tangible_bench.results.plot import draw_plot
+from tangible_bench.results.summary import Cell
+from tangible_bench.results.table import Results
+from tangible_bench.tasks.task import load_task
 from tangible_core.data import DisparityMap
 from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 

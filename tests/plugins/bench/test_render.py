@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tangible_bench.config import Comparison, parse_comparison
-from tangible_bench.plan import measurements
-from tangible_bench.plot import draw_plot
-from tangible_bench.render import PERTURBATIONS, TASK, feel, limits, measure, prepare
-from tangible_bench.render_scenes import RenderScene
-from tangible_bench.run import look, run
-from tangible_bench.summary import cells
-from tangible_bench.table import Results, tables
+from tangible_bench.config.reading import Comparison, parse_comparison
+from tangible_bench.measuring.plan import measurements
+from tangible_bench.measuring.run import look, run
+from tangible_bench.results.plot import draw_plot
+from tangible_bench.results.summary import cells
+from tangible_bench.results.table import Results, tables
+from tangible_bench.tasks.render import PERTURBATIONS, TASK, feel, limits, measure, prepare
+from tangible_bench.tasks.render_scenes import RenderScene
 from tangible_core.errors import ConfigError, OutputError
 from tangible_core.metrics import HANDLE
 from tangible_core.plugins.registry import Registry, load_method

@@ -11,17 +11,17 @@ import pytest
 
 from command_line import tangible
 from standard_sets import LAYOUTS, known, put
-from tangible_bench import set_tables
-from tangible_bench.config import Comparison, parse_comparison
+from tangible_bench.config.reading import Comparison, parse_comparison
 from tangible_bench.datasets import MarkedPair, StandardPair
 from tangible_bench.datasets.submissions import write_pfm, write_png16, write_submission
-from tangible_bench.depth import TASK, measure, range_px
-from tangible_bench.depth_scenes import DepthScene
-from tangible_bench.rows import Row, append
+from tangible_bench.measuring.rows import Row, append
+from tangible_bench.results import set_tables
+from tangible_bench.results.summary import cells
+from tangible_bench.results.table import Results, tables
 from tangible_bench.submitting import submit
-from tangible_bench.summary import cells
-from tangible_bench.table import Results, tables
-from tangible_bench.texture_scenes import TextureScene
+from tangible_bench.tasks.depth import TASK, measure, range_px
+from tangible_bench.tasks.depth_scenes import DepthScene
+from tangible_bench.tasks.texture_scenes import TextureScene
 from tangible_core.data import DisparityMap
 from tangible_core.errors import ConfigError, OutputError, PictureError
 from tangible_core.plugins.registry import Registry
@@ -70,7 +70,7 @@ def test_a_set_stands_for_its_pairs(scene: str, names: list[str], registry: Regi
         ("{set: eth3d, folder: nowhere}", "nowhere: there is no such folder; fetch two_view_training.7z"),
         ("{set: kitti-2015, resolution: Q}", "resolution: kitti-2015 has none called 'Q'"),
         ("{set: kitti-2015, builtin: motorcycle}", "this one is builtin and set"),
-        ("{folder: x, resolution: Q}", "resolution is of a standard set; name it: `set: ...`"),
+        ("{folder: x, resolution: Q}", "resolution needs a standard set; name it: `set: ...`"),
         ("{set: kitti-2015, only: [x]}", "no pair in it is named 'x'"),
         ("{pairs: {left: 'L*', right: 'R*'}}", "no file in it matches left: 'L*'"),
         ("{pairs: {left: 'L*'}}", "scenes.0.pairs.right: Field required"),
@@ -113,7 +113,7 @@ def test_pictures_and_labels_of_ones_own(tmp_path: Path):
     again = TextureScene.model_validate(spec.expand()["y"].model_dump(mode="json"))
     assert again.open().digest() == scene.digest()
     put(tmp_path / "truth/y_seg.png", np.eye(4, 4, dtype=np.uint8))
-    with pytest.raises(PictureError, match=r"y\.png is 4 x 3 and .*y_seg\.png 4 x 4; they must be of one size"):
+    with pytest.raises(PictureError, match=r"y\.png is 4 x 3 and .*y_seg\.png 4 x 4; they must be of the same size"):
         again.open()
 
 
@@ -306,10 +306,10 @@ class TestSubmissions:
         assert not [path for path in (folder / "sent").rglob("*") if path.is_file()]
 
     def test_sets_that_take_none(self, registry: Registry, folder: Path):
-        with pytest.raises(ConfigError, match="no scene is of a set that takes submissions: middlebury-eval3"):
+        with pytest.raises(ConfigError, match="no scene is from a set that takes submissions: middlebury-eval3"):
             list(submit(parsed(registry, folder, "{synthetic: steps}"), folder / "sent"))
         pair = StandardPair("x", Path("l.png"), Path("r.png"))
-        with pytest.raises(ConfigError, match="sintel takes no submissions; those that do are middlebury-eval3"):
+        with pytest.raises(ConfigError, match="sintel takes no submissions; sets that do are middlebury-eval3"):
             write_submission(folder, "sintel", "m", pair, np.zeros((1, 1), np.float32), 1.0)
 
 
@@ -363,9 +363,9 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("words", "why"),
         [
-            (["c.yaml", "--folder", "x"], "--folder: says where a standard set lies, and c.yaml is none"),
+            (["c.yaml", "--folder", "x"], "--folder: is the folder of a standard set, and c.yaml is not one"),
             (["r.jsonl", "--submission", "x"], "--submission: r.jsonl holds figures alone; name the comparison file"),
-            (["c.yaml", "--table", "csv", "--json"], "--table: says what is printed"),
+            (["c.yaml", "--table", "csv", "--json"], "--table: decides what is printed"),
             (["kitti-2015@X"], "resolution: kitti-2015 has none called 'X'"),
         ],
     )

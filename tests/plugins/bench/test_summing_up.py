@@ -7,11 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangible_bench.pareto import front
-from tangible_bench.rows import Row
-from tangible_bench.summary import cells, lines, spread
-from tangible_bench.table import Results, tables
-from tangible_bench.task import load_task
+from tangible_bench.measuring.rows import Row
+from tangible_bench.results.summary import cells, lines, spread
+from tangible_bench.results.table import Results, front, tables
+from tangible_bench.tasks.task import load_task
 
 ROW = Row("k", "depth", "m", "m", {}, "d 1", "s", "digest", "none", (), 0, {}, {"processor": "p"}, seconds=1.0)
 

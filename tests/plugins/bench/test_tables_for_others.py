@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from tangible_bench.comparing import compare, read_comparison
-from tangible_bench.config import Comparison, Damage, parse_comparison, quick
-from tangible_bench.forecast import Forecast, forecast
-from tangible_bench.plan import measurements
-from tangible_bench.run import look
+from tangible_bench.config.reading import Comparison, Damage, parse_comparison, shorten
+from tangible_bench.measuring.forecast import Forecast, forecast
+from tangible_bench.measuring.plan import measurements
+from tangible_bench.measuring.run import look
 from tangible_core.metrics.measured import measured
 from tangible_core.plugins.registry import Registry, default_registry
 
@@ -33,7 +33,7 @@ def comparison(registry: Registry, folder: Path) -> Comparison:
 
 def test_a_first_look_is_a_sixth_of_the_work_in_a_folder_of_its_own(registry: Registry, tmp_path: Path):
     whole = comparison(registry, tmp_path)
-    short = quick(whole)
+    short = shorten(whole)
     assert (short.protocol.repeats, short.protocol.calls, short.damages) == (1, 1, (Damage(),))
     assert short.out == tmp_path / "out-quick" and short.methods == whole.methods
     assert len(measurements(short)) * 6 == len(measurements(whole))
@@ -58,7 +58,7 @@ def test_the_time_is_guessed_and_corrected_by_what_was_measured(tmp_path: Path):
 @pytest.mark.slow
 @pytest.mark.usefixtures("cells_here")
 def test_every_figure_is_written_for_other_programs(registry: Registry, tmp_path: Path):
-    found = compare(quick(comparison(registry, tmp_path)))
+    found = compare(shorten(comparison(registry, tmp_path)))
     assert {"table.csv", "table.tex", "results.jsonl"} <= {path.name for path in found.files}
     lines = list(csv.DictReader(io.StringIO((tmp_path / "out-quick" / "table.csv").read_text())))
     assert len(lines) == 6

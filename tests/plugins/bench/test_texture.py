@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tangible_bench import turning
-from tangible_bench.config import Comparison, parse_comparison
-from tangible_bench.plan import measurements
-from tangible_bench.run import look, run
-from tangible_bench.summary import cells
-from tangible_bench.table import Results, tables
-from tangible_bench.texture import PERTURBATIONS, TASK, measure
-from tangible_bench.texture_scenes import TextureScene
+from tangible_bench.config.reading import Comparison, parse_comparison
+from tangible_bench.measuring.plan import measurements
+from tangible_bench.measuring.run import look, run
+from tangible_bench.results.summary import cells
+from tangible_bench.results.table import Results, tables
+from tangible_bench.tasks import transforms
+from tangible_bench.tasks.texture import PERTURBATIONS, TASK, measure
+from tangible_bench.tasks.texture_scenes import TextureScene
 from tangible_core.data import SegmentMap
 from tangible_core.errors import ConfigError, PictureError
 from tangible_core.plugins.registry import Registry
@@ -52,7 +52,7 @@ def test_scenes_by_name(registry: Registry):
         ("tiles/4", "no scene is named 'tiles/4'"),
         ("mosaic/0", "greater than or equal to 1"),
         ("{mosaic: 2, smooth: 3}", "one of mosaic, smooth, folder and pairs; this one is mosaic and smooth"),
-        ("{smooth: 3, textures: here}", "textures are what a mosaic is made of; leave them out of smooth"),
+        ("{smooth: 3, textures: here}", "textures: only a mosaic is made of them; leave them out of smooth"),
         ("{folder: nowhere}", "neither it nor a folder in it holds picture.png and labels.png"),
     ],
 )
@@ -117,15 +117,15 @@ def test_any_picture_can_be_turned(scene: KnownSegments, name: str, value: float
 
 
 def test_quarter_turns_and_flips_are_exact():
-    back = turning.quarter(turning.quarter(SCENE, 1), 3)
+    back = transforms.quarter(transforms.quarter(SCENE, 1), 3)
     np.testing.assert_array_equal(back.picture, SCENE.picture)
-    np.testing.assert_array_equal(turning.flip(SCENE, 1).labels, SCENE.labels[:, ::-1])
-    np.testing.assert_array_equal(turning.flip(SCENE, 0).labels, SCENE.labels[::-1])
+    np.testing.assert_array_equal(transforms.flip(SCENE, 1).labels, SCENE.labels[:, ::-1])
+    np.testing.assert_array_equal(transforms.flip(SCENE, 0).labels, SCENE.labels[::-1])
 
 
 def test_a_right_angle_in_degrees_is_a_quarter_turn():
     square = smooth_scene(4, (41, 41), seed=1)
-    turned, expected = turning.rotate(square, 90), turning.quarter(square, 1)
+    turned, expected = transforms.rotate(square, 90), transforms.quarter(square, 1)
     np.testing.assert_array_equal(turned.labels, expected.labels)
     np.testing.assert_array_equal(turned.picture, expected.picture)
 
@@ -136,7 +136,7 @@ def test_a_turned_scene_has_no_empty_corners(degrees: float, shape: tuple[int, i
     """A slope stays one: anything from outside would bend it."""
     rows, columns = np.indices(shape)
     slope = KnownSegments((20 + rows + columns).astype(np.uint8), np.zeros(shape, np.int32))
-    grey = turning.rotate(slope, degrees).picture.astype(np.float64)
+    grey = transforms.rotate(slope, degrees).picture.astype(np.float64)
     assert np.abs(np.diff(grey, 2, axis=0)).max() <= 2
     assert np.abs(np.diff(grey, 2, axis=1)).max() <= 2
     cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
@@ -146,14 +146,14 @@ def test_a_turned_scene_has_no_empty_corners(degrees: float, shape: tuple[int, i
 
 @pytest.mark.parametrize(("factor", "shape"), [(0.5, (20, 30)), (2, (80, 120)), (0.1, (4, 6))])
 def test_scaling(factor: float, shape: tuple[int, int]):
-    scaled = turning.scale(SCENE, factor)
+    scaled = transforms.scale(SCENE, factor)
     assert scaled.labels.shape == scaled.picture.shape == shape
     assert scaled.picture.mean() == pytest.approx(SCENE.picture.mean(), abs=4)
 
 
 def test_scaling_down_leaves_no_false_pattern():
     stripes = KnownSegments(np.uint8(255 * (np.indices((40, 60))[1] % 2)), np.zeros((40, 60), np.int32))
-    assert turning.scale(stripes, 0.45).picture.std() < 30
+    assert transforms.scale(stripes, 0.45).picture.std() < 30
 
 
 @pytest.mark.slow

@@ -41,7 +41,7 @@ def test_rectify_never_skips_rectification():
     assert np.mean(error[scene.visible()] <= 2) < 0.8
 
 
-def test_both_reports_agree():
+def test_kornia_report_agrees_with_report():
     scene = Scene()
     views = Views(scene.left(), scene.right())
     difference = KorniaReport().estimate(views).disparity_px - Report().estimate(views).disparity_px

@@ -1,4 +1,4 @@
-"""The simulated hand: its motion, and what it does on ground."""
+"""The simulated hand: its motion, free and on ground."""
 
 import math
 
@@ -16,7 +16,7 @@ from tangible_render.penalty_gradient import PenaltyGradient
 
 class TestHand:
     @given(st.floats(1e-3, 100), st.floats(0, 1e4), st.floats(0.1, 1e6), st.floats(1e-5, 1))
-    def test_its_motion_is_exact_and_never_gains_energy(self, mass: float, damping: float, k: float, period: float):
+    def test_hand_motion_is_exact_and_never_gains_energy(self, mass: float, damping: float, k: float, period: float):
         """The motion over T is the one over T/2 twice, and sqrt(k) x, sqrt(m) v never grow."""
         hand = VirtualHand(mass_kg=mass, damping_n_s_per_m=damping, stiffness_n_per_m=k)
         whole, half = np.array(free_motion(hand, period)), np.array(free_motion(hand, period / 2))
@@ -26,66 +26,66 @@ class TestHand:
         assert np.allclose(scaled, twice, atol=1e-7)
         assert np.linalg.norm(scaled, 2) <= 1 + 1e-7
 
-    def test_without_damping_it_swings(self):
+    def test_hand_without_damping_swings(self):
         hand = VirtualHand(mass_kg=0.25, damping_n_s_per_m=0, stiffness_n_per_m=100)
         (xx, xv), (vx, vv) = free_motion(hand, 0.03)
         angle = 20 * 0.03
         assert (xx, xv) == pytest.approx((math.cos(angle), math.sin(angle) / 20), rel=1e-12)
         assert (vx, vv) == pytest.approx((-20 * math.sin(angle), math.cos(angle)), rel=1e-12)
 
-    def test_at_critical_damping(self):
+    def test_hand_at_critical_damping_matches_the_formula(self):
         hand = VirtualHand(mass_kg=0.25, damping_n_s_per_m=10, stiffness_n_per_m=100)  # both roots at -20 / s
         (xx, xv), _ = free_motion(hand, 0.05)
         assert (xx, xv) == pytest.approx((2 * math.exp(-1), 0.05 * math.exp(-1)), rel=1e-12)
 
-    def test_it_rests_where_its_spring_balances_the_force(self):
+    def test_hand_rests_where_spring_balances_force(self):
         hand = MovingHand(VirtualHand(press_n=100), (0.0, 0.0, 0.03), 0.001)
         for _ in range(5000):
             hand.step((0.01, -0.01, -0.005), Force(0.3, -0.6, 0.9))
         assert hand.position_m == pytest.approx((0.011, -0.012, -0.002), abs=1e-12)
         assert hand.velocity_m_per_s == pytest.approx((0, 0, 0), abs=1e-12)
 
-    def test_on_the_ground_k_hand_times_the_way_to_the_target_is_the_force(self):
+    def test_hand_on_ground_presses_by_its_spring(self):
         mock = Mock(path="circle", z_m=GROUND_M - 0.003, hand=VirtualHand(stiffness_n_per_m=200.0))
         with mock.open() as link:
             state, force = feel(link, PenaltyGradient(stiffness_n_per_m=800).touch(GROUND), 3000)[-1]
         assert force.z == pytest.approx(200 * (state.position_m[2] - mock.z_m), rel=1e-9)
         assert force.z == pytest.approx(0.003 * 200 * 800 / 1000, rel=1e-9)  # two springs in a row
 
-    def test_it_presses_with_its_strength_and_no_more(self):
+    def test_hand_presses_with_limited_strength(self):
         with Mock(path="circle", z_m=-1.0, hand=VirtualHand(press_n=1.25)).open() as link:
-            felt = feel(link, PenaltyGradient(stiffness_n_per_m=800).touch(GROUND), 3000)
-        state, force = felt[-1]
+            ticks = feel(link, PenaltyGradient(stiffness_n_per_m=800).touch(GROUND), 3000)
+        state, force = ticks[-1]
         assert force.z == pytest.approx(1.25, rel=1e-9)
         assert state.position_m[2] == pytest.approx(GROUND_M - 1.25 / 800, rel=1e-9)
 
     @pytest.mark.parametrize("stiffness", [200.0, 800.0, 3000.0])
-    def test_a_wall_at_one_kilohertz_is_stable_and_takes_energy(self, stiffness: float):
+    def test_hand_on_wall_at_one_kilohertz_is_stable(self, stiffness: float):
         """The hand's 6 N s/m are over K T / 2 = 1.5 N s/m, so a sampled wall of 3 N/mm is passive."""
         with Mock(path="circle").open() as link:
-            felt = feel(link, PenaltyGradient(stiffness_n_per_m=stiffness).touch(GROUND), 4000)
-        place, force = np.array([state.position_m for state, _ in felt]), np.array([force for _, force in felt])
+            ticks = feel(link, PenaltyGradient(stiffness_n_per_m=stiffness).touch(GROUND), 4000)
+        place, force = np.array([state.position_m for state, _ in ticks]), np.array([force for _, force in ticks])
         assert np.abs(np.diff(place[-1000:, 2])).max() < 1e-12
         assert force[:, 2].max() < 8
         landed = int(np.flatnonzero(force[:, 2])[0])
-        kinetic = 0.05 * np.square(felt[landed][0].velocity_m_per_s).sum()
+        kinetic = 0.05 * np.square(ticks[landed][0].velocity_m_per_s).sum()
         given_back = np.sum(force[:-1] * np.diff(place, axis=0))
         assert given_back < 0.25 * kinetic
 
-    def test_it_rides_over_hills(self):
+    def test_hand_follows_hills(self):
         """By default the demo's hand is in contact nearly all the time, and follows heights of 2 to 18 mm."""
         x = np.linspace(-3, 3, 256)
         heights = 0.01 + 0.008 * np.sin(2 * x)[None, :] * np.cos(2 * x)[:, None]
         surface = HapticSurface.from_heights(heights)
         with Mock().open() as link:
-            felt = feel(link, PenaltyGradient().touch(surface), 8000)
-        force = np.linalg.norm([force for _, force in felt], axis=1)
+            ticks = feel(link, PenaltyGradient().touch(surface), 8000)
+        force = np.linalg.norm([force for _, force in ticks], axis=1)
         assert np.mean(force > 0) > 0.95
         assert 1.0 < np.median(force) < 3.0
-        z = [state.position_m[2] for state, _ in felt[500:]]
+        z = [state.position_m[2] for state, _ in ticks[500:]]
         assert max(z) - min(z) > 0.01
 
-    def test_it_starts_lifted_and_at_rest(self):
+    def test_hand_starts_lifted_and_at_rest(self):
         with Mock(lift_m=0.025).open() as link:
             first = link.read()
         assert first == HapticState((-0.03, 0.02, 0.025), (0, 0, 0), 0.0)

@@ -1,6 +1,6 @@
-"""The benchmarks of the field: standard sets of pairs, read as their kits lay them out; nothing is downloaded.
+"""Standard sets: the pairs of the stereo benchmarks, read as their archives unpack; nothing is downloaded.
 
->>> from tangible_core import datasets
+>>> from tangible_bench import datasets
 >>> [name for name in datasets.SETS if name.startswith("kitti")]
 ['kitti-2012', 'kitti-2015']
 """

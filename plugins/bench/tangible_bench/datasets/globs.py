@@ -1,4 +1,4 @@
-"""Files of one's own that belong together: matched by what the stars of their patterns match."""
+"""Custom files that belong together: those where the stars of their patterns match the same."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -8,17 +8,17 @@ from pathlib import Path, PurePosixPath
 from tangible_core.errors import ConfigError, PictureError, quoted
 from tangible_core.files.paths import as_path
 
-from .walking import folders
+from .folders import folders
 
 _WILD = re.compile(r"\*\*/?|\*|\?|\[[^\]]+\]")
 
 
 def matched(folder: Path, patterns: Mapping[str, str], needed: tuple[str, str]) -> dict[str, dict[str, Path]]:
-    """Files by part, by the name that what the stars match makes; in the order of these names.
+    """Return name -> part -> file, in the order of names; a name is the text that the stars match.
 
-    patterns: part -> pattern relative to the folder; `*` and `?` match within a name, `**/` any folders. needed: parts
-    without which there is nothing; the first one says which names there are.
-    Raises: ConfigError for patterns of different numbers of stars; PictureError if nothing matches, or a file has no
+    patterns: part -> pattern relative to the folder; `*` and `?` match within a name, `**/` any folders. needed: the
+    two parts that every name must have; the names are those of the first one.
+    Raises: ConfigError for patterns with different numbers of stars; PictureError if nothing matches, or a file has no
     partner.
     """
     first, second = needed
@@ -27,24 +27,24 @@ def matched(folder: Path, patterns: Mapping[str, str], needed: tuple[str, str]) 
         if (stars := len(_WILD.findall(pattern))) != wanted or not stars:
             raise ConfigError(
                 f"{part}: {quoted(pattern)} has {stars} stars and {first}: {quoted(patterns[first])} has {wanted}; "
-                "files belong together by what their stars match, so that each pattern has as many, at least one"
+                "files belong together if their stars match the same, so each pattern needs as many, at least one"
             )
-    found = {part: dict(_files(folder, pattern)) for part, pattern in patterns.items()}
-    names = sorted(found[first])
+    files_of = {part: dict(_files(folder, pattern)) for part, pattern in patterns.items()}
+    names = sorted(files_of[first])
     if not names:
         raise PictureError(f"{folder}: no file in it matches {first}: {quoted(patterns[first])}; check the pattern")
-    if lonely := next((name for name in names if name not in found[second]), None):
+    if lonely := next((name for name in names if name not in files_of[second]), None):
         raise PictureError(
-            f"{found[first][lonely]}: no file matches {second}: {quoted(patterns[second])} with the same stars "
+            f"{files_of[first][lonely]}: no file matches {second}: {quoted(patterns[second])} with the same stars "
             f"({quoted(lonely)}); correct the pattern, or move this one away"
         )
-    return {name: {part: files[name] for part, files in found.items() if name in files} for name in names}
+    return {name: {part: files[name] for part, files in files_of.items() if name in files} for name in names}
 
 
 def _files(folder: Path, pattern: str) -> Iterator[tuple[str, Path]]:
     base, rest = _start(folder, pattern)
     if not base.is_dir():
-        raise PictureError(f"{base}: there is no such folder, in which {quoted(pattern)} would be; check the path")
+        raise PictureError(f"{base}: there is no such folder for {quoted(pattern)}; check the path")
     wanted = re.compile(_regex(rest))
     deep = "/" in rest or "**" in rest
     for each in folders(base):
@@ -58,14 +58,14 @@ def _files(folder: Path, pattern: str) -> Iterator[tuple[str, Path]]:
 
 
 def _start(folder: Path, pattern: str) -> tuple[Path, str]:
-    """The folder before the first star, and the pattern from there on."""
+    """Return the folder before the first star, and the rest of the pattern."""
     parts = PurePosixPath(as_path(pattern).as_posix()).parts
     plain = next((index for index, part in enumerate(parts) if _WILD.search(part)), len(parts))
     return folder.joinpath(*parts[:plain]), "/".join(parts[plain:])
 
 
 def _regex(pattern: str) -> str:
-    """One group for each star.
+    """Return a regular expression with a group for each star.
 
     >>> _regex("**/left_*.png")
     '((?:[^/]+/)*)left_([^/]*)\\\\.png'
@@ -82,5 +82,5 @@ _STARS = {"**/": "((?:[^/]+/)*)", "**": "(.*)", "*": "([^/]*)", "?": "([^/])"}
 
 
 def _one_of(brackets: str) -> str:
-    """`[0-9]` as a regular expression."""
+    """Return brackets such as `[0-9]` as a regular expression."""
     return translate(brackets).removeprefix("(?s:").removesuffix(r")\Z").removesuffix(r")\z")

@@ -1,14 +1,15 @@
-"""The sets that are known by name: what to fetch, where it belongs, and how it is read."""
+"""The standard sets by name: the archive to fetch, the files in its folder, and the reader."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-from . import middlebury
-from .booster import booster
-from .eth3d import eth3d
-from .kitti import kitti_2012, kitti_2015
-from .sintel import sintel
+from .kits import middlebury
+from .kits.booster import booster
+from .kits.eth3d import eth3d
+from .kits.kitti import kitti_2012, kitti_2015
+from .kits.sintel import sintel
 from .standard_pair import Resolution, StandardPair
 
 Read = Callable[[Path], Iterator[StandardPair]]
@@ -20,20 +21,20 @@ class StandardSet:
 
     title: str
     archive: str
-    """Which file to fetch."""
+    """The file to fetch."""
     page: str
-    """Where from."""
-    lies: str
-    """What is in its folder once it is unpacked."""
+    """The page to fetch it from."""
+    contents: str
+    """The files in its folder once it is unpacked."""
     read: Mapping[str, Read]
-    """By variant; the first one is meant if none is said."""
+    """Variant -> reader; the first variant is the default."""
     sizes: tuple[Resolution, ...] = ()
-    """At which it can be had, the largest one first: smaller ones that do not lie there are made."""
+    """The sizes of its pairs, the largest first; smaller ones that are not in the folder are made from larger ones."""
 
     @property
     def fetch(self) -> str:
-        """What to do where it is not there."""
-        return f"fetch {self.archive} from {self.page} and unpack it there, so that it holds {self.lies}"
+        """The instruction for a set that is missing."""
+        return f"fetch {self.archive} from {self.page} and unpack it there, so that it holds {self.contents}"
 
 
 _MIDDLEBURY = "https://vision.middlebury.edu/stereo"
@@ -85,11 +86,11 @@ SETS: Mapping[str, StandardSet] = {
     "sintel": StandardSet(
         "MPI Sintel stereo", "MPI-Sintel-stereo-training-20150305.zip", "http://sintel.is.tue.mpg.de/stereo",
         "training/final_left, final_right, disparities and occlusions",
-        {"final": sintel("final"), "clean": sintel("clean")},
+        {"final": partial(sintel, variant="final"), "clean": partial(sintel, variant="clean")},
     ),
     "booster": StandardSet(
         "Booster", "booster_gt.zip", "https://cvlab-unibo.github.io/booster-web/",
         "train/balanced/SCENE/camera_00, camera_02 and disp_00.npy", {"": booster}, ("F", "H", "Q"),
     ),
 }  # fmt: skip
-"""By the name that files and commands give them."""
+"""Name of a set in files and commands -> the set."""

@@ -1,4 +1,4 @@
-"""A pair of a standard set: where its files are; and the pair itself, once they are read."""
+"""A pair of a standard set: the paths of its files, and the pair itself once they are read."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,16 +15,16 @@ from tangible_core.scene.formats.pictures import TruthScale, read_map
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import SceneFiles
 
-from .cameras import Cameras, ReadCameras, unknown_cameras
-from .smaller import smaller_mask, smaller_truth, smaller_views
+from .cameras import Cameras, ReadCameras
+from .shrinking import shrink_mask, shrink_truth, shrink_views
 
 Resolution = Literal["F", "H", "T", "Q"]
 FULL_PX: dict[Resolution | None, int] = {None: 1, "F": 1, "H": 2, "T": 3, "Q": 4}
-"""How many pixels of the full size one pixel is wide."""
+"""The width of a pixel of each resolution, in pixels of the full size."""
 
 
 class Mask(NamedTuple):
-    """Pictures that mark pixels: those that all of them mark."""
+    """Mask pictures; the mask has the pixels that all of them mark."""
 
     files: tuple[Path, ...]
     marks: Literal["at 255", "above 0", "at 0"]
@@ -32,13 +32,13 @@ class Mask(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class MarkedPair(Record):
-    """A pair and all that its benchmark knows of it.
+    """A pair with the truth, masks and range of its benchmark.
 
-    truth_px: true disparity in px, NaN where unknown; None for a pair to submit results of.
-    noc: pixels that both views show; None where nobody knows. foreground: pixels of moving objects.
-    full_px: how many pixels of the full size one pixel is wide, which the benchmark's thresholds count; None of a set
-    that has one size.
-    most_px: the largest disparity that methods are told, in pixels of these pictures.
+    truth_px: true disparity in px, NaN where unknown; None for a pair whose results are to be submitted.
+    noc: pixels that both views show; None if unknown. foreground: pixels of moving objects.
+    full_px: the width of a pixel in pixels of the full size, in which the benchmark's thresholds are given; None for a
+    set in one size.
+    most_px: the largest disparity that methods are given, in pixels of these pictures.
     """
 
     views: Views
@@ -51,56 +51,56 @@ class MarkedPair(Record):
 
 @dataclass(frozen=True)
 class StandardPair:
-    """A pair of a set by its files, none of which is read before it is opened."""
+    """The files of a pair of a set; none is read before the pair is opened."""
 
     name: str
     left: Path
     right: Path
     truth: Path | None = None
-    """None of a pair whose truth its benchmark keeps."""
+    """The true disparity; None if the benchmark keeps it."""
     truth_scale: TruthScale | None = None
     """See `SceneFiles.truth_scale`."""
     noc: Mask | None = None
-    """Which pixels both views show; None for what the truth tells, where it is dense."""
+    """The mask of pixels that both views show; None to derive it from a dense truth."""
     foreground: Mask | None = None
     sparse: bool = False
-    """Truth of a laser has gaps, so that what hides what does not follow from it."""
-    cameras: ReadCameras = unknown_cameras
+    """True if the truth has gaps, such as a laser's, so that occlusion does not follow from it."""
+    cameras: ReadCameras = Cameras
     resolution: Resolution | None = None
-    """Of the pair as it is opened; None of a set that has one size."""
+    """The size of the opened pair; None for a set in one size."""
     shrink: int = 1
-    """By how much the files are larger."""
+    """The factor by which the files are larger than the opened pair."""
     test: bool = False
-    """Whether results are to be submitted for it."""
+    """True if the pair is in the benchmark's test part, for which results are submitted."""
 
-    def files(self, cameras: Cameras | None = None) -> SceneFiles:
-        """The pair as a pipeline has it. Raises: ConfigError for one that is smaller than its files; PictureError."""
+    def files(self) -> SceneFiles:
+        """Return the files for a pipeline. Raises: ConfigError for a pair smaller than its files; PictureError."""
         if self.shrink > 1:
             raise ConfigError(
-                f"{self.name} does not lie there at {self.resolution}; fetch that size, or leave `resolution:` out"
+                f"{self.name} is not in its folder at {self.resolution}; fetch that size, or leave `resolution:` out"
             )
-        return self._files(self.cameras() if cameras is None else cameras)
+        return self._files(self.cameras())
 
     def scene(self) -> Scene:
-        """The pair, read for a pipeline. Raises: as `files`; PictureError for a file that cannot be read."""
+        """Read the pair for a pipeline. Raises: as `files`; PictureError for a file that cannot be read."""
         return Scene.read(self.files(), Path())
 
     def open(self) -> MarkedPair:
-        """The pair with its masks. Raises: PictureError for a file that cannot be read, or is of another size."""
+        """Read the pair with its masks. Raises: PictureError for a file that cannot be read, or has another size."""
         cameras = self.cameras()
         scene = Scene.read(self._files(cameras), Path())
         assert scene.views is not None
         shape = scene.views.shape
-        noc, foreground = (each and _marked(each, shape, self.left) for each in (self.noc, self.foreground))
+        noc, foreground = (each and _read_mask(each, shape, self.left) for each in (self.noc, self.foreground))
         truth_px = scene.truth
         if truth_px is not None and noc is None and not self.sparse:
             noc = visible_pixels(truth_px)
         by = self.shrink
         return MarkedPair(
-            smaller_views(scene.views, by),
-            None if truth_px is None else smaller_truth(truth_px, by),
-            None if noc is None else smaller_mask(noc, by),
-            None if foreground is None else smaller_mask(foreground, by),
+            shrink_views(scene.views, by),
+            None if truth_px is None else shrink_truth(truth_px, by),
+            None if noc is None else shrink_mask(noc, by),
+            None if foreground is None else shrink_mask(foreground, by),
             None if self.resolution is None else float(FULL_PX[self.resolution]),
             None if cameras.most_px is None else cameras.most_px / by,
         )
@@ -110,19 +110,16 @@ class StandardPair:
         known = {} if rig is None else {"focal_px": rig.focal_px, "baseline_m": rig.baseline_m}
         known |= {"offset_px": rig.offset_px} if rig is not None and rig.offset_px else {}
         truth = {} if self.truth is None else {"truth": self.truth, "truth_scale": self.truth_scale}
-        return SceneFiles.model_validate(
-            {"left": self.left, "right": self.right, "order": "as-named", **known, **truth}
-        )
+        views = {"left": self.left, "right": self.right, "order": "as-named"}
+        return SceneFiles.model_validate({**views, **known, **truth})
 
 
-def _marked(mask: Mask, shape: tuple[int, int], left: Path) -> Bool[np.ndarray, "h w"]:
-    found = np.ones(shape, np.bool_)
+def _read_mask(mask: Mask, shape: tuple[int, int], left: Path) -> Bool[np.ndarray, "h w"]:
+    marked = np.ones(shape, np.bool_)
     for path in mask.files:
         values = read_map(path)
         if values.shape != shape:
-            raise PictureError(
-                f"{path} is {size_in_words(values)} and {left} {shape[1]} x {shape[0]}; a mask has the size of its "
-                "picture; unpack it again"
-            )
-        found &= {"at 255": values == 255, "above 0": values > 0, "at 0": values == 0}[mask.marks]
-    return found
+            sizes = f"{path} is {size_in_words(values)} and {left} {shape[1]} x {shape[0]}"
+            raise PictureError(f"{sizes}; a mask has the size of its picture; unpack it again")
+        marked &= {"at 255": values == 255, "above 0": values > 0, "at 0": values == 0}[mask.marks]
+    return marked

@@ -1,4 +1,4 @@
-"""Results as the servers of benchmarks take them: a folder a method, to be packed and sent in."""
+"""Result files in the formats of benchmark servers: a folder for each method, to be packed and uploaded."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -19,48 +19,45 @@ Disparity = Float32[np.ndarray, "h w"]
 def write_submission(
     folder: Path, name: str, method: str, pair: StandardPair, disparity_px: Disparity, seconds: float
 ) -> tuple[Path, ...]:
-    """A method's disparity of a pair of a set, each file whole or not at all; the files.
+    """Write a method's disparity of a pair of a set, each file whole or not at all; return the files.
 
-    disparity_px: at the size of the pair, NaN where unknown. seconds: what it took.
+    disparity_px: at the size of the pair, NaN where unknown. seconds: the time of the call.
     Raises: ConfigError for a set that takes no submissions, OutputError if the folder cannot be written.
     """
     if name not in WRITERS:
-        raise ConfigError(f"{name} takes no submissions; those that do are {', '.join(WRITERS)}")
-    label = _plain(method)
+        raise ConfigError(f"{name} takes no submissions; sets that do are {', '.join(WRITERS)}")
+    label = _plain_name(method)
     return WRITERS[name](folder / label, label, pair, disparity_px, seconds)
 
 
 def write_pfm(path: Path, values: Disparity) -> None:
-    """A portable float map: rows from the bottom up, little-endian; what is not finite is infinite.
-
-    Raises: OutputError.
-    """
+    """Write a portable float map: from the bottom up, little-endian, infinite where unknown. Raises: OutputError."""
     known = np.where(np.isfinite(values), values, np.float32(np.inf))
     with atomic_write(path) as file:
         file.write(f"Pf\n{values.shape[1]} {values.shape[0]}\n-1.0\n".encode() + known[::-1].astype("<f4").tobytes())
 
 
 def write_png16(path: Path, values: Disparity) -> None:
-    """KITTI's: 256 a pixel in 16 bits, 0 unknown; what is known is at least 1, and at most what 16 bits hold."""
+    """Write KITTI's format: 256 a pixel in 16 bits, 0 if unknown; known values are clipped to 1 to 65535."""
     from PIL import Image
 
     known = np.isfinite(values)
     stored = np.clip(np.rint(256 * np.where(known, values, 0)), 1, 65535) * known
-    held = BytesIO()
-    Image.fromarray(stored.astype(np.uint16)).save(held, format="PNG")
+    png = BytesIO()
+    Image.fromarray(stored.astype(np.uint16)).save(png, format="PNG")
     with atomic_write(path) as file:
-        file.write(held.getvalue())
+        file.write(png.getvalue())
 
 
 def _middlebury(
     folder: Path, label: str, pair: StandardPair, disparity_px: Disparity, seconds: float
 ) -> tuple[Path, ...]:
-    """As its SDK has it: trainingQ/NAME/disp0METHOD.pfm and timeMETHOD.txt, in seconds."""
+    """Write the files of Middlebury's SDK: trainingQ/NAME/disp0METHOD.pfm and timeMETHOD.txt, in seconds."""
     home = folder / f"{'test' if pair.test else 'training'}{pair.resolution or 'F'}" / pair.name
-    found, time = home / f"disp0{label}.pfm", home / f"time{label}.txt"
-    write_pfm(found, disparity_px)
+    disparity, time = home / f"disp0{label}.pfm", home / f"time{label}.txt"
+    write_pfm(disparity, disparity_px)
     write_text(time, f"{seconds:.6g}\n")
-    return found, time
+    return disparity, time
 
 
 def _kitti_2012(
@@ -77,16 +74,16 @@ def _kitti_2015(
 
 
 def _eth3d(folder: Path, label: str, pair: StandardPair, disparity_px: Disparity, seconds: float) -> tuple[Path, ...]:
-    found, time = (folder / "low_res_two_view" / f"{pair.name}.{end}" for end in ("pfm", "txt"))
-    write_pfm(found, disparity_px)
+    disparity, time = (folder / "low_res_two_view" / f"{pair.name}.{end}" for end in ("pfm", "txt"))
+    write_pfm(disparity, disparity_px)
     write_text(time, f"runtime {seconds:.6g}\n")
-    return found, time
+    return disparity, time
 
 
-def _plain(method: str) -> str:
-    """A name that servers take: letters, digits, - and _.
+def _plain_name(method: str) -> str:
+    """Return a name of letters, digits, - and _, which servers accept.
 
-    >>> _plain("zncc window_px=5")
+    >>> _plain_name("zncc window_px=5")
     'zncc-window_px-5'
     """
     return re.sub(r"[^A-Za-z0-9_-]+", "-", method).strip("-") or "method"

@@ -1,4 +1,4 @@
-"""What devices add to `tangible`. Imported whenever `tangible` starts, so this room imports next to nothing."""
+"""The commands that devices add to `tangible`; imported at every start of it, so that this imports next to nothing."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ def pointer(
     """Move a `pointer` device by hand and see the forces.
 
     Typed positions are lines of `x y z` in millimetres, with the buttons as an optional fourth number. A
-    line that is no position is told, and the next one may be typed.
+    line that is not a position gives a message, and the next one may be typed.
     """
     from ..pointer.following import follow
 

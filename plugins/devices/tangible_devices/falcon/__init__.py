@@ -1,1 +1,1 @@
-"""The Novint Falcon, from the bytes on its wire to newtons on a hand."""
+"""The Novint Falcon: opening and homing, the link, calibration, and the checks of the doctor."""

@@ -1,6 +1,7 @@
-"""What no source is sure of about a Falcon, and each of them has to itself."""
+"""The figures of a Falcon that no source is sure of or that differ between devices, and the options to open it by."""
 
 import math
+from dataclasses import dataclass
 from typing import Annotated, Literal, Self
 
 import numpy as np
@@ -8,20 +9,21 @@ from jaxtyping import Float64
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tangible_core.data import DeviceSpec
+from tangible_core.mapping.device_calibrations import load_calibration
 
 Axis = Literal["x", "-x", "y", "-y", "z", "-z"]
 Angle = Annotated[float, Field(ge=-90, le=90)]
 Gain = Annotated[float, Field(ge=0.1, le=10)]
 CENTRE_M = 0.125
-"""Where along the device's axis the workspace's origin is: the middle of its reach."""
+"""The workspace's origin on the device's axis: the middle of its reach."""
 LEVER_M = 0.0672
-"""Newton metres of the busiest motor for a newton in the least favourable direction, at the centre."""
+"""Torque of the busiest motor, N m, for a force of 1 N in the least favourable direction, at the centre."""
 MOST_COUNTS, MOST_N = 4095, 8.0
 """The greatest torque that is sent; the greatest force, as in CHAI3D's table of devices."""
 
 
 class Calibration(BaseModel):
-    """How counts become angles, newtons become counts, and the device's axes the workspace's."""
+    """The conversion of counts to angles, of newtons to counts, and of the device's axes to the workspace's."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
@@ -33,7 +35,7 @@ class Calibration(BaseModel):
     motor_gain: tuple[Gain, Gain, Gain] = (1.0, 1.0, 1.0)
     """Gain of each motor (top, right, left), for motors that differ."""
     axes: tuple[Axis, Axis, Axis] = ("x", "-z", "y")
-    """Which device axis is the workspace's x (right), y (away from the user) and z (up). The device's own axes are
+    """Device axes that are the workspace's x (right), y (away from the user) and z (up). The device's own axes are
     assumed to be x right, y up, z towards the user; no source states them."""
 
     @model_validator(mode="after")
@@ -43,19 +45,19 @@ class Calibration(BaseModel):
         return self
 
     def arms(self) -> Float64[np.ndarray, "3 2"]:
-        """Each arm's angle at 0 counts in radians, and its counts of torque a newton metre."""
+        """Return each arm's angle at 0 counts in radians, and its counts of torque per newton metre."""
         counts = self.counts_per_newton_metre * np.array(self.motor_gain)
         return np.column_stack([np.radians(self.encoder_offset_deg), counts])
 
     def frame(self) -> Float64[np.ndarray, "3 4"]:
-        """workspace = frame[:, :3] @ device + frame[:, 3]."""
+        """Return the transform of positions in metres: workspace = frame[:, :3] @ device + frame[:, 3]."""
         turn = np.array(
             [[(axis[-1] == each) * (-1.0 if axis[0] == "-" else 1.0) for each in "xyz"] for axis in self.axes]
         )
         return np.column_stack([turn, -turn @ (0.0, 0.0, CENTRE_M)])
 
     def spec(self, simulated: bool = False) -> DeviceSpec:
-        """A Falcon's limits, as in CHAI3D's table; its force is what the motors can give in every direction."""
+        """Return a Falcon's limits, as in CHAI3D's table; the force is what the motors can give in every direction."""
         greatest_n = MOST_COUNTS / (LEVER_M * self.counts_per_newton_metre * max(self.motor_gain))
         return DeviceSpec(
             max_force_n=min(MOST_N, math.floor(100 * greatest_n) / 100),
@@ -66,3 +68,24 @@ class Calibration(BaseModel):
             buttons=4,
             simulated=simulated,
         )
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The options of `Falcon` by which it is opened and driven, with the same names."""
+
+    serial: str | None
+    index: int
+    calibration: Calibration | None
+    home_within_s: float
+    leds: bool
+    velocity_samples: int
+    in_flight: int
+    event_character: bool
+
+    def calibration_of(self, serial: str) -> Calibration:
+        """Return the option, else the saved calibration of this serial number, else the defaults.
+
+        Raises: DeviceError if the saved file is damaged.
+        """
+        return self.calibration or load_calibration("falcon", serial, Calibration) or Calibration()

@@ -10,16 +10,15 @@ from pydantic import BaseModel, Field
 from tangible_core.data import DeviceSpec, Finding, Unit
 from tangible_core.plugins.interfaces import Adjustable, HapticDevice, Link, Serviceable
 
-from .calibration import Calibration
-from .image import read_image
-from .settings import Settings
+from .calibration import Calibration, Settings
+from .usb.image import read_image
 
 
 class Falcon(HapticDevice, Serviceable, Adjustable):
     """A Novint Falcon on USB, driven from Python: firmware, homing, exact kinematics, forces that keep their sign.
 
-    Opening it takes as long as you need to home it: pull the grip all the way out and push it all the way in. Until
-    then, and whenever it loses its homing, it gives no force.
+    Opening a Falcon takes as long as you need to home it: pull the grip all the way out and push it all the way in. The
+    device gives no force before it is homed, and after it has lost its homing.
     """
 
     firmware: Path | None = None
@@ -27,7 +26,7 @@ class Falcon(HapticDevice, Serviceable, Adjustable):
     serial: str | None = None
     """Serial number of the Falcon to open; null selects by `index`."""
     index: Annotated[int, Field(ge=0)] = 0
-    """Which of several Falcons, in bus order, if no serial number is given."""
+    """Number of the Falcon to open, in bus order from 0, if no serial number is given."""
     calibration: Calibration | None = None
     """Figures that differ between devices or are uncertain; null uses what `tangible devices calibrate falcon` saved
     for this device, or else the published figures."""
@@ -45,11 +44,11 @@ class Falcon(HapticDevice, Serviceable, Adjustable):
     support it."""
 
     def spec(self) -> DeviceSpec:
-        """A Falcon's limits, as in CHAI3D's table; the force that its motors can give in every direction."""
-        return self.settings().calibrated(self.serial or "").spec()
+        """Return a Falcon's limits, as in CHAI3D's table; the force is what its motors can give in every direction."""
+        return self.settings().calibration_of(self.serial or "").spec()
 
     def open(self) -> Link:
-        """Find it, load its firmware if it has none, and have it homed; blocks until that is done.
+        """Find the Falcon, load its firmware if it has none, and wait until it is homed.
 
         Raises: DeviceError if it is not there, not permitted, in use, has no firmware, or is not homed in time.
         """
@@ -58,34 +57,34 @@ class Falcon(HapticDevice, Serviceable, Adjustable):
         return open_falcon(self.settings(), self.image(), None, time.perf_counter)
 
     def image(self) -> bytes | None:
-        """The firmware, read and checked as a whole; None if no file is given. Raises: DeviceError."""
+        """Return the firmware, read and checked as a whole; None if no file is given. Raises: DeviceError."""
         return None if self.firmware is None else read_image(self.firmware)
 
     def settings(self) -> Settings:
-        """All but the firmware."""
+        """Return all options but the firmware."""
         return Settings(**{name: value for name, value in self if name != "firmware"})
 
     def connected(self) -> tuple[Unit, ...]:
-        """Every Falcon on the bus. Raises: DeviceAbsent without libusb, DeviceError if it fails."""
+        """Return every Falcon on the bus. Raises: DeviceAbsent without libusb, DeviceError if it fails."""
         from .service import units
 
         return units(None)
 
     def examine(self) -> Iterator[Finding]:
-        """libusb, the firmware's file, then each Falcon: permission, driver, firmware, rate."""
+        """Check libusb, the firmware's file, then each Falcon: permission, driver, firmware, rate."""
         from .service import findings
 
         return findings(self.settings(), self.firmware, None, time.perf_counter)
 
     def home(self, say: Callable[[str], None]) -> None:
-        """Open it, which has it homed, and close it, by which it forgets that again: a try. Raises: as `open`."""
-        from .homing import GUIDE
+        """Try the homing: open the Falcon, which homes it, and close it, which unhomes it. Raises: as `open`."""
+        from .opening import GUIDE
 
         say(f"Novint Falcon: {GUIDE}")
         self.open().close()
 
     def calibrate(self, ask: Callable[[str], str]) -> tuple[str, BaseModel]:
-        """Measure its axes, its arms' zero and its motors' strength. Raises: DeviceError as `open`, or if it fails."""
-        from .service import calibrated
+        """Measure axes, zeros of the arms and strength of the motors. Raises: DeviceError as `open`, or if it fails."""
+        from .service import calibrate
 
-        return calibrated(self.settings(), self.image(), ask, None, time.perf_counter)
+        return calibrate(self.settings(), self.image(), ask, None, time.perf_counter)

@@ -10,7 +10,7 @@ from tangible_core.data import DeviceSpec
 from tangible_core.plugins.interfaces import HapticDevice, Link, Scripted
 
 from ..hand import VirtualHand
-from ..paths import DRAWN, walk, within
+from ..paths import DRAWN, path_size, walk
 from .calibration import Calibration
 from .falcon import Falcon
 from .simulator.faults import Fault
@@ -21,24 +21,24 @@ MOST_M = (0.05, 0.035)
 
 
 class FalconSimulated(HapticDevice, Scripted):
-    """A simulated Novint Falcon, byte by byte: the real driver loads its firmware, homes it and feels.
+    """A simulated Novint Falcon, byte by byte, under the real driver, which loads its firmware and homes it.
 
-    Simulated are the USB chip, the boot loader, the packets, the homing, the mass and friction of the mechanics, and a
-    hand that follows a path and yields to the force. Time is simulated too: it goes on as fast as it can be computed.
-    Every `open` is a Falcon of its own.
+    The USB chip, the boot loader, the packets, the homing, the mass and friction of the mechanics are simulated, and a
+    hand that follows a path and yields to the force. Time is simulated too: it runs as fast as it can be computed.
+    Every `open` gives a new Falcon.
     """
 
     driver: Falcon = Falcon()
-    """Options of the driver, as of `falcon`; without firmware, a made-up one is used."""
+    """Options of the driver, the same as those of `falcon`; without firmware, a synthetic one is used."""
     path: Literal["raster", "circle", "spiral", "press"] = "raster"
     """Path of the hand, over the surface or straight down and up."""
     size_m: tuple[Size, Size] | None = None
     """Width and length of raster, circle and spiral, which are centred; null: 50 x 35 mm, or three quarters of
-    a surface that is smaller."""
+    a smaller surface."""
     lines: Annotated[int, Field(ge=2, le=200)] = 8
     """Number of lines of the raster, or turns of the spiral."""
     z_m: Height = -0.005
-    """Height of the path above the base plane; of `press`, its lowest point."""
+    """Height of the path above the base plane; the lowest point of `press`."""
     lift_m: Height = 0.02
     """Height at which the hand starts."""
     speed_m_per_s: Annotated[float, Field(ge=1e-4, le=1)] = 0.08
@@ -51,26 +51,25 @@ class FalconSimulated(HapticDevice, Scripted):
     """Run in real time instead of simulated time."""
 
     def spec(self) -> DeviceSpec:
-        """As of device falcon, but that no motor moves."""
+        """Return the limits of device falcon, marked as simulated."""
         return (self.driver.calibration or Calibration()).spec(simulated=True)
 
     def over(self, extent_m: tuple[float, float]) -> "FalconSimulated":
-        """The same, its path within this width and length, unless it has a `size_m`."""
-        return self if self.size_m else self.model_copy(update={"size_m": within(extent_m, MOST_M)})
+        """Return the device with its path within this width and length, unless it has a `size_m`."""
+        return self if self.size_m else self.model_copy(update={"size_m": path_size(extent_m, MOST_M)})
 
     def wanted(self, ticks: Int64[np.ndarray, " n"]) -> None:
-        """Not known before: the path begins once the device is homed."""
+        """Return None, as the path begins when the device is homed, at a tick that is not known before."""
 
     def open(self) -> Link:
-        """A new Falcon, its firmware loaded and homed by the hand.
+        """Open a new Falcon: its firmware is loaded, and the hand homes it.
 
-        Raises: DeviceError as device falcon does, where a fault or an option is the cause.
+        Raises: DeviceError as device falcon, if a fault or an option causes it.
         """
         from .opening import open_falcon
         from .simulator.bus import Bus
         from .simulator.clock import RealClock, SimulatedClock
-        from .simulator.falcons import simulated_falcon
-        from .simulator.firmware_image import synthetic_image
+        from .simulator.falcons import simulated_falcon, synthetic_image
 
         clock = RealClock() if self.real_time else SimulatedClock()
         points = DRAWN[self.path](self.size_m or MOST_M, self.lines, self.z_m, self.lift_m)

@@ -1,4 +1,4 @@
-"""An open Falcon: packets out, answers in, and no force left behind. Imports pyusb and numba."""
+"""An open Falcon: packets out, answers in, and no force left at the end. Imports pyusb and numba."""
 
 import logging
 from array import array
@@ -12,42 +12,42 @@ from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import DeviceError
 
-from . import tick
-from .firmware import NULL
-from .framing import ANSWERS, DROPPED, receive
-from .packet import GREEN, HOMED, HOMING, RED, SIZE
-from .port import READ_BYTES, Port
-from .usb_errors import REPLUG
+from .kernels import tick
+from .kernels.framing import ANSWERS, DROPPED, receive
+from .kernels.packet import GREEN, HOMED, HOMING, RED, SIZE
+from .usb.errors import REPLUG
+from .usb.firmware import NULL
+from .usb.port import READ_BYTES, Port
 
 log = logging.getLogger(__name__)
 FRAME_S = 0.0009
-"""Sooner than this no other packet is sent: USB moves one a millisecond, and more of them only wait in line."""
+"""Shortest time between two packets: USB carries one a millisecond, and more would only queue."""
 QUIET, SILENCES = 20, 5
-"""Reads without an answer, each of a millisecond, after which the packets on their way are lost; how often in a row
-this may be."""
+"""Reads without an answer, of a millisecond each, after which the packets in flight count as lost; and the number of
+such losses in a row after which the device has failed."""
 PATIENCE = 50
-"""Exchanges without a position that can be trusted, after which the device has failed."""
+"""Exchanges without a reliable position after which the device has failed."""
 GOODBYES = 3
-"""Null packets at the end, as one may be lost."""
+"""Null packets at the end: more than one, as one may be lost."""
 
 
 class Health(NamedTuple):
-    """How the exchange went since the device was opened."""
+    """Counts of the exchange since the device was opened."""
 
     rate_hz: float
-    """Answers a second, over the device's clock."""
+    """Answers a second, by the device's clock."""
     answers: int
     lost: int
-    """Packets that were never answered."""
+    """Packets without an answer."""
     dropped_bytes: int
-    """Bytes that belong to no answer."""
+    """Bytes outside of answers."""
     refused: int
-    """Answers that were not taken for a position: leaps, and angles that no tip has."""
+    """Answers that were not accepted as a position: leaps, and angles that no tip has."""
 
 
 @final
 class FalconLink(CompiledLink):
-    """A Falcon in use, its firmware running; not homed at first, and so without force."""
+    """A Falcon in use, with running firmware; at first it is not homed and gives no force."""
 
     def __init__(
         self,
@@ -84,43 +84,43 @@ class FalconLink(CompiledLink):
         tick.write(*self._buffers, 0.0, 0.0, 0.0)
 
     def kernels(self) -> LinkKernels:
-        """The kernels on this link's buffers."""
+        """Return the kernels on this link's buffers."""
         return LinkKernels(tick.read, tick.write, tuple(self._buffers))
 
     @property
     def exchanges(self) -> bool:
-        """Packets travel by USB, which Python asks for."""
+        """True: packets travel by USB, which Python controls."""
         return True
 
     @property
     def place(self) -> str:
-        """How a message names the device."""
+        """The device's name and place, for messages."""
         return self._port.place
 
     @property
-    def homed(self) -> bool:
-        """Whether all arms have found their zero, by the newest answer, and force has faded in since."""
+    def is_homed(self) -> bool:
+        """True if all arms have found their zero, by the newest answer, and force has faded in since."""
         counts, held = self._counts, self._held
         return bool(counts[tick.KNOWN] and held[tick.NOW] - held[tick.SINCE] >= tick.RAMP_S)
 
     @property
     def arms_homed(self) -> int:
-        """How many of the three arms have found their zero, by the newest answer read."""
+        """Number of arms, of three, that have found their zero, by the newest answer read."""
         return int(self._counts[tick.ARMS] & HOMED).bit_count()
 
     def health(self) -> Health:
-        """How the exchange went so far."""
+        """Return the counts of the exchange so far."""
         counts, seconds = self._counts, self._clock() - self._started_s
         answers = int(counts[ANSWERS])
         rate_hz = answers / seconds if seconds > 0 else 0.0
         return Health(rate_hz, answers, self._lost, int(counts[DROPPED]), int(counts[tick.REFUSED]))
 
     def look(self) -> bool:
-        """Take in the newest answer; whether it is a new one, and gives a position."""
+        """Read the newest answer; tell whether it is new and gives a position."""
         return bool(tick.read(*self._buffers, self._state))
 
     def _read(self) -> HapticState:
-        """The newest position, of an answer that was not read before; a packet is sent for one if need be.
+        """Return the position of a new answer; send packets until there is one.
 
         Raises: DeviceError if the device stopped answering or lost its homing.
         """
@@ -129,8 +129,8 @@ class FalconLink(CompiledLink):
                 x, y, z, vx, vy, vz, buttons = self._state.tolist()
                 return HapticState((x, y, z), (vx, vy, vz), float(self._held[tick.NOW]), int(buttons))
             self._exchange()
-        raise self._given_up(
-            DeviceError(f"{self._port.place}: lost its homing or sends no sense; open it again, and home it")
+        raise self._give_up(
+            DeviceError(f"{self._port.place}: lost its homing or sends invalid data; open it again, and home it")
         )
 
     def _send(self, force: Force) -> None:
@@ -140,12 +140,12 @@ class FalconLink(CompiledLink):
 
     @property
     def applied(self) -> Force:
-        """The force that the device holds: what was written, less what its motors cannot give."""
+        """The force that the device holds: the force written, as far as its motors can give it."""
         x, y, z = self._held[tick.APPLIED : tick.APPLIED + 3].tolist()
         return Force(x, y, z)
 
     def _exchange(self) -> None:
-        """Send the packet, and wait while as many are on their way as may be."""
+        """Send the packet, then wait until fewer packets than allowed are in flight."""
         try:
             while self._clock() - self._sent_s < FRAME_S:
                 self._fetch()
@@ -154,10 +154,10 @@ class FalconLink(CompiledLink):
             self._pending += 1
             self._receive()
         except DeviceError as error:
-            raise self._given_up(error) from error
+            raise self._give_up(error) from error
 
     def _release(self) -> None:
-        """Send null packets and let go."""
+        """Send null packets and close the port."""
         health = self.health()
         try:
             self._say_goodbye()
@@ -167,9 +167,9 @@ class FalconLink(CompiledLink):
         log.info("%s: %s", self._port.place, health)
 
     def _receive(self) -> None:
-        """Read until fewer packets are on their way than may be. All of them are lost when nothing comes.
+        """Read until fewer packets than allowed are in flight; count all of them as lost if no answer comes.
 
-        Raises: DeviceError if this happens again and again, or USB fails.
+        Raises: DeviceError if this happens several times in a row, or USB fails.
         """
         quiet = 0
         while self._pending >= self._in_flight:
@@ -180,19 +180,19 @@ class FalconLink(CompiledLink):
                 self._pending = 0
                 self._silences += 1
         if self._silences == SILENCES:
-            raise DeviceError(f"{self._port.place}: answers no more; {REPLUG}")
+            raise DeviceError(f"{self._port.place}: no longer answers; {REPLUG}")
 
     def _fetch(self) -> int:
-        """One IN transfer, which takes a millisecond if the chip has nothing; how many answers it brought."""
+        """Make one IN transfer, of a millisecond if the chip has nothing; return the number of answers."""
         size = self._port.read(self._received)
-        found = receive(self._chunk, size, self._begun, self._counts, self._buffers.answer)
-        if found:
+        answers = receive(self._chunk, size, self._begun, self._counts, self._buffers.answer)
+        if answers:
             self._held[tick.NOW] = self._clock()
-            self._pending = max(self._pending - found, 0)
-        return found
+            self._pending = max(self._pending - answers, 0)
+        return answers
 
     def _say_goodbye(self) -> None:
-        """Null packets, each waited for, so that nothing is left on its way."""
+        """Send null packets and wait for the answer to each, so that none is left in flight."""
         null = array("B", NULL)
         self._in_flight = 1
         for _ in range(GOODBYES):
@@ -200,8 +200,8 @@ class FalconLink(CompiledLink):
             self._pending += 1
             self._receive()
 
-    def _given_up(self, error: DeviceError) -> DeviceError:
-        """The error, after the motors were told to stop, as far as they still listen, and the port was given back."""
+    def _give_up(self, error: DeviceError) -> DeviceError:
+        """Stop the motors, if they still listen, and close the port; return the error."""
         with suppress(DeviceError):
             self._port.write(array("B", NULL))
         self._let_go()

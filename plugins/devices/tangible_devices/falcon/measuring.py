@@ -1,4 +1,4 @@
-"""A Falcon measured with its user's help: its axes, where its arms are at zero, how strong its motors are.
+"""Measuring a Falcon with the user's help: its axes, the zeros of its arms, the strength of its motors.
 
 Imports numba.
 """
@@ -11,44 +11,44 @@ from tangible_core.data import NO_FORCE, Force, Vector
 from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import Link
 
-from . import kinematics
 from .calibration import Axis, Calibration
+from .kernels import kinematics
 
 Ask = Callable[[str], str]
 DIRECTIONS = ("to the right", "away from you", "up")
 LEAST_M = 0.010
-"""Shorter moves do not tell an axis."""
+"""Shortest move that identifies an axis."""
 SETTLING = 20
-"""Reads that are passed over after the user was asked: meanwhile nobody spoke to the device."""
+"""Reads that are skipped after a question to the user, during which no packets were sent."""
 HOLD_N_PER_M, HOLD_TICKS = 250.0, 2000
-"""Of the spring that carries the weight; it stretches by 4 mm for 100 g."""
+"""Stiffness of the virtual spring that carries the weight, which gives 4 mm for 100 g; and the time it is held."""
 STANDARD_GRAVITY = 9.80665
 RAW = ("x", "y", "z")
-"""Axes that leave the device's own as they are."""
+"""The axes of an uncalibrated device: its own."""
 
 
 def measure_axes(link: Link, ask: Ask) -> tuple[Axis, Axis, Axis]:
-    """Which of the device's axes are the workspace's x, y and z. link: of a device whose axes are RAW.
+    """Measure which of the device's axes are the workspace's x, y and z. link: of a device whose axes are RAW.
 
     Raises: DeviceError if a move was too short, or two went along one axis.
     """
     ask("Hold the grip in the middle of its reach, and press Enter.")
-    found: list[Axis] = []
+    axes: list[Axis] = []
     start = _place(link)
     for direction in DIRECTIONS:
         ask(f"Move it about 3 cm {direction}, hold it there, and press Enter.")
         end = _place(link)
-        found.append(_axis([after - before for before, after in zip(start, end, strict=True)], direction))
+        axes.append(_axis([after - before for before, after in zip(start, end, strict=True)], direction))
         start = end
-    if len({axis[-1] for axis in found}) < 3:
-        raise DeviceError(f"two of the three moves went along one axis ({', '.join(found)}); calibrate again")
-    return found[0], found[1], found[2]
+    if len({axis[-1] for axis in axes}) < 3:
+        raise DeviceError(f"two of the three moves went along one axis ({', '.join(axes)}); calibrate again")
+    return axes[0], axes[1], axes[2]
 
 
 def measure_offsets(link: Link, ask: Ask, offsets_deg: Vector) -> Vector:
-    """Angles of the arms at 0 counts, such that all three are alike where they must be: on the device's axis.
+    """Measure the angles of the arms at 0 counts: all three must be equal when the tip is on the device's axis.
 
-    Their mean stays as it was. link: of a device whose axes are RAW, and whose offsets are these.
+    Their mean is left unchanged. link: of a device whose axes are RAW, and whose offsets are these.
     """
     ask("Push the grip all the way in, straight along the device's axis, hold it there, and press Enter.")
     x, y, z = _place(link)
@@ -59,9 +59,9 @@ def measure_offsets(link: Link, ask: Ask, offsets_deg: Vector) -> Vector:
 
 
 def measure_strength(link: Link, ask: Ask, counts_per_newton_metre: float) -> float:
-    """Motor counts for a newton metre, by a weight that the device carries; as before if the user has none.
+    """Measure the motor counts for a newton metre by a weight that the device carries; unchanged without a weight.
 
-    The weight adds its own force to whatever friction and the mechanics need, so these drop out.
+    The force is measured with and without the weight, so that friction and the mechanics' own weight cancel out.
     """
     grams = ask(
         "Now the motors push, up to a few newtons. Type the grams of a weight (100 to 300) that you can hang on the "
@@ -72,15 +72,15 @@ def measure_strength(link: Link, ask: Ask, counts_per_newton_metre: float) -> fl
     weight_n = _number(grams) / 1000 * STANDARD_GRAVITY
     ask("Hold the grip in the middle of its reach, press Enter, and let go slowly.")
     height_m = _place(link)[2]
-    alone_n = _carried(link, height_m)
+    alone_n = _mean_lift_n(link, height_m)
     ask("Hang the weight on the grip, and press Enter.")
-    return counts_per_newton_metre * strength(alone_n, _carried(link, height_m), weight_n)
+    return counts_per_newton_metre * strength(alone_n, _mean_lift_n(link, height_m), weight_n)
 
 
 def strength(alone_n: float, laden_n: float, weight_n: float) -> float:
-    """By what the counts a newton metre must be multiplied: the force commanded for a weight, over that weight.
+    """Return the factor on the counts for a newton metre: the force commanded for a weight, over that weight.
 
-    Raises: DeviceError if it is beyond belief.
+    Raises: DeviceError if the factor is below 0.2 or above 5.
     """
     factor = (laden_n - alone_n) / weight_n
     if not 0.2 <= factor <= 5:
@@ -88,8 +88,8 @@ def strength(alone_n: float, laden_n: float, weight_n: float) -> float:
     return factor
 
 
-def _carried(link: Link, height_m: float) -> float:
-    """The force up, by which a soft spring carries what hangs on it, over the second half of the time."""
+def _mean_lift_n(link: Link, height_m: float) -> float:
+    """Return the mean upward force of a soft virtual spring that carries the load, over the second half of the time."""
     forces: list[float] = []
     for _ in range(HOLD_TICKS):
         state = link.read()
@@ -102,7 +102,7 @@ def _carried(link: Link, height_m: float) -> float:
 
 
 def _place(link: Link) -> Vector:
-    """Where the tip is now, after what was said to it meanwhile."""
+    """Return the position of the tip, after some exchanges that bring it up to date."""
     for _ in range(SETTLING):
         link.write(NO_FORCE)
         link.read()
@@ -126,12 +126,12 @@ def _number(text: str) -> float:
     return grams
 
 
-def measure(opened: Callable[[Calibration], Link], ask: Ask, before: Calibration) -> Calibration:
-    """All of it. opened: the homed device by a calibration."""
-    with opened(before.model_copy(update={"axes": RAW})) as link:
+def measure(opener: Callable[[Calibration], Link], ask: Ask, before: Calibration) -> Calibration:
+    """Measure a whole calibration. opener: opens the device with a calibration, and homes it."""
+    with opener(before.model_copy(update={"axes": RAW})) as link:
         axes = measure_axes(link, ask)
         offsets = measure_offsets(link, ask, before.encoder_offset_deg)
-    placed = before.model_copy(update={"axes": axes, "encoder_offset_deg": offsets})
-    with opened(placed) as link:
+    geometry = before.model_copy(update={"axes": axes, "encoder_offset_deg": offsets})
+    with opener(geometry) as link:
         counts = measure_strength(link, ask, before.counts_per_newton_metre)
-    return Calibration.model_validate({**placed.model_dump(), "counts_per_newton_metre": counts})
+    return Calibration.model_validate({**geometry.model_dump(), "counts_per_newton_metre": counts})

@@ -1,27 +1,34 @@
-"""From settings to a Falcon that is homed and ready. Imports pyusb and numba."""
+"""Opening a Falcon: firmware, calibration, and guided homing, without force meanwhile. Imports pyusb and numba."""
 
+import logging
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from tangible_core.data import NO_FORCE
+from tangible_core.errors import DeviceError
 from tangible_core.mapping.device_calibrations import any_calibration
 
-from .firmware import running
-from .homing import home
+from .calibration import Settings
 from .link import FalconLink
-from .port import open_port
-from .settings import Settings
+from .usb.firmware import open_running
+from .usb.port import open_port
+
+log = logging.getLogger(__name__)
+GUIDE = "pull its grip all the way out, then push it all the way in; its light turns from red to green"
+AT_ONCE_S = 0.1
+"""Time before the user is asked to home the device: it may be homed already."""
 
 
 def open_falcon(settings: Settings, image: bytes | None, backend: Any, clock: Callable[[], float]) -> FalconLink:
-    """Find it, load its firmware if none answers, and home it; backend: pyusb's, None for the system's libusb.
+    """Find a Falcon, load its firmware if none answers, and home it; backend: pyusb's, None for the system's libusb.
 
     Raises: DeviceError if it is not there, not permitted, in use, has no firmware, is not homed in time, or fails.
     """
     opener = partial(open_port, settings.serial, settings.index, backend)
-    port = running(opener, image, settings.event_character)
+    port = open_running(opener, image, settings.event_character)
     try:
-        calibration = settings.calibrated(port.serial() if any_calibration("falcon") else "")
+        calibration = settings.calibration_of(port.serial() if any_calibration("falcon") else "")
     except BaseException:
         port.close()
         raise
@@ -41,3 +48,20 @@ def open_falcon(settings: Settings, image: bytes | None, backend: Any, clock: Ca
         link.close()
         raise
     return link
+
+
+def home(link: FalconLink, seconds: float, clock: Callable[[], float]) -> None:
+    """Exchange packets without force until the device is homed and force has faded in.
+
+    Raises: DeviceError if the device is not homed in time, or USB fails.
+    """
+    start, guided = clock(), False
+    while not link.is_homed:
+        link.write(NO_FORCE)
+        link.look()
+        waited = clock() - start
+        if waited > seconds:
+            raise DeviceError(f"{link.place}: {link.arms_homed} of 3 arms are homed after {seconds:g} s; {GUIDE}")
+        if waited > AT_ONCE_S and not guided and link.arms_homed < 3:
+            guided = True
+            log.warning("%s: %s", link.place, GUIDE)

@@ -1,4 +1,4 @@
-"""What is connected, and what keeps it from working, in the order in which to put it right. Imports pyusb and numba."""
+"""The connected Falcons, and what keeps them from working, in the order of the cures. Imports pyusb and numba."""
 
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -9,18 +9,18 @@ from typing import Any
 from tangible_core.data import Finding, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
 
-from .calibration import Calibration
-from .firmware import answers
-from .image import WHENCE, read_image
+from .calibration import Calibration, Settings
 from .link import FalconLink
 from .measuring import measure
 from .opening import open_falcon
-from .port import INTERFACE, Port, attached, chosen, place_of, run_time, serial_of
-from .settings import Settings
+from .usb.firmware import firmware_answers
+from .usb.image import WHENCE, read_image
+from .usb.port import INTERFACE, Port, choose_device, connected_devices, place_of, run_time, serial_of
 
 ENOUGH_HZ = 900.0
+"""Lowest rate that is reported as fine."""
 PACKETS = 500
-"""Exchanged without force, to measure the rate."""
+"""Packets exchanged, without force, to measure the rate."""
 FASTER = (
     "plug it into a USB port of the machine itself, with no hub between; keep option in_flight at 2; a rate of about "
     "60 is the USB chip's latency timer of 16 ms, which it did not change to 1 ms: unplug it and plug it in again"
@@ -28,38 +28,40 @@ FASTER = (
 
 
 def units(backend: Any) -> tuple[Unit, ...]:
-    """Every Falcon on the bus; each is opened for a moment to read its serial number."""
-    return tuple(_unit(device) for device in attached(backend))
+    """Return every Falcon on the bus; each is opened for a moment to read its serial number."""
+    return tuple(_unit(device) for device in connected_devices(backend))
 
 
 def findings(settings: Settings, firmware: Path | None, backend: Any, clock: Callable[[], float]) -> Iterator[Finding]:
-    """libusb, the firmware's file, then each Falcon: permission, driver, firmware, rate. No force is given."""
+    """Check libusb, the firmware's file, then each Falcon: permission, driver, firmware, rate. No force is given."""
     try:
-        devices = attached(backend)
+        devices = connected_devices(backend)
     except DeviceError as error:
-        yield _failed("libusb", error, "not asked" if isinstance(error, DeviceAbsent) else "failed")
+        yield _failure("libusb", error, "not asked" if isinstance(error, DeviceAbsent) else "failed")
         return
     yield Finding("libusb", "fine", "is there")
     yield _file(firmware)
     if not devices:
         yield Finding("device", "not asked", "none is plugged in; it needs its USB cable and its power supply")
     for device in devices:
-        yield from _of_one(device, settings, firmware, clock)
+        yield from _device_findings(device, settings, firmware, clock)
 
 
-def calibrated(
+def calibrate(
     settings: Settings, image: bytes | None, ask: Callable[[str], str], backend: Any, clock: Callable[[], float]
 ) -> tuple[str, Calibration]:
-    """The serial number of the Falcon that the settings choose, and what was measured of it."""
-    serial = serial_of(chosen(attached(backend), settings.serial, settings.index)[0]) or ""
+    """Calibrate the Falcon that the settings select; return its serial number and the calibration."""
+    serial = serial_of(choose_device(connected_devices(backend), settings.serial, settings.index)[0]) or ""
 
-    def opened(calibration: Calibration) -> FalconLink:
+    def opener(calibration: Calibration) -> FalconLink:
         return open_falcon(replace(settings, calibration=calibration), image, backend, clock)
 
-    return serial, measure(opened, ask, settings.calibrated(serial))
+    return serial, measure(opener, ask, settings.calibration_of(serial))
 
 
-def _of_one(device: Any, settings: Settings, firmware: Path | None, clock: Callable[[], float]) -> Iterator[Finding]:
+def _device_findings(
+    device: Any, settings: Settings, firmware: Path | None, clock: Callable[[], float]
+) -> Iterator[Finding]:
     place = f"bus {device.bus}, address {device.address}"
     try:
         serial = serial_of(device)
@@ -69,13 +71,13 @@ def _of_one(device: Any, settings: Settings, firmware: Path | None, clock: Calla
             port.claim()
             run_time(port, settings.event_character)
             yield Finding(f"{place}: in use", "fine", "by nobody else")
-            if not answers(port):
+            if not firmware_answers(port):
                 yield _without_firmware(place, firmware)
                 return
             yield Finding(f"{place}: firmware", "fine", "answers")
             yield _rate(place, port, settings, clock)
     except DeviceError as error:
-        yield _failed(place, error)
+        yield _failure(place, error)
 
 
 def _unit(device: Any) -> Unit:
@@ -92,7 +94,7 @@ def _file(firmware: Path | None) -> Finding:
     try:
         return Finding("firmware file", "fine", f"{firmware}: {len(read_image(firmware))} bytes, whole")
     except DeviceError as error:
-        return _failed("firmware file", error)
+        return _failure("firmware file", error)
 
 
 def _driver(device: Any) -> str:
@@ -102,15 +104,15 @@ def _driver(device: Any) -> str:
     except NotImplementedError:
         return "is WinUSB or the like, or none is needed"
     except OSError as error:
-        return f"cannot be asked ({error})"
+        return f"cannot be queried ({error})"
     return "no other driver has it"
 
 
 def _without_firmware(place: str, firmware: Path | None) -> Finding:
     if firmware is not None:
         return Finding(f"{place}: firmware", "fine", "has none yet; the file is sent when it is opened")
-    says = "has none since it was powered, and no file is given"
-    return Finding(f"{place}: firmware", "failed", says, f"--set firmware=FILE, or option firmware; {WHENCE}")
+    fault = "has none since it was powered, and no file is given"
+    return Finding(f"{place}: firmware", "failed", fault, f"--set firmware=FILE, or option firmware; {WHENCE}")
 
 
 def _rate(place: str, port: Port, settings: Settings, clock: Callable[[], float]) -> Finding:
@@ -121,12 +123,12 @@ def _rate(place: str, port: Port, settings: Settings, clock: Callable[[], float]
     for _ in range(PACKETS):
         link.exchange()
     health = link.health()
-    says = f"{health.rate_hz:.0f} packets a second, {health.lost} lost, {health.dropped_bytes} stray bytes"
+    counts = f"{health.rate_hz:.0f} packets a second, {health.lost} lost, {health.dropped_bytes} stray bytes"
     if health.rate_hz < ENOUGH_HZ:
-        return Finding(f"{place}: rate", "failed", says, FASTER)
-    return Finding(f"{place}: rate", "fine", says)
+        return Finding(f"{place}: rate", "failed", counts, FASTER)
+    return Finding(f"{place}: rate", "fine", counts)
 
 
-def _failed(check: str, error: DeviceError, verdict: Any = "failed") -> Finding:
+def _failure(check: str, error: DeviceError, verdict: Any = "failed") -> Finding:
     first, *_ = str(error).splitlines()
     return Finding(check, verdict, first.rstrip(":"), str(error))

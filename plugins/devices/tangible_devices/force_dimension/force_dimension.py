@@ -1,4 +1,4 @@
-"""Force Dimension's devices: omega, delta, sigma, and the Falcon by its maker's library."""
+"""Force Dimension's devices: omega, delta, sigma, and the Falcon by this maker's library."""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
@@ -16,25 +16,26 @@ SPECS: dict[Model, tuple[float, float, float, float]] = {
     "sigma": (12.0, 4000.0, 30.0, 0.075),
     "falcon": (8.0, 3000.0, 20.0, 0.04),
 }
-"""Greatest force, greatest stiffness, greatest damping, radius of the workspace, as in CHAI3D's table of devices."""
+"""Greatest force, greatest stiffness, greatest damping and radius of the workspace of each model, in SI units, as in
+CHAI3D's table of devices."""
 FREE_IT = "close other programs that use it, check its power, and on Linux allow its USB device by the SDK's udev rules"
 
 
 class ForceDimension(HapticDevice, Serviceable):
     """An omega, delta or sigma by Force Dimension, or a Falcon by their library, through forcedimension-core.
 
-    Its position counts from the middle of its workspace. Torques and grippers are left alone.
+    The origin is the middle of the workspace. Torques and grippers are not used.
     """
 
     serial: Annotated[int, Field(ge=0, le=65535)] | None = None
     """Serial number of the device to open; null selects by `index`."""
     index: Annotated[int, Field(ge=0, le=127)] = 0
-    """Which of several devices, in the library's order, if no serial number is given."""
+    """Number of the device to open, in the library's order from 0, if no serial number is given."""
     model: Model = "omega"
     """Model of the device; its limits must be known before it is opened."""
 
     def spec(self) -> DeviceSpec:
-        """The model's limits, as in CHAI3D's table; the resolution is a guess."""
+        """Return the model's limits, as in CHAI3D's table; the resolution is a guess."""
         force_n, stiffness_n_per_m, damping_n_s_per_m, radius_m = SPECS[self.model]
         return DeviceSpec(
             max_force_n=force_n,
@@ -46,8 +47,8 @@ class ForceDimension(HapticDevice, Serviceable):
         )
 
     def open(self) -> Link:
-        """Raises: DeviceAbsent if the library or the device is not there, DeviceError if it is in use or fails."""
-        from .library import OPENED, done, library
+        """Open the device. Raises: DeviceAbsent if it or the library is missing, DeviceError if in use or failing."""
+        from .library import OPENED, check_result, library
         from .link import ForceDimensionLink
 
         dhd = library()
@@ -55,20 +56,20 @@ class ForceDimension(HapticDevice, Serviceable):
             raise DeviceAbsent("Force Dimension: no device is connected; plug it in, and turn it on")
         number = dhd.openID(self.index) if self.serial is None else dhd.openSerial(self.serial)
         which = f"device {self.index}" if self.serial is None else f"the device of serial {self.serial}"
-        done(dhd, number, f"opening {which}", FREE_IT)
+        check_result(dhd, number, f"opening {which}", FREE_IT)
         if not OPENED.take(number):
             raise DeviceError(f"Force Dimension: this program has {which} open already; close it first")
         return ForceDimensionLink(dhd, number, self.spec().max_force_n)
 
     def connected(self) -> tuple[Unit, ...]:
-        """Each device is opened for a moment, to ask its name. Raises: DeviceAbsent if the library is not there."""
+        """Open each device for a moment and return its name. Raises: DeviceAbsent if the library is missing."""
         from .library import library
 
         dhd = library()
         return tuple(_unit(dhd, index) for index in range(max(0, dhd.getDeviceCount())))
 
     def examine(self) -> Iterator[Finding]:
-        """The library, and whether each device can be opened."""
+        """Check the library, and whether each device can be opened."""
         try:
             units = self.connected()
         except DeviceAbsent as absent:

@@ -1,4 +1,4 @@
-"""`forcedimension_core.dhd`, the bindings to the maker's library, and which of its devices are open here."""
+"""`forcedimension_core.dhd`, the bindings to the maker's library, and the devices that this program has open."""
 
 import io
 from contextlib import redirect_stderr
@@ -15,17 +15,17 @@ INSTALL = (
 
 
 def library() -> Any:
-    """The bindings. Raises: DeviceAbsent saying what to install."""
+    """Return the bindings. Raises: DeviceAbsent that names what to install."""
     try:
-        with redirect_stderr(io.StringIO()):  # which says less than the message below
+        with redirect_stderr(io.StringIO()):  # its output is less specific than the message below
             return import_module("forcedimension_core.dhd")
     except ImportError as error:
         first = str(error).split(". ")[0]
         raise DeviceAbsent(f"device force-dimension: {first}; {INSTALL}") from error
 
 
-def done(dhd: Any, result: int, doing: str, cure: str) -> int:
-    """A result that is none of failure. Raises: DeviceError in the library's words, and with a cure, otherwise."""
+def check_result(dhd: Any, result: int, doing: str, cure: str) -> int:
+    """Return a result that is not an error. Raises: DeviceError with the library's message and the cure otherwise."""
     if result < 0:
         raise DeviceError(f"Force Dimension, {doing}: {dhd.errorGetLastStr()}; {cure}")
     return result
@@ -33,7 +33,7 @@ def done(dhd: Any, result: int, doing: str, cure: str) -> int:
 
 @final
 class OpenDevices:
-    """The devices that this program has open: asked for again, the library would hand out the same one twice."""
+    """The devices that this program has open; the library itself would open the same one twice."""
 
     def __init__(self) -> None:
         self._numbers: set[int] = set()
@@ -44,14 +44,14 @@ class OpenDevices:
             return number in self._numbers
 
     def take(self, number: int) -> bool:
-        """Whether it was free."""
+        """Mark a device as open; return False if it was open already."""
         with self._lock:
             free = number not in self._numbers
             self._numbers.add(number)
             return free
 
     def give_back(self, number: int) -> None:
-        """It is free again."""
+        """Mark a device as closed."""
         with self._lock:
             self._numbers.discard(number)
 

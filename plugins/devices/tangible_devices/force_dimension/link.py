@@ -8,14 +8,14 @@ from tangible_core.data import NO_FORCE, Force, HapticState
 from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import Link
 
-from .library import OPENED, done
+from .library import OPENED, check_result
 
 REPLUG = "check its plug and its power, then open it again"
 
 
 @final
 class ForceDimensionLink(Link):
-    """The library's x is towards the user, its y right and its z up: (x, y, z) of ours is its (y, -x, z)."""
+    """A device in use. The library's x is towards the user, its y right, its z up: our (x, y, z) is its (y, -x, z)."""
 
     def __init__(self, dhd: Any, number: int, max_force_n: float) -> None:
         super().__init__("this Force Dimension device", max_force_n)
@@ -23,18 +23,18 @@ class ForceDimensionLink(Link):
         self._number = number
         self._applied = NO_FORCE
         try:
-            done(dhd, dhd.enableForce(True, number), "enabling its force", REPLUG)
+            check_result(dhd, dhd.enableForce(True, number), "enabling its force", REPLUG)
             self._send(NO_FORCE)
         except BaseException:
             self.close()
             raise
 
     def _read(self) -> HapticState:
-        """Where the tip is now. Raises: DeviceError if the device stopped answering."""
+        """Return the position of the tip. Raises: DeviceError if the device stopped answering."""
         position, velocity = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
-        done(self._dhd, self._dhd.getPosition(position, self._number), "reading its position", REPLUG)
+        check_result(self._dhd, self._dhd.getPosition(position, self._number), "reading its position", REPLUG)
         if self._dhd.getLinearVelocity(velocity, self._number) < 0:
-            velocity = [0.0, 0.0, 0.0]  # it needs two positions within its window, so not from the first on
+            velocity = [0.0, 0.0, 0.0]  # the library needs two positions within its window for a velocity
         (x, y, z), (vx, vy, vz) = position, velocity
         if not all(map(math.isfinite, (*position, *velocity))):
             raise DeviceError(f"Force Dimension: its position is {position} m; {REPLUG}")
@@ -44,7 +44,8 @@ class ForceDimensionLink(Link):
     def _send(self, force: Force) -> None:
         """Set the force. Raises: DeviceError as `_read`."""
         self._applied = NO_FORCE
-        done(self._dhd, self._dhd.setForce([-force.y, force.x, force.z], self._number), "setting its force", REPLUG)
+        result = self._dhd.setForce([-force.y, force.x, force.z], self._number)
+        check_result(self._dhd, result, "setting its force", REPLUG)
         self._applied = force
 
     @property
@@ -53,6 +54,6 @@ class ForceDimensionLink(Link):
         return self._applied
 
     def _release(self) -> None:
-        """Let go of it."""
+        """Close the device."""
         self._dhd.close(self._number)
         OPENED.give_back(self._number)

@@ -15,15 +15,15 @@ Metres = Annotated[float, Field(ge=-1, le=1)]
 class Haply(HapticDevice, Serviceable):
     """A Haply Inverse3 (or Minverse), through the Haply Inverse Service 3.5 or newer on this machine.
 
-    The service's own axes are ours: x right, y away from the user, z up. Its origin is the base of the arm, in front of
-    which the hand moves; `centre_m` is the point there that becomes the picture's centre. A wired VerseGrip's button is
-    button 0.
+    The axes of the service are those of the workspace: x right, y away from the user, z up. The origin is the base of
+    the arm, in front of which the hand moves; `centre_m` is the point that becomes the picture's centre. A wired
+    VerseGrip's button is button 0.
     """
 
     uri: Annotated[str, Field(pattern=r"^wss?://")] = "ws://localhost:10001"
     """Address at which the service listens."""
     device_id: str | None = None
-    """Which Inverse3, as `tangible devices` lists them; null selects the first."""
+    """Identifier of the Inverse3, as `tangible devices` lists it; null selects the first."""
     centre_m: tuple[Metres, Metres, Metres] = (0.0, -0.14, 0.1)
     """Position, in the service's frame, that becomes the origin; the default is a guess at a comfortable place."""
     max_force_n: Annotated[float, Field(gt=0, le=20)] = 5.0
@@ -32,7 +32,7 @@ class Haply(HapticDevice, Serviceable):
     """Time without an answer after which the service counts as lost."""
 
     def spec(self) -> DeviceSpec:
-        """Careful guesses, but for the force, which is the option's: the maker states no stiffness or damping."""
+        """Return the option's force, and cautious guesses of the rest: the maker states no stiffness or damping."""
         return DeviceSpec(
             max_force_n=self.max_force_n,
             max_stiffness_n_per_m=2000.0,
@@ -43,7 +43,7 @@ class Haply(HapticDevice, Serviceable):
         )
 
     def open(self) -> Link:
-        """Raises: DeviceAbsent if there is no service, no arm, or no websockets here; DeviceError if it fails."""
+        """Connect to the arm. Raises: DeviceAbsent if service, arm or websockets is missing; DeviceError on failure."""
         from .link import HaplyLink
         from .service import Session
 
@@ -51,7 +51,7 @@ class Haply(HapticDevice, Serviceable):
         return HaplyLink(session, session.choose(self.device_id), self.centre_m, self.max_force_n)
 
     def connected(self) -> tuple[Unit, ...]:
-        """The arms that the service has found. Raises: DeviceError as `open`."""
+        """Return the arms that the service lists. Raises: DeviceError as `open`."""
         from .service import Session
 
         session = Session(self.uri, self.timeout_s)
@@ -61,7 +61,7 @@ class Haply(HapticDevice, Serviceable):
             session.close()
 
     def examine(self) -> Iterator[Finding]:
-        """The library, the service, and each arm's own account of itself."""
+        """Check the library, the service, and the status that each arm reports."""
         try:
             arms = self.connected()
         except DeviceAbsent as absent:

@@ -13,7 +13,7 @@ from .service import Answer, Session
 
 @final
 class HaplyLink(Link):
-    """A message is answered while the force for the next one is computed: a tick waits for one answer, no longer."""
+    """An Inverse3 in use; it answers while the next force is computed, so that a tick waits for one answer only."""
 
     def __init__(self, session: Session, device_id: str, centre_m: Vector, max_force_n: float) -> None:
         super().__init__("this Haply device", max_force_n)
@@ -25,7 +25,7 @@ class HaplyLink(Link):
         self._answers = True
 
     def _read(self) -> HapticState:
-        """The answer to the last force, or to the same force sent again.
+        """Return the answer to the last force, or to the same force sent again.
 
         Raises: DeviceError if the service or the arm is gone.
         """
@@ -51,11 +51,11 @@ class HaplyLink(Link):
 
     @property
     def applied(self) -> Force:
-        """The force sent last; none once the service is gone, as its commands lapse."""
+        """The force sent last; zero after the service is gone, as its commands lapse."""
         return self._applied
 
     def _release(self) -> None:
-        """Disconnect, once the last force has arrived."""
+        """Wait for the answer to the last force, and disconnect."""
         if self._answers:
             with suppress(DeviceError):
                 self._session.newest(self._device_id)
@@ -63,12 +63,12 @@ class HaplyLink(Link):
 
     def _state(self, now_s: float, answer: Answer) -> HapticState:
         (x, y, z), (cx, cy, cz) = answer.position_m, self._centre_m
-        velocity = answer.velocity_m_per_s or self._stepped(now_s, answer.position_m)
+        velocity = answer.velocity_m_per_s or self._velocity(now_s, answer.position_m)
         self._before = now_s, answer.position_m
         return HapticState((x - cx, y - cy, z - cz), velocity, now_s, answer.buttons)
 
-    def _stepped(self, now_s: float, position_m: Vector) -> Vector:
-        """The velocity that brought the tip here since the last answer, from a service that states none."""
+    def _velocity(self, now_s: float, position_m: Vector) -> Vector:
+        """Return the mean velocity since the last answer, for a service that reports none."""
         then_s, (x, y, z) = self._before or (now_s, position_m)
         span = now_s - then_s or 1.0
         return (position_m[0] - x) / span, (position_m[1] - y) / span, (position_m[2] - z) / span

@@ -1,4 +1,4 @@
-"""The service's side of the talk: JSON over a web socket, one answer for each message.
+"""A session with Haply's service: JSON over a web socket, one answer for each message.
 
 Source: Haply, Inverse SDK 3.5, WebSocket protocol (docs.haply.co/inverseSDK/service/realtime/websocket-protocol).
 """
@@ -16,18 +16,18 @@ if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
 
 INSTALL = "pip install 'tangible-images[haply]'"
-START = "start Haply Hub or the Haply Inverse Service, or say where it listens with option uri"
+START = "start Haply Hub or the Haply Inverse Service, or give its address with option uri"
 MOST_BYTES = 1 << 22
 PROBLEMS = {
     "ready": "is not ready",
     "power_supply": "has no power; plug in its power supply",
     "calibrated": "is not calibrated; follow what its light asks for, or Haply Hub",
 }
-"""What is wrong where the service says false; a word that it does not say is no problem."""
+"""Problems by the status flags that the service reports as false; a missing flag is not a problem."""
 
 
 class Arm(NamedTuple):
-    """What the service says of one Inverse3 when we connect."""
+    """An Inverse3, as the service describes it on connecting."""
 
     device_id: str
     kind: str
@@ -35,12 +35,12 @@ class Arm(NamedTuple):
     problem: str
 
     def unit(self) -> Unit:
-        """As `tangible devices` lists it."""
+        """Return the arm as an entry of `tangible devices`."""
         return Unit(self.kind, self.device_id, self.port, self.problem)
 
 
 class Answer(NamedTuple):
-    """What is used of an answer."""
+    """The state of an arm from an answer."""
 
     position_m: tuple[float, float, float]
     velocity_m_per_s: tuple[float, float, float] | None
@@ -49,65 +49,65 @@ class Answer(NamedTuple):
 
 @final
 class Session:
-    """A connection to the service. Its commands lapse when none are sent; a force of zero keeps it going."""
+    """A connection to the service. Commands lapse when none are sent; a force of zero keeps the session alive."""
 
     def __init__(self, uri: str, timeout_s: float) -> None:
-        """Raises: DeviceAbsent if websockets or the service is not there, DeviceError if it is something else."""
+        """Connect. Raises: DeviceAbsent if websockets or the service is missing, DeviceError for another server."""
         self.uri = uri
         self._timeout_s = timeout_s
         self._open = ExitStack()
-        self._connection = _connected(self._open, uri, timeout_s)
+        self._connection = _connect(self._open, uri, timeout_s)
         self._owed = 1  # the snapshot comes without a message
         try:
-            self.arms = tuple(_arm(each) for each in _listed(self._answered(), "inverse3"))
+            self.arms = tuple(_arm(each) for each in _devices(self._receive(), "inverse3"))
         except BaseException:
             self.close()
             raise
 
     def choose(self, device_id: str | None) -> str:
-        """The id of the arm to use. Raises: DeviceAbsent if there is none, DeviceError if not this one."""
-        known = [arm.device_id for arm in self.arms]
-        if not known:
+        """Return the id of the arm to use. Raises: DeviceAbsent if there is none, DeviceError if not this one."""
+        connected = [arm.device_id for arm in self.arms]
+        if not connected:
             self.close()
             raise DeviceAbsent(f"{self.uri}: no Inverse3 is connected; plug in its USB cable and its power supply")
-        if device_id is not None and device_id not in known:
+        if device_id is not None and device_id not in connected:
             self.close()
-            raise DeviceError(f"{self.uri}: there is no Inverse3 {device_id!r}; there are {', '.join(known)}")
-        return known[0] if device_id is None else device_id
+            raise DeviceError(f"{self.uri}: there is no Inverse3 {device_id!r}; there are {', '.join(connected)}")
+        return connected[0] if device_id is None else device_id
 
     def send(self, device_id: str, force_n: tuple[float, float, float]) -> None:
-        """Set a force, which calls for an answer. Raises: DeviceError if the service is gone."""
+        """Set a force, to which the service owes an answer. Raises: DeviceError if the service is gone."""
         vector = dict(zip("xyz", force_n, strict=True))
         command = {"device_id": device_id, "commands": {"set_cursor_force": {"vector": vector}}}
-        with _told(self.uri):
+        with _service_errors(self.uri):
             self._connection.send(json.dumps({"inverse3": [command]}))
         self._owed += 1
 
     @property
     def waits(self) -> bool:
-        """Whether an answer is still to come."""
+        """True while an answer is still owed."""
         return self._owed > 0
 
     def newest(self, device_id: str) -> Answer:
-        """The last of the answers that are owed. Raises: DeviceError if it does not come, or has not this arm."""
+        """Return the last of the owed answers. Raises: DeviceError if it does not come, or lacks this arm."""
         message: Mapping[str, Any] = {}
         while self._owed:
-            message = self._answered()
-        with _told(self.uri):
-            states = {str(each["device_id"]): each["state"] for each in _listed(message, "inverse3")}
+            message = self._receive()
+        with _service_errors(self.uri):
+            states = {str(each["device_id"]): each["state"] for each in _devices(message, "inverse3")}
             if device_id not in states:
                 raise DeviceError(f"{self.uri}: Inverse3 {device_id} was unplugged; check its plug, then open it again")
             state = states[device_id]
-            moving = state.get("cursor_velocity")
-            pressed = any(each["state"].get("button") is True for each in _listed(message, "verse_grip"))
-            return Answer(_vector(state["cursor_position"]), moving and _vector(moving), int(pressed))
+            velocity = state.get("cursor_velocity")
+            pressed = any(each["state"].get("button") is True for each in _devices(message, "verse_grip"))
+            return Answer(_vector(state["cursor_position"]), velocity and _vector(velocity), int(pressed))
 
     def close(self) -> None:
         """Disconnect; never fails."""
         self._open.close()
 
-    def _answered(self) -> Mapping[str, Any]:
-        with _told(self.uri):
+    def _receive(self) -> Mapping[str, Any]:
+        with _service_errors(self.uri):
             message = json.loads(self._connection.recv(self._timeout_s))
         self._owed -= 1
         if not isinstance(message, dict):
@@ -115,14 +115,14 @@ class Session:
         return message
 
 
-def _connected(until: ExitStack, uri: str, timeout_s: float) -> "ClientConnection":
+def _connect(until: ExitStack, uri: str, timeout_s: float) -> "ClientConnection":
     try:
         from websockets.exceptions import WebSocketException
         from websockets.sync.client import connect
     except ImportError as error:
         raise DeviceAbsent(f"device haply needs websockets ({error}); {INSTALL}") from error
-    try:  # no proxy, compression or pings: the service is next door, and is asked a thousand times a second
-        asked = connect(
+    try:  # no proxy, compression or pings: the service is on this machine, and answers a thousand times a second
+        connection = connect(
             uri,
             open_timeout=timeout_s,
             close_timeout=1,
@@ -131,36 +131,36 @@ def _connected(until: ExitStack, uri: str, timeout_s: float) -> "ClientConnectio
             ping_interval=None,
             max_size=MOST_BYTES,
         )
-        return until.enter_context(asked)
+        return until.enter_context(connection)
     except (ConnectionRefusedError, TimeoutError) as error:
         raise DeviceAbsent(f"{uri}: no Haply service listens there ({error}); {START}") from error
     except (OSError, WebSocketException, EOFError) as error:
         raise DeviceError(f"{uri}: is not a Haply service ({error}); {START}") from error
 
 
-def _arm(told: Mapping[str, Any]) -> Arm:
-    config, status = told.get("config", {}), told.get("status", {})
+def _arm(device: Mapping[str, Any]) -> Arm:
+    config, status = device.get("config", {}), device.get("status", {})
     problems = [words for flag, words in PROBLEMS.items() if status.get(flag) is False]
     kind, port = str(config.get("type", "inverse3")), str(config.get("port", ""))
-    return Arm(str(told.get("device_id", "")), kind, port, "; ".join(problems))
+    return Arm(str(device.get("device_id", "")), kind, port, "; ".join(problems))
 
 
-def _listed(message: Mapping[str, Any], kind: str) -> list[dict[str, Any]]:
-    """The devices of a kind that a message names; those that are no objects are passed over."""
-    told = message.get(kind)
-    return [each for each in told if isinstance(each, dict)] if isinstance(told, list) else []
+def _devices(message: Mapping[str, Any], kind: str) -> list[dict[str, Any]]:
+    """Return the devices of a kind in a message; entries that are not objects are skipped."""
+    devices = message.get(kind)
+    return [each for each in devices if isinstance(each, dict)] if isinstance(devices, list) else []
 
 
-def _vector(told: Mapping[str, Any]) -> tuple[float, float, float]:
-    vector = float(told["x"]), float(told["y"]), float(told["z"])
+def _vector(coordinates: Mapping[str, Any]) -> tuple[float, float, float]:
+    vector = float(coordinates["x"]), float(coordinates["y"]), float(coordinates["z"])
     if not all(map(math.isfinite, vector)):
         raise ValueError(f"{vector} is not finite")
     return vector
 
 
 @contextmanager
-def _told(uri: str) -> Generator[None]:
-    """What goes wrong while the service is spoken to, in words."""
+def _service_errors(uri: str) -> Generator[None]:
+    """Turn errors of the exchange with the service into DeviceErrors."""
     from websockets.exceptions import ConnectionClosed
 
     try:

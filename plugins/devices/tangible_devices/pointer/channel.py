@@ -1,6 +1,6 @@
 """The memory that a pointer device and its client share: a file of 4 kB in the user's runtime folder, mapped by both.
 
-Words of 8 bytes in the machine's order. Each side writes a block of its own, and reads the other's:
+It has words of 8 bytes in the machine's order. Each side writes its own block, and reads the other's:
 
 | word | what | type | written by |
 |---|---|---|---|
@@ -15,13 +15,13 @@ Words of 8 bytes in the machine's order. Each side writes a block of its own, an
 | 33..35 | force on the hand, newtons | float64 | device |
 | 36 | checksum of words 32..35 | uint64 | device |
 
-Of the buttons, bits above those that are a button's may carry a number of the client's own: nothing here looks at them,
-a mapping's clutch looks at its button's bit alone, and they come back with the tick that used the sample, in the ring's
-and a recording's column `buttons`. Bits up to 30 do in each of them; recordings hold 32 with a sign.
+The bits of `buttons` above the real buttons may carry a number of the client's. The device ignores them, the clutch of
+a mapping reads its own button's bit alone, and they come back with the tick that used the sample, in the column
+`buttons` of the ring and of a recording. Bits up to 30 are possible; recordings hold 32 bits with a sign.
 
-A block that is read while it is written does not have its checksum, on every processor and whatever the order in which
-memory becomes visible; it is then read again. Beside the file lie two locks, held by the operating system for as long
-as a device or a client lives: a killed one leaves nothing behind that must be cleared away.
+A block that is read while it is written does not match its checksum, on every processor and in whatever order memory
+becomes visible; it is then read again. Next to the file are two lock files, whose locks the operating system releases
+when a device or a client ends: a killed process leaves nothing to clean up.
 """
 
 import mmap
@@ -36,22 +36,58 @@ from typing import final
 
 from tangible_core.errors import DeviceError
 
-from .lock import Lock
-
 MAGIC, DEVICE_OPEN, CLIENT_OPEN = 0, 1, 2
 SAMPLE, SAMPLE_WORDS = 16, 8
 FORCE, FORCE_WORDS = 32, 4
-"""Where the blocks begin, and how long they are without their checksums."""
+"""First word of each block, and its length in words without the checksum."""
 MARK = b"TANGPTR1"
 FILE_BYTES = 4096
 START, FACTOR, MASK = 0xCBF29CE484222325, 0x9E3779B97F4A7C15, (1 << 64) - 1
-"""Of the checksum."""
+"""Start value and factor of the checksum, and the mask of its 64 bits."""
 TRIES = 8
-"""How often a block is read before it is given up as torn; a writer takes well under a microsecond."""
+"""Reads of a block before it counts as torn; writing one takes well under a microsecond."""
+
+
+@final
+class Lock:
+    """An exclusive lock on a file, also between two in one process; the system releases it when its holder ends."""
+
+    def __init__(self, path: Path) -> None:
+        self._handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
+        self._open = True
+
+    def take(self) -> bool:
+        """Try to take the lock, without waiting."""
+        try:
+            _take(self._handle)
+        except OSError:
+            return False
+        return True
+
+    def close(self) -> None:
+        """Release the lock; a second call does nothing."""
+        if self._open:
+            self._open = False
+            os.close(self._handle)
+
+
+if sys.platform == "win32":
+
+    def _take(handle: int) -> None:
+        import msvcrt
+
+        msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
+
+else:
+
+    def _take(handle: int) -> None:
+        import fcntl
+
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def checksum(words: tuple[int, ...]) -> int:
-    """A multiplicative hash of 64-bit words, as the kernels compute it; no pair of changed words cancels out."""
+    """Return a multiplicative hash of 64-bit words, as the kernels compute it; no pair of changes cancels out."""
     total = START
     for word in words:
         total = (total ^ word) * FACTOR & MASK
@@ -59,14 +95,14 @@ def checksum(words: tuple[int, ...]) -> int:
     return total
 
 
-def packed(number: int, values: tuple[float, ...]) -> bytes:
-    """A block with its checksum."""
+def pack_block(number: int, values: tuple[float, ...]) -> bytes:
+    """Return a block with its checksum."""
     body = struct.pack(f"=Q{len(values)}d", number & MASK, *values)
     return body + struct.pack("=Q", checksum(struct.unpack(f"={len(values) + 1}Q", body)))
 
 
-def unpacked(block: bytes) -> tuple[int, tuple[float, ...]] | None:
-    """The number and the values of a block; None if it is torn."""
+def unpack_block(block: bytes) -> tuple[int, tuple[float, ...]] | None:
+    """Return the number and the values of a block; None if it is torn."""
     *words, claimed = struct.unpack(f"={len(block) // 8}Q", block)
     if checksum(tuple(words)) != claimed:
         return None
@@ -75,26 +111,26 @@ def unpacked(block: bytes) -> tuple[int, tuple[float, ...]] | None:
 
 @final
 class Channel:
-    """The mapped file of one name, and this side's lock on it."""
+    """The mapped file of a channel, and this side's lock on it."""
 
     def __init__(self, name: str, side: str) -> None:
-        """side: "device", which makes the file, or "client".
+        """side: "device", which creates the file, or "client".
 
-        Raises: DeviceError if the name is none, the side is taken, or the file cannot be made or is not there.
+        Raises: DeviceError if the name is invalid, the side is taken, or the file is missing or cannot be created.
         """
         self.path = channel_path(name)
         self.lock = Lock(self.path.with_suffix(f".{side}"))
-        if not any(self.lock.take() or time.sleep(0.01) for _ in range(5)):  # somebody may just be asking for it
+        if not any(self.lock.take() or time.sleep(0.01) for _ in range(5)):  # a test by `_lives` takes it briefly
             self.lock.close()
             raise DeviceError(f"pointer {name!r} has a {side} already ({self.path}); end it, or use another channel")
         try:
-            self.memory = _mapped(self.path, side == "device")
+            self.memory = _map(self.path, side == "device")
         except (OSError, ValueError) as error:
             self.lock.close()
             raise DeviceError(f"pointer {name!r}: {self.path} cannot be used: {error}; is a device open?") from error
 
     def flag(self, word: int) -> bool:
-        """Whether a word is set."""
+        """Tell whether a word is set."""
         return self.memory[word * 8 : word * 8 + 8] != bytes(8)
 
     def set_flag(self, word: int, on: bool) -> None:
@@ -103,30 +139,30 @@ class Channel:
 
     def put(self, start: int, number: int, values: tuple[float, ...]) -> None:
         """Write a block."""
-        block = packed(number, values)
+        block = pack_block(number, values)
         self.memory[start * 8 : start * 8 + len(block)] = block
 
     def take(self, start: int, words: int) -> tuple[int, tuple[float, ...]] | None:
-        """Read a block; None if it is being written all the time, or was left half written."""
+        """Read a block; None if it is written all the time, or was left half written."""
         for _ in range(TRIES):
-            if block := unpacked(self.memory[start * 8 : (start + words + 1) * 8]):
+            if block := unpack_block(self.memory[start * 8 : (start + words + 1) * 8]):
                 return block
         return None
 
     def close(self) -> None:
-        """Let go; a second call does nothing."""
+        """Release the lock; a second call does nothing."""
         self.lock.close()
 
 
 def channel_path(name: str) -> Path:
-    """Where a channel's file lies. Raises: DeviceError if the name is no plain word."""
+    """Return the path of a channel's file. Raises: DeviceError if the name is not a plain word."""
     if not re.fullmatch(r"[a-z0-9][a-z0-9-]{0,63}", name):
         raise DeviceError(f"channel {name!r}: write lower-case letters, digits and hyphens")
     return _runtime_folder() / f"{name}.pointer"
 
 
 def device_is_open(name: str) -> bool:
-    """Whether a device of this channel is ready, and lives: what it wrote may be older than it, its lock may not."""
+    """Tell whether a device of this channel is open and its process lives, by its lock: the flag alone may be stale."""
     path = channel_path(name)
     if not path.exists() or path.read_bytes()[DEVICE_OPEN * 8 :][:8] in (b"", bytes(8)):
         return False
@@ -134,7 +170,7 @@ def device_is_open(name: str) -> bool:
 
 
 def client_is_there(name: str) -> bool:
-    """Whether somebody has the client's place on this channel, and lives."""
+    """Tell whether this channel has a client whose process lives."""
     return _lives(channel_path(name), "client")
 
 
@@ -147,21 +183,21 @@ def _lives(path: Path, side: str) -> bool:
 
 
 def _runtime_folder() -> Path:
-    """$TANGIBLE_RUNTIME_DIR, or the user's runtime folder. Raises: DeviceError if it is somebody else's."""
+    """Return $TANGIBLE_RUNTIME_DIR or the user's runtime folder. Raises: DeviceError if another user owns it."""
     if named := os.environ.get("TANGIBLE_RUNTIME_DIR"):
         folder = Path(named)
     else:
         from platformdirs import user_runtime_path
 
-        with warnings.catch_warnings(action="ignore"):  # that a server has no such folder, and one in /tmp is used
+        with warnings.catch_warnings(action="ignore"):  # on servers without such a folder, one in /tmp is used
             folder = user_runtime_path("tangible-images")
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     if sys.platform != "win32" and folder.stat().st_uid != os.getuid():
-        raise DeviceError(f"{folder}: belongs to another user; set TANGIBLE_RUNTIME_DIR to a folder of your own")
+        raise DeviceError(f"{folder}: belongs to another user; set TANGIBLE_RUNTIME_DIR to one of your folders")
     return folder
 
 
-def _mapped(path: Path, make: bool) -> mmap.mmap:
+def _map(path: Path, make: bool) -> mmap.mmap:
     handle = os.open(path, os.O_RDWR | (os.O_CREAT if make else 0), 0o600)
     try:
         if make and os.fstat(handle).st_size < FILE_BYTES:

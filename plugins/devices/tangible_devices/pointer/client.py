@@ -1,4 +1,4 @@
-"""The other side of a pointer device: whoever moves it."""
+"""The client of a pointer device: the program that moves it."""
 
 import math
 import time
@@ -23,15 +23,15 @@ from .channel import (
 )
 
 SILENT_S = 0.5
-"""A device that has shown no force for longer is taken for dead."""
+"""Silence after which the device counts as gone, and its force as zero."""
 
 
 @final
 class PointerClient:
-    """Moves a `pointer` device and is shown its forces; a context manager, for one thread at a time.
+    """A client that moves a `pointer` device and reads its forces; a context manager, for one thread at a time.
 
-    Send at least every tenth of a second, also when nothing moves: who falls silent is taken for gone; who lets go says
-    so by `release`. Needs no numba.
+    Send at least every tenth of a second, also when nothing moves: a silent client counts as gone. To let go, call
+    `release`. Needs no numba.
 
         with PointerClient() as client:
             client.send((0.01, 0.0, 0.005))
@@ -39,7 +39,7 @@ class PointerClient:
     """
 
     def __init__(self, channel: str = "pointer", wait_s: float = 0.0) -> None:
-        """Take the client's place on a channel, waiting up to wait_s for its device.
+        """Become the client of a channel, waiting up to wait_s for its device.
 
         Raises: DeviceError if there is no such device, or it has a client.
         """
@@ -56,7 +56,7 @@ class PointerClient:
         self._open, self._released = True, False
 
     def send(self, position_m: Vector, buttons: int = 0, velocity_m_per_s: Vector | None = None) -> None:
-        """Where the tip is now; without a velocity, it is the way since the last time over the time since.
+        """Send the position of the tip; without a velocity, send the mean velocity since the last call.
 
         Raises: DeviceError if a number is not finite, or the device or this client is closed.
         """
@@ -74,18 +74,18 @@ class PointerClient:
         self._released = False
 
     def release(self) -> None:
-        """Let go of the pointer until the next `send`: nobody holds it, and nobody is to keep sending.
+        """Let go of the pointer until the next `send`; no further calls are needed meanwhile.
 
-        At its next tick the device is high above the surface, where the law gives no force; this client is shown none
-        from now on. The next `send` begins anew: its position is taken as it is, and without a velocity it is at rest.
-        A client that is closed has let go already.
+        At its next tick the device is high above the surface, where the force law gives no force; `force` returns zero
+        from now on. The next `send` starts anew: its position is taken without filtering, and at rest unless a velocity
+        is given. A closed client has let go already.
         """
         if self._open:
             self._channel.set_flag(CLIENT_OPEN, False)
             self._last, self._released = None, True
 
     def force(self) -> Force:
-        """The force on the hand now; zero from a device that is silent, and for a hand that let go.
+        """Return the force on the hand; zero if the device is silent, or after `release`.
 
         Raises: DeviceError if the device or this client is closed.
         """
@@ -99,7 +99,7 @@ class PointerClient:
         return Force(*block[1])
 
     def close(self) -> None:
-        """Leave; the tip is then high above the surface. A second call does nothing."""
+        """Leave the channel; the tip is then high above the surface. A second call does nothing."""
         if self._open:
             self.release()
             self._open = False

@@ -1,4 +1,4 @@
-"""A hand for a pointer device: along a drawn path, or by typed positions."""
+"""Moving a pointer device along a path, or by typed positions."""
 
 import io
 import json
@@ -18,9 +18,9 @@ from .client import PointerClient
 
 PERIOD_S = 0.005
 SHOWN_EVERY = 20
-"""Sends between two lines of forces: ten lines a second."""
+"""Sends per printed line: ten lines a second."""
 MOST_BUTTONS = 1 << 31
-"""A sum of the bits of 31 buttons is less."""
+"""Exclusive upper bound of a sum of the bits of 31 buttons."""
 Step = tuple[Vector, int]
 
 
@@ -34,10 +34,10 @@ def follow(
     as_json: bool,
     complain: Callable[[str], None],
 ) -> Iterator[str]:
-    """Lines to print, position and force, while the pointer is moved; the first is the heading.
+    """Move the pointer, and yield lines of position and force to print; the first is the heading.
 
-    complain: told what is wrong with a typed line; the pointer stays where it was.
-    Raises: ConfigError for a path or a number that is none, DeviceError as `PointerClient`.
+    complain: called with the fault of a typed line; the pointer stays where it was.
+    Raises: ConfigError for an unknown path or an invalid number, DeviceError as `PointerClient`.
     """
     if path and path not in DRAWN:
         raise ConfigError(f"--path {path}: there is no such path{did_you_mean(path, DRAWN)}; {', '.join(DRAWN)}")
@@ -45,14 +45,14 @@ def follow(
     check_positive("--speed-mm-per-s", 1000 * speed_m_per_s)
     if not math.isfinite(height_m):
         raise ConfigError(f"--height-mm: is {1000 * height_m}; it must be finite")
-    steps = _drawn(path, seconds, height_m, speed_m_per_s) if path else _typed(sys.stdin, complain)
+    steps = _path_steps(path, seconds, height_m, speed_m_per_s) if path else _typed_steps(sys.stdin, complain)
     with PointerClient(channel, wait_s) as client:
         if not as_json:
             yield "".join(f"{name:>10}" for name in ("x mm", "y mm", "z mm", "fx N", "fy N", "fz N"))
-        for (position_m, buttons), shown in steps:
+        for (position_m, buttons), is_printed in steps:
             client.send(position_m, buttons)
             time.sleep(PERIOD_S)
-            if shown:
+            if is_printed:
                 yield _line(position_m, client.force(), as_json)
 
 
@@ -63,8 +63,8 @@ def _line(position_m: Vector, force: Force, as_json: bool) -> str:
     return "".join(numbers)
 
 
-def _drawn(path: str, seconds: float, height_m: float, speed_m_per_s: float) -> Iterator[tuple[Step, bool]]:
-    """Steps along a path, and whether to show the force there."""
+def _path_steps(path: str, seconds: float, height_m: float, speed_m_per_s: float) -> Iterator[tuple[Step, bool]]:
+    """Yield steps along a path, and whether to print the force there."""
     stroke = walk(DRAWN[path]((0.06, 0.04), 8, height_m, height_m + 0.03), speed_m_per_s, PERIOD_S)
     start = time.monotonic()
     for number in count(1):
@@ -74,10 +74,10 @@ def _drawn(path: str, seconds: float, height_m: float, speed_m_per_s: float) -> 
         yield (stroke.at(round(passed / PERIOD_S)), 0), number % SHOWN_EVERY == 0
 
 
-def _typed(lines: Iterable[str], complain: Callable[[str], None]) -> Iterator[tuple[Step, bool]]:
-    """Each typed position for a while, the last one on and on: the device must see that somebody is there."""
+def _typed_steps(lines: Iterable[str], complain: Callable[[str], None]) -> Iterator[tuple[Step, bool]]:
+    """Yield each typed position for a while, the last one continually, so that the client does not fall silent."""
     if isinstance(lines, io.TextIOWrapper):
-        lines.reconfigure(errors="replace")  # what is no text is no position, and no end
+        lines.reconfigure(errors="replace")  # bytes that are not text are an invalid position, not an end
     typed: Queue[str | None] = Queue()
     Thread(target=_enqueue, args=(lines, typed), daemon=True).start()
     step: Step = ((0.0, 0.0, 1.0), 0)
@@ -92,7 +92,7 @@ def _typed(lines: Iterable[str], complain: Callable[[str], None]) -> Iterator[tu
 
 
 def parse(line: str) -> Step:
-    """A typed position: x, y, z in millimetres, and buttons as a sum of bits where there are any.
+    """Parse a typed position: x, y, z in millimetres, and optionally buttons as a sum of bits.
 
     >>> parse("10 -5 2.5 1")
     ((0.01, -0.005, 0.0025), 1)
@@ -115,7 +115,7 @@ def _enqueue(lines: Iterable[str], typed: "Queue[str | None]") -> None:
 
 
 def _next(typed: "Queue[str | None]") -> str | None:
-    """The next line, None after the last, empty while nothing was typed."""
+    """Return the next line, None after the last, empty while there is none yet."""
     try:
         return typed.get_nowait()
     except Empty:

@@ -1,4 +1,4 @@
-"""A pointer's memory, read and written without Python. Imports numba: who opens a pointer imports this module then."""
+"""Kernels that read and write a pointer's memory. Imports numba: this module is imported when a pointer is opened."""
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 # pyright: basic
@@ -12,21 +12,20 @@ from .channel import CLIENT_OPEN, FACTOR, FORCE, FORCE_WORDS, SAMPLE, SAMPLE_WOR
 
 WORDS, NUMBERS = uint64[::1], float64[::1]
 LAST, AGE, OLDEST = SAMPLE_WORDS + 1, SAMPLE_WORDS + 2, SAMPLE_WORDS + 3
-"""Of what a link keeps behind a copied block: the number of the newest sample, the reads since it came, and how many
-there may be."""
+"""Words of a link's state after the copied block: number of the newest sample, reads since it came, and their limit."""
 SHARE, TIP = SAMPLE_WORDS + 4, SAMPLE_WORDS + 5
-"""Behind that, the share of its way that the tip goes in a read, 1 for a tip that does not follow but is there; and
-where it is: position and velocity."""
+"""Further words: the share of the remaining way that the tip moves in a read, 1 without a filter; and the tip's
+position and velocity."""
 KEPT_WORDS = TIP + 6
 NOBODY, BROKEN, WHOLE = 0, 1, 2
 HIGH_M = 1.0
-"""Where the tip is without a client: above every surface."""
+"""Height of the tip without a client: above every surface."""
 _START, _FACTOR, _HALF = np.uint64(START), np.uint64(FACTOR), np.uint64(32)
 
 
 @njit(uint64(WORDS, int64, int64), **KERNEL)
 def checksum(words, start, count):
-    """As `channel.checksum`."""
+    """Return the same checksum as `channel.checksum`."""
     total = _START
     for i in range(start, start + count):
         total = (total ^ words[i]) * _FACTOR
@@ -36,7 +35,7 @@ def checksum(words, start, count):
 
 @njit(int64(WORDS, WORDS), **KERNEL)
 def fetch(words, kept):
-    """Copy the client's sample, whole or not at all: WHOLE, BROKEN if it is torn or not finite, or NOBODY."""
+    """Copy the client's sample; return WHOLE, BROKEN if it is torn or not finite, or NOBODY."""
     if words[CLIENT_OPEN] == 0:
         return NOBODY
     for _ in range(TRIES):
@@ -53,9 +52,9 @@ def fetch(words, kept):
 
 @njit(int64(WORDS, WORDS, NUMBERS, NUMBERS), **KERNEL)
 def read(words, kept, numbers, state):
-    """The newest sample, or the tip on its way there; without a client high above.
+    """Write the newest sample, or the filtered tip, to state; without a client the tip is high above the surface.
 
-    0 if the client has been silent for too many reads. The first sample, and one after that, is taken as it is.
+    Returns 0 if the client has been silent for too many reads. The first sample after that is not filtered.
     """
     found = fetch(words, kept)
     if found == NOBODY:
@@ -83,7 +82,7 @@ def read(words, kept, numbers, state):
 
 @njit(void(WORDS, WORDS, NUMBERS, float64, float64, float64), **KERNEL)
 def write(words, kept, numbers, fx, fy, fz):
-    """Show the force to the client."""
+    """Write the force for the client."""
     held = words.view(np.float64)
     words[FORCE] += np.uint64(1)
     held[FORCE + 1], held[FORCE + 2], held[FORCE + 3] = fx, fy, fz

@@ -1,4 +1,4 @@
-"""A device that is moved by another program: a mouse, a robot, a test."""
+"""A device that another program moves, for a mouse, a robot or a test."""
 
 import math
 import time
@@ -17,42 +17,43 @@ from ..simulated import LIKE_A_FALCON
 from .channel import DEVICE_OPEN, FORCE, FORCE_WORDS, MAGIC, MARK, SAMPLE, SAMPLE_WORDS, Channel, client_is_there
 
 HIGH_M = (0.0, 0.0, 1.0)
-"""Where the tip is without a client: above every surface."""
+"""Position of the tip without a client: above every surface."""
 PACE_S = 0.0005
+"""Shortest time between two reads from Python."""
 PERIOD_S = 0.001
-"""Of a compiled loop."""
+"""Period of a compiled loop."""
 
 
 class Pointer(HapticDevice, Attended):
-    """Moved by another program through shared memory, which is shown the forces: no motor, real time.
+    """A device that another program moves through shared memory, and whose forces it reads: no motor, real time.
 
-    A program that moves it is a `PointerClient`; `tangible pointer` is one. Without one, and when it falls silent, the
-    tip is high above the surface, where nothing is felt. One device and one client at a time on a channel. Its limits
-    are a Novint Falcon's, so that what is shown is what a Falcon would do.
+    The other program is a `PointerClient`, such as `tangible pointer`. Without one, and when it is silent, the tip is
+    high above the surface, where there is no force. One device and one client at a time on a channel. Its limits are a
+    Novint Falcon's, so that the forces are those of a Falcon.
     """
 
     channel: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")] = "pointer"
     """Name of the shared memory, the same for device and client."""
     stale_after_s: Annotated[float, Field(ge=0.002, le=10)] = 0.1
-    """Silence after which the client's position is no longer used; a compiled loop counts it in ticks of 1 ms. Longer
-    for a client that a busy machine may hold up; the force then stays for as long, should it die."""
+    """Silence after which the client's position is no longer used; a compiled loop counts it in ticks of 1 ms. Choose
+    more if a busy machine delays the client; the force of a client that dies then stays for as long."""
     follow_s: Annotated[float, Field(ge=0, le=1)] = 0.0
-    """Time constant with which the tip follows the client's positions and velocities: with 12 ms those of a mouse, 60 a
-    second, make a smooth path and no stairs. 0 takes them as they come. A compiled loop counts it in ticks of 1 ms."""
+    """Time constant of a filter on the client's positions and velocities: with 12 ms, a mouse's 60 positions a second
+    make a smooth path without steps. 0 switches the filter off. A compiled loop counts it in ticks of 1 ms."""
 
     def spec(self) -> DeviceSpec:
-        """A Novint Falcon's force, stiffness and damping; the workspace is whatever the client has."""
+        """Return a Novint Falcon's force, stiffness and damping; the workspace is the client's, 1 m here."""
         return replace(LIKE_A_FALCON, workspace_m=(1.0, 1.0, 1.0), buttons=31)
 
     def unattended(self) -> str | None:
-        """Whether nobody moves it."""
+        """Return a message if there is no client, otherwise None."""
         if client_is_there(self.channel):
             return None
         channel = "" if self.channel == "pointer" else f" --channel {self.channel}"
-        return f"nobody moves the pointer, so nothing is felt; start `tangible pointer{channel}` in another terminal"
+        return f"nothing moves the pointer, so there is no force; start `tangible pointer{channel}` in another terminal"
 
     def open(self) -> Link:
-        """Raises: DeviceError if this channel has a device already, or its file cannot be made."""
+        """Open the channel. Raises: DeviceError if it has a device already, or its file cannot be created."""
         from . import kernels
 
         channel = Channel(self.channel, "device")
@@ -86,9 +87,9 @@ class PointerLink(CompiledLink):
         self._words[DEVICE_OPEN] = 1
 
     def _read(self) -> HapticState:
-        """Where the client is; high above where there is none.
+        """Return the client's position; high above the surface without a client.
 
-        Waits until half a millisecond after the read before, so that a loop without a clock of its own does not spin.
+        Waits until half a millisecond after the last read, so that a loop without its own clock does not spin.
         """
         time.sleep(max(0.0, self._read_s + PACE_S - time.monotonic()))
         now = time.monotonic()
@@ -109,42 +110,42 @@ class PointerLink(CompiledLink):
         return self._tip._replace(time_s=now)
 
     def _send(self, force: Force) -> None:
-        """Show this force until the next one."""
+        """Write the force for the client."""
         self._code.write(self._words, self._kept, self._numbers, *force)
 
     @property
     def applied(self) -> Force:
-        """The force that the client is shown."""
+        """The force that the client reads."""
         return Force(*self._held.tolist())
 
     def _release(self) -> None:
-        """Leave the channel to another device."""
+        """Close the channel."""
         self._words[DEVICE_OPEN] = 0
         self._channel.close()
 
     def kernels(self) -> LinkKernels:
-        """Read and write on the shared memory itself."""
+        """Return the kernels on the shared memory."""
         return LinkKernels(self._code.read, self._code.write, (self._words, self._kept, self._numbers))
 
     @property
     def exchanges(self) -> bool:
-        """No: the client fills and empties the memory."""
+        """False: device and client share the memory, and nothing is sent."""
         return False
 
     def _exchange(self) -> None:
-        """Nothing has to travel."""
+        """Do nothing, as the memory is shared."""
 
 
 def _towards(tip: HapticState, sample: HapticState, share: float) -> HapticState:
-    """The sample, with the tip so far on its way there."""
+    """Return the sample with the tip moved by this share of its way to it."""
     if share >= 1.0:
         return sample
     return sample._replace(
-        position_m=_part(tip.position_m, sample.position_m, share),
-        velocity_m_per_s=_part(tip.velocity_m_per_s, sample.velocity_m_per_s, share),
+        position_m=_interpolate(tip.position_m, sample.position_m, share),
+        velocity_m_per_s=_interpolate(tip.velocity_m_per_s, sample.velocity_m_per_s, share),
     )
 
 
-def _part(here: Vector, there: Vector, share: float) -> Vector:
+def _interpolate(here: Vector, there: Vector, share: float) -> Vector:
     x, y, z = (a + share * (b - a) for a, b in zip(here, there, strict=True))
     return x, y, z

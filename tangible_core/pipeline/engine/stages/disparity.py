@@ -35,11 +35,11 @@ class DisparityStage(MethodStage):
         views = self.views
         estimate = self.estimate(self.required_choice.method.estimate, views)
         order = self.order(estimate, views)
-        if order is not None and order.said:
-            note(log, order.said, logging.WARNING if order.exchanged else logging.INFO)
+        if order is not None and order.message:
+            note(log, order.message, logging.WARNING if order.exchanged else logging.INFO)
         disparity = self.in_picture_pixels(estimate, exchanged=order is not None and order.exchanged)
         if views.right is not None:
-            reason = pair_checks.same_twice(views, disparity) or pair_checks.hardly_matched(
+            reason = pair_checks.identical_views(views, disparity) or pair_checks.few_matches(
                 disparity, self.grid.known_mask
             )
             if reason:
@@ -65,7 +65,7 @@ class DisparityStage(MethodStage):
 
         exchanged: True corrects a map of exchanged views.
         """
-        ordered = pair_checks.put_right(estimate) if exchanged else estimate
+        ordered = pair_checks.correct_exchanged(estimate) if exchanged else estimate
         return known_disparity(scaling.in_pixels_of(ordered, self.context.scene.shape[1]), self.grid.known_mask)
 
     def full_size(self, value: DisparityMap) -> DisparityMap:

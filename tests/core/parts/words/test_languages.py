@@ -1,4 +1,4 @@
-"""Every language says all that the others say."""
+"""The tables of words in every language."""
 
 import logging
 import string
@@ -18,18 +18,18 @@ def placeholders(text: str) -> Counter[str]:
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_no_language_lacks_a_word_or_a_placeholder(language):
+def test_every_language_has_all_words_and_placeholders(language):
     english, table = TABLES["en"], TABLES[language]
     assert table.words.keys() == english.words.keys()
     for key, text in table.words.items():
         assert text.strip(), key
         assert placeholders(text) == placeholders(english.words[key]), key
-    assert table.materials.keys() == table.felt.keys() == library().keys()
+    assert table.materials.keys() == table.after_like.keys() == library().keys()
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_what_a_language_says_is_its_own(language):
-    """A sentence that was copied and not translated is as if it were missing."""
+def test_words_of_a_language_are_translated(language):
+    """Find sentences that were copied and not translated."""
     others = [TABLES[each].words for each in LANGUAGES if each != language]
     alike = {key for key, text in TABLES[language].words.items() if any(text == other[key] for other in others)}
     assert alike <= {"point", "surface", "of a part", "part", "part size"}
@@ -38,7 +38,7 @@ def test_what_a_language_says_is_its_own(language):
 @pytest.mark.parametrize(
     ("tag", "language"), [("en", "en"), ("de-CH", "de"), ("DE", "de"), ("fr-CA", "fr"), ("pt", "en"), ("den", "en")]
 )
-def test_a_tag_has_the_language_of_its_words(tag: str, language: str):
+def test_tag_selects_the_language_of_the_words(tag: str, language: str):
     assert language_of(tag) == language
 
 
@@ -48,6 +48,6 @@ def test_english_stands_in_with_a_note():
     assert notes == ["described in English: there are no words for the language 'pt-BR'; there are for en, de and fr"]
 
 
-def test_a_part_is_called_by_its_name_or_its_number():
+def test_part_label_is_its_name_or_its_number():
     labels = part_label(" helmet\n"), part_label("a\tb\ud800"), part_label(0), part_label(3, "fr"), part_label(3, "pt")
     assert labels == ("helmet", "a b", "part 0", "partie 3", "part 3")

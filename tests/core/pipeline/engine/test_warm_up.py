@@ -10,8 +10,8 @@ import pytest
 
 from tangible_core import Pipeline, Scene, Workspace
 from tangible_core.compiled.beside import kernels_are_compiled
-from tangible_core.pipeline.engine import warm_up as rehearsal
-from tangible_core.pipeline.engine.warm_up import FELT, _work, rehearse
+from tangible_core.pipeline.engine import warm_up as module
+from tangible_core.pipeline.engine.warm_up import FELT, _work, run_stages
 from tangible_core.plugins import DepthEstimator
 from tangible_depth import Luminance
 from tangible_devices import Mock
@@ -29,7 +29,7 @@ from tangible_core.data import DisparityMap
 from tangible_core import Scene
 from tangible_core.pipeline.config.parsing import load_config
 from tangible_core.pipeline.engine.engine import Engine
-from tangible_core.pipeline.engine.warm_up import rehearsal, _work
+from tangible_core.pipeline.engine.warm_up import warm_up, _work
 from tangible_core.plugins.registry import default_registry
 from tangible_core.session import run_simulated
 from dataclasses import replace
@@ -72,7 +72,7 @@ class TestWork:
     def test_all_that_can_be_rehearsed(self):
         work = _work(pipeline().engine, "touch")
         assert work is not None
-        assert list(rehearse(*work.arguments)) == ["segments", "touch", FELT]
+        assert list(run_stages(*work.arguments)) == ["segments", "touch", FELT]
         assert work.names == {"segments", "touch", FELT}
 
     def test_what_was_begun_is_not(self):
@@ -87,7 +87,7 @@ class TestWork:
     def test_what_is_not_wanted_is_not(self):
         work = _work(pipeline().engine, "segments")
         assert work is not None
-        assert list(rehearse(*work.arguments)) == ["segments"]
+        assert list(run_stages(*work.arguments)) == ["segments"]
         assert _work(pipeline(texture=None).engine, "surface") is None
 
     def test_what_the_scene_brings_is_not(self):
@@ -104,7 +104,7 @@ class TestWork:
         assert _work(pipeline().engine, "touch") is None
 
     def test_the_middle_of_a_large_picture_is_enough(self, monkeypatch: pytest.MonkeyPatch):
-        monkeypatch.setattr(rehearsal, "MOST_PX", 20)
+        monkeypatch.setattr(module, "MOST_PX", 20)
         work = _work(pipeline().engine, "touch")
         assert work is not None
         assert np.array_equal(work.arguments[1].left, PICTURE[14:34, 14:34])
@@ -112,7 +112,7 @@ class TestWork:
     def test_a_law_without_materials_and_a_device_that_is_real(self):
         work = _work(pipeline(render=GreyLevel(), device=None, texture=None).engine, "touch")
         assert work is not None
-        assert list(rehearse(*work.arguments)) == ["touch", FELT]
+        assert list(run_stages(*work.arguments)) == ["touch", FELT]
 
 
 class Loud(DepthEstimator):
@@ -148,6 +148,6 @@ def test_a_run_that_compiles_nothing_starts_no_process(tmp_path: Path):
 
 def test_what_is_made_without_a_run_has_a_process_beside_it_too(monkeypatch: pytest.MonkeyPatch):
     asked: list[str] = []
-    monkeypatch.setattr(rehearsal, "_work", lambda _, want: asked.append(want))
+    monkeypatch.setattr(module, "_work", lambda _, want: asked.append(want))
     assert pipeline(depth=Loud()).touch is not None
     assert asked == ["touch"]

@@ -1,4 +1,4 @@
-"""Videos as scenes: files and folders, frame by frame and as they are due, and whatever may be wrong with them."""
+"""Videos as scenes: files and folders, in order and by time, and their faults."""
 
 import struct
 import wave
@@ -26,31 +26,31 @@ from videos import Played, grey, greys, jpegs, shown, write_video
 
 @pytest.fixture
 def film(tmp_path: Path) -> Path:
-    """Ten frames, 25 a second."""
+    """A file of ten frames, 25 a second."""
     return greys(tmp_path / "film.avi", 10)
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Twelve pictures whose names do not sort as their numbers do, and what is no picture."""
-    found = tmp_path / "pictures"
-    found.mkdir()
+    """A folder of twelve pictures whose names do not sort as their numbers, and two other files."""
+    pictures = tmp_path / "pictures"
+    pictures.mkdir()
     for number in range(12):
-        write_png(found / f"f{number}.png", grey(number))
-    (found / "notes.txt").write_text("none")
-    (found / "._f0.png").write_bytes(b"none")
-    return found
+        write_png(pictures / f"f{number}.png", grey(number))
+    (pictures / "notes.txt").write_text("none")
+    (pictures / "._f0.png").write_bytes(b"none")
+    return pictures
 
 
-def played(monkeypatch: pytest.MonkeyPatch, *captures: Played, repeat: bool = False, **options) -> Scene:
-    """The scene of a file that is opened as these captures, one after the other; the first is for the scene."""
+def play(monkeypatch: pytest.MonkeyPatch, *captures: Played, repeat: bool = False, **options) -> Scene:
+    """Return the scene of a file that opens as these captures, in turn; the first is for the scene."""
     opened = iter(captures)
     monkeypatch.setattr(video_readers, "open_file", lambda path: next(opened))
     return Scene.of(video="film.avi", repeat=repeat, **options)
 
 
 class TestScene:
-    def test_the_first_frame_is_the_still(self, tmp_path: Path):
+    def test_scene_of_a_video_shows_its_first_frame(self, tmp_path: Path):
         colours = np.zeros((24, 32, 3), np.uint8)
         colours[:] = 20, 60, 200  # blue, green, red
         path = write_video(tmp_path / "film.avi", [colours, *map(grey, range(4))])
@@ -66,7 +66,7 @@ class TestScene:
     @pytest.mark.parametrize(
         ("layout", "whole"), [("side-by-side", [1, 0, 9]), ("cross-eyed", [9, 0, 1]), ("top-bottom", [[1], [0], [9]])]
     )
-    def test_each_frame_holds_a_pair(self, tmp_path: Path, layout: str, whole: list):
+    def test_frames_of_a_stereo_video_are_pairs(self, tmp_path: Path, layout: str, whole: list):
         halves = np.kron(np.array(whole), np.ones((15, 15))).astype(np.uint8)  # an odd number: the middle is left out
         for number, lighter in enumerate((1, 2)):
             write_png(tmp_path / f"{number}.png", 20 * halves * np.uint8(lighter))
@@ -81,7 +81,7 @@ class TestScene:
         assert first.left.shape == (9, 10, 3) and first.calibration.focal_px == 100
         assert (first.left.max(), first.right.max()) == (20, 180) and second.left.max() == 40
 
-    def test_frames_are_cropped_turned_and_inverted_like_the_still(self, folder: Path):
+    def test_frames_are_cropped_rotated_and_inverted_like_the_first(self, folder: Path):
         for each in folder.glob("f*.png"):
             write_png(each, np.arange(48, dtype=np.uint8).reshape(6, 8))
         scene = Scene.read(SceneFiles(video=folder, crop=(1, 2, 5, 3), rotate=90, invert=True), Path())
@@ -90,7 +90,7 @@ class TestScene:
         assert last.views.left.shape == (5, 3, 3)
         np.testing.assert_array_equal(last.views.left, scene.views.left)
 
-    def test_a_rig_turns_every_frame_as_it_turns_the_still(self, tmp_path: Path):
+    def test_rig_rectifies_every_frame_like_the_first(self, tmp_path: Path):
         lens = Camera(np.array([[100.0, 0, 40], [0, 100, 30], [0, 0, 1]]), np.array([-0.2, 0.05, 0, 0]))
         rig = StereoRig(lens, lens, np.eye(3), np.array([-0.1, 0.01, 0.0]))
         rng = np.random.default_rng(0)
@@ -107,20 +107,20 @@ class TestScene:
 
 
 class TestFiles:
-    def test_frames_come_in_order_and_again(self, film: Path):
+    def test_repeating_file_gives_frames_in_order_and_again(self, film: Path):
         with Scene.of(video=film).video.open() as frames:
             found = [frames.next() for _ in range(23)]
         assert [each.number for each in found] == list(range(23))
         assert [shown(each.views) for each in found] == [number % 10 for number in range(23)]
         np.testing.assert_allclose([each.time_s for each in found], np.arange(23) / 25, atol=1e-9)
 
-    def test_one_that_does_not_begin_again_ends(self, film: Path):
+    def test_file_without_repeat_ends(self, film: Path):
         with Scene.of(video=film, repeat=False).video.open() as frames:
             assert frames.at(60).number == 9, "the last frame is due for ever, and is not lost"
-            assert frames.ended is False or frames.at(61) is None
-            assert frames.next() is None and frames.at(62) is None and frames.ended
+            assert frames.at_end is False or frames.at(61) is None
+            assert frames.next() is None and frames.at(62) is None and frames.at_end
 
-    def test_the_latest_that_is_due_is_had_once(self, film: Path):
+    def test_latest_due_frame_is_returned_once(self, film: Path):
         with Scene.of(video=film).video.open() as frames:
             assert frames.at(0).number == 0
             assert frames.at(0.03) is None
@@ -129,54 +129,54 @@ class TestFiles:
             assert frames.next().number == 5, "nothing beyond it was read"
             assert shown(frames.at(0.53).views) == 3, "the fourth of the second round"
 
-    def test_a_rate_that_is_said_counts(self, film: Path):
+    def test_requested_rate_replaces_the_time_stamps(self, film: Path):
         video = Scene.of(video=film, fps=5).video
         with video.open() as frames:
             assert video.fps == frames.fps == 5
             assert frames.at(1.01).number == 5 and frames.next().time_s == pytest.approx(1.2)
 
-    def test_uneven_frames_come_when_the_file_says(self, monkeypatch: pytest.MonkeyPatch):
-        """Of a recorded screen, in which one stands for seconds, none is taken for one that the next is due behind."""
+    def test_uneven_frames_follow_their_time_stamps(self, monkeypatch: pytest.MonkeyPatch):
+        """Play a recorded screen, in which a frame stands for seconds and must not be skipped."""
         times_s = [0.0, 0.033, 0.066, 2.0, 5.0, 5.033]
         pictures = [grey(number) for number in range(6)]
-        with played(monkeypatch, *(Played(pictures, times_s) for _ in range(2))).video.open() as frames:
+        with play(monkeypatch, *(Played(pictures, times_s) for _ in range(2))).video.open() as frames:
             assert [shown(frames.at(time_s).views) for time_s in (1, 4, 5.01, 9)] == [2, 3, 4, 5]
             assert frames.skipped == 2
 
     @pytest.mark.parametrize("times_s", [[0] * 4, [0, -1, 1e9, float("nan")]], ids=["none", "nonsense"])
-    def test_time_stamps_that_make_no_sense_are_not_believed(self, monkeypatch: pytest.MonkeyPatch, times_s: list):
+    def test_implausible_time_stamps_are_replaced_by_an_even_rate(self, monkeypatch: pytest.MonkeyPatch, times_s: list):
         captures = [Played([grey(number) for number in range(4)], times_s, fps=1e5) for _ in range(2)]
-        with played(monkeypatch, *captures).video.open() as frames:
+        with play(monkeypatch, *captures).video.open() as frames:
             assert frames.fps == 30, "nor such a rate"
             np.testing.assert_allclose([frames.next().time_s for _ in range(4)], np.arange(4) / 30, atol=1e-9)
 
     def test_skipped_frames_are_not_converted(self, monkeypatch: pytest.MonkeyPatch):
-        """Where it is certain that the next is due too: by a rate that is said, or after an even round."""
+        """Skip where the next frame is certainly due: by a requested rate, or after an even round."""
         pictures, times_s = [grey(number) for number in range(30)], [number / 30 for number in range(30)]
         captures = [Played(pictures, times_s) for _ in range(4)]
-        with played(monkeypatch, captures[0], captures[1], fps=30).video.open() as frames:
+        with play(monkeypatch, captures[0], captures[1], fps=30).video.open() as frames:
             assert frames.at(0.9).number == 27
         assert captures[1].retrieved[-1] == 27 and len(captures[1].retrieved) <= 2
         assert captures[1].released.is_set()
-        with played(monkeypatch, *captures[:1], *captures[2:], repeat=True).video.open() as frames:
+        with play(monkeypatch, *captures[:1], *captures[2:], repeat=True).video.open() as frames:
             assert (frames.at(0.9).number, frames.at(1.9).number) == (27, 57)
         assert len(captures[2].retrieved) > 27 and len(captures[3].retrieved) <= 2
 
-    def test_one_that_decodes_too_slowly_is_played_more_slowly(self, monkeypatch: pytest.MonkeyPatch):
-        """And no call waits for all that it lies behind: each would take longer than the one before."""
+    def test_file_that_decodes_too_slowly_plays_more_slowly(self, monkeypatch: pytest.MonkeyPatch):
+        """Skip for a tenth of a second only: catching up on everything would take longer at each call."""
         clock = iter(np.arange(0, 1e4, 0.04))
         monkeypatch.setattr(video_readers, "monotonic", lambda: float(next(clock)))
         captures = [
             Played([grey(number) for number in range(31)], [number / 30 for number in range(31)]) for _ in range(2)
         ]
-        with played(monkeypatch, *captures).video.open() as frames:
+        with play(monkeypatch, *captures).video.open() as frames:
             first = frames.at(0.8)
             assert first.number < 5
             assert frames.at(0.8) is None
             assert frames.at(0.8 + 1.01 / 30).number == first.number + 1
 
-    def test_one_held_upright_is_upright(self, tmp_path: Path):
-        """A phone writes what its sensor sees, and how it was held."""
+    def test_phone_video_is_upright(self, tmp_path: Path):
+        """Play a file that has the sensor's picture and the orientation of the phone."""
         lit = np.zeros((32, 64, 3), np.uint8)
         lit[:, 32:] = 255
         path = write_video(tmp_path / "phone.mp4", [lit] * 3, codec="mp4v")
@@ -190,38 +190,38 @@ class TestFiles:
         assert left.shape == (64, 32, 3)
         assert left[:24].max() < 60 and left[40:].min() > 190
 
-    def test_another_size_in_mid_stream_is_one_error(self, monkeypatch: pytest.MonkeyPatch):
+    def test_frame_of_another_size_raises_once(self, monkeypatch: pytest.MonkeyPatch):
         captures = [Played([grey(0), grey(1), grey(2, (48, 32)), grey(3)]) for _ in range(2)]
-        with played(monkeypatch, *captures).video.open() as frames:
+        with play(monkeypatch, *captures).video.open() as frames:
             frames.next(), frames.next()
             with pytest.raises(PictureError, match=r"film.avi: is 32 x 48 and the first frame 32 x 24; .* one size$"):
                 frames.next()
             assert shown(frames.next().views) == 3, "the next call goes on behind it"
 
-    def test_a_stream_that_changes_its_size_keeps_that_of_its_first_frame(self, tmp_path: Path):
-        """FFmpeg scales the others: they say that they are one film."""
+    def test_stream_that_changes_its_size_keeps_the_first_size(self, tmp_path: Path):
+        """Play a stream whose other frames FFmpeg scales."""
         shapes = [(24, 32), (48, 64), (24, 32)]
         path = jpegs(tmp_path / "film.mjpeg", (grey(number, shape) for number, shape in enumerate(shapes)))
         with Scene.of(video=path).video.open() as frames:
             found = [frames.next().views for _ in shapes]
         assert [shown(each) for each in found] == [0, 1, 2] and {each.shape for each in found} == {(24, 32)}
 
-    def test_a_damaged_frame_is_said_once_and_left_out(self, monkeypatch: pytest.MonkeyPatch):
+    def test_damaged_frame_raises_once_and_is_left_out(self, monkeypatch: pytest.MonkeyPatch):
         captures = [Played([grey(0), None, None, grey(3)]) for _ in range(2)]
-        with played(monkeypatch, *captures).video.open() as frames:
+        with play(monkeypatch, *captures).video.open() as frames:
             assert frames.next().number == 0
             with pytest.raises(PictureError, match=r"film.avi: frame 1 is damaged and left out; copy"):
                 frames.next()
             assert frames.next().number == 3 and frames.skipped == 2
 
-    def test_one_of_damaged_frames_alone_ends_every_call(self, monkeypatch: pytest.MonkeyPatch):
+    def test_file_of_only_damaged_frames_raises_at_every_call(self, monkeypatch: pytest.MonkeyPatch):
         captures = [Played([grey(0)]), *(Played([None, None]) for _ in range(3))]
-        with played(monkeypatch, *captures, repeat=True).video.open() as frames:
-            for said in ("frame 0 is damaged", "no frame of it can be played", "no frame of it can be played"):
+        with play(monkeypatch, *captures, repeat=True).video.open() as frames:
+            for said in ("frame 0 is damaged", "none of its frames can be played", "none of its frames can be played"):
                 with pytest.raises(PictureError, match=said):
                     frames.next()
 
-    def test_one_cut_short_is_said_once_and_begins_again(self, tmp_path: Path, capfd: pytest.CaptureFixture[str]):
+    def test_file_cut_short_raises_once_and_starts_again(self, tmp_path: Path, capfd: pytest.CaptureFixture[str]):
         path = write_video(tmp_path / "film.mkv", (grey(number) for number in range(30)), codec="mp4v")
         video = Scene.of(video=path).video
         data = path.read_bytes()
@@ -232,10 +232,10 @@ class TestFiles:
                     held = frames.next().number
             assert 3 < held < 29
             again = [shown(frames.next().views) for _ in range(2 * held + 2)]
-        assert again[0] == 0 and again[held + 1] == 0, "and is not said again"
+        assert again[0] == 0 and again[held + 1] == 0, "and does not raise again"
         assert capfd.readouterr().err == "", "OpenCV and FFmpeg say nothing themselves"
 
-    def test_a_file_that_goes_away_is_taken_again_when_it_is_back(self, film: Path):
+    def test_file_that_disappears_is_read_again_when_it_is_back(self, film: Path):
         with Scene.of(video=film).video.open() as frames:
             for _ in range(10):
                 frames.next()
@@ -247,14 +247,14 @@ class TestFiles:
 
 
 class TestFolders:
-    def test_pictures_come_in_the_order_of_their_numbers(self, folder: Path):
+    def test_folder_gives_pictures_in_the_order_of_their_numbers(self, folder: Path):
         scene = Scene.of(video=folder, fps=10)
         assert scene.notes[0].startswith("pictures is a video, of which this is the first of 12 frames;")
         with scene.video.open() as frames:
             assert [shown(frames.next().views) for _ in range(14)] == [*range(12), 0, 1]
             assert frames.fps == 10 and Scene.of(video=folder).video.fps == 30
 
-    def test_only_those_that_are_due_are_read(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_folder_reads_due_pictures_only(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
         video = Scene.of(video=folder, repeat=False).video
         read: list[str] = []
         whole = video_readers.read_picture
@@ -262,10 +262,10 @@ class TestFolders:
         with video.open() as frames:
             assert [frames.at(number / 30).number for number in (0, 5)] == [0, 5]
             assert frames.at(0.19) is None and frames.skipped == 4
-            assert frames.at(60).number == 11 and frames.ended and frames.at(61) is None
+            assert frames.at(60).number == 11 and frames.at_end and frames.at(61) is None
         assert read == ["f0.png", "f5.png", "f11.png"]
 
-    def test_every_kind_of_picture_becomes_rgb_of_eight_bits(self, tmp_path: Path):
+    def test_folder_converts_every_picture_to_rgb_of_eight_bits(self, tmp_path: Path):
         deep = np.full((4, 6), 0x8080, np.uint16)
         cut_out = np.full((4, 6, 4), 90, np.uint8)
         cut_out[:, 3:] = 7, 7, 7, 0
@@ -276,11 +276,11 @@ class TestFolders:
         with scene.video.open() as frames:
             found = [frames.next().views.left for _ in range(3)]
         assert all(each.shape == (4, 6, 3) and each.dtype == np.uint8 for each in found)
-        assert [int(each.min()) for each in found] == [90, 128, 9], "what is hidden looks like what is beside it"
+        assert [int(each.min()) for each in found] == [90, 128, 9], "what is hidden looks like what is"
         np.testing.assert_array_equal(found[0], scene.views.left)
         np.testing.assert_array_equal(scene.shown, np.repeat([[True, False]], 4, 0).repeat(3, 1))
 
-    def test_another_size_and_a_damaged_one_are_said(self, folder: Path):
+    def test_folder_reports_pictures_of_another_size_and_damaged_ones(self, folder: Path):
         write_png(folder / "f2.png", grey(2, (48, 32)))
         for number in (4, 5):
             (folder / f"f{number}.png").write_bytes((folder / "f0.png").read_bytes()[:45])
@@ -293,7 +293,7 @@ class TestFolders:
                 frames.next()
             assert frames.next().number == 6, "a second damaged one is not said"
 
-    def test_one_whose_pictures_all_went_away_ends_every_call(self, folder: Path):
+    def test_folder_that_lost_its_pictures_raises_at_every_call(self, folder: Path):
         with Scene.of(video=folder).video.open() as frames:
             for each in folder.glob("f*.png"):
                 each.unlink()
@@ -311,22 +311,22 @@ def silence(path: Path) -> None:
 BAD = {
     "no file": ("film.avi", lambda path: greys(path.with_name("film2.avi"), 2), "there is no such file or folder .did"),
     "no folder": ("gone/film.avi", lambda path: None, "there is no folder .*gone; check the path"),
-    "text": ("film.avi", lambda path: path.write_text("no video\n" * 99), "is no video that this program can play"),
+    "text": ("film.avi", lambda path: path.write_text("no video\n" * 99), "is not a video that this program can play"),
     "empty": ("film.avi", lambda path: path.write_bytes(b""), "the file is empty; copy"),
-    "sound": ("film.avi", silence, "is no video that this program can play, or has no pictures; convert it"),
-    "a header": ("film.avi", lambda path: path.write_bytes(greys(path, 3).read_bytes()[:300]), "is no video"),
-    "a picture": ("film.png", lambda path: write_png(path, grey(1)), "is one picture and no video; write `photo:`"),
+    "sound": ("film.avi", silence, "is not a video that this program can play, or has no frames; convert it"),
+    "a header": ("film.avi", lambda path: path.write_bytes(greys(path, 3).read_bytes()[:300]), "is not a video"),
+    "a picture": ("film.png", lambda path: write_png(path, grey(1)), "is a picture, not a video; write `photo:`"),
     "empty folder": ("film", lambda path: path.mkdir(), "holds no picture; name a folder of pictures"),
     "a playlist": (
         "film.m3u8",
         lambda path: path.write_text("#EXTM3U\n#EXTINF:9,\nhttp://localhost:1/x.ts\n"),
-        "is no",
+        "is not a",
     ),
 }
 
 
 @pytest.mark.parametrize(("name", "make", "said"), BAD.values(), ids=BAD)
-def test_what_is_no_video_is_one_line(tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str, make, said: str):
+def test_unplayable_file_raises_one_line(tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str, make, said: str):
     make(tmp_path / name)
     with pytest.raises(PictureError, match=said) as error:
         Scene.of(video=tmp_path / name)
@@ -334,34 +334,34 @@ def test_what_is_no_video_is_one_line(tmp_path: Path, capfd: pytest.CaptureFixtu
     assert capfd.readouterr().err == "", "OpenCV and FFmpeg say nothing themselves"
 
 
-def test_a_device_is_no_video_file(tmp_path: Path):
+def test_device_as_video_file_is_refused(tmp_path: Path):
     if not Path("/dev/zero").is_char_device():
         return  # no such thing on this system
     with pytest.raises(PictureError, match="is a device or a pipe, not a video file"):
         Scene.of(video="/dev/zero")
 
 
-def test_a_huge_frame_is_refused_before_it_is_decoded(film: Path, monkeypatch: pytest.MonkeyPatch):
+def test_huge_frame_is_refused_before_it_is_decoded(film: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(reading, "MOST_PIXELS", 24 * 32 - 1)
-    monkeypatch.setattr(video_readers, "grabbed", None)
-    with pytest.raises(PictureError, match=r"film.avi: a frame of it is larger than .*; make the video smaller first"):
+    monkeypatch.setattr(video_readers, "grab", None)
+    with pytest.raises(PictureError, match=r"film.avi: a frame is larger than .*; make the video smaller first"):
         Scene.of(video=film)
 
 
-def test_one_pixel_is_a_video_but_no_pair(tmp_path: Path):
+def test_video_of_one_pixel_is_not_a_pair(tmp_path: Path):
     write_png(tmp_path / "0.png", grey(3, (1, 1)))
     assert Scene.of(video=tmp_path).shape == (1, 1)
     with pytest.raises(PictureError, match=r"1 x 1 pixels have no two halves"):
         Scene.of(video=tmp_path, layout="side-by-side")
 
 
-def test_a_video_in_place_of_a_photo_is_told_the_key(tmp_path: Path):
+def test_video_given_as_photo_names_the_right_key(tmp_path: Path):
     with pytest.raises(PictureError, match="write `video:` for a video"):
         Scene.of(photo=write_video(tmp_path / "film.mp4", [grey(1)], codec="mp4v"))
 
 
 class TestPipelineFile:
-    def test_paths_start_at_the_file_and_a_number_is_a_camera(self, film: Path, folder: Path):
+    def test_video_paths_start_at_the_file_and_numbers_are_cameras(self, film: Path, folder: Path):
         read = partial(parse_config, "scene: {video: film.avi}", film.parent / "p.yaml", default_registry())
         for sets, video in (
             ([], film),
@@ -376,12 +376,12 @@ class TestPipelineFile:
     @pytest.mark.parametrize(
         "value", ["video=-1", "video=[1]", "fps=0", "fps=.nan", "layout=diagonal", "video=http://a/b.ts"]
     )
-    def test_what_is_wrong_is_one_line_with_its_place(self, film: Path, value: str):
+    def test_wrong_video_option_is_one_line_with_its_place(self, film: Path, value: str):
         with pytest.raises(ConfigError) as said:
             parse_config("scene: {video: film.avi}", film.parent / "p.yaml", default_registry(), [f"scene.{value}"])
         assert len(said.value.args) == 1 and str(said.value).startswith(f"--set scene.{value}: scene.")
 
-    def test_what_it_is_made_of_depends_on_the_first_frame_alone(self, tmp_path: Path):
+    def test_cache_key_depends_on_the_first_frame_only(self, tmp_path: Path):
         text = "scene: {video: film.avi}\nwant: relief\ndepth: luminance\n"
         keys: list[str] = []
         for first, second in ((1, 2), (1, 3), (2, 3)):
@@ -390,48 +390,48 @@ class TestPipelineFile:
             keys.append(Pipeline.from_config(config, default_registry(), None).engine.key("disparity"))
         assert keys[0] == keys[1] != keys[2]
 
-    def test_a_method_for_pairs_is_told_how_they_may_lie(self, film: Path):
+    def test_pair_method_on_a_mono_video_suggests_a_layout(self, film: Path):
         pipeline = Pipeline(Scene.of(video=film), depth=SemiGlobal())
         with pytest.raises(PictureError, match="say how they lie in it, such as `layout: side-by-side`, or name"):
             pipeline.make("disparity")
 
 
-class TestWhatStandsBeside:
+class TestOptions:
     @pytest.mark.parametrize("fps", [0, -1, float("nan"), float("inf"), 1001, "fast"])
-    def test_a_rate_is_positive_and_finite(self, fps: object):
+    def test_rate_that_is_not_positive_and_finite_is_refused(self, fps: object):
         with pytest.raises(ValidationError) as error:
             SceneFiles.model_validate({"video": "film.avi", "fps": fps})
         assert error.value.error_count() == 1
 
     @pytest.mark.parametrize("video", [-1, 100, True, "", 1.5, ["a.avi"], "rtsp://camera/1"])
-    def test_what_names_no_video_is_one_complaint(self, video: object):
-        with pytest.raises(ValidationError, match=r"number of a camera, from 0|no address is opened") as error:
+    def test_wrong_video_source_is_one_complaint(self, video: object):
+        with pytest.raises(ValidationError, match=r"number of a camera, from 0|addresses are not opened") as error:
             SceneFiles.model_validate({"video": video})
         assert error.value.error_count() == 1
 
     @pytest.mark.parametrize(
-        ("beside", "said"),
+        ("options", "message"),
         [
             ({"photo": "a.png"}, "leave out photo"),
             ({"left": "a.png", "right": "b.png"}, "leave out left, right"),
             ({"disparity": "a.npy"}, "leave out disparity"),
             ({"truth": "a.npy"}, "leave out truth"),
             ({"clip": [1, 99]}, "leave out clip"),
-            ({"nodata": [1, 2]}, "nodata needs height beside it"),
-            ({"relief_m": 0.01}, "relief_m needs height beside it"),
+            ({"nodata": [1, 2]}, "nodata needs height"),
+            ({"relief_m": 0.01}, "relief_m needs height"),
             ({"non_finite": "mask"}, "leave out non_finite"),
-            ({"focal_px": 100, "baseline_m": 0.1}, "say how they lie in the video: layout: side-by-side"),
-            ({"focal_px": 100, "layout": "side-by-side"}, "focal_px needs baseline_m beside it"),
-            ({"rig": "rig.yaml"}, "say how they lie in the video: layout: side-by-side"),
+            ({"focal_px": 100, "baseline_m": 0.1}, "give their layout, such as layout: side-by-side"),
+            ({"focal_px": 100, "layout": "side-by-side"}, "focal_px needs baseline_m"),
+            ({"rig": "rig.yaml"}, "give their layout, such as layout: side-by-side"),
             ({"rotate": 90, "layout": "side-by-side"}, "rotate is for one view"),
-            ({"rig": "r.yaml", "layout": "top-bottom", "crop": [0, 0, 1, 1]}, "turns the pictures; leave out crop"),
+            ({"rig": "r.yaml", "layout": "top-bottom", "crop": [0, 0, 1, 1]}, "rectifies the pictures; leave out crop"),
         ],
     )
-    def test_what_does_not_fit_is_refused(self, beside: dict, said: str):
-        with pytest.raises(ValidationError, match=said):
-            SceneFiles.model_validate({"video": "film.avi", **beside})
+    def test_options_that_do_not_fit_a_video_are_refused(self, options: dict, message: str):
+        with pytest.raises(ValidationError, match=message):
+            SceneFiles.model_validate({"video": "film.avi", **options})
 
-    def test_what_is_a_videos_alone_is_refused_elsewhere(self):
+    def test_video_options_without_a_video_are_refused(self):
         for options, said in (
             ({"fps": 30}, "fps needs video"),
             ({"repeat": False}, "repeat needs video"),
@@ -443,6 +443,6 @@ class TestWhatStandsBeside:
         with pytest.raises(ValidationError, match="mono is for a video"):
             SceneFiles.model_validate({"stereo": "a.png", "layout": "mono"})
 
-    def test_an_address_is_refused_in_python_too(self):
-        with pytest.raises(ConfigError, match=r"scene.video: no address is opened"):
+    def test_address_is_refused_in_python_too(self):
+        with pytest.raises(ConfigError, match=r"scene.video: addresses are not opened"):
             Scene.of(video="rtsp://camera/1")

@@ -1,4 +1,4 @@
-"""Cameras, played by captures that tests make: the newest picture alone, unplugged and back, ended in time."""
+"""Cameras, replaced by captures that tests control: newest picture, unplugging, closing in time."""
 
 import signal
 import threading
@@ -18,11 +18,11 @@ from tangible_core.scene.video.camera import CameraFrames
 from videos import Played, grey, shown
 
 LONG_S = 10.0
-"""More than anything here takes."""
+"""Time-out, longer than any wait here."""
 
 
 class Noise(Played):
-    """A camera that gives pictures without end, none of which is whole."""
+    """A camera that delivers damaged pictures without end."""
 
     def grab(self) -> bool:
         return True
@@ -32,7 +32,7 @@ class Noise(Played):
 
 
 def frames_of(*captures: Played) -> CameraFrames:
-    """A camera that is these, each time that it is opened; afterwards there is none."""
+    """Return a camera that opens as these captures in turn, and then not at all."""
     return CameraFrames(0, None, lambda picture: picture, opening(*captures))
 
 
@@ -51,14 +51,14 @@ def until(there: Callable[[], object]) -> None:
 
 @pytest.fixture(autouse=True)
 def soon(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Lost cameras are looked for at once; no thread outlives a test."""
+    """Search for lost cameras at once; no thread outlives a test."""
     monkeypatch.setattr(video_camera, "AGAIN_S", 0.01)
     yield
     until(lambda: not any(each.name.startswith("camera ") for each in threading.enumerate()))
 
 
 class Stepped(Played):
-    """A camera that takes a picture when a test says so."""
+    """A camera that takes a picture when a test allows it."""
 
     def __init__(self, count: int, first: int = 0) -> None:
         super().__init__([grey(number) for number in range(first, first + count)], fps=25)
@@ -69,13 +69,13 @@ class Stepped(Played):
         return super().grab()
 
 
-def test_the_newest_picture_alone_is_kept():
+def test_camera_keeps_the_newest_picture_only():
     camera = Stepped(9)
     camera.may.release()
     with frames_of(camera) as frames:
         first = frames.next()
         assert (first.number, first.time_s, frames.fps) == (0, 0.0, 25)
-        assert frames.at(0) is None, "it was had"
+        assert frames.at(0) is None, "it was read"
         for _ in range(5):
             camera.may.release()
         until(lambda: frames._taken == 6)
@@ -84,10 +84,10 @@ def test_the_newest_picture_alone_is_kept():
         camera.may.release()
         assert frames.next().number == 6
         camera.may.release(9)
-    assert frames.ended and frames.next() is None and frames.at(0) is None
+    assert frames.at_end and frames.next() is None and frames.at(0) is None
 
 
-def test_a_scene_of_a_camera_is_its_picture(monkeypatch: pytest.MonkeyPatch):
+def test_scene_of_a_camera_shows_its_picture(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video_capture, "open_camera", opening(Played([grey(4)] * 99), Played([grey(7)] * 99)))
     scene = Scene.of(video=1)
     assert scene.name == "camera 1" and shown(scene.views) == 4
@@ -96,33 +96,33 @@ def test_a_scene_of_a_camera_is_its_picture(monkeypatch: pytest.MonkeyPatch):
         assert shown(frames.next().views) == 7
 
 
-def test_one_of_another_size_than_the_still_is_said(monkeypatch: pytest.MonkeyPatch):
+def test_camera_frame_of_another_size_raises(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video_capture, "open_camera", opening(Played([grey(4)]), Played([grey(7, (9, 9))])))
     with Scene.of(video=1).video.open() as frames, pytest.raises(PictureError, match=r"camera 1: is 9 x 9 and the fir"):
         frames.next()
 
 
-def test_none_of_this_number_is_said_with_those_that_are(monkeypatch: pytest.MonkeyPatch):
+def test_missing_camera_lists_the_others(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video_camera, "_cameras", lambda: [0, 2])
-    with pytest.raises(PictureError, match=r"camera 1: there is none of this number.*name one of those that are: 0, 2"):
+    with pytest.raises(PictureError, match=r"camera 1: does not exist, or is in use; name one of the others: 0, 2"):
         CameraFrames(1, None, lambda picture: picture, opening())
 
 
-def test_one_that_gives_no_picture_is_said(monkeypatch: pytest.MonkeyPatch):
+def test_camera_without_pictures_raises(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video_camera, "FIRST_S", 0.05)
     stuck = Event()
-    with pytest.raises(PictureError, match="camera 0: gives no picture; check its cable"):
+    with pytest.raises(PictureError, match="camera 0: delivers no picture; check its cable"):
         frames_of(Played([grey(0)], before=stuck))
     stuck.set()
 
 
-def test_unplugged_is_said_once_and_one_that_is_back_goes_on():
+def test_unplugged_camera_raises_once_and_goes_on_when_it_is_back():
     back = Stepped(3, first=5)
     with frames_of(Played([grey(0)]), Played([], opened=False), Noise([]), back) as frames:
         assert frames.next().number == 0
         with pytest.raises(PictureError, match="camera 0: was unplugged, or another program took it; plug it in again"):
             until(lambda: frames.at(9) and False)
-        assert [frames.at(9) for _ in range(20)] == [None] * 20, "said once"
+        assert [frames.at(9) for _ in range(20)] == [None] * 20, "raised once"
         back.may.release()
         again = frames.next()
         assert (again.number, shown_number(again.views)) == (1, 5)
@@ -136,16 +136,16 @@ def shown_number(picture) -> int:
 
 
 @pytest.mark.parametrize("error", [RuntimeError("driver\nbroke"), PictureError("camera 0: too large; smaller")])
-def test_what_a_driver_provokes_is_one_line(error: Exception):
+def test_driver_errors_are_one_line(error: Exception):
     def broken(number: int, fps: float | None) -> Played:
         raise error
 
-    with pytest.raises(PictureError, match=r"camera 0: ") as said:
+    with pytest.raises(PictureError, match=r"camera 0: ") as caught:
         CameraFrames(0, None, lambda picture: picture, broken)
-    assert "\n" not in str(said.value)
+    assert "\n" not in str(caught.value)
 
 
-def test_it_ends_within_a_second_while_its_driver_hangs():
+def test_camera_closes_within_a_second_while_its_driver_hangs():
     camera = Stepped(1)
     camera.may.release()
     frames = frames_of(camera)
@@ -158,7 +158,7 @@ def test_it_ends_within_a_second_while_its_driver_hangs():
     until(camera.released.is_set)
 
 
-def test_ctrl_c_is_heard_while_a_camera_blocks():
+def test_ctrl_c_interrupts_a_blocked_camera():
     stuck = Event()
     timer = threading.Timer(0.1, signal.raise_signal, (signal.SIGINT,))
     began_s = monotonic()
@@ -171,7 +171,7 @@ def test_ctrl_c_is_heard_while_a_camera_blocks():
     assert monotonic() - began_s < LONG_S
 
 
-def test_the_numbers_of_cameras_are_the_systems(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+def test_camera_numbers_are_those_of_the_system(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
     for name in ("video10", "video2", "video", "videofast", "null"):
         (tmp_path / name).touch()
     monkeypatch.setattr(video_camera, "Path", lambda _: tmp_path)

@@ -52,14 +52,14 @@ def test_patterns_may_be_absolute(tmp_path: Path):
     ("patterns", "error", "why"),
     [
         ({"left": "L*.png", "right": "R.png"}, ConfigError, "right: 'R.png' has 0 stars and left: 'L*.png' has 1"),
-        ({"left": "L1.png", "right": "R1.png"}, ConfigError, "each pattern has as many, at least one"),
+        ({"left": "L1.png", "right": "R1.png"}, ConfigError, "each pattern needs as many, at least one"),
         (
             {"left": "Q*.png", "right": "R*.png"},
             PictureError,
             "no file in it matches left: 'Q*.png'; check the pattern",
         ),
         ({"left": "L*.png", "right": "R*.png"}, PictureError, "L2.png: no file matches right: 'R*.png' with the same"),
-        ({"left": "no/L*.png", "right": "R*.png"}, PictureError, "no: there is no such folder, in which"),
+        ({"left": "no/L*.png", "right": "R*.png"}, PictureError, "no: there is no such folder for 'no/L*.png'"),
     ],
 )
 def test_what_is_wrong_is_one_line(patterns, error, why, tmp_path: Path):

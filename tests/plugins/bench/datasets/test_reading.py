@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from standard_sets import LAYOUTS, Known, Layout, known, put, put_views
-from tangible_bench.datasets import SETS, pairs, walking
+from tangible_bench.datasets import SETS, folders, pairs
 from tangible_bench.datasets.choosing import SetName
 from tangible_bench.datasets.standard_pair import StandardPair
 from tangible_core.data import Calibration
@@ -98,7 +98,7 @@ def test_a_missing_and_an_empty_folder_say_what_to_fetch(name: str, tmp_path: Pa
         with pytest.raises(PictureError) as error:
             pairs(name, folder)
         assert "\n" not in str(error.value)
-        for word in (str(folder), SETS[name].archive, SETS[name].page, SETS[name].lies):
+        for word in (str(folder), SETS[name].archive, SETS[name].page, SETS[name].contents):
             assert word in str(error.value)
 
 
@@ -166,7 +166,7 @@ def test_no_folder_is_listed_twice(tmp_path: Path):
     for folder in (tmp_path, tmp_path / "a", tmp_path / "a" / "b"):
         for number in range(3):
             (folder / f"back{number}").symlink_to(tmp_path, target_is_directory=True)
-    found = [each.path for each in walking.folders(tmp_path)]
+    found = [each.path for each in folders.folders(tmp_path)]
     assert found == [tmp_path, tmp_path / "a", tmp_path / "a" / "b"]
 
 
@@ -196,7 +196,7 @@ def test_ten_thousand_files_in_one_folder(tmp_path: Path):
 
 def test_a_folder_without_end_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, k: Known):
     made("kitti-2015", tmp_path, k)
-    monkeypatch.setattr(walking, "MOST_ENTRIES", 5)
+    monkeypatch.setattr(folders, "MOST_ENTRIES", 5)
     with pytest.raises(PictureError, match="more than 5 files; name the folder of the set alone"):
         pairs("kitti-2015", tmp_path)
 
@@ -208,7 +208,7 @@ def test_a_folder_that_may_not_be_listed_is_said(tmp_path: Path, monkeypatch: py
     def denied(path: str) -> None:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(walking.os, "scandir", denied)  # root may list anything
+    monkeypatch.setattr(folders.os, "scandir", denied)  # root may list anything
     with pytest.raises(PictureError, match="cannot be listed: Permission denied; check its permissions"):
         pairs("kitti-2015", tmp_path)
 
@@ -266,7 +266,7 @@ def test_grey_cameras_stand_in_for_colour_ones(tmp_path: Path, k: Known):
         (tmp_path / "training" / colour).rename(tmp_path / "training" / grey)
     pair = only("kitti-2012", tmp_path)
     assert pair.left.parent.name == "image_0"
-    with pytest.raises(PictureError, match=r"000000\.txt: is no calibration of a pair: P0 has 1 numbers, not 12"):
+    with pytest.raises(PictureError, match=r"000000\.txt: is not a calibration of a pair: P0 has 1 numbers, not 12"):
         pair.open()
 
 
@@ -324,12 +324,12 @@ class TestSizes:
 
     def test_a_larger_one_cannot_be_made(self, tmp_path: Path, k: Known):
         made("middlebury-eval3", tmp_path, k)
-        with pytest.raises(PictureError, match=r"lies there at Q, of which H cannot be made; fetch .*, at H"):
+        with pytest.raises(PictureError, match=r"holds Adirondack at Q, from which H cannot be made; fetch .*, at H"):
             pairs("middlebury-eval3", tmp_path, resolution="H")
 
     def test_a_pipeline_takes_files_as_they_are(self, tmp_path: Path, k: Known):
         made("middlebury-2014", tmp_path, k)
-        with pytest.raises(ConfigError, match="does not lie there at Q; fetch that size, or leave `resolution:` out"):
+        with pytest.raises(ConfigError, match="is not in its folder at Q; fetch that size, or leave `resolution:` out"):
             only("middlebury-2014", tmp_path, resolution="Q").files()
 
     @pytest.mark.parametrize("shape", [(1, 1), (3, 2), (4, 4), (5, 9)])

@@ -347,7 +347,7 @@ class TestHomographyCheck:
     @pytest.mark.parametrize(
         ("share", "offset_px", "refused"), [(0.04, 9.0, False), (0.06, 3.1, True), (0.06, 2.9, False)]
     )
-    def test_one_match_in_twenty_may_lie_off_its_row(self, share, offset_px, refused):
+    def test_rectification_with_one_match_in_twenty_off_its_row_holds(self, share, offset_px, refused):
         offsets = np.where(np.arange(1000) < 1000 * share, offset_px, 0.0)
         with pytest.raises(RectificationError) if refused else nullcontext():
             check_homographies((np.eye(3), np.eye(3)), (100, 200), offsets)

@@ -1,4 +1,4 @@
-"""A Falcon whose USB fails at any step: no force stays, one message says what to do, and it can be opened again."""
+"""A Falcon whose USB fails at any step: no force stays, one message gives the cure, and it can be opened again."""
 
 import logging
 
@@ -17,7 +17,7 @@ WORDS = {
     "busy": "another program is using it",
     "timeout": "does not answer \\(time-out\\)",
     "stall": "refused the request \\(stall\\)",
-    "overflow": "sent more than was asked for \\(overflow\\)",
+    "overflow": "sent more than was requested \\(overflow\\)",
 }
 PUSH = Force(0.0, 0.0, 3.0)
 OPENING = [
@@ -55,7 +55,9 @@ def loud(caplog: pytest.LogCaptureFixture) -> list[str]:
 
 @pytest.mark.parametrize("error", list(ERRORS))
 @pytest.mark.parametrize(("at", "after"), OPENING)
-def test_a_fault_while_it_is_opened(at: str, after: int, error: str, caplog: pytest.LogCaptureFixture):
+def test_fault_while_opening_leaves_no_force_and_one_message(
+    at: str, after: int, error: str, caplog: pytest.LogCaptureFixture
+):
     bus, clock = held_bus(faults=(Fault(at=at, after=after, error=error),))  # pyright: ignore[reportArgumentType]
     with pytest.raises(DeviceError, match=WORDS[error]):
         open_on(bus, clock)
@@ -67,7 +69,9 @@ def test_a_fault_while_it_is_opened(at: str, after: int, error: str, caplog: pyt
 @pytest.mark.parametrize("error", list(ERRORS))
 @pytest.mark.parametrize("at", ["write", "read"])
 @pytest.mark.parametrize("call", ["read", "write", "exchange"])
-def test_a_fault_while_it_runs(at: str, error: str, call: str, caplog: pytest.LogCaptureFixture):
+def test_fault_while_running_leaves_no_force_and_one_message(
+    at: str, error: str, call: str, caplog: pytest.LogCaptureFixture
+):
     bus, clock = held_bus()
     with pytest.raises(DeviceError, match=WORDS[error]), open_on(bus, clock) as link:
         link.write(PUSH)
@@ -85,7 +89,7 @@ def test_a_fault_while_it_runs(at: str, error: str, call: str, caplog: pytest.Lo
 
 
 @pytest.mark.parametrize("error", list(ERRORS))
-def test_a_fault_that_stays_ends_with_the_same_one_message(error: str, caplog: pytest.LogCaptureFixture):
+def test_fault_that_stays_gives_the_same_message(error: str, caplog: pytest.LogCaptureFixture):
     bus, clock = held_bus()
     with pytest.raises(DeviceError, match=WORDS[error]), open_on(bus, clock) as link:
         for at in ("write", "read", "driver", "control"):
@@ -99,7 +103,7 @@ def test_a_fault_that_stays_ends_with_the_same_one_message(error: str, caplog: p
 
 @pytest.mark.parametrize("error", list(ERRORS))
 @pytest.mark.parametrize("at", ["write", "read", "driver"])
-def test_a_fault_while_it_is_closed_is_a_warning_at_most(at: str, error: str, caplog: pytest.LogCaptureFixture):
+def test_fault_while_closing_is_a_warning_at_most(at: str, error: str, caplog: pytest.LogCaptureFixture):
     bus, clock = held_bus()
     link = open_on(bus, clock)
     link.write(PUSH)
@@ -110,7 +114,7 @@ def test_a_fault_while_it_is_closed_is_a_warning_at_most(at: str, error: str, ca
     check_opens_again(bus, clock)
 
 
-def test_an_exception_of_the_users_own_is_not_hidden_by_a_fault():
+def test_fault_does_not_hide_the_user_s_exception():
     bus, clock = held_bus()
     with pytest.raises(ZeroDivisionError), open_on(bus, clock) as link:
         link.write(PUSH)
@@ -120,7 +124,7 @@ def test_an_exception_of_the_users_own_is_not_hidden_by_a_fault():
     check_opens_again(bus, clock)
 
 
-def test_ctrl_c_while_it_is_homed_leaves_no_force(monkeypatch: pytest.MonkeyPatch):
+def test_ctrl_c_while_homing_leaves_no_force(monkeypatch: pytest.MonkeyPatch):
     bus, clock = held_bus()
     transfers = iter(range(10**6))
 

@@ -1,4 +1,4 @@
-"""An open Falcon: homing, forces, the wire at the end, several of them, and what an exchange costs."""
+"""An open Falcon: homing, forces, the wire at the end, several devices, and the memory of an exchange."""
 
 import gc
 import tracemalloc
@@ -10,16 +10,16 @@ import pytest
 from falcon_bus import held_bus, open_on
 from tangible_core.data import NO_FORCE, Force
 from tangible_core.errors import DeviceAbsent, DeviceError
-from tangible_devices.falcon.firmware import NULL
+from tangible_devices.falcon.kernels.packet import GREEN, HOMING, RED
 from tangible_devices.falcon.link import FalconLink
-from tangible_devices.falcon.packet import GREEN, HOMING, RED
 from tangible_devices.falcon.simulator.bus import Bus
+from tangible_devices.falcon.usb.firmware import NULL
 
 PUSH = Force(0.5, -0.25, 2.0)
 
 
-def recorded(bus: Bus, monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
-    """Every write from now on."""
+def record_writes(bus: Bus, monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
+    """Record every write from now on."""
     sent: list[bytes] = []
     write = bus.bulk_write
 
@@ -32,9 +32,9 @@ def recorded(bus: Bus, monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
 
 
 class TestHoming:
-    def test_no_torque_and_a_red_light_until_it_is_homed(self, monkeypatch: pytest.MonkeyPatch):
+    def test_homing_shows_red_light_without_torque(self, monkeypatch: pytest.MonkeyPatch):
         bus, clock = held_bus()
-        sent = recorded(bus, monkeypatch)
+        sent = record_writes(bus, monkeypatch)
         open_on(bus, clock)
         packets = [each for each in sent if len(each) == 16 and each != NULL]
         assert {each[1:13] for each in packets} == {b"A" * 12}
@@ -42,26 +42,26 @@ class TestHoming:
         assert sorted(infos, reverse=True) == infos
         assert set(infos) == {HOMING | RED, HOMING | GREEN}
 
-    def test_lights_can_be_left_off(self, monkeypatch: pytest.MonkeyPatch):
+    def test_homing_without_leds_keeps_lights_off(self, monkeypatch: pytest.MonkeyPatch):
         bus, clock = held_bus()
-        sent = recorded(bus, monkeypatch)
+        sent = record_writes(bus, monkeypatch)
         open_on(bus, clock, leds=False)
         assert {each[13] - 0x41 for each in sent if len(each) == 16 and each != NULL} == {HOMING}
 
-    def test_it_guides_once(self, caplog: pytest.LogCaptureFixture):
+    def test_homing_guides_once(self, caplog: pytest.LogCaptureFixture):
         open_on(*held_bus())
         assert [
             each.message for each in caplog.records if "pull its grip all the way out" in each.message
         ].__len__() == 1
 
     @pytest.mark.slow
-    def test_nobody_homes_it(self):
+    def test_homing_without_a_hand_times_out(self):
         bus, clock = held_bus()
         with pytest.raises(DeviceError, match=r"0 of 3 arms are homed after 0\.2 s; pull its grip"):
             open_on(bus, clock, home_within_s=0.2)
         assert bus.units[0].claimed_by is None
 
-    def test_positions_are_true_once_it_is_homed(self):
+    def test_homing_done_gives_true_positions(self):
         bus, clock = held_bus()
         link = open_on(bus, clock)
         state = link.read()
@@ -82,21 +82,21 @@ class TestHoming:
 
 
 class TestForce:
-    def test_it_reaches_the_motors(self):
+    def test_force_reaches_the_motors(self):
         bus, clock = held_bus()
         with open_on(bus, clock) as link:
             link.read()
             link.write(PUSH)
             assert link.applied == pytest.approx(PUSH)
             body = bus.units[0].chip.processor.body
-            from tangible_devices.falcon import kinematics
+            from tangible_devices.falcon.kernels import kinematics
 
             x, y, z = body.tip[:3].tolist()
             rows = kinematics.jacobian(*kinematics.inverse(x, y, z), x, y, z)
             fx, fy, fz = kinematics.force(rows, tuple(-each / 1e4 for each in body.torque_counts))
             assert (fx, -fz, fy) == pytest.approx(PUSH, abs=0.05)
 
-    def test_it_moves_the_hand(self):
+    def test_force_moves_the_hand(self):
         def height(force: Force) -> float:
             bus, clock = held_bus()
             with open_on(bus, clock) as link:
@@ -106,18 +106,18 @@ class TestForce:
 
         assert height(Force(0.0, 0.0, 3.0)) > height(NO_FORCE) + 0.005
 
-    def test_the_last_packets_are_null(self, monkeypatch: pytest.MonkeyPatch):
+    def test_force_ends_with_null_packets(self, monkeypatch: pytest.MonkeyPatch):
         bus, clock = held_bus()
         with open_on(bus, clock) as link:
             link.write(PUSH)
-            sent = recorded(bus, monkeypatch)
+            sent = record_writes(bus, monkeypatch)
         zero, *goodbyes = sent
         assert zero[1:13] == b"A" * 12
         assert goodbyes == [NULL] * 3
         assert bus.units[0].chip.processor.body.torque_counts == (0, 0, 0)
 
     @pytest.mark.parametrize("lost", [1, 2, 3])
-    def test_a_goodbye_that_is_lost_is_said_again(self, lost: int):
+    def test_force_ends_though_null_packets_are_lost(self, lost: int):
         """The first packets of the end, the zero force itself among them, never reach the motors."""
         bus, clock = held_bus()
         with open_on(bus, clock) as link:
@@ -132,8 +132,8 @@ class TestForce:
             bus.bulk_write = lossy  # pyright: ignore[reportAttributeAccessIssue]
         assert bus.units[0].chip.processor.body.torque_counts == (0, 0, 0)
 
-    def test_a_force_over_the_stated_one_is_scaled_down(self):
-        """Up, the motors could give more."""
+    def test_force_above_limit_is_scaled_down(self):
+        """Upwards, the motors could give more."""
         bus, clock = held_bus()
         with open_on(bus, clock) as link:
             link.read()
@@ -141,15 +141,15 @@ class TestForce:
             assert np.linalg.norm(link.applied) == pytest.approx(6.09, abs=0.01)
 
     @pytest.mark.parametrize("ended", ["closed", "failed"])
-    def test_a_closed_link_has_no_force_left_and_makes_none(self, ended: str):
+    def test_closed_link_has_and_gives_no_force(self, ended: str):
         bus, clock = held_bus()
         link = open_on(bus, clock)
         link.write(PUSH)
         if ended == "closed":
             link.close()
         else:
-            bus.units[0].chip._spoil = lambda said, data: b""
-            with pytest.raises(DeviceError, match="answers no more"):
+            bus.units[0].chip._spoil = lambda sent, data: b""
+            with pytest.raises(DeviceError, match="no longer answers"):
                 for _ in range(1000):
                     link.exchange()
         assert tuple(link.applied) == NO_FORCE
@@ -160,7 +160,7 @@ class TestForce:
         assert tuple(link.applied) == NO_FORCE
         assert fixed[1][1:13].tobytes() == b"A" * 12
 
-    def test_nothing_is_left_on_its_way(self):
+    def test_closed_link_leaves_no_packet_in_flight(self):
         bus, clock = held_bus()
         open_on(bus, clock).close()
         assert not bus.units[0].chip._waiting
@@ -170,7 +170,7 @@ class TestRate:
     @pytest.mark.parametrize(
         ("in_flight", "event_character", "hertz"), [(1, False, 500), (2, False, 1000), (1, True, 1000)]
     )
-    def test_packets_a_second(self, in_flight: int, event_character: bool, hertz: float):
+    def test_rate_follows_packets_in_flight(self, in_flight: int, event_character: bool, hertz: float):
         bus, clock = held_bus()
         with open_on(bus, clock, in_flight=in_flight, event_character=event_character) as link:
             times = []
@@ -181,19 +181,19 @@ class TestRate:
             assert np.diff(times).min() > 0
             assert link.health().rate_hz == pytest.approx(hertz, rel=0.02)
 
-    def test_a_lost_packet_is_waited_for_and_passed_over(self):
+    def test_lost_packet_is_counted_and_skipped(self):
         bus, clock = held_bus()
         chip = bus.units[0].chip
         with open_on(bus, clock, in_flight=1) as link:
-            spoil, chip._spoil = chip._spoil, lambda said, data: b""
+            spoil, chip._spoil = chip._spoil, lambda sent, data: b""
             lost_s = clock()
-            chip._spoil = lambda said, data: b"" if clock() < lost_s + 0.03 else data
+            chip._spoil = lambda sent, data: b"" if clock() < lost_s + 0.03 else data
             first, second = link.read(), link.read()
             assert 0.03 < second.time_s - lost_s < 0.1
             assert link.health().lost >= 1 and first.time_s < second.time_s
             chip._spoil = spoil
 
-    def test_silences_with_answers_between_are_borne(self):
+    def test_silences_with_answers_between_are_tolerated(self):
         """Four at a time, of five that are one too many."""
         bus, clock = held_bus()
         with open_on(bus, clock) as link:
@@ -201,7 +201,7 @@ class TestRate:
             spoil = chip._spoil
             for _ in range(3):
                 lost = link.health().lost
-                chip._spoil = lambda said, data: b""
+                chip._spoil = lambda sent, data: b""
                 while link.health().lost < lost + 4:
                     link.exchange()
                 chip._spoil = spoil
@@ -211,15 +211,15 @@ class TestRate:
 
     def test_silence_is_an_error_after_a_tenth_of_a_second(self):
         bus, clock = held_bus()
-        with pytest.raises(DeviceError, match="answers no more"), open_on(bus, clock) as link:
+        with pytest.raises(DeviceError, match="no longer answers"), open_on(bus, clock) as link:
             link.write(PUSH)
-            bus.units[0].chip._spoil = lambda said, data: b""
+            bus.units[0].chip._spoil = lambda sent, data: b""
             silent_s = clock()
             for _ in range(100):
                 link.exchange()
         assert 0.05 < clock() - silent_s < 0.3
 
-    def test_a_position_that_does_not_come_is_not_waited_for_long(self):
+    def test_read_without_position_fails_soon(self):
         bus, clock = held_bus()
         link = open_on(bus, clock)
         body = bus.units[0].chip.processor.body
@@ -233,16 +233,16 @@ class TestRate:
 
     def test_silence_is_an_error(self):
         bus, clock = held_bus()
-        with pytest.raises(DeviceError, match="answers no more"), open_on(bus, clock) as link:
+        with pytest.raises(DeviceError, match="no longer answers"), open_on(bus, clock) as link:
             link.write(PUSH)
-            bus.units[0].chip._spoil = lambda said, data: b""
+            bus.units[0].chip._spoil = lambda sent, data: b""
             for _ in range(1000):
                 link.read()
         assert bus.units[0].chip.processor.body.torque_counts == (0, 0, 0)
 
 
 class TestSeveral:
-    def test_by_serial_and_by_index(self):
+    def test_open_selects_by_serial_and_index(self):
         bus, clock = held_bus(("A1", "B2"))
         first = open_on(bus, clock)
         second = open_on(bus, clock, index=1)
@@ -254,7 +254,7 @@ class TestSeveral:
             assert bus.units[1].claimed_by is not None
         first.close()
 
-    def test_the_same_one_twice(self):
+    def test_open_twice_is_refused(self):
         bus, clock = held_bus()
         with open_on(bus, clock) as link:
             link.write(PUSH)
@@ -263,7 +263,7 @@ class TestSeveral:
             link.read()
             assert link.applied == pytest.approx(PUSH)
 
-    def test_none_at_all(self):
+    def test_open_without_device_is_refused(self):
         bus, clock = held_bus(())
         with pytest.raises(DeviceAbsent, match="none is connected"):
             open_on(bus, clock)
@@ -272,20 +272,20 @@ class TestSeveral:
         ("options", "why"),
         [({"serial": "C3"}, "connected are A1, B2"), ({"index": 2}, "index 2 does not exist, 2 are")],
     )
-    def test_not_this_one(self, options: dict, why: str):
+    def test_open_with_unknown_serial_or_index_is_refused(self, options: dict, why: str):
         bus, clock = held_bus(("A1", "B2"))
         with pytest.raises(DeviceError, match=why):
             open_on(bus, clock, **options)
 
 
-def test_the_kernel_driver_gets_it_back():
+def test_close_returns_device_to_kernel_driver():
     bus, clock = held_bus()
     with open_on(bus, clock):
         assert not bus.units[0].kernel_driver
     assert bus.units[0].kernel_driver
 
 
-def test_an_exchange_keeps_no_memory():
+def test_exchange_keeps_no_memory():
     bus, clock = held_bus()
     with open_on(bus, clock) as link:
 
@@ -310,7 +310,7 @@ def test_an_exchange_keeps_no_memory():
     assert sum(each.size_diff for each in grown) < 20_000
 
 
-def test_the_kernels_are_those_of_the_link():
+def test_kernels_work_on_the_link_s_buffers():
     link = open_on(*held_bus())
     read, write, fixed = link.kernels()
     state = np.zeros(7)

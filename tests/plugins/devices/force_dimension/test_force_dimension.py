@@ -1,4 +1,4 @@
-"""Force Dimension's devices over a library of the same functions: axes, failures, who has it open."""
+"""Force Dimension's devices over a library of the same functions: axes, failures, exclusive use."""
 
 import ast
 import inspect
@@ -14,11 +14,11 @@ from tangible_core.data import NO_FORCE, Finding, Force, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_core.testing import run_checks
 from tangible_devices.force_dimension.force_dimension import ForceDimension
-from tangible_devices.force_dimension.library import done
+from tangible_devices.force_dimension.library import check_result
 
 
 class Library:
-    """The functions of `forcedimension_core.dhd` that are used, over devices that are not there."""
+    """The functions of `forcedimension_core.dhd` that are used, over simulated devices."""
 
     def __init__(self) -> None:
         self.serials = [1234, 77]
@@ -91,14 +91,14 @@ def missing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "forcedimension_core", None)
 
 
-def test_it_conforms(dhd: Library):
+def test_force_dimension_conforms(dhd: Library):
     assert not [each for each in run_checks("device", "force-dimension") if not each.passed]
     assert dhd.opened == set()
     assert dhd.forces[-1] == (0, 0, 0)
 
 
 @pytest.mark.skipif(sys.version_info >= (3, 13), reason="forcedimension-core is not made for this Python")
-def test_the_functions_are_those_of_the_real_package():
+def test_stub_has_functions_of_the_real_package():
     """By its source, as importing it needs the maker's library: the same names, parameters and defaults."""
     spec = find_spec("forcedimension_core")
     assert spec is not None and spec.origin is not None
@@ -113,7 +113,7 @@ def test_the_functions_are_those_of_the_real_package():
 
 
 @pytest.mark.skipif(sys.version_info >= (3, 13), reason="forcedimension-core is not made for this Python")
-def test_the_real_package_without_the_maker_s_library_says_what_to_install(
+def test_package_without_maker_s_library_names_what_to_install(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ):
     monkeypatch.setenv("__fdsdkpy_unittest_runtime__", "True")  # its own word for: find no library
@@ -123,7 +123,7 @@ def test_the_real_package_without_the_maker_s_library_says_what_to_install(
 
 
 class TestAxes:
-    def test_towards_the_user_right_and_up(self, dhd: Library):
+    def test_position_axes_are_those_of_the_workspace(self, dhd: Library):
         """10 mm towards the user, 20 mm to the right, 30 mm up."""
         dhd.velocity = [1.0, 2.0, 3.0]
         with ForceDimension().open() as link:
@@ -131,53 +131,53 @@ class TestAxes:
         assert state[:2] == ((0.02, -0.01, 0.03), (2.0, -1.0, 3.0))
         assert state.buttons == 5
 
-    def test_forces_are_turned_back(self, dhd: Library):
+    def test_force_is_rotated_into_device_axes(self, dhd: Library):
         with ForceDimension().open() as link:
             link.write(Force(1.0, 2.0, 3.0))
             assert dhd.enabled
         assert dhd.forces == [(0, 0, 0), (-2, 1, 3), (0, 0, 0)]
 
-    def test_a_velocity_that_is_not_known_yet_is_none(self, dhd: Library):
+    def test_velocity_before_two_positions_is_zero(self, dhd: Library):
         dhd.velocity = None
         with ForceDimension().open() as link:
             assert link.read().velocity_m_per_s == (0, 0, 0)
 
     @pytest.mark.parametrize(("model", "most"), [("omega", 12.0), ("delta", 20.0), ("sigma", 12.0), ("falcon", 8.0)])
-    def test_a_model_has_its_limits(self, dhd: Library, model: str, most: float):
+    def test_spec_has_limits_of_the_model(self, dhd: Library, model: str, most: float):
         with ForceDimension(model=model).open() as link:
             link.write(Force(0.0, 0.0, 100.0))
             assert link.applied == (0, 0, most)
 
 
 class TestFaults:
-    def test_without_the_package(self, missing: None):
+    def test_open_without_package_names_what_to_install(self, missing: None):
         with pytest.raises(DeviceAbsent, match=r"pip install 'tangible-images\[force-dimension\]'"):
             ForceDimension().open()
 
-    def test_without_a_device(self, dhd: Library):
+    def test_open_without_device_is_refused(self, dhd: Library):
         dhd.serials.clear()
         with pytest.raises(DeviceAbsent, match="plug it in"):
             ForceDimension().open()
 
-    def test_another_program_has_it(self, dhd: Library):
+    def test_open_used_by_another_program_is_refused(self, dhd: Library):
         dhd.busy.add(0)
         with pytest.raises(DeviceError, match="opening device 0: the words of the library; close other programs"):
             ForceDimension().open()
         with ForceDimension(index=1).open() as link:
             link.read()
 
-    def test_this_program_has_it(self, dhd: Library):
+    def test_open_used_by_this_program_is_refused(self, dhd: Library):
         with ForceDimension(serial=77).open() as link:
             with pytest.raises(DeviceError, match="has the device of serial 77 open already"):
                 ForceDimension(serial=77).open()
             link.read()
         ForceDimension(serial=77).open().close()
 
-    def test_a_serial_that_is_not_there(self, dhd: Library):
+    def test_open_with_unknown_serial_is_refused(self, dhd: Library):
         with pytest.raises(DeviceError, match="opening the device of serial 5"):
             ForceDimension(serial=5).open()
 
-    def test_unplugged_while_in_use(self, dhd: Library):
+    def test_link_unplugged_is_refused(self, dhd: Library):
         link = ForceDimension().open()
         link.write(Force(0.0, 0.0, 1.0))
         dhd.gone = True
@@ -190,7 +190,7 @@ class TestFaults:
         dhd.gone = False
         ForceDimension().open().close()
 
-    def test_unplugged_while_it_is_opened(self, dhd: Library):
+    def test_open_unplugged_meanwhile_is_refused(self, dhd: Library):
         dhd.gone = True
         with pytest.raises(DeviceError, match="enabling its force"):
             ForceDimension().open()
@@ -199,14 +199,14 @@ class TestFaults:
         ForceDimension().open().close()
 
     @pytest.mark.parametrize("result", [-1, -2, -1000])
-    def test_any_negative_result_is_a_failure_and_no_other(self, dhd: Library, result: int):
+    def test_check_result_negative_is_an_error(self, dhd: Library, result: int):
         with pytest.raises(DeviceError, match="pushing: the words of the library; push again"):
-            done(dhd, result, "pushing", "push again")
-        assert [done(dhd, each, "pushing", "") for each in (0, 1, 2)] == [0, 1, 2]
+            check_result(dhd, result, "pushing", "push again")
+        assert [check_result(dhd, each, "pushing", "") for each in (0, 1, 2)] == [0, 1, 2]
 
     @pytest.mark.parametrize("place", [0, 1, 2])
     @pytest.mark.parametrize("bad", [float("nan"), float("inf")])
-    def test_a_velocity_that_is_none(self, dhd: Library, place: int, bad: float):
+    def test_read_of_nonfinite_velocity_is_refused(self, dhd: Library, place: int, bad: float):
         dhd.velocity = [0.0, 0.0, 0.0]
         dhd.velocity[place] = bad
         link = ForceDimension().open()
@@ -214,7 +214,7 @@ class TestFaults:
             link.read()
         link.close()
 
-    def test_what_is_held_when_a_force_cannot_be_set_is_not_known_to_be_any(self, dhd: Library):
+    def test_write_that_fails_applies_no_force(self, dhd: Library):
         link = ForceDimension().open()
         link.write(Force(0.0, 0.0, 1.0))
         dhd.gone = True
@@ -223,7 +223,7 @@ class TestFaults:
         assert link.applied == NO_FORCE
         link.close()
 
-    def test_a_position_that_is_none(self, dhd: Library):
+    def test_read_of_nonfinite_position_is_refused(self, dhd: Library):
         dhd.position = [0.0, float("nan"), 0.0]
         link = ForceDimension().open()
         with pytest.raises(DeviceError, match="its position is"):
@@ -232,34 +232,34 @@ class TestFaults:
 
 
 class TestService:
-    def test_what_is_connected(self, dhd: Library):
+    def test_connected_lists_devices(self, dhd: Library):
         dhd.busy.add(1)
         first, second = ForceDimension().connected()
         assert first == Unit("omega.3", "1234", "index 0")
         assert second.problem == "the words of the library"
         assert dhd.opened == set()
 
-    def test_looking_does_not_close_what_is_in_use(self, dhd: Library):
+    def test_connected_keeps_open_devices_open(self, dhd: Library):
         with ForceDimension().open() as link:
             ForceDimension().connected()
             link.read()
 
-    def test_the_doctor(self, dhd: Library):
+    def test_doctor_lists_library_and_devices(self, dhd: Library):
         dhd.busy.add(1)
         library, first, second = ForceDimension().examine()
         assert {library.verdict, first.verdict} == {"fine"}
         assert second.verdict == "failed" and "close other programs" in second.cure
 
-    def test_the_doctor_without_a_device(self, dhd: Library):
+    def test_doctor_without_device_has_not_asked(self, dhd: Library):
         dhd.serials.clear()
         assert [each.verdict for each in ForceDimension().examine()] == ["fine", "not asked"]
 
-    def test_the_doctor_without_the_package(self, missing: None):
-        [found] = ForceDimension().examine()
-        assert isinstance(found, Finding) and found.verdict == "not asked"
+    def test_doctor_without_package_has_not_asked(self, missing: None):
+        [finding] = ForceDimension().examine()
+        assert isinstance(finding, Finding) and finding.verdict == "not asked"
 
 
-def test_time_goes_on(dhd: Library):
+def test_read_time_increases(dhd: Library):
     with ForceDimension().open() as link:
         before = time.perf_counter()
         assert link.read().time_s >= before

@@ -1,4 +1,4 @@
-"""The Inverse3 against a mock of its service: the exact messages, and everything that goes wrong."""
+"""The Inverse3 against a mock of its service: the exact messages, and faults."""
 
 import json
 import socket
@@ -10,12 +10,12 @@ import pytest
 from websockets.sync.client import ClientConnection
 from websockets.sync.server import ServerConnection, serve
 
+from haply_service import MockService, circling
 from tangible_core.data import NO_FORCE, Finding, Force, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_core.testing import run_checks
 from tangible_devices.haply.haply import Haply
 from tangible_devices.haply.link import HaplyLink
-from tangible_devices.haply.mock_service import MockService, circling
 from tangible_devices.haply.service import Answer, Session
 
 ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
@@ -31,14 +31,14 @@ def service() -> Iterator[MockService]:
         yield service
 
 
-def test_it_conforms(service: MockService):
+def test_haply_conforms(service: MockService):
     failed = [each for each in run_checks("device", "haply", uri=service.uri) if not each.passed]
     assert not failed
     assert service.force() == NO_FORCE
 
 
 class TestMessages:
-    def test_every_message_is_one_command_and_has_one_answer(self, service: MockService):
+    def test_message_is_one_command_with_one_answer(self, service: MockService):
         with Haply(uri=service.uri).open() as link:
             link.read()
             link.write(Force(1.0, -2.0, 0.5))
@@ -51,9 +51,7 @@ class TestMessages:
             command(ZERO),
         ]
 
-    def test_it_disconnects_once_the_last_zero_was_answered(
-        self, service: MockService, monkeypatch: pytest.MonkeyPatch
-    ):
+    def test_close_disconnects_after_last_zero_is_answered(self, service: MockService, monkeypatch: pytest.MonkeyPatch):
         waited: list[bool] = []
         close = Session.close
         monkeypatch.setattr(Session, "close", lambda session: (waited.append(not session.waits), close(session)))
@@ -61,7 +59,7 @@ class TestMessages:
             link.write(Force(1.0, -2.0, 0.5))
         assert waited == [True]
 
-    def test_the_centre_is_the_origin_and_the_axes_are_ours(self):
+    def test_position_has_centre_as_origin_and_workspace_axes(self):
         with MockService(motion=lambda _: ((0.01, -0.12, 0.13), (0.1, 0.2, 0.3))) as service:
             service.button = True
             with Haply(uri=service.uri, centre_m=(0.0, -0.14, 0.1)).open() as link:
@@ -70,7 +68,7 @@ class TestMessages:
         assert state.velocity_m_per_s == (0.1, 0.2, 0.3)
         assert state.buttons == 1
 
-    def test_a_service_without_velocities_is_asked_for_positions_only(self, service: MockService):
+    def test_velocity_of_service_without_velocities_is_estimated(self, service: MockService):
         service.tells_velocity = False
         with Haply(uri=service.uri).open() as link:
             before = link.read()
@@ -83,7 +81,7 @@ class TestMessages:
                 assert after.velocity_m_per_s == pytest.approx([part / span for part in way])
                 before = after
 
-    def test_forces_reach_the_motors_and_lapse_when_nothing_is_sent(self, service: MockService):
+    def test_force_reaches_motors_and_lapses_in_silence(self, service: MockService):
         service.lapse_s = 30.0  # no machine is so slow
         with Haply(uri=service.uri).open() as link:
             link.write(Force(0.0, 0.0, 1.5))
@@ -93,7 +91,7 @@ class TestMessages:
             time.sleep(0.1)
             assert service.force() == NO_FORCE
 
-    def test_no_force_is_left_at_the_motors(self, service: MockService):
+    def test_close_leaves_no_force_at_motors(self, service: MockService):
         service.lapse_s = 60.0
         link = Haply(uri=service.uri).open()
         link.write(Force(0.0, 0.0, 1.5))
@@ -101,12 +99,12 @@ class TestMessages:
         assert service.force() == NO_FORCE
         assert service.messages[-1] == command(ZERO)
 
-    def test_the_greatest_force_is_the_option_s(self, service: MockService):
+    def test_force_limit_is_that_of_the_option(self, service: MockService):
         with Haply(uri=service.uri, max_force_n=3.0).open() as link:
             link.write(Force(0.0, 30.0, 40.0))
             assert link.applied == pytest.approx((0, 1.8, 2.4))
 
-    def test_the_arm_is_chosen_by_its_id(self):
+    def test_arm_is_chosen_by_its_id(self):
         with MockService(arms=("049D", "05DA"), lapse_s=60.0) as service:
             with Haply(uri=service.uri, device_id="05DA").open() as link:
                 link.write(Force(0.0, 0.0, 1.0))
@@ -116,14 +114,14 @@ class TestMessages:
             with pytest.raises(DeviceError, match="no Inverse3 '1234'; there are 049D, 05DA"):
                 Haply(uri=service.uri, device_id="1234").open()
 
-    def test_the_mock_s_velocity_is_that_of_its_positions(self):
+    def test_mock_velocity_matches_its_positions(self):
         (x, y, _), (vx, vy, _) = circling(0.3)
         (x1, y1, _), _ = circling(0.3 + 1e-6)
         assert ((x1 - x) / 1e-6, (y1 - y) / 1e-6) == pytest.approx((vx, vy), rel=1e-3)
 
 
-class Told:
-    """A session that writes down what it is asked, and fails from some step on."""
+class RecordingSession:
+    """A session that records its calls, and fails after `fails` is set."""
 
     def __init__(self) -> None:
         self.steps: list[object] = []
@@ -153,43 +151,43 @@ class Told:
 
 @pytest.mark.usefixtures("unchecked_shapes")
 class TestSteps:
-    """A link and what it asks of its session, in order."""
+    """The calls of a link to its session, in order."""
 
-    def told(self) -> tuple[HaplyLink, Told]:
-        told = Told()
-        return HaplyLink(told, "049D", (0.0, 0.0, 0.0), 5.0), told  # pyright: ignore[reportArgumentType]
+    def link_and_session(self) -> tuple[HaplyLink, RecordingSession]:
+        session = RecordingSession()
+        return HaplyLink(session, "049D", (0.0, 0.0, 0.0), 5.0), session  # pyright: ignore[reportArgumentType]
 
-    def test_no_more_than_one_answer_is_owed(self):
-        link, told = self.told()
+    def test_link_never_owes_more_than_one_answer(self):
+        link, session = self.link_and_session()
         for size in (1.0, 2.0, 3.0):
             link.write(Force(0.0, 0.0, size))
         link.read()
-        assert told.steps == [(0, 0, 1), "answer", (0, 0, 2), "answer", (0, 0, 3), "answer"]
+        assert session.steps == [(0, 0, 1), "answer", (0, 0, 2), "answer", (0, 0, 3), "answer"]
 
-    def test_at_the_end_the_zero_is_answered_before_it_hangs_up(self):
-        link, told = self.told()
+    def test_link_closed_waits_for_answer_to_zero_force(self):
+        link, session = self.link_and_session()
         link.write(Force(0.0, 0.0, 1.0))
-        del told.steps[:]
+        del session.steps[:]
         link.close()
         link.close()
-        assert told.steps == ["answer", (0, 0, 0), "answer", "close"]
+        assert session.steps == ["answer", (0, 0, 0), "answer", "close"]
 
     @pytest.mark.parametrize("call", ["read", "write"])
-    def test_a_force_that_failed_is_none(self, call: str):
-        link, told = self.told()
+    def test_link_with_failed_force_applies_none(self, call: str):
+        link, session = self.link_and_session()
         link.write(Force(0.0, 0.0, 1.0))
         assert link.applied == (0, 0, 1)
-        told.fails = True
+        session.fails = True
         with pytest.raises(DeviceError, match="closed the connection"):
             link.read() if call == "read" else link.write(Force(0.0, 0.0, 2.0))
         assert link.applied == NO_FORCE
         link.close()
-        assert told.steps[-1] == "close"
+        assert session.steps[-1] == "close"
         assert link.applied == NO_FORCE
 
 
 class TestFaults:
-    def test_the_newest_answer_is_the_last_of_those_owed(self):
+    def test_session_newest_answer_is_the_last_owed(self):
         places = iter([(float(place), 0.0, 0.0) for place in range(10)])
         with MockService(motion=lambda _: (next(places), (0.0, 0.0, 0.0))) as service:
             session = Session(service.uri, 5.0)
@@ -199,9 +197,7 @@ class TestFaults:
             assert not session.waits
             session.close()
 
-    def test_it_waits_for_an_answer_as_long_as_the_option_says(
-        self, service: MockService, monkeypatch: pytest.MonkeyPatch
-    ):
+    def test_session_waits_for_answer_until_timeout(self, service: MockService, monkeypatch: pytest.MonkeyPatch):
         waited: list[float | None] = []
         recv = ClientConnection.recv
 
@@ -214,23 +210,23 @@ class TestFaults:
             link.read()
         assert set(waited) == {7.5}
 
-    def test_without_a_service_it_says_what_to_start(self):
+    def test_open_without_service_names_what_to_start(self):
         with socket.socket() as taken:
             taken.bind(("127.0.0.1", 0))
             uri = f"ws://127.0.0.1:{taken.getsockname()[1]}"
             with pytest.raises(DeviceAbsent, match=r"no Haply service listens there .*; start Haply Hub"):
                 Haply(uri=uri).open()
 
-    def test_without_an_arm_it_says_what_to_plug_in(self):
+    def test_open_without_arm_names_what_to_plug_in(self):
         with MockService(arms=()) as service, pytest.raises(DeviceAbsent, match="plug in its USB cable"):
             Haply(uri=service.uri).open()
 
-    def test_without_the_library_it_says_what_to_install(self, monkeypatch: pytest.MonkeyPatch):
+    def test_open_without_library_names_what_to_install(self, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setitem(__import__("sys").modules, "websockets.sync.client", None)
         with pytest.raises(DeviceAbsent, match=r"pip install 'tangible-images\[haply\]'"):
             Haply().open()
 
-    def test_another_server_is_none(self):
+    def test_open_on_another_server_is_refused(self):
         with socket.create_server(("127.0.0.1", 0)) as other:
 
             def refuse() -> None:
@@ -243,7 +239,7 @@ class TestFaults:
                 Haply(uri=f"ws://127.0.0.1:{other.getsockname()[1]}", timeout_s=5).open()
             thread.join()
 
-    def test_a_service_that_hangs(self, service: MockService):
+    def test_read_from_hanging_service_is_refused(self, service: MockService):
         link = Haply(uri=service.uri, timeout_s=0.6).open()
         link.read()
         service.mute = True
@@ -253,7 +249,7 @@ class TestFaults:
         assert link.applied == NO_FORCE
         link.close()
 
-    def test_a_service_that_ends(self):
+    def test_read_from_ended_service_is_refused(self):
         with MockService() as service:
             link = Haply(uri=service.uri).open()
             link.write(Force(0.0, 0.0, 1.0))
@@ -268,7 +264,7 @@ class TestFaults:
         with MockService() as service, Haply(uri=service.uri).open() as link:
             link.read()
 
-    def test_an_arm_that_is_unplugged(self, service: MockService):
+    def test_read_from_unplugged_arm_is_refused(self, service: MockService):
         link = Haply(uri=service.uri).open()
         link.read()
         service.arms.clear()
@@ -291,7 +287,7 @@ class TestFaults:
             "{}",
         ],
     )
-    def test_answers_that_make_no_sense(self, answer: str):
+    def test_read_of_invalid_answer_is_refused(self, answer: str):
         snapshot = json.dumps({"inverse3": [{"device_id": "049D", "config": {}, "status": {}}]})
 
         def talk(connection: ServerConnection) -> None:
@@ -313,7 +309,7 @@ class TestFaults:
 
 
 class TestService:
-    def test_what_is_connected(self):
+    def test_connected_lists_arms(self):
         with MockService(arms=("049D", "05DA")) as service:
             assert Haply(uri=service.uri).connected() == (
                 Unit("inverse3", "049D", "COM12"),
@@ -321,16 +317,16 @@ class TestService:
             )
             assert service.messages == []
 
-    def test_the_doctor_repeats_what_the_arm_complains_of(self, service: MockService):
+    def test_doctor_repeats_the_arm_s_problem(self, service: MockService):
         service.status |= {"power_supply": False, "calibrated": False}
-        found = list(Haply(uri=service.uri).examine())
-        assert found[0] == Finding("service", "fine", f"answers at {service.uri}")
-        assert found[1].verdict == "failed"
-        assert "plug in its power supply" in found[1].says and "not calibrated" in found[1].says
+        findings = list(Haply(uri=service.uri).examine())
+        assert findings[0] == Finding("service", "fine", f"answers at {service.uri}")
+        assert findings[1].verdict == "failed"
+        assert "plug in its power supply" in findings[1].says and "not calibrated" in findings[1].says
 
-    def test_the_doctor_finds_nothing_wrong(self, service: MockService):
+    def test_doctor_finds_nothing_wrong(self, service: MockService):
         assert {each.verdict for each in Haply(uri=service.uri).examine()} == {"fine"}
 
-    def test_the_doctor_without_a_service(self):
-        [found] = Haply(uri="ws://127.0.0.1:9").examine()
-        assert found.verdict == "not asked"
+    def test_doctor_without_service_has_not_asked(self):
+        [finding] = Haply(uri="ws://127.0.0.1:9").examine()
+        assert finding.verdict == "not asked"

@@ -1,4 +1,4 @@
-"""The pointer: what two processes say to each other, what is torn, silent, killed, taken twice."""
+"""The pointer: the exchange of two processes; torn blocks, silence, killed processes, second users."""
 
 import json
 import os
@@ -21,13 +21,13 @@ from tangible_core.compiled.kernels import Address
 from tangible_core.compiled.touch import CompiledLink
 from tangible_core.data import NO_FORCE, TICK_COLUMNS, Force, HapticState
 from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.mapping import WorkspaceMapping, mapped
+from tangible_core.mapping import WorkspaceMapping, map_device
 from tangible_core.plugins.interfaces import Link
 from tangible_core.servo import Safety, Servo, null_touch
 from tangible_core.servo.guard import guard
 from tangible_core.session import About, Recording, keeping
 from tangible_devices.pointer import PointerClient, channel, kernels
-from tangible_devices.pointer.channel import Channel, checksum, packed, unpacked
+from tangible_devices.pointer.channel import Channel, checksum, pack_block, unpack_block
 from tangible_devices.pointer.following import follow, parse
 from tangible_devices.pointer.pointer import HIGH_M, Pointer, PointerLink
 
@@ -43,13 +43,13 @@ def link() -> Iterator[CompiledLink]:
     link.close()
 
 
-def ticked(link: CompiledLink) -> tuple[int, np.ndarray]:
+def run_tick(link: CompiledLink) -> tuple[int, np.ndarray]:
     kernels, state = link.kernels(), np.full(7, 9.0)
     return kernels.read(*kernels.fixed, state), state
 
 
 class TestExchange:
-    def test_positions_go_in_and_forces_come_out(self, link: CompiledLink):
+    def test_link_reads_positions_and_client_reads_forces(self, link: CompiledLink):
         with PointerClient() as client:
             client.send((0.01, -0.02, 0.003), buttons=5, velocity_m_per_s=(1.0, 2.0, 3.0))
             state = link.read()
@@ -58,11 +58,11 @@ class TestExchange:
             link.write(Force(1.0, -2.0, 3.0))
             assert client.force() == link.applied == Force(1.0, -2.0, 3.0)
 
-    def test_the_kernels_see_the_same(self, link: CompiledLink):
+    def test_kernels_read_the_same_as_the_link(self, link: CompiledLink):
         kernels = link.kernels()
         with PointerClient() as client:
             client.send((0.01, -0.02, 0.003), buttons=5, velocity_m_per_s=(1.0, 2.0, 3.0))
-            fresh, state = ticked(link)
+            fresh, state = run_tick(link)
             assert fresh == 1
             assert state.tolist() == [0.01, -0.02, 0.003, 1.0, 2.0, 3.0, 5.0]
             kernels.write(*kernels.fixed, 1.0, -2.0, 3.0)
@@ -70,9 +70,7 @@ class TestExchange:
         assert not link.exchanges
         link.exchange()
 
-    def test_a_velocity_that_is_not_sent_is_the_way_over_the_time(
-        self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch
-    ):
+    def test_velocity_not_sent_is_way_over_time(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
         with PointerClient() as client:
             client.send((0.0, 0.0, 0.0))
             assert link.read().velocity_m_per_s == (0.0, 0.0, 0.0)
@@ -80,15 +78,15 @@ class TestExchange:
             then = client._last[0]
             monkeypatch.setattr(time, "monotonic", lambda: then + 0.25)
             client.send((0.01, -0.02, 0.0))
-            assert ticked(link)[1][3:6] == pytest.approx([0.04, -0.08, 0.0])
+            assert run_tick(link)[1][3:6] == pytest.approx([0.04, -0.08, 0.0])
 
-    def test_through_a_mapping_it_still_needs_no_python(self):
-        with mapped(Pointer(), WorkspaceMapping(scale=2.0)).open() as link, PointerClient() as client:
+    def test_link_through_mapping_stays_compiled(self):
+        with map_device(Pointer(), WorkspaceMapping(scale=2.0)).open() as link, PointerClient() as client:
             assert isinstance(link, CompiledLink) and not link.exchanges
             client.send((0.02, 0.0, 0.01))
-            assert ticked(link)[1][:3].tolist() == [0.01, 0.0, 0.005]
+            assert run_tick(link)[1][:3].tolist() == [0.01, 0.0, 0.005]
 
-    def test_a_compiled_loop_takes_the_kernels_by_address(self, link: CompiledLink):
+    def test_kernels_are_callable_by_address(self, link: CompiledLink):
         @njit(nogil=True)
         def loop(read, write, fixed, state):
             while read(*fixed, state) == 0 or state[2] == 1.0:
@@ -105,7 +103,7 @@ class TestExchange:
             assert client.force() == (0.5, 0.25, 0.125)
 
 
-def compiled(link: Link) -> CompiledLink:
+def as_compiled(link: Link) -> CompiledLink:
     assert isinstance(link, CompiledLink)
     return link
 
@@ -115,37 +113,37 @@ FOLLOW_S = 0.012
 
 class TestFollowing:
     @pytest.mark.parametrize("follow_s", [0.0, FOLLOW_S])
-    def test_the_first_is_taken_as_it_is_and_so_is_one_after_nobody_or_a_silence(self, follow_s: float):
+    def test_filter_passes_first_sample_and_after_silence(self, follow_s: float):
         with Pointer(stale_after_s=0.02, follow_s=follow_s).open() as link:
             here, there = (0.01, -0.02, 0.003), (0.3, 0.2, -0.1)
             with PointerClient() as client:
                 client.send(here, 1, (1.0, 2.0, 3.0))
-                assert ticked(compiled(link))[1].tolist() == [*here, 1.0, 2.0, 3.0, 1.0]
+                assert run_tick(as_compiled(link))[1].tolist() == [*here, 1.0, 2.0, 3.0, 1.0]
                 for _ in range(25):
-                    silent = ticked(compiled(link))[0]
+                    silent = run_tick(as_compiled(link))[0]
                 assert not silent
                 client.send(there)
-                assert ticked(compiled(link))[1][:3].tolist() == list(there)
+                assert run_tick(as_compiled(link))[1][:3].tolist() == list(there)
                 client.release()
-                assert ticked(compiled(link))[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
+                assert run_tick(as_compiled(link))[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
                 client.send(here)
-                assert ticked(compiled(link))[1].tolist() == [*here, 0, 0, 0, 0]
-            assert ticked(compiled(link))[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
+                assert run_tick(as_compiled(link))[1].tolist() == [*here, 0, 0, 0, 0]
+            assert run_tick(as_compiled(link))[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
             with PointerClient() as client:
                 client.send(there)
-                assert ticked(compiled(link))[1][:3].tolist() == list(there)
+                assert run_tick(as_compiled(link))[1][:3].tolist() == list(there)
 
-    def test_a_compiled_loop_follows_as_a_filter_of_first_order_ticking_at_a_millisecond(self):
+    def test_filter_of_kernel_is_first_order_at_a_millisecond(self):
         with Pointer(follow_s=FOLLOW_S).open() as link, PointerClient() as client:
             client.send((0.0, 0.0, 0.0))
-            ticked(compiled(link))
+            run_tick(as_compiled(link))
             client.send((0.01, -0.02, 0.003), 5, (1.0, 2.0, 3.0))
-            seen = np.array([ticked(compiled(link))[1] for _ in range(50)])
+            seen = np.array([run_tick(as_compiled(link))[1] for _ in range(50)])
         way = 1 - np.exp(-np.arange(1, 51) / (1000 * FOLLOW_S))
         np.testing.assert_allclose(seen[:, :6], way[:, None] * [0.01, -0.02, 0.003, 1.0, 2.0, 3.0], rtol=1e-9)
         assert (seen[:, 6] == 5).all()
 
-    def test_python_follows_by_the_clock_and_begins_as_the_kernel(self, monkeypatch: pytest.MonkeyPatch):
+    def test_filter_of_python_is_first_order_by_the_clock(self, monkeypatch: pytest.MonkeyPatch):
         now = [1000.0]
         monkeypatch.setattr(time, "monotonic", lambda: now[0])
         monkeypatch.setattr(time, "sleep", lambda seconds: None)
@@ -172,23 +170,23 @@ class TestFollowing:
                 assert read_after(0.001)[:2] == ((0.5, 0.0, 0.0), (0.0, 0.0, 0.0))
 
     @given(st.lists(st.tuples(*[st.floats(-1, 1)] * 6), min_size=2, max_size=4))
-    def test_without_it_a_position_is_the_client_s_to_the_bit(self, samples: list[tuple[float, ...]]):
+    def test_filter_switched_off_keeps_position_to_the_bit(self, samples: list[tuple[float, ...]]):
         with Pointer(channel="bits").open() as link, PointerClient("bits") as client:
             for sample in samples:
                 client.send(sample[:3], 1, sample[3:])
-                assert ticked(compiled(link))[1].tobytes() == np.array([*sample, 1.0]).tobytes()
+                assert run_tick(as_compiled(link))[1].tobytes() == np.array([*sample, 1.0]).tobytes()
                 assert (*link.read().position_m, *link.read().velocity_m_per_s) == sample
 
 
-class Felt:
+class Spring:
     """A spring of 1 N/mm under z = 0 on a link, tick by tick of 1 ms, by its kernels and a guard."""
 
     def __init__(self, link: Link, limits: Safety) -> None:
-        self._kernels = compiled(link).kernels()
+        self._kernels = as_compiled(link).kernels()
         self._settings, self._memory = limits.arrays(Pointer().spec(), 1000.0)
 
     def ticks(self, count: int) -> list[float]:
-        """What is given in these ticks, N upwards."""
+        """Return the forces of these ticks, N upwards."""
         return [self._tick() for _ in range(count)]
 
     def _tick(self) -> float:
@@ -207,51 +205,51 @@ class TestLettingGo:
     """A hand 2 mm deep, which the spring and nothing else holds."""
 
     @pytest.fixture
-    def held(self, follow_s: float) -> Iterator[tuple[PointerClient, Felt]]:
+    def grip(self, follow_s: float) -> Iterator[tuple[PointerClient, Spring]]:
         with Pointer(follow_s=follow_s).open() as link, PointerClient() as client:
-            felt = Felt(link, Safety(ramp_s=0, passivity="off"))
+            spring = Spring(link, Safety(ramp_s=0, passivity="off"))
             client.send((0.0, 0.0, -0.002))
-            assert felt.ticks(10)[-1] == 2.0 == client.force().z
-            yield client, felt
+            assert spring.ticks(10)[-1] == 2.0 == client.force().z
+            yield client, spring
 
     @pytest.mark.parametrize("leave", [PointerClient.release, PointerClient.close])
-    def test_the_law_gives_nothing_from_the_next_tick_on_and_the_guard_takes_off_the_rest(self, held, leave):
-        client, felt = held
+    def test_release_ends_law_at_next_tick_and_guard_fades_out(self, grip, leave):
+        client, spring = grip
         leave(client)
-        assert felt.ticks(6) == [1.5, 1.0, 0.5, 0.0, 0.0, 0.0]
+        assert spring.ticks(6) == [1.5, 1.0, 0.5, 0.0, 0.0, 0.0]
 
-    def test_it_is_shown_no_force_from_then_on(self, held):
-        client, felt = held
+    def test_release_gives_client_no_force(self, grip):
+        client, spring = grip
         client.release()
         assert client.force() == NO_FORCE
-        felt.ticks(1)
+        spring.ticks(1)
         assert client.force() == NO_FORCE
 
-    def test_who_comes_back_does_so_at_rest_and_is_shown_its_force(self, held):
-        client, felt = held
+    def test_release_then_send_starts_at_rest_with_force(self, grip):
+        client, spring = grip
         client.release()
-        felt.ticks(10)
+        spring.ticks(10)
         client.send((0.1, 0.0, -0.001))
-        assert felt.ticks(5) == [0.5, 1.0, 1.0, 1.0, 1.0]
+        assert spring.ticks(5) == [0.5, 1.0, 1.0, 1.0, 1.0]
         assert client.force().z == 1.0
         assert client._channel.take(channel.SAMPLE, channel.SAMPLE_WORDS)[1][3:6] == (0, 0, 0)
 
-    def test_who_has_left_does_not_let_go_for_the_next(self, held):
-        client, felt = held
+    def test_release_after_close_leaves_next_client_alone(self, grip):
+        client, spring = grip
         client.close()
         with PointerClient() as other:
             other.send((0.0, 0.0, -0.002))
             client.release()
-            assert felt.ticks(10)[-1] == 2.0
+            assert spring.ticks(10)[-1] == 2.0
 
-    def test_a_device_that_is_gone_is_let_go_of_in_silence(self, held):
-        client, _ = held
+    def test_release_of_closed_device_raises_nothing(self, grip):
+        client, _ = grip
         client._channel.set_flag(channel.DEVICE_OPEN, False)
         client.release()
 
-    def test_in_silence_it_is_zero_at_once_a_stale_time_after_the_device_s_own(self, held):
-        _, felt = held
-        forces = felt.ticks(200)
+    def test_silence_ends_force_after_stale_times(self, grip):
+        _, spring = grip
+        forces = spring.ticks(200)
         assert 90 < (end := forces.index(0.0)) <= 90 + 20, "100 reads of a sample, ten of which were; then 20 ms"
         assert set(forces[:end]) == {2.0}
         assert set(forces[end:]) == {0.0}
@@ -263,16 +261,16 @@ TAGS = [0, 1, 0x2AAAAA, 0x555555, 0x7FFFFF]
 
 
 @pytest.mark.parametrize("tag", TAGS)
-def test_a_clutch_looks_at_its_own_button_whatever_number_is_above(tag: int):
-    with mapped(Pointer(), WorkspaceMapping(scale=2.0, clutch_button=1)).open() as link, PointerClient() as client:
+def test_clutch_ignores_client_number_in_buttons(tag: int):
+    with map_device(Pointer(), WorkspaceMapping(scale=2.0, clutch_button=1)).open() as link, PointerClient() as client:
         for x, buttons, seen in ((0.02, 0, 0.01), (0.04, 1, 0.02), (0.06, 2, 0.02), (0.06, 3, 0.02), (0.08, 5, 0.03)):
             client.send((x, 0.0, 0.01), tag << 8 | buttons)
-            state = ticked(compiled(link))[1]
+            state = run_tick(as_compiled(link))[1]
             assert (state[0], state[6]) == (pytest.approx(seen), tag << 8 | buttons)
 
 
-def test_a_number_of_the_client_s_own_comes_back_with_its_tick_and_is_kept(tmp_path: Path):
-    device = mapped(Pointer(follow_s=FOLLOW_S), WorkspaceMapping(scale=2.0, clutch_button=1))
+def test_client_number_in_buttons_returns_with_its_tick(tmp_path: Path):
+    device = map_device(Pointer(follow_s=FOLLOW_S), WorkspaceMapping(scale=2.0, clutch_button=1))
     sent = [tag << 8 | 5 for tag in TAGS]
     with Servo(null_touch(), device) as servo, PointerClient() as client:
         for buttons in sent:
@@ -285,9 +283,9 @@ def test_a_number_of_the_client_s_own_comes_back_with_its_tick_and_is_kept(tmp_p
         rows, _ = servo.ring.since(0)
     with keeping(tmp_path / "hand.nc", About()) as writer:
         writer.append(rows)
-    kept = Recording.load(tmp_path / "hand.nc").rows[:, BUTTONS]
-    assert set(kept.tolist()) <= {0, *sent}
-    assert kept[-1] == sent[-1]
+    recorded = Recording.load(tmp_path / "hand.nc").rows[:, BUTTONS]
+    assert set(recorded.tolist()) <= {0, *sent}
+    assert recorded[-1] == sent[-1]
 
 
 def before_a_device(force_n: tuple[float, float, float]) -> Channel:
@@ -302,20 +300,20 @@ def before_a_device(force_n: tuple[float, float, float]) -> Channel:
 
 
 class TestNobody:
-    def test_without_a_client_the_tip_is_high_above(self, link: CompiledLink):
+    def test_tip_without_client_is_high_above(self, link: CompiledLink):
         assert link.read()[:2] == (HIGH_M, (0.0, 0.0, 0.0))
-        fresh, state = ticked(link)
+        fresh, state = run_tick(link)
         assert fresh == 1
         assert state.tolist() == [*HIGH_M, 0, 0, 0, 0]
 
-    def test_a_client_that_leaves_takes_the_tip_along(self, link: CompiledLink):
+    def test_tip_after_client_left_is_high_above(self, link: CompiledLink):
         with PointerClient() as client:
             client.send((0.0, 0.0, 0.0))
             assert link.read().position_m == (0, 0, 0)
         assert link.read().position_m == HIGH_M
-        assert ticked(link)[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
+        assert run_tick(link)[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
 
-    def test_a_silent_client_is_not_believed(self):
+    def test_silent_client_is_ignored(self):
         with Pointer(stale_after_s=0.03).open() as link, PointerClient() as client:
             client.send((0.0, 0.0, 0.0))
             assert link.read().position_m == (0, 0, 0)
@@ -324,15 +322,15 @@ class TestNobody:
             client.send((0.0, 0.0, 0.0))
             assert link.read().position_m == (0, 0, 0)
 
-    def test_a_compiled_loop_counts_the_silence(self):
+    def test_kernel_counts_the_silence(self):
         with Pointer(stale_after_s=0.03).open() as link, PointerClient() as client:
             assert isinstance(link, CompiledLink)
             client.send((0.0, 0.0, 0.0))
-            assert [ticked(link)[0] for _ in range(40)] == [1] * 30 + [0] * 10
+            assert [run_tick(link)[0] for _ in range(40)] == [1] * 30 + [0] * 10
             client.send((0.0, 0.0, 0.0))
-            assert ticked(link)[0] == 1
+            assert run_tick(link)[0] == 1
 
-    def test_what_an_earlier_client_left_is_not_taken_for_new(self):
+    def test_sample_of_earlier_client_is_not_new(self):
         with Pointer().open(), PointerClient() as client:
             client.send((0.0, 0.0, 0.0))
             with pytest.raises(DeviceError, match="has a client already"):
@@ -344,27 +342,27 @@ class TestNobody:
         with Pointer().open() as link:
             assert link.read().position_m == HIGH_M
             assert isinstance(link, CompiledLink)
-            assert ticked(link)[0] == 0
+            assert run_tick(link)[0] == 0
 
-    def test_a_client_that_comes_back_is_believed_when_it_sends(self, link: CompiledLink):
+    def test_silent_client_is_used_again_when_it_sends(self, link: CompiledLink):
         with PointerClient() as client:
             client.send((0.0, 0.0, 0.0), 3)
-            assert ticked(link)[0] == 1
-        assert ticked(link)[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
-        link.kernels().fixed[0][channel.CLIENT_OPEN] = 1  # who is there, and has said nothing
-        assert ticked(link)[0] == 0
+            assert run_tick(link)[0] == 1
+        assert run_tick(link)[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
+        link.kernels().fixed[0][channel.CLIENT_OPEN] = 1  # a client that has sent nothing
+        assert run_tick(link)[0] == 0
         with PointerClient() as client:
             client.send((0.1, 0.0, 0.0))
-            assert ticked(link)[1][0] == 0.1
+            assert run_tick(link)[1][0] == 0.1
 
-    def test_the_next_client_s_first_sample_is_new(self, link: CompiledLink):
+    def test_first_sample_of_next_client_is_new(self, link: CompiledLink):
         for x in (0.1, 0.2):
             with PointerClient() as client:
                 client.send((x, 0.0, 0.0), velocity_m_per_s=(0.0, 0.0, 0.0))
-                assert ticked(link)[1][0] == x
+                assert run_tick(link)[1][0] == x
                 assert link.read().position_m[0] == x
 
-    def test_a_device_that_is_closed_shows_no_force(self, link: CompiledLink):
+    def test_closed_device_shows_no_force(self, link: CompiledLink):
         link.write(Force(0.0, 0.0, 1.0))
         link.close()
         with pytest.raises(DeviceError, match="the pointer device is closed"):
@@ -374,17 +372,17 @@ class TestNobody:
         assert not shown.flag(channel.DEVICE_OPEN)
         shown.close()
 
-    def test_a_device_that_opens_shows_no_force_and_hears_nothing_of_before(self):
+    def test_opened_device_has_no_force_and_no_old_sample(self):
         shown = before_a_device(force_n=(0.0, 0.0, 2.0))
         with Pointer().open() as link:
             assert shown.take(channel.FORCE, channel.FORCE_WORDS)[1] == (0, 0, 0)
             assert isinstance(link, CompiledLink)
-            assert ticked(link)[0] == 0
+            assert run_tick(link)[0] == 0
             assert link.read().position_m == HIGH_M
         shown.close()
 
-    def test_until_it_shows_no_force_it_is_not_open(self):
-        """What a killed one left says that it is: a client would be shown its last force."""
+    def test_device_is_open_only_after_zero_force(self):
+        """A killed device leaves its flag set, and a client would read its last force."""
         shown = before_a_device(force_n=(0.0, 0.0, 2.0))
         open_then: list[bool] = []
 
@@ -398,24 +396,24 @@ class TestNobody:
         assert open_then[0] is False
         shown.close()
 
-    def test_the_last_of_a_killed_client_is_not_believed_from_the_first_read_on(self):
-        """As long as a client may be silent, the last place of one that was killed would be a place."""
+    def test_sample_of_killed_client_is_ignored_from_first_read(self):
+        """The last sample of a killed client must not count as new during the time allowed for silence."""
         shown = before_a_device(force_n=(0.0, 0.0, 0.0))
         with Pointer(stale_after_s=10.0).open() as link:
             assert isinstance(link, CompiledLink)
-            assert [ticked(link)[0] for _ in range(3)] == [0, 0, 0]
+            assert [run_tick(link)[0] for _ in range(3)] == [0, 0, 0]
             assert link.read().position_m == HIGH_M
         shown.close()
 
     @pytest.mark.parametrize("size", [8.1, 1e3, 1e200])
-    def test_a_force_over_the_device_s_is_not_shown(self, link: CompiledLink, size: float):
+    def test_force_above_limit_is_scaled_down(self, link: CompiledLink, size: float):
         link.write(Force(0.0, size, 0.0))
         assert link.applied == pytest.approx((0, 8, 0))
         link.write(Force(0.0, size, float("nan")))
         assert link.applied == NO_FORCE
 
-    def test_every_force_has_another_number(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
-        """By which a client tells a device that lives from one that shows its last force for ever."""
+    def test_force_blocks_have_rising_numbers(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
+        """By these numbers a client tells a living device from one that shows its last force for ever."""
         with PointerClient() as client:
             link.write(Force(0.0, 0.0, 1.0))
             assert client.force() == (0, 0, 1)
@@ -425,7 +423,7 @@ class TestNobody:
             link.write(Force(0.0, 0.0, 1.0))
             assert client.force() == (0, 0, 1)
 
-    def test_a_silent_device_shows_no_force(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
+    def test_silent_device_shows_no_force(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
         with PointerClient() as client:
             link.write(Force(0.0, 0.0, 1.0))
             assert client.force() == (0, 0, 1)
@@ -435,48 +433,48 @@ class TestNobody:
             link.write(Force(0.0, 0.0, 2.0))
             assert client.force() == (0, 0, 2)
 
-    def test_a_foreign_client_s_nonsense_is_no_position(self, link: CompiledLink):
+    def test_sample_of_foreign_client_is_refused(self, link: CompiledLink):
         with PointerClient() as client:
             client.send((0.0, 0.0, 0.0))
             client._channel.put(channel.SAMPLE, 2**63, (np.nan,) * 7)
-            assert ticked(link)[0] == 0
+            assert run_tick(link)[0] == 0
             assert np.isfinite(link.read().position_m).all()
 
     @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
     @pytest.mark.parametrize("place", range(7))
-    def test_no_part_of_it_may_be_nonsense(self, link: CompiledLink, place: int, bad: float):
+    def test_sample_with_nonfinite_number_is_refused(self, link: CompiledLink, place: int, bad: float):
         good = [0.01, 0.02, 0.03, 1.0, 2.0, 3.0, 5.0]
         with PointerClient() as client:
             client.send((0.0, 0.0, 0.0), velocity_m_per_s=(0.0, 0.0, 0.0))
             client._channel.put(channel.SAMPLE, 2**63, (*good[:place], bad, *good[place + 1 :]))
-            assert ticked(link)[0] == 0
+            assert run_tick(link)[0] == 0
             assert link.read().position_m == HIGH_M, "nothing was heard yet"
             client._channel.put(channel.SAMPLE, 2**63 + 1, tuple(good))
-            assert ticked(link)[1].tolist() == good
+            assert run_tick(link)[1].tolist() == good
 
     @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize("bad", [(np.nan, 0, 0), (0, np.inf, 0), (0, 0), (0, 0, 0, 0)])
-    def test_a_client_sends_only_positions(self, link: CompiledLink, bad: tuple[float, ...]):
+    def test_client_sending_invalid_position_is_refused(self, link: CompiledLink, bad: tuple[float, ...]):
         with PointerClient() as client, pytest.raises(DeviceError, match="three finite numbers in metres"):
             client.send(bad, velocity_m_per_s=(0.0, 0.0, 0.0))
 
 
 class TestTorn:
     @given(words)
-    def test_the_kernel_s_checksum_is_python_s(self, block: list[int]):
+    def test_checksum_of_kernel_equals_python_s(self, block: list[int]):
         assert kernels.checksum(np.array(block, np.uint64), 0, len(block)) == checksum(tuple(block))
 
     @given(st.data())
-    def test_two_blocks_mixed_are_no_block(self, data: st.DataObject):
+    def test_checksum_detects_mixed_blocks(self, data: st.DataObject):
         """Signs of two numbers that change at once, equal numbers: nothing cancels out."""
         number = st.floats(-1, 1) | st.sampled_from([0.0, -0.0, 1.0, -1.0])
-        old = packed(7, tuple(data.draw(st.lists(number, min_size=7, max_size=7))))
-        new = packed(8, tuple(data.draw(st.lists(number, min_size=7, max_size=7))))
+        old = pack_block(7, tuple(data.draw(st.lists(number, min_size=7, max_size=7))))
+        new = pack_block(8, tuple(data.draw(st.lists(number, min_size=7, max_size=7))))
         taken = data.draw(st.lists(st.booleans(), min_size=9, max_size=9))
         mix = b"".join((new if of_new else old)[8 * i : 8 * i + 8] for i, of_new in enumerate(taken))
-        assert unpacked(mix) is None or mix in (old, new)
+        assert unpack_block(mix) is None or mix in (old, new)
 
-    def test_a_writer_that_never_rests_is_never_read_half(self, link: CompiledLink):
+    def test_reader_never_sees_half_of_a_busy_writer_s_block(self, link: CompiledLink):
         """Every sample holds one number seven times; a hundred thousand reads see no mixture."""
         stop = Event()
 
@@ -490,11 +488,11 @@ class TestTorn:
 
         @njit(nogil=True)
         def mixtures(read, fixed, state, count):
-            found = 0
+            mixtures = 0
             for _ in range(count):
                 if read(*fixed, state) and state[2] != 1.0:
-                    found += (state != state[0]).any()
-            return found
+                    mixtures += (state != state[0]).any()
+            return mixtures
 
         thread = Thread(target=hammer)
         thread.start()
@@ -508,42 +506,42 @@ class TestTorn:
 
     @pytest.mark.parametrize("bit", [0, 63])
     @pytest.mark.parametrize("word", range(channel.SAMPLE_WORDS + 1))
-    def test_a_block_with_one_bit_of_another_is_no_position(self, link: CompiledLink, word: int, bit: int):
+    def test_sample_with_one_wrong_bit_is_refused(self, link: CompiledLink, word: int, bit: int):
         kernels = link.kernels()
         words = kernels.fixed[0]
         with PointerClient() as client:
             client.send((0.5, 0.25, 0.125), 1, (0.5, 0.25, 0.125))
-            assert ticked(link)[0] == 1
+            assert run_tick(link)[0] == 1
             words[channel.SAMPLE + word] ^= np.uint64(1 << bit)
-            assert ticked(link)[0] == 0
+            assert run_tick(link)[0] == 0
             assert link.read().position_m == HIGH_M
             words[channel.SAMPLE + word] ^= np.uint64(1 << bit)
-            assert ticked(link)[0] == 1
+            assert run_tick(link)[0] == 1
             assert link.read().position_m == (0.5, 0.25, 0.125)
 
     @pytest.mark.parametrize("word", range(channel.FORCE_WORDS + 1))
-    def test_a_force_with_one_bit_of_another_is_none(self, link: CompiledLink, word: int):
+    def test_force_with_one_wrong_bit_is_zero(self, link: CompiledLink, word: int):
         with PointerClient() as client:
             link.write(Force(1.0, 2.0, 3.0))
             assert client.force() == (1, 2, 3)
             client._channel.memory[(channel.FORCE + word) * 8 + 3] ^= 16
             assert client.force() == NO_FORCE
 
-    def test_a_block_that_is_being_written_is_read_again(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
+    def test_block_being_written_is_read_again(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
         with PointerClient() as client:
             link.write(Force(1.0, 2.0, 3.0))
             torn = iter([None] * 7)
-            monkeypatch.setattr(channel, "unpacked", lambda block: next(torn, unpacked(block)))
+            monkeypatch.setattr(channel, "unpack_block", lambda block: next(torn, unpack_block(block)))
             assert client.force() == (1, 2, 3)
 
-    def test_a_block_left_half_written_is_no_force(self, link: CompiledLink):
+    def test_block_left_half_written_gives_no_force(self, link: CompiledLink):
         with PointerClient() as client:
             client._channel.memory[channel.FORCE * 8 + 8] ^= 1
             assert client.force() == NO_FORCE
 
 
 class TestPlaces:
-    def test_a_second_device_is_refused_until_the_first_is_closed(self, link: CompiledLink):
+    def test_second_device_is_refused_until_first_is_closed(self, link: CompiledLink):
         with pytest.raises(DeviceError, match=r"has a device already .*use another channel"):
             Pointer().open()
         with Pointer(channel="other").open() as other:
@@ -552,11 +550,11 @@ class TestPlaces:
         with Pointer().open():
             pass
 
-    def test_a_client_needs_a_device(self):
+    def test_client_without_device_is_refused(self):
         with pytest.raises(DeviceError, match="no device is open on pointer 'pointer'; start"):
             PointerClient()
 
-    def test_a_client_may_wait_for_one(self):
+    def test_client_waits_for_a_device(self):
         opened: list[object] = []
         thread = Thread(target=lambda: (time.sleep(0.1), opened.append(Pointer().open())))
         thread.start()
@@ -564,7 +562,7 @@ class TestPlaces:
             assert client.force() == NO_FORCE
         thread.join()
 
-    def test_a_client_is_told_that_the_device_was_closed(self, link: CompiledLink):
+    def test_client_of_closed_device_is_refused(self, link: CompiledLink):
         with PointerClient() as client:
             link.write(Force(0.0, 0.0, 1.0))
             link.close()
@@ -572,14 +570,14 @@ class TestPlaces:
                 with pytest.raises(DeviceError, match="was closed; start it again"):
                     call()
 
-    def test_a_closed_client_is_closed(self, link: CompiledLink):
+    def test_closed_client_refuses_calls(self, link: CompiledLink):
         client = PointerClient()
         client.close()
         client.close()
         with pytest.raises(DeviceError, match="is closed; make another"):
             client.force()
 
-    def test_another_version_is_refused(self, link: CompiledLink):
+    def test_client_of_another_version_is_refused(self, link: CompiledLink):
         link.kernels().fixed[0][channel.MAGIC] += 1
         with pytest.raises(DeviceError, match="of another version"):
             PointerClient()
@@ -587,11 +585,11 @@ class TestPlaces:
         PointerClient().close()
 
     @pytest.mark.parametrize("name", ["../x", "A", "", "a/b", "x" * 65])
-    def test_names_that_are_no_channel(self, name: str):
+    def test_channel_with_invalid_name_is_refused(self, name: str):
         with pytest.raises(DeviceError, match="lower-case letters"):
             Channel(name, "device")
 
-    def test_only_this_user_may_look(self, link: CompiledLink):
+    def test_channel_file_is_private(self, link: CompiledLink):
         assert channel.channel_path("pointer").stat().st_mode & 0o077 == 0
 
 
@@ -629,7 +627,7 @@ def child() -> Iterator[object]:
 
 
 class TestKilled:
-    def test_a_killed_client_is_not_felt_and_another_takes_its_place(self, link: CompiledLink, child):
+    def test_killed_client_gives_no_force_and_is_replaceable(self, link: CompiledLink, child):
         process = child("client")
         assert link.read().position_m == (0, 0, 0)
         os.kill(process.pid, signal.SIGKILL)
@@ -640,7 +638,7 @@ class TestKilled:
             client.send((0.1, 0.0, 0.0))
             assert link.read().position_m == (0.1, 0, 0)
 
-    def test_a_killed_device_leaves_its_place_and_no_force(self, child):
+    def test_killed_device_leaves_its_place_and_no_force(self, child):
         process = child("device")
         client = PointerClient()
         assert client.force() == (0, 0, 1)
@@ -658,7 +656,7 @@ class TestKilled:
 @pytest.mark.parametrize(
     ("channel", "words"), [("pointer", "`tangible pointer`"), ("b", "`tangible pointer --channel b`")]
 )
-def test_whether_somebody_moves_it(channel: str, words: str):
+def test_unattended_names_the_command_to_start(channel: str, words: str):
     device = Pointer(channel=channel)
     with device.open():
         assert words in (device.unattended() or "")
@@ -668,7 +666,7 @@ def test_whether_somebody_moves_it(channel: str, words: str):
 
 
 class TestCommand:
-    def test_typed_positions_are_felt(self, link: CompiledLink):
+    def test_command_with_typed_positions_moves_the_device(self, link: CompiledLink):
         """A spring of 1 N/mm under z = 0, in this process; the hand in another."""
         stop = Event()
 
@@ -694,13 +692,13 @@ class TestCommand:
         assert ["'10 -5' is not a position; type x y z in millimetres" in each for each in complaints] == [True, False]
         assert ran.returncode == 0, complaints
 
-    def test_a_path_is_followed_for_its_time(self, link: CompiledLink):
+    def test_command_with_path_follows_it_for_its_time(self, link: CompiledLink):
         heading, *lines = follow("circle", "pointer", 0.5, 0.002, 0.08, 0.0, False, pytest.fail)
         assert heading.split() == ["x", "mm", "y", "mm", "z", "mm", "fx", "N", "fy", "N", "fz", "N"]
         assert 2 <= len(lines) <= 5
         assert {line.split()[2] for line in lines} == {"2.000"}
 
-    def test_without_a_device_it_says_what_to_do(self):
+    def test_command_without_device_names_what_to_start(self):
         ran = subprocess.run([TANGIBLE, "pointer"], input="", capture_output=True, text=True)
         assert ran.returncode == 2
         assert "start `tangible feel`" in ran.stderr
@@ -708,11 +706,11 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("path", "seconds", "speed"), [("cricle", 1, 1), ("circle", 0, 1), ("circle", 1, float("nan"))]
     )
-    def test_options_that_make_no_sense(self, path: str, seconds: float, speed: float):
+    def test_command_with_invalid_options_is_refused(self, path: str, seconds: float, speed: float):
         with pytest.raises(ConfigError):
             next(follow(path, "pointer", seconds, 0.0, speed, 0.0, False, pytest.fail))
 
     @pytest.mark.parametrize("line", ["1 2", "1 2 3 4 5", "a b c", "1 2 3 inf", "nan 2 3", "1 2 3 -1", "1 2 3 0.5"])
-    def test_lines_that_are_no_position(self, line: str):
+    def test_command_line_without_position_is_refused(self, line: str):
         with pytest.raises(DeviceError, match="type x y z in millimetres"):
             parse(line)

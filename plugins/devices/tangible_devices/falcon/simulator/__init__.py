@@ -1,1 +1,1 @@
-"""A Falcon that is not there: its USB chip, its boot loader and firmware, its arms, and the hand that holds it."""
+"""A simulated Falcon: its USB chip, its boot loader and firmware, its arms, and the hand that holds it."""

@@ -10,7 +10,7 @@ from typing import final
 from usb.backend import IBackend
 from usb.core import USBError, USBTimeoutError
 
-from ..port import IN, OUT, PRODUCT, VENDOR
+from ..usb.port import IN, OUT, PRODUCT, VENDOR
 from .chip import PACKET_BYTES, Chip, StallError
 from .faults import ERRORS, Fault, Step
 
@@ -41,24 +41,24 @@ ENDPOINT = {
 
 @final
 class Unit:
-    """A Falcon on the bus: its chip, and what the system knows of it."""
+    """A Falcon on the bus: its chip and its state in the system."""
 
     def __init__(self, chip: Chip, serial: str = "SIM0001", kernel_driver: bool = True) -> None:
         self.chip = chip
         self.serial = serial
         self.kernel_driver = kernel_driver
-        """Whether the system's serial driver has it."""
+        """True while the system's serial driver has it."""
         self.plugged = True
         self.configuration = 0
         self.claimed_by: Handle | None = None
 
     def unplug(self) -> None:
-        """Nothing is left of it: its firmware neither."""
+        """Remove the unit from the bus; its firmware is lost."""
         self.plugged = False
         self.chip.processor.unpower()
 
     def plug_in(self) -> None:
-        """As new; the system's serial driver takes it."""
+        """Plug the unit in; the system's serial driver takes it."""
         self.plugged = self.kernel_driver = True
         self.configuration, self.claimed_by = 0, None
 
@@ -73,7 +73,7 @@ class Handle:
 
 @final
 class Bus(IBackend):
-    """What libusb is for real devices. `faults` may be changed at any time."""
+    """A backend of pyusb, in place of libusb; `faults` may be changed at any time."""
 
     def __init__(self, units: Iterable[Unit], faults: Iterable[Fault] = ()) -> None:
         self.units = list(units)
@@ -85,66 +85,66 @@ class Bus(IBackend):
         self.faults.append(fault.model_copy(update={"after": fault.after + self._steps[fault.at]}))
 
     def enumerate_devices(self) -> list[Unit]:
-        """The units that are plugged in."""
+        """Return the units that are plugged in."""
         self._step("look", None)
         return [unit for unit in self.units if unit.plugged]
 
     def get_device_descriptor(self, dev: Unit) -> SimpleNamespace:
-        """Of a Falcon."""
+        """Return the descriptor of a Falcon."""
         return SimpleNamespace(**DEVICE, address=5 + self.units.index(dev))
 
     def get_configuration_descriptor(self, dev: Unit, config: int) -> SimpleNamespace:
-        """The only one."""
+        """Return the only configuration's descriptor."""
         if config:
             raise IndexError(f"there is no configuration {config}")
         return SimpleNamespace(**CONFIGURATION)
 
     def get_interface_descriptor(self, dev: Unit, intf: int, alt: int, config: int) -> SimpleNamespace:
-        """The only one."""
+        """Return the only interface's descriptor."""
         if intf or alt:
             raise IndexError(f"there is no interface {intf}.{alt}")
         return SimpleNamespace(**PORT)
 
     def get_endpoint_descriptor(self, dev: Unit, ep: int, intf: int, alt: int, config: int) -> SimpleNamespace:
-        """Bulk, one in and one out."""
+        """Return the descriptor of one of the two bulk endpoints, in and out."""
         return SimpleNamespace(**ENDPOINT, bEndpointAddress=(IN, OUT)[ep])
 
     def open_device(self, dev: Unit) -> Handle:
-        """A handle of its own for everyone who opens it."""
+        """Return a new handle."""
         self._step("open", dev)
         return Handle(dev)
 
     def close_device(self, dev_handle: Handle) -> None:
-        """Gives its interface back."""
+        """Release the interface."""
         self.release_interface(dev_handle, 0)
 
     def get_configuration(self, dev_handle: Handle) -> int:
-        """0 until it was set."""
+        """Return the configuration; 0 before it is set."""
         self._step("configure", dev_handle.unit)
         return dev_handle.unit.configuration
 
     def set_configuration(self, dev_handle: Handle, config_value: int) -> None:
-        """Set it."""
+        """Set the configuration."""
         self._step("configure", dev_handle.unit)
         dev_handle.unit.configuration = config_value
 
     def is_kernel_driver_active(self, dev_handle: Handle, intf: int) -> bool:
-        """Whether the system's driver has it."""
+        """Tell whether the system's driver has it."""
         self._step("driver", dev_handle.unit)
         return dev_handle.unit.kernel_driver
 
     def detach_kernel_driver(self, dev_handle: Handle, intf: int) -> None:
-        """Take it from the system's driver."""
+        """Take the unit from the system's driver."""
         self._step("driver", dev_handle.unit)
         dev_handle.unit.kernel_driver = False
 
     def attach_kernel_driver(self, dev_handle: Handle, intf: int) -> None:
-        """Give it back to the system's driver."""
+        """Give the unit back to the system's driver."""
         self._step("driver", dev_handle.unit)
         dev_handle.unit.kernel_driver = True
 
     def claim_interface(self, dev_handle: Handle, intf: int) -> None:
-        """Refused while another handle or the system's driver has it."""
+        """Claim the interface. Raises: USBError while another handle or the system's driver has it."""
         unit = dev_handle.unit
         self._step("claim", unit)
         if unit.kernel_driver or unit.claimed_by not in (None, dev_handle):
@@ -152,17 +152,17 @@ class Bus(IBackend):
         unit.claimed_by = dev_handle
 
     def release_interface(self, dev_handle: Handle, intf: int) -> None:
-        """Let others have it."""
+        """Release the interface for other handles."""
         if dev_handle.unit.claimed_by is dev_handle:
             dev_handle.unit.claimed_by = None
 
     def ctrl_transfer(
         self, dev_handle: Handle, bmRequestType: int, bRequest: int, wValue: int, wIndex: int, data: array, timeout: int
     ) -> int:
-        """Vendor requests go to the chip; strings are told; all else is refused."""
+        """Pass vendor requests to the chip, and return strings. Raises: USBError for all other requests."""
         self._step("control", dev_handle.unit)
         if (bmRequestType, bRequest, wValue >> 8) == (0x80, 0x06, 0x03):
-            return _tell(dev_handle.unit, wValue & 0xFF, data)
+            return _write_string(dev_handle.unit, wValue & 0xFF, data)
         if bmRequestType != 0x40 or wIndex or data:
             raise failure("stall")
         try:
@@ -172,14 +172,14 @@ class Bus(IBackend):
         return 0
 
     def bulk_write(self, dev_handle: Handle, ep: int, intf: int, data: array, timeout: int) -> int:
-        """All of it."""
+        """Write all bytes to the chip."""
         self._step("write", dev_handle.unit)
         self._check(dev_handle, ep == OUT)
         dev_handle.unit.chip.write(data.tobytes())
         return len(data)
 
     def bulk_read(self, dev_handle: Handle, ep: int, intf: int, buff: array, timeout: int) -> int:
-        """What the chip has; at least its status. A buffer of less than whole packets is an overflow."""
+        """Read the chip's data, at least its status. Raises: USBError if the buffer is not whole packets long."""
         self._step("read", dev_handle.unit)
         self._check(dev_handle, ep == IN)
         if len(buff) % PACKET_BYTES:
@@ -189,7 +189,7 @@ class Bus(IBackend):
         return len(data)
 
     def clear_halt(self, dev_handle: Handle, ep: int) -> None:
-        """Nothing was halted."""
+        """Do nothing, as no endpoint is ever halted."""
 
     def _check(self, handle: Handle, right_endpoint: bool) -> None:
         if not right_endpoint or handle.unit.claimed_by is not handle:
@@ -208,14 +208,14 @@ class Bus(IBackend):
 
 
 def failure(error: str) -> USBError:
-    """What libusb raises."""
+    """Return the error that libusb would raise."""
     kind = USBTimeoutError if error == "timeout" else USBError
     return kind(error, -1, ERRORS[error])
 
 
-def _tell(unit: Unit, index: int, data: array) -> int:
+def _write_string(unit: Unit, index: int, data: array) -> int:
     text = {2: PRODUCT_NAME, 3: unit.serial}.get(index, "")
     body = struct.pack("<H", 0x0409) if index == 0 else text.encode("utf-16-le")
-    said = bytes([2 + len(body), 3]) + body
-    data[: len(said)] = array("B", said)
-    return len(said)
+    descriptor = bytes([2 + len(body), 3]) + body
+    data[: len(descriptor)] = array("B", descriptor)
+    return len(descriptor)

@@ -15,15 +15,15 @@ Spoil = Callable[[int, bytes], bytes]
 
 
 class StallError(Exception):
-    """A request that the chip does not know."""
+    """A request that the chip does not support."""
 
 
 @final
 class Chip:
-    """Between USB and the processor.
+    """The chip between USB and the processor.
 
-    To break it: `spoil(bytes_before, data)` changes what comes back, `delay(replies_before)` holds a reply back for so
-    many seconds, and payload_bytes makes all packets short.
+    Faults: `spoil(bytes_before, data)` changes a reply, `delay(replies_before)` delays a reply by its result in
+    seconds, and payload_bytes makes all packets short.
     """
 
     def __init__(
@@ -41,10 +41,10 @@ class Chip:
         self._divisor, self._latency_s, self._dtr, self._event = 0, 0.016, False, -1
         self._line_free_s = 0.0
         self._waiting: list[tuple[float, bytes]] = []
-        self._said = self._replies = 0
+        self._reply_bytes = self._replies = 0
 
     def control(self, request: int, value: int) -> None:
-        """A vendor request. Raises: StallError if the chip has no such request."""
+        """Execute a vendor request. Raises: StallError if the chip does not support it."""
         if request == 0:
             if value != 2:  # purge what was received; 0 resets all
                 self._waiting.clear()
@@ -61,23 +61,23 @@ class Chip:
             raise StallError
 
     def write(self, data: bytes) -> None:
-        """Bytes for the processor; its reply is ready after both ways on the wire, and the latency timer."""
+        """Send bytes to the processor; its reply is ready after both transfers on the wire, and the latency timer."""
         now_s = self._clock()
         rate = 3e6 / (self._divisor & 0x3FFF or 1)
         heard_s = max(now_s, self._line_free_s) + 10 * len(data) / rate
         self._line_free_s = heard_s
-        reply = self._spoil(self._said, self.processor.hear(data, self._divisor, self._dtr, now_s))
+        reply = self._spoil(self._reply_bytes, self.processor.hear(data, self._divisor, self._dtr, now_s))
         if not reply:
             return
-        self._said += len(reply)
-        said_s = heard_s + 10 * len(reply) / rate
+        self._reply_bytes += len(reply)
+        arrived_s = heard_s + 10 * len(reply) / rate
         at_once = len(reply) % PAYLOAD_BYTES == 0 or reply[-1] == self._event
-        ready_s = said_s + (0.0 if at_once else self._latency_s) + self._delay(self._replies)
+        ready_s = arrived_s + (0.0 if at_once else self._latency_s) + self._delay(self._replies)
         self._replies += 1
         self._waiting.append((FRAME_S * math.ceil(ready_s / FRAME_S - 1e-9), reply))
 
     def read(self, most: int) -> bytes:
-        """One IN transfer: what is ready, or gets so until the timer, in packets of 64 bytes; else the status alone."""
+        """Make one IN transfer: the data ready by the timer's end in packets of 64 bytes, or the status alone."""
         now_s = self._clock()
         timer_s = self._latency_s * (math.floor(now_s / self._latency_s + 1e-9) + 1)
         first_s = min((ready_s for ready_s, _ in self._waiting), default=timer_s)

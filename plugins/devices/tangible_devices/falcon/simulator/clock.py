@@ -1,4 +1,4 @@
-"""The time of a simulation: as fast as it can be computed, or that of the wall."""
+"""Clocks of a simulation: as fast as it can be computed, or real time."""
 
 import time
 from abc import ABC, abstractmethod
@@ -6,42 +6,42 @@ from typing import final
 
 
 class Clock(ABC):
-    """Seconds since the start, never going back."""
+    """A clock of seconds since the start that never goes back."""
 
     @abstractmethod
     def __call__(self) -> float:
-        """Now."""
+        """Return the time."""
 
     @abstractmethod
     def wait_until(self, moment_s: float) -> None:
-        """Return at this moment, at once if it is over."""
+        """Return at this moment, at once if it has passed."""
 
 
 @final
 class SimulatedClock(Clock):
-    """Time goes on only by waiting."""
+    """A clock that advances only when it is waited for."""
 
     def __init__(self) -> None:
         self._now_s = 0.0
 
     def __call__(self) -> float:
-        """The last moment that was waited for."""
+        """Return the last moment that was waited for."""
         return self._now_s
 
     def wait_until(self, moment_s: float) -> None:
-        """Make it this moment."""
+        """Set the time to this moment."""
         self._now_s = max(self._now_s, moment_s)
 
 
 @final
 class RealClock(Clock):
-    """Time goes on by itself."""
+    """A clock of real time."""
 
     def __init__(self) -> None:
         self._start_s = time.perf_counter()
 
     def __call__(self) -> float:
-        """Seconds since this clock was made."""
+        """Return the seconds since this clock was created."""
         return time.perf_counter() - self._start_s
 
     def wait_until(self, moment_s: float) -> None:

@@ -1,4 +1,4 @@
-"""What can go wrong with a USB device, on demand."""
+"""Faults of a USB device, on demand."""
 
 from typing import Annotated, Literal
 
@@ -13,11 +13,11 @@ ERRORS = {
     "stall": 32,
     "overflow": 75,
 }
-"""The system's number of each error."""
+"""System error numbers by name."""
 
 
 class Fault(BaseModel):
-    """One step of USB that fails. What is unplugged stays so until the bus is told that it is plugged in again."""
+    """A step of USB that fails; an unplugged device stays unplugged until `Unit.plug_in`."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 

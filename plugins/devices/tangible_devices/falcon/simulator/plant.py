@@ -11,18 +11,18 @@ from numba import float64, int64, njit, void
 
 from tangible_core.compiled.compiling import KERNEL
 
-from ..kinematics import CENTRE_M, force, inverse, jacobian
+from ..kernels.kinematics import CENTRE_M, force, inverse, jacobian
 
 REACH_M = 0.055
-"""The mechanics end on a ball of this radius about the centre."""
+"""Radius of the ball about the centre to which the mechanics are limited."""
 
 
 @njit(void(float64[::1], float64[::1], float64[::1], float64[::1], int64, float64), **KERNEL)
 def move(tip, torque, target, feel, steps, period_s):
-    """Move tip (position and velocity, 6 numbers) on by a period, in so many steps.
+    """Move tip (position and velocity, 6 numbers) on by a period, in `steps` steps.
 
-    torque: N m of the three motors; target: where the hand wants to be; feel: mass kg, viscous friction N s/m,
-    Coulomb friction N, the hand's stiffness N/m and damping N s/m.
+    torque: N m of the three motors; target: the hand's target; feel: mass kg, viscous friction N s/m, Coulomb friction
+    N, the hand's stiffness N/m and damping N s/m.
     Semi-implicit: velocity first, friction last and never beyond rest, so that it cannot drive the tip.
     """
     mass_kg, viscous, coulomb, stiffness, damping = feel[0], feel[1], feel[2], feel[3], feel[4]

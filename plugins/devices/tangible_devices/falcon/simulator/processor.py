@@ -3,18 +3,18 @@
 import struct
 from typing import Literal, final
 
-from ..image import RESERVED_WORDS
+from ..usb.image import RESERVED_WORDS
 from .body import Body
 
 Mode = Literal["idle", "monitor", "autobaud", "load", "run"]
 HELLO, READY = b"\x0aC\x0d", b"\x0aD,\x0d"
 SLOW, LOADING, FAST = 0x4138, 0x0015, 0x0002
-"""Divisors of the chip's 3 MHz at which the monitor, the loader and the firmware understand what they hear."""
+"""Divisors of the chip's 3 MHz for the baud rates of the monitor, the loader and the firmware."""
 
 
 @final
 class Processor:
-    """States as in TI's boot ROM: after a reset it greets, locks the rate, echoes an image, and runs it."""
+    """A processor with the states of TI's boot ROM: after a reset it greets, locks the rate, loads and runs code."""
 
     def __init__(self, body: Body, swallowed: int = 0, leading_zero: bool = False) -> None:
         self.body = body
@@ -24,17 +24,17 @@ class Processor:
         self._heard = b""
 
     def reset(self) -> None:
-        """DTR went low and high: whatever ran is gone, its torques too."""
+        """Reset, after DTR went low and high: firmware and torques are lost."""
         self.mode, self._heard = "monitor", b""
         self.body.let_go()
 
     def unpower(self) -> None:
-        """Unplugged: as before its first reset."""
+        """Lose power: return to the state before the first reset."""
         self.reset()
         self.mode = "idle"
 
     def hear(self, data: bytes, divisor: int, dtr: bool, now_s: float) -> bytes:
-        """What is said to these bytes at this rate."""
+        """Return the reply to these bytes at this rate."""
         self._heard += data
         if self.mode == "monitor" and divisor == SLOW and dtr:
             return self._greet()
@@ -67,35 +67,35 @@ class Processor:
         return b"A"
 
     def _answer(self, now_s: float) -> bytes:
-        said = b""
+        reply = b""
         while len(self._heard) >= 16:
             if self._heard[0] == 0x3C and self._heard[15] == 0x3E:
-                said += self._obey(self._heard[:16], now_s)
+                reply += self._obey(self._heard[:16], now_s)
                 self._heard = self._heard[16:]
             else:
                 self._heard = self._heard[1:]
-        return said
+        return reply
 
     def _obey(self, packet: bytes, now_s: float) -> bytes:
-        torques = tuple(signed(packet[at : at + 4]) for at in (1, 5, 9))
+        torques = tuple(signed_number(packet[at : at + 4]) for at in (1, 5, 9))
         self.body.obey(torques, packet[13] - 0x41 & 15, now_s)
-        encoders, info = self.body.seen()
+        encoders, info = self.body.report()
         return b"<" + b"".join(map(digits, encoders)) + bytes([0x41 + info, 0x41]) + b">"
 
 
-def signed(four: bytes) -> int:
-    """A number of four digits, the least significant first."""
+def signed_number(four: bytes) -> int:
+    """Return the number of four digits, the least significant first."""
     value = sum((each - 0x41 & 15) << 4 * place for place, each in enumerate(four))
     return value - 0x10000 if value & 0x8000 else value
 
 
 def digits(value: int) -> bytes:
-    """The four digits of a number."""
+    """Return the four digits of a number."""
     return bytes(0x41 + (value >> 4 * place & 15) for place in range(4))
 
 
 def stream_ends(stream: bytes) -> bool:
-    """Whether a boot stream is complete: its last block has length 0."""
+    """Tell whether a boot stream is complete: its last block has length 0."""
     at = 2 * (1 + RESERVED_WORDS + 2)
     while at + 2 <= len(stream):
         (length,) = struct.unpack_from("<H", stream, at)

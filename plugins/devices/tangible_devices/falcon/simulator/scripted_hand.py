@@ -1,4 +1,4 @@
-"""The hand that holds a simulated Falcon: it homes the device when asked to, then follows a path."""
+"""The hand that holds a simulated Falcon: it homes the device, then follows a path."""
 
 from typing import final
 
@@ -9,16 +9,16 @@ from ...paths import Stroke
 from .body import PERIOD_S
 
 OUT_Z_M, IN_Z_M, AT_Z_M = 0.174, 0.077, 0.002
-"""How far the grip is pulled out and pushed in to home it, and how near is there; along the device's axis."""
+"""Positions along the device's axis to which the grip is pulled out and pushed in for homing, and their tolerance."""
 SPEED_M_PER_S = 0.3
-"""While it homes, and on the way to the path."""
+"""Speed of the hand during homing and on the way to the path."""
 PAUSE_TICKS = 1000
-"""It waits over the start of the path, so that a force that fades in meets it in free air."""
+"""Ticks of waiting above the start of the path, so that the force fades in while the tip is in free air."""
 
 
 @final
 class ScriptedHand:
-    """Walks the stroke once the device is homed and it is over its start, and leans down with limited strength."""
+    """A hand that goes to the start of the stroke once the device is homed, follows it, and presses down weakly."""
 
     def __init__(
         self,
@@ -38,7 +38,7 @@ class ScriptedHand:
         self._tick: int | None = None
 
     def wants(self, tip_m: np.ndarray, homing: bool, homed: bool) -> Float64[np.ndarray, "3"]:
-        """Where to, one period on; the device's frame."""
+        """Return the target one period later, in the device's frame."""
         if homing and not homed:
             self._was_out = self._was_out or tip_m[2] > OUT_Z_M - AT_Z_M
             self._tick = None

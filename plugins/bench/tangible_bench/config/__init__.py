@@ -1,0 +1,1 @@
+"""Comparison files: which methods are compared, on which scenes, and how often."""

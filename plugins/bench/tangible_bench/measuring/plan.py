@@ -1,0 +1,98 @@
+"""The measurements of a comparison, in order: rounds over all scenes and perturbations, methods side by side."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from tangible_core.data import digest_of
+from tangible_core.errors import ConfigError, TangibleError
+from tangible_core.pipeline.config.methods import NamedMethod
+from tangible_core.plugins.interfaces import Method
+from tangible_core.provenance.closure import closure
+from tangible_core.provenance.versions import versions
+from tangible_core.runtime.child_process import Place, place
+
+from ..config.reading import Comparison, Damage, Entry
+from .machine import machine
+from .rows import Row
+from .worker import Job
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A process to start, and the row that it fills."""
+
+    job: Job
+    row: Row
+    place: Place
+    """The place of the method's class: the process must import it from the same place."""
+
+
+def measurements(comparison: Comparison) -> list[Measurement]:
+    """Return every measurement of a comparison, in order.
+
+    A round runs every method on a scene before the next scene, so that a drift of the machine affects all methods
+    alike and times can be compared within the round; each round starts with another method.
+    Raises: ConfigError naming every scene that cannot be read, before hours are spent on the others.
+    """
+    scenes = _known_scenes(comparison)
+    planned: list[Measurement] = []
+    for repeat in range(comparison.protocol.repeats):
+        turn = repeat % len(comparison.methods)
+        methods = (*comparison.methods[turn:], *comparison.methods[:turn])
+        for scene in comparison.scenes:
+            for damage in comparison.damages:
+                planned += _side_by_side(comparison, methods, scene, scenes[scene], damage, repeat)
+    return planned
+
+
+@dataclass(frozen=True)
+class KnownScene:
+    """The digest of a scene, and facts that methods may be given."""
+
+    digest: str
+    facts: Mapping[str, Any]
+    """Option of a method -> value for this scene."""
+
+
+def _known_scenes(comparison: Comparison) -> dict[str, KnownScene]:
+    known: dict[str, KnownScene] = {}
+    complaints: list[str] = []
+    for name, spec in comparison.scenes.items():
+        try:
+            scene = spec.open()
+        except TangibleError as error:
+            complaints.append(f"{comparison.path}: scene {name}: {error}")
+        else:
+            facts = {key: fact_of(scene) for key, fact_of in comparison.task.given.items()}
+            known[name] = KnownScene(scene.digest(), facts)
+    if complaints:
+        raise ConfigError(*complaints)
+    return known
+
+
+def _side_by_side(
+    comparison: Comparison, methods: Sequence[Entry], scene: str, known: KnownScene, damage: Damage, repeat: int
+) -> Iterator[Measurement]:
+    task, protocol = comparison.task, comparison.protocol
+    for entry in methods:
+        options = entry.method_for(known.facts).model_dump(mode="json")
+        finishes = tuple(name for name, labels in comparison.finishes.items() if entry.label in labels)
+        job = Job(
+            task.kind, entry.chosen.name, options, comparison.scenes[scene].model_dump(mode="json"),
+            damage.kind, damage.value, finishes, protocol.warmups, protocol.calls,
+        )  # fmt: skip
+        installed = versions(entry.chosen.origin.partition(" ")[0])
+        code = f"v{task.version} {_code(entry.chosen)} {installed} {machine()}"
+        plain = repr((asdict(replace(job, scene={})), entry.label, known.digest, damage.name, repeat, code))
+        row = Row(
+            digest_of(plain), task.kind, entry.label, job.use, options, entry.chosen.origin, scene, known.digest,
+            damage.name, finishes, repeat, installed, machine(), comparison.baseline,
+        )  # fmt: skip
+        cls = type(entry.chosen.method)
+        yield Measurement(job, row, place(cls.__module__, cls.__qualname__))
+
+
+def _code(chosen: NamedMethod[Method]) -> str:
+    cls = type(chosen.method)
+    return f"{cls.__module__}:{cls.__qualname__} v{cls.version} {closure(cls.__module__).digest}"

@@ -1,0 +1,122 @@
+"""Timed measurements: one new process after the other; each row is saved as soon as it is known."""
+
+import json
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from signal import Signals
+from threading import Event
+from typing import IO, Any
+
+from tangible_core.runtime.child_process import command
+from tangible_core.runtime.stopping import check_stopped, stoppable
+
+from .plan import Measurement
+from .rows import Row, append, mend, read_rows
+
+Report = Callable[[int, Row], None]
+"""A callback with the number of a measurement, from 0, and its row: before it without a result, after it with one."""
+
+POLL_S = 0.1
+"""The interval at which a wait for a measurement checks for a stop, seconds."""
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """The known rows of a comparison, and the measurements to do."""
+
+    kept: dict[str, Row]
+    """The rows that need not be measured again, by key."""
+    waiting: tuple[Measurement, ...]
+    """The measurements to do."""
+
+
+def look(wanted: Sequence[Measurement], path: Path, retry: bool = False) -> Outlook:
+    """Return which of the measurements are in the file, and which are to do.
+
+    retry: repeat those that failed. Raises: ResultsError for a file that is damaged, or holds no results.
+    """
+    keys = {each.row.key for each in wanted}
+    in_file = read_rows(path) if path.exists() else {}
+    kept = {key: row for key, row in in_file.items() if key in keys and not (retry and row.error)}
+    return Outlook(kept, tuple(each for each in wanted if each.row.key not in kept))
+
+
+def run(
+    outlook: Outlook, path: Path, timeout_s: float, started: Report, finished: Report, stop: Event | None = None
+) -> dict[str, Row]:
+    """Do the waiting measurements, add their rows to the file, and return all rows by key.
+
+    A method that failed on a scene is not tried there again in later rounds. An interruption loses at most the
+    measurement under way.
+    Raises: OutputError if the file cannot be written, Stopped after `stop` was set.
+    """
+    with stoppable(stop):
+        mend(path)
+        rows = dict(outlook.kept)
+        failed = {row.cell for row in rows.values() if row.error}
+        for number, each in enumerate(outlook.waiting):
+            if each.row.cell in failed:
+                continue
+            check_stopped()
+            started(number, each.row)
+            row = replace(each.row, **_outcome(each, timeout_s))
+            append(path, row)
+            rows[row.key] = row
+            if row.error:
+                failed.add(row.cell)
+            finished(number, row)
+        return rows
+
+
+def _outcome(wanted: Measurement, timeout_s: float) -> dict[str, Any]:
+    """Run a new worker and return the fields that it measured, or the error with which it ended."""
+    with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
+        try:
+            code = _run_worker(wanted, timeout_s, output, errors)
+        except subprocess.TimeoutExpired:
+            return {"error": f"took longer than {timeout_s:g} s and was ended; raise timeout_s or drop the method"}
+        with suppress(ValueError):
+            return json.loads(_text(output))
+        return {"error": _crash_message(code, _text(errors))}
+
+
+def _run_worker(wanted: Measurement, timeout_s: float, output: IO[bytes], errors: IO[bytes]) -> int:
+    """Give a job to a new worker, and return its exit code; on an exception, the worker is killed too."""
+    words = command(f"{__package__}.worker")
+    with subprocess.Popen(words, bufsize=0, stdin=subprocess.PIPE, stdout=output, stderr=errors) as process:
+        try:
+            assert process.stdin is not None
+            with suppress(BrokenPipeError):  # the worker died before it could read: its exit code is reported
+                process.stdin.write((json.dumps([wanted.place, asdict(wanted.job)]) + "\n").encode())
+            return _wait(process, timeout_s)  # its input stays open: the worker ends when that is closed
+        finally:
+            process.kill()
+
+
+def _wait(process: subprocess.Popen[bytes], timeout_s: float) -> int:
+    """Return the exit code of a process. Raises: TimeoutExpired, or Stopped within POLL_S of the stop."""
+    end_s = time.monotonic() + timeout_s
+    while True:
+        try:
+            return process.wait(min(POLL_S, max(0.0, end_s - time.monotonic())))
+        except subprocess.TimeoutExpired:
+            check_stopped()
+            if time.monotonic() >= end_s:
+                raise
+
+
+def _crash_message(code: int, errors: str) -> str:
+    """Return how a process ended that could not report why, with its last line."""
+    how = f"killed by {Signals(-code).name}" if code < 0 else f"ended with exit code {code}"
+    last = errors.strip().rpartition("\n")[2]
+    return f"{how}: {last}" if last else how
+
+
+def _text(file: IO[bytes]) -> str:
+    file.seek(0)
+    return file.read().decode(errors="replace")

@@ -1,0 +1,1 @@
+"""Results: rows summed up, as tables and plots, and compared with earlier rows."""

@@ -1,0 +1,136 @@
+"""The plot: error over run time, a panel for each measure, with the Pareto front; and a curve, if the task has one."""
+# matplotlib keywords have no types.
+# pyright: reportUnknownMemberType=false
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tangible_core.files.writing import atomic_write
+
+from .labels import place_labels
+from .table import Results
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..tasks.task import Curve
+    from .summary import Line
+
+MARKERS = "osD^vPX*"
+"""Marker shapes. Eight shapes times eight colours tell 64 methods apart, even in grey print."""
+EDGE: dict[str, Any] = {"markeredgecolor": "#222222", "markeredgewidth": 0.5}
+"""The outline of markers, without which pale colours are lost on white."""
+PANEL_IN = (6.4, 4.8)
+"""Width and height of a panel, inches."""
+DPI = 150
+
+
+def draw_plot(path: Path, results: Results) -> bool:
+    """Draw the means over all scenes as a PNG, whole or not at all; return False if no method has a mean.
+
+    A measure or curve that no method has gets no panel. Raises: OutputError if the file cannot be written.
+    """
+    from matplotlib import style
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from tangible_report.style import STYLE
+
+    timed = [line for line in results.means() if math.isfinite(line.seconds)]
+    measures = [measure for measure in results.task.plotted if results.on_front(timed, measure)]
+    if not measures:
+        return False
+    curve = results.task.curve
+    curved = [line for line in timed if curve and all(map(math.isfinite, _values(line, curve.points)))]
+    count = len(measures) + bool(curved)
+    with style.context(STYLE):
+        figure = Figure(figsize=(PANEL_IN[0] * count, PANEL_IN[1]), dpi=DPI, layout="constrained")
+        canvas = FigureCanvasAgg(figure)
+        panels: list[Any] = list(figure.subplots(1, count, squeeze=False)[0])
+        for axes, measure in zip(panels, measures, strict=False):
+            _draw_panel(axes, results, timed, measure)
+        if curve and curved:
+            _draw_curve(panels[-1], timed, curved, curve)
+        figure.suptitle(_title(results), fontsize=10)
+        canvas.draw()  # labels need the final positions of the points
+        figure.set_layout_engine("none")
+        for axes, measure in zip(panels, measures, strict=False):
+            points = [(each.method, *_point(results, each, measure)) for each in timed]
+            place_labels(axes, points, _front(results, timed, measure))
+        with atomic_write(path) as file:
+            canvas.print_png(file)
+    return True
+
+
+def _draw_panel(axes: Axes, results: Results, timed: list[Line], measure: str) -> None:
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    from tangible_report.style import INK
+
+    for index, line in _by_name(timed):
+        x, y = _point(results, line, measure)
+        axes.plot(x, y, color=_colour(index), marker=_marker(index), markersize=7, zorder=3, **EDGE)
+    best = _front(results, timed, measure)
+    axes.step(*zip(*best, strict=True), where="post", color=INK, linewidth=1, linestyle=(0, (4, 2)), zorder=2)
+    axes.set_xscale("log")
+    axes.margins(0.14)
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set(xlabel=f"time, {results.task.clock.unit}", ylabel=results.heading(measure))
+    _draw_grid(axes)
+
+
+def _draw_curve(axes: Axes, timed: list[Line], curved: list[Line], curve: Curve) -> None:
+    """Draw each method's curve, and dotted its ideal one; with the colours and shapes of the other panels."""
+    for index, line in _by_name(timed):
+        if line in curved:
+            colour = _colour(index)
+            axes.plot(list(curve.ideal), _values(line, curve.ideal), color=colour, linewidth=1, linestyle=":")
+            at = list(curve.points), _values(line, curve.points)
+            axes.plot(*at, color=colour, marker=_marker(index), markersize=5, label=line.method, **EDGE)
+    axes.set(xlabel=curve.over, ylabel=curve.title)
+    axes.legend(title="dotted: the best there could be", title_fontsize=8)
+    _draw_grid(axes)
+
+
+def _draw_grid(axes: Axes) -> None:
+    axes.grid(color="#dddddd", linewidth=0.5)
+    axes.set_axisbelow(True)
+
+
+def _by_name(timed: list[Line]) -> Iterator[tuple[int, Line]]:
+    """Return numbered lines in the order of names, so that a method has the same colour and shape in every panel."""
+    return enumerate(sorted(timed, key=lambda line: line.method))
+
+
+def _values(line: Line, points: Mapping[int, str]) -> list[float]:
+    return [line.measures.get(name, math.nan) for name in points.values()]
+
+
+def _front(results: Results, timed: list[Line], measure: str) -> list[tuple[float, float]]:
+    return [_point(results, timed[index], measure) for index in results.on_front(timed, measure)]
+
+
+def _point(results: Results, line: Line, measure: str) -> tuple[float, float]:
+    return results.task.clock.per_second * line.seconds, line.measures.get(measure, math.nan)
+
+
+def _colour(index: int) -> str:
+    from tangible_report.style import OKABE_ITO
+
+    return OKABE_ITO[index % len(OKABE_ITO)]
+
+
+def _marker(index: int) -> str:
+    return MARKERS[index // 8 % 8]
+
+
+def _title(results: Results) -> str:
+    count = len(results.scenes)
+    scenes = results.scenes[0] if count == 1 else f"mean of {count} scenes"
+    return f"{results.task.kind}: {scenes}; dashed: Pareto front"

@@ -1,0 +1,151 @@
+"""Figures of rows: medians over repeats, means over scenes, ratios to a baseline within each round."""
+
+import math
+import statistics
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence, Set
+from dataclasses import dataclass, field
+
+from ..measuring.rows import Row
+
+NAN = float("nan")
+Key = tuple[str, str, str]
+"""Method, scene, perturbation."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """The results of a method on a scene with a perturbation; lists hold one value for each repeat."""
+
+    method: str
+    scene: str
+    perturb: str
+    scene_digest: str = ""
+    seconds: Sequence[float] = ()
+    first_seconds: Sequence[float] = ()
+    ratios: Sequence[float] = ()
+    """Times divided by the baseline's time in the same round; empty without a baseline."""
+    memory_bytes: Sequence[float] = ()
+    measures: Mapping[str, float] = field(default_factory=dict[str, float])
+    """Medians over the repeats. (Methods are deterministic, so each repeat has the same value.)"""
+    error: str | None = None
+
+    @property
+    def is_measured(self) -> bool:
+        """True if any repeat has a result; after `errors_only`, results have no times."""
+        return bool(self.seconds or self.measures)
+
+    @property
+    def key(self) -> Key:
+        """The method, scene and perturbation."""
+        return self.method, self.scene, self.perturb
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A method's figures over several scenes; NaN where the method lacks a result that another method has."""
+
+    method: str
+    perturb: str
+    seconds: float
+    """The mean of the scenes' medians."""
+    first_seconds: float
+    ratio: float
+    """The geometric mean of the scenes' median ratios, so that large scenes do not count for more."""
+    memory_bytes: float
+    """The largest memory of any scene."""
+    measures: Mapping[str, float]
+    """The means over the scenes, with equal weights."""
+    done: int
+    """The number of scenes with a result."""
+    scenes: int
+
+
+def cells(rows: Iterable[Row], baseline: str | None) -> dict[Key, Cell]:
+    """Group rows by method, scene and perturbation, in the order of their first appearance."""
+    grouped: dict[Key, list[Row]] = defaultdict(list)
+    for row in rows:
+        grouped[row.cell].append(row)
+    return {
+        key: _cell(of_cell, _times(grouped.get((baseline or "", *key[1:]), ()))) for key, of_cell in grouped.items()
+    }
+
+
+def lines(all_cells: Mapping[Key, Cell], perturb: str, scenes: Sequence[str]) -> list[Line]:
+    """Return a line for each method, over these scenes under one perturbation.
+
+    The mean of a measure leaves out scenes on which no method has that measure, such as scenes without truth.
+    """
+    methods = dict.fromkeys(cell.method for cell in all_cells.values())
+    known = {
+        (cell.scene, name)
+        for cell in all_cells.values()
+        for name, value in cell.measures.items()
+        if not math.isnan(value)
+    }
+    return [
+        _line(method, perturb, [all_cells.get((method, scene, perturb)) for scene in scenes], known)
+        for method in methods
+    ]
+
+
+def median(values: Iterable[float]) -> float:
+    """Return the median; NaN of an empty list."""
+    known = list(values)
+    return statistics.median(known) if known else NAN
+
+
+def spread(values: Sequence[float]) -> float:
+    """Return the standard deviation of a value, from the median of the absolute deviations; 0 of an empty list.
+
+    Source: Rousseeuw & Croux, Alternatives to the Median Absolute Deviation, JASA 88 (1993): 1.4826 for a Gaussian.
+    """
+    return 1.4826 * median(abs(value - median(values)) for value in values) if values else 0.0
+
+
+def _times(rows: Iterable[Row]) -> dict[int, float]:
+    return {row.repeat: row.seconds for row in rows if row.seconds is not None}
+
+
+def _cell(rows: Sequence[Row], baseline: Mapping[int, float]) -> Cell:
+    good = [row for row in rows if row.error is None]
+    names = dict.fromkeys(name for row in good for name in row.measures)
+    errors = [row.error for row in rows if row.error]
+    return Cell(
+        *rows[0].cell,
+        scene_digest=rows[-1].scene_digest,
+        seconds=[row.seconds for row in good if row.seconds is not None],
+        first_seconds=[row.first_seconds for row in good if row.first_seconds is not None],
+        ratios=[row.seconds / baseline[row.repeat] for row in good if row.seconds and baseline.get(row.repeat)],
+        memory_bytes=[row.peak_memory_bytes for row in good if row.peak_memory_bytes is not None],
+        measures={name: median(_present(row.measures.get(name) for row in good)) for name in names},
+        error=errors[-1] if errors else None,
+    )
+
+
+def _present(values: Iterable[float | None]) -> list[float]:
+    return [value for value in values if value is not None]
+
+
+def _line(method: str, perturb: str, of_scenes: Sequence[Cell | None], known: Set[tuple[str, str]]) -> Line:
+    done = [cell for cell in of_scenes if cell is not None and cell.error is None and cell.is_measured]
+    whole = done if len(done) == len(of_scenes) else []
+    names = dict.fromkeys(name for cell in whole for name in cell.measures)
+    return Line(
+        method,
+        perturb,
+        seconds=_mean(median(cell.seconds) for cell in whole),
+        first_seconds=_mean(median(cell.first_seconds) for cell in whole),
+        ratio=math.exp(_mean(math.log(median(cell.ratios)) for cell in whole)),
+        memory_bytes=max((median(cell.memory_bytes) for cell in whole), default=NAN),
+        measures={
+            name: _mean(cell.measures.get(name, NAN) for cell in whole if (cell.scene, name) in known) for name in names
+        },
+        done=len(done),
+        scenes=len(of_scenes),
+    )
+
+
+def _mean(values: Iterable[float]) -> float:
+    known = list(values)
+    return statistics.fmean(known) if known else NAN

@@ -1,0 +1,163 @@
+"""The `Task`: all that the bench must know about a kind of method in order to compare its methods.
+
+A task has scenes, perturbations, the call to time, and the measures of its result. The other rooms of the bench know
+no kind: they plan, run, save, sum up and draw what a task measures.
+"""
+
+from abc import abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Literal, TypeVar, cast
+
+from pydantic import ConfigDict
+
+from tangible_core.data import Kind, Record
+from tangible_core.data.quantities import Quantities
+from tangible_core.errors import PictureError, quoted
+
+Apply = Callable[[Any, float], Any]
+
+
+class SceneSpec(Quantities):
+    """The options of a scene in a comparison file: plain values, which open the same scene in every process."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    @classmethod
+    @abstractmethod
+    def parse_name(cls, name: str) -> Mapping[str, Any]:
+        """Return the options that a plain name stands for. Raises: ValueError for an unknown name."""
+
+    @abstractmethod
+    def expand(self) -> "Mapping[str, SceneSpec]":
+        """Return the scenes that this one stands for, by name: itself, or each sub-folder's. Raises: TangibleError."""
+
+    @abstractmethod
+    def open(self) -> Record:
+        """Read the inputs and the truth. Raises: TangibleError for a scene that cannot be read."""
+
+
+Spec = TypeVar("Spec", bound=SceneSpec)
+Item = TypeVar("Item")
+
+
+def expand_folder(spec: Spec, folder: Path, first: str, contents: str) -> dict[str, Spec]:
+    """Return a scene for each sub-folder that has the file `first`. contents: all files of a scene, in words.
+
+    Raises: PictureError if no sub-folder has the file.
+    """
+    folders = sorted(each.parent for each in folder.glob(f"*/{first}"))
+    if not folders:
+        raise PictureError(f"{folder}: neither it nor a folder in it holds {contents}")
+    return {each.name: spec.model_copy(update={"folder": each}) for each in folders}
+
+
+def with_folder_of_file(block: Any) -> Any:
+    """Return the options of a scene; patterns (`pairs`) without a folder get that of the comparison file."""
+    has_pairs = isinstance(block, dict) and "pairs" in block
+    return {"folder": Path(), **cast("dict[str, Any]", block)} if has_pairs else cast(Any, block)
+
+
+def pick_pairs(matched: dict[str, Item], only: tuple[str | int, ...], folder: Path) -> dict[str, Item]:
+    """Return the named pairs, in the order of their names in `only`; all pairs if that is empty.
+
+    Raises: PictureError for a name that no pair has.
+    """
+    if missing := next((name for name in only if str(name) not in matched), None):
+        raise PictureError(f"{folder}: no pair in it is named {quoted(missing)}; there are {', '.join(matched)}")
+    return {str(name): matched[str(name)] for name in only} if only else matched
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A figure that is measured of each result."""
+
+    title: str
+    """The column heading, with the unit."""
+    digits: int = 2
+    best: Literal["low", "high"] = "low"
+    tolerance: float = 0.005
+    """The largest difference between two files that counts as the same."""
+    at_size: bool = False
+    """True if the measure counts pixels: its heading then names their size, unless that is the full one."""
+    of_sets: bool = False
+    """True if only scenes of standard sets have the measure; tables of other scenes leave it out."""
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The unit of times."""
+
+    unit: str = "ms"
+    """The column heading."""
+    per_second: float = 1e3
+    pieces: Callable[[Any], int] = lambda scene: 1
+    """(scene) -> number of pieces of work in a call; times are those of one piece."""
+
+
+@dataclass(frozen=True)
+class Perturbation:
+    """A controlled damage to a scene, the same for every method."""
+
+    meaning: str
+    """The meaning of its values, with the unit and the range."""
+    allowed: Callable[[float], bool]
+    apply: Apply
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve that is drawn of each method, next to its ideal one."""
+
+    title: str
+    """The label of the vertical axis, with the unit."""
+    over: str
+    """The label of the horizontal axis, with the unit."""
+    points: Mapping[int, str]
+    """Horizontal position -> name of a value of `Task.measure`; no table shows these values."""
+    ideal: Mapping[int, str]
+    """Horizontal position -> name of the value for the ideal curve."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A kind of method that can be compared."""
+
+    kind: Kind
+    version: int
+    """The version of the measures; raise it when one changes its meaning: rows of other versions are measured again."""
+    scene: type[SceneSpec]
+    work: Callable[[Any, Any], Any]
+    """The timed call: (result of `prepare`, scene) -> result."""
+    measure: Callable[[Any, Any], Mapping[str, float]]
+    """(result, scene) -> a value for each of `measures` and each point of `curve`, NaN if unknown.
+    Raises: TangibleError."""
+    measures: Mapping[str, Measure]
+    columns: tuple[str, ...]
+    """The measures that the table shows; the first one ranks the methods."""
+    plotted: tuple[str, ...]
+    """The measures that are drawn over time, one panel each."""
+    curve: Curve | None = None
+    """A curve that is drawn in its own panel."""
+    prepare: Callable[[Any, Any], Any] = lambda method, scene: method
+    """(method, scene) -> argument of `work`; called before each call. Untimed, but it counts for memory and for the
+    very first call."""
+    clock: Clock = Clock()
+    perturbations: Mapping[str, Perturbation] = field(default_factory=dict[str, Perturbation])
+    given: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict[str, Callable[[Any], Any]])
+    """Options of methods whose values follow from a scene: name -> (scene) -> value."""
+    finishes: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict[str, Callable[[Any], Any]])
+    """Untimed steps that a comparison may apply to the results of chosen methods, by their keys in its file."""
+    size_of: Callable[[str], str] = lambda scene: ""
+    """(name of a scene) -> its size, such as Q; empty for the full size."""
+
+
+TASKS = {"depth": "depth", "texture": "texture", "render": "render"}
+"""Kinds that can be compared -> the module of this room that has their `TASK`."""
+
+
+def load_task(kind: str) -> Task:
+    """Return the task of a kind in TASKS, imported on first use."""
+    return import_module(f"{__package__}.{TASKS[kind]}").TASK

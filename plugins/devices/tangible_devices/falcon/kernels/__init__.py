@@ -1,0 +1,1 @@
+"""Compiled kernels of a Falcon: packets, kinematics, velocity, and a tick of the force loop."""

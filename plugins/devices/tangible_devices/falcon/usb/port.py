@@ -1,0 +1,197 @@
+"""The USB port of a Falcon: an FTDI serial chip that is found, claimed, set up and released. Imports pyusb."""
+
+import logging
+from array import array
+from collections.abc import Generator
+from contextlib import contextmanager, suppress
+from typing import Any, final
+
+import usb.core
+import usb.util
+
+from tangible_core.errors import DeviceAbsent, DeviceError
+
+from ..kernels.framing import STATUS, USB_PACKET
+from .errors import NO_LIBUSB, NO_PERMISSION, device_error, error_of_cause
+
+log = logging.getLogger(__name__)
+VENDOR, PRODUCT = 0x0403, 0xCB48
+INTERFACE, IN, OUT = 0, 0x81, 0x02
+READ_BYTES = 512
+"""Size of a read: whole USB packets, as more data than the size is an overflow."""
+TIMEOUT_MS = 250
+"""Time-out of a transfer: the chip sends at least its status every 16 ms. A force may stay for as long."""
+
+RESET, MODEM, FLOW, BAUD, LINE, LATENCY, EVENT = 0, 1, 2, 3, 4, 9, 6
+"""Requests to the chip."""
+PURGE_IN, PURGE_OUT = 1, 2
+BAUD_9600, BAUD_142857, BAUD_1500000 = 0x4138, 0x0015, 0x0002
+"""Divisors of 3 MHz."""
+
+
+@final
+class Port:
+    """An open chip; every error of USB becomes a DeviceError that names the place and the cure."""
+
+    def __init__(self, device: Any, place: str) -> None:
+        self.place = place
+        self._device = device
+        self._detached = False
+        self._chunk = array("B", bytes(READ_BYTES))
+
+    def claim(self) -> None:
+        """Claim the interface, if need be from the system's serial driver; configure the chip unless it is already."""
+        with usb_errors(self.place, "opening it"):
+            with suppress(NotImplementedError):  # only Linux has a driver to be detached
+                if self._device.is_kernel_driver_active(INTERFACE):
+                    self._device.detach_kernel_driver(INTERFACE)
+                    self._detached = True
+            if not _is_configured(self._device):
+                self._device.set_configuration(1)
+            usb.util.claim_interface(self._device, INTERFACE)
+
+    def request(self, request: int, value: int) -> None:
+        """Make a vendor request without data."""
+        with usb_errors(self.place, "setting it up"):
+            self._device.ctrl_transfer(0x40, request, value, 0, None, TIMEOUT_MS)
+
+    def serial(self) -> str:
+        """Return the serial number; empty if the chip has none."""
+        with usb_errors(self.place, "reading its serial number"):
+            try:
+                return usb.util.get_string(self._device, self._device.iSerialNumber) or ""
+            except ValueError:  # pyusb's error if there are no strings
+                return ""
+
+    def purge(self) -> None:
+        """Clear the chip's buffers for both directions."""
+        self.request(RESET, PURGE_IN)
+        self.request(RESET, PURGE_OUT)
+
+    def write(self, data: array) -> None:
+        """Send bytes."""
+        try:
+            sent = self._device.write(OUT, data, TIMEOUT_MS)
+        except (usb.core.USBError, NotImplementedError) as error:
+            raise device_error(error, self.place, "sending to it") from error
+        if sent != len(data):
+            raise DeviceError(f"{self.place}: it took {sent} of {len(data)} bytes; open it again")
+
+    def read(self, chunk: array) -> int:
+        """Make one IN transfer, unchanged: packets of 64 bytes, 2 of them status, the last one perhaps shorter."""
+        try:
+            return self._device.read(IN, chunk, TIMEOUT_MS)
+        except (usb.core.USBError, NotImplementedError) as error:
+            raise device_error(error, self.place, "reading from it") from error
+
+    def payload(self) -> bytes:
+        """Make one IN transfer and return it without the status bytes; empty if the chip has nothing."""
+        chunk = self._chunk[: self.read(self._chunk)].tobytes()
+        return b"".join(chunk[at + STATUS : at + USB_PACKET] for at in range(0, len(chunk), USB_PACKET))
+
+    def close(self) -> None:
+        """Release the interface, and give it back to the system's driver; failures are ignored."""
+        failures = (usb.core.USBError, NotImplementedError)
+        with suppress(*failures):
+            usb.util.release_interface(self._device, INTERFACE)
+        if self._detached:
+            with suppress(*failures):
+                self._device.attach_kernel_driver(INTERFACE)
+            self._detached = False
+        with suppress(*failures):
+            usb.util.dispose_resources(self._device)
+
+
+def open_port(serial: str | None, index: int, backend: Any) -> Port:
+    """Open the Falcon with this serial number, or with this index in the order of the bus.
+
+    Raises: DeviceError if it is not there, not permitted, in use, or fails.
+    """
+    device, place = choose_device(connected_devices(backend), serial, index)
+    port = Port(device, place)
+    try:
+        port.claim()
+    except BaseException:
+        port.close()
+        raise
+    return port
+
+
+def connected_devices(backend: Any) -> list[Any]:
+    """Return every Falcon on the bus, as pyusb's devices; none is opened.
+
+    Raises: DeviceAbsent if libusb is missing, DeviceError if it fails.
+    """
+    with usb_errors("Novint Falcon", "looking for it"):
+        try:
+            return list(usb.core.find(find_all=True, backend=backend, idVendor=VENDOR, idProduct=PRODUCT) or ())
+        except usb.core.NoBackendError as error:
+            raise DeviceAbsent(f"Novint Falcon: {NO_LIBUSB}") from error
+
+
+def serial_of(device: Any) -> str | None:
+    """Open the device and return its serial number; None if the chip has none.
+
+    Raises: DeviceError if reading it is not permitted or fails.
+    """
+    with usb_errors(place_of(device), "reading its serial number"):
+        try:
+            return device.serial_number
+        except ValueError as error:  # pyusb's error if no string at all can be read
+            raise error_of_cause(place_of(device), "reading its serial number", NO_PERMISSION) from error
+        finally:
+            usb.util.dispose_resources(device)
+
+
+def place_of(device: Any) -> str:
+    """Return a device's name and place, for messages."""
+    return f"Novint Falcon (USB bus {device.bus}, address {device.address})"
+
+
+def choose_device(devices: list[Any], serial: str | None, index: int) -> tuple[Any, str]:
+    """Choose a device, and return it with its name. Raises: DeviceAbsent if there is none, DeviceError if not this."""
+    if not devices:
+        raise DeviceAbsent(
+            "Novint Falcon: none is connected; plug in its USB cable and its power supply, "
+            "or use device falcon-simulated"
+        )
+    if serial is not None:
+        serials = [serial_of(device) for device in devices]
+        if serial not in serials:
+            raise DeviceError(
+                f"Novint Falcon: none has the serial number {serial}; connected are {', '.join(map(str, serials))}"
+            )
+        index = serials.index(serial)
+    if index >= len(devices):
+        raise DeviceError(f"Novint Falcon: index {index} does not exist, {len(devices)} are connected; count from 0")
+    return devices[index], place_of(devices[index])
+
+
+@contextmanager
+def usb_errors(place: str, doing: str) -> Generator[None]:
+    """Turn all errors of pyusb in this block into DeviceErrors."""
+    try:
+        yield
+    except (usb.core.USBError, NotImplementedError) as error:
+        raise device_error(error, place, doing) from error
+
+
+def _is_configured(device: Any) -> bool:
+    try:
+        return device.get_active_configuration().bConfigurationValue == 1
+    except usb.core.USBError as error:
+        if error.errno is not None:
+            raise
+        return False  # pyusb's error for a missing configuration has no number
+
+
+def run_time(port: Port, event_character: bool) -> None:
+    """Set up the chip for packets: 1.5 Mbaud, and a latency timer of 1 ms.
+
+    With the event character the chip sends at once after a `>`, which is not known to work on every chip.
+    """
+    port.request(LATENCY, 1)
+    if event_character:
+        port.request(EVENT, 0x0100 | ord(">"))
+    port.request(BAUD, BAUD_1500000)
+    port.purge()

@@ -1,0 +1,111 @@
+"""The USB side of a Falcon: how it is found, claimed and set up, and how the errors of each system are reported."""
+
+import errno
+from array import array
+
+import pytest
+from usb.core import USBError
+
+from falcon_bus import held_bus
+from tangible_core.errors import DeviceError
+from tangible_devices.falcon.simulator.bus import Bus
+from tangible_devices.falcon.simulator.faults import Fault
+from tangible_devices.falcon.usb.errors import UDEV_RULE, device_error
+from tangible_devices.falcon.usb.port import connected_devices, open_port, run_time, serial_of
+
+LATENCY_1, BAUD, PURGES = (9, 1), (3, 0x0002), [(0, 1), (0, 2)]
+
+
+def requests(bus: Bus, monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
+    """The requests to the chip from now on."""
+    asked: list[tuple[int, int]] = []
+    chip = bus.units[0].chip
+    control = chip.control
+    monkeypatch.setattr(chip, "control", lambda *request: (asked.append(request), control(*request))[1])
+    return asked
+
+
+@pytest.mark.parametrize(("event_character", "more"), [(False, []), (True, [(6, 0x013E)])])
+def test_run_time_sets_the_chip_up_for_packets(event_character: bool, more: list, monkeypatch: pytest.MonkeyPatch):
+    bus, _ = held_bus()
+    asked = requests(bus, monkeypatch)
+    run_time(open_port(None, 0, bus), event_character)
+    assert asked == [LATENCY_1, *more, BAUD, *PURGES]
+
+
+def test_port_sets_configuration_once():
+    bus, _ = held_bus()
+    assert bus.units[0].configuration == 0
+    open_port(None, 0, bus).close()
+    assert bus.units[0].configuration == 1
+    bus.fail(Fault(at="configure", error="stall", after=1, times=100))  # one more look is all
+    open_port(None, 0, bus).close()
+
+
+def test_port_opens_on_system_without_kernel_drivers(monkeypatch: pytest.MonkeyPatch):
+    def unknown(*_: object) -> None:
+        raise NotImplementedError
+
+    bus, _ = held_bus()
+    bus.units[0].kernel_driver = False
+    monkeypatch.setattr(bus, "is_kernel_driver_active", unknown)
+    port = open_port(None, 0, bus)
+    port.close()
+    assert bus.units[0].claimed_by is None and not bus.units[0].kernel_driver
+
+
+def test_payload_has_no_status_bytes():
+    bus, clock = held_bus()
+    port = open_port(None, 0, bus)
+    chip = bus.units[0].chip
+    chip.control(9, 1)
+    chip._waiting.append((0.0, bytes(range(150))))
+    assert port.payload() == bytes(range(150))
+    assert port.payload() == b""
+    assert clock() > 0
+
+
+def test_port_read_of_less_than_a_packet_overflows():
+    bus, _ = held_bus()
+    with pytest.raises(DeviceError, match="overflow"):
+        open_port(None, 0, bus).read(array("B", bytes(18)))
+
+
+def test_port_write_cut_short_is_refused():
+    bus, _ = held_bus()
+    port = open_port(None, 0, bus)
+    bus.bulk_write = lambda *_: 7  # pyright: ignore[reportAttributeAccessIssue]
+    with pytest.raises(DeviceError, match="took 7 of 16 bytes"):
+        port.write(array("B", bytes(16)))
+
+
+def test_serial_of_leaves_device_closed():
+    bus, _ = held_bus(("A1",))
+    assert serial_of(connected_devices(bus)[0]) == "A1"
+    assert bus.units[0].kernel_driver and bus.units[0].claimed_by is None
+
+
+@pytest.mark.parametrize(
+    ("number", "word"),
+    [
+        (errno.ENODEV, "unplugged"),
+        (errno.EACCES, "permission"),
+        (errno.EBUSY, "another program"),
+        (errno.EPIPE, "stall"),
+    ]
+    + [(each, "time-out") for each in (errno.ETIMEDOUT, 60, 10060)]
+    + [(each, "overflow") for each in (errno.EOVERFLOW, 84, 132)]
+    + [(errno.EIO, "the transfer failed"), (None, "check its plug"), (9999, "check its plug")],
+)
+def test_device_error_of_each_number_has_its_words(number: int | None, word: str):
+    message = str(device_error(USBError("what libusb says", -1, number), "the Falcon", "reading"))
+    assert message.startswith("the Falcon, reading: ") and word in message and ";" in message
+
+
+def test_device_error_of_permission_has_rule_on_its_own_line():
+    message = str(device_error(USBError("what libusb says", -1, errno.EACCES), "the Falcon", "reading"))
+    assert UDEV_RULE in [line.strip() for line in message.splitlines()]
+
+
+def test_device_error_of_wrong_driver_names_zadig():
+    assert "Zadig" in str(device_error(NotImplementedError("x"), "the Falcon", "opening it"))

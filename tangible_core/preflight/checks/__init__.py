@@ -1,4 +1,4 @@
-"""Every check, a family a file: a function from what is known to verdicts."""
+"""The checks, one topic a file: functions from a flight to verdicts."""
 
 from collections.abc import Callable, Iterable
 
@@ -27,5 +27,5 @@ CHECKS: tuple[Check, ...] = (
 
 
 def judge(flight: Flight) -> Preflight:
-    """What every check says, in their order; their cures agree with each other."""
+    """Run every check in order; return the verdicts, with cures that agree with each other."""
     return Preflight.of(verdict for check in CHECKS for verdict in check(flight))

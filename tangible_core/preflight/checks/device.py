@@ -1,4 +1,4 @@
-"""What is known of the device itself, and what is a guess."""
+"""Checks of the device's specification: known values and guesses."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,7 @@ from ..verdict import Verdict
 
 
 def damping(flight: Flight) -> Iterator[Verdict]:
-    """Whether the device's damping, on which the limit of stiffness rests, can be believed.
+    """Check that the device's damping, on which the limit of stiffness rests, is plausible.
 
     Makers' tables give the damping that a device can display: more than its greatest stiffness at 1 kHz implies.
     """
@@ -27,12 +27,12 @@ def damping(flight: Flight) -> Iterator[Verdict]:
 
 
 def friction(flight: Flight) -> Iterator[Verdict]:
-    """Whether the handle's friction is known, which keeps the steps of its encoders from buzzing."""
-    found = flight.safety.friction_n
-    known = flight.spec.simulated or found is not None
+    """Check that the handle's friction is known, which keeps the steps of its encoders from buzzing."""
+    friction_n = flight.safety.friction_n
+    known = flight.spec.simulated or friction_n is not None
     cure = "" if known else "unknown: measure the force at which the handle starts to move, `safety.friction_n: ...`"
     source = "simulated" if flight.spec.simulated else "`safety.friction_n`" if known else ""
     says = "" if known else "the friction of the device's handle is unknown"
     yield Verdict(
-        *("device", "friction", "ok" if known else "warn", found or 0.0, "N"), source=source, cure=cure, says=says
+        *("device", "friction", "ok" if known else "warn", friction_n or 0.0, "N"), source=source, cure=cure, says=says
     )

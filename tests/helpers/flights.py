@@ -23,11 +23,11 @@ SPEC = DeviceSpec(
     workspace_m=(0.1, 0.1, 0.1),
     resolution_m=1e-5,
 )
-"""A device that renders 4000 N/m by its damping at 1 kHz without delay, of which a guard leaves 3200 to a law."""
+"""A device that renders 4000 N/m by its damping at 1 kHz without delay; a guard leaves 3200 to a force law."""
 
 
 def fly(surface: HapticSurface, law: str = "proxy", device: Any = None, **changes: Any) -> Flight:
-    """Return a flight over a surface; `changes` are options of the law, and fields of the hand, the device or the flight.
+    """Return a flight over a surface; `changes` are options of the law, or fields of the hand, device or flight.
 
     device: fields of the device that a law has too.
     """

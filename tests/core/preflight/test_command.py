@@ -103,7 +103,7 @@ def test_preflight_missing_configuration_is_refused(folder: Path, line: str, sai
 
 def test_preflight_wrong_option_prints_one_line(folder: Path):
     done = tangible("preflight", "p.yaml", "--rate", 0, cwd=folder)
-    assert (done.returncode, done.stderr) == (2, "--rate: is 0; it is 1 to 100000 ticks a second\n")
+    assert (done.returncode, done.stderr) == (2, "--rate: is 0; it must be 1 to 100000 ticks a second\n")
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])

@@ -128,7 +128,7 @@ class TestPipeline:
         assert pipeline.preflight(Mock()).safe
 
     def test_replay_uses_the_materials_of_the_session(self):
-        """With as little guard as possible, the force of the law is the recorded one after the ramp."""
+        """The guard is as weak as possible: after the ramp, the force of the law is the recorded one."""
         free = {"ramp_s": 0, "max_step_n": 10, "passivity": "off"}
         pipeline = self.pipeline(safety=free)
         felt = pipeline.feel(Mock(), 0.3, in_real_time=False)

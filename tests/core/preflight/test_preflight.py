@@ -77,7 +77,7 @@ def test_cures_compatible_bounds_get_one_value():
         (0.1, ">=", 0.4, "0.1 N s/m < 0.4 N s/m"),
         (0.4, "<=", 0.4, "0.4 N s/m <= 0.4 N s/m"),
         (0.400001, "<=", 0.4, "0.400001 N s/m > 0.4 N s/m"),
-        (float("nan"), "<=", 0.4, "nan is to be <= 0.4 N s/m"),
+        (float("nan"), "<=", 0.4, "nan must be <= 0.4 N s/m"),
     ],
 )
 def test_relation_text_is_a_true_inequality(value: float, sign: str, bound: float, said: str):

@@ -6,13 +6,11 @@ from ..flight import Flight
 from ..preflight import Preflight
 from ..verdict import Verdict
 from .clipping import clipping, contact
-from .device import damping, friction
-from .features import features
+from .device import damping, friction, workspace
+from .features import features, textures
 from .jitter import lateness, tick_cost
 from .slopes import cliffs, slope_stiffness
 from .stiffness import law_damping, law_stiffness, material_stiffness, quantisation
-from .textures import textures
-from .workspace import workspace
 
 Check = Callable[[Flight], Iterable[Verdict]]
 

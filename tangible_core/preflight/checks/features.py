@@ -1,18 +1,21 @@
-"""The check of features too low to feel: each width of the relief against the lowest bump that a hand feels."""
+"""Checks of details too small to feel: features of the relief, width by width, and waves of fine textures."""
 
 from collections.abc import Iterator
 from itertools import pairwise
 
 from ..bumps import WIDTHS_M, feature_m, leakage, threshold_m
 from ..flight import Flight
-from ..verdict import Verdict, check_bound
+from ..verdict import Verdict, check_bound, over
 from .cures import heighten
 
-SOURCE = "Louw, Kappers & Koenderink 2000 (bare hand)"
+BUMPS = "Louw, Kappers & Koenderink 2000 (bare hand)"
 NOTHING_M = 1e-7
 """Height below which a feature may be a rounding error of heights."""
 OWN = 1.2
 """Ratio to the leakage of wider features above which a response counts as a feature of its width."""
+SEEN, FEELS_RIGHT = 2, 5
+"""Samples a wave: below the first number it is not felt, from the second on it feels right (10 are better)."""
+WAVES = "Campion & Hayward 2005: over 2 v T, from 5 v T to feel right"
 
 
 def features(flight: Flight) -> Iterator[Verdict]:
@@ -32,7 +35,7 @@ def features(flight: Flight) -> Iterator[Verdict]:
     bounds = {width: max(threshold_m(width), resolution_m) for width in own}
     any_felt = any(height_m[width] >= bound for width, bound in bounds.items())
     for width, bound in bounds.items():
-        source = SOURCE if bound > resolution_m else "the device's resolution"
+        source = BUMPS if bound > resolution_m else "the device's resolution"
         yield check_bound(
             *("features", f"{1e3 * width:g} mm wide", height_m[width], ">=", bound, "m", source),
             worse="ok" if any_felt else "warn",
@@ -48,3 +51,21 @@ def _no_feature(flight: Flight) -> Verdict:
     cure = "only its materials can be felt: choose a scene with relief, or `workspace.width_m` for a larger one"
     note, says = "no feature 1 to 32 mm wide", "the relief has nothing that can be felt"
     return Verdict("features", "the relief", "warn", height_m, "m", note=note, cure=cure, says=says)
+
+
+def textures(flight: Flight) -> Iterator[Verdict]:
+    """Check the grain of each present material against five samples a wave."""
+    sample_m = max(flight.hand.speed_m_per_s * flight.period_s, flight.spec.resolution_m)
+    yield Verdict("texture", "shortest wave", "ok", SEEN * sample_m, "m", source=WAVES, note="at this rate and speed")
+    for material in flight.present_materials:
+        if material.roughness_m == 0 and material.texture != "stick-slip":
+            continue
+        bound_m, samples = FEELS_RIGHT * sample_m, material.grain_m / sample_m
+        note = f"{samples:.3g} samples a wave"
+        yield check_bound(
+            *("texture", material.name, material.grain_m, ">=", bound_m, "m", WAVES),
+            says=f"the texture of {material.name} is too fine for a hand so fast",
+            note=note if samples > SEEN else f"{note}: none of it is felt",
+            cure=f"in a file for `materials.library`, `{material.name}: {{grain_m: {over(bound_m)}}}`; "
+            f"or move slower than {material.grain_m / (FEELS_RIGHT * flight.period_s):.2g} m/s",
+        )

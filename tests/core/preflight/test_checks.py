@@ -14,13 +14,11 @@ from tangible_core.data import Relief
 from tangible_core.preflight import CHECKS, judge
 from tangible_core.preflight.bumps import threshold_m
 from tangible_core.preflight.checks.clipping import clipping, contact
-from tangible_core.preflight.checks.device import damping, friction
-from tangible_core.preflight.checks.features import features
+from tangible_core.preflight.checks.device import damping, friction, workspace
+from tangible_core.preflight.checks.features import features, textures
 from tangible_core.preflight.checks.jitter import lateness, tick_cost
 from tangible_core.preflight.checks.slopes import cliffs, slope_stiffness, slopes
 from tangible_core.preflight.checks.stiffness import law_damping, law_stiffness, material_stiffness, quantisation
-from tangible_core.preflight.checks.textures import textures
-from tangible_core.preflight.checks.workspace import workspace
 from tangible_core.preflight.timing import Lateness, TickCost
 from tangible_core.preflight.verdict import Verdict, check_bound
 from tangible_core.scene.geometry import smooth

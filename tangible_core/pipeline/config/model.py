@@ -18,7 +18,7 @@ from ...data.products import Product
 from ...errors import ConfigError
 from ...files.yaml.source import Source
 from ...legibility import SimplifyChoice
-from ...mapping import WorkspaceMapping, mapped
+from ...mapping import WorkspaceMapping, map_device
 from ...parts import HeightChoice, PartChoice
 from ...plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter
 from ...scene.formats.height_maps import MeasuredSize
@@ -161,7 +161,7 @@ class PipelineConfig(BaseModel):
     @property
     def felt_device(self) -> HapticDevice | None:
         """The device as the picture sees it, by the mapping; None where none is configured."""
-        return None if self.device is None else mapped(self.device.method, self.mapping)
+        return None if self.device is None else map_device(self.device.method, self.mapping)
 
     def missing(self, kind: str) -> ConfigError:
         """Return the complaint for a method that is needed and not named."""

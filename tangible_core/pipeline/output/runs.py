@@ -15,7 +15,7 @@ from ...data.products import IN_REPORT
 from ...errors import ConfigError, OutputError
 from ...files.json_text import write_figures
 from ...files.writing import write_text
-from ...mapping import mapped, over, wanted
+from ...mapping import intended_path, map_device, over
 from ...metrics import disparity_errors
 from ...plugins.interfaces import HapticDevice, Touch
 from ...session import (
@@ -159,13 +159,13 @@ def about(engine: Engine) -> About:
 
 def felt_device(engine: Engine, device: HapticDevice | None = None) -> HapticDevice | None:
     """This or the configured device as the picture sees it, a path of its own over the surface; None where none is."""
-    felt = engine.config.felt_device if device is None else mapped(device, engine.config.mapping)
+    felt = engine.config.felt_device if device is None else map_device(device, engine.config.mapping)
     return felt and over(felt, engine.make("surface").extent_m)
 
 
 def how_followed(engine: Engine, felt: HapticDevice | None, seen: Recording) -> Followed:
     """How the hand followed the path of a device of `felt_device`. seen: one of `EVERY` ticks."""
-    path_m = felt and wanted(felt, np.arange(len(seen.rows)) * EVERY)
+    path_m = felt and intended_path(felt, np.arange(len(seen.rows)) * EVERY)
     return followed(seen, path_m, engine.make("surface"))
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from command_line import tangible
 from tangible_core.data import TICK_COLUMNS, HapticSurface
-from tangible_core.mapping import WorkspaceMapping, mapped, over, wanted
+from tangible_core.mapping import WorkspaceMapping, intended_path, map_device, over
 from tangible_core.plugins.interfaces import ForceRenderer, HapticDevice
 from tangible_core.session import EVERY, Followed, Looks, Recording, followed, run_simulated
 from tangible_devices.mock import Mock
@@ -28,7 +28,7 @@ def felt(heights: np.ndarray, device: HapticDevice, render: ForceRenderer = PROX
     device = over(device, surface.extent_m)
     felt = run_simulated(render.touch(surface), device, 3.0)
     seen = Recording(felt.rows[::EVERY])
-    return felt, followed(seen, wanted(device, np.arange(len(seen.rows)) * EVERY), surface)
+    return felt, followed(seen, intended_path(device, np.arange(len(seen.rows)) * EVERY), surface)
 
 
 @pytest.mark.parametrize(
@@ -85,10 +85,10 @@ def test_a_hand_that_yields_to_nothing_is_said_to_come_in_by_the_side():
 )
 def test_a_path_is_known_and_within_the_surface_through_any_mapping(mapping: WorkspaceMapping):
     extent_m = (0.08, 0.05)
-    device = over(mapped(Mock(hand=None, tremor_m=1e-4), mapping), extent_m)
+    device = over(map_device(Mock(hand=None, tremor_m=1e-4), mapping), extent_m)
     link = device.open()
     found = np.array([link.read().position_m for _ in range(6000)])
-    path_m = wanted(device, np.arange(6000))
+    path_m = intended_path(device, np.arange(6000))
     assert path_m is not None and np.abs(path_m - found).max() < 1e-12
     assert (np.abs(found[:, :2]) <= np.array(extent_m) / 2).all()
     assert np.ptp(found[:, :2], axis=0).min() > 0.012

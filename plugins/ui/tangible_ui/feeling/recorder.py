@@ -1,4 +1,4 @@
-"""What is felt, kept tick by tick in a file, while the loop goes on."""
+"""Recording of a running loop, tick by tick, into a file."""
 
 import threading
 from collections.abc import Callable
@@ -10,16 +10,16 @@ from tangible_core.servo import Servo
 from tangible_core.session import About, Keeper, Writer
 
 LOOK_EVERY_S = 0.05
-"""What a crash of the server can lose of a recording."""
+"""Seconds between two writes: what a crash of the server can lose of a recording."""
 BY_HAND = "stopped by hand"
 
 
 @final
 class Recorder:
-    """A recording that grows, in a thread of its own; `stop` ends it, or its loop, or a file that cannot be written."""
+    """A growing recording, written by its own thread; `stop`, the end of the loop, or a write error end it."""
 
     def __init__(self, servo: Servo, path: Path, about: About, ended: Callable[[Path, int, str], None]) -> None:
-        """ended: told the file, how many ticks it holds and why it ended, in the recorder's thread.
+        """Begin recording. ended: called in the recorder's thread with the file, its number of ticks, and the reason.
 
         Raises: OutputError if the file cannot be written.
         """
@@ -33,11 +33,11 @@ class Recorder:
 
     @property
     def recording(self) -> bool:
-        """Whether ticks are kept."""
+        """True while ticks are written."""
         return self._thread.is_alive()
 
     def stop(self) -> None:
-        """End it, and return when the file is closed; a second call does nothing."""
+        """End the recording; return when the file is closed. A second call does nothing."""
         self._stop.set()
         self._thread.join()
 

@@ -1,4 +1,4 @@
-"""From a row of a manifest to a job, with a key for all that its result depends on."""
+"""Jobs for the rows of a manifest, each with a key of all that its result depends on."""
 
 import hashlib
 import re
@@ -20,31 +20,30 @@ from .manifest import FILES, SceneRow, file_of
 SCENES = "scenes"
 SAFE = re.compile(r"[^\w.+-]")
 MOST_IN_NAME = 60
-"""Characters: four bytes each, and a digest, are still a name to any file system."""
-CHUNK = 4
+"""The most characters of a folder's name: four bytes each, with a digest, are allowed on any file system."""
 
 
 @dataclass(frozen=True)
 class BatchOptions:
-    """What is done with each scene."""
+    """Options for all scenes of a batch."""
 
     retry: bool = False
-    """Make again what failed before."""
+    """Repeat scenes that failed before."""
     sheets: bool = False
-    """Draw a whole report of each."""
+    """Draw a whole report of each scene."""
     cache: Path | None = None
-    """Folder for what scenes have in common; None for none."""
-    chunk: int = CHUNK
-    """Scenes that are handed out together, at most."""
+    """Folder for results that scenes have in common; None for none."""
+    chunk: int = 4
+    """The most scenes that are sent to a worker together."""
     timeout_s: float = LONGEST_S
-    """One that takes longer is ended, and fails."""
+    """Time limit of a scene, seconds; a scene that takes longer is ended, and fails."""
 
 
 class JobMaker:
-    """Makes jobs of rows, each with the key by which a later batch knows that it would be the same."""
+    """A maker of jobs from rows; the key of a job tells a later batch whether its result would be the same."""
 
     def __init__(self, text: str, path: Path, out: Path, threads: int | None, options: BatchOptions) -> None:
-        """Raises: ConfigError for a text that is no YAML."""
+        """Read a pipeline file. Raises: ConfigError for a text that is not YAML."""
         self._text, self._path, self._out, self._threads, self._options = text, path, out, threads, options
         self._place = str(path)
         self._other = _without_files(text, path)
@@ -52,29 +51,29 @@ class JobMaker:
         self._head = hashlib.sha256(f"{text}\n{path.parent}\n{_code(text, path)} {options.sheets}".encode())
 
     def __call__(self, row: SceneRow) -> Job:
-        """The job of a row."""
+        """Return the job of a row."""
         key = self._head.copy()
         for each in row.sets:
             key.update(f"{each}\n{_state(file_of(each))}".encode(errors="surrogateescape"))
-        brings = _brings_a_scene(row)
-        for own in () if brings else self._own:
+        has_scene = _has_scene(row)
+        for own in () if has_scene else self._own:
             key.update(_state(own).encode())
         cache = str(self._options.cache.absolute()) if self._options.cache else ""
         return Job(
-            row.id, key.hexdigest()[:16], self._other if brings else self._text, self._place, row.sets,
+            row.id, key.hexdigest()[:16], self._other if has_scene else self._text, self._place, row.sets,
             str(self._out / SCENES / folder_name(row.id)), self._threads, self._options.sheets, cache,
         )  # fmt: skip
 
     def check(self, row: SceneRow) -> None:
-        """Raises: ConfigError for what is wrong in the file itself, and in every scene therefore."""
-        text = self._other if _brings_a_scene(row) else self._text
+        """Check the file itself. Raises: ConfigError for mistakes that all scenes share."""
+        text = self._other if _has_scene(row) else self._text
         here = _complaints(text, self._path, row.sets)
         if shared := [line for place, line in _complaints(self._text, self._path, ()).items() if place in here]:
             raise ConfigError(*shared)
 
 
 def folder_name(name: str) -> str:
-    """Of a scene: whatever a file system might not take is left out, and then a digest keeps it apart from others.
+    """Return the folder name of a scene: unsafe characters become `_`, and a digest then keeps the name unique.
 
     >>> folder_name("vase-12.front"), folder_name("a/b")
     ('vase-12.front', 'a_b-c14cddc0')
@@ -84,12 +83,12 @@ def folder_name(name: str) -> str:
     return plain if plain == name else f"{plain}-{digest[:8]}"
 
 
-def _brings_a_scene(row: SceneRow) -> bool:
+def _has_scene(row: SceneRow) -> bool:
     return any(each.startswith("scene.") for each in row.sets)
 
 
 def _complaints(text: str, path: Path, sets: tuple[str, ...]) -> dict[object, str]:
-    """Lines of complaint by what they are about: the number of its line in the text changes with a scene's files."""
+    """Return error messages by their places in the tree, as their line numbers change with a scene's files."""
     try:
         parse_config(text, path, default_registry(), sets)
     except ConfigError as error:
@@ -101,16 +100,16 @@ def _complaints(text: str, path: Path, sets: tuple[str, ...]) -> dict[object, st
 
 
 def _code(text: str, path: Path) -> str:
-    """What results depend on beside the file and its pictures: the code of the methods that it names."""
+    """Return the version of the program and the code of the file's methods, on which results depend."""
     try:
         methods = method_identities(parse_config(text, path, default_registry()))
-    except TangibleError:  # a row may say what is missing
+    except TangibleError:  # a row may add what is missing
         methods = ""
     return f"{metadata.version('tangible-images')} {methods}"
 
 
 def _scene(text: str, path: Path) -> dict[str, Any]:
-    """What the file says of its own scene's files and options; nothing of one that has a name alone."""
+    """Return the files and options of the file's own scene; none for a scene that is a name alone."""
     scene = read_values(text, path).get("scene")
     return cast("dict[str, Any]", scene) if isinstance(scene, dict) else {}
 
@@ -121,18 +120,18 @@ def _own_files(text: str, path: Path) -> list[Path]:
 
 
 def _without_files(text: str, path: Path) -> str:
-    """The pipeline file without its own scene's files, in place of which a row names others; other options stay."""
+    """Return the pipeline file without the files of its scene, as a row names others; other options stay."""
     if options := _scene(text, path):
         return edit_text(text, path, {key: REMOVE for name in options if (key := f"scene.{name}") in FILES})
     return edit_text(text, path, {"scene": REMOVE}) if "scene" in read_values(text, path) else text
 
 
 def _state(file: Path | None) -> str:
-    """Size and time of the last change."""
+    """Return the size and modification time of a file, as text for the key."""
     if file is None:
         return ""
     try:
-        found = file.stat()
+        state = file.stat()
     except (OSError, ValueError):
         return "not there"
-    return f"{found.st_size} {found.st_mtime_ns}"
+    return f"{state.st_size} {state.st_mtime_ns}"

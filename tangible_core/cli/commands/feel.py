@@ -64,7 +64,7 @@ def feel(
         if one.scene.video is not None and one.segments is not None:
             show.note(f"{one.scene.name}: parts and materials stay where they are in the first frame")
     loop: dict[str, Any] = {}
-    looks = session.Looks()
+    looks = session.TickSampler()
     reports: list[ServoReport] = []
 
     def started(servo: Servo) -> None:
@@ -96,7 +96,7 @@ def feel(
     if as_json:
         figures = {"device": device.name, "spec": asdict(device.method.spec()), **felt}
         outcomes = show.as_rows(pipeline.outcomes)
-        said = {"guard": session.changed_most(report.flagged), "hand": hand and hand._asdict()}
+        said = {"guard": session.guard_summary(report.flagged), "hand": hand and hand._asdict()}
         said |= {"part": report.part, "material": report.material, "parts": [each._asdict() for each in parts]}
         said |= {"beacon": report.beacon, "beacons": [each._asdict() for each in pulled]}
         file = {"file": record and str(record)}
@@ -110,7 +110,7 @@ def feel(
         show.parts_felt(parts)
         for beacon_felt in pulled:
             show.plain(f"\n{beacon_felt}.")
-        for said in (session.changed_most(report.flagged), hand and hand.says):
+        for said in (session.guard_summary(report.flagged), hand and hand.says):
             if said:
                 show.plain(f"\n{said}")
     if report.stopped in (session.INTERRUPTED, TERMINATED):

@@ -24,7 +24,7 @@ from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from .cache import Cache, Notes
 from .keys import product_key
-from .planning import NEEDED, REQUESTED, SAME, foresee, not_needed, notes_ahead, with_notes
+from .planning import NEEDED, REQUESTED, SAME, Outlook, foresee, not_needed, notes_ahead, with_notes
 from .stage import Context, Progress, Stage, StageEvent, ignore_event, stage_class
 
 log = logging.getLogger(__name__)
@@ -104,7 +104,8 @@ class Engine:
     def plan(self, want: str | None = None) -> Plan:
         """Foresee the outcomes of making a product. Raises: TangibleError for an unreadable scene, UnknownMethod."""
         want = self._product(want)
-        plan = Plan(want, tuple(foresee(self, want, REQUESTED, {}).values()))
+        ahead = Outlook(self.stages, self.scene_products, self.source_of, self.cache_for, self.key)
+        plan = Plan(want, tuple(foresee(ahead, want, REQUESTED, {}).values()))
         hooks.tell(self.registry.plugins, "tangible_plan_made", plan=plan)
         return plan
 

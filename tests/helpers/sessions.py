@@ -1,4 +1,4 @@
-"""A desk of the page's server without its processes: jobs are done in threads of this one, nothing is felt."""
+"""A session of the page's server without its processes: jobs are done in threads of this one, nothing is felt."""
 
 import asyncio
 import threading
@@ -11,11 +11,12 @@ from PIL import Image
 
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_ui.feeling.feeling import Feeling
-from tangible_ui.state.session import Desk
-from tangible_ui.worker.handle import MakingStopped
+from tangible_ui.state.session import Session
+from tangible_ui.worker.handle import WorkerKilled
 from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.messages import Event
-from tangible_ui.worker.state import Bench
+from tangible_ui.worker.state import WorkerState
+from waiting import happened
 
 TEXT = """\
 # a photograph of mine
@@ -49,8 +50,8 @@ def striped_scene(folder: Path) -> Path:
     return folder / "mine.yaml"
 
 
-class InlineMaker:
-    """The maker's jobs without its process; `kill` makes those that somebody waits for raise, as the real one does."""
+class InlineWorker:
+    """The worker's jobs without its process; `kill` makes those that somebody waits for raise, as the real one does."""
 
     def __init__(self, folder: Path, hear: Any) -> None:
         self._folder, self._hear = folder, hear
@@ -67,7 +68,7 @@ class InlineMaker:
         def tell(event: str, **told: Any) -> None:
             self._loop.call_soon_threadsafe(lambda: alive.is_set() and self._hear(Event(event, told)))
 
-        self.bench = Bench(self._folder, tell, Cache(self._folder / "cache"))
+        self.state = WorkerState(self._folder, tell, Cache(self._folder / "cache"))
         self._long = asyncio.Lock()
 
     async def ask(self, job: str, **told: Any) -> Any:
@@ -77,18 +78,18 @@ class InlineMaker:
         try:
             return await future
         except asyncio.CancelledError as error:
-            raise MakingStopped("killed") from error
+            raise WorkerKilled("killed") from error
         finally:
             self._waiting.discard(future)
 
     async def quick(self, job: str, **told: Any) -> Any:
         try:
             return await self.ask(job, **told)
-        except MakingStopped:
+        except WorkerKilled:
             return await self.ask(job, **told)
 
     async def _do(self, job: str, told: dict[str, Any]) -> Any:
-        done = partial(_done, self.bench, self._alive, job, told)
+        done = partial(_done, self.state, self._alive, job, told)
         if JOBS[job].quick:
             return await asyncio.to_thread(done)
         async with self._long:
@@ -105,9 +106,9 @@ class InlineMaker:
         self.kill()
 
 
-def _done(bench: Bench, alive: threading.Event, job: str, told: dict[str, Any]) -> Any:
+def _done(worker_state: WorkerState, alive: threading.Event, job: str, told: dict[str, Any]) -> Any:
     """What a job makes; of one that was killed meanwhile nothing is left."""
-    made = JOBS[job].do(bench, **told)
+    made = JOBS[job].do(worker_state, **told)
     if not alive.is_set() and isinstance(made, dict) and "parcel" in made:
         Path(made["parcel"]).unlink()
     return made
@@ -130,27 +131,25 @@ class Heard:
 
     async def until(self, name: str, count: int = 1) -> dict[str, Any]:
         """The newest event of a name, as soon as there were so many."""
-        async with asyncio.timeout(30):
-            while self.names().count(name) < count:
-                await asyncio.sleep(0.005)
+        await happened(lambda: self.names().count(name) >= count, f"no {name}")
         return self.last(name)
 
 
-class SmallDesk:
-    """A desk with a tab, whose touches are kept in `felt`."""
+class SmallSession:
+    """A session with a tab, whose touches are kept in `felt`."""
 
     def __init__(self, folder: Path, monkeypatch: Any) -> None:
-        monkeypatch.setattr("tangible_ui.state.session.Maker", InlineMaker)
+        monkeypatch.setattr("tangible_ui.state.session.Worker", InlineWorker)
         (folder / "drawn").mkdir()
-        self.desk = Desk(folder / "drawn", Feeling("test"), [])
-        self.maker: Any = self.desk.maker
+        self.session = Session(folder / "drawn", Feeling("test"), [])
+        self.worker: Any = self.session.worker
         self.tab = Heard()
-        self.desk.tabs.append(self.tab)
+        self.session.tabs.append(self.tab)
         self.felt: list[dict[str, Any]] = []
-        monkeypatch.setattr(Desk, "feel", self._feel)
-        monkeypatch.setattr(Desk, "feel_on", self._feel)
+        monkeypatch.setattr(Session, "feel", self._feel)
+        monkeypatch.setattr(Session, "feel_on", self._feel)
 
     async def _feel(self, made: dict[str, Any]) -> None:
         Path(made["parcel"]).unlink()
         self.felt.append(made)
-        self.desk.tell("touch", law=made["law"], seconds=0.0, how="")
+        self.session.tell("touch", law=made["law"], seconds=0.0, how="")

@@ -46,7 +46,7 @@ class SwapReply(NamedTuple):
     """The reply to `Swap`: the loop has gone on with the new scene."""
 
     how: str
-    """As in `StartReply`, for this scene."""
+    """The sentence of `StartReply`, for this scene."""
 
 
 class Refusal(NamedTuple):

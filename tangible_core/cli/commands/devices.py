@@ -119,12 +119,12 @@ def stress(
     """
     from ...plugins.devices import make_device
     from ...plugins.registry import default_registry
-    from ...session.stress import stressed
+    from ...session.stress import stress_device
     from .. import sentences, show
 
     if not 0 < seconds <= 3600:
         raise ConfigError(f"--seconds {seconds}: must be above 0 and at most 3600")
-    figures = {"device": name, **stressed(make_device(default_registry(), name, sets or []), seconds)}
+    figures = {"device": name, **stress_device(make_device(default_registry(), name, sets or []), seconds)}
     if as_json:
         show.print_json(figures)
     else:

@@ -64,7 +64,7 @@ def feel(
         if one.scene.video is not None and one.segments is not None:
             show.note(f"{one.scene.name}: parts and materials stay where they are in the first frame")
     loop: dict[str, Any] = {}
-    looks = session.Looks()
+    looks = session.TickSampler()
     reports: list[ServoReport] = []
 
     def note_start(servo: Servo) -> None:
@@ -96,7 +96,7 @@ def feel(
     if as_json:
         document: dict[str, Any] = {"outcomes": show.as_rows(pipeline.outcomes), "loop": loop}
         document["figures"] = {"device": device.name, "spec": asdict(device.method.spec()), **figures}
-        document |= {"guard": session.changed_most(report.flagged), "hand": hand and hand._asdict()}
+        document |= {"guard": session.guard_summary(report.flagged), "hand": hand and hand._asdict()}
         document |= {"part": report.part, "material": report.material, "parts": [each._asdict() for each in parts]}
         document |= {"beacon": report.beacon, "beacons": [each._asdict() for each in pulled]}
         show.print_json({**document, "file": record and str(record)})
@@ -109,7 +109,7 @@ def feel(
         show.parts_felt(parts)
         for beacon_felt in pulled:
             show.plain(f"\n{beacon_felt}.")
-        for text in (session.changed_most(report.flagged), hand and hand.says):
+        for text in (session.guard_summary(report.flagged), hand and hand.says):
             if text:
                 show.plain(f"\n{text}")
     if report.stopped in (session.INTERRUPTED, TERMINATED):

@@ -45,7 +45,7 @@ def replay(
     seconds = perf_counter() - start
     if record is not None:
         replace(after, about=replace(after.about, device=f"replay of {recording.name}")).save(record)
-    figures = {**session.compared(before, after), "ns_per_tick": 1e9 * seconds / max(1, len(after.rows))}
+    figures = {**session.compare_replay(before, after), "ns_per_tick": 1e9 * seconds / max(1, len(after.rows))}
     law = pipeline.config.render
     parts = feeling.parts_felt(after)
     pulled = session.beacons_felt(before, pipeline.surface)

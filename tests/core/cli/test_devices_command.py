@@ -15,7 +15,7 @@ from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.mapping.device_calibrations import calibration_path
 from tangible_core.plugins.devices import examine_device, installed_devices
 from tangible_core.plugins.registry import Registry
-from tangible_core.session.stress import stressed
+from tangible_core.session.stress import stress_device
 from tangible_devices.mock import Mock
 
 ALONE = SimpleNamespace(invoked_subcommand=None)
@@ -189,7 +189,7 @@ class TestSettingUp:
 
 class TestStress:
     def test_stress_returns_rate_and_percentiles(self):
-        figures = stressed(Mock(), 0.05)
+        figures = stress_device(Mock(), 0.05)
         assert figures["cycles"] > 100
         assert figures["rate_hz"] * 0.05 == pytest.approx(figures["cycles"], rel=0.5)
         assert 0 < figures["p50_us"] <= figures["p99_us"] <= figures["p99_9_us"] <= figures["max_us"]
@@ -201,7 +201,7 @@ class TestStress:
         write = link.write
         monkeypatch.setattr(link, "write", lambda force: (forces.append(force), write(force)))
         monkeypatch.setattr(Mock, "open", lambda self: link)
-        stressed(real, 0.01)
+        stress_device(real, 0.01)
         assert set(forces) == {(0.0, 0.0, 0.0)}
 
     @pytest.mark.parametrize("seconds", [0, -1, float("nan"), 1e9])

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import psutil
 
-from tangible_batch.jobs import BatchOptions
+from tangible_batch.job_maker import BatchOptions
 from tangible_batch.manifest import rows_of
-from tangible_batch.results import kept_rows, write_gallery, write_index
+from tangible_batch.results import last_rows, write_gallery, write_index
 from tangible_batch.running import Workforce, run_batch
 
 
@@ -39,7 +39,7 @@ def main(config: Path, manifest: Path, out: Path, workers: int, first: int) -> N
     write_gallery(out, names)
     times, peak = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     said = {
-        "failed": failed + total - len(set(kept_rows(out))),
+        "failed": failed + total - len(set(last_rows(out))),
         "client_s": used,
         "workers_s": times.ru_utime + times.ru_stime,
         "client_mb": client_mb,

@@ -6,10 +6,10 @@ from functools import partial
 import numpy as np
 
 from tangible_core.data import Material
-from tangible_core.haptic_textures import compile_textures, peak_wavelength_m, radial_spectrum, sample_tile, stroke
-from tangible_core.haptic_textures.forces import STATE, along
-from tangible_core.haptic_textures.spectrum import line_spectrum
 from tangible_core.materials.assignment import library
+from tangible_render.haptic_textures import compile_textures, peak_wavelength_m, radial_spectrum, sample_tile, stroke
+from tangible_render.haptic_textures.forces import STATE, along
+from tangible_render.haptic_textures.spectrum import line_spectrum
 
 from .figures import Figure, table
 from .turns import in_turns

@@ -1,4 +1,4 @@
-"""Parts on a grid whose cells have a size in metres, whatever the pixels of the picture are."""
+"""Parts on a grid whose cells have a size in metres, independent of the picture's pixels."""
 
 from math import ceil, log2
 from typing import NamedTuple
@@ -10,24 +10,24 @@ from ..errors import GeometryError
 from ..parts import reduced_parts
 
 FINEST_M, COARSEST_M = 0.0625e-3, 0.25e-3
-"""Cells are of a size between these: a finger tells no tenth of a millimetre."""
+"""Smallest and largest side of a cell: a finger does not notice a tenth of a millimetre."""
 MOST_CELLS, MOST_COARSE_CELLS = 2560, 1280
-"""A side, of the finest and of the coarsest cells: what is larger has larger cells."""
+"""Limit of the number of smallest and of largest cells along a side; a longer side has larger cells."""
 
 
 class Grid(NamedTuple):
-    """Parts on such a grid, and the side of its square cells."""
+    """Parts on a grid of square cells, and the side of a cell in metres."""
 
     parts: PartMap
     pitch_m: float
 
 
 def on_grid(parts: PartMap, width_m: float, *, worked: bool = False) -> Grid:
-    """The same parts on the grid: as they are where their pixels are of such a size.
+    """Return the parts on a grid of cells between FINEST_M and COARSEST_M; unchanged if their pixels are.
 
-    Larger pixels are divided by a power of two, so that nothing moves, and of smaller ones each second, fourth ... is
-    taken. So a picture that is enlarged twofold has the same cells, or twice as many.
-    worked: cells in which parts can be changed in a short time, no smaller than half of the coarsest.
+    Larger pixels are divided by a power of two, so that nothing moves; smaller ones are sampled at every second,
+    fourth, ... pixel. A picture enlarged twofold has the same cells, or twice as many.
+    worked: at least half of the coarsest cells, on which parts are changed in a short time.
     Raises: GeometryError if width_m is not positive.
     """
     if not 0 < width_m < np.inf:

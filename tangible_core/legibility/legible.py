@@ -1,4 +1,4 @@
-"""Verdicts on parts: whether fingers can read them, by the rules of one medium."""
+"""Verdicts on the legibility of parts for fingers, by the rules of one medium."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Self
@@ -6,14 +6,14 @@ from typing import Any, Self
 from ..data import MaterialMap, PartMap, Relief
 from ..errors import GeometryError
 from ..plugins.interfaces import Medium
-from ..preflight.preflight import agreed, reasons, worst
-from ..preflight.verdict import Grade, Verdict, held
+from ..preflight.preflight import reasons, reconcile_cures, worst
+from ..preflight.verdict import Grade, Verdict, check_bound
 from ..preflight.wording import as_data
 from .checks import CHECKS, height
 from .grid import on_grid
-from .looked import Looked
+from .legibility_input import LegibilityInput
 from .rules import PROFILES, Rule
-from .words import mm
+from .words import millimetres
 
 
 class Legibility(tuple[Verdict, ...]):
@@ -23,22 +23,22 @@ class Legibility(tuple[Verdict, ...]):
 
     @classmethod
     def of(cls, verdicts: Iterable[Verdict]) -> Self:
-        """Of verdicts each of which knows nothing of the others: where several change one key, all say the same."""
-        return cls(agreed(verdicts))
+        """Collect independent verdicts; cures that change the same key get the same value."""
+        return cls(reconcile_cures(verdicts))
 
     @property
     def grade(self) -> Grade:
-        """The worst of them: `illegible`, `warn` or `ok`."""
+        """The worst grade: `illegible`, `warn` or `ok`."""
         return worst(self)
 
     @property
     def readable(self) -> bool:
-        """Whether nothing is illegible."""
+        """True if nothing is illegible."""
         return self.grade != "illegible"
 
     @property
     def sentence(self) -> str:
-        """Legible, legible but, or illegible because: in plain words.
+        """A sentence on the result: legible, legible but ..., or illegible because ....
 
         >>> Legibility().sentence
         'Legible: fingers can read it.'
@@ -48,9 +48,9 @@ class Legibility(tuple[Verdict, ...]):
         return f"{'Legible, but' if self.readable else 'Illegible, because'} {reasons(self)}."
 
     def as_data(self) -> dict[str, Any]:
-        """All of it as JSON says it, for a program that shows it: see `preflight.wording.as_data`."""
-        said = {"grade": self.grade, "readable": self.readable, "sentence": self.sentence}
-        return {**said, "verdicts": [as_data(each) for each in self]}
+        """Return the verdicts as JSON data, for programs: see `preflight.wording.as_data`."""
+        summary = {"grade": self.grade, "readable": self.readable, "sentence": self.sentence}
+        return {**summary, "verdicts": [as_data(each) for each in self]}
 
     def __repr__(self) -> str:
         wrong = [each for each in self if each.verdict != "ok"]
@@ -68,31 +68,31 @@ def legibility(
     names: Sequence[str] = (),
     textures: int | None = None,
 ) -> Legibility:
-    """Whether fingers can read these parts in this medium, the whole being width_m wide; a verdict a rule.
+    """Check by the rules of a medium whether fingers can read these parts; return a verdict a rule.
 
-    What fails is named part by part, the worst ones first, and all others together. A rule of what is not known here is
-    left out, such as steps without a relief.
-    parts: None where the picture is not divided. relief, materials: of the whole, on any grid; materials one a part or
-    a segment. names: of parts, by number. textures: how many are to be told apart, where that is not one a segment.
+    Parts that fail have a verdict each, the worst ones first, and the rest one together. Rules on data that is missing,
+    such as steps without a relief, are left out.
+    parts: None for a picture that is not divided. width_m: of the whole. relief, materials: of the whole, on any grid;
+    one material a part or a segment. names: of parts, by number. textures: their number, if it is not one a segment.
     Raises: GeometryError if width_m is not positive.
     """
     profile = PROFILES[medium]
     if parts is None:
         if not width_m > 0:
             raise GeometryError(f"width_m must be a positive length in metres, not {width_m}")
-        return Legibility.of(_undivided(medium, relief, width_m))
+        return Legibility.of(_judge_undivided(medium, relief, width_m))
     grid = on_grid(parts, width_m)
-    looked = Looked(profile, grid.parts, grid.pitch_m, width_m, relief, materials, names, textures)
-    return Legibility.of(verdict for check in CHECKS[medium] for verdict in check(looked))
+    data = LegibilityInput(profile, grid.parts, grid.pitch_m, width_m, relief, materials, names, textures)
+    return Legibility.of(verdict for check in CHECKS[medium] for verdict in check(data))
 
 
-def _undivided(medium: Medium, relief: Relief | None, width_m: float) -> Iterator[Verdict]:
-    """Of a scene that has no parts: a relief may be felt all the same."""
+def _judge_undivided(medium: Medium, relief: Relief | None, width_m: float) -> Iterator[Verdict]:
+    """Yield the verdicts on a scene without parts, whose relief may be legible all the same."""
     rule, cure = PROFILES[medium].rules["parts"], "add `parts: {}` to the file, and a method for `texture:`"
     says = "the picture is not divided into parts"
     worse: Grade = "warn" if medium in ("print", "force") else rule.worse
-    yield held(
-        *("parts", "the picture", 0.0, rule.relation, rule.bound, rule.unit, rule.cited),
+    yield check_bound(
+        *("parts", "the picture", 0.0, rule.relation, rule.bound, rule.unit, rule.citation),
         cure=cure, says=says, worse=worse,
     )  # fmt: skip
     if relief is not None and "height" in PROFILES[medium].rules:
@@ -100,11 +100,11 @@ def _undivided(medium: Medium, relief: Relief | None, width_m: float) -> Iterato
 
         one = PartMap(np.zeros(relief.height_m.shape, np.int32), (0,))
         pitch_m = relief.pitch_m[0]
-        yield from height(Looked(PROFILES[medium], one, pitch_m, width_m, relief, None, (), None))
+        yield from height(LegibilityInput(PROFILES[medium], one, pitch_m, width_m, relief, None, (), None))
 
 
 def sizes(medium: Medium, **sizes_m: float) -> Legibility:
-    """Verdicts on what an exporter decides itself, by the names of rules: `line`, `base`, `braille_dot` and the like.
+    """Check sizes that an exporter chooses, by the names of rules: `line`, `base`, `braille_dot` and the like.
 
     >>> sizes("print", base=0.0005).sentence
     'Illegible, because the base is 0.5 mm, and at least 0.8 mm are needed.'
@@ -115,9 +115,9 @@ def sizes(medium: Medium, **sizes_m: float) -> Legibility:
 
 def _size(rule: Rule, size_m: float) -> Verdict:
     most = "at most" if rule.relation == "<=" else "at least"
-    return held(
-        *(rule.check, rule.says, size_m, rule.relation, rule.bound, rule.unit, rule.cited),
-        says=f"the {rule.check} is {mm(size_m)}, and {most} {mm(rule.bound)} are needed",
-        cure=f"{most} {mm(rule.bound)}",
+    return check_bound(
+        *(rule.check, rule.says, size_m, rule.relation, rule.bound, rule.unit, rule.citation),
+        says=f"the {rule.check} is {millimetres(size_m)}, and {most} {millimetres(rule.bound)} are needed",
+        cure=f"{most} {millimetres(rule.bound)}",
         worse=rule.worse,
     )

@@ -1,4 +1,4 @@
-"""Parts as pins show them: one part a pin, the one that has most of its cell."""
+"""Parts on a pin display: each pin shows the part that has most of its cell."""
 
 from typing import NamedTuple
 
@@ -8,20 +8,20 @@ from ..data import PartMap
 from ..runtime.opencv import plain_opencv
 
 PIN_PITCH_M = 0.0025
-"""From pin to pin of displays of braille, which all have about this pitch."""
+"""Distance from pin to pin; all braille displays have about this pitch."""
 
 
-class Shown(NamedTuple):
-    """What pins show."""
+class PinDisplay(NamedTuple):
+    """Parts as pins show them."""
 
     parts: tuple[tuple[int, int, tuple[int, int]], ...]
-    """Of each part: its number, its pins, and a cell of it on the grid of the parts."""
+    """(number, pins, a cell on the grid of the parts) of each part."""
     kept: float
-    """Share of the length of all borders that lies within a pin of a border that is shown; 1 where there is none."""
+    """Share of the length of all borders that lies within a pin of a border that is shown; 1 without a border."""
 
 
-def pins_of(parts: PartMap, pitch_m: float) -> Shown:
-    """What is shown of parts whose cells are pitch_m wide."""
+def show_on_pins(parts: PartMap, pitch_m: float) -> PinDisplay:
+    """Return the pins of parts whose cells are pitch_m wide."""
     labels = parts.labels
     cell = max(1.0, PIN_PITCH_M / pitch_m)
     rows, columns = (max(1, round(size / cell)) for size in labels.shape)
@@ -39,10 +39,10 @@ def pins_of(parts: PartMap, pitch_m: float) -> Shown:
         (int(number), int(count[number]), divmod(int(index), labels.shape[1]))
         for number, index in zip(*first, strict=True)
     )
-    return Shown(places, _kept(labels, shown.reshape(rows, columns)[np.ix_(down, right)], cell))
+    return PinDisplay(places, _share_of_borders(labels, shown.reshape(rows, columns)[np.ix_(down, right)], cell))
 
 
-def _kept(labels: np.ndarray, shown: np.ndarray, cell: float) -> float:
+def _share_of_borders(labels: np.ndarray, shown: np.ndarray, cell: float) -> float:
     import cv2
 
     borders, drawn = _borders(labels), _borders(shown)
@@ -56,7 +56,7 @@ def _kept(labels: np.ndarray, shown: np.ndarray, cell: float) -> float:
 
 
 def _borders(labels: np.ndarray) -> np.ndarray:
-    found = np.zeros(labels.shape, np.bool_)
-    found[:, 1:] |= labels[:, 1:] != labels[:, :-1]
-    found[1:] |= labels[1:] != labels[:-1]
-    return found
+    borders = np.zeros(labels.shape, np.bool_)
+    borders[:, 1:] |= labels[:, 1:] != labels[:, :-1]
+    borders[1:] |= labels[1:] != labels[:-1]
+    return borders

@@ -1,4 +1,8 @@
-"""The rules of tactile graphics, in one table: value, unit, source, and whether it is a convention of ours."""
+"""The rules of tactile graphics in one table, with value, unit and source, and the sizes of a braille cell.
+
+Source of the braille sizes: Specification 800, "Braille Books and Pamphlets", section 3.2, National Library Service for
+the Blind and Print Disabled, Library of Congress.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,7 +11,17 @@ from typing import Literal, NamedTuple
 from ..plugins.interfaces import Medium
 from ..preflight.verdict import Grade, Unit
 from ..preflight.wording import quantity
-from .braille import CELL_PITCH_M, DOT_DIAMETER_M, DOT_HEIGHT_M, DOT_PITCH_M, LINE_PITCH_M
+
+DOT_DIAMETER_M = 0.00144
+"""The diameter of a dot at its base."""
+DOT_HEIGHT_M = 0.00048
+"""The height of a dot above the ground."""
+DOT_PITCH_M = 0.00234
+"""The distance from the centre of a dot to the next of its cell, down and across."""
+CELL_PITCH_M = 0.0062
+"""The distance from the centre of a dot to the same dot of the next cell."""
+LINE_PITCH_M = 0.010
+"""The distance from the centre of a dot to the same dot of the next line."""
 
 GRAPHICS = "tactilegraphics.org"
 ROUND_TABLE = "Round Table on Information Access for People with Print Disabilities"
@@ -20,32 +34,32 @@ OURS = "a convention of ours"
 
 @dataclass(frozen=True)
 class Rule:
-    """What one thing must be, in one medium."""
+    """A bound of one property, in one medium."""
 
     check: str
-    """What is looked at, such as `gap`."""
+    """Name of the check, such as `gap`."""
     says: str
-    """What is to be so, in words."""
+    """The property in words."""
     bound: float
     unit: Unit
     relation: Literal["<=", ">="]
     source: str
     ours: bool = False
-    """Whether the value is a convention of ours: then nobody else is to blame, and the source says what it leans on."""
+    """True for a value that is our convention; `source` then states its reason."""
     worse: Grade = "illegible"
-    """What it is if the rule is not kept."""
+    """Grade if the rule is not met."""
 
     @property
-    def cited(self) -> str:
-        """The source, and whether it is ours."""
+    def citation(self) -> str:
+        """The source, preceded by OURS for our conventions."""
         return ", ".join(filter(None, [OURS if self.ours else "", self.source]))
 
 
 class Profile(NamedTuple):
-    """The rules of one medium, by what they look at."""
+    """The rules of one medium, by the names of their checks."""
 
     medium: Medium
-    said: str
+    text: str
     """The medium in words."""
     rules: Mapping[str, Rule]
 
@@ -85,8 +99,8 @@ _BRAILLE = (
 )
 
 
-def _profile(medium: Medium, said: str, *rules: Rule) -> Profile:
-    return Profile(medium, said, {each.check: each for each in rules})
+def _profile(medium: Medium, text: str, *rules: Rule) -> Profile:
+    return Profile(medium, text, {each.check: each for each in rules})
 
 
 PROFILES: dict[Medium, Profile] = {
@@ -140,13 +154,10 @@ PROFILES: dict[Medium, Profile] = {
 
 
 def table() -> str:
-    """The rules as a table in Markdown: what, which value for which medium, and its source.
-
-    The page on legibility shows it.
-    """
+    """Return the rules as a table in Markdown, which the page on legibility shows."""
     rows = ["| medium | what | value | if not | source |", "|---|---|---|---|---|"]
     for profile in PROFILES.values():
         for rule in profile.rules.values():
             bound = f"{'at most' if rule.relation == '<=' else 'at least'} {quantity(rule.bound, rule.unit)}"
-            rows.append(f"| `{profile.medium}` | {rule.says} | {bound} | {rule.worse} | {rule.cited} |")
+            rows.append(f"| `{profile.medium}` | {rule.says} | {bound} | {rule.worse} | {rule.citation} |")
     return "\n".join(rows)

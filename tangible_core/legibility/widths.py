@@ -1,7 +1,7 @@
-"""How wide parts are, in metres: the disc that each holds, and where it is narrower than a finger can part.
+"""Widths of parts in metres: the largest disc in each piece, and the places that are too narrow for a finger.
 
-Borders are seen as the middles of the sides of pixels between two parts, on a grid of half pixels: so a strip of n
-pixels is n pixels wide, be n even or odd. The rim of the picture is a border too.
+Borders are the middles of the pixel sides between two parts, on a grid of half pixels, so that a strip of n pixels is
+n pixels wide, for even and odd n. The rim of the picture is a border too.
 """
 
 from typing import Any, NamedTuple
@@ -13,25 +13,26 @@ from ..runtime.opencv import plain_opencv
 from .cells import nearest
 
 ROUND_OFF = 1e-6
+"""Relative tolerance of a width."""
 SLACK_M = 0.2e-3
-"""By so much, and at least a cell, discs reach further than they are: stairs of pixels are no place of their own."""
+"""Distance, and at least a cell, by which discs reach further, so that stairs of pixels do not count as places."""
 
 
 class Widths(NamedTuple):
-    """What was measured of a map of parts."""
+    """The widths of a map of parts."""
 
     pieces: Int32[np.ndarray, "h w"]
-    """The connected piece of each cell."""
+    """Connected piece of each cell."""
     part: Int[np.ndarray, "n"]
-    """The part that each piece is of."""
+    """Part of each piece."""
     size: Int[np.ndarray, "n"]
-    """Cells of each piece."""
+    """Number of cells of each piece."""
     disc_m: Float64[np.ndarray, "n"]
     """Diameter of the largest disc within each piece."""
     narrow: Bool[np.ndarray, "h w"]
     """Cells of places that are too narrow."""
     places: "tuple[Place, ...]"
-    """These places."""
+    """Places that are too narrow."""
     depth: Float32[np.ndarray, "r c"]
     """Half cells to the nearest border, on the grid of half cells."""
 
@@ -41,15 +42,15 @@ class Place(NamedTuple):
 
     piece: int
     width_m: float
-    """Its width, where that is greatest."""
+    """Largest width in the place."""
     size: int
-    """Its cells."""
+    """Number of cells."""
     at: tuple[int, int]
-    """Row and column of a cell in it: one where it is widest."""
+    """Row and column of a cell where it is widest."""
 
 
 class Rims(NamedTuple):
-    """Which sides of a map are a rim, which is a border; a map that is cut out of another goes on there."""
+    """The sides of a map that are a rim, and so a border; a map cut out of a larger one continues on other sides."""
 
     top: bool = True
     bottom: bool = True
@@ -57,7 +58,7 @@ class Rims(NamedTuple):
     right: bool = True
 
     def open_sides(self) -> list[Any]:
-        """Where the map goes on, as an index."""
+        """Return the sides on which the map continues, as indices."""
         sides = (np.s_[0], np.s_[-1], np.s_[:, 0], np.s_[:, -1])
         return [side for side, rim in zip(sides, self, strict=True) if not rim]
 
@@ -68,72 +69,72 @@ WHOLE = Rims()
 def measure(
     labels: Int32[np.ndarray, "h w"], pitch_m: float, gap_m: float, rims: Rims = WHOLE, *, quick: bool = False
 ) -> Widths:
-    """Widths of the parts, of which each place that is narrower than gap_m is one.
+    """Measure the widths of the parts, and find the places that are narrower than gap_m.
 
-    A place is what no disc of that diameter reaches within its piece. Of these, two are let be: what is within an
-    eighth of gap_m of such a disc, and the tip of a corner, which hangs together with the rest of its piece on one side
-    alone and is no longer than gap_m, as those of corners down to 39 degrees are.
-    quick: widths are right to 2 %.
+    A place is a connected set of cells that no disc of diameter gap_m reaches within its piece. Two kinds do not count:
+    places within an eighth of gap_m of such a disc, and tips of corners, which are connected to the rest of the piece
+    on one side only and are at most gap_m long, as those of corners down to 39 degrees are.
+    quick: to 2 %.
     """
     import cv2
 
     sides = _Sides.of(labels)
     pieces = sides.components(np.ones(labels.shape, np.bool_)) - 1
     count = int(pieces.max()) + 1
-    of = np.zeros(count, np.int64)
-    of[pieces.reshape(-1)] = labels.reshape(-1)
+    part = np.zeros(count, np.int64)
+    part[pieces.reshape(-1)] = labels.reshape(-1)
     depth = sides.depth(rims, cv2.DIST_MASK_5 if quick else cv2.DIST_MASK_PRECISE)
-    disc_m = pitch_m * _most(depth, pieces, count).astype(np.float64)
-    left = ~_reached(sides, pieces, depth, gap_m / 2 / pitch_m, pitch_m)
+    disc_m = pitch_m * _deepest(depth, pieces, count).astype(np.float64)
+    left = ~_covered_by_discs(sides, pieces, depth, gap_m / 2 / pitch_m, pitch_m)
     narrow, places = _places(sides, pieces, left, depth, disc_m, pitch_m, gap_m, rims)
     size = np.bincount(pieces.reshape(-1), minlength=count)
-    return Widths(pieces, of, size, disc_m, narrow, places, depth)
+    return Widths(pieces, part, size, disc_m, narrow, places, depth)
 
 
-def connected(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
-    """The connected piece of each cell, from 0 on."""
+def connected_pieces(labels: Int32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
+    """Return the connected piece of each cell, from 0 on."""
     return _Sides.of(labels).components(np.ones(labels.shape, np.bool_)) - 1
 
 
-def around(wide: Widths, pitch_m: float, gap_m: float) -> Bool[np.ndarray, "h w"]:
-    """The narrow places with all that hangs together with them and no disc of a larger gap reaches."""
+def surroundings(wide: Widths, pitch_m: float, gap_m: float) -> Bool[np.ndarray, "h w"]:
+    """Find the narrow places and the cells connected with them that no disc of a larger gap reaches."""
     sides = _Sides.of(wide.pieces)
-    hardly = ~_reached(sides, wide.pieces, wide.depth, gap_m / 2 / pitch_m, pitch_m)
-    components = sides.components(hardly | wide.narrow)
-    there = np.zeros(int(components.max()) + 1, np.bool_)
-    there[components[wide.narrow]] = True
-    there[0] = False
-    return there[components]
+    left = ~_covered_by_discs(sides, wide.pieces, wide.depth, gap_m / 2 / pitch_m, pitch_m)
+    components = sides.components(left | wide.narrow)
+    narrow = np.zeros(int(components.max()) + 1, np.bool_)
+    narrow[components[wide.narrow]] = True
+    narrow[0] = False
+    return narrow[components]
 
 
 class _Sides(NamedTuple):
-    """Which sides of cells are no border."""
+    """Masks of the sides of cells that are not a border."""
 
     upright: Bool[np.ndarray, "h w1"]
-    """Between a cell and the one right of it."""
+    """Sides between a cell and its right neighbour."""
     level: Bool[np.ndarray, "h1 w"]
-    """Between a cell and the one below it."""
+    """Sides between a cell and its lower neighbour."""
 
     @classmethod
     def of(cls, labels: Int32[np.ndarray, "h w"]) -> "_Sides":
         return cls(labels[:, 1:] == labels[:, :-1], labels[1:] == labels[:-1])
 
-    def _drawn(
+    def _draw(
         self, cells: Bool[np.ndarray, "h w"], upright: Bool[np.ndarray, "h w1"], level: Bool[np.ndarray, "h1 w"]
     ) -> UInt8[np.ndarray, "r c"]:
-        """On the grid of half cells, on which cell (r, c) is at (2 r + 1, 2 c + 1)."""
+        """Draw cells and sides on the grid of half cells, on which cell (r, c) is at (2 r + 1, 2 c + 1)."""
         rows, columns = cells.shape
-        found = np.zeros((2 * rows + 1, 2 * columns + 1), np.uint8)
-        found[1::2, 1::2] = cells
-        found[1::2, 2:-1:2] = upright
-        found[2:-1:2, 1::2] = level
-        return found
+        halves = np.zeros((2 * rows + 1, 2 * columns + 1), np.uint8)
+        halves[1::2, 1::2] = cells
+        halves[1::2, 2:-1:2] = upright
+        halves[2:-1:2, 1::2] = level
+        return halves
 
     def depth(self, rims: Rims, mask: int) -> Float32[np.ndarray, "r c"]:
-        """Half cells to the nearest border, at each point of the grid of half cells; 0 on a border."""
+        """Return half cells to the nearest border, at each point of the grid of half cells; 0 on a border."""
         import cv2
 
-        inside = self._drawn(np.ones((len(self.upright), self.level.shape[1]), np.bool_), self.upright, self.level)
+        inside = self._draw(np.ones((len(self.upright), self.level.shape[1]), np.bool_), self.upright, self.level)
         inside[2:-1:2, 2:-1:2] = 1
         inside[0, :], inside[-1, :] = not rims.top, not rims.bottom
         inside[:, 0] &= not rims.left
@@ -147,49 +148,51 @@ class _Sides(NamedTuple):
         with plain_opencv():
             return np.asarray(cv2.distanceTransform(inside, cv2.DIST_L2, mask), np.float32)
 
-    def grown(self, cells: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-        """With the cells beside them, but none over a border."""
-        found = cells.copy()
-        found[:, 1:] |= cells[:, :-1] & self.upright
-        found[:, :-1] |= cells[:, 1:] & self.upright
-        found[1:] |= cells[:-1] & self.level
-        found[:-1] |= cells[1:] & self.level
-        return found
+    def dilate(self, cells: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+        """Add the neighbours of cells, but none across a border."""
+        dilated = cells.copy()
+        dilated[:, 1:] |= cells[:, :-1] & self.upright
+        dilated[:, :-1] |= cells[:, 1:] & self.upright
+        dilated[1:] |= cells[:-1] & self.level
+        dilated[:-1] |= cells[1:] & self.level
+        return dilated
 
     def components(self, cells: Bool[np.ndarray, "h w"]) -> Int32[np.ndarray, "h w"]:
-        """The connected pieces of these cells, from 1 on; 0 elsewhere. No piece crosses a border."""
+        """Return the connected pieces of these cells, from 1 on; 0 elsewhere. No piece crosses a border."""
         import cv2
 
         upright, level = cells[:, 1:] & cells[:, :-1] & self.upright, cells[1:] & cells[:-1] & self.level
-        _, found = cv2.connectedComponents(self._drawn(cells, upright, level), connectivity=4)
-        return np.ascontiguousarray(found[1::2, 1::2])
+        _, components = cv2.connectedComponents(self._draw(cells, upright, level), connectivity=4)
+        return np.ascontiguousarray(components[1::2, 1::2])
 
 
-def _most(depth: Float32[np.ndarray, "r c"], pieces: Int32[np.ndarray, "h w"], count: int) -> Float32[np.ndarray, "n"]:
-    """The greatest depth in each piece: at its cells, and between two of them."""
+def _deepest(
+    depth: Float32[np.ndarray, "r c"], pieces: Int32[np.ndarray, "h w"], count: int
+) -> Float32[np.ndarray, "n"]:
+    """Return the greatest depth in each piece, at its cells and between two of them."""
     deepest = depth[1::2, 1::2].copy()
     for down, right in ((1, 2), (2, 1), (2, 2)):
         here = depth[down:-1:2, right:-1:2]
         at = deepest[: here.shape[0], : here.shape[1]]
-        np.maximum(at, here, out=at)  # beside a border what lies between cells is no deeper than they are
+        np.maximum(at, here, out=at)  # at a border points between cells are no deeper than the cells
     most = np.zeros(count, np.float32)
     np.maximum.at(most, pieces.reshape(-1), deepest.reshape(-1))
     return most
 
 
-def _reached(
+def _covered_by_discs(
     sides: _Sides, pieces: Int32[np.ndarray, "h w"], depth: Float32[np.ndarray, "r c"], radius: float, pitch_m: float
 ) -> Bool[np.ndarray, "h w"]:
-    """Cells that a disc of this radius, in cells, reaches within their piece, or all but reaches."""
+    """Find the cells that a disc of this radius, in cells, covers within their piece, but for SLACK_M."""
     deep = depth >= 2 * radius * (1 - ROUND_OFF)
     middles = deep[1::2, 1::2] | deep[1::2, 2::2] | deep[2::2, 1::2] | deep[2::2, 2::2]
     if not middles.any():
         return middles
     far, at = nearest(middles)
-    reached = (far <= radius + 1) & (pieces.reshape(-1)[at] == pieces)
+    covered = (far <= radius + 1) & (pieces.reshape(-1)[at] == pieces)
     for _ in range(max(0, round(SLACK_M / pitch_m - 1))):
-        reached = sides.grown(reached)
-    return reached
+        covered = sides.dilate(covered)
+    return covered
 
 
 def _places(
@@ -202,7 +205,7 @@ def _places(
     gap_m: float,
     rims: Rims,
 ) -> tuple[Bool[np.ndarray, "h w"], tuple[Place, ...]]:
-    """Where it is too narrow, and the places of it."""
+    """Return the cells that are too narrow, of the cells `left` by discs, and the places that they form."""
     if not left.any():
         return left, ()
     labels = sides.components(left)
@@ -219,37 +222,37 @@ def _places(
     wrong |= disc_m[piece] < gap_m * (1 - ROUND_OFF)
     wrong[0] = False
     for side in rims.open_sides():
-        wrong[labels[side]] = False  # how it goes on there is not seen
+        wrong[labels[side]] = False  # its continuation is outside of the map
     deepest = depth[1::2, 1::2].reshape(-1)[on]
-    width_m = _most(depth, labels, count).astype(np.float64) * pitch_m
+    width_m = _deepest(depth, labels, count).astype(np.float64) * pitch_m
     cell = np.zeros(count, np.int64)
     order = np.argsort(deepest, kind="stable")
     cell[at[order]] = on[order]
     size = np.bincount(at, minlength=count)
-    found = tuple(
+    places = tuple(
         Place(int(piece[n]), float(width_m[n]), int(size[n]), divmod(int(cell[n]), pieces.shape[1]))
         for n in np.flatnonzero(wrong).tolist()
     )
-    return wrong[labels], found
+    return wrong[labels], places
 
 
 def _ends(
     sides: _Sides, labels: Int32[np.ndarray, "h w"], count: int
 ) -> tuple[Int[np.ndarray, "m"], Float64[np.ndarray, "m 2"]]:
-    """On how many sides each of these places hangs together with the rest of its piece; the middle of these sides."""
+    """Count the sides on which each place is connected to the rest of its piece; return their middle as well."""
     import cv2
 
-    beside = np.zeros(labels.shape, np.int32)
+    adjacent = np.zeros(labels.shape, np.int32)
     right, left, below, above = np.s_[:, 1:], np.s_[:, :-1], np.s_[1:], np.s_[:-1]
     for one, other, same in ((right, left, sides.upright), (below, above, sides.level)):
         for here, there in ((one, other), (other, one)):
             met = same & (labels[here] == 0) & (labels[there] > 0)
-            beside[here][met] = labels[there][met]
-    on = np.flatnonzero(beside)
-    of = beside.reshape(-1)[on]
-    _, groups = cv2.connectedComponents((beside > 0).view(np.uint8), connectivity=8)
-    met = np.unique(groups.reshape(-1)[on].astype(np.int64) * count + of) % count
-    cells = np.maximum(np.bincount(of, minlength=count), 1)
+            adjacent[here][met] = labels[there][met]
+    on = np.flatnonzero(adjacent)
+    place = adjacent.reshape(-1)[on]
+    _, groups = cv2.connectedComponents((adjacent > 0).view(np.uint8), connectivity=8)
+    met = np.unique(groups.reshape(-1)[on].astype(np.int64) * count + place) % count
+    cells = np.maximum(np.bincount(place, minlength=count), 1)
     rows, columns = np.divmod(on, labels.shape[1])
-    middle = np.stack([np.bincount(of, each, count) / cells for each in (rows, columns)], axis=1)
+    middle = np.stack([np.bincount(place, each, count) / cells for each in (rows, columns)], axis=1)
     return np.bincount(met, minlength=count), middle

@@ -1,4 +1,4 @@
-"""A device whose hand's space is laid over the picture's."""
+"""A device whose workspace is mapped to the picture."""
 
 import math
 from collections.abc import Callable
@@ -15,10 +15,11 @@ from .options import WorkspaceMapping
 from .placement import Placement
 
 NAME = "the mapped device"
+"""Name of a mapped link in messages."""
 
 
-def mapped(device: HapticDevice, mapping: WorkspaceMapping) -> HapticDevice:
-    """The device seen through a mapping; the device itself where that changes nothing."""
+def map_device(device: HapticDevice, mapping: WorkspaceMapping) -> HapticDevice:
+    """Return the device seen through a mapping; the device itself if the mapping changes nothing."""
     if mapping.placement(device.spec().workspace_m) == Placement():
         return device
     return MappedDevice(device=device, mapping=mapping)
@@ -29,114 +30,103 @@ class MappedDevice(HapticDevice):
     """Another device, in the metres of the picture."""
 
     device: SerializeAsAny[HapticDevice]
-    """What the hand holds."""
+    """The device that the hand holds."""
     mapping: WorkspaceMapping
-    """How the picture lies under it."""
+    """The mapping from hand to picture."""
 
     def spec(self) -> DeviceSpec:
-        """The device's, in the metres of the picture and the newtons of the hand."""
-        return self.mapping.felt_spec(self.device.spec())
+        """Return the device's specification in metres of the picture and newtons of the hand."""
+        return self.mapping.spec_on_picture(self.device.spec())
 
     def open(self) -> Link:
-        """Raises: DeviceError as the device does."""
+        """Open the device. Raises: DeviceError as the device does."""
         link, to = self.device.open(), placement_of(self)
         return MappedCompiledLink(link, to) if isinstance(link, CompiledLink) else MappedLink(link, to)
 
 
 def placement_of(device: HapticDevice) -> Placement:
-    """How the picture lies under this device's hand: as its mapping says, or as it is where it has none."""
+    """Return the placement of the picture under this device's hand; the identity if the device has no mapping."""
     if isinstance(device, MappedDevice):
         return device.mapping.placement(device.device.spec().workspace_m)
     return Placement()
 
 
+class _ThroughMapping:
+    """The methods of a link that passes states and forces through a mapping."""
+
+    _link: Link
+    _converter: "_Converter"
+
+    def _read(self) -> HapticState:
+        """Read the state of the tip, in the picture."""
+        return self._converter.to_picture(self._link.read())
+
+    def _send(self, force: Force) -> None:
+        """Send a force in the picture's directions."""
+        self._link.write(Force(*self._converter.push(*force)))
+
+    @property
+    def applied(self) -> Force:
+        """The force that the device holds, in the picture's directions."""
+        return self._converter.force_on_picture(self._link.applied)
+
+    def _release(self) -> None:
+        """Close the device."""
+        self._link.close()
+
+
 @final
-class MappedLink(Link):
-    """A link in the metres of the picture; the clock stays the device's, and its own link limits the force."""
+class MappedLink(_ThroughMapping, Link):
+    """A link in metres of the picture; the clock is the device's, and the device's own link limits the force."""
 
     def __init__(self, link: Link, to: Placement) -> None:
         super().__init__(NAME, math.inf)
-        self._link, self._between = link, _Between(to)
-
-    def _read(self) -> HapticState:
-        """Where in the picture the tip is now."""
-        return self._between.placed(self._link.read())
-
-    def _send(self, force: Force) -> None:
-        """A force in the picture's directions."""
-        self._link.write(Force(*self._between.push(*force)))
-
-    @property
-    def applied(self) -> Force:
-        """The force the device holds, in the picture's directions."""
-        return self._between.turned_back(self._link.applied)
-
-    def _release(self) -> None:
-        """Let go of the device."""
-        self._link.close()
+        self._link, self._converter = link, _Converter(to)
 
 
 @final
-class MappedCompiledLink(CompiledLink):
-    """As `MappedLink`, for a device of kernels: they are called by kernels, and a loop still needs no Python."""
+class MappedCompiledLink(_ThroughMapping, CompiledLink):
+    """A `MappedLink` for a device of kernels: its own kernels call the device's, and a loop still needs no Python."""
 
     def __init__(self, link: CompiledLink, to: Placement) -> None:
         super().__init__(NAME, math.inf)
-        self._link, self._between = link, _Between(to)
-        self._kernels = self._between.around(link.kernels())
-
-    def _read(self) -> HapticState:
-        """Where in the picture the tip is now."""
-        return self._between.placed(self._link.read())
-
-    def _send(self, force: Force) -> None:
-        """A force in the picture's directions."""
-        self._link.write(Force(*self._between.push(*force)))
-
-    @property
-    def applied(self) -> Force:
-        """The force the device holds, in the picture's directions."""
-        return self._between.turned_back(self._link.applied)
-
-    def _release(self) -> None:
-        """Let go of the device."""
-        self._link.close()
+        self._link, self._device, self._converter = link, link, _Converter(to)
+        self._kernels = self._converter.around(link.kernels())
 
     def kernels(self) -> LinkKernels:
-        """The device's own, each called by one that turns what goes through."""
+        """Return the kernels that convert states and forces, and call the device's."""
         return self._kernels
 
     @property
     def exchanges(self) -> bool:
-        """As the device."""
-        return self._link.exchanges
+        """True if the device exchanges."""
+        return self._device.exchanges
 
     def _exchange(self) -> None:
-        """As the device."""
-        self._link.exchange()
+        """Exchange with the device."""
+        self._device.exchange()
 
 
 @final
-class _Between:
-    """What turns states and forces on their way, and remembers the clutch."""
+class _Converter:
+    """A converter of states and forces between hand and picture, which remembers the clutch."""
 
     def __init__(self, to: Placement) -> None:
         from . import kernels
 
         self._to, self._kernels = to, cast(Any, kernels)
         self._memory = np.zeros(kernels.MEMORY)
-        self._place = partial(self._kernels.place, to, self._memory)
         self.push: Callable[[float, float, float], tuple[float, float, float]]
         self.push = partial(self._kernels.push, to, self._memory)
 
-    def placed(self, state: HapticState) -> HapticState:
+    def to_picture(self, state: HapticState) -> HapticState:
         numbers = np.array([*state.position_m, *state.velocity_m_per_s, state.buttons], np.float64)
-        self._place(numbers)
+        self._kernels.place(self._to, self._memory, numbers)
         x, y, z, vx, vy, vz, _ = numbers.tolist()
         return HapticState((x, y, z), (vx, vy, vz), state.time_s, state.buttons)
 
-    def turned_back(self, held: Force) -> Force:
-        return Force(*self._to.turned_back(held.x, held.y), held.z)
+    def force_on_picture(self, force: Force) -> Force:
+        return Force(*self._to.rotate_back(force.x, force.y), force.z)
 
     def around(self, kernels: LinkKernels) -> LinkKernels:
         return self._kernels.around(kernels, self._to, self._memory)

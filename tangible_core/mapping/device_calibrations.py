@@ -1,4 +1,4 @@
-"""What was measured of one unit of a device, kept in the user's configuration folder by its serial number."""
+"""Calibrations of single devices, stored in the user's configuration folder by serial number."""
 
 import os
 from pathlib import Path
@@ -16,7 +16,7 @@ M = TypeVar("M", bound=BaseModel)
 
 
 def calibration_path(device: str, serial: str) -> Path:
-    """Where a unit's calibration is kept; a unit without a serial number shares it with its like."""
+    """Return the path of a unit's calibration; units of a kind without serial numbers share one."""
     if named := os.environ.get("TANGIBLE_CONFIG_DIR"):
         folder = as_path(named, "TANGIBLE_CONFIG_DIR")
     else:
@@ -27,12 +27,12 @@ def calibration_path(device: str, serial: str) -> Path:
 
 
 def any_calibration(device: str) -> bool:
-    """Whether any was saved for this kind of device: if not, nobody need ask it for its serial number."""
+    """Tell whether any calibration was saved for this kind of device; if not, its serial number is not needed."""
     return any(calibration_path(device, "").parent.glob(f"{device}-*.json"))
 
 
 def save_calibration(device: str, serial: str, values: BaseModel) -> Path:
-    """Keep a unit's calibration in place of the one before, whole or not at all; where it lies now.
+    """Save a unit's calibration atomically, in place of the previous one; return its path.
 
     Raises: OutputError if the place cannot be written.
     """
@@ -42,9 +42,9 @@ def save_calibration(device: str, serial: str, values: BaseModel) -> Path:
 
 
 def load_calibration(device: str, serial: str, model: type[M]) -> M | None:
-    """A unit's calibration; None if none was saved.
+    """Load a unit's calibration; None if none was saved.
 
-    Raises: DeviceError naming the file if it cannot be read or does not fit: a wrong calibration is never passed over.
+    Raises: DeviceError naming the file if it cannot be read or does not fit: a wrong calibration is never ignored.
     """
     path = calibration_path(device, serial)
     try:

@@ -1,4 +1,4 @@
-"""A mapping around a device's kernels. Imports numba: whoever opens a mapped device imports this module then."""
+"""A mapping around a device's kernels. Imports numba, when a mapped device is opened."""
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
 # pyright: basic
@@ -16,14 +16,15 @@ PLACEMENT = typeof(Placement())
 ARRAY = float64[::1]
 VECTOR = types.UniTuple(float64, 3)
 DRIFT_X, DRIFT_Y, HAND_X, HAND_Y, STARTED, BARRED, MUTED = range(7)
-"""Of a link's memory: how far the clutch has moved the picture, where the hand was, whether it was anywhere yet,
-whether there may be no force now, and whether it waits for the law to let go."""
+"""Fields of a link's memory: the picture's shift by the clutch, the hand's last position, whether there is one, whether
+force is barred now, and whether force is muted until the force law gives none."""
 MEMORY = 7
+"""Length of a link's memory."""
 
 
 @njit(void(PLACEMENT, ARRAY, ARRAY), **KERNEL)
 def place(to, memory, state):
-    """Turn a device's state (x, y, z, vx, vy, vz, buttons) into the picture's, where it stands."""
+    """Convert a device's state (x, y, z, vx, vy, vz, buttons) to the picture, in place."""
     x, y, z = state[0], state[1], state[2]
     held = int64(state[6]) & int64(to.clutch)
     if held and memory[STARTED]:
@@ -45,7 +46,7 @@ def place(to, memory, state):
 
 @njit(VECTOR(PLACEMENT, ARRAY, float64, float64, float64), **KERNEL)
 def push(to, memory, fx, fy, fz):
-    """The force on the hand; zero while it may not be pushed, and after that until the law itself gives none.
+    """Return the force on the hand; zero while force is barred, and after that until the force law gives none.
 
     Otherwise a hand that came back deep inside the surface would be thrown out of it.
     """
@@ -57,7 +58,7 @@ def push(to, memory, fx, fy, fz):
 
 
 def mapped_read(to, memory, fixed, read, write, state):
-    """Read the device, and turn what is fresh."""
+    """Read the device, and convert a fresh state."""
     fresh = read(*fixed, state)
     if fresh:
         place(to, memory, state)
@@ -65,23 +66,23 @@ def mapped_read(to, memory, fixed, read, write, state):
 
 
 def mapped_write(to, memory, fixed, read, write, fx, fy, fz):
-    """Turn the force, and give it to the device."""
+    """Convert the force, and send it to the device."""
     x, y, z = push(to, memory, fx, fy, fz)
     write(*fixed, x, y, z)
 
 
 def around(device: LinkKernels, to: Placement, memory) -> LinkKernels:
-    """Kernels that call a device's own by their addresses: compiled once for all devices alike, and kept on disk."""
+    """Return kernels that call the device's by their addresses: compiled once for all devices, and cached on disk."""
     # the addresses come last: numba warns of a tuple that begins with a function
     fixed = (to, memory, device.fixed, Address(device.read), Address(device.write))
     kinds = [typeof(each) for each in fixed]
     return LinkKernels(
-        _compiled(mapped_read, int64(*kinds, ARRAY)),
-        _compiled(mapped_write, void(*kinds, float64, float64, float64)),
+        _compile(mapped_read, int64(*kinds, ARRAY)),
+        _compile(mapped_write, void(*kinds, float64, float64, float64)),
         fixed,
     )
 
 
 @cache
-def _compiled(kernel, signature):
+def _compile(kernel, signature):
     return njit(signature, **KERNEL)(kernel)

@@ -1,4 +1,4 @@
-"""What a pipeline file says of the mapping between hand and picture."""
+"""The block `mapping:` of a pipeline file."""
 
 import math
 from dataclasses import replace
@@ -15,7 +15,7 @@ Size = Annotated[float, Field(gt=0, le=10)]
 
 
 class WorkspaceMapping(Quantities):
-    """How the picture lies under the hand; without options they coincide."""
+    """The mapping from hand to picture; without options they coincide."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
@@ -29,12 +29,12 @@ class WorkspaceMapping(Quantities):
     offset_m: tuple[Metres, Metres, Metres] = (0.0, 0.0, 0.0)
     """Position in the device's workspace of the centre of the picture, or of the region, on the base plane."""
     clutch_button: Annotated[int, Field(ge=0, le=31)] | None = None
-    """While this button (the first is 0) is held, there is no force, and the picture moves sideways with the hand."""
+    """Button (the first is 0) that, while held, switches the force off and moves the picture sideways with the hand."""
     limits_m: tuple[Size, Size, Size] | None = None
     """Size along x, y, z of a box about the device's centre; outside it there is no force."""
 
     def placement(self, workspace_m: Vector) -> Placement:
-        """In numbers, for a device of this workspace."""
+        """Return the mapping in numbers, for a device of this workspace."""
         cos, sin = turn(self.rotation_deg)
         x, y, width, length = self.region_m or (0.0, 0.0, 0.0, 0.0)
         scale = self.scale or 1.0
@@ -46,8 +46,8 @@ class WorkspaceMapping(Quantities):
         clutch = 0 if self.clutch_button is None else 1 << self.clutch_button
         return Placement(scale, cos, sin, x, y, *self.offset_m, *reach, float(clutch))
 
-    def felt_spec(self, spec: DeviceSpec) -> DeviceSpec:
-        """The device as the picture sees it: metres are the picture's, newtons the hand's."""
+    def spec_on_picture(self, spec: DeviceSpec) -> DeviceSpec:
+        """Return the device's specification in metres of the picture and newtons of the hand."""
         place = self.placement(spec.workspace_m)
         x, y, z = spec.workspace_m
         cos, sin = abs(place.cos), abs(place.sin)

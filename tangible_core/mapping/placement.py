@@ -1,7 +1,8 @@
-"""Points, motions and forces from the hand's frame to the picture's, and back.
+"""Conversion of points, motions and forces between the frames of hand and picture.
 
-The picture's point s lies under the hand at h = o + k R (s - c): k the scale, R the turn about z, c the point of the
-picture that the hand finds at o. Forces are only turned, F_h = R F_s: a newton of the law is a newton on the hand.
+The picture's point s lies under the hand at h = o + k R (s - c): k the scale, R the rotation about z, c the point of
+the picture that the hand finds at o. Forces are only rotated, F_h = R F_s: a newton of the force law is a newton on the
+hand.
 """
 
 import math
@@ -14,7 +15,7 @@ QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 
 class Placement(NamedTuple):
-    """A mapping in numbers; as an array, what the kernels take."""
+    """A mapping in numbers, as the kernels take it."""
 
     scale: float = 1.0
     """Hand metres per picture metre."""
@@ -22,25 +23,25 @@ class Placement(NamedTuple):
     sin: float = 0.0
     centre_x_m: float = 0.0
     centre_y_m: float = 0.0
-    """The point of the picture that lies at the offset."""
+    """The point of the picture that lies at the offset, x and y."""
     offset_x_m: float = 0.0
     offset_y_m: float = 0.0
     offset_z_m: float = 0.0
     reach_x_m: float = math.inf
     reach_y_m: float = math.inf
     reach_z_m: float = math.inf
-    """How far from its centre the device may give force."""
+    """Half the sides, x, y and z, of the box about the device's centre in which force is allowed."""
     clutch: float = 0.0
-    """The bits of the button that moves the picture."""
+    """The bit of the button that moves the picture; 0 for none."""
 
     def on_picture(self, hand_m: Vector) -> Vector:
-        """The point of the picture at a point of the hand's space, where no clutch has moved the picture."""
+        """Return the point of the picture at a point of the hand, if no clutch has moved the picture."""
         x, y, z = hand_m
-        x, y = self.turned_back(x - self.offset_x_m, y - self.offset_y_m)
+        x, y = self.rotate_back(x - self.offset_x_m, y - self.offset_y_m)
         return self.centre_x_m + x / self.scale, self.centre_y_m + y / self.scale, (z - self.offset_z_m) / self.scale
 
     def under_hand(self, picture_m: Vector) -> Vector:
-        """Where the hand finds a point of the picture, where no clutch has moved the picture."""
+        """Return the point of the hand at a point of the picture, if no clutch has moved the picture."""
         x, y, z = picture_m
         x, y = self.scale * (x - self.centre_x_m), self.scale * (y - self.centre_y_m)
         return (
@@ -49,13 +50,13 @@ class Placement(NamedTuple):
             self.offset_z_m + self.scale * z,
         )
 
-    def turned_back(self, x: float, y: float) -> tuple[float, float]:
-        """A horizontal vector of the hand's space as the picture has it."""
+    def rotate_back(self, x: float, y: float) -> tuple[float, float]:
+        """Rotate a horizontal vector from the hand's frame to the picture's."""
         return self.cos * x + self.sin * y, self.cos * y - self.sin * x
 
 
 def turn(degrees: float) -> tuple[float, float]:
-    """Cosine and sine; exact for quarter turns.
+    """Return cosine and sine; exact for quarter turns.
 
     >>> turn(-90.0), turn(360.0)
     ((0.0, -1.0), (1.0, 0.0))

@@ -45,8 +45,10 @@ def shared_borders(parts: PartMap, width_m: float, tolerance_m: float) -> tuple[
         polygons = shapely.coverage_simplify(polygons, tolerance_m * columns / width_m, simplify_boundary=False)
     middle, pitch_m = np.array([columns, rows]) / 2, width_m / columns * np.array([1, -1])
 
-    polygons = shapely.transform(polygons, lambda at: (at - middle) * pitch_m)
-    return _gather(shapely, polygons, np.asarray(pieces.segments), parts.count)
+    def in_metres(at: Float64[np.ndarray, "k 2"]) -> Float64[np.ndarray, "k 2"]:
+        return (at - middle) * pitch_m
+
+    return _gather(shapely, shapely.transform(polygons, in_metres), np.asarray(pieces.segments), parts.count)
 
 
 def _shapely() -> Any:

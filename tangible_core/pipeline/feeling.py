@@ -19,7 +19,7 @@ from ..plugins.interfaces import Film, HapticDevice, Medium, Reshaping, Touch
 from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
 from ..runtime.threads import limited_threads
 from ..servo import OVER, Beacon, Servo, beacon_to
-from ..session import About, Followed, PartFelt, Recording, Turn
+from ..session import About, PartFelt, Recording, Slot, TrackingError
 from ..session.film import ByClock, Reliefs
 from .config.methods import check_kind, named_method
 from .engine.engine import Engine
@@ -65,7 +65,7 @@ class FeelOptions(TypedDict, total=False):
     each_s: float
     """Seconds for each pipeline of `then`; 60 by default."""
     on_wait: Callable[[str], None] | None
-    """A function called with a sentence while a missing or disconnected device is awaited (`session.run_in_turn`); in
+    """A function called with a sentence while a missing or disconnected device is awaited (`session.run_kiosk`); in
     real time only."""
     beacon: str | int | None
     """The name or the number of a part to which the hand is pulled gently, with 1 N at most, until a button of the
@@ -153,7 +153,7 @@ class Feeling:
                     "then, on_wait: are for a session in real time; leave them out, or in_real_time=False"
                 )
             simulated = self._run_simulated(device, math.inf if seconds is None else seconds, listener, stop, beacon)
-            simulated = replace(simulated, about=about_session.stamped())
+            simulated = replace(simulated, about=about_session.with_versions())
             if file is not None:
                 simulated.save(file)
             return simulated
@@ -162,7 +162,7 @@ class Feeling:
         about_session = join_descriptions(about_session, [Feeling(each)._about() for each in (self.pipeline, *then)])
 
         def run(rows: Callable[[np.ndarray], None]) -> str:
-            report = session.run_in_turn(
+            report = session.run_kiosk(
                 turns, device, seconds, each_s if then else math.inf, on_report=listener, keep=rows, on_start=on_start,
                 on_wait=on_wait, stop=stop, threads=self.engine.threads,
             )  # fmt: skip
@@ -172,10 +172,10 @@ class Feeling:
             with session.keeping(file, about_session) as writer:
                 stopped = run(_both(writer.append, keep))
                 writer.close(stopped)
-            return Recording.load(file) if keep is None else Recording(NO_ROWS, stopped, about_session.stamped())
+            return Recording.load(file) if keep is None else Recording(NO_ROWS, stopped, about_session.with_versions())
         rows = [NO_ROWS]
         stopped = run(keep or rows.append)
-        return Recording(np.concatenate(rows), stopped, about_session.stamped())
+        return Recording(np.concatenate(rows), stopped, about_session.with_versions())
 
     def _run_simulated(
         self,
@@ -186,13 +186,13 @@ class Feeling:
         beacon: str | int | None,
     ) -> Recording:
         """Run a session by the clock of a simulated device."""
-        listener = session.telling_parts(self.pipeline.make("surface"), listener)
+        listener = session.with_parts(self.pipeline.make("surface"), listener)
         touch, options = self._touch_or_film(), (self.engine.config.safety, stop, self._beacon(beacon))
         if not isinstance(touch, Film):
             return session.run_simulated(touch, device, seconds, listener, *options)
         with self.reliefs as reliefs, limited_threads(self.engine.threads):
             frames = ByClock(reliefs, touch)
-            return session.run_simulated(touch, device, seconds, frames.told(listener), *options, frames=frames)
+            return session.run_simulated(touch, device, seconds, frames.with_counts(listener), *options, frames=frames)
 
     def replay(self, recording: Recording | str | PathLike[str]) -> Recording:
         """Return the forces of this pipeline's force law for each recorded state, without limits.
@@ -202,9 +202,9 @@ class Feeling:
         """
         recording = recording if isinstance(recording, Recording) else Recording.load(recording)
         about_replay = replace(about(self.engine), device=f"replay of {recording.about.device or 'a recording'}")
-        return replace(session.replay(self.touch, recording), about=about_replay.stamped())
+        return replace(session.replay(self.touch, recording), about=about_replay.with_versions())
 
-    def track(self, seen: Recording) -> Followed:
+    def track(self, seen: Recording) -> TrackingError:
         """Report how well the hand tracked the device's path, if it has one. seen: one of `session.EVERY` ticks."""
         return path_tracking(self.engine, self.device, seen)
 
@@ -253,7 +253,7 @@ class Feeling:
             loop=loop,
         )
 
-    def _turn(self, first: "Feeling", beacon: str | int | None) -> Turn:
+    def _turn(self, first: "Feeling", beacon: str | int | None) -> Slot:
         """Return the turn of this scene on the device of the first one. Raises: ConfigError for another device."""
         ours, theirs = self.engine.config, first.engine.config
         own = self.given is None and ours.device is not None
@@ -267,7 +267,7 @@ class Feeling:
         if self.given is None and ours.device is None and theirs.device is not None:
             on = Feeling(self.pipeline, theirs.device.method)
         reliefs = None if self.engine.scene.video is None else lambda: self.reliefs
-        return Turn(on._touch_or_film(), ours.safety, self.pipeline.make("surface"), self._beacon(beacon), reliefs)
+        return Slot(on._touch_or_film(), ours.safety, self.pipeline.make("surface"), self._beacon(beacon), reliefs)
 
     def _touch_or_film(self) -> Touch | Film:
         """Return the touch; the film for a video."""

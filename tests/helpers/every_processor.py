@@ -21,7 +21,6 @@ from tangible_core import load_method
 from tangible_core.compiled import threads
 from tangible_core.data import DisparityMap, HapticSurface, Relief, SegmentMap, Views, digest_of
 from tangible_core.data.pictures import to_grey, to_rgb8
-from tangible_core.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke
 from tangible_core.materials.assignment import library, relative_roughness
 from tangible_core.materials.colours import segment_colours
 from tangible_core.metrics import (
@@ -54,6 +53,7 @@ from tangible_depth.rectify.rectification import rectify
 from tangible_depth.rectify.rectified_pair import warp_pair
 from tangible_depth.sparse.harris import harris_response
 from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_matches
+from tangible_render.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke
 
 Found = Iterator[tuple[str, Any]]
 SIZE = slice(90, 346), slice(200, 520)

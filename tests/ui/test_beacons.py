@@ -1,8 +1,6 @@
 """A beacon on the page: asked for by the number of a part, told of to all tabs, and released by a button."""
 
 import asyncio
-import time
-from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -10,30 +8,23 @@ from typing import Any
 import numpy as np
 import pytest
 
-from desks import TEXT, SmallDesk, small_scene
+from sessions import TEXT, SmallSession, small_scene
 from tangible_core import load_method
 from tangible_core.data import HapticSurface, Relief, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.mapping import WorkspaceMapping
 from tangible_core.servo import Beacon, Safety, beacon_to, pack_touch
 from tangible_core.servo.ring import shared_folder
-from tangible_ui.feeling.feeling import Feeling, Felt
+from tangible_ui.feeling.feeling import Feeling, LoopInput
 from tangible_ui.framing import STATE_FRAME
 from tangible_ui.requests import REQUESTS
 from tangible_ui.requests.document import take
 from tangible_ui.requests.making import make
 from tangible_ui.serving.serve import watch
 from tangible_ui.state.texts import Text
+from waiting import happened, until
 
-IN_TIME_S = 20.0
 IN_PARTS = TEXT.replace("want: touch", "want: touch\nparts: {0: {name: wall}}")
-
-
-def until(condition: Callable[[], Any]) -> None:
-    end = time.monotonic() + IN_TIME_S
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.005)
 
 
 def test_a_tab_asks_for_a_part_and_all_tabs_hear_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -44,25 +35,27 @@ def test_a_tab_asks_for_a_part_and_all_tabs_hear_of_it(tmp_path: Path, monkeypat
     monkeypatch.setattr(Feeling, "pull_to", lambda _, beacon: pulled.append(beacon))
 
     async def asked() -> None:
-        desk = SmallDesk(tmp_path, monkeypatch)
+        session = SmallSession(tmp_path, monkeypatch)
         ask = REQUESTS["beacon"]
         with pytest.raises(DeviceError, match="nothing is felt"):
-            await ask(desk.desk, desk.tab, part=0)
+            await ask(session.session, session.tab, part=0)
         runs[0] = True
-        await take(desk.desk, Text(IN_PARTS, file))
+        await take(session.session, Text(IN_PARTS, file))
         with pytest.raises(ConfigError, match="not made yet"):
-            await ask(desk.desk, desk.tab, part=0)
-        await make(desk.desk, desk.tab, "surface")
-        assert await ask(desk.desk, desk.tab, part=0) == {"part": 0, "name": "wall"}
-        told = desk.tab.last("beacon")
+            await ask(session.session, session.tab, part=0)
+        await make(session.session, session.tab, "surface")
+        assert await ask(session.session, session.tab, part=0) == {"part": 0, "name": "wall"}
+        told = session.tab.last("beacon")
         assert (told["part"], told["name"], told["why"]) == (0, "wall", "asked")
         assert pulled[-1] is not None and pulled[-1].part == 0
         with pytest.raises(ConfigError, match="there is no part 999"):
-            await ask(desk.desk, desk.tab, part=999)
-        assert await ask(desk.desk, desk.tab, part=None) == {"part": None, "name": ""}
-        assert pulled[-1] is None and desk.tab.last("beacon")["part"] is None
-        assert [each["event"] for each in desk.desk.history].count("beacon") == 1, "who comes later hears the last"
-        desk.desk.maker.close()
+            await ask(session.session, session.tab, part=999)
+        assert await ask(session.session, session.tab, part=None) == {"part": None, "name": ""}
+        assert pulled[-1] is None and session.tab.last("beacon")["part"] is None
+        assert [each["event"] for each in session.session.history].count("beacon") == 1, (
+            "who comes later hears the last"
+        )
+        session.session.worker.close()
 
     asyncio.run(asked())
     assert set(shared_folder().glob("*.parcel")) <= before, "nothing is left of what was handed on"
@@ -79,9 +72,9 @@ def test_a_button_of_the_page_s_hand_releases_it_and_a_scene_and_a_stop_end_it()
     options = {name: value for name, value in feeling.own_device.items() if name != "use"}
     device = load_method("device", "pointer")(**options)
 
-    def felt() -> Felt:
+    def felt() -> LoopInput:
         touch = pack_touch(load_method("render", "proxy")().touch(surface), device.spec())
-        return Felt(touch, "proxy", "it", device, True, WorkspaceMapping(), Safety(ramp_s=0, passivity="off"))
+        return LoopInput(touch, "proxy", "it", device, True, WorkspaceMapping(), Safety(ramp_s=0, passivity="off"))
 
     tag = [0]
 
@@ -128,19 +121,17 @@ def test_the_server_tells_all_tabs_why_it_ended() -> None:
     told: list[dict[str, Any]] = []
     ends = iter(["", "button", "", "ended"])
     feeling = SimpleNamespace(
-        hand=SimpleNamespace(keep=lambda: None), beacon_over=lambda: next(ends, ""), ended=lambda: None
+        hand=SimpleNamespace(keep=lambda: None), beacon_over=lambda: next(ends, ""), loop_end=lambda: None
     )
-    desk: Any = SimpleNamespace(
+    session: Any = SimpleNamespace(
         feeling=feeling,
         laws=SimpleNamespace(follow=lambda _: None),
         tell=lambda event, **said: told.append({"event": event, **said}),
     )
 
     async def watched() -> None:
-        task = asyncio.ensure_future(watch(desk))
-        async with asyncio.timeout(IN_TIME_S):
-            while len(told) < 2:
-                await asyncio.sleep(0.005)
+        task = asyncio.ensure_future(watch(session))
+        await happened(lambda: len(told) >= 2)
         task.cancel()
 
     asyncio.run(watched())

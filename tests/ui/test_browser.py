@@ -1,7 +1,6 @@
 """What the tests in a browser stand on: a page is served and drawn, and nothing that goes wrong with it is missed."""
 
 import io
-import time
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +10,7 @@ from PIL import Image
 from browser_tabs import tabs
 from needed import lacking
 from ui_server import UiServer
+from waiting import until
 
 NOT_HERE = "http://tangible.invalid/picture.png"
 
@@ -33,7 +33,7 @@ class TestWatch:
     )
     def test_a_complaint_is_kept(self, open_page, complaints: list[str], html: str, complaint: str):
         page = open_page(data(html))
-        assert wait_until(lambda: page.title() and complaint in complaints)
+        until(lambda: page.title() and complaint in complaints)
         complaints.clear()
 
     def test_a_page_without_complaints_has_none(self, open_page, complaints: list[str]):
@@ -50,7 +50,7 @@ class TestServed:
     def test_the_page_is_served_and_drawn(self, opened, open_page):
         """With what hangs together: the policy lets script and style in, WebGL is there, the surface is drawn."""
         page = open_page(f"{opened('builtin/brick')}&measure")
-        page.wait_for_function("() => window.figures?.firstMs > 0", timeout=60_000)
+        page.wait_for_function("() => window.figures?.firstMs > 0")
         assert page.title().endswith("Tangible Images")
         assert page.evaluate("document.styleSheets.length") == 1
         with Image.open(io.BytesIO(page.locator("#terrain").screenshot())) as picture:
@@ -65,7 +65,7 @@ class TestServed:
         start = f"import subprocess, time; print({child}); print('http://127.0.0.1:1/', flush=True); time.sleep(60)"
         with UiServer(cwd=tmp_path, start=start) as server:
             pid = int(server.lines[0])
-        assert wait_until(lambda: not alive(pid))
+        until(lambda: not alive(pid))
 
 
 def alive(pid: int) -> bool:
@@ -73,13 +73,6 @@ def alive(pid: int) -> bool:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except FileNotFoundError:
         return False
-
-
-def wait_until(holds, longest_s: float = 10) -> bool:
-    end = time.monotonic() + longest_s
-    while not (held := holds()) and time.monotonic() < end:
-        time.sleep(0.01)
-    return held
 
 
 @pytest.mark.parametrize("name", ["CI", "TANGIBLE_UI_REQUIRED"])

@@ -7,7 +7,6 @@ import shutil
 import socket
 import sys
 import tarfile
-import time
 import tomllib
 import zipfile
 from collections.abc import Callable
@@ -211,10 +210,8 @@ class TestNpm:
         monkeypatch.setattr(module, "PING_S", 0.5)
         with socket.create_server(("127.0.0.1", 0)) as silent:
             monkeypatch.setenv("npm_config_registry", f"http://127.0.0.1:{silent.getsockname()[1]}")
-            begun = time.monotonic()
             with pytest.raises(module.PageNotBuilt, match="npm cannot reach its registry"):
                 module.build_page(tree / "plugins/ui/web", tree / "static")
-        assert time.monotonic() - begun < 20
 
     def test_the_lock_file_holds_digests_and_no_addresses(self):
         lock = json.loads((WEB / "package-lock.json").read_text("utf-8"))

@@ -7,27 +7,27 @@ from typing import Any
 
 import pytest
 
-from desks import TEXT, SmallDesk, small_scene
+from sessions import TEXT, SmallSession, small_scene
 from tangible_core.errors import ConfigError
 from tangible_ui.requests import REQUESTS
 from tangible_ui.state.session import MOST_HISTORY
 
-Run = Callable[[Callable[[SmallDesk, Any], Coroutine[Any, Any, None]]], None]
+Run = Callable[[Callable[[SmallSession, Any], Coroutine[Any, Any, None]]], None]
 
 
 @pytest.fixture
 def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
-    """Do something with a desk on which the small scene is opened, and nothing was made."""
+    """Do something with a session on which the small scene is opened, and nothing was made."""
     path = small_scene(tmp_path)
 
-    def do(what: Callable[[SmallDesk, Any], Coroutine[Any, Any, None]]) -> None:
+    def do(what: Callable[[SmallSession, Any], Coroutine[Any, Any, None]]) -> None:
         async def all_of_it() -> None:
-            small = SmallDesk(tmp_path, monkeypatch)
+            small = SmallSession(tmp_path, monkeypatch)
 
             async def ask(name: str, **told: Any) -> Any:
-                return await REQUESTS[name](small.desk, small.tab, **told)
+                return await REQUESTS[name](small.session, small.tab, **told)
 
-            small.desk.path = path
+            small.session.path = path
             await ask("edit", text=TEXT)
             await what(small, ask)
 
@@ -37,53 +37,53 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
 
 
 def test_a_key_is_changed_and_nothing_else(run: Run):
-    async def check(small: SmallDesk, ask: Any) -> None:
+    async def check(small: SmallSession, ask: Any) -> None:
         await ask("set", changes={"render.stiffness_n_per_m": 500})
-        assert small.desk.text == TEXT.replace("400", "500")
+        assert small.session.text == TEXT.replace("400", "500")
         said = small.tab.last("document")
         assert said["values"]["render"]["stiffness_n_per_m"] == 500
         assert (said["said"]["render"], said["complaints"]) == ({"use": "penalty", "stiffness_n_per_m": 500}, [])
         await ask("set", changes={"workspace.smooth_m": "2 mm"})
-        assert "{width_m: 0.06, relief_m: 0.004, smooth_m: 2 mm}" in small.desk.text
+        assert "{width_m: 0.06, relief_m: 0.004, smooth_m: 2 mm}" in small.session.text
         assert small.tab.last("document")["values"]["workspace"]["smooth_m"] == 0.002
         await ask("set", removed=["workspace.smooth_m", "render.stiffness_n_per_m"])
-        assert small.desk.text == TEXT.replace(", stiffness_n_per_m: 400", "")
+        assert small.session.text == TEXT.replace(", stiffness_n_per_m: 400", "")
         await ask("set", changes={"depth.use": "contour"})
-        assert "depth: {use: contour}  # bright is near" in small.desk.text
+        assert "depth: {use: contour}  # bright is near" in small.session.text
 
     run(check)
 
 
 def test_what_the_page_has_no_form_for_stays(run: Run):
-    async def check(small: SmallDesk, ask: Any) -> None:
+    async def check(small: SmallSession, ask: Any) -> None:
         more = "simplify: {gap_m: 4 mm}\nexport: [text, {use: heights, width_m: 160 mm}]  # for others\n"
         await ask("edit", text=TEXT + more)
         await ask("set", changes={"render.stiffness_n_per_m": 500})
-        assert small.desk.text == (TEXT + more).replace("400", "500")
+        assert small.session.text == (TEXT + more).replace("400", "500")
         said = small.tab.last("document")
         assert said["values"]["simplify"]["gap_m"] == 0.004
         assert [each["use"] for each in said["values"]["export"]] == ["text", "heights"]
         await ask("set", changes={"export.heights.width_m": "120 mm"})
-        assert "export: [text, {use: heights, width_m: 120 mm}]  # for others" in small.desk.text
+        assert "export: [text, {use: heights, width_m: 120 mm}]  # for others" in small.session.text
 
     run(check)
 
 
 def test_a_value_may_be_written_in_yaml(run: Run):
-    async def check(small: SmallDesk, ask: Any) -> None:
+    async def check(small: SmallSession, ask: Any) -> None:
         await ask("set", written={"materials.by": "{0: ice, 1: sand, 2: brick}"})
         assert small.tab.last("document")["values"]["materials"]["by"] == {"0": "ice", "1": "sand", "2": "brick"}
-        before = small.desk.text
+        before = small.session.text
         with pytest.raises(ConfigError) as refused:
             await ask("set", written={"materials.by": "{0: ice"})
         assert refused.value.complaints[0].location == ("materials", "by")
-        assert small.desk.text == before
+        assert small.session.text == before
 
     run(check)
 
 
 def test_a_complaint_names_its_field_and_the_text_stays(run: Run):
-    async def check(small: SmallDesk, ask: Any) -> None:
+    async def check(small: SmallSession, ask: Any) -> None:
         await ask("set", changes={"render.stiffness_n_per_m": -5})
         said = small.tab.last("document")
         assert said["values"] is None
@@ -91,7 +91,7 @@ def test_a_complaint_names_its_field_and_the_text_stays(run: Run):
         assert tuple(complaint["location"]) == ("render", "stiffness_n_per_m")
         assert complaint["line"] == 7
         assert said["said"]["render"]["stiffness_n_per_m"] == -5
-        assert "-5}  # soft" in small.desk.text
+        assert "-5}  # soft" in small.session.text
         await ask("edit", text="scene: [")
         said = small.tab.last("document")
         assert (said["said"], said["values"], len(said["complaints"])) == (None, None, 1)
@@ -100,7 +100,7 @@ def test_a_complaint_names_its_field_and_the_text_stays(run: Run):
 
 
 def test_edits_by_key_at_once_undo_none_of_each_other(run: Run):
-    async def check(small: SmallDesk, ask: Any) -> None:
+    async def check(small: SmallSession, ask: Any) -> None:
         keys = {"render.stiffness_n_per_m": 700, "workspace.width_m": 0.07, "depth.smoothing_px": 2}
         await asyncio.gather(*(ask("set", changes={key: value}) for key, value in keys.items()))
         values = small.tab.last("document")["values"]
@@ -112,28 +112,28 @@ def test_edits_by_key_at_once_undo_none_of_each_other(run: Run):
 
 
 def test_a_text_that_was_made_of_an_older_one_is_refused(run: Run):
-    async def check(small: SmallDesk, ask: Any) -> None:
+    async def check(small: SmallSession, ask: Any) -> None:
         old = small.tab.last("document")["digest"]
         await ask("set", changes={"render.stiffness_n_per_m": 500})
         with pytest.raises(ConfigError, match="changed elsewhere"):
             await ask("edit", text=TEXT + "# mine\n", of=old)
-        assert "500" in small.desk.text
-        await ask("edit", text=small.desk.text + "# mine\n", of=small.desk.digest)
-        assert small.desk.text.endswith("# mine\n")
+        assert "500" in small.session.text
+        await ask("edit", text=small.session.text + "# mine\n", of=small.session.digest)
+        assert small.session.text.endswith("# mine\n")
 
     run(check)
 
 
 def test_steps_back_and_forth(run: Run):
-    async def check(small: SmallDesk, ask: Any) -> None:
+    async def check(small: SmallSession, ask: Any) -> None:
         assert await ask("undo") is None
         for stiffness in range(500, 620):
             await ask("set", changes={"render.stiffness_n_per_m": stiffness})
         await ask("set", changes={"render.stiffness_n_per_m": 619})  # as it is: no step
         await ask("undo")
-        assert "618" in small.desk.text
+        assert "618" in small.session.text
         await ask("redo")
-        assert "619" in small.desk.text
+        assert "619" in small.session.text
         assert await ask("redo") is None
         steps = 0
         while small.tab.last("document")["can_undo"]:
@@ -147,27 +147,27 @@ def test_steps_back_and_forth(run: Run):
 
 
 def test_a_tab_that_comes_later_hears_of_the_last_document_alone(run: Run):
-    async def check(small: SmallDesk, ask: Any) -> None:
-        small.desk.tell("error", text="kept")
+    async def check(small: SmallSession, ask: Any) -> None:
+        small.session.tell("error", text="kept")
         for stiffness in range(3):
             await ask("set", changes={"render.stiffness_n_per_m": 500 + stiffness})
         await small.tab.until("plan")
-        names = [each["event"] for each in small.desk.history]
+        names = [each["event"] for each in small.session.history]
         assert names.count("document") == 1
         assert names.count("plan") <= 1
         assert "error" in names
-        assert next(each for each in small.desk.history if each["event"] == "document")["text"] == small.desk.text
+        assert next(each for each in small.session.history if each["event"] == "document")["text"] == small.session.text
         assert len(names) < MOST_HISTORY
 
     run(check)
 
 
 def test_what_the_command_line_changes_stands_in_the_text(run: Run, tmp_path: Path):
-    async def check(small: SmallDesk, ask: Any) -> None:
-        small.desk.sets = ["render.stiffness_n_per_m=0.3 N/mm"]
+    async def check(small: SmallSession, ask: Any) -> None:
+        small.session.sets = ["render.stiffness_n_per_m=0.3 N/mm"]
         await ask("begin", files=[str(tmp_path / "mine.yaml")])
         await small.tab.until("touch")
-        assert "stiffness_n_per_m: 0.3 N/mm}  # soft" in small.desk.text
+        assert "stiffness_n_per_m: 0.3 N/mm}  # soft" in small.session.text
         await ask("set", changes={"render.stiffness_n_per_m": 350})
         assert small.tab.last("document")["values"]["render"]["stiffness_n_per_m"] == 350
 
@@ -175,7 +175,7 @@ def test_what_the_command_line_changes_stands_in_the_text(run: Run, tmp_path: Pa
 
 
 def test_the_library_says_where_its_figures_come_from(run: Run):
-    async def check(small: SmallDesk, ask: Any) -> None:
+    async def check(small: SmallSession, ask: Any) -> None:
         ice = next(each for each in await ask("library") if each["name"] == "ice")
         assert ice["stiffness_n_per_m"] == 1400
         assert "physics.info" in str(ice["source"])

@@ -17,7 +17,7 @@ from tangible_ui.state import drafts
 from tangible_ui.state.drafts import MOST_LEFT, Drafts
 from tangible_ui.state.texts import Text
 from tangible_ui.worker import process
-from tangible_ui.worker.messages import Ask, Refused
+from tangible_ui.worker.messages import JobFailure, JobRequest
 
 OPENED = "scene: builtin/brick\n"
 
@@ -46,7 +46,7 @@ def after_a_crash(folder: Path, gone: int) -> Drafts:
 class TestDrafts:
     def test_what_was_edited_is_there_after_a_crash(self, tmp_path: Path, gone: int) -> None:
         kept = Drafts(tmp_path)
-        kept.opened(OPENED)
+        kept.remember_opened(OPENED)
         keep(kept, "first", "edited\n")
         assert Drafts(tmp_path).look() is None  # of a program that lives
         found = after_a_crash(tmp_path, gone)
@@ -59,12 +59,12 @@ class TestDrafts:
 
     def test_what_was_opened_or_saved_is_not_kept(self, tmp_path: Path) -> None:
         kept = Drafts(tmp_path)
-        kept.opened(OPENED)
+        kept.remember_opened(OPENED)
         keep(kept, OPENED)
         assert not list(tmp_path.iterdir())
         keep(kept, "edited\n")
         assert len(list(tmp_path.iterdir())) == 1
-        kept.opened("edited\n")  # it was saved
+        kept.remember_opened("edited\n")  # it was saved
         keep(kept, "other", "edited\n")
         assert not list(tmp_path.iterdir())
 
@@ -91,7 +91,7 @@ class TestDrafts:
         for text in ("one", "two"):
             keep(kept, text)
         assert [record.message for record in caplog.records] == [
-            "what is edited and not saved is not kept for the next start: no space left on device"
+            "unsaved edits are not kept for the next start: no space left on device"
         ]
 
 
@@ -125,7 +125,7 @@ class TestLeftBehind:
             pass
 
 
-class Bench:
+class WorkerState:
     """What a job is called with, as far as the process needs it."""
 
     def __init__(self, folder: Path) -> None:
@@ -134,25 +134,25 @@ class Bench:
 
 class TestMaker:
     def test_a_folder_that_was_taken_away_is_made_again(self, tmp_path: Path) -> None:
-        bench = Bench(tmp_path)
-        process.keep_folder(bench)
-        assert bench.shown == "abc"
-        bench = Bench(tmp_path / "gone" / "deep")
-        process.keep_folder(bench)
-        assert bench.folder.is_dir()
-        assert bench.shown == ""  # what pages fetch has to be written again
+        worker_state = WorkerState(tmp_path)
+        process.keep_folder(worker_state)
+        assert worker_state.shown == "abc"
+        worker_state = WorkerState(tmp_path / "gone" / "deep")
+        process.keep_folder(worker_state)
+        assert worker_state.folder.is_dir()
+        assert worker_state.shown == ""  # what pages fetch has to be written again
 
     @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS])
     def test_a_full_disk_is_one_sentence(self, tmp_path: Path, number: int, monkeypatch: pytest.MonkeyPatch) -> None:
-        def fails(bench: Any) -> None:
+        def fails(worker_state: Any) -> None:
             raise OSError(number, os.strerror(number), "/tmp/height.f32")
 
         from tangible_ui.worker import jobs
         from tangible_ui.worker.jobs import Job
 
         monkeypatch.setitem(jobs.JOBS, "fails", Job(fails))
-        said = process.answer(Bench(tmp_path), Ask(7, "fails", {}))
-        assert isinstance(said, Refused)
+        said = process.answer(WorkerState(tmp_path), JobRequest(7, "fails", {}))
+        assert isinstance(said, JobFailure)
         assert isinstance(said.error, OutputError)
         assert (said.number, str(said.error)) == (7, f"/tmp/height.f32: {os.strerror(number)}; free some space")
         assert process.full(FileNotFoundError(errno.ENOENT, "no such file")) is None

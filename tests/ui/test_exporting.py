@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from desks import TEXT, SmallDesk, small_scene, striped_scene
+from sessions import TEXT, SmallSession, small_scene, striped_scene
 from tangible_core.errors import ConfigError, TangibleError
 from tangible_core.pipeline.output.export_folder import LISTED
 from tangible_export.stl import Stl
 from tangible_ui.requests import REQUESTS
 from tangible_ui.worker.jobs.export import KEPT
+from waiting import LONGEST_S
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]
 STL = {"use": "stl", "longer_side_m": 0.06}
@@ -24,16 +25,16 @@ STL = {"use": "stl", "longer_side_m": 0.06}
 
 @pytest.fixture
 def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Runs a test with a desk on which the small scene is opened and felt."""
+    """Runs a test with a session on which the small scene is opened and felt."""
 
     def run(
-        check: Callable[[SmallDesk, Ask], Coroutine[Any, Any, None]], scene: Callable[[Path], Path] = small_scene
+        check: Callable[[SmallSession, Ask], Coroutine[Any, Any, None]], scene: Callable[[Path], Path] = small_scene
     ) -> None:
         async def all_of_it() -> None:
-            small = SmallDesk(tmp_path, monkeypatch)
+            small = SmallSession(tmp_path, monkeypatch)
 
             async def ask(name: str, **told: Any) -> Any:
-                return await REQUESTS[name](small.desk, small.tab, **told)
+                return await REQUESTS[name](small.session, small.tab, **told)
 
             await ask("begin", files=[str(scene(tmp_path))])
             await small.tab.until("touch")
@@ -44,23 +45,23 @@ def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     return run
 
 
-def folders(small: SmallDesk) -> list[Path]:
-    return sorted(small.desk.folder.glob("export-*"))
+def folders(small: SmallSession) -> list[Path]:
+    return sorted(small.session.folder.glob("export-*"))
 
 
 class TestExport:
     def test_a_solid_of_what_is_on_the_screen_and_every_tab_hears_of_it(self, small: Any) -> None:
-        async def check(small: SmallDesk, ask: Ask) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
             await ask("edit", text=TEXT.replace("relief_m: 0.004", "relief_m: 0.001"))  # and it is not saved
             found = await ask("export", exports=[STL])
             told = small.tab.last("exported")
             assert {key: told[key] for key in found} == found
-            assert (told["digest"], small.tab.last("made")["want"]) == (small.desk.digest, "export")
+            assert (told["digest"], small.tab.last("made")["want"]) == (small.session.digest, "export")
             (only,) = found["exports"]
             assert (only["name"], only["outcome"]) == ("stl", "ran")
             assert only["legible"]["sentence"]
             (file,) = only["files"]
-            path = small.desk.folder / found["folder"] / file["name"]
+            path = small.session.folder / found["folder"] / file["name"]
             assert (path.name, path.stat().st_size) == ("mine.stl", file["bytes"])
             solid: Any = trimesh.load(path)
             assert solid.is_volume
@@ -73,7 +74,7 @@ class TestExport:
         def fail(self: Stl, work: Any, stem: Path) -> Any:
             raise TangibleError("the relief has no height; raise workspace.relief_m")
 
-        async def check(small: SmallDesk, ask: Ask) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
             monkeypatch.setattr(Stl, "write", fail)
             found = await ask("export", exports=[STL, "3mf"])
             wrong, fine = found["exports"]
@@ -93,7 +94,7 @@ class TestExport:
         ],
     )
     def test_what_cannot_be_is_refused_and_leaves_nothing(self, small: Any, exports: list[Any], says: str) -> None:
-        async def check(small: SmallDesk, ask: Ask) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
             with pytest.raises(ConfigError, match=says):
                 await ask("export", exports=exports)
             assert small.tab.last("made")["outcome"] == "failed"
@@ -107,13 +108,13 @@ class TestExport:
 
         def waits(self: Stl, work: Any, stem: Path) -> Any:
             begun.set()
-            assert go_on.wait(30)
+            assert go_on.wait(LONGEST_S)
             return write(self, work, stem)
 
-        async def check(small: SmallDesk, ask: Ask) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
             monkeypatch.setattr(Stl, "write", waits)
             asked = asyncio.ensure_future(ask("export", exports=[STL]))
-            await asyncio.to_thread(begun.wait, 30)
+            await asyncio.to_thread(begun.wait, LONGEST_S)
             await ask("stop_making")
             assert await asked is None
             assert small.tab.last("made")["outcome"] == "stopped"
@@ -123,18 +124,18 @@ class TestExport:
         small(check)
 
     def test_files_of_long_ago_go(self, small: Any) -> None:
-        async def check(small: SmallDesk, ask: Ask) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
             kept = [(await ask("export", exports=[STL]))["folder"] for _ in range(KEPT + 2)]
             assert sorted(kept[-KEPT:]) == [each.name for each in folders(small)]
 
         small(check)
 
     def test_all_files_in_one(self, small: Any) -> None:
-        async def check(small: SmallDesk, ask: Ask) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
             found = await ask("export", exports=[STL, "3mf"])
             name = await ask("export_zip", folder=found["folder"])
             assert name == await ask("export_zip", folder=found["folder"]), "it is there already"
-            at = small.desk.folder / found["folder"]
+            at = small.session.folder / found["folder"]
             assert name == "mine.zip"
             with ZipFile(at / name) as packed:
                 assert packed.testzip() is None
@@ -147,7 +148,7 @@ class TestExport:
 
     @pytest.mark.parametrize("folder", ["", "..", "export-0000000000000000", "export-x/../../secret", "drawn"])
     def test_nothing_but_an_export_is_packed(self, small: Any, folder: str) -> None:
-        async def check(small: SmallDesk, ask: Ask) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
             with pytest.raises(ConfigError, match="export them again"):
                 await ask("export_zip", folder=folder)
 
@@ -156,7 +157,7 @@ class TestExport:
 
 class TestLegible:
     def test_verdicts_are_told_and_a_cure_makes_them_pass(self, small: Any) -> None:
-        async def check(small: SmallDesk, ask: Ask) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
             found = await ask("legible", medium="swell")
             assert small.tab.last("legible")["verdicts"] == found["verdicts"]
             assert (found["medium"], found["width_m"], found["grade"]) == ("swell", 0.08, "illegible")
@@ -164,18 +165,18 @@ class TestLegible:
             (place,) = gap["at"]
             assert place[0] == pytest.approx(41 / 80, abs=0.02)
             cures = {each["key"]: each["value"] for each in gap["changes"] if each["key"].startswith("simplify")}
-            assert cures and "simplify" not in small.desk.text
+            assert cures and "simplify" not in small.session.text
             await ask("set", changes=cures)
-            assert "simplify:" in small.desk.text
+            assert "simplify:" in small.session.text
             again = await ask("legible", medium="swell")
-            assert (again["grade"], again["digest"]) == ("ok", small.desk.digest)
+            assert (again["grade"], again["digest"]) == ("ok", small.session.digest)
             await ask("undo")
-            assert "simplify" not in small.desk.text
+            assert "simplify" not in small.session.text
 
         small(check, striped_scene)
 
     def test_a_wider_picture_is_judged_as_such(self, small: Any) -> None:
-        async def check(small: SmallDesk, ask: Ask) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
             found = await ask("legible", medium="swell", width_m=0.4)
             assert (found["width_m"], found["grade"]) == (0.4, "ok"), "the stripe is 1 cm wide then"
             with pytest.raises(ConfigError):
@@ -184,11 +185,11 @@ class TestLegible:
         small(check, striped_scene)
 
     def test_what_is_seen_and_felt_is_simplified_where_the_file_says_so(self, small: Any) -> None:
-        async def check(small: SmallDesk, ask: Ask) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
             before = small.tab.last("scene")["labels"]
             await ask("set", changes={"simplify": {}})
             await ask("make", want="touch")
-            seen = small.maker.bench.described[1]
+            seen = small.worker.state.described[1]
             assert before == 3 and set(np.unique(seen.labels)) == {0, 2}, "the stripe is gone, and numbers stay"
 
         small(check, striped_scene)
@@ -196,7 +197,7 @@ class TestLegible:
 
 class TestDescription:
     def test_in_the_language_that_is_asked_for(self, small: Any) -> None:
-        async def check(small: SmallDesk, ask: Ask) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
             said = {each: await ask("description", language=each) for each in ("en", "de", "fr")}
             assert len({each["text"] for each in said.values()}) == 3
             for language, each in said.items():
@@ -209,7 +210,7 @@ class TestDescription:
 
     def test_there_is_none_before_a_surface(self, tmp_path: Path, monkeypatch) -> None:
         async def check() -> None:
-            small = SmallDesk(tmp_path, monkeypatch)
-            assert await REQUESTS["description"](small.desk, small.tab, language="en") is None
+            small = SmallSession(tmp_path, monkeypatch)
+            assert await REQUESTS["description"](small.session, small.tab, language="en") is None
 
         asyncio.run(check())

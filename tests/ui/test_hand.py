@@ -1,7 +1,6 @@
-"""Who holds the page's hand, which device is felt, and that no motor starts unasked: the desk, with a maker made up."""
+"""The page's hand and the device: who holds it, and that no motor starts unasked; the worker is a fake."""
 
 import asyncio
-import time
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from pathlib import Path
@@ -21,11 +20,11 @@ from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.feeling.hand import high_without_client
 from tangible_ui.requests import REQUESTS
 from tangible_ui.serving.serve import watch
-from tangible_ui.state import session as desk_module
-from tangible_ui.state.session import Desk
+from tangible_ui.state import session as session_module
+from tangible_ui.state.session import Session
+from waiting import LONGEST_S, happened
 
 LEVEL = HapticSurface.from_heights(np.full((32, 32), 0.002, np.float32))
-IN_TIME_S = 20.0
 
 
 class Page:
@@ -41,8 +40,8 @@ class Page:
         return next(each for each in reversed(self.told) if each["event"] == event)
 
 
-class FakeMaker:
-    """Makes a level surface at once, for whatever device the test says the document has."""
+class FakeWorker:
+    """LongJobs a level surface at once, for whatever device the test says the document has."""
 
     device: HapticDevice | None = None
 
@@ -76,155 +75,148 @@ class FakeMaker:
 
 
 @pytest.fixture
-def at_desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
-    """`at_desk(work)` does it with a desk that is watched over, and one page."""
-    monkeypatch.setattr(desk_module, "Maker", FakeMaker)
+def with_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
+    """`with_session(work)` does it with a session that is watched over, and one page."""
+    monkeypatch.setattr(session_module, "Worker", FakeWorker)
 
-    async def run(work: Callable[[Desk, Page], Awaitable[None]]) -> None:
-        desk, page = Desk(tmp_path, Feeling("ui-test"), []), Page()
-        watching = asyncio.ensure_future(watch(desk))
-        desk.enter(page)
+    async def run(work: Callable[[Session, Page], Awaitable[None]]) -> None:
+        session, page = Session(tmp_path, Feeling("ui-test"), []), Page()
+        watching = asyncio.ensure_future(watch(session))
+        session.enter(page)
         try:
-            await asyncio.wait_for(work(desk, page), 3 * IN_TIME_S)
+            await asyncio.wait_for(work(session, page), 3 * LONGEST_S)
         finally:
             watching.cancel()
-            await desk.close()
+            await session.close()
 
     return lambda work: asyncio.run(run(work))
 
 
-async def until(condition: Callable[[], Any]) -> None:
-    end = time.monotonic() + IN_TIME_S
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        await asyncio.sleep(0.01)
-
-
 class TestWhoHolds:
-    def test_the_first_holds_and_who_comes_later_watches(self, at_desk) -> None:
-        async def work(desk: Desk, page: Page) -> None:
+    def test_the_first_holds_and_who_comes_later_watches(self, with_session) -> None:
+        async def work(session: Session, page: Page) -> None:
             other = Page()
-            desk.enter(other)
+            session.enter(other)
             assert (page.last("holding")["holding"], other.last("holding")["holding"]) == (True, False)
-            await REQUESTS["hold"](desk, other)
+            await REQUESTS["hold"](session, other)
             assert (page.last("holding")["holding"], other.last("holding")["holding"]) == (False, True)
 
-        at_desk(work)
+        with_session(work)
 
-    def test_who_leaves_leaves_it_to_nobody_until_one_takes_it(self, at_desk) -> None:
-        async def work(desk: Desk, page: Page) -> None:
+    def test_who_leaves_leaves_it_to_nobody_until_one_takes_it(self, with_session) -> None:
+        async def work(session: Session, page: Page) -> None:
             other = Page()
-            desk.enter(other)
-            desk.feeling.hand.point((0.0, 0.0, 0.0), 1, 1)
-            desk.leave(page)
-            assert not desk.feeling.hand.holding
-            assert desk.holder is None
+            session.enter(other)
+            session.feeling.hand.point((0.0, 0.0, 0.0), 1, 1)
+            session.leave(page)
+            assert not session.feeling.hand.holding
+            assert session.holder is None
             assert other.last("holding") == {"event": "holding", "holding": False, "free": True}
-            desk.leave(other)
-            desk.enter(page)
-            assert desk.holder is page
+            session.leave(other)
+            session.enter(page)
+            assert session.holder is page
 
-        at_desk(work)
+        with_session(work)
 
-    def test_who_takes_it_does_not_get_where_it_was(self, at_desk) -> None:
-        async def work(desk: Desk, page: Page) -> None:
-            desk.feeling.hand.point((0.0, 0.0, 0.0), 1, 1)
-            desk.hold(Page())
-            assert not desk.feeling.hand.holding
+    def test_who_takes_it_does_not_get_where_it_was(self, with_session) -> None:
+        async def work(session: Session, page: Page) -> None:
+            session.feeling.hand.point((0.0, 0.0, 0.0), 1, 1)
+            session.hold(Page())
+            assert not session.feeling.hand.holding
 
-        at_desk(work)
+        with_session(work)
 
 
 class TestDevices:
-    def test_a_motor_starts_only_for_who_said_yes(self, at_desk) -> None:
-        async def work(desk: Desk, page: Page) -> None:
-            FakeMaker.device = Failing(fault="none", simulated=False)
+    def test_a_motor_starts_only_for_who_said_yes(self, with_session) -> None:
+        async def work(session: Session, page: Page) -> None:
+            FakeWorker.device = Failing(fault="none", simulated=False)
             with pytest.raises(ConfigError, match="has a motor"):
-                await REQUESTS["choose_device"](desk, page, kind="document")
-            assert desk.choice.kind == "hand"
-            about = await REQUESTS["about_device"](desk, page, kind="document")
+                await REQUESTS["choose_device"](session, page, kind="document")
+            assert session.choice.kind == "hand"
+            about = await REQUESTS["about_device"](session, page, kind="document")
             assert not about["simulated"]
-            await REQUESTS["choose_device"](desk, page, kind="document", sure=True)
+            await REQUESTS["choose_device"](session, page, kind="document", sure=True)
             assert page.last("loop") | {"at_s": 0} == {
                 "event": "loop", "at_s": 0, "running": True, "why": "", "device": "the other", "own_hand": False,
             }  # fmt: skip
-            FakeMaker.device = Motor()  # the document was edited
+            FakeWorker.device = Motor()  # the document was edited
             with pytest.raises(TangibleError, match="Motor has a motor"):
-                await REQUESTS["make"](desk, page)
-            assert desk.feeling.felt is not None
-            assert isinstance(desk.feeling.felt.held, Failing)
-            assert desk.feeling.running
+                await REQUESTS["make"](session, page)
+            assert session.feeling.felt is not None
+            assert isinstance(session.feeling.felt.unmapped_device, Failing)
+            assert session.feeling.running
 
-        at_desk(work)
+        with_session(work)
 
-    def test_what_was_made_for_another_device_is_not_felt(self, at_desk) -> None:
-        async def work(desk: Desk, page: Page) -> None:
-            FakeMaker.device = Circling()
-            made = await desk.maker.ask("make", sets=[])
-            await desk.feel(made)
-            assert not desk.feeling.running
+    def test_what_was_made_for_another_device_is_not_felt(self, with_session) -> None:
+        async def work(session: Session, page: Page) -> None:
+            FakeWorker.device = Circling()
+            made = await session.worker.ask("make", sets=[])
+            await session.feel(made)
+            assert not session.feeling.running
             assert not Path(made["parcel"]).exists()
 
-        at_desk(work)
+        with_session(work)
 
-    def test_a_device_that_is_pulled_out_is_told_of_and_waited_for(self, at_desk, tmp_path: Path) -> None:
-        async def work(desk: Desk, page: Page) -> None:
-            FakeMaker.device = Failing(fault="unplugged", at=100)
+    def test_a_device_that_is_pulled_out_is_told_of_and_waited_for(self, with_session, tmp_path: Path) -> None:
+        async def work(session: Session, page: Page) -> None:
+            FakeWorker.device = Failing(fault="unplugged", at=100)
             with suppress(DeviceError):  # where it is gone before the law is felt on it
-                await REQUESTS["choose_device"](desk, page, kind="document")
-            await until(lambda: not page.last("loop")["running"])
+                await REQUESTS["choose_device"](session, page, kind="document")
+            await happened(lambda: not page.last("loop")["running"])
             assert page.last("loop")["why"] == "the failing device does not answer; plug it in"
             assert page.last("loop")["lost"]
-            assert await REQUESTS["doctor"](desk, page) is None
-            FakeMaker.device = Failing(fault="none", opens="second", record=str(tmp_path / "held"))
-            await REQUESTS["wait_for_device"](desk, page)
-            await until(lambda: page.last("loop").get("waiting"))
+            assert await REQUESTS["doctor"](session, page) is None
+            FakeWorker.device = Failing(fault="none", opens="second", record=str(tmp_path / "held"))
+            await REQUESTS["wait_for_device"](session, page)
+            await happened(lambda: page.last("loop").get("waiting"))
             assert "in use by another program" in page.last("loop")["why"]
-            await until(lambda: page.last("loop")["running"])
-            figures = await REQUESTS["doctor"](desk, page)
+            await happened(lambda: page.last("loop")["running"])
+            figures = await REQUESTS["doctor"](session, page)
             assert figures is not None
-            assert figures["how"] == desk.feeling.how
+            assert figures["how"] == session.feeling.how
 
-        at_desk(work)
+        with_session(work)
 
     @pytest.mark.parametrize("ended_by", ["stop", "another choice"])
-    def test_waiting_ends(self, at_desk, ended_by: str) -> None:
-        async def work(desk: Desk, page: Page) -> None:
-            FakeMaker.device = Failing(opens="never")
+    def test_waiting_ends(self, with_session, ended_by: str) -> None:
+        async def work(session: Session, page: Page) -> None:
+            FakeWorker.device = Failing(opens="never")
             with pytest.raises(DeviceError):
-                await REQUESTS["choose_device"](desk, page, kind="document")
-            await REQUESTS["wait_for_device"](desk, page)
-            await until(lambda: page.last("loop").get("waiting"))
+                await REQUESTS["choose_device"](session, page, kind="document")
+            await REQUESTS["wait_for_device"](session, page)
+            await happened(lambda: page.last("loop").get("waiting"))
             if ended_by == "stop":
-                await REQUESTS["stop"](desk, page)
+                await REQUESTS["stop"](session, page)
             else:
-                await REQUESTS["choose_device"](desk, page, kind="hand")
-            await until(lambda: len(desk._tasks) == 0)
-            assert desk.feeling.running == (ended_by != "stop")
+                await REQUESTS["choose_device"](session, page, kind="hand")
+            await happened(lambda: len(session._tasks) == 0)
+            assert session.feeling.running == (ended_by != "stop")
 
-        at_desk(work)
+        with_session(work)
 
-    def test_stop_holds_until_somebody_feels_again(self, at_desk) -> None:
-        async def work(desk: Desk, page: Page) -> None:
-            await REQUESTS["make"](desk, page)
-            assert desk.feeling.running
-            await REQUESTS["stop"](desk, page)
+    def test_stop_holds_until_somebody_feels_again(self, with_session) -> None:
+        async def work(session: Session, page: Page) -> None:
+            await REQUESTS["make"](session, page)
+            assert session.feeling.running
+            await REQUESTS["stop"](session, page)
             assert page.last("loop")["stopped"]
-            await REQUESTS["make"](desk, page)  # an option was changed
-            assert not desk.feeling.running
-            await REQUESTS["feel"](desk, page)
-            assert desk.feeling.running
+            await REQUESTS["make"](session, page)  # an option was changed
+            assert not session.feeling.running
+            await REQUESTS["feel"](session, page)
+            assert session.feeling.running
             assert page.last("loop")["running"]
 
-        at_desk(work)
+        with_session(work)
 
     @pytest.mark.parametrize("told", [{"kind": "hand", "name": "falcon"}, {"kind": "other"}, {"kind": "any"}])
-    def test_no_choice(self, at_desk, told: dict[str, str]) -> None:
-        async def work(desk: Desk, page: Page) -> None:
+    def test_no_choice(self, with_session, told: dict[str, str]) -> None:
+        async def work(session: Session, page: Page) -> None:
             with pytest.raises(ConfigError, match="a device is chosen as one of"):
-                await REQUESTS["choose_device"](desk, page, **told)
+                await REQUESTS["choose_device"](session, page, **told)
 
-        at_desk(work)
+        with_session(work)
 
 
 class Motor(HapticDevice):

@@ -1,7 +1,6 @@
 """The hand in a browser: the mouse and the keyboard feel, and a page that nobody sees, or that is gone, does not."""
 
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -10,23 +9,16 @@ import pytest
 
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.servo.ring import Ring, shared_folder
+from waiting import until
 
-IN_TIME_S = 120.0
-GONE_S = 2.0
-"""Generous for a machine that is busy: the server lets go after a tenth of a second, and what is told, at once."""
+GONE_S = 20.0
+"""Bound on the last force, s; the server lets go after a tenth of a second, but the machine may stand still."""
 X = TICK_COLUMNS.index("x_m")
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
 Z = TICK_COLUMNS.index("z_m")
 FELT_N = 0.001
+FREEZE = "setTimeout(() => { const end = performance.now() + 3000; while (performance.now() < end); })"
 HIDE = "Object.defineProperty(document, 'hidden', {value: true}); document.dispatchEvent(new Event('visibilitychange'))"
-
-
-def until(condition: Callable[[], Any], seconds: float = IN_TIME_S) -> Any:
-    end = time.monotonic() + seconds
-    while not (found := condition()):
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.01)
-    return found
 
 
 class Felt:
@@ -54,7 +46,7 @@ class Felt:
             given = rows[np.abs(rows[:, FORCE]).max(axis=1) > FELT_N]
             return self.ring.start_ns / 1e9 + given[-1, 0] - begun_s
 
-        until(lambda: time.monotonic() - begun_s - last_s() > 0.2, GONE_S)
+        until(lambda: time.monotonic() - begun_s - last_s() > 0.2)
         return last_s()
 
 
@@ -63,14 +55,12 @@ def page(opened, open_page) -> Any:
     """A page on which a surface is felt; nothing moves its hand yet."""
     page = open_page(f"{opened('builtin/brick')}&measure")
     drawn(page)
-    page.wait_for_function(
-        "() => document.getElementById('log').textContent.includes('proxy:')", timeout=1000 * IN_TIME_S
-    )
+    page.wait_for_function("() => document.getElementById('log').textContent.includes('proxy:')")
     return page
 
 
 def drawn(page: Any) -> None:
-    page.wait_for_function("() => window.figures?.firstMs > 0", timeout=1000 * IN_TIME_S)
+    page.wait_for_function("() => window.figures?.firstMs > 0")
 
 
 def over(rows: np.ndarray) -> np.ndarray:
@@ -101,13 +91,8 @@ def test_the_mouse_feels_until_nobody_sees_the_page(page: Any) -> None:
     drawn(page)
 
     press(page, felt)
-    begun = felt.ring.count
-    frozen_s = time.monotonic() - felt.ring.start_ns / 1e9
-    page.evaluate("{ const end = performance.now() + 3000; while (performance.now() < end); }")
-    rows, _ = felt.ring.since(begun)
-    while_frozen = (rows[:, 0] > frozen_s + GONE_S) & (rows[:, 0] < frozen_s + 2.9)
-    assert while_frozen.any()
-    assert np.abs(rows[while_frozen, FORCE]).max() < FELT_N
+    page.evaluate(FREEZE)
+    until(lambda: felt.force_n() < FELT_N)  # the mouse is still pressed: a page that lives would feel on
     page.mouse.up()
 
 
@@ -148,8 +133,8 @@ def test_the_keyboard_alone_feels_and_the_stop_key_works_in_a_field(page: Any) -
     page.keyboard.up("ArrowRight")
     rows, _ = felt.ring.since(begun)
     held = over(rows)  # a page that is held up for a tenth of a second lets go
-    steps_m = np.diff(rows[:, X])[held[1:] & held[:-1]]
-    assert np.abs(steps_m).max() < 0.0005  # it does not leap from one step of a key to the next
+    speeds = (np.diff(rows[:, X]) / np.diff(rows[:, 0]))[held[1:] & held[:-1]]
+    assert np.abs(speeds).max() < 0.5  # it does not leap from one step of a key to the next
     page.evaluate("document.getElementById('hand').open = true")
     page.locator("#press").focus()
     page.keyboard.press("Escape")

@@ -3,7 +3,6 @@
 import io
 import os
 import threading
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -14,15 +13,15 @@ import pytest
 import trimesh
 
 from browser_tabs import OpenPage
-from desks import small_scene, striped_scene
 from lasting_server import LastingServer
+from sessions import small_scene, striped_scene
 from tangible_core.errors import DeviceError
 from tangible_devices.pointer import PointerClient
+from waiting import until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Download, Page
 
-LONGEST_S = 60
 SPY = """
 window.heard = [];
 new MutationObserver((seen) => {
@@ -38,13 +37,6 @@ const spy = {
 Object.defineProperty(window, "speechSynthesis", { value: spy });
 window.SpeechSynthesisUtterance = function (text) { this.text = text; };
 """
-
-
-def until(holds: Callable[[], Any], what: str = "") -> None:
-    end_s = time.monotonic() + LONGEST_S
-    while not holds():
-        assert time.monotonic() < end_s, what
-        time.sleep(0.05)
 
 
 @pytest.fixture

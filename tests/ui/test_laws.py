@@ -2,7 +2,6 @@
 
 import asyncio
 import os
-import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -13,12 +12,13 @@ import pytest
 
 from tangible_core import load_method
 from tangible_core.errors import ConfigError
-from tangible_ui.feeling.choice import Choice, NotAgreed
+from tangible_ui.feeling.choice import Choice, NotConfirmed
 from tangible_ui.feeling.comparison import NOTHING
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.framing import STATE_FRAME
 from tangible_ui.requests import feeling as asks
-from tangible_ui.state.session import Desk
+from tangible_ui.state.session import Session
+from waiting import happened
 
 TEXT = """\
 scene: {height: flat.npy}
@@ -31,65 +31,67 @@ DEPTH_M = 0.001
 
 
 @asynccontextmanager
-async def felt_desk(folder: Path) -> AsyncIterator[tuple[Desk, list[dict[str, Any]]]]:
-    """A desk whose document is felt, and what it told."""
+async def felt_session(folder: Path) -> AsyncIterator[tuple[Session, list[dict[str, Any]]]]:
+    """A session whose document is felt, and what it told."""
     np.save(folder / "flat.npy", np.zeros((8, 8)))
     (folder / "scene").mkdir()
-    desk = Desk(folder / "scene", Feeling(f"laws-{os.getpid()}"), [])
+    session = Session(folder / "scene", Feeling(f"laws-{os.getpid()}"), [])
     told: list[dict[str, Any]] = []
 
     class Heard:
         def say(self, event: dict[str, Any]) -> None:
             told.append(event)
 
-    desk.enter(Heard())
-    desk.text, desk.path = TEXT, folder / "p.yaml"
+    session.enter(Heard())
+    session.text, session.path = TEXT, folder / "p.yaml"
     try:
-        made = (await desk.maker.ask("laws", text=TEXT, path=desk.path, sets=desk.felt_sets(), others=[]))[0]
-        await desk.feel(made)
-        yield desk, told
+        made = (await session.worker.ask("laws", text=TEXT, path=session.path, sets=session.felt_sets(), others=[]))[0]
+        await session.feel(made)
+        yield session, told
     finally:
-        await desk.close()
+        await session.close()
 
 
-def forces(desk: Desk) -> tuple[float, float]:
+def forces(session: Session) -> tuple[float, float]:
     """Upwards: of the law that is felt, and of the other one, as a page has them."""
-    frame = desk.feeling.frame(1, 0, desk.laws.beside())
+    frame = session.feeling.frame(1, 0, session.laws.other_law())
     assert frame is not None
     values = STATE_FRAME.unpack(frame)
     return values[15], values[21]
 
 
-async def pressed(desk: Desk, until: Callable[[], bool]) -> None:
+async def pressed(session: Session, until: Callable[[], bool]) -> None:
     """Press on the surface until something is so."""
-    end_s = time.monotonic() + 20
-    while not until():
-        assert time.monotonic() < end_s, forces(desk)
-        desk.feeling.hand.point((0.0, 0.0, -DEPTH_M), 1, 1)
-        desk.laws.follow(desk.feeling)
-        await asyncio.sleep(0.01)
+
+    def pressed() -> bool:
+        session.feeling.hand.point((0.0, 0.0, -DEPTH_M), 1, 1)
+        session.laws.follow(session.feeling)
+        return until()
+
+    await happened(pressed)
 
 
 @pytest.mark.usefixtures("loop_in_thread")
 def test_the_other_law_is_computed_on_the_same_hand(tmp_path: Path) -> None:
     async def compare() -> None:
-        async with felt_desk(tmp_path) as (desk, told):
-            await asks.compare_laws(desk, None, "penalty", "{stiffness_n_per_m: 800}")
-            await pressed(desk, lambda: np.allclose(forces(desk), (0.4, 0.8), atol=0.02))
-            await asks.switch_law(desk, None, "b")
-            await pressed(desk, lambda: np.allclose(forces(desk), (0.8, 0.4), atol=0.02))
+        async with felt_session(tmp_path) as (session, told):
+            await asks.compare_laws(session, None, "penalty", "{stiffness_n_per_m: 800}")
+            await pressed(session, lambda: np.allclose(forces(session), (0.4, 0.8), atol=0.02))
+            await asks.switch_law(session, None, "b")
+            await pressed(session, lambda: np.allclose(forces(session), (0.8, 0.4), atol=0.02))
             assert told[-1]["named"] == ["penalty (a)", "penalty (b)"]
             assert told[-1]["felt"] == 1
-            desk.feeling.hand.release()
-            desk.laws.follow(desk.feeling)
-            await asyncio.sleep(0.2)
-            desk.laws.follow(desk.feeling)
-            await asyncio.sleep(0.2)
-            assert forces(desk) == (0, 0)
-            await asks.end_laws(desk, None)
-            assert desk.laws.rival.force_n == NOTHING
-            assert not desk.laws.rival.running
-            await pressed(desk, lambda: np.allclose(forces(desk), (0.4, 0), atol=0.02))
+            session.feeling.hand.release()
+
+            def released() -> bool:
+                session.laws.follow(session.feeling)
+                return forces(session) == (0, 0)
+
+            await happened(released)
+            await asks.end_laws(session, None)
+            assert session.laws.comparison.force_n == NOTHING
+            assert not session.laws.comparison.running
+            await pressed(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
 
     asyncio.run(compare())
 
@@ -99,22 +101,22 @@ def test_blindly_nothing_says_which_law_is_felt(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path / "data"))
 
     async def compare() -> None:
-        async with felt_desk(tmp_path) as (desk, told):
-            await asks.compare_laws(desk, None, "proxy", "")
+        async with felt_session(tmp_path) as (session, told):
+            await asks.compare_laws(session, None, "proxy", "")
             told.clear()
-            await asks.begin_blind(desk, None, "Which is harder?")
-            tally = desk.laws.tally
+            await asks.begin_blind(session, None, "Which is harder?")
+            tally = session.laws.tally
             assert tally is not None
             for called in (2, 1):
-                await asks.feel_blind(desk, None, called)
-                await pressed(desk, lambda: forces(desk)[0] > 0.1)
-                frame = STATE_FRAME.unpack(desk.feeling.frame(1, 0, desk.laws.beside()) or b"")
+                await asks.feel_blind(session, None, called)
+                await pressed(session, lambda: forces(session)[0] > 0.1)
+                frame = STATE_FRAME.unpack(session.feeling.frame(1, 0, session.laws.other_law()) or b"")
                 assert all(np.isnan(frame[10:13]))
                 assert frame[19:22] == (0, 0, 0)
             assert not [event for event in told if "penalty" in str(event) or "proxy" in str(event)]
             chosen = tally.laws[tally.law(2)]
-            await asks.choose_blind(desk, None, 2)
-            found = await asks.end_blind(desk, None)
+            await asks.choose_blind(session, None, 2)
+            found = await asks.end_blind(session, None)
             assert found["trials"][0][2] == chosen
             assert Path(found["path"]).is_relative_to(tmp_path / "data")
             assert chosen in Path(found["path"]).read_text()
@@ -127,12 +129,12 @@ def test_what_is_no_law_is_said_and_the_one_before_is_felt_on(tmp_path: Path) ->
     wrong = {("penalti", ""): "penalty", ("penalty", "{stifness: 3}"): "unknown option", ("penalty", "["): "not YAML"}
 
     async def compare() -> None:
-        async with felt_desk(tmp_path) as (desk, _):
+        async with felt_session(tmp_path) as (session, _):
             for (use, options), says in wrong.items():
                 with pytest.raises(ConfigError, match=says):
-                    await asks.compare_laws(desk, None, use, options)
-            assert desk.laws.told() == {"state": "one"}
-            await pressed(desk, lambda: np.allclose(forces(desk), (0.4, 0), atol=0.02))
+                    await asks.compare_laws(session, None, use, options)
+            assert session.laws.message() == {"state": "one"}
+            await pressed(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
 
     asyncio.run(compare())
 
@@ -140,12 +142,12 @@ def test_what_is_no_law_is_said_and_the_one_before_is_felt_on(tmp_path: Path) ->
 @pytest.mark.usefixtures("loop_in_thread")
 def test_no_motor_is_opened_that_nobody_said_yes_to(tmp_path: Path) -> None:
     async def compare() -> None:
-        async with felt_desk(tmp_path) as (desk, _):
-            desk.choice = Choice("document", sure=True, agreed=type(load_method("device", "mock")()))
-            desk.text = TEXT.replace("{use: pointer}", "{use: falcon}")
-            with pytest.raises(NotAgreed):
-                await asks.compare_laws(desk, None, "penalty", "")
-            assert desk.laws.told() == {"state": "one"}
-            await pressed(desk, lambda: np.allclose(forces(desk), (0.4, 0), atol=0.02))
+        async with felt_session(tmp_path) as (session, _):
+            session.choice = Choice("document", sure=True, agreed=type(load_method("device", "mock")()))
+            session.text = TEXT.replace("{use: pointer}", "{use: falcon}")
+            with pytest.raises(NotConfirmed):
+                await asks.compare_laws(session, None, "penalty", "")
+            assert session.laws.message() == {"state": "one"}
+            await pressed(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
 
     asyncio.run(compare())

@@ -13,7 +13,7 @@ from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.requests import REQUESTS
 from tangible_ui.serving import parsing as asking
 from tangible_ui.serving.live import LiveTab
-from tangible_ui.serving.parsing import NotUnderstood, parse
+from tangible_ui.serving.parsing import BadRequest, parse
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),
@@ -27,31 +27,31 @@ WHOLE = {
 }
 
 
-class QuietDesk:
-    """A desk of one tab, which holds, and what it began."""
+class QuietSession:
+    """A session of one tab, which holds, and what it began."""
 
     def __init__(self) -> None:
         self.feeling = Feeling("ui-test")
         self.holder: Any = None
 
 
-def tab() -> tuple[Any, QuietDesk]:
-    desk: Any = QuietDesk()
+def tab() -> tuple[Any, QuietSession]:
+    session: Any = QuietSession()
     tab: Any = LiveTab.__new__(LiveTab)
-    tab._desk, tab._seq, tab._drawn = desk, 2, 0
+    tab._session, tab._seq, tab._drawn = session, 2, 0
     tab._acked = type("Acked", (), {"set": lambda self: None})()
-    desk.holder = tab
-    return tab, desk
+    session.holder = tab
+    return tab, session
 
 
 class TestFrames:
     def test_whole_ones_are_heard(self) -> None:
-        live, desk = tab()
-        live._frame(WHOLE[wire.POINTER])
-        assert desk.feeling.hand.holding
-        live._frame(WHOLE[wire.RELEASE])
-        assert not desk.feeling.hand.holding
-        live._frame(WHOLE[wire.ACK])
+        live, session = tab()
+        live._handle_frame(WHOLE[wire.POINTER])
+        assert session.feeling.hand.holding
+        live._handle_frame(WHOLE[wire.RELEASE])
+        assert not session.feeling.hand.holding
+        live._handle_frame(WHOLE[wire.ACK])
         assert live._drawn == 1
 
     @pytest.mark.parametrize("kind", WHOLE)
@@ -60,11 +60,11 @@ class TestFrames:
         for damaged in [*(frame[:end] for end in range(1, len(frame))), frame + b"\0", frame * 2]:
             if damaged in WHOLE.values():
                 continue
-            live, desk = tab()
-            desk.feeling.hand.point((0.01, 0.0, 0.0), 0, 0)
-            held = desk.feeling.hand._held
-            live._frame(damaged)
-            assert (desk.feeling.hand._held, live._drawn) == (held, 0)
+            live, session = tab()
+            session.feeling.hand.point((0.01, 0.0, 0.0), 0, 0)
+            held = session.feeling.hand._held
+            live._handle_frame(damaged)
+            assert (session.feeling.hand._held, live._drawn) == (held, 0)
 
     @pytest.mark.parametrize("kind", WHOLE)
     def test_every_flipped_bit_leaves_a_hand_that_is_somewhere(self, kind: int) -> None:
@@ -79,9 +79,9 @@ class TestFrames:
 
 
 def check(frame: bytes) -> None:
-    live, desk = tab()
-    live._frame(frame)
-    assert all(abs(part) <= 1.0 for part in desk.feeling.hand._held.at)
+    live, session = tab()
+    live._handle_frame(frame)
+    assert all(abs(part) <= 1.0 for part in session.feeling.hand._held.at)
     assert 0 <= live._drawn <= live._seq
 
 
@@ -97,26 +97,26 @@ class TestAsks:
     @pytest.mark.parametrize(
         ("text", "number", "says"),
         [
-            ("", None, "no JSON"),
-            ("nonsense", None, "no JSON"),
-            ('{"number": 1', None, "no JSON"),
-            ('{"number": NaN, "ask": "stop"}', None, "no JSON"),
-            ('{"number": 1, "ask": "edit", "text": Infinity}', None, "no JSON"),
-            ("[" * 100_000, None, "no JSON"),
-            ('{"a":' * 100_000 + "1" + "}" * 100_000, None, "no JSON"),
+            ("", None, "not JSON"),
+            ("nonsense", None, "not JSON"),
+            ('{"number": 1', None, "not JSON"),
+            ('{"number": NaN, "ask": "stop"}', None, "not JSON"),
+            ('{"number": 1, "ask": "edit", "text": Infinity}', None, "not JSON"),
+            ("[" * 100_000, None, "not JSON"),
+            ('{"a":' * 100_000 + "1" + "}" * 100_000, None, "not JSON"),
             ("[]", None, '"number"'),
             ("1", None, '"number"'),
             ('{"ask": "stop"}', None, '"number"'),
             ('{"number": true, "ask": "stop"}', None, '"number"'),
             ('{"number": 1.0, "ask": "stop"}', None, '"number"'),
-            (ask(ask=["x"]), 1, "to ask for"),
-            (ask(ask={}), 1, "to ask for"),
-            (ask(), 1, "to ask for"),
+            (ask(ask=["x"]), 1, "there is no request"),
+            (ask(ask={}), 1, "there is no request"),
+            (ask(), 1, "there is no request"),
             (ask(ask="sotp"), 1, "did you mean"),
-            (ask(ask="__init__"), 1, "to ask for"),
+            (ask(ask="__init__"), 1, "there is no request"),
             (ask(ask="stop", now=True), 1, "now: Extra"),
             (ask(ask="stop", tab=None), 1, "tab: Extra"),
-            (ask(ask="stop", desk=None), 1, "desk: Extra"),
+            (ask(ask="stop", session=None), 1, "session: Extra"),
             (ask(ask="edit"), 1, "text: Field required"),
             (ask(ask="edit", text=5), 1, "text: .*string"),
             (ask(ask="edit", text="", apply=1), 1, "apply: .*bool"),
@@ -126,7 +126,7 @@ class TestAsks:
         ],
     )
     def test_what_is_none_is_refused_with_a_sentence(self, text: str, number: int | None, says: str) -> None:
-        with pytest.raises(NotUnderstood, match=says) as refused:
+        with pytest.raises(BadRequest, match=says) as refused:
             parse(text)
         assert refused.value.number == number
         assert len(str(refused.value)) < 400

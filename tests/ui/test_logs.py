@@ -12,7 +12,7 @@ import pytest
 from tangible_ui import logs
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.logs import MOST_A_SECOND, PageHandler, silence, tell_pages
-from tangible_ui.state.session import MOST_LOGGED, Desk
+from tangible_ui.state.session import MOST_HISTORY, MOST_LOGGED, Session
 
 
 @pytest.fixture
@@ -101,12 +101,24 @@ def test_standard_error_hears_it_as_before(monkeypatch: pytest.MonkeyPatch):
 
 
 def test_however_much_is_logged_a_tab_hears_of_the_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("tangible_ui.state.session.Maker", lambda *_: None)
-    desk = Desk(tmp_path, Feeling("unheard"), [])
-    desk.tell("document", text="")
+    monkeypatch.setattr("tangible_ui.state.session.Worker", lambda *_: None)
+    session = Session(tmp_path, Feeling("unheard"), [])
+    session.tell("document", text="")
     for number in range(3000):
-        desk.tell("log", level="warning", logger="a", text=str(number))
-    desk.tell("touch", law="proxy")
-    assert Counter(each["event"] for each in desk.history) == {"document": 1, "log": MOST_LOGGED, "touch": 1}
-    assert [each["at_s"] for each in desk.history] == sorted(each["at_s"] for each in desk.history)
-    assert max(int(each["text"]) for each in desk.history if each["event"] == "log") == 2999
+        session.tell("log", level="warning", logger="a", text=str(number))
+    session.tell("touch", law="proxy")
+    assert Counter(each["event"] for each in session.history) == {"document": 1, "log": MOST_LOGGED, "touch": 1}
+    assert [each["at_s"] for each in session.history] == sorted(each["at_s"] for each in session.history)
+    assert max(int(each["text"]) for each in session.history if each["event"] == "log") == 2999
+
+
+def test_history_of_many_events_keeps_the_worker_and_the_description(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("tangible_ui.state.session.Worker", lambda *_: None)
+    session = Session(tmp_path, Feeling("unheard"), [])
+    session.tell("maker")
+    for digest in ("a", "b"):
+        session.tell("described", digest=digest)
+    for number in range(2 * MOST_HISTORY):
+        session.tell("stage", product=str(number))
+    assert Counter(each["event"] for each in session.history) == {"maker": 1, "described": 1, "stage": MOST_HISTORY}
+    assert [each["digest"] for each in session.history if each["event"] == "described"] == ["b"]

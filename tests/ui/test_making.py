@@ -1,4 +1,4 @@
-"""Making what the document says: stages, plans, what gives way to what, and what a killed maker leaves."""
+"""Making what the document says: stages, plans, what gives way to what, and what a killed worker leaves."""
 
 import asyncio
 import threading
@@ -9,24 +9,25 @@ from typing import Any
 import numpy as np
 import pytest
 
-from desks import TEXT, SmallDesk, small_scene
+from sessions import TEXT, SmallSession, small_scene
 from tangible_core.errors import ConfigError, Stopped, TangibleError
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_ui.requests import REQUESTS
 from tangible_ui.requests import making as asks_making
 from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.messages import Late
-from tangible_ui.worker.state import Bench
+from tangible_ui.worker.state import WorkerState
+from waiting import LONGEST_S, happened
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]
 DEVICE = ["device={use: mock}"]
 
 
 @pytest.fixture
-def bench(tmp_path: Path) -> Bench:
-    """A bench whose events are in `bench.heard`."""
+def worker_state(tmp_path: Path) -> WorkerState:
+    """A worker_state whose events are in `worker_state.heard`."""
     heard: list[tuple[str, dict[str, Any]]] = []
-    made = Bench(tmp_path, lambda event, **told: heard.append((event, told)), Cache(tmp_path / "cache"))
+    made = WorkerState(tmp_path, lambda event, **told: heard.append((event, told)), Cache(tmp_path / "cache"))
     made.heard = heard  # pyright: ignore[reportAttributeAccessIssue]
     return made
 
@@ -38,14 +39,14 @@ def scene(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def small(tmp_path: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Runs a test with a desk on which the small scene is opened and felt."""
+    """Runs a test with a session on which the small scene is opened and felt."""
 
-    def run(check: Callable[[SmallDesk, Ask], Coroutine[Any, Any, None]]) -> None:
+    def run(check: Callable[[SmallSession, Ask], Coroutine[Any, Any, None]]) -> None:
         async def all_of_it() -> None:
-            small = SmallDesk(tmp_path, monkeypatch)
+            small = SmallSession(tmp_path, monkeypatch)
 
             async def ask(name: str, **told: Any) -> Any:
-                return await REQUESTS[name](small.desk, small.tab, **told)
+                return await REQUESTS[name](small.session, small.tab, **told)
 
             await ask("begin", files=[str(scene)])
             await small.tab.until("touch")
@@ -56,85 +57,89 @@ def small(tmp_path: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     return run
 
 
-def heard(bench: Any, name: str) -> list[dict[str, Any]]:
-    return [told for event, told in bench.heard if event == name]
+def heard(worker_state: Any, name: str) -> list[dict[str, Any]]:
+    return [told for event, told in worker_state.heard if event == name]
 
 
-def make(bench: Bench, text: str, path: Path, want: str = "touch", number: int = 1) -> Any:
-    made = JOBS["make"].do(bench, number=number, text=text, path=path, sets=DEVICE, want=want)
+def make(worker_state: WorkerState, text: str, path: Path, want: str = "touch", number: int = 1) -> Any:
+    made = JOBS["make"].do(worker_state, number=number, text=text, path=path, sets=DEVICE, want=want)
     if made:
         Path(made["parcel"]).unlink()
     return made
 
 
-def test_pages_hear_what_runs_and_why_and_what_was_made_of_it(bench: Bench, scene: Path):
-    assert make(bench, TEXT, scene)["law"] == "penalty"
-    (plan,) = heard(bench, "plan")
+def test_pages_hear_what_runs_and_why_and_what_was_made_of_it(worker_state: WorkerState, scene: Path):
+    assert make(worker_state, TEXT, scene)["law"] == "penalty"
+    (plan,) = heard(worker_state, "plan")
     assert [(each["product"], each["outcome"]) for each in plan["steps"]][:2] == [
         ("views", "given"), ("disparity", "ran"),
     ]  # fmt: skip
     assert plan["slow"] == ["disparity", "segments"]
-    ended = [told["done"]["outcome"] for told in heard(bench, "stage") if told["done"]]
+    ended = [told["done"]["outcome"] for told in heard(worker_state, "stage") if told["done"]]
     assert set(ended) == {"ran"}  # what is given stands in the plan
-    assert all({"why", "notes", "seconds"} <= told["done"].keys() for told in heard(bench, "stage") if told["done"])
-    (made,) = heard(bench, "made")
+    assert all(
+        {"why", "notes", "seconds"} <= told["done"].keys() for told in heard(worker_state, "stage") if told["done"]
+    )
+    (made,) = heard(worker_state, "made")
     assert made["outcome"] == "made"
     assert made["digest"] == plan["digest"]
-    assert len(heard(bench, "materials")[0]["segments"]) == 3
+    assert len(heard(worker_state, "materials")[0]["segments"]) == 3
 
 
-def test_another_law_makes_the_touch_alone(bench: Bench, scene: Path):
-    make(bench, TEXT, scene)
-    bench.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
+def test_another_law_makes_the_touch_alone(worker_state: WorkerState, scene: Path):
+    make(worker_state, TEXT, scene)
+    worker_state.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
     other = TEXT.replace("400", "500")
-    plan = JOBS["plan"].do(bench, text=other, path=scene, sets=DEVICE, want="touch")
+    plan = JOBS["plan"].do(worker_state, text=other, path=scene, sets=DEVICE, want="touch")
     assert (plan["slow"], plan["refusal"]) == ([], "")
     products = {each["product"]: each["outcome"] for each in plan["steps"]}
     assert list(products) == ["views", "disparity", "relief", "segments", "materials", "surface", "touch"]
     assert (products["views"], products["disparity"], products["touch"]) == ("given", "cached", "ran")
-    make(bench, other, scene)
-    assert {told["product"] for told in heard(bench, "stage")} == {"touch"}
-    assert not heard(bench, "scene")
+    make(worker_state, other, scene)
+    assert {told["product"] for told in heard(worker_state, "stage")} == {"touch"}
+    assert not heard(worker_state, "scene")
 
 
-def test_depth_and_texture_are_made_and_shown_alone(bench: Bench, scene: Path):
-    assert make(bench, TEXT, scene, "materials") is None
-    (shown,) = heard(bench, "scene")
+def test_depth_and_texture_are_made_and_shown_alone(worker_state: WorkerState, scene: Path):
+    assert make(worker_state, TEXT, scene, "materials") is None
+    (shown,) = heard(worker_state, "scene")
     assert shown["height_m"] == [0.0, 0.0]  # no depth yet: flat
-    (told,) = heard(bench, "materials")
+    (told,) = heard(worker_state, "materials")
     assert len(told["segments"]) == 3
     assert sum(each["share"] for each in told["segments"]) == pytest.approx(1)
     assert all(each["why"].startswith(f"segment {each['label']}") for each in told["segments"])
-    assert {each["product"] for each in heard(bench, "stage")} >= {"segments", "materials"}
-    assert "disparity" not in {each["product"] for each in heard(bench, "stage")}
-    make(bench, TEXT, scene, "relief")
-    low, high = heard(bench, "scene")[-1]["height_m"]
+    assert {each["product"] for each in heard(worker_state, "stage")} >= {"segments", "materials"}
+    assert "disparity" not in {each["product"] for each in heard(worker_state, "stage")}
+    make(worker_state, TEXT, scene, "relief")
+    low, high = heard(worker_state, "scene")[-1]["height_m"]
     assert high > low
-    make(bench, TEXT, scene, "materials")
-    assert heard(bench, "scene")[-1]["height_m"][1] > 0  # on the relief, which there is now
+    make(worker_state, TEXT, scene, "materials")
+    assert heard(worker_state, "scene")[-1]["height_m"][1] > 0  # on the relief, which there is now
 
 
-def test_what_cannot_be_made_leaves_the_last_good_pipeline(bench: Bench, scene: Path):
-    make(bench, TEXT, scene)
-    good = bench.pipeline
+def test_what_cannot_be_made_leaves_the_last_good_pipeline(worker_state: WorkerState, scene: Path):
+    make(worker_state, TEXT, scene)
+    good = worker_state.pipeline
     for wrong in (TEXT.replace("penalty", "penalti"), TEXT.replace("mine.png", "gone.png")):
         with pytest.raises(TangibleError):
-            make(bench, wrong, scene)
-        assert bench.pipeline is good
-    refused = JOBS["plan"].do(bench, text=TEXT.replace("mine.png", "gone.png"), path=scene, sets=DEVICE, want="touch")
+            make(worker_state, wrong, scene)
+        assert worker_state.pipeline is good
+    refused = JOBS["plan"].do(
+        worker_state, text=TEXT.replace("mine.png", "gone.png"), path=scene, sets=DEVICE, want="touch"
+    )
     assert "gone.png" in refused["refusal"]
-    bench.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
-    make(bench, TEXT, scene)
-    assert {told["product"] for told in heard(bench, "stage")} == {"touch"}
+    worker_state.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
+    make(worker_state, TEXT, scene)
+    assert {told["product"] for told in heard(worker_state, "stage")} == {"touch"}
 
 
-def test_without_a_law_the_surface_is_seen_and_kept(bench: Bench, scene: Path):
+def test_without_a_law_the_surface_is_seen_and_kept(worker_state: WorkerState, scene: Path):
     with pytest.raises(ConfigError, match="`render:` is missing"):
-        make(bench, TEXT.replace("render:", "# render:"), scene)
-    assert heard(bench, "scene")
-    bench.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
-    make(bench, TEXT.replace("render: {use: penalty, stiffness_n_per_m: 400}", "render: proxy"), scene)
-    assert {told["product"] for told in heard(bench, "stage")} == {"touch"}
+        make(worker_state, TEXT.replace("render:", "# render:"), scene)
+    assert heard(worker_state, "scene")
+    worker_state.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
+    make(worker_state, TEXT.replace("render: {use: penalty, stiffness_n_per_m: 400}", "render: proxy"), scene)
+    assert {told["product"] for told in heard(worker_state, "stage")} == {"touch"}
 
 
 @pytest.mark.parametrize(
@@ -142,25 +147,25 @@ def test_without_a_law_the_surface_is_seen_and_kept(bench: Bench, scene: Path):
     [("segments: 3", "segments: 4", False), ("luminance}", "luminance, smoothing_px: 4}", True)],
 )
 def test_the_newer_waits_for_a_stage_that_it_needs_too_and_for_no_other(
-    bench: Bench, scene: Path, monkeypatch: pytest.MonkeyPatch, said: str, instead: str, at_once: bool
+    worker_state: WorkerState, scene: Path, monkeypatch: pytest.MonkeyPatch, said: str, instead: str, at_once: bool
 ):
     begun, go = threading.Event(), threading.Event()
     monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
     ended: list[BaseException | None] = []
-    old = threading.Thread(target=_kept, args=(ended, lambda: make(bench, TEXT, scene, number=1)))
+    old = threading.Thread(target=_kept, args=(ended, lambda: make(worker_state, TEXT, scene, number=1)))
     old.start()
-    assert begun.wait(20)
+    assert begun.wait(LONGEST_S)
     newer = {"text": TEXT.replace(said, instead), "path": scene, "sets": DEVICE, "want": "touch"}
-    assert JOBS["give_way"].do(bench, number=2, **newer) is at_once
+    assert JOBS["give_way"].do(worker_state, number=2, **newer) is at_once
     go.set()
-    old.join(20)
+    old.join(LONGEST_S)
     assert isinstance(ended[0], Stopped)
-    assert [each["product"] for each in heard(bench, "stage") if each["done"]] == ["disparity"]
+    assert [each["product"] for each in heard(worker_state, "stage") if each["done"]] == ["disparity"]
     with pytest.raises(Stopped):  # nor does one begin that waited in the queue
-        make(bench, TEXT, scene, number=1)
-    bench.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
-    assert make(bench, number=2, **{name: newer[name] for name in ("text", "path")})
-    again = {each["product"]: each["done"]["outcome"] for each in heard(bench, "stage") if each["done"]}
+        make(worker_state, TEXT, scene, number=1)
+    worker_state.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
+    assert make(worker_state, number=2, **{name: newer[name] for name in ("text", "path")})
+    again = {each["product"]: each["done"]["outcome"] for each in heard(worker_state, "stage") if each["done"]}
     assert again["disparity"] == ("ran" if at_once else "cached")
 
 
@@ -171,7 +176,7 @@ def _waits(begun: threading.Event, go: threading.Event) -> Any:
 
     def waits(self: Any, views: Any) -> Any:
         begun.set()
-        assert go.wait(20)
+        assert go.wait(LONGEST_S)
         return estimate(self, views)
 
     return waits
@@ -187,7 +192,7 @@ def _kept(ended: list[BaseException | None], do: Callable[[], Any]) -> None:
 
 
 def test_an_edit_is_applied_at_once_where_nothing_slow_has_to_run(small: Any):
-    async def check(small: SmallDesk, ask: Ask) -> None:
+    async def check(small: SmallSession, ask: Ask) -> None:
         first = len(small.felt)
         await ask("set", changes={"render.use": "proxy"}, apply=True)
         await small.tab.until("touch", 2)
@@ -198,18 +203,18 @@ def test_an_edit_is_applied_at_once_where_nothing_slow_has_to_run(small: Any):
         await ask("set", changes={"render.stiffness_n_per_m": 900})
         await asyncio.sleep(0.1)
         assert len(small.felt) == first + 1
-        assert small.tab.last("made")["digest"] != small.desk.digest
+        assert small.tab.last("made")["digest"] != small.session.digest
 
     small(check)
 
 
 def test_what_is_edited_while_something_is_made_is_applied_after_it(small: Any, monkeypatch: pytest.MonkeyPatch):
-    async def check(small: SmallDesk, ask: Ask) -> None:
+    async def check(small: SmallSession, ask: Ask) -> None:
         begun, go = threading.Event(), threading.Event()
         monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
         await ask("set", changes={"depth.smoothing_px": 3})
         making = asyncio.ensure_future(ask("make"))
-        assert await asyncio.to_thread(begun.wait, 20)
+        assert await asyncio.to_thread(begun.wait, LONGEST_S)
         plans = small.tab.names().count("plan")
         await ask("set", changes={"render.stiffness_n_per_m": 900}, apply=True)
         plan = await small.tab.until("plan", plans + 1)
@@ -217,24 +222,24 @@ def test_what_is_edited_while_something_is_made_is_applied_after_it(small: Any, 
         go.set()
         await making
         await small.tab.until("touch", 3)
-        assert small.tab.last("made")["digest"] == small.desk.digest
+        assert small.tab.last("made")["digest"] == small.session.digest
 
     small(check)
 
 
 def test_stopping_kills_the_maker_only_while_it_makes(small: Any, monkeypatch: pytest.MonkeyPatch):
-    async def check(small: SmallDesk, ask: Ask) -> None:
+    async def check(small: SmallSession, ask: Ask) -> None:
         await ask("stop_making")
-        assert small.maker.kills == 0
+        assert small.worker.kills == 0
         begun, go = threading.Event(), threading.Event()
         monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
         await ask("set", changes={"depth.smoothing_px": 3})
         making = asyncio.ensure_future(ask("make"))
-        assert await asyncio.to_thread(begun.wait, 20)
+        assert await asyncio.to_thread(begun.wait, LONGEST_S)
         await ask("stop_making")
         go.set()
         assert await making is None  # who stops is not told of an error
-        assert small.maker.kills == 1
+        assert small.worker.kills == 1
         assert small.tab.last("made")["outcome"] == "stopped"
         assert "error" not in small.tab.names()
         await ask("make")
@@ -244,29 +249,28 @@ def test_stopping_kills_the_maker_only_while_it_makes(small: Any, monkeypatch: p
 
 
 def test_what_does_not_give_way_is_killed_and_the_newest_asked_again(small: Any, monkeypatch: pytest.MonkeyPatch):
-    async def check(small: SmallDesk, ask: Ask) -> None:
+    async def check(small: SmallSession, ask: Ask) -> None:
         monkeypatch.setattr(asks_making, "PATIENCE_S", 0.2)
         begun, go = threading.Event(), threading.Event()
         monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
         await ask("set", changes={"depth.smoothing_px": 3})
         old = asyncio.ensure_future(ask("make"))
-        assert await asyncio.to_thread(begun.wait, 20)
+        assert await asyncio.to_thread(begun.wait, LONGEST_S)
         await ask("set", changes={"depth.smoothing_px": 4})
         new = asyncio.ensure_future(ask("make"))
-        while not small.maker.kills:
-            await asyncio.sleep(0.01)
+        await happened(lambda: small.worker.kills)
         go.set()
         assert await old is None
         await new
-        assert small.tab.last("made")["digest"] == small.desk.digest
-        assert small.maker.kills == 1
-        assert small.maker.asked.count("make") == 4  # the first, the old, the new twice
+        assert small.tab.last("made")["digest"] == small.session.digest
+        assert small.worker.kills == 1
+        assert small.worker.asked.count("make") == 4  # the first, the old, the new twice
 
     small(check)
 
 
 def test_a_failure_is_told_to_who_asked_and_to_all_tabs(small: Any):
-    async def check(small: SmallDesk, ask: Ask) -> None:
+    async def check(small: SmallSession, ask: Ask) -> None:
         await ask("set", changes={"materials.by": {"7": "ice"}, "render.use": "proxy"})
         with pytest.raises(TangibleError, match="no segment"):
             await ask("make")
@@ -278,34 +282,34 @@ def test_a_failure_is_told_to_who_asked_and_to_all_tabs(small: Any):
 
 
 def test_preflight_judges_and_its_cures_change_the_document(small: Any):
-    async def check(small: SmallDesk, ask: Ask) -> None:
+    async def check(small: SmallSession, ask: Ask) -> None:
         assert (await ask("preflight"))["device"] == ""  # the page's own hand
         steep = {"render.use": "penalty-gradient", "workspace.relief_m": 0.02, "workspace.smooth_m": 0}
         hard = {"materials.by": "rules", "materials.default": "brick", "materials.fit": "never"}
         await ask("set", changes={**steep, **hard, "device.use": "mock"})
-        assert small.tab.last("preflight")["digest"] != small.desk.digest
+        assert small.tab.last("preflight")["digest"] != small.session.digest
         found = await ask("preflight")
         assert (found["grade"], found["device"], found["of_loop"]) == ("unsafe", "mock", False)
         assert found["sentence"].startswith("Unsafe, because")
-        assert found["digest"] == small.desk.digest
+        assert found["digest"] == small.session.digest
         cures = [each["changes"][0] for each in found["verdicts"] if each["changes"]]
         assert {"key": "materials.fit", "value": "device", "towards": "is"} in cures
         assert all(each["stands"] for each in found["verdicts"])
         fixed = await ask("fix")
         assert fixed["safe"]
-        assert small.desk.text.startswith("# a photograph of mine\n")
-        assert "# bright is near" in small.desk.text
-        assert "fit: device" in small.desk.text
+        assert small.session.text.startswith("# a photograph of mine\n")
+        assert "# bright is near" in small.session.text
+        assert "fit: device" in small.session.text
         now = small.tab.last("preflight")
-        assert (now["grade"] != "unsafe", now["digest"]) == (True, small.desk.digest)
+        assert (now["grade"] != "unsafe", now["digest"]) == (True, small.session.digest)
 
     small(check)
 
 
-def test_the_lateness_of_the_loop_that_gives_the_forces_counts(bench: Bench, scene: Path):
+def test_the_lateness_of_the_loop_that_gives_the_forces_counts(worker_state: WorkerState, scene: Path):
     late = Late(np.full(2000, 0.004), 0.001, True)
     told = {"text": TEXT, "path": scene, "sets": [], "own": DEVICE[0]}
-    found = JOBS["preflight"].do(bench, number=1, late=late, **told)
+    found = JOBS["preflight"].do(worker_state, number=1, late=late, **told)
     assert found["of_loop"]
     late = next(each for each in found["verdicts"] if each["check"] == "jitter")
     assert late["verdict"] != "ok"

@@ -12,15 +12,15 @@ from tangible_core.data import Vector
 from tangible_core.mapping import WorkspaceMapping
 from tangible_ui.requests.devices import limits
 from tangible_ui.worker.jobs import devices as mapping
-from tangible_ui.worker.state import Bench
+from tangible_ui.worker.state import WorkerState
 
 CASES = Path(__file__).parents[2] / "plugins/ui/web/test/placement.json"
 PATH = Path("p.yaml")
 
 
 @pytest.fixture
-def bench(tmp_path: Path) -> Bench:
-    return Bench(tmp_path, lambda event, **told: None)
+def worker_state(tmp_path: Path) -> WorkerState:
+    return WorkerState(tmp_path, lambda event, **told: None)
 
 
 def test_the_page_s_reference_is_what_the_core_computes():
@@ -30,7 +30,7 @@ def test_the_page_s_reference_is_what_the_core_computes():
     for case in cases:
         to = WorkspaceMapping(**case["mapping"]).placement(vector(case["workspace_m"]))
         x, y, z = case["hand_m"]
-        u, v = to.turned_back(x - to.offset_x_m, y - to.offset_y_m)
+        u, v = to.rotate_back(x - to.offset_x_m, y - to.offset_y_m)
         under = to.centre_x_m + u / to.scale, to.centre_y_m + v / to.scale, (z - to.offset_z_m) / to.scale
         assert case["scale"] == pytest.approx(to.scale, rel=1e-12)
         assert case["picture_m"] == pytest.approx(under, abs=1e-12)
@@ -46,9 +46,11 @@ def vector(numbers: list[float]) -> Vector:
     [("", "", None), ("device: {use: falcon-simulated}\n", "falcon-simulated", [0.08, 0.08, 0.08])],
     ids=["none", "one"],
 )
-def test_what_the_document_s_device_reaches(bench: Bench, device: str, name: str, workspace_m: list[float] | None):
+def test_what_the_document_s_device_reaches(
+    worker_state: WorkerState, device: str, name: str, workspace_m: list[float] | None
+):
     text = f"scene: builtin/brick\nmapping: {{scale: 3}}\n{device}"
-    found = mapping.reach(bench, text, PATH, [])
+    found = mapping.reach(worker_state, text, PATH, [])
     assert found == {"device": name, "workspace_m": pytest.approx(workspace_m) if workspace_m else None}
 
 
@@ -57,5 +59,5 @@ def test_what_limits_the_force_is_counted_by_the_loop():
     flagged = {"DAMPED": 3, "STALE": 1}
     servo = SimpleNamespace(report=lambda: SimpleNamespace(ticks=1000, overruns=2, flagged=flagged))
     for felt_by, counted in ((None, None), (servo, {"ticks": 1000, "overruns": 2, "flagged": flagged})):
-        desk: Any = SimpleNamespace(feeling=SimpleNamespace(servo=felt_by))
-        assert asyncio.run(limits(desk, desk)) == counted
+        session: Any = SimpleNamespace(feeling=SimpleNamespace(servo=felt_by))
+        assert asyncio.run(limits(session, session)) == counted

@@ -13,21 +13,21 @@ from tangible_core import load_pipeline
 from tangible_core.errors import ConfigError
 from tangible_core.pipeline.config.editing import read_values
 from tangible_core.session import Recording
-from tangible_core.session.tick_file import About
-from tangible_ui.state.uploads import MOST_FILES, Shelf
+from tangible_core.session.recording.tick_file import About
+from tangible_ui.state.uploads import MOST_FILES, UploadStore
 from tangible_ui.worker.jobs import document as opening
-from tangible_ui.worker.state import Bench
+from tangible_ui.worker.state import WorkerState
 from videos import greys
 
 
 @pytest.fixture
-def bench(tmp_path: Path) -> Bench:
-    return Bench(tmp_path, lambda event, **told: None)
+def worker_state(tmp_path: Path) -> WorkerState:
+    return WorkerState(tmp_path, lambda event, **told: None)
 
 
 @pytest.fixture
-def shelf(tmp_path: Path) -> Shelf:
-    return Shelf(tmp_path / "kept", tmp_path / "incoming")
+def store(tmp_path: Path) -> UploadStore:
+    return UploadStore(tmp_path / "kept", tmp_path / "incoming")
 
 
 async def body(*parts: bytes, then: Exception | None = None) -> AsyncIterator[bytes]:
@@ -37,8 +37,8 @@ async def body(*parts: bytes, then: Exception | None = None) -> AsyncIterator[by
         raise then
 
 
-def put(shelf: Shelf, batch: str, name: str, *parts: bytes, then: Exception | None = None) -> None:
-    asyncio.run(shelf.put(batch, name, body(*parts, then=then)))
+def put(store: UploadStore, batch: str, name: str, *parts: bytes, then: Exception | None = None) -> None:
+    asyncio.run(store.put(batch, name, body(*parts, then=then)))
 
 
 def picture(path: Path, columns: int = 8) -> Path:
@@ -46,133 +46,133 @@ def picture(path: Path, columns: int = 8) -> Path:
     return path
 
 
-class TestShelf:
-    def test_a_batch_is_kept_whole_and_the_same_one_once(self, shelf: Shelf) -> None:
+class TestUploadStore:
+    def test_a_batch_is_kept_whole_and_the_same_one_once(self, store: UploadStore) -> None:
         def kept() -> list[Path]:
-            batch = shelf.batch()
-            put(shelf, batch, "b.png", b"right", b" hand")
-            put(shelf, batch, "a.png", b"left")
-            return shelf.keep(batch)
+            batch = store.batch()
+            put(store, batch, "b.png", b"right", b" hand")
+            put(store, batch, "a.png", b"left")
+            return store.keep(batch)
 
         first = kept()
         assert [path.name for path in first] == ["a.png", "b.png"]
         assert first[1].read_bytes() == b"right hand"
         assert kept() == first
 
-    def test_other_contents_are_another_folder(self, shelf: Shelf) -> None:
+    def test_other_contents_are_another_folder(self, store: UploadStore) -> None:
         places = set[Path]()
         for contents in (b"one", b"two"):
-            batch = shelf.batch()
-            put(shelf, batch, "a.png", contents)
-            places.add(shelf.keep(batch)[0])
+            batch = store.batch()
+            put(store, batch, "a.png", contents)
+            places.add(store.keep(batch)[0])
         assert len(places) == 2
 
     @pytest.mark.parametrize("name", ["", ".", "..", "../a.png", "a/b.png", "a\\b.png", "a\0b", "a\nb", "x" * 200, " "])
-    def test_no_name_leads_elsewhere(self, shelf: Shelf, name: str, tmp_path: Path) -> None:
-        batch = shelf.batch()
+    def test_no_name_leads_elsewhere(self, store: UploadStore, name: str, tmp_path: Path) -> None:
+        batch = store.batch()
         with pytest.raises(ConfigError, match="cannot be kept"):
-            put(shelf, batch, name, b"x")
+            put(store, batch, name, b"x")
         assert not [path for path in tmp_path.rglob("*") if path.is_file()]
 
     @pytest.mark.parametrize("batch", ["", "..", "0" * 16, "../kept"])
-    def test_only_batches_that_were_begun(self, shelf: Shelf, batch: str) -> None:
+    def test_only_batches_that_were_begun(self, store: UploadStore, batch: str) -> None:
         with pytest.raises(ConfigError, match="send them again"):
-            put(shelf, batch, "a.png", b"x")
+            put(store, batch, "a.png", b"x")
 
-    def test_what_breaks_off_leaves_nothing(self, shelf: Shelf, tmp_path: Path) -> None:
-        batch = shelf.batch()
+    def test_what_breaks_off_leaves_nothing(self, store: UploadStore, tmp_path: Path) -> None:
+        batch = store.batch()
         with pytest.raises(RuntimeError):
-            put(shelf, batch, "a.png", b"half", then=RuntimeError("gone"))
+            put(store, batch, "a.png", b"half", then=RuntimeError("gone"))
         assert not [path for path in tmp_path.rglob("*") if path.is_file()]
 
-    def test_a_full_disk_is_said(self, shelf: Shelf, tmp_path: Path) -> None:
-        batch = shelf.batch()
+    def test_a_full_disk_is_said(self, store: UploadStore, tmp_path: Path) -> None:
+        batch = store.batch()
         with pytest.raises(ConfigError, match="free some space"):
-            put(shelf, batch, "a.png", b"half", then=OSError(errno.ENOSPC, "No space left on device"))
+            put(store, batch, "a.png", b"half", then=OSError(errno.ENOSPC, "No space left on device"))
         assert not [path for path in tmp_path.rglob("*") if path.is_file()]
 
-    def test_bounds(self, shelf: Shelf, monkeypatch: pytest.MonkeyPatch) -> None:
-        batch = shelf.batch()
+    def test_bounds(self, store: UploadStore, monkeypatch: pytest.MonkeyPatch) -> None:
+        batch = store.batch()
         for number in range(MOST_FILES):
-            put(shelf, batch, f"{number}.png", b"x")
-        put(shelf, batch, "0.png", b"again")
+            put(store, batch, f"{number}.png", b"x")
+        put(store, batch, "0.png", b"again")
         with pytest.raises(ConfigError, match="at once"):
-            put(shelf, batch, "more.png", b"x")
+            put(store, batch, "more.png", b"x")
         monkeypatch.setattr("tangible_ui.state.uploads.MOST_BYTES", 10)
         with pytest.raises(ConfigError, match="holds more than"):
-            put(shelf, batch, "0.png", b"x" * 6, b"x" * 6)
+            put(store, batch, "0.png", b"x" * 6, b"x" * 6)
 
 
 class TestBegin:
-    def test_a_picture_gets_a_pipeline(self, bench: Bench, tmp_path: Path) -> None:
-        found = opening.begin(bench, [picture(tmp_path / "cat.png")])
+    def test_a_picture_gets_a_pipeline(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        found = opening.begin(worker_state, [picture(tmp_path / "cat.png")])
         assert "photo:" in found["text"]
         assert found["path"].name == "cat.yaml"
 
-    def test_a_video_is_its_first_frame(self, bench: Bench, tmp_path: Path) -> None:
+    def test_a_video_is_its_first_frame(self, worker_state: WorkerState, tmp_path: Path) -> None:
         path = greys(tmp_path / "walk.avi", 3)
-        assert read_values(opening.begin(bench, [path])["text"], path)["scene"] == {"video": str(path)}
-        assert {"name": "walk.avi", "kind": "video"} in opening.folder(bench, tmp_path)["entries"]
+        assert read_values(opening.begin(worker_state, [path])["text"], path)["scene"] == {"video": str(path)}
+        assert {"name": "walk.avi", "kind": "video"} in opening.folder(worker_state, tmp_path)["entries"]
 
-    def test_two_are_a_pair(self, bench: Bench, tmp_path: Path) -> None:
-        found = opening.begin(bench, [picture(tmp_path / "l.png"), picture(tmp_path / "r.png")])
+    def test_two_are_a_pair(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        found = opening.begin(worker_state, [picture(tmp_path / "l.png"), picture(tmp_path / "r.png")])
         scene = read_values(found["text"], found["path"])["scene"]
         assert (scene["left"].endswith("l.png"), scene["right"].endswith("r.png")) == (True, True)
-        exchanged = opening.exchange(bench, found["text"], found["path"])
+        exchanged = opening.exchange(worker_state, found["text"], found["path"])
         assert read_values(exchanged, found["path"])["scene"] == {"left": scene["right"], "right": scene["left"]}
 
-    def test_only_a_pair_has_sides(self, bench: Bench, tmp_path: Path) -> None:
-        with pytest.raises(ConfigError, match="no pair"):
-            opening.exchange(bench, "scene: builtin/brick\n", tmp_path / "a.yaml")
+    def test_only_a_pair_has_sides(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        with pytest.raises(ConfigError, match="not a pair"):
+            opening.exchange(worker_state, "scene: builtin/brick\n", tmp_path / "a.yaml")
 
-    def test_a_file_counts_its_pictures_belong_to_it(self, bench: Bench, tmp_path: Path) -> None:
+    def test_a_file_counts_its_pictures_belong_to_it(self, worker_state: WorkerState, tmp_path: Path) -> None:
         (tmp_path / "mine.yaml").write_text("scene: {photo: cat.png}\n")
-        found = opening.begin(bench, [picture(tmp_path / "cat.png"), tmp_path / "mine.yaml"])
+        found = opening.begin(worker_state, [picture(tmp_path / "cat.png"), tmp_path / "mine.yaml"])
         assert found == {"text": "scene: {photo: cat.png}\n", "path": tmp_path / "mine.yaml"}
 
     @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
-    def test_a_recording_is_one(self, bench: Bench, tmp_path: Path, suffix: str) -> None:
+    def test_a_recording_is_one(self, worker_state: WorkerState, tmp_path: Path, suffix: str) -> None:
         path = tmp_path / f"felt{suffix}"
         Recording(np.zeros((3, 17)), "", About("mock", "penalty", "scene: x")).save(path)
-        assert opening.begin(bench, [path]) == {"recording": str(path)}
+        assert opening.begin(worker_state, [path]) == {"recording": str(path)}
 
-    def test_an_array_is_a_height_map(self, bench: Bench, tmp_path: Path) -> None:
+    def test_an_array_is_a_height_map(self, worker_state: WorkerState, tmp_path: Path) -> None:
         np.savez(tmp_path / "hill.npz", height=np.eye(4))
         np.save(tmp_path / "hill.npy", np.eye(4))
-        assert "height:" in opening.begin(bench, [tmp_path / "hill.npy"])["text"]
-        assert "recording" not in opening.begin(bench, [tmp_path / "hill.npz"])
+        assert "height:" in opening.begin(worker_state, [tmp_path / "hill.npy"])["text"]
+        assert "recording" not in opening.begin(worker_state, [tmp_path / "hill.npz"])
 
-    def test_what_is_nothing_of_it_is_said(self, bench: Bench, tmp_path: Path) -> None:
+    def test_what_is_nothing_of_it_is_said(self, worker_state: WorkerState, tmp_path: Path) -> None:
         (tmp_path / "note.docx").write_text("x")
-        with pytest.raises(ConfigError, match=r"note.docx: is no picture"):
-            opening.begin(bench, [tmp_path / "note.docx"])
+        with pytest.raises(ConfigError, match=r"note.docx: is not a picture"):
+            opening.begin(worker_state, [tmp_path / "note.docx"])
 
-    def test_a_missing_file_is_said(self, bench: Bench, tmp_path: Path) -> None:
+    def test_a_missing_file_is_said(self, worker_state: WorkerState, tmp_path: Path) -> None:
         with pytest.raises(ConfigError, match="there is no such file"):
-            opening.begin(bench, [tmp_path / "mine.yaml"])
+            opening.begin(worker_state, [tmp_path / "mine.yaml"])
 
 
 class TestSave:
-    def test_elsewhere_it_means_the_same(self, bench: Bench, tmp_path: Path) -> None:
+    def test_elsewhere_it_means_the_same(self, worker_state: WorkerState, tmp_path: Path) -> None:
         picture(tmp_path / "cat.png")
         text = "# mine\nscene: {photo: cat.png}  # the cat\n"
         out = tmp_path / "other" / "mine.yaml"
-        opening.save(bench, text, tmp_path / "mine.yaml", out)
+        opening.save(worker_state, text, tmp_path / "mine.yaml", out)
         assert load_pipeline(out).scene.views is not None
         assert out.read_text().startswith("# mine\n")
         assert "# the cat" in out.read_text()
 
-    def test_in_its_place_it_is_the_text(self, bench: Bench, tmp_path: Path) -> None:
+    def test_in_its_place_it_is_the_text(self, worker_state: WorkerState, tmp_path: Path) -> None:
         text = "scene:   builtin/brick # as it was written\n"
-        opening.save(bench, text, tmp_path / "mine.yaml", tmp_path / "mine.yaml")
+        opening.save(worker_state, text, tmp_path / "mine.yaml", tmp_path / "mine.yaml")
         assert (tmp_path / "mine.yaml").read_text() == text
 
 
-def test_folders_list_what_can_be_opened(bench: Bench, tmp_path: Path) -> None:
+def test_folders_list_what_can_be_opened(worker_state: WorkerState, tmp_path: Path) -> None:
     for name in ("b.PNG", "a.yaml", ".hidden.png", "note.txt", "felt.nc", "hill.npy"):
         (tmp_path / name).touch()
     (tmp_path / "more").mkdir()
-    found = opening.folder(bench, tmp_path)
+    found = opening.folder(worker_state, tmp_path)
     assert [(each["name"], each["kind"]) for each in found["entries"]] == [
         ("a.yaml", "pipeline"),
         ("b.PNG", "picture"),
@@ -181,4 +181,4 @@ def test_folders_list_what_can_be_opened(bench: Bench, tmp_path: Path) -> None:
         ("more", "folder"),
     ]
     with pytest.raises(ConfigError, match="name a folder"):
-        opening.folder(bench, tmp_path / "missing")
+        opening.folder(worker_state, tmp_path / "missing")

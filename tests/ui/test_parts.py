@@ -12,24 +12,25 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from desks import TEXT, SmallDesk, small_scene
 from full_disk import files_up_to
+from sessions import TEXT, SmallSession, small_scene
 from tangible_core import load_pipeline
 from tangible_core.data import SegmentMap
 from tangible_core.errors import ConfigError, OutputError, TangibleError
 from tangible_core.parts import find_parts
 from tangible_core.scene.formats.pictures import read_labels
 from tangible_ui.requests import REQUESTS
-from tangible_ui.state.scheduling import Newest
-from tangible_ui.state.session import Desk
+from tangible_ui.state.scheduling import LatestWins
+from tangible_ui.state.session import Session
 from tangible_ui.worker.jobs import JOBS, making
-from tangible_ui.worker.parts.label_files import as_png, is_ours, unpacked
+from tangible_ui.worker.parts.label_files import as_png, is_ours, unpack
 from tangible_ui.worker.parts.opening import _places
-from tangible_ui.worker.parts.saving import numbered, said_of_parts
-from tangible_ui.worker.state import Bench
+from tangible_ui.worker.parts.saving import document_with_parts, number_parts
+from tangible_ui.worker.state import WorkerState
+from waiting import happened
 
 SHAPE = (24, 32)
-Check = Callable[[SmallDesk, Any], Coroutine[Any, Any, None]]
+Check = Callable[[SmallSession, Any], Coroutine[Any, Any, None]]
 
 
 def drawn() -> np.ndarray:
@@ -81,13 +82,13 @@ class TestLabels:
     def test_what_is_sent_arrives(self, tmp_path: Path) -> None:
         path = tmp_path / "sent"
         path.write_bytes(packed(drawn()))
-        np.testing.assert_array_equal(unpacked(path, SHAPE), drawn())
+        np.testing.assert_array_equal(unpack(path, SHAPE), drawn())
 
     def test_what_cannot_be_packed_arrives(self, tmp_path: Path) -> None:
         labels = np.random.default_rng(0).integers(0, 2**16, (600, 800), np.uint16)
         path = tmp_path / "sent"
         path.write_bytes(gzip.compress(labels.astype("<u2").tobytes(), 0))
-        np.testing.assert_array_equal(unpacked(path, (600, 800)), labels)
+        np.testing.assert_array_equal(unpack(path, (600, 800)), labels)
 
     @pytest.mark.parametrize(
         "sent",
@@ -105,8 +106,8 @@ class TestLabels:
     def test_anything_else_is_refused(self, tmp_path: Path, sent: bytes) -> None:
         path = tmp_path / "sent"
         path.write_bytes(sent)
-        with pytest.raises(ConfigError, match="no gzip of 32 x 24"):
-            unpacked(path, SHAPE)
+        with pytest.raises(ConfigError, match="not a gzip of 32 x 24"):
+            unpack(path, SHAPE)
 
     def test_a_bomb_is_not_unpacked(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         most: list[int] = []
@@ -129,7 +130,7 @@ class TestLabels:
         path = tmp_path / "sent"
         path.write_bytes(gzip.compress(bytes(10_000_000)))
         with pytest.raises(ConfigError, match="send them again"):
-            unpacked(path, SHAPE)
+            unpack(path, SHAPE)
         assert max(most) <= 2 * SHAPE[0] * SHAPE[1] + 1
 
 
@@ -138,7 +139,7 @@ class TestNumbers:
         labels = np.array([[7, 7, 3], [7, 3, 3], [5, 5, 3]])
         numbers = np.array([[0, 0, 1], [0, 1, 1], [2, 2, 1]], np.int32)
         told = [{"label": 7, "name": "wall"}, {"label": 3, "height_m": 0.002, "name": ""}, {"label": 5, "name": None}]
-        choices, found = numbered(told, [7, 3, 5], numbers)
+        choices, found = number_parts(told, [7, 3, 5], numbers)
         assert choices == {0: {"name": "wall"}, 1: {"height_m": 0.002}, 2: {}}
         assert found == {"7": [0], "3": [1], "5": [2]}
         assert labels.shape == numbers.shape
@@ -146,7 +147,7 @@ class TestNumbers:
     def test_a_label_in_pieces_keeps_its_name_where_it_is_largest(self) -> None:
         numbers = np.array([[0, 1, 2, 2, 1, 3]], np.int32)
         told = [{"label": 7, "name": "leaf", "material": "wood"}, {"label": 8, "name": "leaf 2"}]
-        choices, found = numbered(told, [7, 8, 7, 7], numbers)
+        choices, found = number_parts(told, [7, 8, 7, 7], numbers)
         assert choices[2] == {"name": "leaf", "material": "wood"}
         assert choices[0] == {"name": "leaf 3", "material": "wood"}
         assert choices[3] == {"name": "leaf 4", "material": "wood"}
@@ -156,19 +157,19 @@ class TestNumbers:
         ("told", "says"),
         [
             ([{"label": 9, "name": "gone"}], "no pixel"),
-            ([{"label": 7}, {"label": 7}], "told of twice"),
+            ([{"label": 7}, {"label": 7}], "has two entries"),
             ([{"name": "wall"}], "number of its label"),
             ([{"label": "7"}], "number of its label"),
         ],
     )
     def test_what_is_told_of_no_label_is_refused(self, told: list[dict[str, Any]], says: str) -> None:
         with pytest.raises(ConfigError, match=says):
-            numbered(told, [7], np.zeros((1, 1), np.int32))
+            number_parts(told, [7], np.zeros((1, 1), np.int32))
 
 
 class TestText:
     def said(self, text: str, path: Path, parts: dict[int, Any], **heights: Any) -> str:
-        return said_of_parts(text, path, path.parent / "parts.png", parts, heights or None, {"title": None})
+        return document_with_parts(text, path, path.parent / "parts.png", parts, heights or None, {"title": None})
 
     def test_parts_get_a_line_each_and_the_rest_stays(self, tmp_path: Path) -> None:
         parts = {0: {"name": "wall"}, 2: {"name": "hat", "height_m": 0.0042, "material": "glass"}, 3: {}}
@@ -230,18 +231,18 @@ GIVEN = {"by": "given", "bulge_m": 0.0005}
 
 @pytest.fixture
 def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Check], None]:
-    """Runs a test with a desk on which the small scene is opened."""
+    """Runs a test with a session on which the small scene is opened."""
     monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path / "data"))
     scene = small_scene(tmp_path)
 
     def run(check: Check) -> None:
         async def all_of_it() -> None:
-            small = SmallDesk(tmp_path, monkeypatch)
+            small = SmallSession(tmp_path, monkeypatch)
 
             async def ask(name: str, **told: Any) -> Any:
-                return await REQUESTS[name](small.desk, small.tab, **told)
+                return await REQUESTS[name](small.session, small.tab, **told)
 
-            await REQUESTS["begin"](small.desk, small.tab, files=[str(scene)], make_it=False)
+            await REQUESTS["begin"](small.session, small.tab, files=[str(scene)], make_it=False)
             await check(small, ask)
 
         asyncio.run(all_of_it())
@@ -249,31 +250,31 @@ def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Check], 
     return run
 
 
-async def sent(small: SmallDesk, ask: Any, data: bytes | None = None) -> str:
+async def sent(small: SmallSession, ask: Any, data: bytes | None = None) -> str:
     """The batch in which labels wait."""
 
     async def body() -> Any:
         yield packed(drawn()) if data is None else data
 
     batch = await ask("batch")
-    await small.desk.shelf.put(batch, "labels.gz", body())
+    await small.session.uploads.put(batch, "labels.gz", body())
     return batch
 
 
-async def saved(small: SmallDesk, ask: Any, **told: Any) -> Any:
+async def saved(small: SmallSession, ask: Any, **told: Any) -> Any:
     return await ask("parts_save", **{"upload": await sent(small, ask), "parts": SAVED, "heights": GIVEN, **told})
 
 
 class TestOpening:
     def test_a_photo_without_segments_is_one_part(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             found = await ask("parts_open")
             assert (found["rows"], found["columns"], found["widthM"]) == (24, 32, 0.06)
             assert found["heights"]["by"] == "given"
             assert found["top_m"] == pytest.approx(0.004 - 0.0018)
             (part,) = found["parts"]
             assert (part["number"], part["pixels"], part["height_m"], part["name"]) == (0, 24 * 32, None, "")
-            at = small.desk.folder
+            at = small.session.folder
             assert not np.fromfile(at / found["labels"], "<u2").any()
             with Image.open(at / found["picture"]) as picture:
                 assert picture.size == (32, 24)
@@ -281,7 +282,7 @@ class TestOpening:
         small(check)
 
     def test_what_was_saved_is_opened_again(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             kept = await saved(small, ask, title="A hat", language="de")
             found = await ask("parts_open")
             assert [each["name"] for each in found["parts"]] == ["wall", "hat", "bag"]
@@ -289,7 +290,7 @@ class TestOpening:
             assert [each["material"] for each in found["parts"]] == [None, "glass", None]
             assert (found["title"], found["language"], found["heights"]["bulge_m"]) == ("A hat", "de", 0.0005)
             assert found["digest"] == kept["digest"]
-            labels = np.fromfile(small.desk.folder / found["labels"], "<u2").reshape(SHAPE)
+            labels = np.fromfile(small.session.folder / found["labels"], "<u2").reshape(SHAPE)
             for number, part in enumerate(found["parts"]):
                 assert labels[part["at"][1], part["at"][0]] == number
                 assert part["pixels"] == (labels == number).sum()
@@ -303,8 +304,8 @@ class TestOpening:
         hill[0, 0] = np.nan
         np.save(tmp_path / "hill.npy", hill)
         Image.fromarray(drawn().astype(np.uint8)).save(tmp_path / "drawn.png")
-        bench = Bench(tmp_path, lambda event, **told: None)
-        found = JOBS["parts_open"].do(bench, text=f"scene: {scene}\n", path=tmp_path / "a.yaml", sets=[])
+        worker_state = WorkerState(tmp_path, lambda event, **told: None)
+        found = JOBS["parts_open"].do(worker_state, text=f"scene: {scene}\n", path=tmp_path / "a.yaml", sets=[])
         assert len(found["parts"]) == (3 if "segments" in scene else 1)
         with Image.open(tmp_path / found["picture"]) as picture:
             grey = np.asarray(picture.convert("L"))
@@ -324,10 +325,10 @@ class TestOpening:
         Image.fromarray(np.random.default_rng(0).integers(0, 255, (90, 90, 3)).astype(np.uint8)).save(
             tmp_path / "a.png"
         )
-        bench, told = Bench(tmp_path / "at", lambda event, **told: None), tmp_path / "a.yaml"
+        worker_state, told = WorkerState(tmp_path / "at", lambda event, **told: None), tmp_path / "a.yaml"
         (tmp_path / "at").mkdir()
         with files_up_to(1000), pytest.raises(OutputError, match="free some space"):
-            JOBS["parts_open"].do(bench, text="scene: {photo: a.png}\n", path=told, sets=[])
+            JOBS["parts_open"].do(worker_state, text="scene: {photo: a.png}\n", path=told, sets=[])
         assert not list((tmp_path / "at").iterdir())
 
 
@@ -335,13 +336,15 @@ class TestSaving:
     def test_labels_lie_beside_the_document_which_runs_as_it_stands(
         self, small: Callable[[Check], None], tmp_path: Path
     ) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             found = await saved(small, ask)
             assert (found["path"], found["saved"]) == (str(tmp_path / "parts.png"), True)
             assert found["numbers"] == {"0": [0], "7": [1], "3": [2]}
-            assert (tmp_path / "mine.yaml").read_text() == small.desk.text
-            assert small.desk.text.startswith("# a photograph of mine\nscene: {photo: mine.png, segments: parts.png}\n")
-            assert "# bright is near" in small.desk.text
+            assert (tmp_path / "mine.yaml").read_text() == small.session.text
+            assert small.session.text.startswith(
+                "# a photograph of mine\nscene: {photo: mine.png, segments: parts.png}\n"
+            )
+            assert "# bright is near" in small.session.text
             await small.tab.until("touch")
             assert small.tab.last("scene")["parts"] == ["wall", "hat", "bag"]
             surface = load_pipeline(tmp_path / "mine.yaml").surface
@@ -353,7 +356,7 @@ class TestSaving:
     def test_a_picture_that_nobody_saved_yet_keeps_its_parts_on_the_shelf(
         self, small: Callable[[Check], None], tmp_path: Path
     ) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             (tmp_path / "mine.yaml").write_text("# of somebody else\n")
             found = await saved(small, ask)
             assert not found["saved"]
@@ -376,7 +379,7 @@ class TestSaving:
     def test_materials_by_number_that_are_others_now_are_told(
         self, small: Callable[[Check], None], caplog: pytest.LogCaptureFixture, materials: str, says: str
     ) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             await ask("set", written={"materials": materials})
             await saved(small, ask)
@@ -391,11 +394,11 @@ class TestSaving:
         small(check)
 
     def test_nothing_is_written_over_that_is_not_ours(self, small: Callable[[Check], None], tmp_path: Path) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             (tmp_path / "parts.png").write_bytes(b"of somebody else")
             assert Path((await saved(small, ask))["path"]).name == "parts-2.png"
             assert (tmp_path / "parts.png").read_bytes() == b"of somebody else"
-            assert "segments: parts-2.png" in small.desk.text
+            assert "segments: parts-2.png" in small.session.text
             other = drawn()
             other[0, 0] = 7
             found = await saved(small, ask, upload=await sent(small, ask, packed(other)))
@@ -405,14 +408,14 @@ class TestSaving:
         small(check)
 
     def test_other_labels_under_the_same_name_are_made_anew(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             await small.tab.until("touch")
             bent = drawn()
             bent[4:14, 4:14] = 7
-            text = small.desk.text
+            text = small.session.text
             await saved(small, ask, upload=await sent(small, ask, packed(bent)))
-            assert small.desk.text == text
+            assert small.session.text == text
             await small.tab.until("touch", 2)
             found = await ask("parts_open")
             assert found["parts"][1]["pixels"] == (bent == 7).sum()
@@ -420,7 +423,7 @@ class TestSaving:
         small(check)
 
     def test_a_step_back_finds_the_labels_that_it_had(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             fewer = drawn()
             fewer[fewer == 3] = 0
@@ -449,10 +452,10 @@ class TestSaving:
     def test_what_cannot_be_said_changes_nothing(
         self, small: Callable[[Check], None], tmp_path: Path, told: dict[str, Any], says: str
     ) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             with pytest.raises(TangibleError, match=says):
                 await saved(small, ask, **told)
-            assert small.desk.text == (tmp_path / "mine.yaml").read_text() == TEXT
+            assert small.session.text == (tmp_path / "mine.yaml").read_text() == TEXT
             assert not list(tmp_path.glob("parts*"))
 
         small(check)
@@ -460,12 +463,12 @@ class TestSaving:
     def test_a_disk_that_holds_the_document_and_not_the_labels_changes_nothing(
         self, small: Callable[[Check], None], tmp_path: Path
     ) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             noise = np.random.default_rng(0).permutation(drawn().size).reshape(SHAPE)
             upload = await sent(small, ask, packed(noise))
             with files_up_to(1000), pytest.raises(TangibleError, match="free some space"):
                 await ask("parts_save", upload=upload, parts=[], heights=GIVEN)
-            assert small.desk.text == (tmp_path / "mine.yaml").read_text() == TEXT
+            assert small.session.text == (tmp_path / "mine.yaml").read_text() == TEXT
             assert not list(tmp_path.glob("*parts*"))
 
         small(check)
@@ -474,18 +477,18 @@ class TestSaving:
     def test_a_full_disk_changes_nothing(self, small: Callable[[Check], None], tmp_path: Path, size: int) -> None:
         """100: there is no room for the labels; 3000: for the document behind them."""
 
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             (tmp_path / "mine.yaml").write_text(f"{TEXT}# {4000 * 'x'}\n")
             await ask("begin", files=[str(tmp_path / "mine.yaml")], make_it=False)
             await saved(small, ask)
             await small.tab.until("touch")
-            text, labels = small.desk.text, (tmp_path / "parts.png").read_bytes()
+            text, labels = small.session.text, (tmp_path / "parts.png").read_bytes()
             other = drawn()
             other[0, 0] = 7
             upload = await sent(small, ask, packed(other))
             with files_up_to(size), pytest.raises(TangibleError, match="free some space"):
                 await ask("parts_save", upload=upload, parts=[], heights=GIVEN)
-            assert small.desk.text == (tmp_path / "mine.yaml").read_text() == text
+            assert small.session.text == (tmp_path / "mine.yaml").read_text() == text
             assert (tmp_path / "parts.png").read_bytes() == labels
             assert not list(tmp_path.glob(".*"))
 
@@ -496,15 +499,15 @@ class TestSaving:
         path = small_scene(tmp_path)
         text = TEXT.replace("photo: mine.png", f"photo: mine.png, {framing}")
         path.write_text(text)
-        bench = Bench(tmp_path, lambda event, **told: None)
-        rows, columns = bench.pipeline_of(text, path, []).scene.shape
+        worker_state = WorkerState(tmp_path, lambda event, **told: None)
+        rows, columns = worker_state.pipeline_of(text, path, []).scene.shape
         labels = np.zeros((rows, columns), np.uint16)
         labels[2:9, 3:8] = 1
         labels[rows - 3 :, columns - 2 :] = 2
         (tmp_path / "sent").write_bytes(packed(labels))
         JOBS["parts_save"].do(
-            bench, text=text, path=path, sets=[], sent=tmp_path / "sent", parts=[{"label": 1, "name": "a"}],
-            heights=GIVEN, words={}, of="", opened=text, shelf=tmp_path,
+            worker_state, text=text, path=path, sets=[], sent=tmp_path / "sent", parts=[{"label": 1, "name": "a"}],
+            heights=GIVEN, words={}, of="", opened=text, store=tmp_path,
         )  # fmt: skip
         scene = load_pipeline(path).scene
         assert scene.segments is not None
@@ -523,7 +526,7 @@ def test_pages_know_the_names_of_parts_whatever_is_made(
     text = TEXT.replace("photo: mine.png", "photo: mine.png, segments: drawn.png") + said
     (tmp_path / "mine.yaml").write_text(text)
 
-    async def check(small: SmallDesk, ask: Any) -> None:
+    async def check(small: SmallSession, ask: Any) -> None:
         await ask("make", want="relief")
         await ask("make", want="materials")
         await ask("make", want=want)
@@ -547,27 +550,27 @@ class TestHeights:
     ) -> None:
         """To the bit: of surfaces, and of all that the force loop is sent."""
 
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             sent_to_the_loop: list[bytes] = []
 
             async def feel(_: Any, made: dict[str, Any]) -> None:
                 sent_to_the_loop.append(Path(made["parcel"]).read_bytes())
                 Path(made["parcel"]).unlink()
 
-            monkeypatch.setattr(Desk, "feel", feel)
-            monkeypatch.setattr(Desk, "feel_on", feel)
+            monkeypatch.setattr(Session, "feel", feel)
+            monkeypatch.setattr(Session, "feel_on", feel)
             for render in ("{use: penalty}", "{use: proxy}"):
                 await ask("set", written={"render": render})
                 await saved(small, ask)
                 await ask("parts_heights", heights_m=[0.0002, 0.0008, 0.0011], materials=[None, "sand", "ice"],
                           heights={"round_m": 0.004})  # fmt: skip
-                felt, surface = sent_to_the_loop[-1], small.maker.bench.kept.seen
+                felt, surface = sent_to_the_loop[-1], small.worker.state.kept.seen
                 parts = [{**SAVED[0], "height_m": 0.0002}, {**SAVED[1], "height_m": 0.0008, "material": "sand"},
                          {**SAVED[2], "height_m": 0.0011, "material": "ice"}]  # fmt: skip
                 await saved(small, ask, parts=parts, heights={**GIVEN, "round_m": 0.004})
                 del surface
-                pipeline = load_pipeline(tmp_path / "mine.yaml", small.desk.felt_sets())
-                made = making.felt(pipeline)
+                pipeline = load_pipeline(tmp_path / "mine.yaml", small.session.felt_sets())
+                made = making.loop_input_of(pipeline)
                 assert Path(made["parcel"]).read_bytes() == felt
                 Path(made["parcel"]).unlink()
 
@@ -577,7 +580,7 @@ class TestHeights:
     def test_what_the_recipe_finds_is_felt_where_nothing_is_given(
         self, small: Callable[[Check], None], tmp_path: Path, by: str
     ) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             if by == "depth":
                 await saved(small, ask, parts=SAVED[:1], heights={**GIVEN, "by": "depth"})
                 with pytest.raises(ConfigError, match="not made yet"):
@@ -586,49 +589,47 @@ class TestHeights:
             parts = [{"label": 7, "height_m": 0.0007}]
             await saved(small, ask, parts=parts, heights={**GIVEN, "by": by})
             await ask("parts_heights", heights_m=[None, 0.0007, None])
-            async with asyncio.timeout(30):
-                while (seen := small.maker.bench.kept.seen) is None:
-                    await asyncio.sleep(0.005)
+            seen = await happened(lambda: small.worker.state.kept.seen)
             wanted = load_pipeline(tmp_path / "mine.yaml").relief.height_m
             np.testing.assert_array_equal(seen.relief.height_m, wanted)
 
         small(check)
 
     def test_the_terrain_follows_and_the_document_stays(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             await small.tab.until("touch")
-            text, before = small.desk.text, small.tab.last("scene")
+            text, before = small.session.text, small.tab.last("scene")
             assert await ask("parts_heights", heights_m=[0.0, 0.002, 0.001]) == {}
             after = await small.tab.until("scene", small.tab.names().count("scene") + 1)
             assert after["height_m"][1] > before["height_m"][1] + 0.0005
             assert after["parts"] == ["wall", "hat", "bag"]
-            assert small.desk.text == text
+            assert small.session.text == text
 
         small(check)
 
     def test_a_large_surface_is_felt_coarsely_until_it_is_saved(
         self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             await small.tab.until("touch")
             monkeypatch.setattr("tangible_ui.worker.parts.heights.MOST_CELLS", 200)
             await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])
-            kept = small.maker.bench.kept
+            kept = small.worker.state.kept
             assert kept.grid.shape == (12, 16)
             coarse = await small.tab.until("scene", small.tab.names().count("scene") + 1)
             assert (coarse["rows"], coarse["columns"]) == (12, 16)
             assert coarse["parts"] == ["wall", "hat", "bag"]
             monkeypatch.undo()
-            assert load_pipeline(small.desk.path).surface.height_m.shape == SHAPE
+            assert load_pipeline(small.session.path).surface.height_m.shape == SHAPE
 
         small(check)
 
     def test_a_height_makes_again_nothing_that_does_not_depend_on_it(
         self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])
 
@@ -659,7 +660,7 @@ class TestHeights:
         ],
     )
     def test_what_is_wrong_is_said(self, small: Callable[[Check], None], told: dict[str, Any], says: str) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             with pytest.raises(TangibleError, match=says):
                 await ask("parts_heights", **told)
@@ -669,17 +670,15 @@ class TestHeights:
     def test_of_heights_that_come_faster_than_they_are_felt_the_newest_are(
         self, small: Callable[[Check], None]
     ) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             await small.tab.until("touch")
-            small.maker.asked.clear()
+            small.worker.asked.clear()
             found = await asyncio.gather(*(ask("parts_heights", heights_m=[0.0, k / 1e4, 0.0]) for k in range(20)))
             assert found == [{}, *[None] * 18, {}]
-            assert small.maker.asked.count("parts_heights") == 2
-            async with asyncio.timeout(30):
-                while small.tab.last("scene")["height_m"][1] < 19 / 1e4:
-                    await asyncio.sleep(0.005)
-            assert small.maker.bench.kept.seen.relief.height_m.max() > 19 / 1e4
+            assert small.worker.asked.count("parts_heights") == 2
+            await happened(lambda: small.tab.last("scene")["height_m"][1] >= 19 / 1e4)
+            assert small.worker.state.kept.seen.relief.height_m.max() > 19 / 1e4
 
         small(check)
 
@@ -697,18 +696,18 @@ class TestHeights:
         async def feel(_: Any) -> None:
             done.append("feel")
 
-        desk: Any = SimpleNamespace(
+        session: Any = SimpleNamespace(
             laws=SimpleNamespace(other=compared),
             feeling=SimpleNamespace(running=running, channel=""),
             put=put,
             feel=feel,
         )
-        monkeypatch.setattr("tangible_ui.state.session.Felt.of", lambda made, channel: made)
-        asyncio.run(Desk.feel_on(desk, {}))
+        monkeypatch.setattr("tangible_ui.state.session.LoopInput.of", lambda made, channel: made)
+        asyncio.run(Session.feel_on(session, {}))
         assert done == [says]
 
     def test_parts_that_were_not_saved_have_no_heights(self, small: Callable[[Check], None]) -> None:
-        async def check(small: SmallDesk, ask: Any) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
             with pytest.raises(ConfigError, match="save what was drawn"):
                 await ask("parts_heights", heights_m=[0.001])
 
@@ -717,14 +716,14 @@ class TestHeights:
 
 def test_of_asks_that_wait_the_newest_alone_is_done() -> None:
     async def check() -> None:
-        newest, go, done = Newest(), asyncio.Event(), list[int]()
+        newest, go, done = LatestWins(), asyncio.Event(), list[int]()
 
         async def work(number: int) -> int:
             await go.wait()
             done.append(number)
             return number
 
-        asked = [asyncio.create_task(newest.do(lambda number=number: work(number))) for number in range(5)]
+        asked = [asyncio.create_task(newest.run(lambda number=number: work(number))) for number in range(5)]
         await asyncio.sleep(0)
         go.set()
         assert await asyncio.gather(*asked) == [0, None, None, None, 4]
@@ -735,15 +734,15 @@ def test_of_asks_that_wait_the_newest_alone_is_done() -> None:
 
 def test_what_is_drawn_leaves_time_for_what_is_felt_and_the_last_is_drawn():
     async def check() -> None:
-        drawn, done = Newest(0.2), []
+        drawn, done = LatestWins(0.2), []
 
         async def draw(number: int) -> int:
             done.append((number, asyncio.get_running_loop().time()))
             return number
 
-        found = await asyncio.gather(*(drawn.do(lambda k=k: draw(k)) for k in range(5)))
+        found = await asyncio.gather(*(drawn.run(lambda k=k: draw(k)) for k in range(5)))
         assert found == [0, None, None, None, 4]
-        first = await drawn.do(lambda: draw(5)), await drawn.do(lambda: draw(6))
+        first = await drawn.run(lambda: draw(5)), await drawn.run(lambda: draw(6))
         assert first == (5, 6)
         times = [at for _, at in done]
         assert [number for number, _ in done] == [0, 4, 5, 6]

@@ -1,6 +1,5 @@
 """The editor of parts: from a photograph to a felt relief of five named parts, by mouse and by keyboard alone."""
 
-import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,11 +14,11 @@ from tangible_core.pipeline.config.parsing import load_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import SceneFiles
+from waiting import until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-LONGEST_S = 120
 WIDTH, HEIGHT = 240, 180
 RELIEF = "workspace: {width_m: 0.08, relief_m: 0.006}\nrender: {use: penalty, stiffness_n_per_m: 400}\n"
 SPY = """
@@ -39,13 +38,6 @@ def photo(tmp_path: Path) -> Path:
     picture += np.random.default_rng(3).normal(scale=4, size=picture.shape)
     Image.fromarray(np.uint8(np.clip(picture, 0, 255))).save(tmp_path / "ball.png")
     return tmp_path / "ball.png"
-
-
-def until(holds: Callable[[], Any], what: str = "") -> None:
-    end_s = time.monotonic() + LONGEST_S
-    while not holds():
-        assert time.monotonic() < end_s, what
-        time.sleep(0.05)
 
 
 def felt(page: "Page") -> None:
@@ -129,7 +121,7 @@ def test_from_a_photograph_to_five_parts_by_mouse(opened: Callable[..., str], op
     # a proposal, accepted
     tool(page, "Propose")
     mouse.draw((130, 80), (150, 90), (165, 100))
-    page.get_by_role("button", name="Accept").click(timeout=20_000)
+    page.get_by_role("button", name="Accept").click()
     name.fill("ball")
     # an outline, on the picture's edges
     tool(page, "Outline")
@@ -163,7 +155,7 @@ def test_from_a_photograph_to_five_parts_by_mouse(opened: Callable[..., str], op
     door = page.locator("#parts-list [aria-selected=true]").inner_text()
     assert "door" in door and len(names(page)) == 5
     mouse.fingers([(15, 20)], [(20, 30)])
-    page.wait_for_timeout(300)
+    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
     # taken back and done again
     for _ in range(3):

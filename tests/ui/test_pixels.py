@@ -7,8 +7,7 @@ the workspace is on the screen comes from the view; that the view itself is the 
 import io
 import json
 import math
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack
 from typing import Any, NamedTuple
 
@@ -18,6 +17,7 @@ from PIL import Image
 
 from browser_tabs import Chromium, tabs
 from lasting_server import LastingServer
+from waiting import until
 
 WIDTH_M, LENGTH_M, HIGH_M = 0.08, 0.06, 0.006
 ROWS, COLUMNS = 90, 120
@@ -33,7 +33,6 @@ DEVICE = 0xFF, 0x5D, 0x8F
 TOUCHING = 1
 LEFT, RIGHT = -0.02, 0.02
 """Far from the step, and from the rim."""
-LONGEST_S = 60
 
 Vec = tuple[float, float, float]
 
@@ -108,7 +107,7 @@ def shown(chromium: Chromium, lasting: LastingServer, tmp_path_factory: pytest.T
         with chromium.used() as browser:
             open_page = pages.enter_context(tabs(browser, []))
             page = open_page(f"{url}&measure", viewport={"width": 1400, "height": 800})
-            page.wait_for_function("() => window.page?.scene && figures.firstMs > 0", timeout=1000 * LONGEST_S)
+            page.wait_for_function("() => window.page?.scene && figures.firstMs > 0")
             page.context.grant_permissions(["clipboard-read", "clipboard-write"])
             page.evaluate(
                 "() => { document.getElementById('data-cursor').open = false;"
@@ -140,14 +139,6 @@ def centroid(mask: np.ndarray) -> np.ndarray:
 
 def coloured(picture: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:
     return np.abs(picture - colour).max(axis=2) < 24
-
-
-def until(found: Callable[[], Any]) -> Any:
-    end = time.monotonic() + LONGEST_S
-    while not (value := found()) and time.monotonic() < end:
-        time.sleep(0.05)
-    assert value
-    return value
 
 
 def test_the_surface_is_the_right_way_round_and_where_it_is(shown: Shown):

@@ -1,4 +1,4 @@
-"""Parts that are proposed from a stroke, and outlines that follow the picture's edges."""
+"""Parts that are propose from a stroke, and outlines that follow the picture's edges."""
 
 from pathlib import Path
 
@@ -11,9 +11,9 @@ from drawn_parts import drawn
 from tangible_core.errors import ConfigError
 from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.parts import proposals
-from tangible_ui.worker.parts.outlines import snapped
-from tangible_ui.worker.parts.proposals import as_points, proposed, runs
-from tangible_ui.worker.state import Bench
+from tangible_ui.worker.parts.outlines import snap
+from tangible_ui.worker.parts.proposals import as_points, propose, runs
+from tangible_ui.worker.state import WorkerState
 
 SHAPE = (240, 320)
 
@@ -74,7 +74,7 @@ class TestProposals:
     def test_the_thing_under_the_stroke_is_found(self, kind: proposals.Kind, factor: int) -> None:
         picture, inside = two_things()
         picture = cv2.resize(picture, None, fx=factor, fy=factor, interpolation=cv2.INTER_CUBIC)
-        box, mask = proposed(picture, STROKE * factor, 12 * factor, kind)
+        box, mask = propose(picture, STROKE * factor, 12 * factor, kind)
         found = placed(box, mask, (factor * SHAPE[0], factor * SHAPE[1]))
         assert overlap(found[factor // 2 :: factor, factor // 2 :: factor], inside) > 0.95
         assert mask[0].any()  # the box just holds it
@@ -85,17 +85,17 @@ class TestProposals:
     def test_a_border_is_as_fine_as_the_picture(self, monkeypatch: pytest.MonkeyPatch) -> None:
         picture, inside = two_things()
         monkeypatch.setattr(proposals, "MOST_CELLS", 2000)
-        fine = placed(*proposed(picture, STROKE, 12, "grabcut"))
-        monkeypatch.setattr(proposals, "_refined", lambda whole, mask: cv2.resize(
+        fine = placed(*propose(picture, STROKE, 12, "grabcut"))
+        monkeypatch.setattr(proposals, "_refine_border", lambda whole, mask: cv2.resize(
             mask.astype(np.uint8), whole.shape[1::-1], interpolation=cv2.INTER_NEAREST) > 0)  # fmt: skip
-        coarse = placed(*proposed(picture, STROKE, 12, "grabcut"))
+        coarse = placed(*propose(picture, STROKE, 12, "grabcut"))
         assert overlap(fine, inside) > max(0.96, overlap(coarse, inside) + 0.02)
 
     def test_things_in_photographs_are_found(self) -> None:
         """Overlap with parts drawn by hand, of one stroke along the middle of each."""
         found = {
             (name, part): overlap(
-                placed(*proposed(drawn(name).picture, *stroke_along(mask), "grabcut"), mask.shape), mask
+                placed(*propose(drawn(name).picture, *stroke_along(mask), "grabcut"), mask.shape), mask
             )
             for name in ("astronaut", "coffee")
             for part, mask in things(name)
@@ -106,14 +106,14 @@ class TestProposals:
 
     def test_nothing_is_proposed_beyond_the_box_that_was_drawn(self) -> None:
         picture, _ = two_things()
-        box, mask = proposed(picture, STROKE, 12, "grabcut", [100, 80, 215, 160])
+        box, mask = propose(picture, STROKE, 12, "grabcut", [100, 80, 215, 160])
         found = placed(box, mask)
         found[80:160, 100:215] = False
         assert not found.any()
 
     def test_one_that_was_drawn_elsewhere_holds_nothing_back(self) -> None:
         picture, inside = two_things()
-        assert overlap(placed(*proposed(picture, STROKE, 12, "grabcut", [0, 0, 20, 20])), inside) > 0.95
+        assert overlap(placed(*propose(picture, STROKE, 12, "grabcut", [0, 0, 20, 20])), inside) > 0.95
 
     @pytest.mark.parametrize("kind", ["grabcut", "watershed"])
     @pytest.mark.parametrize("shape", [(1, 1), (1, 40), (3, 3), (40, 1), (60, 80)])
@@ -122,14 +122,14 @@ class TestProposals:
     ) -> None:
         picture = np.full((*shape, 3), 128, np.uint8)
         points = as_points([[0, 0], [1e9, -1e9]], picture.shape)
-        box, mask = proposed(picture, points, 3, kind)
+        box, mask = propose(picture, points, 3, kind)
         found = placed(box, mask, shape)
         assert found[0, 0]
         assert found[0, -1]
 
     def test_a_stroke_over_everything_is_everything(self) -> None:
         picture, _ = two_things()
-        box, mask = proposed(picture, STROKE, 1e6, "grabcut")
+        box, mask = propose(picture, STROKE, 1e6, "grabcut")
         assert box == (0, 0, 320, 240)
         assert mask.all()
 
@@ -163,16 +163,16 @@ class TestSnapping:
         outline = self.wobbling(inside, 0.07)
         assert overlap(self.filled(outline), inside) < 0.93
         picture = cv2.resize(picture, None, fx=factor, fy=factor, interpolation=cv2.INTER_CUBIC)
-        found = snapped(picture, outline * factor, 12.0 * factor) / factor
+        found = snap(picture, outline * factor, 12.0 * factor) / factor
         assert overlap(self.filled(found), inside) > 0.97
 
     def test_it_moves_no_farther_than_it_may_and_not_at_all_without_edges(self) -> None:
         picture, inside = two_things()
         outline = self.wobbling(inside, 0.07)
-        found = snapped(picture, outline, 3.0)
+        found = snap(picture, outline, 3.0)
         far = np.min(np.hypot(*(found[:, None] - outline[None]).transpose(2, 0, 1)), axis=1)
         assert far.max() < 4.0
-        still = snapped(np.full((*SHAPE, 3), 90, np.uint8), outline, 12.0)
+        still = snap(np.full((*SHAPE, 3), 90, np.uint8), outline, 12.0)
         far = np.min(np.hypot(*(still[:, None] - outline[None]).transpose(2, 0, 1)), axis=1)
         assert far.max() < 1.0
 
@@ -181,7 +181,7 @@ class TestSnapping:
     )
     def test_what_is_hardly_an_outline_stays_in_the_picture(self, points: list[list[float]]) -> None:
         picture, _ = two_things()
-        found = snapped(picture, np.array(points, float), 12.0)
+        found = snap(picture, np.array(points, float), 12.0)
         assert np.isfinite(found).all()
         assert (found >= 0).all()
         assert (found <= [319, 239]).all()
@@ -190,12 +190,14 @@ class TestSnapping:
 def test_jobs_answer_what_json_can_say(tmp_path: Path) -> None:
     picture, inside = two_things()
     Image.fromarray(picture).save(tmp_path / "a.png")
-    bench = Bench(tmp_path, lambda event, **told: None)
+    worker_state = WorkerState(tmp_path, lambda event, **told: None)
     told = {"text": "scene: {photo: a.png}\n", "path": tmp_path / "a.yaml", "sets": []}
-    found = JOBS["parts_propose"].do(bench, **told, points=STROKE.tolist(), width_px=12, kind="grabcut", within=None)
+    found = JOBS["parts_propose"].do(
+        worker_state, **told, points=STROKE.tolist(), width_px=12, kind="grabcut", within=None
+    )
     x, y, columns, rows = found["box"]
     mask = np.repeat(np.arange(len(found["runs"])) % 2, found["runs"]).reshape(rows, columns)
     assert overlap(placed((x, y, columns, rows), mask.astype(bool)), inside) > 0.95
     assert all(type(each) is int for each in [*found["box"], *found["runs"]])
-    found = JOBS["parts_snap"].do(bench, **told, points=[[80, 60], [240, 60], [240, 180]], reach_px=5)
+    found = JOBS["parts_snap"].do(worker_state, **told, points=[[80, 60], [240, 60], [240, 180]], reach_px=5)
     assert all(type(each) is float for point in found["points"] for each in point)

@@ -2,7 +2,7 @@
 
 import asyncio
 import errno
-import time
+import os
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -18,19 +18,20 @@ from tangible_core.session import About, Recording, Writer
 from tangible_ui.feeling.recorder import BY_HAND, Recorder
 from tangible_ui.requests.records import record
 from tangible_ui.worker.jobs import records
-from tangible_ui.worker.state import Bench
+from tangible_ui.worker.state import WorkerState
+from waiting import LONGEST_S, until
 
 
 @pytest.fixture
-def bench(tmp_path: Path) -> Bench:
-    return Bench(tmp_path, lambda event, **told: None)
+def worker_state(tmp_path: Path) -> WorkerState:
+    return WorkerState(tmp_path, lambda event, **told: None)
 
 
 @pytest.fixture
 def servo(loop_in_thread: None) -> Any:
     surface = HapticSurface.from_heights(np.zeros((8, 8), np.float32))
     touch = load_method("render", "penalty")().touch(surface)
-    with Servo(touch, load_method("device", "mock")(), seconds=20) as running:
+    with Servo(touch, load_method("device", "mock")(), seconds=LONGEST_S) as running:
         yield running
 
 
@@ -43,12 +44,19 @@ def some(ticks: int, force_n: float = 1.0) -> Recording:
     return Recording(rows, "", About("mock", "penalty", "scene: builtin/brick\n"))
 
 
+def felt(servo: Servo, ticks: int) -> None:
+    """Wait for this many ticks more."""
+    before = servo.ring.count
+    until(lambda: servo.ring.count >= before + ticks)
+
+
 class TestRecorder:
     def test_every_tick_from_now_on_is_kept_once(self, servo: Servo, tmp_path: Path) -> None:
         ended: list[tuple[Path, int, str]] = []
         recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: ended.append(told))
-        first = servo.ring.count
-        time.sleep(0.3)
+        felt(servo, 1)
+        first_s = servo.ring.since(servo.ring.count - 1)[0][-1, 0]
+        felt(servo, 300)
         recorder.stop()
         found = Recording.load(tmp_path / "a.nc")
         assert ended == [(tmp_path / "a.nc", len(found.rows), BY_HAND)]
@@ -57,13 +65,13 @@ class TestRecorder:
         steps = np.diff(found.time_s)
         assert steps.min() > 0
         assert servo.running
-        assert found.time_s[0] <= first / 1000 + 0.5
+        assert found.time_s[0] <= first_s
 
     def test_it_ends_with_its_loop(self, servo: Servo, tmp_path: Path) -> None:
         recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: None)
-        time.sleep(0.1)
+        felt(servo, 100)
         servo.stop("the device was pulled out")
-        recorder._thread.join(5)  # pyright: ignore[reportPrivateUsage]
+        recorder._thread.join(LONGEST_S)  # pyright: ignore[reportPrivateUsage]
         found = Recording.load(tmp_path / "a.nc")
         assert found.stopped == "the device was pulled out"
         assert len(found.rows) >= 50
@@ -78,7 +86,7 @@ class TestRecorder:
             raise OSError(errno.ENOSPC, "No space left on device")
 
         monkeypatch.setattr(Writer, "_put", full)
-        recorder._thread.join(5)  # pyright: ignore[reportPrivateUsage]
+        recorder._thread.join(LONGEST_S)  # pyright: ignore[reportPrivateUsage]
         assert len(ended) == 1
         assert "free some space" in ended[0]
         assert servo.running
@@ -91,35 +99,37 @@ class TestRecorder:
 
 
 class TestShown:
-    def test_the_ticks_of_a_day_old_clock_keep_their_time(self, bench: Bench, tmp_path: Path) -> None:
+    def test_the_ticks_of_a_day_old_clock_keep_their_time(self, worker_state: WorkerState, tmp_path: Path) -> None:
         some(50).save(tmp_path / "a.nc")
-        shown = records.show_record(bench, tmp_path / "a.nc")
+        shown = records.show_record(worker_state, tmp_path / "a.nc")
         rows = np.fromfile(tmp_path / shown["digest"] / "ticks.f32", "<f4").reshape(shown["rows"], shown["columns"])
         assert np.allclose(rows[:, 0], np.arange(50) / 1000, atol=1e-6)
         assert np.allclose(rows[:, 2], some(50).position_m[:, 0], atol=1e-8)
         assert (shown["every"], shown["law"], shown["stopped"]) == (1, "penalty", "")
 
     def test_a_long_one_is_thinned_and_says_so(
-        self, bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+        self, worker_state: WorkerState, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(records, "MOST_ROWS", 20)
         some(50).save(tmp_path / "a.nc")
-        shown = records.show_record(bench, tmp_path / "a.nc")
+        shown = records.show_record(worker_state, tmp_path / "a.nc")
         assert (shown["rows"], shown["every"]) == (17, 3)
 
-    def test_an_empty_one(self, bench: Bench, tmp_path: Path) -> None:
+    def test_an_empty_one(self, worker_state: WorkerState, tmp_path: Path) -> None:
         some(0).save(tmp_path / "a.nc")
-        assert records.show_record(bench, tmp_path / "a.nc")["rows"] == 0
+        assert records.show_record(worker_state, tmp_path / "a.nc")["rows"] == 0
 
-    def test_the_list_has_the_newest_first_and_what_cannot_be_read(self, bench: Bench, tmp_path: Path) -> None:
+    def test_the_list_has_the_newest_first_and_what_cannot_be_read(
+        self, worker_state: WorkerState, tmp_path: Path
+    ) -> None:
         some(5).save(tmp_path / "old.nc")
-        time.sleep(0.02)
+        os.utime(tmp_path / "old.nc", (0, 0))
         (tmp_path / "broken.nc").write_bytes(b"CDF nothing")
-        found = records.records(bench, tmp_path)
+        found = records.records(worker_state, tmp_path)
         assert [each["name"] for each in found] == ["broken.nc", "old.nc"]
         assert found[0]["trouble"]
         assert found[1]["figures"]["ticks"] == 5
-        assert records.records(bench, tmp_path / "missing") == []
+        assert records.records(worker_state, tmp_path / "missing") == []
 
 
 def test_a_recording_of_the_page_holds_the_names_of_the_parts_and_materials(
@@ -131,28 +141,28 @@ def test_a_recording_of_the_page_holds_the_names_of_the_parts_and_materials(
     felt = SimpleNamespace(law="penalty", device_name="mouse", materials='{"1": "wood"}')
     feeling = SimpleNamespace(servo=SimpleNamespace(running=True), felt=felt)
     text = "scene: {photo: a.png, segments: parts.png}\nparts: {1: {name: wall}}\n"
-    desk: Any = SimpleNamespace(feeling=feeling, recorder=None, text=text, tell=lambda *said, **told: None)
-    asyncio.run(record(desk, None))
+    session: Any = SimpleNamespace(feeling=feeling, recorder=None, text=text, tell=lambda *said, **told: None)
+    asyncio.run(record(session, None))
     assert [(each.device, each.configuration, each.parts) for each in kept] == [("mouse", text, '{"1": "wall"}')]
     assert [each.materials for each in kept] == ['{"1": "wood"}']
 
 
-def test_two_are_compared_place_by_place(bench: Bench, tmp_path: Path) -> None:
+def test_two_are_compared_place_by_place(worker_state: WorkerState, tmp_path: Path) -> None:
     some(50, 1.0).save(tmp_path / "a.nc")
     some(80, 1.5).save(tmp_path / "b.nc")
-    found = records.compare_records(bench, tmp_path / "a.nc", tmp_path / "b.nc")
+    found = records.compare_records(worker_state, tmp_path / "a.nc", tmp_path / "b.nc")
     assert found["error_n"] == pytest.approx(0.5)
     assert (found["first_peak_force_n"], found["second_peak_force_n"]) == (1.0, 1.5)
 
 
-def test_another_law_feels_the_same_states(bench: Bench, tmp_path: Path) -> None:
+def test_another_law_feels_the_same_states(worker_state: WorkerState, tmp_path: Path) -> None:
     np.save(tmp_path / "flat.npy", np.zeros((8, 8)))
     text = (
         "scene: {height: flat.npy}\nwant: touch\nrender: {use: penalty, stiffness_n_per_m: 500}\n"
         "workspace: {relief_m: 0.001, smooth_m: 0}\n"
     )
     some(50).save(tmp_path / "a.nc")
-    shown = records.try_law(bench, tmp_path / "a.nc", text, tmp_path / "p.yaml", [], tmp_path)
+    shown = records.try_law(worker_state, tmp_path / "a.nc", text, tmp_path / "p.yaml", [], tmp_path)
     after = Recording.load(shown["path"])
     assert Path(shown["path"]).name == "a with penalty.nc"
     assert np.allclose(after.force_n[1:-1, 2], 0.5, atol=0.05)

@@ -2,26 +2,16 @@
 
 import os
 import signal
-import time
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from page_files import built_page
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.servo.ring import Ring
+from waiting import until
 
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
-IN_TIME_S = 90.0
-
-
-def until(holds: Callable[[], Any], what: str) -> None:
-    end = time.monotonic() + IN_TIME_S
-    while not holds():
-        assert time.monotonic() < end, what
-        time.sleep(0.01)
 
 
 def test_a_tab_that_stands_still_or_is_closed_gives_no_force(serve, open_page, browser, tmp_path: Path) -> None:
@@ -34,11 +24,11 @@ def test_a_tab_that_stands_still_or_is_closed_gives_no_force(serve, open_page, b
     shared.mkdir()
     server = serve("level.yaml", cwd=tmp_path, TANGIBLE_SHARED_DIR=str(shared))
     page = open_page(f"{server.url}&measure")
-    page.wait_for_function("() => window.figures?.firstMs > 0", timeout=90_000)
+    page.wait_for_function("() => window.figures?.firstMs > 0")
     assert "token" not in page.url
     assert "measure" in page.url
     page.reload()
-    page.wait_for_function("() => window.figures?.firstMs > 0", timeout=90_000)
+    page.wait_for_function("() => window.figures?.firstMs > 0")
     until(lambda: page.evaluate("() => document.getElementById('status').dataset.state") == "felt", "nothing is felt")
     ring = Ring.attach(next(shared.glob("*.ring")))
 

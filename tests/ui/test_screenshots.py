@@ -42,7 +42,7 @@ def url(opened: Callable[..., str]) -> str:
 @pytest.mark.parametrize("name", PICTURES)
 def test_a_picture_of_the_page(open_page: Callable[..., Any], url: str, tmp_path: Path, name: str):
     page = open_page(url, **PICTURES[name])
-    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'", timeout=120_000)
+    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
     if name == "ui-dark":
         page.locator("#view input[value=materials]").check()
     touch(page)
@@ -54,7 +54,7 @@ def test_a_picture_of_the_page(open_page: Callable[..., Any], url: str, tmp_path
 def test_a_picture_of_each_panel(open_page: Callable[..., Any], url: str, tmp_path: Path):
     """With what it says once something is felt; a long one is cut."""
     page = open_page(url, viewport={"width": 1440, "height": 1100}, color_scheme="light")
-    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'", timeout=120_000)
+    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
     page.evaluate("document.querySelectorAll('details.panel').forEach((each) => (each.open = false))")
     names = page.evaluate("[...document.querySelectorAll('#left > .panel, #right > .panel')].map(({ id }) => id)")
     assert len(names) > 15
@@ -83,7 +83,7 @@ def test_pictures_of_the_editor_of_parts(opened: Callable[..., str], open_page: 
     text += f"render: {{use: penalty, stiffness_n_per_m: 400}}\nheights: {{by: given}}\nparts:\n{''.join(parts)}"
     (tmp_path / "astronaut.yaml").write_text(text)
     page = open_page(opened(tmp_path / "astronaut.yaml"), viewport={"width": 1180, "height": 720}, color_scheme="light")
-    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'", timeout=120_000)
+    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
     page.locator("#parts-edit").click()
     page.locator("#parts-list [role=option]", has_text="helmet").first.click()
     page.wait_for_timeout(500)
@@ -115,12 +115,12 @@ def prepare(page: "Page", name: str) -> None:
         page.wait_for_function("() => document.querySelector('#preflight').textContent.includes('Judged for')")
     elif name == "legible":
         page.locator("#legible-check").click()
-        page.wait_for_selector("#legible .sentence", timeout=60_000)
+        page.wait_for_selector("#legible .sentence")
     elif name == "export":
         for each in ("3D print (STL)", "Swell paper (SVG, PDF)"):
             page.get_by_label(each).check()
         page.locator("#export-run").click()
-        page.wait_for_selector("#export .outcome", timeout=120_000)
+        page.wait_for_selector("#export .outcome")
     elif name == "description":
         page.wait_for_selector("#description li")
     elif name == "yaml":  # without the place of this machine where the test runs

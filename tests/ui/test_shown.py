@@ -10,28 +10,28 @@ import pytest
 from tangible_core import load_method
 from tangible_core.data import Material, Relief
 from tangible_core.errors import GeometryError, OutputError
-from tangible_core.haptic_textures import compile_textures
-from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.metrics import absolute_error
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
+from tangible_render.haptic_textures import compile_textures
+from tangible_render.haptic_textures.heights import texture_height
 from tangible_ui.serving.routes import read_window
 from tangible_ui.worker.jobs import making
 from tangible_ui.worker.jobs import surface as textures
-from tangible_ui.worker.state import Bench
+from tangible_ui.worker.state import WorkerState
 from tangible_ui.worker.view import levels
 from tangible_ui.worker.view.files import ABOUT, KEPT, _put, show
-from tangible_ui.worker.view.surface_view import Layer, Seen, is_there, see
+from tangible_ui.worker.view.surface_view import Layer, SurfaceView, is_there, view_of
 
 RANDOM = np.random.default_rng(3)
 WOOD = Material("wood", 800.0, 1.0, 0.4, 0.3, roughness_m=3e-5, grain_m=6e-4, texture="stochastic", seed=4)
 ICE = Material("ice", 900.0, 1.0, 0.05, 0.03, texture="smooth")
 
 
-def seen(height_m: np.ndarray, **more) -> Seen:
+def seen(height_m: np.ndarray, **more) -> SurfaceView:
     rows, columns = height_m.shape
     relief = Relief(height_m.astype(np.float32), (0.08, 0.08 * rows / columns))
-    plain = Seen("made", "surface", relief, None, (), None, {})
+    plain = SurfaceView("made", "surface", relief, None, (), None, {})
     return replace(plain, **more)
 
 
@@ -180,7 +180,7 @@ def pair() -> Scene:
 class TestSee:
     def test_a_layer_says_its_numbers(self, pair: Scene):
         pipeline = Pipeline(pair, render=made("render", "proxy"), cached=False)
-        found = see(pipeline, "surface")
+        found = view_of(pipeline, "surface")
         assert found.shows == "surface"
         assert set(found.layers) == {"disparity", "confidence", "error"}
         np.testing.assert_array_equal(found.layers["disparity"].values, pair.disparity.disparity_px)
@@ -193,7 +193,7 @@ class TestSee:
         picture[:, 30:] = np.random.default_rng(1).integers(0, 255, (40, 30))
         pipeline = of_photo(picture)
         pipeline.make("segments")
-        found = see(pipeline, "segments")
+        found = view_of(pipeline, "segments")
         assert found.shows == "segments"
         assert found.relief.height_m.max() == 0
         assert not is_there(pipeline, "relief")
@@ -204,12 +204,12 @@ class TestSee:
         pipeline = of_photo(picture)
         pipeline.make("relief")
         pipeline.make("segments")
-        assert see(pipeline, "segments").relief.height_m.max() > 0
+        assert view_of(pipeline, "segments").relief.height_m.max() > 0
 
     def test_a_depth_is_seen_as_a_relief(self, pair: Scene):
         pipeline = Pipeline(pair, cached=False)
         pipeline.make("disparity")
-        found = see(pipeline, "disparity")
+        found = view_of(pipeline, "disparity")
         assert found.shows == "relief"
         assert found.relief.height_m.max() == pytest.approx(0.01, rel=0.2)
         assert not is_there(pipeline, "touch")
@@ -218,36 +218,36 @@ class TestSee:
         segments = np.repeat([[0, 1]], 8, 0).repeat(8, 1).astype(np.int32)
         scene = Scene.of(height=np.zeros((8, 16)), segments=segments)
         by, law = {"by": {0: "brick", 1: "ice"}}, made("render", "proxy")
-        bare = see(Pipeline(scene, materials=by, render=law, cached=False), "surface").materials
+        bare = view_of(Pipeline(scene, materials=by, render=law, cached=False), "surface").materials
         device = made("device", "mock")
-        held = see(Pipeline(scene, materials=by, render=law, device=device, cached=False), "surface").materials
+        held = view_of(Pipeline(scene, materials=by, render=law, device=device, cached=False), "surface").materials
         assert [each.name for each in held] == [each.name for each in bare]
         assert held[0].roughness_m < bare[0].roughness_m
 
 
 def test_every_product_can_be_asked_for_and_what_is_shown_is_told_once(tmp_path: Path):
     told: list[tuple[str, dict]] = []
-    bench = Bench(tmp_path, lambda event, **more: told.append((event, more)))
+    worker_state = WorkerState(tmp_path, lambda event, **more: told.append((event, more)))
     text = "scene: builtin/brick\ndepth: {use: luminance}\ntexture: {use: histogram}\nrender: {use: penalty}\n"
     for want in ("segments", "materials", "disparity", "relief", "surface", "surface"):
-        assert making.make(bench, 1, text, tmp_path / "p.yaml", [], want) is None
+        assert making.make(worker_state, 1, text, tmp_path / "p.yaml", [], want) is None
     shown = [more["shows"] for event, more in told if event == "scene"]
     assert shown == ["segments", "relief", "surface"]
 
 
 class TestTexture:
     @pytest.fixture
-    def bench(self, tmp_path: Path) -> Bench:
-        return Bench(tmp_path, lambda event, **told: None)
+    def worker_state(self, tmp_path: Path) -> WorkerState:
+        return WorkerState(tmp_path, lambda event, **told: None)
 
     @pytest.fixture
-    def digest(self, bench: Bench) -> str:
+    def digest(self, worker_state: WorkerState) -> str:
         labels = np.repeat([[0, 1]], 30, 0).repeat(20, 1).astype(np.int32)
-        return show(seen(np.zeros((30, 40)), labels=labels, materials=(WOOD, ICE)), bench.folder)["digest"]
+        return show(seen(np.zeros((30, 40)), labels=labels, materials=(WOOD, ICE)), worker_state.folder)["digest"]
 
-    def test_it_is_what_a_law_feels(self, bench: Bench, digest: str):
-        found = textures.texture_patch(bench, digest, -0.004, 0.011, 0.01, 25)
-        heights = np.fromfile(bench.folder / digest / found["file"], "<f4").reshape(25, 25)
+    def test_it_is_what_a_law_feels(self, worker_state: WorkerState, digest: str):
+        found = textures.texture_patch(worker_state, digest, -0.004, 0.011, 0.01, 25)
+        heights = np.fromfile(worker_state.folder / digest / found["file"], "<f4").reshape(25, 25)
         table = compile_textures((WOOD, ICE))
         for row, column in [(0, 0), (12, 3), (24, 9), (7, 20), (24, 24)]:
             x, y = -0.004 + ((column + 0.5) / 25 - 0.5) * 0.01, 0.011 - ((row + 0.5) / 25 - 0.5) * 0.01
@@ -256,24 +256,24 @@ class TestTexture:
         assert np.abs(heights[:, :20]).max() > 1e-5
         assert not heights[:, 23:].any()
 
-    def test_beyond_the_rim_and_without_materials_it_is_flat(self, bench: Bench, digest: str):
-        found = textures.texture_patch(bench, digest, -0.04, 0.03, 0.01, 8)
-        heights = np.fromfile(bench.folder / digest / found["file"], "<f4").reshape(8, 8)
+    def test_beyond_the_rim_and_without_materials_it_is_flat(self, worker_state: WorkerState, digest: str):
+        found = textures.texture_patch(worker_state, digest, -0.04, 0.03, 0.01, 8)
+        heights = np.fromfile(worker_state.folder / digest / found["file"], "<f4").reshape(8, 8)
         assert not heights[:4].any() and not heights[:, :4].any() and heights[4:, 4:].any()
-        bare = show(seen(np.zeros((3, 4))), bench.folder)["digest"]
-        found = textures.texture_patch(bench, bare, 0.0, 0.0, 0.01, 8)
-        assert not np.fromfile(bench.folder / bare / found["file"], "<f4").any()
+        bare = show(seen(np.zeros((3, 4))), worker_state.folder)["digest"]
+        found = textures.texture_patch(worker_state, bare, 0.0, 0.0, 0.01, 8)
+        assert not np.fromfile(worker_state.folder / bare / found["file"], "<f4").any()
 
-    def test_few_are_kept(self, bench: Bench, digest: str):
+    def test_few_are_kept(self, worker_state: WorkerState, digest: str):
         for each in range(20):
-            textures.texture_patch(bench, digest, 1e-3 * each, 0.0, 0.01, 4)
-        assert len(list((bench.folder / digest).glob("texture-*"))) == textures.KEPT
+            textures.texture_patch(worker_state, digest, 1e-3 * each, 0.0, 0.01, 4)
+        assert len(list((worker_state.folder / digest).glob("texture-*"))) == textures.KEPT
 
     @pytest.mark.parametrize("wrong", [{"digest": "../x"}, {"digest": "0" * 32}, {"side_m": 0.0}, {"pixels": 10**6}])
-    def test_what_cannot_be_shown_is_said(self, bench: Bench, digest: str, wrong: dict):
+    def test_what_cannot_be_shown_is_said(self, worker_state: WorkerState, digest: str, wrong: dict):
         told = {"digest": digest, "x_m": 0.0, "y_m": 0.0, "side_m": 0.01, "pixels": 4, **wrong}
         with pytest.raises(GeometryError):
-            textures.texture_patch(bench, **told)
+            textures.texture_patch(worker_state, **told)
 
 
 ASKED = {"row": 2, "rows": 3, "column": 5, "columns": 4, "of": 11, "bytes": 2}
@@ -306,6 +306,6 @@ def test_parts_that_were_simplified_away_are_not_shown():
     for more, there in (({}, [0, 1, 2]), ({"simplify": {}}, [0, 1])):
         pipeline = Pipeline(scene, **said, **more)
         pipeline.make("surface")
-        found = see(pipeline, "relief")
+        found = view_of(pipeline, "relief")
         assert found.labels is not None and np.unique(found.labels).tolist() == there
         assert found.names == ("ground", "box", "")

@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 
 from page_files import built_page
+from waiting import until
 
-SHOWN_MS = 60_000
 TEXT = "scene: builtin/brick\nrender: {use: penalty, stiffness_n_per_m: 431}\n"
 
 
@@ -14,7 +14,7 @@ def test_an_address_of_an_earlier_start_is_said_to_be_one(serve, open_page, comp
     server = serve("builtin/brick")
     page = open_page(re.sub("token=.*", "token=of-yesterday", server.url))
     status = page.locator("#status")
-    status.filter(has_text="belongs to an earlier start").wait_for(timeout=SHOWN_MS)
+    status.filter(has_text="belongs to an earlier start").wait_for()
     assert "tangible ui" in status.inner_text()
     assert page.evaluate("document.getElementById('said').textContent + document.getElementById('alerted').textContent")
     assert page.locator("#stop").is_visible()
@@ -28,13 +28,11 @@ def test_what_was_edited_when_the_program_was_killed_is_offered_once(serve, open
     kept = {"TANGIBLE_DATA_DIR": str(tmp_path / "data")}
     first = serve(mine, **kept)
     page = open_page(f"{first.url}&measure")
-    page.wait_for_function("() => window.page?.document?.text", timeout=SHOWN_MS)
+    page.wait_for_function("() => window.page?.document?.text")
     page.evaluate("text => window.page.net.ask('edit', { text })", TEXT)
-    page.wait_for_function("text => window.page.document?.text === text", arg=TEXT, timeout=SHOWN_MS)
+    page.wait_for_function("text => window.page.document?.text === text", arg=TEXT)
     drafts = tmp_path / "data/unsaved"
-    page.wait_for_timeout(50)
-    while not any("431" in each.read_text() for each in drafts.glob("*.json")):
-        page.wait_for_timeout(50)
+    until(lambda: any("431" in each.read_text() for each in drafts.glob("*.json")), "the draft is kept")
     first.kill()
     page.close()
     assert mine.read_text() == "scene: builtin/brick\n"
@@ -42,7 +40,7 @@ def test_what_was_edited_when_the_program_was_killed_is_offered_once(serve, open
     second = serve(mine, **kept)
     page = open_page(f"{second.url}&measure")
     offered = page.get_by_text("mine.yaml was edited and not saved when the program ended")
-    offered.first.wait_for(state="attached", timeout=SHOWN_MS)
-    page.get_by_role("button", name="Open it again").click(timeout=SHOWN_MS)
-    page.wait_for_function("text => window.page.document?.text === text", arg=TEXT, timeout=SHOWN_MS)
-    page.get_by_role("button", name="Open it again").wait_for(state="hidden", timeout=SHOWN_MS)
+    offered.first.wait_for(state="attached")
+    page.get_by_role("button", name="Open it again").click()
+    page.wait_for_function("text => window.page.document?.text === text", arg=TEXT)
+    page.get_by_role("button", name="Open it again").wait_for(state="hidden")

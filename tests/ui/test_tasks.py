@@ -4,20 +4,17 @@ That a first visit and an option's way from its form to the file need no mouse i
 `test_forms_in_browser`.
 """
 
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 from browser_tabs import OpenPage
-from desks import small_scene
+from sessions import small_scene
+from waiting import until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
-
-LONGEST_S = 60
 
 
 @pytest.fixture
@@ -25,13 +22,6 @@ def page(opened, open_page: OpenPage, tmp_path: Path) -> "Page":
     page = open_page(opened(small_scene(tmp_path)))
     until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
     return page
-
-
-def until(holds: Callable[[], bool]) -> None:
-    end_s = time.monotonic() + LONGEST_S
-    while not holds():
-        assert time.monotonic() < end_s
-        time.sleep(0.05)
 
 
 def press(page: "Page", panel: str, name: str) -> None:

@@ -1,4 +1,4 @@
-"""Many scenes through one pipeline: an archive, a dataset, a sweep of options; on all cores, or on many machines."""
+"""Batches: many scenes through one pipeline (an archive, a dataset, a sweep), on all cores or on many machines."""
 
 from typing import TYPE_CHECKING
 

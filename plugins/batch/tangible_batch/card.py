@@ -1,4 +1,4 @@
-"""A small picture of a scene: what was seen, and what was made. A whole sheet takes ten times as long as the making."""
+"""The card of a scene: a small picture of its input and its product, as a whole sheet takes ten times as long."""
 
 import io
 from pathlib import Path
@@ -14,16 +14,16 @@ from tangible_core.runtime.opencv import plain_opencv
 CARD = "card.jpg"
 SIDE_PX = 160
 LIGHT = np.array([-1.0, 1.0, 1.2])
-"""From the upper left, as maps are lit."""
+"""The direction to the light: from the upper left, as on maps."""
 
 
 def write_card(pipeline: Pipeline, folder: Path) -> str:
-    """Write the picture and what was made of it beside each other; the name of the file. Raises: OutputError."""
+    """Write the picture and its product next to each other; return the name of the file. Raises: OutputError."""
     from PIL import Image
 
-    parts = [_made(pipeline)]
+    parts = [_draw_product(pipeline)]
     if pipeline.scene.views is not None:
-        parts.insert(0, _small(to_rgb8(pipeline.scene.views.left)))
+        parts.insert(0, _resize(to_rgb8(pipeline.scene.views.left)))
     height = max(part.shape[0] for part in parts)
     whole = np.full((height, sum(part.shape[1] for part in parts), 3), 255, np.uint8)
     at = 0
@@ -37,8 +37,8 @@ def write_card(pipeline: Pipeline, folder: Path) -> str:
     return CARD
 
 
-def _made(pipeline: Pipeline) -> UInt8[np.ndarray, "r c 3"]:
-    """What is wanted, where that is a map of the picture; else the relief."""
+def _draw_product(pipeline: Pipeline) -> UInt8[np.ndarray, "r c 3"]:
+    """Draw the wanted product if it is a map of the picture, or else the relief."""
     want = pipeline.config.want
     if want in ("views", "disparity") and pipeline.disparity is not None:
         return _grey(pipeline.disparity.disparity_px)
@@ -46,19 +46,19 @@ def _made(pipeline: Pipeline) -> UInt8[np.ndarray, "r c 3"]:
         return _grey(parts.labels)
     if want in ("segments", "materials") and pipeline.segments is not None:
         return _grey(pipeline.segments.labels)
-    return _lit(pipeline.relief.height_m, pipeline.relief.pitch_m)
+    return _shade(pipeline.relief.height_m, pipeline.relief.pitch_m)
 
 
 def _grey(values: np.ndarray) -> UInt8[np.ndarray, "r c 3"]:
-    """From the lowest, black, to the highest, white; what is unknown is black."""
+    """Draw values in grey, from black for the lowest (and for unknown) to white for the highest."""
     values = np.asarray(values, np.float32)
     known = np.isfinite(values)
     low, high = (float(values[known].min()), float(values[known].max())) if known.any() else (0.0, 0.0)
     share = np.where(known, (values - low) / max(high - low, 1e-9), 0).astype(np.float32)
-    return np.repeat(np.rint(255 * np.clip(_small(share), 0, 1)).astype(np.uint8)[..., None], 3, axis=2)
+    return np.repeat(np.rint(255 * np.clip(_resize(share), 0, 1)).astype(np.uint8)[..., None], 3, axis=2)
 
 
-def _small(picture: np.ndarray) -> np.ndarray:
+def _resize(picture: np.ndarray) -> np.ndarray:
     import cv2
 
     scale = SIDE_PX / max(picture.shape[:2])
@@ -67,9 +67,9 @@ def _small(picture: np.ndarray) -> np.ndarray:
         return cv2.resize(picture, (size[0], size[1]), interpolation=cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR)
 
 
-def _lit(height_m: np.ndarray, pitch_m: tuple[float, float]) -> UInt8[np.ndarray, "r c 3"]:
-    """As grey levels, lit from the upper left; 2 mm over 2 mm is half dark."""
-    small = _small(np.asarray(height_m, np.float32))
+def _shade(height_m: np.ndarray, pitch_m: tuple[float, float]) -> UInt8[np.ndarray, "r c 3"]:
+    """Shade heights as lit from the upper left."""
+    small = _resize(np.asarray(height_m, np.float32))
     enlarged = height_m.shape[1] / small.shape[1]
     down, right = (
         np.gradient(small, axis=axis) / (pitch * enlarged) if small.shape[axis] > 1 else np.zeros_like(small)

@@ -1,4 +1,4 @@
-"""The optional extra `batch`: its import, or the words to install it."""
+"""The optional extra `batch`: imports of its packages, with an error that explains how to install it."""
 
 from importlib import import_module
 from importlib.util import find_spec
@@ -8,7 +8,7 @@ from tangible_core.errors import BatchError
 
 
 def need(name: str) -> ModuleType:
-    """The module, such as `distributed`. Raises: BatchError saying how to install it."""
+    """Import a module, such as `distributed`. Raises: BatchError that explains how to install it."""
     try:
         return import_module(name)
     except ImportError as error:
@@ -16,10 +16,10 @@ def need(name: str) -> ModuleType:
 
 
 def need_all() -> None:
-    """Before hours of work, look for what is needed at their end. Raises: BatchError saying how to install it."""
+    """Check, before hours of work, that the packages needed at its end are installed. Raises: BatchError."""
     for name in ("distributed", "pyarrow"):
         if find_spec(name) is None:
-            raise _missing(name, "which is not there")
+            raise _missing(name, "which is not installed")
 
 
 def _missing(name: str, why: object) -> BatchError:

@@ -1,4 +1,4 @@
-"""Workers: processes of this machine, or of all machines of a cluster. The one file that knows Dask."""
+"""Workers: processes of this machine, or of all machines of a cluster. No other file knows Dask."""
 # Dask has no types.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
@@ -22,45 +22,47 @@ from .extra import need
 J = TypeVar("J")
 R = TypeVar("R")
 LIMITS = ("TANGIBLE_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-"""Environment variables that limit the threads of a worker's libraries, before it imports them."""
+"""Environment variables that limit the threads of a worker's libraries; set before the worker imports them."""
 AHEAD = 4
-"""Jobs with the scheduler for each worker: enough that none waits; no more, so that nothing grows with their number."""
+"""The number of jobs with the scheduler for each worker: enough that none waits, and memory does not grow with jobs."""
 FRESH_AFTER = 2000
-"""Jobs of a worker, about, after which it begins anew: Dask keeps some 10 kB of each for itself."""
+"""The number of jobs, about, after which a worker is restarted: Dask keeps some 10 kB of each job."""
 CONNECT_S = 10
+"""The time limit for a connection to a scheduler, seconds."""
 LONGEST_S = 3600.0
-"""A job that takes longer is ended, where nothing else is said."""
+"""The default time limit of a job, seconds."""
 DISTRIBUTION = "tangible-images"
-LOUD = ("distributed", "tornado", "bokeh")
-"""Loggers."""
+NOISY_LOGGERS = ("distributed", "tornado", "bokeh")
 
 
 @dataclass(frozen=True)
 class Done(Generic[J, R]):
-    """A job, and what came of it."""
+    """A finished job with its result."""
 
     job: J
     result: R | None
-    """None where its worker died of it."""
+    """The result; None if its worker died of it."""
     death: str = ""
-    """How; empty where it did not."""
+    """The reason of the worker's death; empty if it did not die."""
 
 
 class Farm:
-    """A cluster on this machine, or the scheduler at an address. Ended by `close`, or by leaving its block."""
+    """A cluster on this machine, or the scheduler at an address. It ends with `close`, or at the end of its block."""
 
     def __init__(self, workers: int, threads: int = 1, scheduler: str = "") -> None:
-        """workers: processes of this machine, whose libraries have so many threads each; both for no scheduler alone.
+        """Start workers on this machine, or connect to a scheduler.
 
-        Raises: BatchError without the extra, if nobody answers at the address, or workers have another version.
+        workers: number of processes of this machine. threads: threads of the libraries in each process. Both are
+        ignored with a scheduler.
+        Raises: BatchError without the extra, if nothing answers at the address, or workers have another version.
         """
         self._threads, self._scheduler = threads, scheduler
         self._leaving = ExitStack()
-        self._begin(workers)
+        self._start(workers)
 
-    def _begin(self, workers: int) -> None:
-        distributed = need("distributed")  # puts its own settings there, so that ours hold
-        self._worked = 0
+    def _start(self, workers: int) -> None:
+        distributed = need("distributed")  # its import sets its own settings, so that ours come after them
+        self._done_count = 0
         with ExitStack() as failing:
             failing.callback(self.close)
             self._leaving.enter_context(need("dask").config.set(SETTINGS))
@@ -73,7 +75,7 @@ class Farm:
                 self._client = distributed.Client(cluster)
             self._leaving.callback(_close_client, self._client)
             self._as_completed = distributed.as_completed
-            self.workers = self._checked(self._scheduler)
+            self.workers = self._check_workers(self._scheduler)
             failing.pop_all()
 
     def __enter__(self) -> Self:
@@ -83,35 +85,37 @@ class Farm:
         self.close()
 
     def close(self) -> None:
-        """End the workers that this one started."""
+        """End the workers that this farm started."""
         self._leaving.close()
 
     def map(
         self, work: Callable[[J], R], jobs: Iterable[J], chunk: int = 1, timeout_s: float = LONGEST_S
     ) -> Iterator[Done[J, R]]:
-        """work(job) for each, as they are done, on any worker; a result comes once.
+        """Yield work(job) for each job, on any worker, in the order in which they finish; each result comes once.
 
-        chunk: jobs that are sent together: less to do for the scheduler where each is short. A job whose worker dies is
-        tried again by itself, when those beside it are done: so it alone fails, and none that was beside it. A worker
-        whose job takes longer than timeout_s dies of it, whatever it is held up by. Workers of this machine begin anew
+        chunk: the number of jobs that are sent together, which saves the scheduler's time if jobs are short. A job
+        whose worker dies is tried again alone, after all others, so that no other job of its chunk fails with it. A
+        worker whose job takes longer than timeout_s is ended, whatever blocks it. Workers of this machine are restarted
         after some thousand jobs each.
         """
-        work = partial(_in_time, work, timeout_s)
+        work = partial(_run_in_time, work, timeout_s)
         todo = iter(jobs)
         while part := list(islice(todo, FRESH_AFTER * self.workers)):
-            if not self._scheduler and self._worked >= FRESH_AFTER * self.workers:
+            if not self._scheduler and self._done_count >= FRESH_AFTER * self.workers:
                 self.close()
-                self._begin(self.workers)  # `restart_workers` may lose one for ever that is just coming back
-            self._worked += len(part)
-            yield from self._mapped(work, part, chunk, timeout_s)
+                self._start(self.workers)  # Dask's `restart_workers` may lose a worker that is just restarting
+            self._done_count += len(part)
+            yield from self._map_part(work, part, chunk, timeout_s)
 
-    def _mapped(self, work: Callable[[J], R], jobs: Iterable[J], chunk: int, timeout_s: float) -> Iterator[Done[J, R]]:
+    def _map_part(
+        self, work: Callable[[J], R], jobs: Iterable[J], chunk: int, timeout_s: float
+    ) -> Iterator[Done[J, R]]:
         todo = iter(jobs)
         waiting: dict[str, list[J]] = {}
 
         def send() -> Any:
             if part := list(islice(todo, chunk)):
-                future = self._client.submit(_each, work, part, pure=False)
+                future = self._client.submit(_run_all, work, part, pure=False)
                 waiting[future.key] = part
                 return future
             return None
@@ -128,21 +132,21 @@ class Farm:
             else:
                 yield from (Done(job, result) for job, result in zip(part, results, strict=True))
         for job in suspects:
-            yield self._alone(work, job, timeout_s)
+            yield self._run_alone(work, job, timeout_s)
 
-    def _alone(self, work: Callable[[J], R], job: J, timeout_s: float) -> Done[J, R]:
-        begun_s = time.monotonic()
-        future = self._client.submit(_each, work, [job], pure=False)
+    def _run_alone(self, work: Callable[[J], R], job: J, timeout_s: float) -> Done[J, R]:
+        start_s = time.monotonic()
+        future = self._client.submit(_run_all, work, [job], pure=False)
         try:
             return Done(job, future.result()[0])
-        except Exception as error:  # noqa: BLE001 - of Dask, which says in many ways that a worker is gone
-            over = time.monotonic() - begun_s >= timeout_s
+        except Exception as error:  # noqa: BLE001 - Dask raises many errors for a lost worker
+            over = time.monotonic() - start_s >= timeout_s
             return Done(job, None, f"took longer than {timeout_s:g} s, twice, and was ended" if over else _death(error))
         finally:
             future.release()
 
-    def _checked(self, scheduler: str) -> int:
-        """How many workers there are. Raises: BatchError if there is none, or one that cannot do the work."""
+    def _check_workers(self, scheduler: str) -> int:
+        """Return the number of workers. Raises: BatchError if there is none, or one that cannot do the work."""
         workers = self._client.scheduler_info(n_workers=-1)["workers"]
         if not workers:
             raise BatchError(f"{scheduler}: has no workers; start some: dask worker {scheduler} --nthreads 1")
@@ -154,19 +158,19 @@ class Farm:
                 )
         theirs = self._client.run(metadata.version, DISTRIBUTION, on_error="return")
         for address, version in theirs.items():
-            if version != installed():
+            if version != installed_version():
                 what = f"has {DISTRIBUTION} {version}" if isinstance(version, str) else f"has no {DISTRIBUTION}"
                 raise BatchError(
-                    f"the worker {address} {what}, and this is {installed()}; install the same on all machines"
+                    f"the worker {address} {what}, and this is {installed_version()}; install the same on all machines"
                 )
         return len(workers)
 
 
 def _result(future: Any) -> Any:
-    """What became of it; None where its worker died, or the one that kept the result did."""
+    """Return the result; None if its worker died, or the worker that kept the result."""
     try:
         return future.result()
-    except Exception:  # noqa: BLE001 - of Dask, which says in many ways that a worker is gone
+    except Exception:  # noqa: BLE001 - Dask raises many errors for a lost worker
         return None
     finally:
         future.release()
@@ -178,13 +182,13 @@ def _death(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
 
 
-def installed() -> str:
-    """The version of this."""
+def installed_version() -> str:
+    """Return the installed version of this program."""
     return metadata.version(DISTRIBUTION)
 
 
 SETTINGS = {
-    "distributed.scheduler.allowed-failures": 0,  # what killed a worker is tried again alone, not on the next one
+    "distributed.scheduler.allowed-failures": 0,  # a job that killed a worker is tried again alone, not on the next one
     "distributed.scheduler.worker-saturation": 1.0,
     "distributed.worker.daemon": False,  # a pipeline has processes of its own
     "distributed.comm.timeouts.connect": f"{CONNECT_S}s",
@@ -194,8 +198,8 @@ SETTINGS = {
 
 @contextmanager
 def _quiet() -> Generator[None]:
-    """That workers come and go is no news here."""
-    loggers = [logging.getLogger(name) for name in LOUD]
+    """Silence the loggers that report when workers come and go."""
+    loggers = [logging.getLogger(name) for name in NOISY_LOGGERS]
     levels = [each.level for each in loggers]
     for each in loggers:
         each.setLevel(logging.CRITICAL)
@@ -216,7 +220,7 @@ def _cluster(distributed: Any, workers: int, threads: int) -> Any:
             dashboard_address="127.0.0.1:0",  # with None, a port is open to everybody
             memory_limit=0,
             silence_logs=logging.CRITICAL,
-            preload=[f"{__package__}.deaf"],
+            preload=[f"{__package__}.dask_preload"],
         )
 
 
@@ -244,19 +248,19 @@ def _client(distributed: Any, address: str) -> Any:
         return distributed.Client(address, timeout=CONNECT_S)
     except (OSError, TimeoutError, ValueError) as error:
         raise BatchError(
-            f"--scheduler {address}: nobody answers there ({error or type(error).__name__}); start one with `dask "
+            f"--scheduler {address}: nothing answers there ({error or type(error).__name__}); start one with `dask "
             "scheduler`, and write its address, such as tcp://host:8786"
         ) from error
 
 
-def _each(work: Callable[[J], R], jobs: list[J]) -> list[R]:
+def _run_all(work: Callable[[J], R], jobs: list[J]) -> list[R]:
     return [work(job) for job in jobs]
 
 
-def _in_time(work: Callable[[J], R], timeout_s: float, job: J) -> R:
-    """In a worker, which does one job at a time: it ends with a job that takes longer, even one that holds Python."""
-    with Path(os.devnull).open("w") as nobody:
-        faulthandler.dump_traceback_later(timeout_s, exit=True, file=nobody)
+def _run_in_time(work: Callable[[J], R], timeout_s: float, job: J) -> R:
+    """Do a job in a worker; end the worker if the job takes longer, even if the job never gives Python back."""
+    with Path(os.devnull).open("w") as devnull:
+        faulthandler.dump_traceback_later(timeout_s, exit=True, file=devnull)
         try:
             return work(job)
         finally:

@@ -1,4 +1,4 @@
-"""One scene of a batch, made: whatever goes wrong is a row. It knows nothing of who runs it."""
+"""The job of one scene of a batch. Every failure becomes a row; the job does not depend on the process that runs it."""
 
 import errno
 import logging
@@ -9,7 +9,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any, cast
 
-from tangible_core.data import Outcome, Record
+from tangible_core.data import Record
 from tangible_core.errors import OutputError, TangibleError, shown
 from tangible_core.metrics import disparity_errors
 from tangible_core.pipeline.config.parsing import parse_config
@@ -22,62 +22,63 @@ from .card import write_card
 
 log = logging.getLogger(__name__)
 Row = dict[str, Any]
-"""What became of a scene, as JSON says it: `id`, `key`, `outcome` (ok or failed), `error`, `seconds`, `figures`,
-`stages` (seconds of each that ran), `notes`, `files`."""
+"""The result of a scene as JSON: `id`, `key`, `outcome` (ok or failed), `error`, `seconds`, `figures`, `stages`
+(seconds of each that ran), `notes`, `files`."""
 FULL = "full"
-"""Of a row that is none: the disk is full, which is no fault of the scene."""
+"""The key of an error that is not a scene's fault: the disk is full."""
 MOST_IN_ERROR = 500
+"""The most characters of an error message in a row."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """Everything that a worker needs to know: plain values."""
+    """The description of a scene's job, in plain values."""
 
     id: str
     key: str
-    """What the scene's result depends on, as far as that is known beforehand."""
+    """The hash of all that the scene's result depends on, as far as it is known beforehand."""
     text: str
-    """The pipeline file."""
+    """The text of the pipeline file."""
     path: str
-    """Where it stands: what relative files in it are relative to, and what complaints name."""
+    """The path of the pipeline file: for relative files in it, and for error messages."""
     sets: tuple[str, ...]
     folder: str
-    """For the files of this scene."""
+    """The folder for the files of this scene."""
     threads: int | None = None
-    """None: as the worker's own environment limits them."""
+    """The number of threads; None for the limit of the worker's environment."""
     sheet: bool = False
-    """Whether a whole report is drawn, not a card alone."""
+    """True to draw a whole report, not a card alone."""
     cache: str = ""
-    """Folder for results that scenes have in common; empty for none."""
+    """The folder for results that scenes have in common; empty for none."""
 
 
 def make_scene(job: Job) -> Row:
-    """Make the scene, and write what was wanted of it. Never raises but for what ends the process."""
-    begun, row = perf_counter(), _named(job, "ok", None)
+    """Make the scene, write its files, and return its row, with the error if anything fails."""
+    start_s, row = perf_counter(), _row(job, "ok", None)
     try:
         with limited_threads(job.threads):
-            row |= _made(job)
+            row |= _make(job)
     except Exception as error:
         if _disk_is_full(error):
             row[FULL] = str(error)
         if not isinstance(error, TangibleError):
             log.warning("%s: %s", job.id, error, exc_info=True)
-        said = str(error) if isinstance(error, TangibleError) else f"{type(error).__name__}: {error}"
-        row |= {"outcome": "failed", "error": shown(" ".join(said.split()), MOST_IN_ERROR)}
-    row["seconds"] = round(perf_counter() - begun, 4)
+        message = str(error) if isinstance(error, TangibleError) else f"{type(error).__name__}: {error}"
+        row |= {"outcome": "failed", "error": shown(" ".join(message.split()), MOST_IN_ERROR)}
+    row["seconds"] = round(perf_counter() - start_s, 4)
     return row
 
 
 def dead_row(job: Job, death: str) -> Row:
-    """The row of a scene whose worker could not say anything any more."""
-    return _named(job, "failed", death)
+    """Return the row of a scene whose worker died."""
+    return _row(job, "failed", death)
 
 
-def _named(job: Job, outcome: str, error: str | None) -> Row:
+def _row(job: Job, outcome: str, error: str | None) -> Row:
     return {"id": job.id, "key": job.key, "outcome": outcome, "error": error, "seconds": None, "folder": job.folder}
 
 
-def _made(job: Job) -> Row:
+def _make(job: Job) -> Row:
     registry = default_registry()
     config = parse_config(job.text, Path(job.path), registry, job.sets)
     pipeline = Pipeline.from_config(config, registry, Cache(Path(job.cache)) if job.cache else None)
@@ -87,31 +88,31 @@ def _made(job: Job) -> Row:
         files = [path.name for path in run.files]
         figures = run.figures
     else:
-        files = _written(pipeline, folder)
+        files = [_write_product(pipeline, folder)]
         figures = _figures(pipeline)
     card = write_card(pipeline, folder)
-    files += _exported(pipeline, folder)
+    files += _export(pipeline, folder)
     return {
         "scene": pipeline.scene.name,
         "figures": _plain(figures),
         "stages": {each.product: round(each.seconds, 5) for each in pipeline.outcomes if each.outcome == "ran"},
-        "notes": [note.text for each in pipeline.outcomes for note in _told(each)],
+        "notes": [note.text for each in pipeline.outcomes for note in each.notes if note.kind != "decision"],
         "files": [*files, card],
         "card": card,
     }
 
 
-def _written(pipeline: Pipeline, folder: Path) -> list[str]:
-    """What is wanted, made and kept; of a touch, which is compiled code, the surface."""
+def _write_product(pipeline: Pipeline, folder: Path) -> str:
+    """Make and save the wanted product; for a touch, which is compiled code, save the surface."""
     want = pipeline.config.want
     value = pipeline.make(want)
     name, record = (want, value) if isinstance(value, Record) else ("surface", pipeline.surface)
     write_record(folder / f"{name}.npz", record)
-    return [f"{name}.npz"]
+    return f"{name}.npz"
 
 
-def _exported(pipeline: Pipeline, folder: Path) -> list[str]:
-    """Files of the exporters that the pipeline file lists. Raises: OutputError for one that could not write its own."""
+def _export(pipeline: Pipeline, folder: Path) -> list[str]:
+    """Run the exporters of the pipeline file, and return their files. Raises: OutputError if one of them fails."""
     if not pipeline.config.export:
         return []
     done = pipeline.export(folder, force=True)
@@ -122,16 +123,12 @@ def _exported(pipeline: Pipeline, folder: Path) -> list[str]:
 
 def _figures(pipeline: Pipeline) -> dict[str, Any]:
     truth = pipeline.scene.truth
-    found = pipeline.make("disparity") if truth is not None else None
-    return {} if truth is None or found is None else {"disparity": disparity_errors(found.disparity_px, truth)}
-
-
-def _told(outcome: Outcome) -> list[Any]:
-    return [each for each in outcome.notes if each.kind != "decision"]
+    disparity = pipeline.make("disparity") if truth is not None else None
+    return {} if truth is None or disparity is None else {"disparity": disparity_errors(disparity.disparity_px, truth)}
 
 
 def _plain(figures: Mapping[Any, Any]) -> dict[str, Any]:
-    """As JSON says it: what is not finite is nothing."""
+    """Return figures for JSON: None for those that are not finite."""
 
     def plain(value: Any) -> Any:
         if isinstance(value, Mapping):

@@ -1,4 +1,4 @@
-"""Which scenes: the rows of a manifest, or the pictures and pairs of a folder or a glob."""
+"""The scenes of a batch: the rows of a manifest, or the pictures and pairs of a folder or a glob."""
 
 import csv
 import glob
@@ -14,40 +14,40 @@ from tangible_core.scene.scene_files import SceneFiles
 
 MANIFESTS = (".csv", ".parquet")
 FILES = tuple(f"scene.{name}" for name, field in SceneFiles.model_fields.items() if "Path" in str(field.annotation))
-"""Keys whose values are files, which in a manifest are relative to the manifest."""
+"""The keys whose values are files; in a manifest, they are relative to the manifest."""
 SIDES = (("_left", "_right"), ("_l", "_r"), ("-left", "-right"), ("_L", "_R"))
-"""How the names of a pair's two pictures end."""
+"""The ends of the names of a pair's two pictures."""
 ID = "id"
 
 
 class SceneRow(NamedTuple):
-    """One scene: its name, and what it changes in the pipeline file."""
+    """A scene: its name, and its changes to the pipeline file."""
 
     id: str
     sets: tuple[str, ...]
-    """`key.key=value` each, as `--set` takes them."""
+    """The changes, `key.key=value` each, as for `--set`."""
 
 
 def rows_of(over: str, besides: Path | None = None) -> Iterator[SceneRow]:
-    """The rows of a .csv or .parquet file, or one for each picture or pair of a folder or a glob, in order.
+    """Yield the rows of a .csv or .parquet file, or one for each picture or pair of a folder or a glob, in order.
 
-    besides: a folder of which no picture is taken: that of the results.
+    besides: a folder whose pictures are left out: that of the results.
 
-    In a manifest, the column `id` names the row, its number if there is none, and each other column is a key of the
-    pipeline file (`scene.left`, `workspace.width_m`); what is empty changes nothing. Of a folder and a glob, two
-    pictures whose names end with `_left` and `_right` are a pair; where there is no picture, the videos are taken.
-    Raises: BatchError if there is no such file, nothing in it, or two rows have one name.
+    In a manifest, the column `id` names the row (by default its number), and each other column is a key of the pipeline
+    file (`scene.left`, `workspace.width_m`); empty cells change nothing. In a folder or glob, two pictures whose names
+    end with `_left` and `_right` are a pair; without any picture, the videos are taken.
+    Raises: BatchError if there is no such file, nothing in it, or two rows have the same name.
     """
     path = as_path(over, "--over")
     if path.suffix.lower() in MANIFESTS:
-        found = _manifest(path)
+        rows = _read_manifest(path)
     elif path.is_dir():
-        found = _pictures(_files(path.rglob("*"), besides), path)
+        rows = _pictures(_files(path.rglob("*"), besides), path)
     else:
-        names = map(Path, glob.glob(str(path), recursive=True))  # noqa: PTH207 - of an absolute pattern as well
-        found = _pictures(_files(names, besides), _base(path))
+        names = map(Path, glob.glob(str(path), recursive=True))  # noqa: PTH207 - pathlib refuses absolute patterns
+        rows = _pictures(_files(names, besides), _base(path))
     empty = True
-    for row in _told_apart(found, f"{over}: "):
+    for row in _check_names(rows, f"{over}: "):
         empty = False
         yield row
     if empty:
@@ -58,38 +58,38 @@ def rows_of(over: str, besides: Path | None = None) -> Iterator[SceneRow]:
 
 
 def rows_from(rows: Iterable[Mapping[str, Any]], base: Path) -> Iterator[SceneRow]:
-    """Rows as mappings from key to value. base: what relative files are relative to.
+    """Yield the rows of mappings from key to value. base: the folder of relative files.
 
-    Raises: BatchError if two have one name.
+    Raises: BatchError if two rows have the same name.
     """
-    return _told_apart(_rows(rows, base), "")
+    return _check_names(_rows(rows, base), "")
 
 
 def file_of(setting: str) -> Path | None:
-    """The file that a setting of a row names, if it names one."""
+    """Return the file of a row's setting; None if its value is not a file."""
     key, _, value = setting.partition("=")
     return Path(json.loads(value)) if key in FILES else None
 
 
-def _told_apart(rows: Iterable[SceneRow], over: str) -> Iterator[SceneRow]:
+def _check_names(rows: Iterable[SceneRow], over: str) -> Iterator[SceneRow]:
     seen: set[str] = set()
     for row in rows:
         if row.id in seen:
-            raise BatchError(f"{over}two rows are called {quoted(row.id)}; give each an `id` of its own")
+            raise BatchError(f"{over}two rows are called {quoted(row.id)}; give each its own `id`")
         seen.add(row.id)
         yield row
 
 
 def _rows(rows: Iterable[Mapping[str, Any]], base: Path) -> Iterator[SceneRow]:
     for number, row in enumerate(rows):
-        told = {str(key): value for key, value in row.items() if value is not None and value != ""}
-        name = str(told.pop(ID, number))
-        sets = (f"{key}={_text(key, value, base)}" for key, value in told.items())
+        values = {str(key): value for key, value in row.items() if value is not None and value != ""}
+        name = str(values.pop(ID, number))
+        sets = (f"{key}={_text(key, value, base)}" for key, value in values.items())
         yield SceneRow(name, tuple(sets))
 
 
 def _text(key: str, value: Any, base: Path) -> str:
-    """A value as YAML reads it; a file with its whole path."""
+    """Return a value as YAML; a file with its whole path."""
     if key in FILES:
         return _file_text(base / as_path(value, key))
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
@@ -99,22 +99,22 @@ def _file_text(path: Path) -> str:
     return json.dumps(str(path.absolute()), ensure_ascii=False)
 
 
-def _files(found: Iterable[Path], besides: Path | None) -> list[Path]:
-    """Those of them that are files, in order."""
+def _files(paths: Iterable[Path], besides: Path | None) -> list[Path]:
+    """Return the files among these paths that are not in the folder `besides`, in order."""
     left_out = None if besides is None else besides.absolute()
     return sorted(
-        each for each in found if each.is_file() and not (left_out and each.absolute().is_relative_to(left_out))
+        each for each in paths if each.is_file() and not (left_out and each.absolute().is_relative_to(left_out))
     )
 
 
-def _manifest(path: Path) -> Iterator[SceneRow]:
+def _read_manifest(path: Path) -> Iterator[SceneRow]:
     try:
         read = _csv if path.suffix.lower() == ".csv" else _parquet
         yield from _rows(read(path), path.absolute().parent)
     except OSError as error:
-        raise BatchError(f"{path}: cannot be read: {error.strerror or error}; name a manifest that is there") from error
+        raise BatchError(f"{path}: cannot be read: {error.strerror or error}; name an existing manifest") from error
     except (UnicodeDecodeError, csv.Error) as error:
-        raise BatchError(f"{path}: is no table: {error}; save it as CSV in UTF-8") from error
+        raise BatchError(f"{path}: is not a table: {error}; save it as CSV in UTF-8") from error
 
 
 def _csv(path: Path) -> Iterator[dict[str, Any]]:
@@ -132,14 +132,14 @@ def _parquet(path: Path) -> Iterator[dict[str, Any]]:
     try:
         file = parquet.ParquetFile(path)
     except ValueError as error:
-        raise BatchError(f"{path}: is no Parquet file: {error}") from error
+        raise BatchError(f"{path}: is not a Parquet file: {error}") from error
     for part in file.iter_batches(4096):
         yield from part.to_pylist()
 
 
 def _pictures(files: list[Path], base: Path) -> Iterator[SceneRow]:
     pictures = {file for file in files if file.suffix.lower() in PICTURES}
-    if not pictures:  # a phone lays a short film of the same name beside each photo
+    if not pictures:  # phones save a short film of the same name next to each photo
         yield from (_row(_name(file, base), {"scene.video": file}) for file in files if file.suffix.lower() in VIDEOS)
     rights = {right for file in pictures if (right := _right_of(file)) in pictures}
     for left in (file for file in files if file in pictures - rights):
@@ -152,7 +152,7 @@ def _pictures(files: list[Path], base: Path) -> Iterator[SceneRow]:
 
 
 def _name(file: Path, base: Path) -> str:
-    """Of a file below a folder, without its ending."""
+    """Return the name of a file relative to a folder, without its suffix."""
     return str((file.relative_to(base) if file.is_relative_to(base) else Path(file.name)).with_suffix(""))
 
 
@@ -161,13 +161,13 @@ def _row(name: str, files: Mapping[str, Path]) -> SceneRow:
 
 
 def _right_of(left: Path) -> Path | None:
-    """What the right view would be called, if this is the left one."""
+    """Return the path of the right view if this is a left one."""
     ends = next((ends for ends in SIDES if left.stem.endswith(ends[0])), None)
     return left.with_name(left.stem.removesuffix(ends[0]) + ends[1] + left.suffix) if ends else None
 
 
 def _base(pattern: Path) -> Path:
-    """The folder of a glob in which all that it finds lies."""
+    """Return the folder of a glob that holds all its matches."""
     plain = [part for part in pattern.parts if not glob.has_magic(part)]
     whole = Path(*pattern.parts[: next((i for i, part in enumerate(pattern.parts) if part not in plain), 0)])
     return whole if len(plain) < len(pattern.parts) else pattern.parent

@@ -1,4 +1,4 @@
-"""What a batch leaves: rows as they came, and of all of them a table and a gallery."""
+"""The files of a batch: its rows, and a table and a gallery of all rows."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from html import escape
@@ -17,13 +17,13 @@ PER_PAGE = 500
 PER_PART = 200
 
 
-def kept_rows(out: Path) -> dict[str, Row]:
-    """The last row of each scene that the folder holds. Raises: ResultsError for a damaged file."""
+def last_rows(out: Path) -> dict[str, Row]:
+    """Return the last row of each scene in the folder. Raises: ResultsError for a damaged file."""
     return {str(row.get("id")): row for _, row in read_rows(out / ROWS)}
 
 
 def rows_of_scenes(out: Path, names: Iterable[str]) -> Iterator[Row]:
-    """The last row of each of these scenes, in the order of the file; one at a time, for there may be many."""
+    """Return the last row of each of these scenes, in the order of the file; one at a time, as there may be many."""
     wanted = set(names)
     last = {str(row.get("id")): number for number, row in read_rows(out / ROWS)}
     lines = {number for name, number in last.items() if name in wanted}
@@ -31,27 +31,27 @@ def rows_of_scenes(out: Path, names: Iterable[str]) -> Iterator[Row]:
 
 
 def write_index(out: Path, names: Iterable[str]) -> Path:
-    """Rows of these scenes as a table, a column for each figure. Raises: BatchError without the extra, OutputError."""
+    """Write the rows of these scenes as a table, a column for each figure. Raises: BatchError, OutputError."""
     arrow, parquet = need("pyarrow"), need("pyarrow.parquet")
     names = list(names)
     types: dict[str, Any] = {}
     for row in rows_of_scenes(out, names):
-        for name, value in _flat("", row):
+        for name, value in _flatten("", row):
             is_text = isinstance(value, str) or types.get(name) == arrow.string()
             types[name] = arrow.string() if is_text else arrow.float64()
     schema = arrow.schema(list(types.items()))
-    rows = (dict(_flat("", row)) for row in rows_of_scenes(out, names))
+    rows = (dict(_flatten("", row)) for row in rows_of_scenes(out, names))
     with atomic_write(out / INDEX) as file, parquet.ParquetWriter(file, schema, compression="zstd") as writer:
         while part := list(islice(rows, PER_PART)):
             columns = {
-                name: [_as(row.get(name), kind == arrow.string()) for row in part] for name, kind in types.items()
+                name: [_cell(row.get(name), kind == arrow.string()) for row in part] for name, kind in types.items()
             }
             writer.write_table(arrow.table(columns, schema=schema))
     return out / INDEX
 
 
 def write_gallery(out: Path, names: Iterable[str]) -> tuple[Path, ...]:
-    """Pages of cards of these scenes; beside each that failed stands why. Raises: OutputError."""
+    """Write pages with the cards of these scenes, and the errors of those that failed. Raises: OutputError."""
     names = list(names)
     paths = tuple(out / f"{GALLERY}{number or ''}.html" for number in range(max(1, -(-len(names) // PER_PAGE))))
     rows = rows_of_scenes(out, names)
@@ -60,11 +60,11 @@ def write_gallery(out: Path, names: Iterable[str]) -> tuple[Path, ...]:
     return paths
 
 
-def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """One level of columns, `figures.disparity.bad2`; lists as text."""
+def _flatten(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """Yield columns with dotted names, such as `figures.disparity.bad2`; lists become text."""
     if isinstance(value, Mapping):
         for key, each in cast("Mapping[str, Any]", value).items():
-            yield from _flat(f"{name}.{key}" if name else key, each)
+            yield from _flatten(f"{name}.{key}" if name else key, each)
     elif isinstance(value, list):
         yield name, "; ".join(map(str, cast("list[Any]", value)))
     elif isinstance(value, str):
@@ -73,13 +73,13 @@ def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
         yield name, None if value is None else float(value)
 
 
-def _as(value: Any, text: bool) -> Any:
-    """A column is of one type: text, where some of it is."""
+def _cell(value: Any, text: bool) -> Any:
+    """Return a value for a column of text, or else of numbers."""
     return str(value) if text and value is not None else value
 
 
 def printable(text: str) -> str:
-    """Text that a file in UTF-8 can hold: names of files may hold bytes that are no characters."""
+    """Return a text that UTF-8 can encode: file names may contain bytes that are not characters."""
     return text.encode(errors="replace").decode()
 
 
@@ -101,8 +101,8 @@ def _figure(row: Row) -> str:
     image = (
         f'<img loading="lazy" src="{escape(row["folder"])}/{escape(row["card"])}" alt="">' if row.get("card") else ""
     )
-    said = f" <em>{error}</em>" if error else ""
-    return f'<figure class="{row["outcome"]}">{image}<figcaption>{name}{said}</figcaption></figure>'
+    why = f" <em>{error}</em>" if error else ""
+    return f'<figure class="{row["outcome"]}">{image}<figcaption>{name}{why}</figcaption></figure>'
 
 
 STYLE = (

@@ -9,8 +9,8 @@ from pydantic import Field, model_validator
 from tangible_core.compiled.touch import CompiledTouch, Tick
 from tangible_core.data import HapticSurface
 from tangible_core.errors import check_positive
-from tangible_core.haptic_textures.table import bristle_stiffness
 from tangible_core.plugins.interfaces import Film, Filming, ForceRenderer, Touch
+from tangible_render.haptic_textures.table import bristle_stiffness
 
 from .effects.effects_table import split_textures
 from .effects.material_table import Row, material_table

@@ -8,9 +8,9 @@ from pydantic import AfterValidator, Field
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import Force, HapticState, HapticSurface
 from tangible_core.errors import TangibleError
-from tangible_core.haptic_textures.table import bristle_stiffness
 from tangible_core.materials.assignment import find, library
 from tangible_core.plugins.interfaces import ForceRenderer, PlainTouch, Touch
+from tangible_render.haptic_textures.table import bristle_stiffness
 
 from .effects.effects_table import EFFECT_COLUMNS, effects_table, initial_memory
 from .effects.inner_law import Law, build_law, complete_options

@@ -1,4 +1,4 @@
-"""A run as a sheet of pictures, and a surface in words: two exporters, each imported when it is first used."""
+"""Two exporters, each imported on first use: a run as a sheet of pictures, and a surface in words."""
 
 from typing import TYPE_CHECKING
 

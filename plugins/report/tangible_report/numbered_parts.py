@@ -1,4 +1,4 @@
-"""The picture with the borders and numbers of its parts, for a person to look up which number is what."""
+"""The picture with the borders and numbers of its parts, on which a person looks up the number of a part."""
 
 from __future__ import annotations
 
@@ -24,29 +24,28 @@ if TYPE_CHECKING:
     from PIL.ImageFont import FreeTypeFont
 
 SHORTEST_PX, LONGEST_PX = 1200, 2400
-"""Between which the longer side of what is drawn lies: a small picture grows, a large one shrinks, and its numbers are
-read alike on a screen."""
+"""The limits of the drawn picture's longer side: small pictures grow and large ones shrink, so that numbers look alike
+on a screen."""
 LARGE, SMALL = 1 / 32, 1 / 52
-"""Height of a number, as a share of the longer side, where its part has room for it, and where it has none."""
+"""The height of a number with and without enough room in its part, as a share of the longer side."""
 ALIKE = 0.95
-"""Of discs that are nearly as wide as the largest one, that is taken which lies in the middle of its part."""
+"""The share of the largest disc's radius from which on a disc may be chosen, if it is closer to its part's middle."""
 DRAWN, NUMBERS = "tangible parts", "tangible numbers"
-"""Text chunks of the PNG: which pixels were drawn, and the numbers of the parts, to tell later which ones changed."""
+"""The PNG's text chunks: the digest of the drawn pixels, and the numbers of the parts, which later show changes."""
 COARSE = 256
-"""Longer side of the grid that these are kept on."""
+"""The longer side of the grid on which the numbers are saved."""
 INK, HALO = (0, 0, 0), (255, 255, 255)
 
 
 def numbered_parts(picture: np.ndarray, parts: PartMap, names: Sequence[str] = ()) -> bytes:
-    """A PNG of the picture, with every part outlined, and numbered in the middle of the largest disc within it.
+    """Return a PNG of the picture, with every part outlined, and numbered in the middle of its largest disc.
 
-    names: of the parts, in their order, empty for none; each is written where there is room for it.
-    The picture is of the parts' size.
+    picture: of the parts' size. names: of the parts, in their order, empty for none; written if there is room.
     """
     from PIL import Image, ImageDraw
     from PIL.PngImagePlugin import PngInfo
 
-    shown, labels = _at_size(to_rgb8(picture), parts.labels)
+    shown, labels = _resize(to_rgb8(picture), parts.labels)
     longer = max(labels.shape)
     _draw_borders(shown, labels, max(1, round(longer / 800)))
     image = Image.fromarray(shown)
@@ -55,33 +54,33 @@ def numbered_parts(picture: np.ndarray, parts: PartMap, names: Sequence[str] = (
         name = names[number] if number < len(names) else ""
         texts = [f"{number} {name}", str(number)] if name else [str(number)]
         _write(draw, _largest_disc(labels == number), texts, longer)
-    told = PngInfo()
-    told.add_text(DRAWN, _digest(image))
-    told.add_text(NUMBERS, _in_text(_coarse(parts.labels, COARSE)), zip=True)
+    info = PngInfo()
+    info.add_text(DRAWN, _digest(image))
+    info.add_text(NUMBERS, _encode(_coarse(parts.labels, COARSE)), zip=True)
     file = BytesIO()
-    image.save(file, format="PNG", pnginfo=told)
+    image.save(file, format="PNG", pnginfo=info)
     return file.getvalue()
 
 
 class Before(NamedTuple):
-    """What a part was when it was drawn."""
+    """The former state of a part, when the picture was drawn."""
 
     number: int | None
-    """None for one that is new."""
+    """The former number; None for a new part."""
     cut_from: int
-    """The part that most of it was in."""
+    """The former part that most of it was in."""
 
 
 class Drawn(NamedTuple):
-    """What a picture of numbered parts was drawn of."""
+    """The parts of a picture of numbered parts, when it was drawn."""
 
     numbers: Int32[np.ndarray, "r c"]
-    """Of the part at each place of a coarse grid."""
+    """The number of the part at each place of a coarse grid."""
 
     def before(self, parts: PartMap) -> tuple[Before, ...] | None:
-        """What each of these parts was; None where they are of another picture.
+        """Return the former state of each of these parts; None if they are from another picture.
 
-        Two parts are the same if of all parts each covers most of the other.
+        Two parts are the same if, of all parts, each covers most of the other.
         """
         now = _coarse(parts.labels, max(self.numbers.shape))
         if now.shape != self.numbers.shape:
@@ -90,19 +89,19 @@ class Drawn(NamedTuple):
         np.add.at(both, (self.numbers, now), 1)
         of_old, of_new = both.argmax(axis=1), both.argmax(axis=0)
         same = (of_old[of_new] == np.arange(parts.count)) & both.any(axis=0)
-        found = zip(of_new.tolist(), same.tolist(), strict=True)
-        return tuple(Before(old if alike else None, old) for old, alike in found)
+        pairs = zip(of_new.tolist(), same.tolist(), strict=True)
+        return tuple(Before(old if alike else None, old) for old, alike in pairs)
 
 
 def as_drawn(path: Path) -> Drawn | None:
-    """What a file was drawn of; None where `numbered_parts` did not draw it, or somebody has painted on it since."""
-    from PIL.Image import open as opened
+    """Return the parts in a file of `numbered_parts`; None for other files, and if somebody has painted on it since."""
+    from PIL.Image import open as open_image
 
     try:
-        with opened(path, formats=("PNG",)) as image:
+        with open_image(path, formats=("PNG",)) as image:
             if image.info.get(DRAWN) == _digest(image):
-                return Drawn(_out_of_text(image.info[NUMBERS]))
-    except Exception:  # noqa: BLE001 - a damaged file can provoke any, and is none of ours
+                return Drawn(_decode(image.info[NUMBERS]))
+    except Exception:  # noqa: BLE001 - a damaged file can raise any error, and is not a file of ours
         return None
     return None
 
@@ -112,27 +111,27 @@ def _digest(image: Image) -> str:
 
 
 def _coarse(labels: Int32[np.ndarray, "h w"], longest: int) -> Int32[np.ndarray, "r c"]:
-    """The labels at the middles of a grid, whose longer side is at most so long."""
+    """Return the labels at the middles of a grid, whose longer side is at most `longest`."""
     scale = min(1.0, longest / max(labels.shape))
     rows, columns = (max(1, round(scale * side)) for side in labels.shape)
     places = ((np.arange(new) * old + old // 2) // new for new, old in zip((rows, columns), labels.shape, strict=True))
     return labels[np.ix_(*places)]
 
 
-def _in_text(numbers: Int32[np.ndarray, "r c"]) -> str:
+def _encode(numbers: Int32[np.ndarray, "r c"]) -> str:
     rows, columns = numbers.shape
     return f"{rows} {columns} {b64encode(numbers.astype('<u2').tobytes()).decode()}"
 
 
-def _out_of_text(text: str) -> Int32[np.ndarray, "r c"]:
+def _decode(text: str) -> Int32[np.ndarray, "r c"]:
     rows, columns, numbers = text.split(" ")
     return np.frombuffer(b64decode(numbers), "<u2").reshape(int(rows), int(columns)).astype(np.int32)
 
 
-def _at_size(
+def _resize(
     picture: UInt8[np.ndarray, "h w 3"], labels: Int32[np.ndarray, "h w"]
 ) -> tuple[UInt8[np.ndarray, "r c 3"], Int32[np.ndarray, "r c"]]:
-    """Both as large as they are drawn; arrays of their own."""
+    """Return both at the drawn size, as new arrays."""
     import cv2
 
     longer = max(labels.shape)
@@ -145,7 +144,7 @@ def _at_size(
 
 
 def _draw_borders(shown: UInt8[np.ndarray, "h w 3"], labels: Int32[np.ndarray, "h w"], width_px: int) -> None:
-    """A dark line with a light one on both sides, which is seen on any picture."""
+    """Draw dark lines with light ones on both sides, which are visible on any picture."""
     import cv2
 
     border = np.zeros(labels.shape, np.uint8)
@@ -162,7 +161,7 @@ class _Disc(NamedTuple):
 
 
 def _largest_disc(part: Bool[np.ndarray, "h w"]) -> _Disc | None:
-    """Within a part, the picture's rim being a border; None for a part that is too small to be drawn."""
+    """Return the largest disc within a part and the picture; None for a part that is too small to be drawn."""
     import cv2
 
     if not part.any():
@@ -178,7 +177,7 @@ def _largest_disc(part: Bool[np.ndarray, "h w"]) -> _Disc | None:
 
 
 def _write(draw: ImageDraw, disc: _Disc | None, texts: Sequence[str], longer: int) -> None:
-    """The first of these texts that fits into the disc, or the last one, small."""
+    """Write the first of these texts that fits into the disc, or else the last one, small."""
     if disc is None:
         return
     large, small = _font(round(LARGE * longer)), _font(round(SMALL * longer))
@@ -195,7 +194,7 @@ def _fits(draw: ImageDraw, text: str, font: FreeTypeFont, radius_px: float) -> b
 
 @cache
 def _font(size_px: int) -> FreeTypeFont:
-    """The sheet's own, as matplotlib brings it; matplotlib itself is not imported."""
+    """Return the font of the sheet, from matplotlib's files; matplotlib itself is not imported."""
     from PIL import ImageFont
 
     spec = find_spec("matplotlib")

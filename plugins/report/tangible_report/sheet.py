@@ -1,4 +1,4 @@
-"""The sheet: a run on one page of pictures."""
+"""The exporter of sheets: a run on one page of pictures."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @final
 class Sheet(Exporter, Drawing):
-    """One page of pictures: the views, what was made of them and, of a run, the forces that were felt."""
+    """A page of pictures: the views, the products made from them and, for a run, the recorded forces."""
 
     needs: ClassVar[tuple[str, ...]] = ("disparity", "segments", "materials", "surface")
 

@@ -1,4 +1,4 @@
-"""One look for every panel: type, colours, colour bars. All of it survives colour blindness and grey print."""
+"""The style of every panel: type, colours, colour bars; legible with colour blindness and in grey print."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -38,17 +38,17 @@ STYLE: dict[str, Any] = {
 }
 
 OKABE_ITO = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")
-"""Okabe & Ito, Color Universal Design (2008), reordered: eight colours that colour-blind readers tell apart."""
+"""Eight colours that colour-blind readers tell apart, from Okabe & Ito, Color Universal Design (2008), reordered."""
 VIRIDIS: Colormap = colormaps["viridis"]
-"""Disparities and heights: perceptually uniform, monotonous in lightness."""
+"""The colours of disparities and heights: perceptually uniform, monotonous in lightness."""
 ERRORS: Colormap = colormaps["magma_r"]
-"""Errors: pale is right, dark is wrong."""
+"""The colours of errors: pale is right, dark is wrong."""
 FORCES = ListedColormap(colormaps["magma_r"](np.linspace(0.3, 0.95, 256)), "forces")
-"""Forces: dark enough at its pale end to stand on white."""
+"""The colours of forces: dark enough at the pale end for a white ground."""
 
 
 def colours(count: int) -> Float64[np.ndarray, "n 3"]:
-    """So many colours, no two alike: those of Okabe & Ito first.
+    """Return n colours, no two alike: those of Okabe & Ito first.
 
     Source for more than 24: Roberts, The unreasonable effectiveness of quasirandom sequences (2018).
     """
@@ -60,23 +60,23 @@ def colours(count: int) -> Float64[np.ndarray, "n 3"]:
 
 
 def bare(axes: Axes, caption: str = "") -> None:
-    """A picture has no ticks: its caption says what they would. It fills its panel, which has the scene's shape."""
+    """Remove the ticks and write a caption instead; let the picture fill its panel, which has the scene's shape."""
     axes.set(xticks=[], yticks=[], aspect="auto")
     axes.set_xlabel(caption, fontsize=8, labelpad=4, loc="left")
 
 
 def hatch(axes: Axes) -> None:
-    """Hatch what stays transparent: there, nothing is known."""
+    """Hatch the transparent areas, where nothing is known."""
     axes.patch.set(facecolor=PALE, hatch="//////", edgecolor="#aaaaaa")
 
 
 def inches(axes: Axes) -> tuple[float, float]:
-    """One inch as a share of the axes' width and height."""
+    """Return one inch as a share of the axes' width and height."""
     return axes.figure.dpi / axes.bbox.width, axes.figure.dpi / axes.bbox.height
 
 
 def colour_bar(axes: Axes, mappable: Any, label: str, **options: Any) -> None:
-    """A bar of the axes' height, at a fixed distance in inches to their right."""
+    """Draw a colour bar of the axes' height, at a fixed distance in inches to their right."""
     figure = axes.figure
     inch = inches(axes)[0]
     bar = figure.colorbar(mappable, cax=axes.inset_axes((1 + 0.08 * inch, 0, 0.1 * inch, 1)), **options)
@@ -84,7 +84,7 @@ def colour_bar(axes: Axes, mappable: Any, label: str, **options: Any) -> None:
     bar.outline.set_linewidth(0.6)
 
 
-def thinned(map_: np.ndarray, most: int = 1000) -> np.ndarray:
-    """Every n-th row and column, so that neither side is over `most`: a sheet shows no more."""
+def thin_out(map_: np.ndarray, most: int = 1000) -> np.ndarray:
+    """Return every n-th row and column, so that no side is longer than `most`: a sheet shows no more."""
     step = -(-max(map_.shape[:2]) // most)
     return map_[::step, ::step]

@@ -17,8 +17,8 @@ from ruamel.yaml import YAML
 from ...data.products import Product
 from ...errors import ConfigError
 from ...files.yaml.source import Source
-from ...legibility.choice import SimplifyChoice
-from ...mapping import WorkspaceMapping, mapped
+from ...legibility import SimplifyChoice
+from ...mapping import WorkspaceMapping, map_device
 from ...parts import HeightChoice, PartChoice
 from ...plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter
 from ...scene.formats.height_maps import MeasuredSize
@@ -161,7 +161,7 @@ class PipelineConfig(BaseModel):
     @property
     def felt_device(self) -> HapticDevice | None:
         """The device in the picture's frame, by the mapping; None without a configured device."""
-        return None if self.device is None else mapped(self.device.method, self.mapping)
+        return None if self.device is None else map_device(self.device.method, self.mapping)
 
     def missing(self, kind: str) -> ConfigError:
         """Return the error for a missing method that is needed."""

@@ -15,19 +15,19 @@ from ...data.products import IN_REPORT
 from ...errors import ConfigError, OutputError
 from ...files.json_text import write_figures
 from ...files.writing import write_text
-from ...mapping import mapped, over, wanted
+from ...mapping import intended_path, map_device, over
 from ...metrics import disparity_errors
 from ...plugins.interfaces import HapticDevice, Touch
 from ...session import (
     EVERY,
     About,
-    Followed,
     Recording,
-    followed,
+    TrackingError,
     materials_text,
     names_text,
     run_simulated,
-    telling_parts,
+    tracking_error,
+    with_parts,
 )
 from ..engine.cache import write_record
 from ..engine.engine import Engine
@@ -164,14 +164,14 @@ def join_descriptions(first: About, each: Sequence[About]) -> About:
 
 def device_in_workspace(engine: Engine, device: HapticDevice | None = None) -> HapticDevice | None:
     """Place the device, or the configured one, over the surface, in the picture's frame; None without a device."""
-    placed = engine.config.felt_device if device is None else mapped(device, engine.config.mapping)
+    placed = engine.config.felt_device if device is None else map_device(device, engine.config.mapping)
     return placed and over(placed, engine.make("surface").extent_m)
 
 
-def path_tracking(engine: Engine, device: HapticDevice | None, ticks: Recording) -> Followed:
+def path_tracking(engine: Engine, device: HapticDevice | None, ticks: Recording) -> TrackingError:
     """Report how well the path of a device of `device_in_workspace` was tracked. ticks: one of `EVERY`."""
-    path_m = device and wanted(device, np.arange(len(ticks.rows)) * EVERY)
-    return followed(ticks, path_m, engine.make("surface"))
+    path_m = device and intended_path(device, np.arange(len(ticks.rows)) * EVERY)
+    return tracking_error(ticks, path_m, engine.make("surface"))
 
 
 def _run_touch(
@@ -181,10 +181,10 @@ def _run_touch(
     device = device_in_workspace(engine)
     if device is None or not device.spec().simulated:
         return None
-    description = about(engine).stamped()
+    description = about(engine).with_versions()
     if engine.beside is not None:
         engine.beside.wait(FELT)
-    listener = telling_parts(engine.make_on_grid("surface"), on_report) if on_report else None
+    listener = with_parts(engine.make_on_grid("surface"), on_report) if on_report else None
     recording = run_simulated(touch, device, seconds, listener, engine.config.safety)
     return replace(recording, about=description)
 

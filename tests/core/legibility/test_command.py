@@ -1,4 +1,4 @@
-"""`tangible legible`: what it prints, and how it ends."""
+"""The command `tangible legible`: its output and exit code."""
 
 import json
 
@@ -12,7 +12,7 @@ from tangible_core.parts.label_picture import label_picture
 
 @pytest.fixture
 def folder(tmp_path):
-    """Two halves, and a window of 4 mm in a picture of 60 mm."""
+    """Write two halves, and a window of 4 mm in a picture of 60 mm."""
     labels = np.zeros((100, 150), np.int32)
     labels[:, 75:], labels[40:50, 30:40] = 1, 2
     (tmp_path / "parts.png").write_bytes(label_picture(labels))
@@ -22,7 +22,7 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_what_is_too_small_is_said_with_its_cure_and_ends_with_1(folder):
+def test_legible_small_part_prints_its_cure_and_exits_with_1(folder):
     found = tangible("legible", "house.yaml", "--for", "swell", cwd=folder)
     assert found.returncode == 1
     lines = found.stdout.splitlines()
@@ -36,7 +36,7 @@ def test_what_is_too_small_is_said_with_its_cure_and_ends_with_1(folder):
     )
 
 
-def test_json_says_the_same_and_where(folder):
+def test_legible_json_has_the_verdicts_and_places(folder):
     found = tangible("legible", "house.yaml", "--for", "swell", "--json", cwd=folder)
     assert found.returncode == 1
     said = json.loads(found.stdout)
@@ -48,7 +48,7 @@ def test_json_says_the_same_and_where(folder):
 
 
 @pytest.mark.parametrize("words", [["--width-m", "0.12"], ["--set", "simplify.part_m=0.0064"]])
-def test_with_a_cure_it_is_legible(folder, words):
+def test_legible_with_a_cure_passes(folder, words):
     found = tangible("legible", "house.yaml", "--for", "swell", *words, cwd=folder)
     assert (found.returncode, "Illegible" in found.stdout) == (0, False), found.stdout
 
@@ -62,7 +62,7 @@ def test_with_a_cure_it_is_legible(folder, words):
         (["--for", "swell", "--width-m", "nan"], "width"),
     ],
 )
-def test_a_mistake_is_one_line_and_ends_with_2(folder, words, complaint):
+def test_legible_wrong_option_exits_with_2(folder, words, complaint):
     found = tangible("legible", "house.yaml", *words, cwd=folder)
     assert found.returncode == 2
     assert complaint in found.stderr

@@ -1,4 +1,4 @@
-"""Verdicts by the rules of each medium: what passes, what does not, where, and what is said of it."""
+"""Verdicts by the rules of each medium: what passes and what fails, with its place, text and cure."""
 
 import json
 from itertools import combinations
@@ -21,7 +21,7 @@ PITCH_M = 1e-4
 
 
 def beside(left: int = 300, right: int = 300, rows: int = 400) -> PartMap:
-    """Two parts side by side, in tenths of a millimetre."""
+    """Return two parts side by side, in tenths of a millimetre."""
     labels = np.zeros((rows, left + right), np.int32)
     labels[:, left:] = 1
     return PartMap(labels, (0, 1))
@@ -47,7 +47,7 @@ def grades(medium, parts, **known) -> dict[str, str]:
     return {check: found[0].verdict for check, found in verdicts(medium, parts, **known).items()}
 
 
-def test_two_large_parts_are_legible_on_every_medium():
+def test_legibility_two_large_parts_pass_in_every_medium():
     parts = beside()
     relief = relief_of(parts, 0.001, 0.003)
     for medium in PROFILES:
@@ -56,7 +56,7 @@ def test_two_large_parts_are_legible_on_every_medium():
         assert found.sentence == "Legible: fingers can read it."
 
 
-def test_a_verdict_names_the_part_the_place_the_bound_its_source_and_the_cure():
+def test_verdict_has_part_place_bound_source_and_cure():
     labels = beside().labels.copy()
     labels[100:140, 100:140] = 2
     parts = PartMap(labels, (0, 1, 2))
@@ -77,7 +77,7 @@ def test_a_verdict_names_the_part_the_place_the_bound_its_source_and_the_cure():
     assert next(each for each in data["verdicts"] if each["verdict"] != "ok")["at"] == [[x, y]]
 
 
-def test_as_wide_as_the_cure_says_it_is_legible():
+def test_legibility_width_of_the_cure_passes():
     labels = beside().labels.copy()
     labels[150:250, 60:110] = 2
     parts = PartMap(labels, (0, 1, 2))
@@ -88,7 +88,7 @@ def test_as_wide_as_the_cure_says_it_is_legible():
     assert not legibility("swell", parts, 0.97 * wider).readable
 
 
-def test_many_that_fail_alike_are_one_verdict_with_their_count():
+def test_legibility_many_failures_share_a_verdict():
     tiles = np.arange(10_000, dtype=np.int32).reshape(100, 100)
     parts = find_parts(SegmentMap(tiles.repeat(8, 0).repeat(8, 1)))
     begun_s = process_time()
@@ -101,7 +101,7 @@ def test_many_that_fail_alike_are_one_verdict_with_their_count():
     assert 1 < len(small[-1].at) <= 64
 
 
-def test_one_part_and_none_have_nothing_to_read():
+def test_legibility_one_part_or_none_fails():
     one = PartMap(np.zeros((200, 300), np.int32), (0,))
     assert grades("swell", one)["parts"] == "illegible"
     assert legibility("swell", None, 0.1).grade == "illegible"
@@ -110,12 +110,12 @@ def test_one_part_and_none_have_nothing_to_read():
 
 
 @pytest.mark.parametrize("medium", PROFILES)
-def test_one_pixel_has_verdicts(medium):
+def test_legibility_one_pixel_has_verdicts(medium):
     relief = Relief(np.zeros((1, 1), np.float32), (0.1, 0.1))
     assert legibility(medium, PartMap(np.zeros((1, 1), np.int32), (0,)), 0.1, relief=relief).grade == "illegible"
 
 
-def test_textures_are_counted_but_for_parts_with_a_name():
+def test_textures_named_parts_are_not_counted():
     parts = PartMap(np.repeat(np.arange(7), 100)[None].repeat(300, 0).astype(np.int32), tuple(range(7)))
     (found,) = verdicts("swell", parts)["textures"]
     assert (found.verdict, found.value, found.changes[0].setting) == ("illegible", 7, 5)
@@ -127,13 +127,13 @@ def test_textures_are_counted_but_for_parts_with_a_name():
 @pytest.mark.parametrize(
     ("step_m", "grade", "named"), [(0.0004, "illegible", "ok"), (0.0007, "ok", "warn"), (0.0012, "ok", "ok")]
 )
-def test_a_step_of_a_print_is_half_a_millimetre_and_one_between_names_a_whole(step_m, grade, named):
+def test_step_bounds_of_a_print_with_and_without_names(step_m, grade, named):
     parts = beside()
     found = grades("print", parts, relief=relief_of(parts, 0.002 + step_m, 0.002), names=("sea", "shore"))
     assert (found["step"], found["named step"]) == (grade, named)
 
 
-def test_a_step_is_that_beside_the_border_whatever_the_grid_of_the_relief_is():
+def test_step_is_measured_at_the_border_on_any_grid():
     parts = beside()
     x = np.linspace(0, 1, 211, dtype=np.float32)
     heights = np.where(x < 0.5, np.float32(0.003) * x, np.float32(0.0015) + np.float32(0.0008))
@@ -142,7 +142,7 @@ def test_a_step_is_that_beside_the_border_whatever_the_grid_of_the_relief_is():
     assert found.value == pytest.approx(0.0008, abs=1e-4)
 
 
-def test_a_flat_relief_is_no_print():
+def test_print_flat_relief_fails():
     parts = beside()
     found = verdicts("print", parts, relief=relief_of(parts, 0.002, 0.002))
     assert found["height"][0].verdict == "illegible"
@@ -150,7 +150,7 @@ def test_a_flat_relief_is_no_print():
     assert found["unfelt borders"][0].value == 1
 
 
-def test_neighbours_on_a_force_device_differ_in_material_or_in_height():
+def test_materials_neighbours_must_differ_in_material_or_height():
     parts, library = beside(), shipped()
     wood, rubber = library["wood"], library["rubber"]
     same, other = (MaterialMap((wood, each), ("", "")) for each in (wood, rubber))
@@ -161,14 +161,14 @@ def test_neighbours_on_a_force_device_differ_in_material_or_in_height():
     assert grades("force", parts, materials=same)["materials"] == "illegible"
 
 
-def test_materials_are_those_of_segments_where_there_is_one_a_segment():
+def test_materials_one_a_segment_are_used_for_its_parts():
     labels = np.repeat(np.arange(3), 150)[None].repeat(300, 0).astype(np.int32)
     parts, library = PartMap(labels, (0, 1, 0)), shipped()
     materials = MaterialMap((library["wood"], library["glass"]), ("", ""))
     assert grades("force", parts, materials=materials)["materials"] == "ok"
 
 
-def test_shipped_materials_differ_and_distance_is_of_what_differs_most():
+def test_apart_shipped_materials_differ_in_their_largest_difference():
     library = shipped()
     least = min((apart(library[a], library[b]), a, b) for a, b in combinations(library, 2))
     assert least == (pytest.approx(np.log(1400 / 800) / np.log(1.45)), "plain", "ice")
@@ -178,7 +178,7 @@ def test_shipped_materials_differ_and_distance_is_of_what_differs_most():
     assert apart(wood, library["ice"]) == apart(library["ice"], wood)
 
 
-def test_a_part_of_a_pin_is_none_and_borders_that_no_pin_shows_are_told():
+def test_pins_part_of_one_pin_and_hidden_borders_fail():
     pin = round(PIN_PITCH_M / PITCH_M)
     labels = np.zeros((20 * pin, 40 * pin), np.int32)
     labels[:, 20 * pin :] = 1
@@ -190,16 +190,16 @@ def test_a_part_of_a_pin_is_none_and_borders_that_no_pin_shows_are_told():
     assert grades("pins", PartMap(labels, (0, 1, 2)))["kept borders"] == "illegible"
 
 
-def test_what_an_exporter_decides_is_held_against_the_same_rules():
+def test_sizes_of_an_exporter_are_checked_by_the_same_rules():
     assert sizes("print", base=0.0015, line=0.0011, braille_height=DOT_HEIGHT_M).grade == "ok"
     assert [each.check for each in sizes("print", base=0.0005, line=0.002) if each.verdict == "illegible"] == ["base"]
 
 
-def test_the_page_shows_the_table_of_rules():
+def test_table_of_rules_is_on_the_page():
     assert table() in (DOCS / "legibility.md").read_text(encoding="utf-8")
 
 
-def test_every_rule_has_a_source_or_is_a_convention_of_ours():
+def test_rules_have_a_source_or_are_our_convention():
     rules = [rule for profile in PROFILES.values() for rule in profile.rules.values()]
-    assert all(rule.cited and rule.bound > 0 for rule in rules)
+    assert all(rule.citation and rule.bound > 0 for rule in rules)
     assert all(check == rule.check for profile in PROFILES.values() for check, rule in profile.rules.items())

@@ -1,4 +1,4 @@
-"""Parts made legible: that they pass, that this changes nothing twice, and what is said of what is lost."""
+"""Simplified parts: they pass, a second simplification changes nothing, and lost parts are noted."""
 
 from time import process_time
 
@@ -27,7 +27,7 @@ def failing(parts: PartMap, width_m: float, names=()) -> list[str]:
     return [each.check for each in found if each.check in RULES and each.verdict != "ok"]
 
 
-def in_segments(parts: PartMap) -> np.ndarray:
+def segments_of_cells(parts: PartMap) -> np.ndarray:
     return np.array(parts.segments)[parts.labels]
 
 
@@ -36,7 +36,7 @@ def in_segments(parts: PartMap) -> np.ndarray:
     ("name", "how"),
     [("coffee", "drawn"), ("motorcycle", "drawn"), ("coffee", "colours"), ("motorcycle", "gradient")],
 )
-def test_pictures_pass_when_they_are_simplified_and_twice_is_the_same_as_once(name, how):
+def test_simplify_picture_passes_and_twice_is_the_same_as_once(name, how):
     drawn = drawn_parts.drawn(name)
     names = drawn.names if how == "drawn" else ()
     if how == "gradient":
@@ -58,7 +58,7 @@ def test_pictures_pass_when_they_are_simplified_and_twice_is_the_same_as_once(na
 @given(st.integers(0, 2**32 - 1), st.integers(2, 9), st.sampled_from([0.04, 0.06, 0.1]))
 @settings(max_examples=10, deadline=None)
 @pytest.mark.slow
-def test_whatever_parts_there_are_pass_or_are_said_not_to(seed, count, width_m):
+def test_simplify_random_parts_pass_or_are_reported(seed, count, width_m):
     rng = np.random.default_rng(seed)
     rows, columns = rng.integers(40, 160, 2)
     noise = rng.random((rows, columns)).astype(np.float32)
@@ -76,7 +76,7 @@ def test_whatever_parts_there_are_pass_or_are_said_not_to(seed, count, width_m):
     assert all(any(f"part {number} ({names[number]})" in note for note in notes) for number in gone[:3])
 
 
-def test_what_passes_stays_as_it_is():
+def test_simplify_passing_parts_are_unchanged():
     labels = np.zeros((300, 400), np.int32)
     labels[:, 201:] = 1
     found = simplify(PartMap(labels, (0, 1)), 0.028, CHOICE)
@@ -85,7 +85,7 @@ def test_what_passes_stays_as_it_is():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["coffee", "astronaut"])
-def test_a_picture_of_twice_the_pixels_has_the_same_verdicts_and_parts(name):
+def test_simplify_twice_the_pixels_gives_the_same_parts(name):
     drawn = drawn_parts.drawn(name)
     small = drawn.parts
     large = PartMap(small.labels.repeat(2, 0).repeat(2, 1), small.segments)
@@ -103,7 +103,7 @@ def test_a_picture_of_twice_the_pixels_has_the_same_verdicts_and_parts(name):
     assert np.count_nonzero(far) == 0
 
 
-def test_strips_of_3_1_mm_become_one_part_and_of_3_3_mm_stay():
+def test_simplify_strips_below_the_gap_become_one_part():
     for width_px, stays in ((31, False), (33, True)):
         labels = np.repeat(np.arange(10), width_px)[None].repeat(400, 0).astype(np.int32) % 2
         parts = find_parts(SegmentMap(labels))
@@ -113,7 +113,7 @@ def test_strips_of_3_1_mm_become_one_part_and_of_3_3_mm_stay():
 
 
 def house(size: int, window: int, name: str = "") -> tuple[PartMap, list[str]]:
-    """A square within a picture, and a small square within it, in tenths of a millimetre."""
+    """Return a square within a picture, and a small square within it, in tenths of a millimetre."""
     labels = np.zeros((600, 600), np.int32)
     at = 300 - size // 2
     labels[at : at + size, at : at + size] = 1
@@ -122,7 +122,7 @@ def house(size: int, window: int, name: str = "") -> tuple[PartMap, list[str]]:
     return PartMap(labels, (0, 1, 2)), ["", "house", name]
 
 
-def test_a_part_that_is_too_small_goes_to_what_is_around_it_and_numbers_stay():
+def test_simplify_small_part_goes_to_its_neighbour():
     parts, names = house(400, 40)
     found = simplify(parts, 0.06, CHOICE, names)
     assert np.unique(found.labels).tolist() == [0, 1]
@@ -130,7 +130,7 @@ def test_a_part_that_is_too_small_goes_to_what_is_around_it_and_numbers_stay():
     assert found.labels[found.labels.shape[0] // 2, found.labels.shape[1] // 2] == 1
 
 
-def test_a_named_part_that_is_too_small_is_told_with_its_size_and_the_cure():
+def test_simplify_small_named_part_is_noted_with_a_cure():
     parts, names = house(400, 40, "window")
     with collected() as notes:
         simplify(parts, 0.06, CHOICE, names)
@@ -139,7 +139,7 @@ def test_a_named_part_that_is_too_small_is_told_with_its_size_and_the_cure():
     assert "make the whole 96 mm wide (`workspace.width_m`), or have fewer and larger parts" in note
 
 
-def test_textures_that_are_alike_become_one_but_named_parts_stay():
+def test_simplify_similar_textures_become_one_except_named_parts():
     greys = np.repeat(np.linspace(0, 250, 8).astype(np.uint8), 100)
     labels = np.repeat(np.arange(8), 100)[None].repeat(200, 0).astype(np.int32)
     greys[labels[0] == 3] = greys[labels[0] == 2]
@@ -152,7 +152,7 @@ def test_textures_that_are_alike_become_one_but_named_parts_stay():
     assert len({named.segments[n] for n in np.unique(named.labels).tolist() if n not in (2, 3)}) == 4
 
 
-def test_parts_of_one_texture_that_do_not_touch_keep_their_numbers_and_share_a_segment():
+def test_simplify_separate_parts_of_one_texture_share_a_segment():
     labels = np.repeat(np.arange(3), 200)[None].repeat(200, 0).astype(np.int32)
     picture = np.array([10, 200, 20], np.uint8)[labels][..., None].repeat(3, 2)
     found = simplify(PartMap(labels, (4, 7, 5)), 0.09, SimplifyChoice(textures=2), (), picture)
@@ -160,31 +160,31 @@ def test_parts_of_one_texture_that_do_not_touch_keep_their_numbers_and_share_a_s
     assert found.segments[0] == found.segments[2] != found.segments[1]
 
 
-def test_a_part_that_is_opened_into_two_is_told_to_be_of_two_pieces():
+def test_simplify_part_split_in_two_is_noted():
     labels = np.zeros((400, 600), np.int32)
     labels[100:300, 50:250], labels[100:300, 350:550], labels[190:210, 250:350] = 1, 1, 1
     with collected() as notes:
         found = simplify(PartMap(labels, (0, 1)), 0.06, CHOICE, ("", "glasses"))
     assert find_parts(SegmentMap(found.labels)).count == 3
-    assert notes == ["simplified, these parts are of several pieces: part 1 (glasses) of 2"]
+    assert notes == ["simplified parts in several pieces: part 1 (glasses) in 2"]
 
 
-def test_a_picture_that_is_smaller_than_a_fingertip_cannot_pass_and_it_is_said_which_size_would():
+def test_simplify_picture_below_a_fingertip_notes_the_size_that_passes():
     labels = np.zeros((50, 50), np.int32)
     labels[:, 25:] = 1
     with collected() as notes:
         found = simplify(PartMap(labels, (0, 1)), 0.005, CHOICE)
     assert len(np.unique(found.labels)) == 1
-    assert any("7 mm wide they would pass" in note for note in notes)
+    assert any("make the whole 6.7 mm wide" in note for note in notes)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 300), (300, 1), (2, 2)])
-def test_the_least_of_pictures_are_simplified(shape):
+def test_simplify_smallest_pictures_are_accepted(shape):
     parts = find_parts(SegmentMap(np.arange(shape[0] * shape[1], dtype=np.int32).reshape(shape)))
     assert simplify(parts, 0.16, CHOICE).count == parts.count
 
 
-def test_ten_thousand_parts_do_not_take_long():
+def test_simplify_ten_thousand_parts_is_fast():
     tiles = np.arange(10_000, dtype=np.int32).reshape(100, 100)
     parts = find_parts(SegmentMap(tiles.repeat(4, 0).repeat(4, 1)))
     colour = np.random.default_rng(0).integers(0, 255, (25, 25, 3), np.uint8).repeat(16, 0).repeat(16, 1)
@@ -195,6 +195,6 @@ def test_ten_thousand_parts_do_not_take_long():
 
 
 @pytest.mark.parametrize("width_m", [0.0, -1.0, float("nan"), float("inf")])
-def test_a_width_is_positive(width_m):
+def test_simplify_width_not_positive_is_refused(width_m):
     with pytest.raises(GeometryError, match="width_m"):
         simplify(PartMap(np.zeros((2, 2), np.int32), (0,)), width_m, CHOICE)

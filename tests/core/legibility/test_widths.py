@@ -1,4 +1,4 @@
-"""How wide parts are, against shapes whose widths are known."""
+"""Widths of parts, on shapes whose widths are known."""
 
 import math
 
@@ -14,7 +14,7 @@ GAP_M = 0.0032
 
 
 def strip(width_m: float, angle_deg: float, pitch_m: float, size_m: tuple[float, float] = (0.03, 0.036)) -> PartMap:
-    """A strip through the middle of a picture, and what is on its two sides."""
+    """Return a strip through the middle of a picture, and the parts on its two sides."""
     rows, columns = round(size_m[1] / pitch_m), round(size_m[0] / pitch_m)
     y, x = np.indices((rows, columns)) + 0.5
     turn = math.radians(angle_deg)
@@ -29,28 +29,28 @@ def shape(labels: np.ndarray) -> PartMap:
 
 @pytest.mark.parametrize("pitch_m", [5e-5, 8e-5, 1e-4])
 @pytest.mark.parametrize("angle_deg", [0, 7, 20, 33, 45, 90])
-def test_a_strip_of_3_1_mm_is_too_narrow_and_one_of_3_3_mm_is_not(pitch_m, angle_deg):
+def test_gap_strip_of_3_1_mm_fails_and_of_3_3_mm_passes(pitch_m, angle_deg):
     verdicts = [legibility("swell", strip(width_m, angle_deg, pitch_m), 0.03) for width_m in (0.0031, 0.0033)]
     gaps = [[each.verdict for each in found if each.check == "gap"] for found in verdicts]
     assert gaps == [["illegible"], ["ok"]]
 
 
 @pytest.mark.parametrize(("pixels", "grade"), [(15, "illegible"), (16, "ok"), (17, "ok")])
-def test_a_strip_of_even_or_odd_pixels_is_as_wide_as_its_pixels(pixels, grade):
+def test_measure_strip_of_even_or_odd_pixels_is_as_wide_as_its_pixels(pixels, grade):
     parts = strip(pixels * 2e-4, 0, 2e-4, (0.03, 0.0200 + 2e-4 * (pixels % 2)))
     wide = measure(parts.labels, 2e-4, GAP_M)
     assert wide.disc_m[1] == pytest.approx(pixels * 2e-4, rel=3e-3)
     assert (not wide.places) == (grade == "ok")
 
 
-def test_a_disc_is_as_wide_as_it_is():
+def test_measure_disc_has_its_diameter():
     y, x = np.indices((301, 301)) - 150
     for radius in (20.25, 64, 131.4):
         disc_m = measure(shape(np.hypot(x, y) <= radius).labels, 1e-4, GAP_M).disc_m[1]
         assert disc_m == pytest.approx(2e-4 * radius, abs=1e-4)
 
 
-def test_the_rim_is_a_border():
+def test_measure_rim_is_a_border():
     labels = np.zeros((200, 200), np.int32)
     labels[:, :20] = 1
     assert measure(labels, 1e-4, GAP_M).disc_m.tolist() == pytest.approx(rel=3e-3, expected=[0.002, 0.018])
@@ -58,7 +58,7 @@ def test_the_rim_is_a_border():
     assert not measure(labels, 1e-4, GAP_M, Rims(left=False, top=False, bottom=False)).places
 
 
-def test_right_corners_are_no_places_but_tongues_and_necks_are():
+def test_places_tongues_and_necks_count_and_right_corners_do_not():
     labels = np.zeros((300, 500), np.int32)
     labels[50:250, 50:200] = 1
     assert not measure(labels, 1e-4, GAP_M).places
@@ -75,7 +75,7 @@ def test_right_corners_are_no_places_but_tongues_and_necks_are():
 
 
 @pytest.mark.parametrize("pixels", [1, 2, 3, 5])
-def test_a_slit_however_thin_is_a_place(pixels):
+def test_places_slit_of_any_width_counts(pixels):
     labels = np.zeros((300, 500), np.int32)
     labels[50:250, 50:200] = 1
     labels[140 : 140 + pixels, 200:290] = 1
@@ -83,7 +83,7 @@ def test_a_slit_however_thin_is_a_place(pixels):
     assert place.size > 80 * pixels
 
 
-def test_a_ring_that_is_thin_in_one_place_has_a_place_there():
+def test_places_thin_side_of_a_ring_counts():
     y, x = np.indices((400, 400)) - 200
     ring = (np.hypot(x, y) < 150) & (np.hypot(x - 35, y) > 90)
     assert not measure(shape((np.hypot(x, y) < 150) & (np.hypot(x - 20, y) > 90)).labels, 1e-4, GAP_M).places
@@ -92,7 +92,7 @@ def test_a_ring_that_is_thin_in_one_place_has_a_place_there():
     assert place.width_m < GAP_M
 
 
-def test_each_connected_piece_is_measured():
+def test_measure_each_connected_piece_has_a_width():
     labels = np.zeros((100, 300), np.int32)
     labels[20:80, 20:80], labels[40:60, 200:220] = 1, 1
     wide = measure(labels, 1e-4, 0.001)
@@ -101,7 +101,7 @@ def test_each_connected_piece_is_measured():
 
 
 @pytest.mark.parametrize(("columns", "pitch_m"), [(100, 2e-4), (50, 2e-4), (400, 1e-4), (800, 1e-4)])
-def test_cells_are_of_a_size_and_pixels_never_move(columns, pitch_m):
+def test_on_grid_cells_have_a_size_and_pixels_do_not_move(columns, pitch_m):
     labels = np.zeros((columns, columns), np.int32)
     labels[:, columns // 2 :] = 1
     width_m = {100: 0.02, 50: 0.02, 400: 0.04, 800: 0.04}[columns]
@@ -111,6 +111,6 @@ def test_cells_are_of_a_size_and_pixels_never_move(columns, pitch_m):
     assert np.flatnonzero(np.diff(grid.parts.labels[0])) == grid.parts.labels.shape[1] // 2 - 1
 
 
-def test_a_wide_map_has_no_more_cells_than_can_be_looked_at():
+def test_on_grid_wide_map_has_a_limited_number_of_cells():
     labels = np.zeros((2, 20_000), np.int32)
     assert max(on_grid(shape(labels), 8.0).parts.labels.shape) <= 2560

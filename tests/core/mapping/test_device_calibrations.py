@@ -1,4 +1,4 @@
-"""What is kept of one unit: where, whole, and never half understood."""
+"""Calibrations of single devices: their place, atomic writing, and damaged files."""
 
 import os
 from pathlib import Path
@@ -15,7 +15,7 @@ class Measured(BaseModel):
     gain: float = 1.0
 
 
-def test_what_is_saved_is_read_again(config_dir: Path):
+def test_saved_calibration_is_loaded_again(config_dir: Path):
     values = Measured(offset_deg=(34.5, 35.0, 35.25), gain=0.1)
     path = save_calibration("arm", "F123", values)
     assert path == config_dir / "devices" / "arm-F123.json"
@@ -26,7 +26,7 @@ def test_what_is_saved_is_read_again(config_dir: Path):
 
 
 @pytest.mark.parametrize("serial", ["", "a/b", "../../x", "ä ö", "C:\\x", "."])
-def test_every_serial_is_a_file_of_its_own_in_the_folder(config_dir: Path, serial: str):
+def test_every_serial_number_has_its_own_file(config_dir: Path, serial: str):
     assert calibration_path("arm", serial).parent == config_dir / "devices"
     assert len({calibration_path("arm", each) for each in (serial, "F123", serial + "_")}) == 3
     save_calibration("arm", serial, Measured())
@@ -37,14 +37,14 @@ def test_every_serial_is_a_file_of_its_own_in_the_folder(config_dir: Path, seria
     ("text", "place"),
     [('{"gain": "x"}', "gain"), ('{"offset_deg": [1, 2]}', r"offset_deg\.2"), ("{", "the file"), ("", "the file")],
 )
-def test_a_damaged_one_is_named_and_not_passed_over(text: str, place: str):
+def test_damaged_calibration_is_named_and_not_ignored(text: str, place: str):
     path = save_calibration("arm", "F123", Measured())
     path.write_text(text)
     with pytest.raises(DeviceError, match=rf"arm-F123.json: {place}: .*run `tangible devices calibrate arm` again"):
         load_calibration("arm", "F123", Measured)
 
 
-def test_one_that_cannot_be_read(config_dir: Path):
+def test_calibration_that_cannot_be_read_raises(config_dir: Path):
     calibration_path("arm", "F123").mkdir(parents=True)
     with pytest.raises(DeviceError, match="cannot be read"):
         load_calibration("arm", "F123", Measured)
@@ -54,7 +54,7 @@ DEEP = '{"gain": ' + "[" * 10_000 + "]" * 10_000 + "}"
 
 
 @pytest.mark.parametrize("text", [DEEP, '{"gain": ' + "9" * 5000 + "}", '{"offset_deg": "' + "x\x1b" * 1000 + '"}'])
-def test_one_of_another_program_is_named_in_one_line(text: str):
+def test_hostile_calibration_is_reported_in_one_line(text: str):
     calibration_path("arm", "F123").parent.mkdir(parents=True)
     calibration_path("arm", "F123").write_text(text)
     with pytest.raises(DeviceError, match=r"arm-F123\.json: ") as error:
@@ -63,7 +63,7 @@ def test_one_of_another_program_is_named_in_one_line(text: str):
 
 
 @pytest.mark.timeout(20)
-def test_a_pipe_or_a_device_is_not_waited_for():
+def test_calibration_at_a_pipe_or_device_is_refused_at_once():
     path = calibration_path("arm", "F123")
     path.parent.mkdir(parents=True)
     os.mkfifo(path)
@@ -73,7 +73,7 @@ def test_a_pipe_or_a_device_is_not_waited_for():
             load_calibration("arm", serial, Measured)
 
 
-def test_a_place_that_cannot_be_written(config_dir: Path):
+def test_calibration_that_cannot_be_written_raises(config_dir: Path):
     (config_dir / "devices").write_text("a file where the folder should be")
     with pytest.raises(OutputError):
         save_calibration("arm", "F123", Measured())

@@ -1,4 +1,4 @@
-"""The picture under the hand: both ways exact, the clutch, the limits, and the same by compiled kernels."""
+"""The mapping from hand to picture: exact in both directions, clutch, limits, and compiled kernels."""
 
 import math
 from functools import partial
@@ -12,7 +12,7 @@ from numba import float64, int64, njit, void
 from tangible_core.compiled.kernels import Address
 from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
-from tangible_core.mapping import MappedDevice, Placement, WorkspaceMapping, mapped, placement_of
+from tangible_core.mapping import MappedDevice, Placement, WorkspaceMapping, map_device, placement_of
 from tangible_core.mapping.placement import turn
 from tangible_core.plugins.interfaces import HapticDevice, Link
 from tangible_core.testing.kinds.device import CHECKS as DEVICE_CHECKS
@@ -45,7 +45,7 @@ def write_buffer(buffer, fx, fy, fz):
 
 
 class BufferLink(CompiledLink):
-    """What the test writes to the buffer is read, and the force is there to be looked at."""
+    """A link that reads from a buffer, and writes the force to it."""
 
     def __init__(self, buffer: np.ndarray) -> None:
         super().__init__("the buffer", 8.0)
@@ -80,7 +80,7 @@ BUFFER = np.zeros(11)
 
 
 class BufferDevice(HapticDevice):
-    """One buffer for all."""
+    """A device whose links share one buffer."""
 
     def spec(self) -> DeviceSpec:
         return SPEC
@@ -96,8 +96,8 @@ def buffer() -> np.ndarray:
     return BUFFER
 
 
-def opened(buffer: np.ndarray, **options: object) -> Link:
-    return mapped(BufferDevice(), WorkspaceMapping(**options)).open()
+def open_link(buffer: np.ndarray, **options: object) -> Link:
+    return map_device(BufferDevice(), WorkspaceMapping(**options)).open()
 
 
 def hold(buffer: np.ndarray, link: Link, x: float, y: float, z: float, buttons: int = 0) -> HapticState:
@@ -111,7 +111,7 @@ def push(link: Link, *force: float) -> Force:
 
 
 def to_picture(place: Placement, hand_m: tuple[float, float, float]) -> tuple[float, ...]:
-    """Where in the picture a point of the hand's space lies, by the kernel."""
+    """Return the point of the picture at a point of the hand, by the kernel."""
     from tangible_core.mapping import kernels
 
     state = np.array([*hand_m, 0.0, 0.0, 0.0, 0.0])
@@ -120,7 +120,7 @@ def to_picture(place: Placement, hand_m: tuple[float, float, float]) -> tuple[fl
 
 
 def to_hand(place: Placement, picture_m: tuple[float, ...]) -> tuple[float, float, float]:
-    """Where the hand finds a point of the picture, by the formula h = o + k R (s - c)."""
+    """Return the point of the hand at a point of the picture, by the formula h = o + k R (s - c)."""
     x, y, z = picture_m
     x, y = x - place.centre_x_m, y - place.centre_y_m
     x, y = place.cos * x - place.sin * y, place.sin * x + place.cos * y
@@ -128,10 +128,10 @@ def to_hand(place: Placement, picture_m: tuple[float, ...]) -> tuple[float, floa
 
 
 class TestInPlainPython:
-    """For whoever moves a hand without the kernels."""
+    """The methods of `Placement`, which need no kernels."""
 
     @given(placements, points)
-    def test_both_ways_are_the_kernel_s_and_each_other_s(self, place: Placement, point: tuple[float, float, float]):
+    def test_placement_agrees_with_kernel_and_inverse(self, place: Placement, point: tuple[float, float, float]):
         size = max(1.0, 1.0 / place.scale, place.scale)
         close = partial(pytest.approx, abs=1e-12 * size)
         assert place.on_picture(point) == close(to_picture(place, point))
@@ -139,9 +139,9 @@ class TestInPlainPython:
         assert place.under_hand(to_picture(place, point)) == close(point)
         assert place.under_hand(point) == close(to_hand(place, point))
 
-    def test_of_a_device_it_is_what_its_link_does(self, buffer: np.ndarray):
+    def test_placement_of_a_device_agrees_with_its_link(self, buffer: np.ndarray):
         mapping = WorkspaceMapping(region_m=(0.01, -0.005, 0.02, 0.01), rotation_deg=30, offset_m=(0.0, 0.01, 0.02))
-        device = mapped(BufferDevice(), mapping)
+        device = map_device(BufferDevice(), mapping)
         picture_m = (0.012, -0.003, 0.001)
         seen = hold(buffer, device.open(), *placement_of(device).under_hand(picture_m)).position_m
         assert seen == pytest.approx(picture_m, abs=1e-15)
@@ -150,13 +150,13 @@ class TestInPlainPython:
 
 class TestGeometry:
     @given(placements, points)
-    def test_there_and_back_is_the_same_point(self, place: Placement, point: tuple[float, float, float]):
+    def test_point_to_picture_and_back_is_the_same(self, place: Placement, point: tuple[float, float, float]):
         size = max(1.0, 1.0 / place.scale, place.scale)
         assert to_hand(place, to_picture(place, point)) == pytest.approx(point, abs=1e-12 * size)
         assert to_picture(place, to_hand(place, point)) == pytest.approx(point, abs=1e-12 * size)
 
     @given(placements, points)
-    def test_a_velocity_goes_the_way_of_the_points(self, place: Placement, point: tuple[float, float, float]):
+    def test_velocity_is_mapped_like_points(self, place: Placement, point: tuple[float, float, float]):
         from tangible_core.mapping import kernels
 
         state = np.array([*point, *point, 3.0])
@@ -166,13 +166,13 @@ class TestGeometry:
         assert state[6] == 3.0
 
     @given(placements, points)
-    def test_forces_are_turned_and_keep_their_size(self, place: Placement, force: tuple[float, float, float]):
-        """The work at the hand is `scale` times that in the picture: never of another sign."""
+    def test_forces_are_rotated_and_keep_their_size(self, place: Placement, force: tuple[float, float, float]):
+        """Compare the work at the hand, which is `scale` times that in the picture, and of the same sign."""
         from tangible_core.mapping import kernels
 
         x, y, z = kernels.push(place, np.zeros(kernels.MEMORY), *force)
         assert math.hypot(x, y, z) == pytest.approx(math.hypot(*force), abs=1e-15, rel=1e-12)
-        assert (*place.turned_back(x, y), z) == pytest.approx(force, abs=1e-12)
+        assert (*place.rotate_back(x, y), z) == pytest.approx(force, abs=1e-12)
         step = (0.01, -0.02, 0.005)
         way = np.subtract(to_hand(place, step), to_hand(place, (0.0, 0.0, 0.0)))
         assert np.dot((x, y, z), way) == pytest.approx(place.scale * np.dot(force, step), abs=1e-12 * (1 + place.scale))
@@ -182,53 +182,53 @@ class TestGeometry:
         [(0.0, (0.03, 0.01)), (90.0, (0.01, -0.03)), (180.0, (-0.03, -0.01)), (-90.0, (-0.01, 0.03))],
     )
     def test_quarter_turns_are_exact(self, degrees: float, seen: tuple[float, float]):
-        """A picture turned by 90 degrees counter-clockwise: what is right of the hand was its bottom."""
+        """Rotate a picture counter-clockwise: its bottom comes to lie right of the hand."""
         place = WorkspaceMapping(rotation_deg=degrees).placement(SPEC.workspace_m)
         assert to_picture(place, (0.03, 0.01, 0.002)) == (*seen, 0.002)
 
-    def test_a_region_fills_the_workspace(self):
-        """A part of 20 x 10 mm, its left half at x = -10 mm, under a hand that moves 80 mm: four times as large."""
+    def test_region_fills_the_workspace(self):
+        """Map a part of 20 x 10 mm to a hand that moves 80 mm: four times as large."""
         place = WorkspaceMapping(region_m=(0.01, -0.005, 0.02, 0.01)).placement((0.08, 0.08, 0.08))
         assert place.scale == 4
         assert to_picture(place, (0.0, 0.0, 0.0)) == (0.01, -0.005, 0.0)
         assert to_picture(place, (-0.04, 0.02, 0.004)) == (0.0, 0.0, 0.001)
 
-    def test_a_turned_region_fills_it_too(self):
+    def test_rotated_region_fills_the_workspace(self):
         place = WorkspaceMapping(region_m=(0, 0, 0.02, 0.01), rotation_deg=90).placement((0.08, 0.16, 0.08))
         assert place.scale == 8
         assert to_hand(place, (0.01, 0.005, 0.0)) == pytest.approx((-0.04, 0.08, 0.0), abs=1e-15)
 
-    def test_a_scale_beside_a_region_is_the_scale(self):
+    def test_scale_overrides_the_fit_of_a_region(self):
         assert WorkspaceMapping(region_m=(0, 0, 0.02, 0.01), scale=2).placement(SPEC.workspace_m).scale == 2
 
-    def test_the_spec_is_in_the_picture_s_metres(self):
+    def test_spec_is_in_metres_of_the_picture(self):
         mapping = WorkspaceMapping(scale=2, rotation_deg=90)
-        spec = mapping.felt_spec(DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.06, 0.08), 2e-5, buttons=4))
+        spec = mapping.spec_on_picture(DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.06, 0.08), 2e-5, buttons=4))
         assert spec == DeviceSpec(8.0, 6000.0, 40.0, (0.03, 0.05, 0.04), 1e-5, buttons=4)
 
 
 class TestClutch:
-    def test_the_picture_goes_with_the_hand_and_stays_there(self, buffer: np.ndarray):
-        link = opened(buffer, clutch_button=1, scale=2.0)
+    def test_clutch_moves_the_picture_with_the_hand(self, buffer: np.ndarray):
+        link = open_link(buffer, clutch_button=1, scale=2.0)
         assert hold(buffer, link, 0.02, 0.0, 0.01).position_m == (0.01, 0.0, 0.005)
         for x in (0.02, 0.01, -0.02):
             assert hold(buffer, link, x, x - 0.02, 0.03, 2).position_m == pytest.approx((0.01, 0.0, 0.015))
         assert hold(buffer, link, -0.02, -0.04, 0.01).position_m == pytest.approx((0.01, 0.0, 0.005))
         assert hold(buffer, link, 0.0, -0.04, 0.01).position_m == pytest.approx((0.02, 0.0, 0.005))
 
-    def test_held_from_the_first_moment_on_it_stays_under_the_hand(self, buffer: np.ndarray):
-        link = opened(buffer, clutch_button=0)
+    def test_clutch_held_from_the_start_keeps_the_picture_under_the_hand(self, buffer: np.ndarray):
+        link = open_link(buffer, clutch_button=0)
         assert hold(buffer, link, 0.02, 0.0, 0.01, 1).position_m == (0.02, 0.0, 0.01)
 
-    def test_another_button_is_no_clutch(self, buffer: np.ndarray):
-        link = opened(buffer, clutch_button=1)
+    def test_another_button_is_not_the_clutch(self, buffer: np.ndarray):
+        link = open_link(buffer, clutch_button=1)
         hold(buffer, link, 0.0, 0.0, 0.0, 5)
         assert hold(buffer, link, 0.01, 0.0, 0.0, 5).position_m == (0.01, 0.0, 0.0)
         assert push(link, 0.0, 0.0, 1.0) == (0, 0, 1)
 
     @pytest.mark.parametrize("part", [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)])
-    def test_any_part_of_a_force_is_one_that_the_law_holds_on_to(self, buffer: np.ndarray, part: tuple[float, ...]):
-        link = opened(buffer, clutch_button=0)
+    def test_clutch_mutes_until_every_component_of_the_force_is_zero(self, buffer: np.ndarray, part: tuple[float, ...]):
+        link = open_link(buffer, clutch_button=0)
         hold(buffer, link, 0.0, 0.0, -0.001, 1)
         hold(buffer, link, 0.0, 0.0, -0.001)
         assert push(link, *part) == NO_FORCE
@@ -236,14 +236,14 @@ class TestClutch:
         assert push(link, *NO_FORCE) == NO_FORCE
         assert push(link, *part) == part
 
-    def test_the_picture_does_not_move_under_the_law_while_it_goes_with_the_hand(self, buffer: np.ndarray):
-        link = opened(buffer, clutch_button=0, scale=2.0, rotation_deg=90.0)
+    def test_clutch_gives_no_lateral_velocity(self, buffer: np.ndarray):
+        link = open_link(buffer, clutch_button=0, scale=2.0, rotation_deg=90.0)
         for buttons, seen in ((0, (0.2, -0.1, 0.3)), (1, (0.0, 0.0, 0.3))):
             buffer[:7] = 0.01, 0.02, 0.03, 0.2, 0.4, 0.6, buttons
             assert link.read().velocity_m_per_s == pytest.approx(seen)
 
-    def test_there_is_no_force_until_the_law_has_let_go(self, buffer: np.ndarray):
-        link = opened(buffer, clutch_button=0)
+    def test_clutch_mutes_force_until_the_law_gives_none(self, buffer: np.ndarray):
+        link = open_link(buffer, clutch_button=0)
         hold(buffer, link, 0.0, 0.0, -0.001)
         assert push(link, 0.0, 0.0, 1.0) == (0, 0, 1)
         hold(buffer, link, 0.0, 0.0, -0.001, 1)
@@ -265,16 +265,16 @@ class TestLimits:
             *[(math.nan, 0, 0), (0, math.nan, 0), (0, 0, math.nan)],
         ],
     )
-    def test_outside_there_is_no_force(self, buffer: np.ndarray, place: tuple[float, float, float]):
-        link = opened(buffer, limits_m=(0.06, 0.04, 0.02))
+    def test_limits_give_no_force_outside(self, buffer: np.ndarray, place: tuple[float, float, float]):
+        link = open_link(buffer, limits_m=(0.06, 0.04, 0.02))
         hold(buffer, link, 0.03, -0.02, 0.01)
         assert push(link, 1.0, 0.0, 0.0) == (1, 0, 0)
         hold(buffer, link, *place)
         assert push(link, 1.0, 0.0, 0.0) == NO_FORCE
 
-    def test_no_work_is_given_by_going_in_outside_and_out_inside(self, buffer: np.ndarray):
-        """Pressed in where there is no force, and moved to where there is: a spring of the law gives nothing back."""
-        link = opened(buffer, limits_m=(0.06, 0.06, 0.06))
+    def test_limits_give_no_energy_when_entered_inside_the_surface(self, buffer: np.ndarray):
+        """Press in where force is barred, and move to where it is allowed: a spring must give nothing back."""
+        link = open_link(buffer, limits_m=(0.06, 0.06, 0.06))
         work = 0.0
         way = [(0.04, 0.0, z) for z in np.linspace(0.01, -0.01, 50)]
         way += [(x, 0.0, -0.01) for x in np.linspace(0.04, 0.0, 50)] + [
@@ -282,55 +282,55 @@ class TestLimits:
         ]
         last = way[0]
         for place in way:
-            held = link.applied
-            work += float(np.dot(held, np.subtract(place, last)))
+            force = link.applied
+            work += float(np.dot(force, np.subtract(place, last)))
             last = hold(buffer, link, *place).position_m
             link.write(Force(0.0, 0.0, max(0.0, -800 * last[2])))
         assert work <= 0
 
 
 class TestKernels:
-    def test_they_do_as_the_methods(self, buffer: np.ndarray):
+    def test_kernels_agree_with_the_methods(self, buffer: np.ndarray):
         options = {"scale": 3.0, "rotation_deg": 30.0, "offset_m": (0.01, 0.02, 0.03), "clutch_button": 0}
         rng = np.random.default_rng(0)
-        told, called = opened(buffer, **options), opened(buffer, **options)
-        assert isinstance(called, CompiledLink)
-        kernels = called.kernels()
+        by_method, by_kernel = open_link(buffer, **options), open_link(buffer, **options)
+        assert isinstance(by_kernel, CompiledLink)
+        kernels = by_kernel.kernels()
         state = np.zeros(7)
         for _ in range(50):
             buffer[:6], buffer[6] = rng.uniform(-0.05, 0.05, 6), rng.integers(2)
             force = rng.uniform(-3, 3, 3) * rng.integers(2)
-            seen = told.read()
+            seen = by_method.read()
             assert kernels.read(*kernels.fixed, state) == 1
             assert state == pytest.approx([*seen.position_m, *seen.velocity_m_per_s, seen.buttons], abs=1e-15)
-            told.write(Force(*force))
+            by_method.write(Force(*force))
             applied = buffer[8:].copy()
             kernels.write(*kernels.fixed, *force)
             assert np.array_equal(buffer[8:], applied)
 
-    def test_what_is_not_fresh_is_left_alone(self, buffer: np.ndarray):
-        kernels = opened(buffer, scale=2.0).kernels()
+    def test_kernel_leaves_a_stale_state_unchanged(self, buffer: np.ndarray):
+        kernels = open_link(buffer, scale=2.0).kernels()
         buffer[7] = 0
         state = np.arange(7.0)
         assert kernels.read(*kernels.fixed, state) == 0
         assert np.array_equal(state, np.arange(7.0))
 
-    def test_a_compiled_loop_takes_them_by_their_addresses(self, buffer: np.ndarray):
+    def test_compiled_loop_calls_kernels_by_address(self, buffer: np.ndarray):
         @njit(nogil=True)
         def loop(read, write, fixed, state):
             for i in range(10):
                 read(*fixed, state)
                 write(*fixed, 0.0, 0.0, float(i))
 
-        kernels = opened(buffer, scale=2.0).kernels()
+        kernels = open_link(buffer, scale=2.0).kernels()
         buffer[:3] = 0.02, 0.04, 0.06
         state = np.zeros(7)
         loop(Address(kernels.read), Address(kernels.write), kernels.fixed, state)
         assert state[:3].tolist() == [0.01, 0.02, 0.03]
         assert buffer[8:].tolist() == [0, 0, 9]
 
-    def test_exchanging_is_left_to_the_device(self, buffer: np.ndarray):
-        link = opened(buffer, scale=2.0)
+    def test_exchange_is_passed_to_the_device(self, buffer: np.ndarray):
+        link = open_link(buffer, scale=2.0)
         assert isinstance(link, CompiledLink) and link.exchanges
         link.exchange()
         link.write(Force(1.0, 2.0, 3.0))
@@ -344,26 +344,26 @@ class TestDevice:
         "nothing",
         [{}, {"scale": 1.0}, {"rotation_deg": 360.0}, {"rotation_deg": -360.0}, {"region_m": (0, 0, 0.08, 0.08)}],
     )
-    def test_what_changes_nothing_is_not_wrapped(self, nothing: dict):
+    def test_identity_mapping_returns_the_device_itself(self, nothing: dict):
         mock = Mock()
-        assert mapped(mock, WorkspaceMapping(**nothing)) is mock
+        assert map_device(mock, WorkspaceMapping(**nothing)) is mock
 
     @pytest.mark.parametrize("check", DEVICE_CHECKS)
-    def test_a_mapped_device_is_a_device(self, check):
+    def test_mapped_device_passes_the_device_checks(self, check):
         mapping = WorkspaceMapping(scale=2.5, rotation_deg=37.0, offset_m=(0.01, -0.01, 0.0), clutch_button=3)
         check(MappedDevice(device=Mock(), mapping=mapping))
 
-    def test_its_limits_are_in_the_picture_s_metres(self):
+    def test_mapped_device_spec_is_in_metres_of_the_picture(self):
         mapping = WorkspaceMapping(scale=2.0)
         spec = MappedDevice(device=Mock(), mapping=mapping).spec()
-        assert spec == mapping.felt_spec(SPEC) != SPEC
+        assert spec == mapping.spec_on_picture(SPEC) != SPEC
 
-    def test_it_goes_through_json_with_the_device_s_own_options(self):
+    def test_mapped_device_keeps_its_options_in_json(self):
         device = MappedDevice(device=Mock(path="circle"), mapping=WorkspaceMapping(scale=2.0))
         assert device.model_dump()["device"]["path"] == "circle"
 
-    def test_a_hand_feels_the_hill_where_it_lies(self):
-        """The same path over a picture of half the size, at half the scale, gives the same forces."""
+    def test_half_sized_picture_at_half_scale_gives_the_same_forces(self):
+        """Follow the same path over a picture of half the size, at half the scale."""
         from tangible_core import HapticSurface, load_method
 
         heights = 0.005 + 0.004 * np.sin(np.linspace(0, 6, 64))[None, :] * np.cos(np.linspace(0, 5, 64))[:, None]
@@ -371,7 +371,7 @@ class TestDevice:
         whole = law(stiffness_n_per_m=500).touch(HapticSurface.from_heights(heights, width_m=0.08))
         half = law(stiffness_n_per_m=1000).touch(HapticSurface.from_heights(heights / 2, width_m=0.04))
         mock = Mock(hand=None, z_m=0.001)
-        with mock.open() as one, mapped(mock, WorkspaceMapping(scale=2.0)).open() as other:
+        with mock.open() as one, map_device(mock, WorkspaceMapping(scale=2.0)).open() as other:
             for _ in range(2000):
                 assert half.force(other.read()) == pytest.approx(whole.force(one.read()), abs=1e-5)
 
@@ -390,6 +390,6 @@ class TestDevice:
         ({"zoom": 2}, "zoom"),
     ],
 )
-def test_options_that_make_no_sense(options: dict, complaint: str):
+def test_wrong_options_are_refused(options: dict, complaint: str):
     with pytest.raises(ValueError, match=complaint):
         WorkspaceMapping(**options)

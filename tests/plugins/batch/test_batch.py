@@ -133,7 +133,7 @@ class TestScenes:
         }.items():
             assert said in errors[name]
             assert f"{name}: " in done.stderr
-        assert "5 failed: --retry makes these again" in done.stdout
+        assert "5 failed: --retry repeats these" in done.stdout
 
     def test_rows_of_a_manifest_set_keys_and_name_files_beside_it(self, archive: Path):
         with (archive / "rows.csv").open("w", newline="") as file:
@@ -217,7 +217,7 @@ class TestScenes:
             patch.setattr(job, "write_record", full)
             done = self.run(archive.parent)
         assert done.returncode == 2
-        assert "the batch ends here, and the same command goes on from there" in done.stderr
+        assert "the batch ends here, and the same command continues from there" in done.stderr
         out = archive.parent / "out/mine-batch"
         assert rows_in(out) == []
         assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 4
@@ -238,7 +238,7 @@ class TestScenes:
             ("nowhere/*.png", "holds no picture and no row"),
             ("rows.csv", "cannot be read: No such file"),
             ("twice.csv", "two rows are called 'a'"),
-            ("broken.parquet", "is no Parquet file"),
+            ("broken.parquet", "is not a Parquet file"),
             ("cells.csv", "more cells than there are columns"),
         ],
     )
@@ -271,7 +271,7 @@ class TestScenes:
     def test_from_python_mistakes_are_one_line(self, archive: Path, tmp_path: Path):
         pipeline, out = Pipeline.from_yaml(tmp_path / "mine.yaml"), tmp_path / "out"
         photo = {"scene.photo": str(archive / "p0.png")}
-        with pytest.raises(BatchError, match="two rows are called 'a'; give each an `id` of its own"):
+        with pytest.raises(BatchError, match="two rows are called 'a'; give each its own `id`"):
             list(batch(pipeline, [{"id": "a", **photo}, {"id": "a", **photo}], out))
         with pytest.raises(ArgumentError, match="workers: is the int 0"):
             list(batch(pipeline, [photo], out, workers=0))

@@ -100,7 +100,7 @@ def test_workers_that_die_take_no_job_along_and_begin_anew_in_time(monkeypatch: 
 
 def test_a_scheduler_that_is_not_there(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(farm, "CONNECT_S", 1)
-    with pytest.raises(BatchError, match=r"--scheduler tcp://127\.0\.0\.1:9: nobody answers there"):
+    with pytest.raises(BatchError, match=r"--scheduler tcp://127\.0\.0\.1:9: nothing answers there"):
         Farm(1, scheduler="tcp://127.0.0.1:9")
 
 
@@ -123,7 +123,7 @@ def test_after_an_end_in_the_middle_nobody_is_left_and_the_rest_is_made(tmp_path
     if end == signal.SIGINT:
         said = (tmp_path / "noise").read_text()
         assert code == 130, said
-        assert "the same command goes on from there" in " ".join(said.split())
+        assert "the same command continues from there" in " ".join(said.split())
         assert "Traceback" not in said
     kept = rows.read_text().count("\n")
     assert 3 <= kept < 60
@@ -161,7 +161,7 @@ def test_the_workers_of_a_scheduler_make_the_scenes_and_stay(tmp_path: Path, mon
             list(batch(pipeline, rows, tmp_path / "out", scheduler=address))
         worker = ("worker", address, "--no-dashboard", "--local-directory", tmp_path, "--nthreads")
         with running(*worker, "1") as own:
-            monkeypatch.setattr(farm, "installed", lambda: "0.0.1")
+            monkeypatch.setattr(farm, "installed_version", lambda: "0.0.1")
             waited(lambda: not without_workers(address))
             with pytest.raises(BatchError, match=r"has tangible-images .*, and this is 0\.0\.1; install the same"):
                 Farm(1, scheduler=address)

@@ -9,11 +9,11 @@ import pytest
 from rough_surfaces import rough_surfaces
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import NO_FORCE, HapticState, HapticSurface, Material
-from tangible_core.haptic_textures import compile_textures
-from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.interfaces import ForceRenderer
 from tangible_core.testing.synthetic.scenes import ramp
+from tangible_render.haptic_textures import compile_textures
+from tangible_render.haptic_textures.heights import texture_height
 from tangible_render.kernels import proxy, proxy_spring, proxy_texture
 from tangible_render.proxy import Proxy
 from tangible_render.with_materials import WithMaterials

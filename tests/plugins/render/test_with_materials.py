@@ -10,12 +10,12 @@ from materials_on_laws import GRAINY, LATERAL, PLAIN, PUSHING, RUBBER, STICKY, K
 from rough_surfaces import rough_surfaces
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticState, HapticSurface, Material
-from tangible_core.haptic_textures import compile_textures
-from tangible_core.haptic_textures.heights import texture_height
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.registry import load_method
 from tangible_core.testing.synthetic.reliefs import waves
 from tangible_core.testing.synthetic.scenes import ramp
+from tangible_render.haptic_textures import compile_textures
+from tangible_render.haptic_textures.heights import texture_height
 from tangible_render.with_materials import WithMaterials
 
 MAPS = rough_surfaces()

@@ -35,7 +35,6 @@ from tangible_core.data import (
 )
 from tangible_core.errors import OutputError, PictureError
 from tangible_core.files.json_text import write_figures
-from tangible_core.haptic_textures import peak_wavelength_m
 from tangible_core.materials.assignment import library
 from tangible_core.metrics import disparity_errors
 from tangible_core.plugins import hooks
@@ -43,6 +42,7 @@ from tangible_core.plugins.hooks import Panel, hookimpl
 from tangible_core.plugins.notes import collected
 from tangible_core.plugins.registry import Registry
 from tangible_core.session import Recording
+from tangible_render.haptic_textures import peak_wavelength_m
 from tangible_report import block
 from tangible_report.description import describe
 from tangible_report.drawing.layout import ROW_IN, TALLEST_IN, Cell, _height, arrange
@@ -228,7 +228,7 @@ class TestBlock:
         relief = Relief(np.float32([[1, 2]]), (0.4, 0.1))
         points_m = block.points_of(relief)
         np.testing.assert_allclose(points_m, [[[-0.1, 0, 1], [0.1, 0, 2]]])
-        framed = block.framed(points_m, relief.extent_m)
+        framed = block.add_border(points_m, relief.extent_m)
         assert framed.shape == (3, 4, 3)
         np.testing.assert_allclose(framed[0], [[-0.2, 0.05, 1], [-0.1, 0.05, 1], [0.1, 0.05, 2], [0.2, 0.05, 2]])
         np.testing.assert_allclose(framed[2, 0], [-0.2, -0.05, 1])
@@ -247,7 +247,7 @@ class TestBlock:
         shade_m = 0.02 / math.tan(math.radians(block.ELEVATION_DEG)) * -math.sin(math.radians(block.AZIMUTH_DEG))
         behind = (points_m[:, 1] > points_m[30, 1] + 0.002) & (points_m[:, 1] < points_m[30, 1] + shade_m - 0.002)
         beyond = points_m[:, 1] > points_m[30, 1] + shade_m + 0.002
-        seen = block.seen(relief, points_m)
+        seen = block.is_visible(relief, points_m)
         assert behind.any()
         assert not seen[behind].any()
         assert seen[beyond].all()
@@ -358,7 +358,7 @@ def adding(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
         plugins = hooks.manager()
         for number, panel in enumerate(panels):
             plugins.register(Adds(panel), name=f"acme/{number}")
-        monkeypatch.setattr("tangible_report.drawing.added_panels.default_registry", lambda: Registry(plugins))
+        monkeypatch.setattr("tangible_report.drawing.sheet.default_registry", lambda: Registry(plugins))
 
     return add
 
@@ -400,7 +400,7 @@ class TestAddedPanels:
     ) -> None:
         adding(junk, Panel(histogram, {"relief"}))
         assert len(said(drawn(relief=whole_run()["relief"]))) == 2
-        assert "is no Panel; it is left out" in caplog.text
+        assert "is not a Panel; it is left out" in caplog.text
 
 
 class TestSheet:

@@ -61,7 +61,7 @@ def test_parts_without_names_are_those_that_fingers_read(tmp_path: Path):
     merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
     texts, notes = written(work(simplified=merged), Text(), tmp_path)
     assert [each[:12] for each in items(texts[".txt"])] == ["1. partie 3.", "2. partie 0."]
-    assert notes == ["no part has a name, so that they go by numbers; `tangible parts` shows them to be named"]
+    assert notes == ["no part has a name, so parts are described by number; `tangible parts` shows them for naming"]
     texts, notes = written(work(simplified=None), Text(), tmp_path)
     assert items(texts[".txt"]) == [] and "<ol>" not in texts[".html"] and notes == []
     assert "4 matières" in texts[".txt"]

@@ -1,4 +1,4 @@
-"""The command for many scenes. Imported whenever `tangible` starts, so this room imports next to nothing."""
+"""The command for many scenes. It is imported at each start of `tangible`, so it imports next to nothing."""
 
 from __future__ import annotations
 

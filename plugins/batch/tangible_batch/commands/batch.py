@@ -39,21 +39,21 @@ def batch(
     scheduler: Annotated[
         str, typer.Option(metavar="tcp://HOST:PORT", help="Work on the machines of this Dask scheduler.")
     ] = "",
-    retry: Annotated[bool, typer.Option("--retry", help="Make again what failed before.")] = False,
+    retry: Annotated[bool, typer.Option("--retry", help="Repeat scenes that failed before.")] = False,
     sheets: Annotated[bool, typer.Option("--sheets", help="Draw a whole report of each, not a card alone.")] = False,
     cache: Annotated[
         Path | None, typer.Option("--cache", help="Keep results of stages here, for scenes that share them.")
     ] = None,
     timeout: Annotated[
-        float | None, typer.Option(help="A scene that takes longer, s, is ended and fails [default: 3600].")
+        float | None, typer.Option(help="Seconds after which a scene is ended and fails [default: 3600].")
     ] = None,
-    chunk: Annotated[int, typer.Option(min=1, help="Scenes that are handed out together, at most.")] = 4,
+    chunk: Annotated[int, typer.Option(min=1, help="The most scenes that are sent to a worker together.")] = 4,
     as_json: Json = False,
 ) -> None:
     """Run many pictures, or many settings, through one pipeline file.
 
-    Each scene becomes a row, whatever goes wrong with it. What was interrupted goes on where it stopped. Exit 1 if a
-    scene failed.
+    Each scene becomes a row, even if it fails. An interrupted batch continues where it stopped. Exit 1 if a scene
+    failed.
     """
     from tangible_core.cli import show
     from tangible_core.errors import check_positive
@@ -62,7 +62,7 @@ def batch(
     from tangible_core.pipeline.output.run_folder import default_name
 
     from ..farm import LONGEST_S
-    from ..jobs import BatchOptions
+    from ..job_maker import BatchOptions
     from ..manifest import rows_of
     from ..results import ROWS, write_gallery, write_index
     from ..running import Tally, Workforce, run_batch
@@ -72,17 +72,17 @@ def batch(
     name = default_name(config)
     place = out or Path("out", f"{name}-batch")
     text = with_overrides(read_text(config), config, sets or [])
-    tally, who = Tally(), Workforce(workers, threads, scheduler)
+    tally, workforce = Tally(), Workforce(workers, threads, scheduler)
     options = BatchOptions(retry, sheets, cache, chunk, timeout_s)
     wanted: list[str] = []
-    scenes = _noted(rows_of(over, besides=place), wanted)
-    rows = run_batch(text, config.absolute(), scenes, place, who, options, tally)
+    scenes = _collect_names(rows_of(over, besides=place), wanted)
+    rows = run_batch(text, config.absolute(), scenes, place, workforce, options, tally)
     try:
-        for row in _watched(rows, tally, name):
+        for row in _show_progress(rows, tally, name):
             if row["outcome"] != "ok" and not (as_json or is_quiet()):
                 show.note(f"{row['id']}: {row['error']}")
     except KeyboardInterrupt:
-        show.note(f"interrupted; what was made is kept in {place}, and the same command goes on from there")
+        show.note(f"interrupted; all finished scenes are kept in {place}, and the same command continues from there")
         raise
     written = [place / ROWS, write_index(place, wanted), *write_gallery(place, wanted)]
     _print(tally, [str(path) for path in written], as_json)
@@ -90,14 +90,14 @@ def batch(
         raise typer.Exit(FAILED)
 
 
-def _noted(scenes: Iterable[SceneRow], names: list[str]) -> Iterator[SceneRow]:
+def _collect_names(scenes: Iterable[SceneRow], names: list[str]) -> Iterator[SceneRow]:
     for scene in scenes:
         names.append(scene.id)
         yield scene
 
 
-def _watched(rows: Iterator[Row], tally: Tally, name: str) -> Iterator[Row]:
-    """The rows; meanwhile it is shown how far they are, and how long the rest will take."""
+def _show_progress(rows: Iterator[Row], tally: Tally, name: str) -> Iterator[Row]:
+    """Yield the rows; meanwhile, show how many are done and how long the rest will take."""
     from tangible_core.cli.sentences import approximately
     from tangible_core.data import Outcome
     from tangible_core.plugins import hooks
@@ -108,8 +108,8 @@ def _watched(rows: Iterator[Row], tally: Tally, name: str) -> Iterator[Row]:
         for row in rows:
             if tally.made:
                 left_s = (monotonic() - since_s) / tally.made * (tally.wanted - tally.kept - tally.made)
-                far = f"{tally.kept + tally.made} of {tally.wanted} scenes"
-                done = f"{far} ({tally.failed} failed, {approximately(left_s)} left)"
+                count = f"{tally.kept + tally.made} of {tally.wanted} scenes"
+                done = f"{count} ({tally.failed} failed, {approximately(left_s)} left)"
                 hooks.tell(plugins, "tangible_stage_started", product=done, method=name)
             yield row
     finally:
@@ -126,7 +126,7 @@ def _print(tally: Tally, files: Sequence[str], as_json: bool) -> None:
     elif not is_quiet():
         good = tally.wanted - tally.failed
         kept = f", {tally.kept} of them before" if tally.kept else ""
-        again = f"; {tally.failed} failed: --retry makes these again" if tally.failed else ""
+        again = f"; {tally.failed} failed: --retry repeats these" if tally.failed else ""
         show.sentence(f"{good} of {tally.wanted} scenes are made{kept}{again}.")
         for path in files[:MOST_FILES]:
             show.plain(f"written: {path}")

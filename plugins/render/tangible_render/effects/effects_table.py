@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Float64, Int32
 
 from tangible_core.data import HapticSurface, Material
-from tangible_core.haptic_textures import compile_textures
-from tangible_core.haptic_textures.table import COUNT, DRAG, STIFFNESS
+from tangible_render.haptic_textures import compile_textures
+from tangible_render.haptic_textures.table import COUNT, DRAG, STIFFNESS
 
 Table = Float64[np.ndarray, "n p"]
 TEXTURE_COLUMNS = [COUNT, DRAG, STIFFNESS]

@@ -1,4 +1,4 @@
-"""`tangible materials ...`: the library, with units and sources, as tables and as pictures."""
+"""`tangible materials ...`: the library of materials, with units and sources, as tables and as pictures."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ if TYPE_CHECKING:
     from tangible_core.data import Material, Texture
 
 STROKE_M_PER_S = 0.12
-"""At which the sources measured vibration."""
+"""The speed at which the sources measured vibration."""
 MODELS: dict[Texture, str] = {
     "smooth": "no heights",
     "periodic": "lines a grain apart, or two crossed sets of them",
-    "stochastic": "noise of one octave round the grain",
-    "stick-slip": "friction that sticks and slips once a grain, over noise of one octave round the grain",
-    "drag": "a force against the velocity, over noise of one octave round the grain where there is roughness",
+    "stochastic": "noise of one octave around the grain",
+    "stick-slip": "friction that sticks and slips once a grain, over noise of one octave around the grain",
+    "drag": "a force against the velocity, over noise of one octave around the grain if there is roughness",
 }
+"""Texture -> its model in words."""
 UNITS = {"_n_s_per_m": "N s/m", "_n_per_m": "N/m", "_deg": "degrees", "_m": "m"}
-Library = Annotated[Path | None, typer.Option(help="YAML file of your own, added to the shipped materials.")]
+Library = Annotated[Path | None, typer.Option(help="Custom YAML file, added to the shipped materials.")]
 
 app = typer.Typer(name="materials", rich_markup_mode=None, add_completion=False)
 
@@ -45,7 +46,7 @@ def materials(context: typer.Context, library: Library = None, as_json: Json = F
     if as_json:
         show.print_json({name: asdict(material) for name, material in known.items()})
         return
-    show.sentence(f"{len(known)} materials; `tangible materials show NAME` says what the values of one mean.")
+    show.sentence(f"{len(known)} materials; `tangible materials show NAME` explains the values of one.")
     rows = [
         (
             each.name,
@@ -79,9 +80,9 @@ def show_one(
     library: Library = None,
     as_json: Json = False,
 ) -> None:
-    """Say everything of one material.
+    """Show everything about one material.
 
-    Each value with its unit and its source, and what its texture is.
+    Each value with its unit and its source, and its texture.
     """
     from dataclasses import asdict
 
@@ -133,7 +134,7 @@ def draw(
 
 
 def _vibration_hz(material: Material) -> float | None:
-    """Of a stroke at the sources' speed; None for a material without waves."""
+    """Return the frequency of a stroke at the sources' speed; None for a material without waves."""
     waves = material.roughness_m > 0 or material.texture == "stick-slip"
     return STROKE_M_PER_S / material.grain_m if waves else None
 

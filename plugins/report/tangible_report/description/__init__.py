@@ -1,4 +1,4 @@
-"""A surface in words, for somebody who does not see it: facts, and a language's words for them."""
+"""A surface in words, for people who do not see it: facts about its parts, and sentences in a language."""
 
 from .at_length import Told as Told
 from .at_length import describe_at_length as describe_at_length

@@ -1,4 +1,4 @@
-"""A surface described at length: its size, its heights, and its parts one by one from near to far."""
+"""A long description of a surface: its size, its heights, and its parts one by one from near to far."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -14,37 +14,37 @@ from .describing import FLAT_M, heights_in_words, materials_in_words
 from .facts import PartFacts
 
 MOST_PARTS = 60
-"""Parts that are described, the largest; of the others, how many they are."""
+"""The number of parts that are described, the largest; the others are counted."""
 LEAST_SHARE = 0.001
-"""Of the picture: a smaller part that has no name is one of those that are left out."""
+"""The share of the picture below which a part without a name is left out."""
 LEAST_HIGH_M = 5e-5
-"""Lower parts are those of the ground: their height is not said."""
-MOST_BESIDE = 4
-"""Neighbours of a part that are named, those of the longest borders."""
+"""The height below which a part belongs to the ground, so that its height is left out."""
+MOST_NEIGHBOURS = 4
+"""The number of neighbours of a part that are named, those with the longest borders."""
 SHARES = (0.5, 0.25, 0.08, 0.0)
-"""Of the picture: from each on, a part is called by another word for its size."""
+"""The shares of the picture from which on another word describes the size of a part."""
 
 
 class ToldPart(NamedTuple):
-    """One part in words."""
+    """A part in words."""
 
     label: str
-    """Its name, or `part 3`."""
+    """The part's name, or `part 3`."""
     sentences: tuple[str, ...]
 
 
 class Told(NamedTuple):
-    """A description at length."""
+    """A long description."""
 
     title: str
     overview: tuple[str, ...]
     """Sentences on the whole."""
     heading: str
-    """Of the list of parts; empty where there are none."""
+    """The heading of the list of parts; empty if there are none."""
     parts: tuple[ToldPart, ...]
-    """From near to far."""
+    """The parts from near to far."""
     left_out: str
-    """On parts that are not in the list; empty where all are."""
+    """A sentence on parts that are not in the list; empty if all are."""
 
 
 def describe_at_length(
@@ -54,9 +54,9 @@ def describe_at_length(
     parts: Sequence[PartFacts] = (),
     kind: SceneKind | None = None,
 ) -> tuple[str, ...]:
-    """The lines of a description at length: title, overview, heading, and a line a part with its number in the list.
+    """Return the lines of a long description: title, overview, heading, and a numbered line for each part.
 
-    parts: from near to far, by `facts`. kind: what the scene is made of, where it is known.
+    parts: from near to far, by `facts`. kind: the kind of the scene, if it is known.
 
     >>> describe_at_length(HapticSurface.from_heights(np.zeros((8, 8))), "A plate")
     ('A plate', '', 'A surface 80 mm wide and 80 mm long. It is flat everywhere.')
@@ -65,7 +65,9 @@ def describe_at_length(
     lines = [told.title, "", " ".join(told.overview)]
     if told.parts:
         lines += ["", told.heading]
-    lines += [f"{place}. {ended(each.label)} {' '.join(each.sentences)}" for place, each in enumerate(told.parts, 1)]
+    lines += [
+        f"{place}. {end_sentence(each.label)} {' '.join(each.sentences)}" for place, each in enumerate(told.parts, 1)
+    ]
     return (*lines, told.left_out) if told.left_out else tuple(lines)
 
 
@@ -77,29 +79,29 @@ def tell(
     kind: SceneKind | None,
     given: Callable[[str], str] = one_line,
 ) -> Told:
-    """A description in words. given: writes what somebody named: the title, parts, materials of their own."""
+    """Return a long description. given: formats custom names, which are those of the title, of parts and materials."""
     say = Words(language)
-    told = _largest(parts)
+    largest = _largest(parts)
     labels = {each.number: _label(each, say, given) for each in parts}
-    left = [each for each in parts if each not in told]
+    left = [each for each in parts if each not in largest]
     share = _percent(sum(each.share for each in left), say)
     left_out = say("small part" if len(left) == 1 else "small parts", count=len(left), share=share) if left else ""
-    materials = "" if any(each.material for each in told) else materials_in_words(surface, say)
+    materials = "" if any(each.material for each in largest) else materials_in_words(surface, say)
     return Told(
         given(title) if title.strip() else say("nameless"),
         tuple(filter(None, [_size(surface, say), heights_in_words(surface, say), materials])),
-        say("part list heights" if kind == "heights" else "part list") if told else "",
-        tuple(ToldPart(labels[each.number], _sentences(each, labels, say, given)) for each in told),
+        say("part list heights" if kind == "heights" else "part list") if largest else "",
+        tuple(ToldPart(labels[each.number], _sentences(each, labels, say, given)) for each in largest),
         left_out,
     )
 
 
 def _largest(parts: Sequence[PartFacts]) -> list[PartFacts]:
-    """Those that have a name and then the largest, in the order they come in."""
+    """Return the named parts and then the largest, up to MOST_PARTS, in their old order."""
     large = [each for each in parts if each.name or each.share >= LEAST_SHARE]
     ranked = sorted(large, key=lambda each: (not each.name, -each.share))
-    kept = {each.number for each in ranked[:MOST_PARTS]}
-    return [each for each in parts if each.number in kept]
+    chosen = {each.number for each in ranked[:MOST_PARTS]}
+    return [each for each in parts if each.number in chosen]
 
 
 def _label(part: PartFacts, say: Words, given: Callable[[str], str]) -> str:
@@ -114,28 +116,25 @@ def _size(surface: HapticSurface, say: Words) -> str:
 
 
 def _sentences(part: PartFacts, labels: dict[int, str], say: Words, given: Callable[[str], str]) -> tuple[str, ...]:
-    """Where it is, how large and how high, of what, and what it borders on."""
+    """Return sentences on the place, size, height, material and neighbours of a part."""
     width, length = (say.number(1000 * each) for each in part.size_m)
     share = say(f"part share {next(round(100 * least) for least in SHARES if part.share >= least)}")
     high = say("part size high", height=say.number(1000 * part.height_m)) if part.height_m >= LEAST_HIGH_M else ""
     size = say("part size", share=share, percent=_percent(part.share, say), width=width, length=length, high=high)
-    said = [_sentence(say(part.place)) if part.place != NOWHERE else "", size]
+    place = say(part.place) if part.place != NOWHERE else ""
+    sentences = [end_sentence(f"{place[:1].upper()}{place[1:]}") if place else "", size]
     if part.material:
-        said.append(say("part feels alone", material=say.material_after_like(part.material, given)))
-    if beside := [labels[each] for each in part.neighbours[:MOST_BESIDE]]:
-        said.append(say("part beside", parts=", ".join(beside)))
-    return tuple(filter(None, said))
+        sentences.append(say("part feels alone", material=say.material_after_like(part.material, given)))
+    if neighbours := [labels[each] for each in part.neighbours[:MOST_NEIGHBOURS]]:
+        sentences.append(say("part beside", parts=", ".join(neighbours)))
+    return tuple(filter(None, sentences))
 
 
 def _percent(share: float, say: Words) -> str:
-    """Whole ones, and tenths where it is less than one."""
+    """Return a share in whole per cent, or in tenths below 1 %."""
     return say.number(round(100 * share) if share >= 0.01 else max(0.1, round(100 * share, 1)))
 
 
-def ended(text: str) -> str:
-    """With a full stop, unless it ends like a sentence."""
+def end_sentence(text: str) -> str:
+    """Add a full stop, unless the text ends like a sentence."""
     return text if text.endswith((".", "!", "?")) else f"{text}."
-
-
-def _sentence(words: str) -> str:
-    return ended(f"{words[:1].upper()}{words[1:]}")

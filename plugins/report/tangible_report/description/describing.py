@@ -1,4 +1,4 @@
-"""A surface in a few sentences, for somebody who does not see it: how large, where it is high, of what, and where."""
+"""A surface in a few sentences, for people who do not see it: its size, heights, parts and materials."""
 
 import math
 
@@ -11,28 +11,28 @@ from tangible_core.parts.words.languages import LANGUAGES, Language, Words
 from tangible_core.parts.words.places import NOWHERE, place_of
 from tangible_core.scene.workspace import SceneKind
 
-from .facts import middle_heights_m
+from .facts import median_heights_m
 
 MOST_CELLS = 512
-"""A side: what is said of a surface shows on so many."""
+"""The most cells along a side: a surface is described on a grid of at most this size."""
 ALIKE = 0.1
-"""Share of the relief's height by which the highest places, or the lowest, may differ."""
+"""The share of the relief's height by which the highest places, or the lowest, may differ."""
 LEVEL_SLOPE = 0.02
-"""Up to one degree, a hand feels no slope."""
+"""The largest slope that counts as level, about one degree: a hand does not feel it."""
 MOST_NAMED = 4
-"""Materials; of the others, how many they are."""
+"""The number of materials that are named; the others are counted."""
 MOST_PARTS = 12
-"""Parts by name, the nearest; of the others, how many they are."""
+"""The number of parts that are named, the nearest; the others are counted."""
 FLAT_M = 1e-6
-"""No hand feels a relief so low."""
+"""The height up to which a relief counts as flat: a hand does not feel it."""
 
 
 def describe(surface: HapticSurface, scene_name: str, language: Language = "en", kind: SceneKind | None = None) -> str:
-    """One to three sentences on a surface and its scene, always the same for the same surface.
+    """Return one to three sentences on a surface and its scene, always the same for the same surface.
 
-    Places are those of the picture: what is `at the top` of it lies away from the hand. Parts that have a name are
-    said one by one, each with its material; else, which materials there are.
-    kind: what the scene is made of, if it is to be said (`kind_of`). language: one of `LANGUAGES`.
+    Places are those of the picture: `at the top` is far from the hand. Parts with a name are described one by one,
+    each with its material; without names, the materials are described.
+    kind: the kind of the scene, if it is to be mentioned (`kind_of`). language: one of `LANGUAGES`.
     Raises: ArgumentError for another language.
 
     >>> describe(HapticSurface.from_heights(np.zeros((8, 8))), "a plate")
@@ -55,14 +55,14 @@ def _size(surface: HapticSurface, name: str, kind: SceneKind | None, say: Words)
 
 
 def heights_in_words(surface: HapticSurface, say: Words) -> str:
-    """Where it is high and low, and how much of it is flat."""
+    """Return a sentence on where the surface is high and low, and how much of it is flat."""
     lowest_m, highest_m = float(surface.height_m.min()), float(surface.height_m.max())
     if highest_m - lowest_m <= FLAT_M:
         return say("all flat")
     step = _step(surface)
     height_m = surface.height_m[::step, ::step].astype(np.float64)
     low_m, high_m = np.percentile(height_m, (1, 99)).tolist()
-    if high_m - low_m < (highest_m - lowest_m) / 2:  # what stands out is small: it is no stray pixel that counts
+    if high_m - low_m < (highest_m - lowest_m) / 2:  # the raised part is small, but not a stray pixel
         low_m, high_m = float(height_m.min()), float(height_m.max())
     band_m = ALIKE * (high_m - low_m)
     highest, lowest = height_m >= high_m - band_m, height_m <= low_m + band_m
@@ -86,11 +86,11 @@ def _flat(surface: HapticSurface, height_m: np.ndarray, step: int, say: Words) -
         return say("hardly flat")
     if share > 0.95:
         return say("nearly all flat")
-    return say("flat", share=percent(share), where=_aside(level, ", {}", say))
+    return say("flat", share=percent(share), where=_place(level, ", {}", say))
 
 
 def materials_in_words(surface: HapticSurface, say: Words) -> str:
-    """Which there are, how much of each, and where; several segments of one material are one part."""
+    """Return a sentence on the materials, their shares and places; segments of one material count together."""
     if surface.labels is None or not surface.materials:
         return ""
     step = _step(surface)
@@ -103,34 +103,34 @@ def materials_in_words(surface: HapticSurface, say: Words) -> str:
     if len(shares) == 1:
         return say("one material", material=say.material_after_like(next(iter(shares))))
     ranked = sorted(shares, key=lambda name: (-shares[name], name))
-    said = [
-        say("part", material=say.material(name), share=percent(shares[name]), where=_aside(parts[name], " ({})", say))
+    phrases = [
+        say("part", material=say.material(name), share=percent(shares[name]), where=_place(parts[name], " ({})", say))
         for name in ranked[:MOST_NAMED]
     ]
     if others := ranked[MOST_NAMED:]:
         key = "another" if len(others) == 1 else "others"
-        said.append(say(key, count=len(others), share=percent(sum(shares[name] for name in others))))
-    return say("materials", count=len(shares), parts=say.join(said))
+        phrases.append(say(key, count=len(others), share=percent(sum(shares[name] for name in others))))
+    return say("materials", count=len(shares), parts=say.join(phrases))
 
 
 def _parts(surface: HapticSurface, say: Words) -> str:
-    """Those that have a name, the highest first, for it is the nearest: where each is, how high, and of what."""
+    """Return a sentence on the named parts, the highest first, as it is the nearest: place, height and material."""
     names, step = surface.names or (), _step(surface)
     assert surface.labels is not None
     labels = surface.labels[::step, ::step]
-    height_m = middle_heights_m(labels, surface.height_m[::step, ::step], len(names))
-    there = np.flatnonzero(np.isfinite(height_m))
-    named = [number for number in there[np.argsort(-height_m[there], kind="stable")].tolist() if names[number]]
-    said = [_part(surface, labels == number, number, float(height_m[number]), say) for number in named[:MOST_PARTS]]
-    left, unnamed = len(named) - len(said), len(there) - len(named)
-    said += [say("part left" if left == 1 else "parts left", count=left)] if left else []
-    said += [say("unnamed" if unnamed == 1 else "all unnamed", count=unnamed)] if unnamed else []
-    return say("one part" if len(said) == 1 else "parts", parts=say.join(said)) if said else ""
+    height_m = median_heights_m(labels, surface.height_m[::step, ::step], len(names))
+    present = np.flatnonzero(np.isfinite(height_m))
+    named = [number for number in present[np.argsort(-height_m[present], kind="stable")].tolist() if names[number]]
+    phrases = [_part(surface, labels == number, number, float(height_m[number]), say) for number in named[:MOST_PARTS]]
+    left, unnamed = len(named) - len(phrases), len(present) - len(named)
+    phrases += [say("part left" if left == 1 else "parts left", count=left)] if left else []
+    phrases += [say("unnamed" if unnamed == 1 else "all unnamed", count=unnamed)] if unnamed else []
+    return say("one part" if len(phrases) == 1 else "parts", parts=say.join(phrases)) if phrases else ""
 
 
-def _part(surface: HapticSurface, there: Bool[np.ndarray, "h w"], number: int, height_m: float, say: Words) -> str:
+def _part(surface: HapticSurface, cells: Bool[np.ndarray, "h w"], number: int, height_m: float, say: Words) -> str:
     assert surface.names is not None
-    facts = [] if place_of(there) == NOWHERE else [say(place_of(there))]
+    facts = [] if place_of(cells) == NOWHERE else [say(place_of(cells))]
     facts += [say("part high", height=say.number(1000 * height_m))] if height_m > FLAT_M else []
     facts += (
         [say("part feels", material=say.material_after_like(surface.materials[number].name))]
@@ -146,11 +146,11 @@ def _step(surface: HapticSurface) -> int:
 
 
 def percent(share: float) -> str:
-    """Whole ones; the smallest part is one."""
+    """Return a share in whole per cent, at least 1."""
     return str(max(1, round(100 * share)))
 
 
-def _aside(part: np.ndarray, form: str, say: Words) -> str:
-    """Where it lies, unless it is on no side."""
+def _place(part: np.ndarray, form: str, say: Words) -> str:
+    """Return the place of a part in a form such as ` ({})`; an empty text if it is on no side."""
     place = place_of(part)
     return "" if place == NOWHERE else form.format(say(place))

@@ -1,4 +1,4 @@
-"""A description at length as a page of HTML that needs nothing else and runs nothing."""
+"""A long description as a self-contained page of HTML without scripts."""
 
 from collections.abc import Sequence
 from html import escape
@@ -7,7 +7,7 @@ from tangible_core.data import HapticSurface
 from tangible_core.parts.words.languages import Language, one_line
 from tangible_core.scene.workspace import SceneKind
 
-from .at_length import ended, tell
+from .at_length import end_sentence, tell
 from .facts import PartFacts
 
 _STYLE = """
@@ -30,14 +30,14 @@ def page_of(
     *,
     named_in: str | None = None,
 ) -> str:
-    """`describe_at_length` as HTML: headings, an ordered list of parts, the system's colours, no script.
+    """Return `describe_at_length` as HTML: headings, an ordered list of parts, the system's colours, no script.
 
-    named_in: the tag of the language of the title and of names, where that is another one than of the words.
+    named_in: the tag of the language of the title and names, if it differs from the language of the words.
     """
     other = named_in if named_in and named_in != language else ""
-    told = tell(surface, title, language, parts, kind, lambda text: _given(text, other))
+    told = tell(surface, title, language, parts, kind, lambda text: _quote(text, other))
     items = "".join(
-        f"<li><strong>{ended(each.label)}</strong> {' '.join(each.sentences)}</li>\n" for each in told.parts
+        f"<li><strong>{end_sentence(each.label)}</strong> {' '.join(each.sentences)}</li>\n" for each in told.parts
     )
     listed = f"<h2>{told.heading}</h2>\n<ol>\n{items}</ol>\n" if told.parts else ""
     left = f"<p>{told.left_out}</p>\n" if told.left_out else ""
@@ -62,7 +62,7 @@ def page_of(
 """
 
 
-def _given(text: str, language: str) -> str:
-    """Somebody's words in a page: what they are written in is said where it is not the page's language."""
-    said = escape(one_line(text))
-    return f'<span lang="{escape(language)}" dir="auto">{said}</span>' if language else said
+def _quote(text: str, language: str) -> str:
+    """Return a custom name as HTML, marked with its language if that is not the page's."""
+    html = escape(one_line(text))
+    return f'<span lang="{escape(language)}" dir="auto">{html}</span>' if language else html

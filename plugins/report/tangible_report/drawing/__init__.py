@@ -1,1 +1,1 @@
-"""A sheet of pictures: its panels arranged, drawn in one style, and written with a description in words."""
+"""The sheet of pictures: panels are arranged, drawn in one style, and written with a description in words."""

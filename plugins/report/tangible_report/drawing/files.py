@@ -1,4 +1,4 @@
-"""A sheet as a file: PNG, SVG or PDF, each with a title and a description for who does not see it."""
+"""A sheet as a file: PNG, SVG or PDF, each with a title and a description for people who do not see it."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -18,24 +18,24 @@ if TYPE_CHECKING:
 Write = Callable[["Figure", IO[bytes], str, str], None]
 
 COMPRESSION = 1
-"""Level of PNG's compression: a third of the time of matplotlib's 6, which would make a file a seventh smaller."""
+"""The level of PNG's compression: it takes a third of the time of matplotlib's 6, for files a sixth larger."""
 
 
-def described(figure: Figure) -> str:
-    """What is on a sheet, in words: each panel's headline, the caption of a picture, and its legend."""
+def describe_sheet(figure: Figure) -> str:
+    """Return a description of a sheet in words: each panel's headline, its caption and its legend."""
     title, *texts = (text.get_text() for text in figure.texts)
-    said: list[str] = []
+    panels: list[str] = []
     for headline, axes in zip(texts[1::2], figure.axes, strict=False):
         legend = axes.get_legend()
         caption = [] if len(axes.get_xticks()) else [axes.get_xlabel()]
         parts = [*caption, *(each.get_text() for each in (legend.get_texts() if legend else ()))]
-        said.append(": ".join(filter(None, (headline, "; ".join(filter(None, parts))))))
-    pictures = "one picture" if len(said) == 1 else f"{len(said)} pictures"
-    return f"A sheet of {pictures} of {title or 'a run'}. {'. '.join(said)}."
+        panels.append(": ".join(filter(None, (headline, "; ".join(filter(None, parts))))))
+    pictures = "one picture" if len(panels) == 1 else f"{len(panels)} pictures"
+    return f"A sheet of {pictures} of {title or 'a run'}. {'. '.join(panels)}."
 
 
 def writer(path: Path) -> Write:
-    """What writes a sheet of this suffix. Raises: OutputError if there is none."""
+    """Return the function that writes sheets of this suffix. Raises: OutputError if there is none."""
     if path.suffix not in WRITERS:
         raise OutputError(f"{path}: a sheet is drawn as .png, .svg or .pdf; change the end of the name")
     return WRITERS[path.suffix]
@@ -50,7 +50,7 @@ def _png(figure: Figure, file: IO[bytes], title: str, says: str) -> None:
 
 
 def _svg(figure: Figure, file: IO[bytes], title: str, says: str) -> None:
-    """A reader of screens reads what <title> and <desc> at the top say."""
+    """Write an SVG with <title> and <desc> at the top, for screen readers."""
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     drawn = BytesIO()

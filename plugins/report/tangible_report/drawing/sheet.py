@@ -1,4 +1,4 @@
-"""One sheet of pictures that shows a run."""
+"""The sheet of a run: panels for its products, and those that plugins add."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import logging
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import count, product
 from pathlib import Path
 from string import ascii_lowercase
@@ -15,15 +15,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tangible_core.data import DisparityMap, HapticSurface, MaterialMap, PartMap, Record, Relief, SegmentMap, Views
-from tangible_core.errors import OutputError
+from tangible_core.errors import OutputError, shown
 from tangible_core.files.writing import atomic_write
 from tangible_core.parts.words.languages import spoken_language
+from tangible_core.plugins import hooks
+from tangible_core.plugins.hooks import Panel
+from tangible_core.plugins.registry import default_registry
 
 from ..description import describe
-from .files import described, writer
+from .files import describe_sheet, writer
 from .layout import Cell, arrange
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from tangible_core.plugins.hooks import Panel
@@ -44,7 +48,7 @@ SHAPES: dict[str, Callable[[Any], tuple[float, float]]] = {
     "parts": lambda parts: parts.labels.shape,
     "relief": lambda relief: relief.extent_m[::-1],
 }
-"""Height and width of what has the scene's shape."""
+"""Product -> its height and width, for products with the scene's proportions."""
 
 
 def draw_sheet(
@@ -63,20 +67,17 @@ def draw_sheet(
     language: str = "en",
     **others: Record | None,
 ) -> str:
-    """Draw what a run has as .png, .svg or .pdf, whole or not at all; panels without data are left out.
+    """Draw the products of a run as .png, .svg or .pdf, whole or not at all, and return a description in words.
 
-    Returns: what is on it in words, which is in the file too.
-
-    truth: disparity (h, w) in px, not finite where unknown; shown as an error where the disparity is in px.
-    parts: drawn in place of the segments that they are of.
-    relief: where there is no surface yet; a surface brings its own.
-    recording: shown together with the relief that it was felt on. language: of the title and of names, as a tag; the
-    surface is described in it where there are words. others: further products by name, for panels of plugins.
-    Raises: OutputError for another suffix or a place that cannot be written, PictureError if truth and disparity
-    differ in size.
+    Panels without data are left out. The description is in the file too.
+    truth: disparity (h, w) in px, not finite where unknown; drawn as an error if the disparity is in px.
+    parts: drawn in place of their segments. relief: for a run without a surface, which has its own relief.
+    recording: drawn with the relief on which it was recorded. language: tag of the language of the title and names; the
+    surface is described in it if its words are known. others: further products by name, for panels of plugins.
+    Raises: OutputError for another suffix or a file that cannot be written, PictureError if truth and disparity differ
+    in size.
     """
     from ..panels import PANELS, draw_segments
-    from .added_panels import added_panels
 
     given = {
         "views": views,
@@ -96,7 +97,7 @@ def draw_sheet(
 
 
 def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence[Panel], language: str = "en") -> str:
-    """Draw what is given in the report's style, whole or not at all, and say what it is. Raises: as `draw_sheet`."""
+    """Draw panels in the report's style, whole or not at all, and return their description. Raises: as `draw_sheet`."""
     from matplotlib import style
 
     from ..style import STYLE
@@ -104,23 +105,23 @@ def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence
     write = writer(path)
     with style.context(STYLE, after_reset=True):
         figure = draw_figure(run, title, panels)
-        says = described(figure)
+        says = describe_sheet(figure)
         if isinstance(surface := run.get("surface"), HapticSurface):
             says = f"{says} {describe(surface, '', spoken_language(language, log))}"
         with warnings.catch_warnings(), atomic_write(path) as file:
-            # A title in a script that the font lacks is drawn as boxes; the description in the file says it.
+            # A title in a script that the font lacks is drawn as boxes; the description in the file has the title too.
             warnings.filterwarnings("ignore", r"Glyph \d+ .* missing from", UserWarning)
             write(figure, file, title, says)
     return says
 
 
 def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> Figure:
-    """The sheet of those panels whose products are there, lettered in reading order."""
+    """Draw the panels whose products exist, lettered in reading order. Raises: OutputError if there are none."""
     from matplotlib.figure import Figure
 
     panels = [panel for panel in panels if run.keys() >= set(panel.needs)]
     if not panels:
-        raise OutputError(f"{title}: there is nothing to draw; ask for a product that can be drawn")
+        raise OutputError(f"{title}: there is nothing to draw; request a product that can be drawn")
     boxes, width_in, height_in = arrange([_cell(panel, run) for panel in panels], WIDTH_IN)
     figure = Figure(figsize=(width_in, height_in + TITLE_IN), dpi=DPI, facecolor="white")
     figure.text(0.15 / width_in, 1 - 0.1 / (height_in + TITLE_IN), title, fontsize=13, weight="bold", va="top")
@@ -130,20 +131,20 @@ def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> 
 
 
 def _letters() -> Iterator[str]:
-    """a, b ... z, aa, ab ..."""
+    """Yield a, b ... z, aa, ab ..."""
     for size in count(1):
         yield from map("".join, product(ascii_lowercase, repeat=size))
 
 
 def scene_aspect(run: Mapping[str, Any]) -> float:
-    """Width over height of what the run shows, kept between 1:4 and 6:1 so that a strip still has a panel."""
+    """Return width over height of the scene, limited to 1:4 to 6:1 so that even a narrow strip gets a panel."""
     height, width = next((SHAPES[name](run[name]) for name in SHAPES if name in run), (1.0, 1.0))
     return min(max(width / height, 0.25), 6.0)
 
 
 def panel_aspect(panel: Panel, run: Mapping[str, Any]) -> float:
-    """Width over height of this panel of a run."""
-    own = panel.aspect(**_shown(panel, run)) if callable(panel.aspect) else panel.aspect
+    """Return width over height of a panel of this run."""
+    own = panel.aspect(**_products_of(panel, run)) if callable(panel.aspect) else panel.aspect
     return own or scene_aspect(run)
 
 
@@ -152,7 +153,7 @@ def _cell(panel: Panel, run: Mapping[str, Any]) -> Cell:
     return Cell(panel_aspect(panel, run), *room_in, panel.least_in, panel.least_aspect)
 
 
-def _shown(panel: Panel, run: Mapping[str, Any]) -> dict[str, Any]:
+def _products_of(panel: Panel, run: Mapping[str, Any]) -> dict[str, Any]:
     return {name: run[name] for name in (*panel.needs, *panel.likes) if name in run}
 
 
@@ -162,7 +163,32 @@ def _draw_panel(figure: Figure, panel: Panel, box: Box, run: Mapping[str, Any], 
     left, top = box.left_in / width_in, top_in / height_in
     place = (left, top - box.height_in / height_in, box.width_in / width_in, box.height_in / height_in)
     axes = figure.add_axes(place)
-    headline = panel.draw(axes, **_shown(panel, run))
+    headline = panel.draw(axes, **_products_of(panel, run))
     line = top + 0.1 / height_in
     figure.text(left, line, letter, fontsize=11, weight="bold")
     figure.text(left + 0.18 / width_in, line, headline, fontsize=10)
+
+
+def added_panels() -> Iterator[Panel]:
+    """Yield the panels that hook modules add by `tangible_panels`; other answers are logged and left out."""
+    for answer in hooks.tell(default_registry().plugins, "tangible_panels"):
+        for panel in answer if isinstance(answer, Iterable) else [answer]:  # pyright: ignore[reportUnknownVariableType]
+            if isinstance(panel, Panel):
+                yield panel._replace(draw=_guard(panel.draw))
+            else:
+                log.warning("tangible_panels gave %s, which is not a Panel; it is left out", shown(repr(panel)))  # pyright: ignore[reportUnknownArgumentType]
+
+
+def _guard(draw: Callable[..., str]) -> Callable[..., str]:
+    """Return a drawing function that shows an error in place of its panel, so that the others are drawn."""
+
+    def draw_or_fail(axes: Axes, **run: Any) -> str:
+        try:
+            return str(draw(axes, **run))
+        except Exception as error:
+            log.warning("a panel of a plugin could not be drawn", exc_info=True)
+            axes.clear()
+            axes.set_axis_off()
+            return shown(f"Not drawn, {type(error).__name__}: {error}", 60)
+
+    return draw_or_fail

@@ -1,4 +1,4 @@
-"""One product, drawn as the sheet draws it."""
+"""The picture of one product, as on the sheet."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -23,16 +23,17 @@ PANEL_OF: Mapping[type[Record], str] = {
     **{row.record: row.panel for row in PRODUCTS.values() if row.record is not None and row.panel},
     Recording: "recording",
 }
-"""The records that can be drawn, each with the product of its panel."""
+"""Class of a record that can be drawn -> the product of its panel."""
 HEIGHT_IN = 3.5
+"""The height of the axes of a new figure, inches."""
 
 
-def show(product: Record, axes: Axes | None = None, **beside: Any) -> Axes:
-    """Draw a product as its panel on the sheet of a run, with units; returns the axes, whose title says what it is.
+def show(product: Record, axes: Axes | None = None, **others: Any) -> Axes:
+    """Draw a product as its panel on the sheet, with units; return the axes, whose title is the panel's headline.
 
-    axes: where to draw; a new pyplot figure of the panel's own proportions where it is None.
-    beside: other products that the panel can show with it, by name: `views` and `materials` with segments, `views`
-    and `surface` with parts, `relief` with a recording.
+    axes: the axes to draw into; by default, those of a new pyplot figure with the panel's proportions.
+    others: other products that the panel can show too, by name: `views` and `materials` with segments, `views` and
+    `surface` with parts, `relief` with a recording.
     Raises: OutputError for a product that has no picture, such as materials without segments.
     """
     from matplotlib import style
@@ -44,7 +45,7 @@ def show(product: Record, axes: Axes | None = None, **beside: Any) -> Axes:
     if name is None:
         known = ", ".join(each.__name__ for each in PANEL_OF)
         raise OutputError(f"a {type(product).__name__} has no picture of its own; these have one: {known}")
-    run = {**beside, name: product.relief if isinstance(product, HapticSurface) else product}
+    run = {**others, name: product.relief if isinstance(product, HapticSurface) else product}
     panel = next(each for each in PANELS if set(each.needs) == {name})
     with style.context(STYLE):
         drawn = _new_axes(panel, run) if axes is None else axes

@@ -1,4 +1,4 @@
-"""Every panel of the sheet: one function each, which draws into its axes and returns its headline."""
+"""The panels of the sheet: a function each, which draws into its axes and returns its headline."""
 
 from tangible_core.plugins.hooks import Panel as Panel
 
@@ -21,4 +21,4 @@ PANELS = (
         draw_force_time, {"recording"}, {"relief"}, 4.5, left_in=0.65, bottom_in=0.55, least_in=7.6, least_aspect=3.0
     ),
 )
-"""In the order in which a picture becomes a force."""
+"""The panels in the order in which a picture becomes a force."""

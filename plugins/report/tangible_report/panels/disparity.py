@@ -1,4 +1,4 @@
-"""Disparity, and how wrong it is."""
+"""The panels of disparity and of its error."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -8,21 +8,21 @@ from matplotlib.axes import Axes
 from tangible_core.data import DisparityMap
 from tangible_core.metrics import absolute_error, disparity_errors
 
-from ..style import ERRORS, VIRIDIS, bare, colour_bar, hatch, thinned
+from ..style import ERRORS, VIRIDIS, bare, colour_bar, hatch, thin_out
 
 CLIP_PX = 4.0
-"""Larger errors look like this one."""
+"""The error at which colours are clipped, pixels."""
 UNITS = {"px": ("Disparity", "disparity [px]"), "relative": ("Relative nearness", "nearness, 0 far to 1 near")}
-"""Headline and label of the colour bar."""
+"""Unit -> headline and label of the colour bar."""
 
 
 def draw_disparity(axes: Axes, disparity: DisparityMap) -> str:
-    """The map from far (dark) to near (bright); unknown pixels are hatched."""
+    """Draw the map from far (dark) to near (bright); unknown pixels are hatched."""
     values = disparity.disparity_px
     known = values[np.isfinite(values)]
     low, high = np.percentile(known, (0.5, 99.5)) if known.size else (0.0, 1.0)
     hatch(axes)
-    image = axes.imshow(np.ma.masked_invalid(thinned(values)), cmap=VIRIDIS, vmin=low, vmax=high)
+    image = axes.imshow(np.ma.masked_invalid(thin_out(values)), cmap=VIRIDIS, vmin=low, vmax=high)
     headline, label = UNITS[disparity.unit]
     colour_bar(axes, image, label, extend="both")
     missing = 100 * (1 - known.size / values.size)
@@ -31,11 +31,11 @@ def draw_disparity(axes: Axes, disparity: DisparityMap) -> str:
 
 
 def draw_disparity_error(axes: Axes, disparity: DisparityMap, truth: np.ndarray) -> str:
-    """Absolute error, clipped at CLIP_PX; pixels without estimate are hatched, pixels without truth white."""
+    """Draw the absolute error, clipped at CLIP_PX; pixels without estimate are hatched, pixels without truth white."""
     figures = disparity_errors(disparity.disparity_px, truth)
-    error_px = thinned(absolute_error(disparity.disparity_px, truth))
+    error_px = thin_out(absolute_error(disparity.disparity_px, truth))
     hatch(axes)
-    axes.imshow(np.ma.masked_where(np.isfinite(thinned(truth)), np.ones(error_px.shape)), cmap="gray", vmin=0, vmax=1)
+    axes.imshow(np.ma.masked_where(np.isfinite(thin_out(truth)), np.ones(error_px.shape)), cmap="gray", vmin=0, vmax=1)
     image = axes.imshow(np.ma.masked_invalid(error_px), cmap=ERRORS, vmin=0, vmax=CLIP_PX)
     colour_bar(axes, image, f"|error| [px], clipped at {CLIP_PX:g}", extend="max", ticks=range(int(CLIP_PX) + 1))
     bare(axes, "hatched: no estimate (bad); white: no truth")

@@ -1,4 +1,4 @@
-"""The force along the path: vectors on the map of heights."""
+"""The panel of forces along the path: arrows on the map of heights."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -14,12 +14,13 @@ from ..block import drawn_size
 from ..style import FORCES, INK, colour_bar, inches
 
 ARROWS = 150
+"""The most arrows."""
 STRONG = 0.1
-"""Share of the surface's size, the mean of its sides, that a strong lateral force takes."""
+"""The length of the arrow of a strong lateral force, as a share of the surface's size (the mean of its sides)."""
 
 
 def draw_force_map(axes: Axes, relief: Relief, recording: Recording) -> str:
-    """Lateral force as arrows (their scale is below), vertical force as their colour, over the shaded heights."""
+    """Draw lateral forces as arrows (their scale is below) and vertical forces as their colour, over shaded heights."""
     _draw_heights(axes, relief)
     at_mm = 1000 * recording.position_m
     axes.plot(at_mm[:, 0], at_mm[:, 1], color=INK, linewidth=0.5, alpha=0.6)
@@ -44,7 +45,7 @@ def _draw_heights(axes: Axes, relief: Relief) -> None:
 def _draw_arrows(
     axes: Axes, at_mm: Float64[np.ndarray, "n 3"], force_n: Float64[np.ndarray, "n 3"], size_mm: tuple[float, float]
 ) -> None:
-    """Lateral arrows, cut where they are over twice the strong one that the scale below the map shows."""
+    """Draw lateral arrows, cut to twice the arrow of the scale below the map."""
     width_mm, strong_mm = size_mm[0], STRONG * (size_mm[0] * size_mm[1]) ** 0.5
     lateral_n = np.hypot(force_n[:, 0], force_n[:, 1])
     key_n = round_number(float(np.percentile(lateral_n, 95)))
@@ -61,9 +62,9 @@ def _draw_arrows(
 
 
 def spread(at_mm: Float64[np.ndarray, "n 3"], touching: Bool[np.ndarray, " n"], most: int) -> Int64[np.ndarray, " m"]:
-    """Indices of at most `most` samples in contact, at equal steps of the way made in contact.
+    """Return the indices of at most `most` samples in contact, at equal steps of the path in contact.
 
-    Where contact does not move, the steps are of time.
+    If the contact does not move, the steps are equal in time.
     """
     some = np.flatnonzero(touching)
     if not some.size:
@@ -77,7 +78,7 @@ def spread(at_mm: Float64[np.ndarray, "n 3"], touching: Bool[np.ndarray, " n"], 
 
 
 def round_number(value: float) -> float:
-    """The largest of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ... that is not above the value; 1 if that is not positive.
+    """Return the largest of ..., 0.1, 0.2, 0.5, 1, 2, 5, ... up to the value; 1 if the value is not positive.
 
     >>> round_number(0.73), round_number(30.0)
     (0.5, 20.0)

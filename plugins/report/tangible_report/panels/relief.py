@@ -1,4 +1,4 @@
-"""The relief as a lit block, with some of its normals."""
+"""The panel of the relief: a lit block with some of its normals."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -17,40 +17,40 @@ from matplotlib.ticker import MaxNLocator
 from tangible_core.data import Relief
 from tangible_core.scene.geometry import normals
 
-from ..block import drawn_size, facets, framed, on_paper, points_of, seen
+from ..block import add_border, drawn_size, facets, is_visible, on_paper, points_of
 from ..style import INK, VIRIDIS, colour_bar, inches
 
 LIGHT = LightSource(azdeg=315, altdeg=50)
 CELLS = 160
-"""Along the longer side."""
+"""The number of drawn cells along the longer side."""
 NORMALS = 11
-"""Along the longer side."""
+"""The number of normals along the longer side."""
 FLAT_M = 1e-6
-"""Lower reliefs are drawn as a plane."""
+"""The height below which a relief is drawn as a plane."""
 ROOM_IN = (0.1, 0.45, 0.4, 0.12)
-"""Left of the block, right of it, below and above: for its scales and normals."""
+"""The room left of the block, right of it, below and above, for its scales and normals, inches."""
 LARGE_IN2 = 6.0
-"""Of the block on paper, as wide as it is high together, about."""
+"""The area of the block on paper, about, square inches."""
 SCALE_MARK_IN = 0.35
-"""From one number of a scale to the next, at least."""
+"""The least distance between two numbers of a scale, inches."""
 TICK = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0, "shrinkB": 0}
 
 
 def draw_relief(axes: Axes, relief: Relief) -> str:
-    """Heights lit from the upper left, in true proportion or stretched as the headline says; axes in mm."""
+    """Draw heights lit from the upper left, in true proportion or stretched by the factor in the headline; in mm."""
     stretched = _draw_heights(axes, drawn_size(relief, CELLS))
     _draw_normals(axes, stretched.relief)
     return f"Relief and its normals{stretched.note}"
 
 
 def draw_surface(axes: Axes, relief: Relief) -> str:
-    """The same without normals, for a fine texture."""
+    """Draw the relief without normals, for a fine texture."""
     drawn = _draw_heights(axes, drawn_size(relief, CELLS))
     return f"Surface{drawn.note if relief.height_m.max() > FLAT_M else ', smooth'}"
 
 
 class _StretchedRelief(NamedTuple):
-    """A relief as it is drawn, and what to say of its proportion."""
+    """A relief as it is drawn, and the note on its factor for the headline."""
 
     relief: Relief
     note: str
@@ -69,7 +69,7 @@ def _draw_heights(axes: Axes, relief: Relief) -> _StretchedRelief:
 
 
 def relief_aspect(relief: Relief) -> float:
-    """Width over height of the panel that the block and its scales fill, where that is about as large as others."""
+    """Return width over height of the panel that the block and its scales fill, at a size similar to other panels."""
     width, height = np.ptp(_corners(relief.extent_m, _stretch(relief) * float(relief.height_m.max())), axis=0).tolist()
     per_m = (LARGE_IN2 / (width * height)) ** 0.5
     left_in, right_in, low_in, high_in = ROOM_IN
@@ -77,13 +77,13 @@ def relief_aspect(relief: Relief) -> float:
 
 
 def _corners(extent_m: tuple[float, float], top_m: float) -> Float64[np.ndarray, "8 2"]:
-    """Of the block, on paper."""
+    """Return the corners of the block on paper."""
     x_m, y_m = (side / 2 for side in extent_m)
     return on_paper(np.array([(x, y, z) for x in (-x_m, x_m) for y in (-y_m, y_m) for z in (0.0, top_m)]))
 
 
 def _leave_room(axes: Axes, stretched: Relief) -> None:
-    """In true proportion, in the middle of what the scales leave of the axes."""
+    """Set the limits of the axes: true proportion, with the block centred in the room that the scales leave."""
     corners = _corners(stretched.extent_m, float(stretched.height_m.max()))
     least, most = corners.min(axis=0), corners.max(axis=0)
     shares, (left_in, right_in, low_in, high_in) = np.array(inches(axes)), ROOM_IN
@@ -95,15 +95,15 @@ def _leave_room(axes: Axes, stretched: Relief) -> None:
 
 
 def _stretch(relief: Relief) -> int:
-    """Whole factor on heights that makes the block no flatter than a sixth of its longer side."""
+    """Return the whole factor on heights that makes the block at least a sixth of its longer side high."""
     top_m = float(relief.height_m.max())
     return max(1, round(max(relief.extent_m) / 6 / top_m)) if top_m > FLAT_M else 1
 
 
 def _draw_block(axes: Axes, relief: Relief, paint: np.ndarray) -> None:
-    points_m = framed(points_of(relief), relief.extent_m)
+    points_m = add_border(points_of(relief), relief.extent_m)
     width_m, length_m = relief.pitch_m
-    lit = LIGHT.shade_rgb(paint, points_m[..., 2], blend_mode=_dimmed, dx=width_m, dy=length_m)
+    lit = LIGHT.shade_rgb(paint, points_m[..., 2], blend_mode=_dim, dx=width_m, dy=length_m)
     top = facets(points_m)
     corners: Any = top.corners  # matplotlib takes arrays of polygons; its types know only lists of them
     colours = lit[top.row, top.column]
@@ -113,16 +113,16 @@ def _draw_block(axes: Axes, relief: Relief, paint: np.ndarray) -> None:
         axes.add_patch(Polygon(on_paper(wall_m), facecolor=grey, edgecolor=INK, linewidth=0.4))
 
 
-def _dimmed(colours: np.ndarray, light: np.ndarray) -> np.ndarray:
+def _dim(colours: np.ndarray, light: np.ndarray) -> np.ndarray:
     return colours * (0.3 + 0.7 * light)
 
 
 def _draw_normals(axes: Axes, relief: Relief) -> None:
-    """Normals of the surface as drawn, at the points that the reader sees."""
+    """Draw normals of the drawn surface, at the points that the reader sees."""
     step = max(1, max(relief.height_m.shape) // NORMALS)
     some = np.s_[step // 2 :: step, step // 2 :: step]
     base_m, normal = points_of(relief)[some].reshape(-1, 3), normals(relief)[some].reshape(-1, 3)
-    clear = seen(relief, base_m)
+    clear = is_visible(relief, base_m)
     arrow_m = 0.08 * max(relief.extent_m) * normal[clear]
     axes.quiver(
         *on_paper(base_m[clear]).T, *on_paper(arrow_m).T,
@@ -131,13 +131,13 @@ def _draw_normals(axes: Axes, relief: Relief) -> None:
 
 
 def _draw_scales(axes: Axes, width_m: float, length_m: float) -> None:
-    """Scales in mm along the near and the right edge of the base."""
+    """Draw scales in mm along the near and the right edge of the base."""
     _draw_scale(axes, "x [mm]", np.array([0, -length_m / 2, 0]), np.array([1.0, 0, 0]), width_m / 2)
     _draw_scale(axes, "y [mm]", np.array([width_m / 2, 0, 0]), np.array([0, 1.0, 0]), length_m / 2)
 
 
 def _draw_scale(axes: Axes, name: str, middle_m: np.ndarray, along: np.ndarray, half_m: float) -> None:
-    """Ticks and a name below an edge of the base, at right angles to it; none in the corners, where scales meet."""
+    """Draw ticks and a name below an edge of the base, at right angles to it; no ticks in the corners."""
     way = on_paper(along)
     below = np.array([way[1], -way[0]]) / np.linalg.norm(way)
     ends = axes.transData.transform([on_paper(middle_m - half_m * along), on_paper(middle_m + half_m * along)])
@@ -151,5 +151,5 @@ def _draw_scale(axes: Axes, name: str, middle_m: np.ndarray, along: np.ndarray, 
 
 
 def _write(axes: Axes, text: str, at: np.ndarray, offset_pt: np.ndarray, **look: Any) -> None:
-    beside = (offset_pt[0], offset_pt[1])
-    axes.annotate(text, (at[0], at[1]), beside, textcoords="offset points", ha="center", va="center", **look)
+    offset = (offset_pt[0], offset_pt[1])
+    axes.annotate(text, (at[0], at[1]), offset, textcoords="offset points", ha="center", va="center", **look)

@@ -1,4 +1,4 @@
-"""Segments over the picture, with the names of their materials; and parts, with names of their own."""
+"""The panels of segments, with the names of their materials, and of parts, with their own names."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -11,25 +11,26 @@ from matplotlib.patheffects import withStroke
 from tangible_core.data import HapticSurface, MaterialMap, PartMap, SegmentMap, Views
 from tangible_core.data.pictures import to_grey
 
-from ..style import INK, bare, colours, inches, thinned
+from ..style import INK, bare, colours, inches, thin_out
 
 TINT = 0.45
+"""The share of a region's colour; the rest is the picture."""
 SIDE_PX = 800
-"""The longer side as it is drawn, about; small pictures grow, so that outlines stay thin."""
+"""The longer side of the drawn picture, about; small pictures grow, so that outlines stay thin."""
 NAMED = 40
-"""So many of the largest segments may carry their name."""
+"""The number of segments, the largest, that may carry their name."""
 LINE_IN = 0.165
-"""A line of the legend, of which there are as many as the panel is high."""
+"""The height of a line of the legend, inches; the legend is as high as the panel."""
 SHORT, NUMBERS = 14, 3
-"""Letters of a name and numbers of segments in an entry of the legend, at most."""
+"""The most letters of a name, and the most numbers of segments, in an entry of the legend."""
 
 
 def draw_segments(
     axes: Axes, segments: SegmentMap, views: Views | None = None, materials: MaterialMap | None = None
 ) -> str:
-    """Regions tinted by material (by segment where there are none), outlined, numbered and named where there is room.
+    """Draw regions tinted by material (or by segment), outlined, numbered, and named if there is room.
 
-    The legend has the materials in the order of their segments, and the numbers of these.
+    The legend has the materials in the order of their segments, and the numbers of their segments.
     """
     names = [f"segment {label}" for label in range(segments.count)]
     if materials is not None:
@@ -48,22 +49,21 @@ def draw_segments(
 
 
 def draw_parts(axes: Axes, parts: PartMap, views: Views | None = None, surface: HapticSurface | None = None) -> str:
-    """Parts tinted each in its colour, outlined, numbered and named where there is room.
+    """Draw parts, each in its own colour, outlined, numbered, and named if there is room.
 
-    The legend has the parts from near to far where there is a surface, in their order where there is none, each with
-    its material.
+    The legend has the parts with their materials, from near to far if there is a surface, or else in their order.
     """
     names = [""] * parts.count if surface is None or surface.names is None else surface.names
-    called = [f"{number} {name}".rstrip() for number, name in enumerate(names)]
+    titles = [f"{number} {name}".rstrip() for number, name in enumerate(names)]
     labels = _drawn_size(parts.labels)
     grey = np.ones(labels.shape, np.float32) if views is None else _grey(views.left, parts.labels.shape)
     order = _near_to_far(parts, surface)
     rank = np.empty(parts.count, np.intp)
     rank[order] = np.arange(parts.count)
     _draw_regions(axes, grey, labels, rank[labels])
-    _write_names(axes, labels, called)
+    _write_names(axes, labels, titles)
     materials = None if surface is None else surface.materials
-    entries = [_short(called[number]) + (f": {materials[number].name}" if materials else "") for number in order]
+    entries = [_short(titles[number]) + (f": {materials[number].name}" if materials else "") for number in order]
     shares = np.bincount(parts.labels.ravel(), minlength=parts.count) / parts.labels.size
     _draw_legend(axes, entries, shares[order])
     bare(axes, _count(parts.count, "part"))
@@ -71,7 +71,7 @@ def draw_parts(axes: Axes, parts: PartMap, views: Views | None = None, surface: 
 
 
 def _near_to_far(parts: PartMap, surface: HapticSurface | None) -> list[int]:
-    """The numbers of parts by their heights, the highest first; in their order where there is no surface."""
+    """Return the numbers of parts by their heights, the highest first; in their order if there is no surface."""
     if surface is None or surface.labels is None:
         return list(range(parts.count))
     sums = np.bincount(surface.labels.ravel(), surface.height_m.ravel(), parts.count)
@@ -84,14 +84,14 @@ def _count(number: int, noun: str) -> str:
 
 
 def _grey(picture: np.ndarray, shape: tuple[int, ...]) -> Float[np.ndarray, "h w"]:
-    """The picture beneath segments of (h, w), which may be coarser, as it is drawn."""
+    """Return the picture in grey under segments of (h, w), which may be coarser, at the drawn size."""
     rows, columns = (np.arange(new) * old // new for new, old in zip(shape, picture.shape, strict=False))
     return to_grey(_drawn_size(picture if picture.shape[:2] == shape else picture[np.ix_(rows, columns)]))
 
 
 def _drawn_size(map_: np.ndarray) -> np.ndarray:
     times = max(1, SIDE_PX // max(map_.shape[:2]))
-    return np.repeat(np.repeat(thinned(map_, SIDE_PX), times, axis=0), times, axis=1)
+    return np.repeat(np.repeat(thin_out(map_, SIDE_PX), times, axis=0), times, axis=1)
 
 
 def _draw_regions(
@@ -103,25 +103,20 @@ def _draw_regions(
 
 
 def _borders(labels: Int[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
-    """Pixels that have a neighbour, right, left, above or below, of another label."""
-    found = np.zeros(labels.shape, bool)
-    beside, below = labels[:, 1:] != labels[:, :-1], labels[1:] != labels[:-1]
-    found[:, 1:] |= beside
-    found[:, :-1] |= beside
-    found[1:] |= below
-    found[:-1] |= below
-    return found
-
-
-def _largest(values: np.ndarray, most: int) -> list[int]:
-    """Indices of the largest values, the first of equals first."""
-    return [int(index) for index in np.argsort(-values, kind="stable")[:most]]
+    """Return the pixels with a neighbour (right, left, above or below) of another label."""
+    borders = np.zeros(labels.shape, bool)
+    across, down = labels[:, 1:] != labels[:, :-1], labels[1:] != labels[:-1]
+    borders[:, 1:] |= across
+    borders[:, :-1] |= across
+    borders[1:] |= down
+    borders[:-1] |= down
+    return borders
 
 
 def _write_names(axes: Axes, labels: Int[np.ndarray, "h w"], names: list[str]) -> None:
     """Write names, or numbers where only those fit, each in the middle of the largest disc in its segment."""
     point_px = inches(axes)[0] / 72 * labels.shape[1]
-    for label in _largest(np.bincount(labels.ravel()), NAMED):
+    for label in np.argsort(-np.bincount(labels.ravel()), kind="stable")[:NAMED].tolist():
         column, row, radius_px = _largest_disc(labels == label)
         for text in (names[label], str(label)):
             if 2 * radius_px > point_px * max(10.0, 4.2 * len(text)):
@@ -131,7 +126,7 @@ def _write_names(axes: Axes, labels: Int[np.ndarray, "h w"], names: list[str]) -
 
 
 def _largest_disc(region: Bool[np.ndarray, "h w"]) -> tuple[float, float, float]:
-    """Column, row and radius of the largest disc inside a region, the picture's border being outside."""
+    """Return column, row and radius of the largest disc inside a region; the picture's border is outside."""
     import cv2
 
     depth = cv2.distanceTransform(np.pad(region, 1).astype(np.uint8), cv2.DIST_L2, 3)
@@ -144,16 +139,16 @@ def _short(name: str) -> str:
 
 
 def _entries(names: list[str]) -> list[str]:
-    """Each material after the numbers of its segments."""
+    """Return the entries of the legend: each material after the numbers of its segments."""
     labels: dict[str, list[str]] = {}
     for label, name in enumerate(names):
         labels.setdefault(name, []).append(str(label))
-    more = {name: ", ..." if len(found) > NUMBERS else "" for name, found in labels.items()}
-    return [f"{', '.join(found[:NUMBERS])}{more[name]}: {_short(name)}" for name, found in labels.items()]
+    more = {name: ", ..." if len(numbers) > NUMBERS else "" for name, numbers in labels.items()}
+    return [f"{', '.join(numbers[:NUMBERS])}{more[name]}: {_short(name)}" for name, numbers in labels.items()]
 
 
 def _draw_legend(axes: Axes, entries: list[str], shares: Float[np.ndarray, " n"]) -> None:
-    """As many of them as there is room for, in their order."""
+    """Draw the legend, with as many entries as there is room for."""
     lines = max(2, int(1 / (LINE_IN * inches(axes)[1])))
     fit = len(entries) if len(entries) <= lines else lines - 1
     keys = [

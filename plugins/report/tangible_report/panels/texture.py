@@ -1,4 +1,4 @@
-"""A material's fine texture: which wavelengths it has, and what a stroke over it feels like."""
+"""The panels of a material's fine texture: its spectrum, and the force of a stroke over it."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter, NullLocator
 
 from tangible_core.data import Material
-from tangible_core.haptic_textures import Stroke
-from tangible_core.haptic_textures.spectrum import Spectrum
+from tangible_render.haptic_textures import Stroke
+from tangible_render.haptic_textures.spectrum import Spectrum
 
 from ..style import INK, OKABE_ITO
 
@@ -18,7 +18,7 @@ MARKS_MM = (0.1, 0.2, 0.5, 1, 2, 5, 10)
 
 
 def draw_spectrum(axes: Axes, material: Material, spectra: dict[str, Spectrum]) -> str:
-    """Power by wavelength, of the heights in all directions and of the stroke's force, and the stated wavelength."""
+    """Draw power over wavelength, of the heights in all directions and of the friction, and the stated wavelength."""
     for (name, (wavelength_m, power)), colour in zip(spectra.items(), (HEIGHT, FORCE), strict=False):
         level_db = 10 * np.log10(np.maximum(power / max(power.max(), 1e-300), 1e-9))
         axes.plot(1000 * wavelength_m, level_db, color=colour, linewidth=1.2, label=name)
@@ -38,7 +38,7 @@ def draw_spectrum(axes: Axes, material: Material, spectra: dict[str, Spectrum]) 
 
 
 def draw_stroke(axes: Axes, material: Material, stroke: Stroke, conditions: str) -> str:
-    """Lateral force against the stroke along its way, and the height under it."""
+    """Draw the lateral force against the stroke along its path, and the height under it."""
     axes.set_axis_off()
     upper, lower = axes.inset_axes((0, 0.42, 1, 0.58)), axes.inset_axes((0, 0, 1, 0.34))
     lower.sharex(upper)

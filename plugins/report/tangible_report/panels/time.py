@@ -1,4 +1,4 @@
-"""Force and tip over time."""
+"""The panel of force and tip over time."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -15,11 +15,11 @@ from ..style import OKABE_ITO
 TIP, CONTACT, FORCE = OKABE_ITO[0], OKABE_ITO[1], OKABE_ITO[5]
 GROUND = "#c4c4c4"
 INSTANTS = 2000
-"""Contact is shaded in so many parts, more than a sheet has dots."""
+"""The number of intervals in which contact is shaded, more than a sheet has dots."""
 
 
 def draw_force_time(axes: Axes, recording: Recording, relief: Relief | None = None) -> str:
-    """Force magnitude over time and, below it, the tip, over the surface where that is known; contact is shaded."""
+    """Draw the force's magnitude over time and, below it, the tip, over the surface if it is known; shade contact."""
     axes.set_axis_off()
     upper, lower = axes.inset_axes((0, 0.54, 1, 0.46)), axes.inset_axes((0, 0, 1, 0.46))
     lower.sharex(upper)
@@ -46,7 +46,7 @@ def _draw_tip(axes: Axes, relief: Relief | None, recording: Recording) -> None:
 
 
 def _shade(axes: Axes, time_s: Float64[np.ndarray, " n"], touching: Bool[np.ndarray, " n"]) -> None:
-    """Shade the time in contact; a part of it with any contact counts."""
+    """Shade the time in contact; an interval counts if it has any contact."""
     starts = np.linspace(0, time_s.size, min(time_s.size, INSTANTS), endpoint=False).astype(int)
     some = np.maximum.reduceat(touching, starts)
     axes.fill_between(
@@ -56,7 +56,7 @@ def _shade(axes: Axes, time_s: Float64[np.ndarray, " n"], touching: Bool[np.ndar
 
 
 def _draw_legend(upper: Axes, lower: Axes) -> None:
-    """One legend for both, right of the headline."""
+    """Draw one legend for both axes, right of the headline."""
     keys = {label: key for each in (upper, lower) for key, label in zip(*each.get_legend_handles_labels(), strict=True)}
     upper.legend(
         keys.values(), keys.keys(), ncols=len(keys), loc="lower right", bbox_to_anchor=(1.0, 0.97), borderaxespad=0.2

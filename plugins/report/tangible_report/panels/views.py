@@ -1,4 +1,4 @@
-"""The pictures that came in."""
+"""The panel of the input pictures."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -7,18 +7,18 @@ from matplotlib.axes import Axes
 from tangible_core.data import Views
 from tangible_core.data.pictures import to_rgb8
 
-from ..style import bare, thinned
+from ..style import bare, thin_out
 
 
 def draw_views(axes: Axes, views: Views) -> str:
-    """The left view, with the right one small in its corner."""
+    """Draw the left view, with the right one small in its corner."""
     rows, columns = views.shape
-    axes.imshow(to_rgb8(thinned(views.left)), interpolation="antialiased")
+    axes.imshow(to_rgb8(thin_out(views.left)), interpolation="antialiased")
     bare(axes, f"{columns} x {rows} px{_camera(views)}")
     if views.right is None:
         return "Input"
     corner = axes.inset_axes((0.64, 0.015, 0.35, 0.35), anchor="SE")
-    corner.imshow(to_rgb8(thinned(views.right, 400)), interpolation="antialiased")
+    corner.imshow(to_rgb8(thin_out(views.right, 400)), interpolation="antialiased")
     corner.set(xticks=[], yticks=[])
     corner.spines[:].set(color="white", linewidth=1.5)
     return "Input: left, inset right"

@@ -1,0 +1,118 @@
+"""A material's heights as a sum of plane waves, h(x, y) = sum a_i cos(2 pi (fx_i x + fy_i y + p_i)).
+
+Waves of random directions and phases make a field that never repeats, has an exact gradient and an exact spectrum, and
+of which each wave can be left out alone where a servo could not follow it. Sums of plane waves for random fields:
+Shinozuka & Jan, J. Sound and Vibration 25(1), 1972.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float64
+
+from tangible_core.data import Material, Texture
+
+WAVES = 24
+"""Largest number of waves of a material; each costs time in the servo loop."""
+BESIDE_FRICTION = 8
+"""Number of waves of the noise under stick-slip friction."""
+STRAY, STRAY_OCTAVES, STRAY_DEG = 7, 0.1, 6.0
+"""Number of waves that make a set of lines irregular, and their largest difference from it in length and direction."""
+
+
+class Waves(NamedTuple):
+    """Plane waves: spatial frequency in cycles per metre along x and y, amplitude in metres, phase in turns."""
+
+    fx: Float64[np.ndarray, " n"]
+    fy: Float64[np.ndarray, " n"]
+    amplitude_m: Float64[np.ndarray, " n"]
+    phase: Float64[np.ndarray, " n"]
+
+
+def waves(material: Material) -> Waves:
+    """Return the waves of a material; none if its roughness is 0.
+
+    For every model, the squares of the amplitudes sum up to that of the roughness, and the power is greatest at the
+    wavelength of the grain. The same name and seed give the same waves on every machine.
+    """
+    octaves, rotation_deg, share, phase = _MAKE[material.texture](material, _random(material))
+    per_m = powers_of_two(octaves) / material.grain_m
+    way = np.deg2rad(material.direction_deg + 90 + rotation_deg)  # a wave runs across its lines
+    parts = Waves(per_m * np.cos(way), per_m * np.sin(way), material.roughness_m * np.sqrt(share), phase)
+    present = parts.amplitude_m > 0
+    return Waves(*(each[present] for each in parts))
+
+
+def powers_of_two(exponents: Float64[np.ndarray, " n"]) -> Float64[np.ndarray, " n"]:
+    """Return 2^x, one by one: NumPy's power of an array has other last bits with AVX-512."""
+    return np.array([2.0**each for each in exponents.tolist()])
+
+
+Spread = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+"""Waves as octaves above the grain's frequency, degrees from its direction, shares of the power, phases in turns."""
+
+
+def _smooth(material: Material, random: np.random.Generator) -> Spread:
+    """Return no waves."""
+    none = np.empty(0)
+    return none, none, none, none
+
+
+def _stochastic(material: Material, random: np.random.Generator) -> Spread:
+    """Return noise of one octave around the grain's wavelength, in directions over the half circle, or a part of it.
+
+    Lengths and directions are stratified, one in each stratum, so that every seed has the same spectrum: a triangle in
+    octaves with its tip at the grain.
+    """
+    return _noise(WAVES, material.anisotropy, random)
+
+
+def _stick_slip(material: Material, random: np.random.Generator) -> Spread:
+    """Return the same noise of fewer waves: friction dominates, and both must fit into a tick."""
+    return _noise(BESIDE_FRICTION, material.anisotropy, random)
+
+
+def _noise(count: int, anisotropy: float, random: np.random.Generator) -> Spread:
+    strata = (np.arange(count) + 0.5) / count
+    octaves = 0.5 * np.sign(strata - 0.5) * (1 - np.sqrt(1 - np.abs(2 * strata - 1)))
+    fan = (random.permutation(count) + random.random(count)) / count - 0.5
+    return octaves, 180 * (1 - anisotropy) * fan, np.full(count, 1 / count), random.random(count)
+
+
+def _periodic(material: Material, random: np.random.Generator) -> Spread:
+    """Return a set of lines, and another across it with (1 - anisotropy) of its amplitude, each with irregularity."""
+    power = np.array([1.0, (1 - material.anisotropy) ** 2])
+    sets = [_lines(material.irregularity, random) for _ in power]
+    shares = [each[2] * share for each, share in zip(sets, power / power.sum(), strict=True)]
+    rotations = [each[1] + right for each, right in zip(sets, (0, 90), strict=True)]
+    return (
+        np.concatenate([each[0] for each in sets]),
+        np.concatenate(rotations),
+        np.concatenate(shares),
+        np.concatenate([each[3] for each in sets]),
+    )
+
+
+def _lines(irregularity: float, random: np.random.Generator) -> Spread:
+    """Return one wave, and STRAY similar ones that share the irregular part of the power."""
+    strata = np.linspace(-1, 1, STRAY)
+    return (
+        STRAY_OCTAVES * np.append(0, strata),
+        STRAY_DEG * np.append(0, random.permutation(strata)),
+        np.append(1 - irregularity, np.full(STRAY, irregularity / STRAY)),
+        np.append(0, random.random(STRAY)),
+    )
+
+
+def _random(material: Material) -> np.random.Generator:
+    return np.random.default_rng([material.seed, *material.name.encode()])
+
+
+_MAKE: dict[Texture, Callable[[Material, np.random.Generator], Spread]] = {
+    "smooth": _smooth,
+    "periodic": _periodic,
+    "stochastic": _stochastic,
+    "stick-slip": _stick_slip,
+    "drag": _stochastic,
+}

@@ -77,7 +77,7 @@ def test_the_environment_limits_a_method_that_is_called_by_itself(eight, monkeyp
 def test_a_pipeline_has_a_limit_of_its_own(eight, monkeypatch: pytest.MonkeyPatch):
     SEEN.clear()
     monkeypatch.setenv("TANGIBLE_THREADS", "5")
-    scene = Scene.of(photo=np.zeros((8, 8), np.float32))
+    scene = Scene.photo(np.zeros((8, 8), np.float32))
     pipeline = Pipeline(scene, texture=Asking(), cached=False, threads=3)
     assert pipeline.threads == pipeline.changed(pipeline.config).threads == 3
     pipeline.make("segments")

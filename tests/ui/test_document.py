@@ -36,7 +36,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
     return do
 
 
-def test_a_key_is_changed_and_nothing_else(run: Run):
+def test_change_of_a_key_leaves_the_rest(run: Run):
     async def check(small: SmallSession, ask: Any) -> None:
         await ask("set", changes={"render.stiffness_n_per_m": 500})
         assert small.session.text == TEXT.replace("400", "500")
@@ -54,7 +54,7 @@ def test_a_key_is_changed_and_nothing_else(run: Run):
     run(check)
 
 
-def test_what_the_page_has_no_form_for_stays(run: Run):
+def test_change_leaves_keys_without_a_form(run: Run):
     async def check(small: SmallSession, ask: Any) -> None:
         more = "simplify: {gap_m: 4 mm}\nexport: [text, {use: heights, width_m: 160 mm}]  # for others\n"
         await ask("edit", text=TEXT + more)
@@ -69,7 +69,7 @@ def test_what_the_page_has_no_form_for_stays(run: Run):
     run(check)
 
 
-def test_a_value_may_be_written_in_yaml(run: Run):
+def test_change_takes_a_value_in_yaml(run: Run):
     async def check(small: SmallSession, ask: Any) -> None:
         await ask("set", written={"materials.by": "{0: ice, 1: sand, 2: brick}"})
         assert small.tab.last("document")["values"]["materials"]["by"] == {"0": "ice", "1": "sand", "2": "brick"}
@@ -82,7 +82,7 @@ def test_a_value_may_be_written_in_yaml(run: Run):
     run(check)
 
 
-def test_a_complaint_names_its_field_and_the_text_stays(run: Run):
+def test_complaint_names_its_field_and_leaves_the_text(run: Run):
     async def check(small: SmallSession, ask: Any) -> None:
         await ask("set", changes={"render.stiffness_n_per_m": -5})
         said = small.tab.last("document")
@@ -99,7 +99,7 @@ def test_a_complaint_names_its_field_and_the_text_stays(run: Run):
     run(check)
 
 
-def test_edits_by_key_at_once_undo_none_of_each_other(run: Run):
+def test_changes_at_the_same_time_are_all_kept(run: Run):
     async def check(small: SmallSession, ask: Any) -> None:
         keys = {"render.stiffness_n_per_m": 700, "workspace.width_m": 0.07, "depth.smoothing_px": 2}
         await asyncio.gather(*(ask("set", changes={key: value}) for key, value in keys.items()))
@@ -111,7 +111,7 @@ def test_edits_by_key_at_once_undo_none_of_each_other(run: Run):
     run(check)
 
 
-def test_a_text_that_was_made_of_an_older_one_is_refused(run: Run):
+def test_edit_of_an_older_text_is_refused(run: Run):
     async def check(small: SmallSession, ask: Any) -> None:
         old = small.tab.last("document")["digest"]
         await ask("set", changes={"render.stiffness_n_per_m": 500})
@@ -124,7 +124,7 @@ def test_a_text_that_was_made_of_an_older_one_is_refused(run: Run):
     run(check)
 
 
-def test_steps_back_and_forth(run: Run):
+def test_undo_and_redo_step_through_the_history(run: Run):
     async def check(small: SmallSession, ask: Any) -> None:
         assert await ask("undo") is None
         for stiffness in range(500, 620):
@@ -146,7 +146,7 @@ def test_steps_back_and_forth(run: Run):
     run(check)
 
 
-def test_a_tab_that_comes_later_hears_of_the_last_document_alone(run: Run):
+def test_tab_opened_later_gets_the_last_document_alone(run: Run):
     async def check(small: SmallSession, ask: Any) -> None:
         small.session.tell("error", text="kept")
         for stiffness in range(3):
@@ -162,7 +162,7 @@ def test_a_tab_that_comes_later_hears_of_the_last_document_alone(run: Run):
     run(check)
 
 
-def test_what_the_command_line_changes_stands_in_the_text(run: Run, tmp_path: Path):
+def test_changes_of_the_command_line_are_in_the_text(run: Run, tmp_path: Path):
     async def check(small: SmallSession, ask: Any) -> None:
         small.session.sets = ["render.stiffness_n_per_m=0.3 N/mm"]
         await ask("begin", files=[str(tmp_path / "mine.yaml")])
@@ -174,7 +174,7 @@ def test_what_the_command_line_changes_stands_in_the_text(run: Run, tmp_path: Pa
     run(check)
 
 
-def test_the_library_says_where_its_figures_come_from(run: Run):
+def test_library_gives_the_sources_of_its_figures(run: Run):
     async def check(small: SmallSession, ask: Any) -> None:
         ice = next(each for each in await ask("library") if each["name"] == "ice")
         assert ice["stiffness_n_per_m"] == 1400

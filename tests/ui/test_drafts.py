@@ -44,7 +44,7 @@ def after_a_crash(folder: Path, gone: int) -> Drafts:
 
 
 class TestDrafts:
-    def test_what_was_edited_is_there_after_a_crash(self, tmp_path: Path, gone: int) -> None:
+    def test_draft_survives_a_crash(self, tmp_path: Path, gone: int) -> None:
         kept = Drafts(tmp_path)
         kept.remember_opened(OPENED)
         keep(kept, "first", "edited\n")
@@ -57,7 +57,7 @@ class TestDrafts:
         assert found.left is None
         assert not list(tmp_path.iterdir())
 
-    def test_what_was_opened_or_saved_is_not_kept(self, tmp_path: Path) -> None:
+    def test_draft_of_a_saved_text_is_not_written(self, tmp_path: Path) -> None:
         kept = Drafts(tmp_path)
         kept.remember_opened(OPENED)
         keep(kept, OPENED)
@@ -68,7 +68,9 @@ class TestDrafts:
         keep(kept, "other", "edited\n")
         assert not list(tmp_path.iterdir())
 
-    def test_the_newest_is_offered_and_few_are_left(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_drafts_newest_is_offered_and_old_ones_are_removed(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
         monkeypatch.setattr(left_behind, "is_alive", lambda process: False)
         for number in range(1, MOST_LEFT + 4):
             file = tmp_path / f"{number}.json"
@@ -80,7 +82,7 @@ class TestDrafts:
         assert (draft.text.text, draft.at_s) == (str(MOST_LEFT + 3), MOST_LEFT + 3)
         assert len(list(tmp_path.glob("*.json"))) == MOST_LEFT + 1
 
-    def test_a_full_disk_is_warned_of_once(
+    def test_full_disk_is_warned_of_once(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
     ) -> None:
         def full(file: Path, text: str) -> None:
@@ -96,14 +98,14 @@ class TestDrafts:
 
 
 class TestLeftBehind:
-    def test_of_processes_that_are_gone_alone(self, tmp_path: Path, gone: int) -> None:
+    def test_stale_files_are_those_of_dead_processes(self, tmp_path: Path, gone: int) -> None:
         for name in (f"x-{gone}-ab_c", f"x-{os.getpid()}-abc", f"x-{gone}abc", f"y-{gone}-abc", f"x-{gone}.json"):
             (tmp_path / name).touch()
         (tmp_path / f"x-{gone}-link").symlink_to(tmp_path)
         assert [path.name for path in left_in(tmp_path, "x-*")] == [f"x-{gone}-ab_c", f"x-{gone}.json"]
         assert not list(left_in(tmp_path / "nothing", "*"))
 
-    def test_a_folder_and_a_channel_go_with_their_process(
+    def test_stale_folder_and_channel_are_removed(
         self, tmp_path: Path, gone: int, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
@@ -119,7 +121,9 @@ class TestLeftBehind:
             (tmp_path / f"{channel}0.device").touch()  # another one's
         assert [path.name for path in tmp_path.iterdir()] == [f"{channel}0.device"]
 
-    def test_no_room_is_said(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_temporary_folder_without_room_raises_output_error(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
         monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "nothing"))
         with pytest.raises(OutputError, match="name one in TMPDIR"), folder_of_this_process():
             pass
@@ -133,7 +137,7 @@ class WorkerState:
 
 
 class TestMaker:
-    def test_a_folder_that_was_taken_away_is_made_again(self, tmp_path: Path) -> None:
+    def test_worker_folder_that_was_removed_is_made_again(self, tmp_path: Path) -> None:
         worker_state = WorkerState(tmp_path)
         process.keep_folder(worker_state)
         assert worker_state.shown == "abc"
@@ -143,7 +147,9 @@ class TestMaker:
         assert worker_state.shown == ""  # what pages fetch has to be written again
 
     @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS])
-    def test_a_full_disk_is_one_sentence(self, tmp_path: Path, number: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_full_disk_is_reported_in_one_sentence(
+        self, tmp_path: Path, number: int, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
         def fails(worker_state: Any) -> None:
             raise OSError(number, os.strerror(number), "/tmp/height.f32")
 

@@ -103,7 +103,7 @@ def felt(page: "Page") -> None:
 
 class TestSeen:
     @pytest.mark.parametrize("locale", ["en-GB", "de-DE"])
-    def test_axe_finds_nothing(self, show: Show, locale: str):
+    def test_page_has_no_violations_by_axe(self, show: Show, locale: str):
         """In all themes and widths, every panel open; in German, where colours are the same, in one theme."""
         if not AXE.is_file():
             lacking("axe-core is not installed: npm ci in plugins/ui/web")
@@ -112,7 +112,7 @@ class TestSeen:
         open_all(page)
         assert axe_finds(page, every_theme=locale == "en-GB") == []
 
-    def test_axe_finds_nothing_in_the_editor_of_parts_and_nothing_is_lost(self, show: Show):
+    def test_parts_editor_has_no_violations_by_axe_in_any_size(self, show: Show):
         """In German, whose words are longer; a proposal, a complaint and all that is folded are open."""
         if not AXE.is_file():
             lacking("axe-core is not installed: npm ci in plugins/ui/web")
@@ -139,7 +139,7 @@ class TestSeen:
             assert stop["x"] >= 0 and stop["x"] + stop["width"] <= width, name
             assert page.evaluate(SMALL) == [], name
 
-    def test_axe_finds_nothing_in_what_is_handed_on_and_nothing_is_lost(self, show: Show):
+    def test_export_panels_have_no_violations_by_axe_in_any_size(self, show: Show):
         """In German: verdicts with places and cures, files with what was decided, a refusal, the description."""
         if not AXE.is_file():
             lacking("axe-core is not installed: npm ci in plugins/ui/web")
@@ -164,7 +164,7 @@ class TestSeen:
             assert sides[0] <= sides[1], name
             assert page.evaluate(SMALL) == [], name
 
-    def test_nothing_is_lost_from_a_phone_to_a_wall(self, show: Show):
+    def test_page_fits_every_size_from_a_phone_to_a_wall(self, show: Show):
         """In German, whose words are longer."""
         page = show(locale="de-DE")
         open_all(page)
@@ -182,7 +182,7 @@ class TestSeen:
             assert surface["width"] >= 300 and surface["height"] >= 150, name
             assert page.evaluate(SMALL) == [], name
 
-    def test_colours_are_the_systems_or_as_chosen_and_stay_and_forced_ones_lose_nothing(self, show: Show):
+    def test_colours_follow_the_system_or_the_choice_and_forced_colours_work(self, show: Show):
         page = show(color_scheme="dark")
         ground = "getComputedStyle(document.querySelector('#left')).backgroundColor"
         dark = page.evaluate(ground)
@@ -251,7 +251,7 @@ def violations(page: "Page", where: str) -> list[str]:
 
 
 class TestKeys:
-    def test_regions_panels_and_sizes_without_a_mouse(self, show: Show):
+    def test_keyboard_reaches_regions_panels_and_splitters(self, show: Show):
         page = show()
         page.keyboard.press("Tab")
         assert page.locator("#skip").is_visible()
@@ -281,7 +281,7 @@ class TestKeys:
         assert not page.evaluate("document.querySelector('#methods').open")
         assert page.evaluate("document.querySelector('#left').offsetWidth") == wider
 
-    def test_tab_comes_to_everything_and_nothing_holds_it(self, show: Show):
+    def test_tab_key_reaches_every_control(self, show: Show):
         page = show()
         open_all(page)
         page.evaluate("document.activeElement.blur()")
@@ -301,7 +301,7 @@ class TestKeys:
             page.keyboard.press("Tab")
         assert page.evaluate("[...met].filter((each) => each !== document.body).length") >= reachable
 
-    def test_letters_act_unless_text_is_typed_and_can_be_switched_off(self, show: Show):
+    def test_letter_keys_act_unless_text_is_typed_and_can_be_switched_off(self, show: Show):
         page = show(SPY)
         asked = "heard.filter(({ text }) => text.includes('motorcycle is felt as')).length"
         page.wait_for_function("() => document.querySelector('#described').textContent.includes('is felt as')")
@@ -322,7 +322,7 @@ class TestKeys:
         page.keyboard.press("?")
         assert focus(page) == "help"
 
-    def test_it_works_where_nothing_can_be_remembered(self, show: Show):
+    def test_page_works_without_local_storage(self, show: Show):
         page = show("Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden') } })")
         page.locator("#theme").select_option("dark")
         page.locator("#methods > summary").click()
@@ -330,7 +330,7 @@ class TestKeys:
 
 
 class TestSaid:
-    def test_what_changes_is_said_once_a_second_at_most_and_what_is_asked_for_at_once(self, show: Show):
+    def test_announcements_come_once_a_second_and_answers_at_once(self, show: Show):
         page = show(SPY)
         felt(page)
         page.evaluate("heard.length = 0")
@@ -362,7 +362,7 @@ class TestSaid:
         page.locator("#again").click()
         felt(page)
 
-    def test_in_german_it_is_spoken_where_there_is_a_voice(self, show: Show):
+    def test_speech_in_german_needs_a_german_voice(self, show: Show):
         page = show(SPY + VOICES, locale="de-DE")
         open_all(page)
         page.wait_for_function("() => document.querySelector('#described').textContent.includes('Materialien: ')")
@@ -411,7 +411,7 @@ CLOTH = {
 
 
 class TestHeard:
-    def test_a_stroke_sounds_as_it_should_and_sound_is_off_at_first_and_has_one_context(self, show: Show):
+    def test_sound_of_a_stroke_is_bounded_off_at_first_and_has_one_context(self, show: Show):
         page = show(CONTEXTS, measure=True)
 
         def heard(force_n: float, speed: float, **changed: Any) -> tuple[float, float]:
@@ -447,7 +447,7 @@ class TestHeard:
 
 
 class TestLog:
-    def test_lines_are_filtered_searched_counted_copied_and_saved(self, show: Show):
+    def test_log_lines_are_filtered_searched_counted_copied_and_saved(self, show: Show):
         page = show(measure=True, permissions=["clipboard-read", "clipboard-write"])
         tell = "(all) => { for (const each of all) page.hub.tell(...each) }"
         lines: list[list[Any]] = [
@@ -483,7 +483,7 @@ class TestLog:
 
 
 class TestTasks:
-    def test_a_first_visit_with_the_keyboard_alone(self, show: Show, tmp_path: Path):
+    def test_first_visit_works_with_the_keyboard_alone(self, show: Show, tmp_path: Path):
         """Open, look, feel, ask, hear, record, stop, feel again, save, and find the keys."""
         page = show(SPY)
         felt(page)

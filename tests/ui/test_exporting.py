@@ -50,7 +50,7 @@ def folders(small: SmallSession) -> list[Path]:
 
 
 class TestExport:
-    def test_a_solid_of_what_is_on_the_screen_and_every_tab_hears_of_it(self, small: Any) -> None:
+    def test_export_writes_the_document_on_the_screen_and_tells_every_tab(self, small: Any) -> None:
         async def check(small: SmallSession, ask: Ask) -> None:
             await ask("edit", text=TEXT.replace("relief_m: 0.004", "relief_m: 0.001"))  # and it is not saved
             found = await ask("export", exports=[STL])
@@ -70,7 +70,7 @@ class TestExport:
 
         small(check)
 
-    def test_one_that_fails_says_so_and_the_others_are_written(self, small: Any, monkeypatch) -> None:
+    def test_exporter_that_fails_leaves_the_others(self, small: Any, monkeypatch) -> None:
         def fail(self: Stl, work: Any, stem: Path) -> Any:
             raise TangibleError("the relief has no height; raise workspace.relief_m")
 
@@ -93,7 +93,7 @@ class TestExport:
             ([], "exporter"),
         ],
     )
-    def test_what_cannot_be_is_refused_and_leaves_nothing(self, small: Any, exports: list[Any], says: str) -> None:
+    def test_invalid_export_is_refused_and_leaves_no_folder(self, small: Any, exports: list[Any], says: str) -> None:
         async def check(small: SmallSession, ask: Ask) -> None:
             with pytest.raises(ConfigError, match=says):
                 await ask("export", exports=exports)
@@ -102,7 +102,7 @@ class TestExport:
 
         small(check)
 
-    def test_a_stopped_one_is_none_and_gives_no_files(self, small: Any, monkeypatch) -> None:
+    def test_stopped_export_returns_none_and_leaves_no_files(self, small: Any, monkeypatch) -> None:
         begun, go_on = threading.Event(), threading.Event()
         write = Stl.write
 
@@ -123,14 +123,14 @@ class TestExport:
 
         small(check)
 
-    def test_files_of_long_ago_go(self, small: Any) -> None:
+    def test_export_folders_beyond_the_limit_are_removed(self, small: Any) -> None:
         async def check(small: SmallSession, ask: Ask) -> None:
             kept = [(await ask("export", exports=[STL]))["folder"] for _ in range(KEPT + 2)]
             assert sorted(kept[-KEPT:]) == [each.name for each in folders(small)]
 
         small(check)
 
-    def test_all_files_in_one(self, small: Any) -> None:
+    def test_zip_contains_all_files(self, small: Any) -> None:
         async def check(small: SmallSession, ask: Ask) -> None:
             found = await ask("export", exports=[STL, "3mf"])
             name = await ask("export_zip", folder=found["folder"])
@@ -147,7 +147,7 @@ class TestExport:
         small(check)
 
     @pytest.mark.parametrize("folder", ["", "..", "export-0000000000000000", "export-x/../../secret", "drawn"])
-    def test_nothing_but_an_export_is_packed(self, small: Any, folder: str) -> None:
+    def test_zip_of_another_folder_is_refused(self, small: Any, folder: str) -> None:
         async def check(small: SmallSession, ask: Ask) -> None:
             with pytest.raises(ConfigError, match="export them again"):
                 await ask("export_zip", folder=folder)
@@ -156,7 +156,7 @@ class TestExport:
 
 
 class TestLegible:
-    def test_verdicts_are_told_and_a_cure_makes_them_pass(self, small: Any) -> None:
+    def test_legibility_verdicts_pass_after_their_cure(self, small: Any) -> None:
         async def check(small: SmallSession, ask: Ask) -> None:
             found = await ask("legible", medium="swell")
             assert small.tab.last("legible")["verdicts"] == found["verdicts"]
@@ -175,7 +175,7 @@ class TestLegible:
 
         small(check, striped_scene)
 
-    def test_a_wider_picture_is_judged_as_such(self, small: Any) -> None:
+    def test_legibility_is_judged_at_the_requested_width(self, small: Any) -> None:
         async def check(small: SmallSession, ask: Ask) -> None:
             found = await ask("legible", medium="swell", width_m=0.4)
             assert (found["width_m"], found["grade"]) == (0.4, "ok"), "the stripe is 1 cm wide then"
@@ -184,7 +184,7 @@ class TestLegible:
 
         small(check, striped_scene)
 
-    def test_what_is_seen_and_felt_is_simplified_where_the_file_says_so(self, small: Any) -> None:
+    def test_view_and_touch_use_simplified_parts_if_the_file_has_simplify(self, small: Any) -> None:
         async def check(small: SmallSession, ask: Ask) -> None:
             before = small.tab.last("scene")["labels"]
             await ask("set", changes={"simplify": {}})
@@ -196,7 +196,7 @@ class TestLegible:
 
 
 class TestDescription:
-    def test_in_the_language_that_is_asked_for(self, small: Any) -> None:
+    def test_description_is_in_the_requested_language(self, small: Any) -> None:
         async def check(small: SmallSession, ask: Ask) -> None:
             said = {each: await ask("description", language=each) for each in ("en", "de", "fr")}
             assert len({each["text"] for each in said.values()}) == 3
@@ -208,7 +208,7 @@ class TestDescription:
 
         small(check)
 
-    def test_there_is_none_before_a_surface(self, tmp_path: Path, monkeypatch) -> None:
+    def test_description_without_a_surface_is_none(self, tmp_path: Path, monkeypatch) -> None:
         async def check() -> None:
             small = SmallSession(tmp_path, monkeypatch)
             assert await REQUESTS["description"](small.session, small.tab, language="en") is None

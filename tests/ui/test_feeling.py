@@ -118,7 +118,7 @@ class TestTheHandIsWhereThePageSays:
         ],
         ids=["plain", "a region, turned", "much enlarged"],
     )
-    def test_in_the_picture_whatever_the_mapping(
+    def test_hand_is_where_the_page_points_under_any_mapping(
         self, feeling: Feeling, server: Server, mapping: WorkspaceMapping
     ) -> None:
         """And let go of, it is over every surface: a metre up in the pointer's own frame may be inside one."""
@@ -134,7 +134,7 @@ class TestTheHandIsWhereThePageSays:
         until(lambda: newest(feeling)[PLACE][2] > 0.4)
         assert not newest(feeling)[FORCE].any()
 
-    def test_silence_lets_go(self, feeling: Feeling, server: Server) -> None:
+    def test_hand_is_released_by_silence_of_page_or_server(self, feeling: Feeling, server: Server) -> None:
         """Of the page; and of the server, which the loop itself watches."""
         feeling.feel(felt(feeling))
         server.at = INSIDE
@@ -149,14 +149,14 @@ class TestTheHandIsWhereThePageSays:
         until(lambda: not newest(feeling)[FORCE].any())
 
     @pytest.mark.parametrize("at", [(float("nan"), 0, 0), (0, float("inf"), 0), (0, 0, -1.0)])
-    def test_what_is_no_place_is_not_heard(self, feeling: Feeling, at: tuple[float, float, float]) -> None:
+    def test_hand_ignores_an_impossible_position(self, feeling: Feeling, at: tuple[float, float, float]) -> None:
         feeling.hand.point(at, 0, 1)
         assert not feeling.hand.holding
 
 
 @pytest.mark.usefixtures("loop_in_thread")
 class TestSwaps:
-    def test_another_law_goes_on_in_the_same_loop(self, feeling: Feeling) -> None:
+    def test_swap_of_the_law_keeps_the_loop(self, feeling: Feeling) -> None:
         feeling.start()
         first = feeling.servo
         feeling.feel(felt(feeling, touch=FaultyTouch()))
@@ -166,7 +166,7 @@ class TestSwaps:
         assert feeling.servo is first
         assert "the tick is in Python" not in feeling.how
 
-    def test_another_device_is_another_loop(self, feeling: Feeling, server: Server) -> None:
+    def test_swap_of_the_device_starts_another_loop(self, feeling: Feeling, server: Server) -> None:
         feeling.start()
         first = feeling.servo
         feeling.feel(felt(feeling, Failing(fault="none")))
@@ -179,7 +179,7 @@ class TestSwaps:
         until(lambda: newest(feeling)[PLACE][2] > 0.4)
         assert feeling.loop_end() is None
 
-    def test_a_device_that_is_not_there(self, feeling: Feeling, tmp_path: Path) -> None:
+    def test_swap_to_a_missing_device_raises_and_can_be_repeated(self, feeling: Feeling, tmp_path: Path) -> None:
         """Says so; it is felt once it is there."""
         device = Failing(fault="none", opens="second", record=str(tmp_path / "held"))
         with pytest.raises(DeviceError, match="in use by another program"):
@@ -201,7 +201,7 @@ class TestWhatEndsByItself:
         ],
         ids=["unplugged", "stands still", "a fault of the driver", "a law that raises"],
     )
-    def test_is_told_once_with_why(
+    def test_loop_that_ends_by_itself_is_reported_once_with_the_reason(
         self, feeling: Feeling, device: HapticDevice, touch: Touch | None, why: str, lost: bool
     ) -> None:
         feeling.feel(felt(feeling))  # so that all is compiled
@@ -218,7 +218,7 @@ class TestWhatEndsByItself:
         assert feeling.running
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_a_falcon_that_is_pulled_out_while_it_is_homed(self, feeling: Feeling) -> None:
+    def test_falcon_unplugged_while_homing_raises_device_error(self, feeling: Feeling) -> None:
         """The real driver says what happened."""
         falcon = load_method("device", "falcon-simulated")(faults=({"at": "read", "after": 200},))
         with pytest.raises(DeviceError, match="it was unplugged; check its plug"):
@@ -249,7 +249,7 @@ class TestStop:
         return gave
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_a_loop_that_runs(self, feeling: Feeling, server: Server) -> None:
+    def test_stop_of_a_running_loop_leaves_no_force_until_allowed(self, feeling: Feeling, server: Server) -> None:
         feeling.feel(felt(feeling))
         servo = feeling.servo
         assert servo is not None
@@ -266,7 +266,7 @@ class TestStop:
         assert feeling.feel(felt(feeling)) is not None
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_feeling_again_at_once(self, feeling: Feeling) -> None:
+    def test_stop_followed_by_a_new_loop_leaves_that_loop(self, feeling: Feeling) -> None:
         """The loop that was stopped is still there, and who waits for its end does not end the next one."""
         feeling.start()
         ended = feeling.cut()
@@ -276,21 +276,21 @@ class TestStop:
         assert feeling.running
         assert feeling.loop_end() is None
 
-    def test_while_a_loop_starts(self, feeling: Feeling) -> None:
+    def test_stop_while_a_loop_starts_ends_it(self, feeling: Feeling) -> None:
         assert self.stops(feeling, feeling.start) == [None]
 
-    def test_while_a_device_is_being_homed(self, feeling: Feeling) -> None:
+    def test_stop_while_a_device_is_homed_kills_its_process(self, feeling: Feeling) -> None:
         """It never answers: its process is killed."""
         assert self.stops(feeling, lambda: feeling.feel(felt(feeling, Failing(opens="late")))) == [None]
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_while_a_scene_is_swapped(self, feeling: Feeling) -> None:
+    def test_stop_while_a_scene_is_swapped_ends_the_loop(self, feeling: Feeling) -> None:
         feeling.start()
         made = felt(feeling, touch=FaultyTouch("begins slowly"))
         assert self.stops(feeling, lambda: feeling.feel(made)) == [None]
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_who_stops_does_not_wait_for_who_starts(self, feeling: Feeling, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_stop_does_not_wait_for_a_start(self, feeling: Feeling, monkeypatch: pytest.MonkeyPatch) -> None:
         """Nor before there is a ring to write to."""
         entering, go, entered = threading.Event(), threading.Event(), Servo.__enter__
 

@@ -7,7 +7,7 @@ from page_files import WEB, node
 from tangible_core.pipeline.config.schema import json_schema
 
 
-def test_every_option_of_every_method_has_a_control_that_says_its_default_and_its_bounds(tmp_path: Path, monkeypatch):
+def test_form_has_a_control_with_default_and_bounds_for_every_option(tmp_path: Path, monkeypatch):
     schema = tmp_path / "schema.json"
     schema.write_text(json.dumps(json_schema(None, None)))
     monkeypatch.setenv("TANGIBLE_SCHEMA", str(schema))

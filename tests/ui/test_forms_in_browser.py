@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 STIFFNESS = "field:render.stiffness_n_per_m"
 
 
-def test_an_option_from_the_form_to_the_file(serve, open_page: OpenPage, tmp_path: Path):
+def test_option_typed_in_the_form_is_saved_to_the_file(serve, open_page: OpenPage, tmp_path: Path):
     built_page()
     server = serve(small_scene(tmp_path), cwd=tmp_path)
     page, other = open_page(server.url), open_page(server.url)

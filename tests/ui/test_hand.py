@@ -93,7 +93,7 @@ def with_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..
 
 
 class TestWhoHolds:
-    def test_the_first_holds_and_who_comes_later_watches(self, with_session) -> None:
+    def test_hand_belongs_to_the_first_tab_until_another_takes_it(self, with_session) -> None:
         async def work(session: Session, page: Page) -> None:
             other = Page()
             session.enter(other)
@@ -103,7 +103,7 @@ class TestWhoHolds:
 
         with_session(work)
 
-    def test_who_leaves_leaves_it_to_nobody_until_one_takes_it(self, with_session) -> None:
+    def test_hand_of_a_closed_tab_belongs_to_nobody(self, with_session) -> None:
         async def work(session: Session, page: Page) -> None:
             other = Page()
             session.enter(other)
@@ -118,7 +118,7 @@ class TestWhoHolds:
 
         with_session(work)
 
-    def test_who_takes_it_does_not_get_where_it_was(self, with_session) -> None:
+    def test_hand_taken_by_another_tab_is_released(self, with_session) -> None:
         async def work(session: Session, page: Page) -> None:
             session.feeling.hand.point((0.0, 0.0, 0.0), 1, 1)
             session.hold(Page())
@@ -128,7 +128,7 @@ class TestWhoHolds:
 
 
 class TestDevices:
-    def test_a_motor_starts_only_for_who_said_yes(self, with_session) -> None:
+    def test_motor_starts_only_after_consent(self, with_session) -> None:
         async def work(session: Session, page: Page) -> None:
             FakeWorker.device = Failing(fault="none", simulated=False)
             with pytest.raises(ConfigError, match="has a motor"):
@@ -149,7 +149,7 @@ class TestDevices:
 
         with_session(work)
 
-    def test_what_was_made_for_another_device_is_not_felt(self, with_session) -> None:
+    def test_touch_made_for_another_device_is_discarded(self, with_session) -> None:
         async def work(session: Session, page: Page) -> None:
             FakeWorker.device = Circling()
             made = await session.worker.ask("make", sets=[])
@@ -159,7 +159,7 @@ class TestDevices:
 
         with_session(work)
 
-    def test_a_device_that_is_pulled_out_is_told_of_and_waited_for(self, with_session, tmp_path: Path) -> None:
+    def test_unplugged_device_is_reported_and_can_be_waited_for(self, with_session, tmp_path: Path) -> None:
         async def work(session: Session, page: Page) -> None:
             FakeWorker.device = Failing(fault="unplugged", at=100)
             with suppress(DeviceError):  # where it is gone before the law is felt on it
@@ -180,7 +180,7 @@ class TestDevices:
         with_session(work)
 
     @pytest.mark.parametrize("ended_by", ["stop", "another choice"])
-    def test_waiting_ends(self, with_session, ended_by: str) -> None:
+    def test_waiting_for_a_device_ends_by_stop_or_another_choice(self, with_session, ended_by: str) -> None:
         async def work(session: Session, page: Page) -> None:
             FakeWorker.device = Failing(opens="never")
             with pytest.raises(DeviceError):
@@ -196,7 +196,7 @@ class TestDevices:
 
         with_session(work)
 
-    def test_stop_holds_until_somebody_feels_again(self, with_session) -> None:
+    def test_stop_lasts_until_the_request_feel(self, with_session) -> None:
         async def work(session: Session, page: Page) -> None:
             await REQUESTS["make"](session, page)
             assert session.feeling.running
@@ -211,7 +211,7 @@ class TestDevices:
         with_session(work)
 
     @pytest.mark.parametrize("told", [{"kind": "hand", "name": "falcon"}, {"kind": "other"}, {"kind": "any"}])
-    def test_no_choice(self, with_session, told: dict[str, str]) -> None:
+    def test_invalid_choice_of_a_device_is_refused(self, with_session, told: dict[str, str]) -> None:
         async def work(session: Session, page: Page) -> None:
             with pytest.raises(ConfigError, match="a device is chosen as one of"):
                 await REQUESTS["choose_device"](session, page, **told)
@@ -238,5 +238,5 @@ class Motor(HapticDevice):
         (Placement(scale=0.1), True),
     ],
 )
-def test_whether_a_pointer_without_a_client_is_high(to: Placement, high: bool) -> None:
+def test_released_pointer_is_above_the_surface_unless_mapped_into_it(to: Placement, high: bool) -> None:
     assert high_without_client(to) == high

@@ -76,7 +76,7 @@ def press(page: Any, felt: Felt) -> None:
     until(lambda: felt.force_n() > 0.05)
 
 
-def test_the_mouse_feels_until_nobody_sees_the_page(page: Any) -> None:
+def test_mouse_gives_force_until_the_page_is_hidden_or_frozen(page: Any) -> None:
     felt = Felt()
     press(page, felt)
     page.mouse.up()
@@ -96,7 +96,7 @@ def test_the_mouse_feels_until_nobody_sees_the_page(page: Any) -> None:
     page.mouse.up()
 
 
-def test_a_hand_at_rest_is_drawn_when_it_moves_again(page: Any) -> None:
+def test_resting_hand_is_drawn_again_when_it_moves(page: Any) -> None:
     page.evaluate(
         "() => { const { view, overlay } = window.page; overlay.settings.seconds = 0.2; window.drawn = 0;"
         "const draw = view.draw.bind(view); view.draw = (wait) => { window.drawn++; draw(wait); }; }"
@@ -114,7 +114,7 @@ def test_a_hand_at_rest_is_drawn_when_it_moves_again(page: Any) -> None:
     page.mouse.up()
 
 
-def test_a_tab_that_is_closed_leaves_no_force(page: Any) -> None:
+def test_closed_tab_leaves_no_force(page: Any) -> None:
     felt = Felt()
     press(page, felt)
     closed_s = time.monotonic()
@@ -122,7 +122,7 @@ def test_a_tab_that_is_closed_leaves_no_force(page: Any) -> None:
     assert felt.quiet_after_s(closed_s) < GONE_S
 
 
-def test_the_keyboard_alone_feels_and_the_stop_key_works_in_a_field(page: Any) -> None:
+def test_keyboard_gives_force_and_the_stop_key_works_in_a_field(page: Any) -> None:
     felt = Felt()
     page.locator("#terrain").focus()
     page.keyboard.press("Space")
@@ -144,7 +144,7 @@ def test_the_keyboard_alone_feels_and_the_stop_key_works_in_a_field(page: Any) -
     until(lambda: Felt.rings() and Felt.rings()[0] != felt.path)
 
 
-def test_another_device_is_felt_and_examined_and_a_motor_asks_first(page: Any) -> None:
+def test_device_is_chosen_and_examined_and_a_motor_needs_consent(page: Any) -> None:
     felt = page.locator("#device-felt")
     page.locator("#devices > summary").click()
     page.get_by_role("button", name="Examine mock").click()

@@ -72,7 +72,7 @@ def text_of(page: "Page") -> str:
 
 
 class TestExport:
-    def test_a_solid_and_all_files_in_one_by_the_keyboard(self, show: Callable[..., "Page"]) -> None:
+    def test_export_of_a_solid_and_a_zip_works_by_the_keyboard(self, show: Callable[..., "Page"]) -> None:
         page = show()
         panel = panel_of(page, "export")
         panel.get_by_label("3D print (STL)").press(" ")
@@ -100,7 +100,7 @@ class TestExport:
             assert packed.namelist() == ["mine.3mf", "mine.stl"]
             assert packed.testzip() is None
 
-    def test_what_was_chosen_goes_into_the_file_and_comes_from_it(self, show: Callable[..., "Page"]) -> None:
+    def test_export_choices_are_written_to_the_file_and_read_from_it(self, show: Callable[..., "Page"]) -> None:
         page = show("export: [{use: stl, rim_m: 0.01}, 3mf]\n")
         panel = panel_of(page, "export")
         until(lambda: panel.get_by_label("3D print (STL)").is_checked(), "what the file says")
@@ -119,7 +119,7 @@ class TestExport:
         page.locator("#undo").press("Enter")
         until(lambda: panel.get_by_label("3D print (3MF)").is_checked(), "undone")
 
-    def test_what_cannot_be_written_is_said_and_leads_nowhere(self, show: Callable[..., "Page"]) -> None:
+    def test_export_with_an_invalid_option_shows_the_reason(self, show: Callable[..., "Page"]) -> None:
         page = show()
         panel = panel_of(page, "export")
         panel.get_by_role("button", name="Export", exact=True).press("Enter")
@@ -133,7 +133,7 @@ class TestExport:
         until(lambda: "base_m" in panel.locator("p.bad[role=status]").inner_text(), "why")
         assert panel.locator(".outcome").count() == 0
 
-    def test_a_file_that_says_an_exporter_twice_is_shown_twice(self, show: Callable[..., "Page"]) -> None:
+    def test_export_listed_twice_in_the_file_is_shown_twice(self, show: Callable[..., "Page"]) -> None:
         page = show("export: [stl, {use: stl, rim_m: 0.01}]\n")
         panel = panel_of(page, "export")
         lines = panel.locator(".exporters > li")
@@ -146,7 +146,7 @@ class TestExport:
 
 
 class TestLegible:
-    def test_what_fails_is_marked_and_said_and_its_cure_makes_it_pass(self, show: Callable[..., "Page"]) -> None:
+    def test_legibility_fault_is_marked_announced_and_cured(self, show: Callable[..., "Page"]) -> None:
         page = show(scene=striped_scene)
         panel = panel_of(page, "legible")
         panel.get_by_label("Read on").select_option("swell")
@@ -178,7 +178,7 @@ class TestLegible:
         until(lambda: text_of(page) == before, "undone in one step")
         until(lambda: "changed since this check" in panel.inner_text(), "stale")
 
-    def test_another_width_is_judged(self, show: Callable[..., "Page"]) -> None:
+    def test_legibility_is_judged_at_another_width(self, show: Callable[..., "Page"]) -> None:
         page = show()
         panel = panel_of(page, "legible")
         panel.get_by_label("Width, mm").fill("400")
@@ -191,7 +191,7 @@ class TestLegible:
 
 
 class TestDescription:
-    def test_it_is_read_heard_and_taken_along(self, show: Callable[..., "Page"]) -> None:
+    def test_description_is_read_spoken_copied_and_saved(self, show: Callable[..., "Page"]) -> None:
         page = show("language: de\n", VOICES, permissions=["clipboard-read", "clipboard-write"])
         panel = panel_of(page, "description")
         region = panel.get_by_role("region", name="Description")
@@ -221,7 +221,7 @@ class TestDescription:
 
 
 class TestBeacon:
-    def test_a_device_guides_to_a_named_part_until_a_button_or_escape(
+    def test_beacon_guides_to_a_part_until_a_button_or_escape(
         self, show: Callable[..., "Page"], lasting: LastingServer, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         """The page's own hand has no motor: it is asked for a device. Another program moves a pointer in its place."""
@@ -275,7 +275,7 @@ class TestBeacon:
                 moving.set()
                 mover.join()
 
-    def test_what_is_touched_is_said_with_its_part_and_material(self, show: Callable[..., "Page"]) -> None:
+    def test_touch_is_announced_with_part_and_material(self, show: Callable[..., "Page"]) -> None:
         page = show("parts: {0: {name: wall, material: ice}}\nmaterials: {by: {1: ice}, default: ice}\n")
         page.locator("#terrain").focus()
         page.keyboard.press("Home")

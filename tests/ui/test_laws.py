@@ -72,7 +72,7 @@ async def pressed(session: Session, until: Callable[[], bool]) -> None:
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_the_other_law_is_computed_on_the_same_hand(tmp_path: Path) -> None:
+def test_second_law_is_computed_on_the_same_hand(tmp_path: Path) -> None:
     async def compare() -> None:
         async with felt_session(tmp_path) as (session, told):
             await asks.compare_laws(session, None, "penalty", "{stiffness_n_per_m: 800}")
@@ -97,7 +97,7 @@ def test_the_other_law_is_computed_on_the_same_hand(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_blindly_nothing_says_which_law_is_felt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_blind_comparison_hides_which_law_acts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path / "data"))
 
     async def compare() -> None:
@@ -125,7 +125,7 @@ def test_blindly_nothing_says_which_law_is_felt(tmp_path: Path, monkeypatch: pyt
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_what_is_no_law_is_said_and_the_one_before_is_felt_on(tmp_path: Path) -> None:
+def test_invalid_law_is_refused_and_the_law_before_stays(tmp_path: Path) -> None:
     wrong = {("penalti", ""): "penalty", ("penalty", "{stifness: 3}"): "unknown option", ("penalty", "["): "not YAML"}
 
     async def compare() -> None:
@@ -140,7 +140,7 @@ def test_what_is_no_law_is_said_and_the_one_before_is_felt_on(tmp_path: Path) ->
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_no_motor_is_opened_that_nobody_said_yes_to(tmp_path: Path) -> None:
+def test_comparison_opens_no_motor_without_consent(tmp_path: Path) -> None:
     async def compare() -> None:
         async with felt_session(tmp_path) as (session, _):
             session.choice = Choice("document", sure=True, agreed=type(load_method("device", "mock")()))

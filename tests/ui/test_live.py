@@ -45,7 +45,7 @@ def tab() -> tuple[Any, QuietSession]:
 
 
 class TestFrames:
-    def test_whole_ones_are_heard(self) -> None:
+    def test_frame_that_is_complete_is_handled(self) -> None:
         live, session = tab()
         live._handle_frame(WHOLE[wire.POINTER])
         assert session.feeling.hand.holding
@@ -55,7 +55,7 @@ class TestFrames:
         assert live._drawn == 1
 
     @pytest.mark.parametrize("kind", WHOLE)
-    def test_what_is_not_whole_is_not_heard(self, kind: int) -> None:
+    def test_frame_that_is_damaged_is_ignored(self, kind: int) -> None:
         frame = WHOLE[kind]
         for damaged in [*(frame[:end] for end in range(1, len(frame))), frame + b"\0", frame * 2]:
             if damaged in WHOLE.values():
@@ -67,14 +67,14 @@ class TestFrames:
             assert (session.feeling.hand._held, live._drawn) == (held, 0)
 
     @pytest.mark.parametrize("kind", WHOLE)
-    def test_every_flipped_bit_leaves_a_hand_that_is_somewhere(self, kind: int) -> None:
+    def test_frame_with_any_flipped_bit_leaves_a_finite_hand(self, kind: int) -> None:
         for bit in range(8 * len(WHOLE[kind])):
             frame = bytearray(WHOLE[kind])
             frame[bit // 8] ^= 1 << bit % 8
             check(bytes(frame))
 
     @given(st.binary(min_size=1, max_size=100))
-    def test_any_bytes(self, frame: bytes) -> None:
+    def test_frame_of_any_bytes_leaves_a_finite_hand(self, frame: bytes) -> None:
         check(frame)
 
 
@@ -90,7 +90,7 @@ def ask(**said: Any) -> str:
 
 
 class TestAsks:
-    def test_a_whole_one_is_understood(self) -> None:
+    def test_request_that_is_valid_is_parsed(self) -> None:
         asked = parse(ask(ask="edit", text="scene: x", apply=True))
         assert (asked.number, asked.ask, asked.told) == (1, REQUESTS["edit"], {"text": "scene: x", "apply": True})
 
@@ -125,7 +125,7 @@ class TestAsks:
             (ask(ask="save", path=None), 1, "path: .*string"),
         ],
     )
-    def test_what_is_none_is_refused_with_a_sentence(self, text: str, number: int | None, says: str) -> None:
+    def test_request_that_is_invalid_is_refused_with_a_sentence(self, text: str, number: int | None, says: str) -> None:
         with pytest.raises(BadRequest, match=says) as refused:
             parse(text)
         assert refused.value.number == number
@@ -134,7 +134,7 @@ class TestAsks:
 
     @given(JSON, st.sampled_from(sorted(REQUESTS)))
     @settings(suppress_health_check=[HealthCheck.too_slow])
-    def test_any_json(self, told: Any, name: str) -> None:
+    def test_request_of_any_json_is_parsed_or_refused(self, told: Any, name: str) -> None:
         """It is understood, or refused; nothing else."""
         for said in (told, {"number": 1, "ask": told}, {"number": 1, "ask": name, "path": told, "text": told}):
             try:
@@ -144,6 +144,6 @@ class TestAsks:
             else:
                 assert asked.ask is REQUESTS[asked.name]
 
-    def test_every_ask_says_what_it_takes(self) -> None:
+    def test_request_functions_declare_their_arguments(self) -> None:
         for name, work in REQUESTS.items():
             assert asking._arguments(work).model_fields.keys().isdisjoint({"desk", "tab"}), name

@@ -31,7 +31,7 @@ def telling(told: list[dict[str, str]], monkeypatch: pytest.MonkeyPatch) -> Iter
 
 @pytest.mark.usefixtures("telling")
 class TestPageHandler:
-    def test_warnings_of_everybody_are_told_and_information_of_our_own(self, told: list[dict[str, str]]):
+    def test_log_forwards_all_warnings_and_our_own_information(self, told: list[dict[str, str]]):
         own, other = logging.getLogger("tangible_core.cache"), logging.getLogger("somebody")
         for each in (own, other):
             each.setLevel(logging.INFO)
@@ -46,12 +46,12 @@ class TestPageHandler:
             ("somebody", "error", "lost"),
         ]
 
-    def test_stages_are_not_told_twice(self, told: list[dict[str, str]]):
+    def test_log_leaves_out_events_of_stages(self, told: list[dict[str, str]]):
         logging.getLogger(logs.KNOWN).setLevel(logging.INFO)
         logging.getLogger(logs.KNOWN).info("relief: ran")
         assert told == []
 
-    def test_a_plugins_warning_is_told(self, told: list[dict[str, str]]):
+    def test_log_forwards_a_plugin_s_warning(self, told: list[dict[str, str]]):
         with warnings.catch_warnings():
             warnings.simplefilter("always")
             logging.captureWarnings(False)  # catch_warnings put its own in the place
@@ -59,14 +59,16 @@ class TestPageHandler:
             warnings.warn("the picture is dark", stacklevel=1)
         assert told[0]["level"] == "warning" and "the picture is dark" in told[0]["text"]
 
-    def test_an_exception_is_a_sentence(self, told: list[dict[str, str]]):
+    def test_log_of_an_exception_is_one_sentence(self, told: list[dict[str, str]]):
         try:
             raise ValueError("no such thing")
         except ValueError:
             logging.getLogger("a").exception("it failed")
         assert told[0]["text"] == "it failed: ValueError: no such thing"
 
-    def test_a_flood_is_counted_and_not_told(self, told: list[dict[str, str]], monkeypatch: pytest.MonkeyPatch):
+    def test_log_flood_is_counted_instead_of_forwarded(
+        self, told: list[dict[str, str]], monkeypatch: pytest.MonkeyPatch
+    ):
         now = [10.0]
         monkeypatch.setattr("tangible_ui.logs.time.monotonic", lambda: now[0])
         for _ in range(MOST_A_SECOND + 7):
@@ -80,7 +82,7 @@ class TestPageHandler:
         ]
 
 
-def test_what_logs_does_not_fail_where_nobody_listens(
+def test_log_handler_never_raises(
     telling: PageHandler, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
     def closed(**_: str) -> None:
@@ -91,7 +93,7 @@ def test_what_logs_does_not_fail_where_nobody_listens(
     assert "Event loop is closed" in capsys.readouterr().err
 
 
-def test_standard_error_hears_it_as_before(monkeypatch: pytest.MonkeyPatch):
+def test_standard_error_gets_the_log_as_before(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(logging.getLogger(), "handlers", [])
     monkeypatch.setattr("sys.stderr", stderr := io.StringIO())
     handler = tell_pages(lambda **_: None)
@@ -100,7 +102,7 @@ def test_standard_error_hears_it_as_before(monkeypatch: pytest.MonkeyPatch):
     assert stderr.getvalue() == "heard\n"
 
 
-def test_however_much_is_logged_a_tab_hears_of_the_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_history_of_a_flooded_log_keeps_the_other_events(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("tangible_ui.state.session.Worker", lambda *_: None)
     session = Session(tmp_path, Feeling("unheard"), [])
     session.tell("document", text="")

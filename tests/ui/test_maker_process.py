@@ -27,7 +27,7 @@ render: {use: penalty}
 """
 
 
-def test_what_is_made_ends_at_once_and_the_loop_feels_on(tmp_path: Path):
+def test_stopped_job_ends_at_once_and_the_loop_goes_on(tmp_path: Path):
     async def check() -> None:
         session, tab = Session(tmp_path, Feeling("worker-process"), []), Heard()
         session.enter(tab)
@@ -67,7 +67,7 @@ def test_what_is_made_ends_at_once_and_the_loop_feels_on(tmp_path: Path):
     asyncio.run(check())
 
 
-def test_one_that_does_not_start_is_tried_three_times_and_says_why(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_worker_that_does_not_start_is_tried_three_times(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     async def check() -> None:
         started: list[str] = []
 
@@ -99,7 +99,7 @@ def test_one_that_does_not_start_is_tried_three_times_and_says_why(tmp_path: Pat
     asyncio.run(check())
 
 
-def test_the_one_that_was_started_beforehand_is_taken_once_and_otherwise_ended():
+def test_prestarted_worker_is_taken_once_or_killed():
     with prestart_worker():
         first = take_worker_process()
         second = take_worker_process()
@@ -114,7 +114,7 @@ def test_the_one_that_was_started_beforehand_is_taken_once_and_otherwise_ended()
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="only Linux has a niceness for each thread")
-def test_only_long_jobs_let_others_go_first():
+def test_long_jobs_alone_have_a_low_priority():
     code = (
         "import os, queue, threading; from tangible_ui.worker import process, messages\n"
         "process.answer = lambda worker_state, ask: ask\n"

@@ -68,7 +68,7 @@ def make(worker_state: WorkerState, text: str, path: Path, want: str = "touch", 
     return made
 
 
-def test_pages_hear_what_runs_and_why_and_what_was_made_of_it(worker_state: WorkerState, scene: Path):
+def test_make_sends_plan_stages_and_outcome(worker_state: WorkerState, scene: Path):
     assert make(worker_state, TEXT, scene)["law"] == "penalty"
     (plan,) = heard(worker_state, "plan")
     assert [(each["product"], each["outcome"]) for each in plan["steps"]][:2] == [
@@ -86,7 +86,7 @@ def test_pages_hear_what_runs_and_why_and_what_was_made_of_it(worker_state: Work
     assert len(heard(worker_state, "materials")[0]["segments"]) == 3
 
 
-def test_another_law_makes_the_touch_alone(worker_state: WorkerState, scene: Path):
+def test_make_with_another_law_makes_the_touch_alone(worker_state: WorkerState, scene: Path):
     make(worker_state, TEXT, scene)
     worker_state.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
     other = TEXT.replace("400", "500")
@@ -100,7 +100,7 @@ def test_another_law_makes_the_touch_alone(worker_state: WorkerState, scene: Pat
     assert not heard(worker_state, "scene")
 
 
-def test_depth_and_texture_are_made_and_shown_alone(worker_state: WorkerState, scene: Path):
+def test_make_of_depth_or_texture_alone_is_shown(worker_state: WorkerState, scene: Path):
     assert make(worker_state, TEXT, scene, "materials") is None
     (shown,) = heard(worker_state, "scene")
     assert shown["height_m"] == [0.0, 0.0]  # no depth yet: flat
@@ -117,7 +117,7 @@ def test_depth_and_texture_are_made_and_shown_alone(worker_state: WorkerState, s
     assert heard(worker_state, "scene")[-1]["height_m"][1] > 0  # on the relief, which there is now
 
 
-def test_what_cannot_be_made_leaves_the_last_good_pipeline(worker_state: WorkerState, scene: Path):
+def test_make_that_fails_leaves_the_last_good_pipeline(worker_state: WorkerState, scene: Path):
     make(worker_state, TEXT, scene)
     good = worker_state.pipeline
     for wrong in (TEXT.replace("penalty", "penalti"), TEXT.replace("mine.png", "gone.png")):
@@ -133,7 +133,7 @@ def test_what_cannot_be_made_leaves_the_last_good_pipeline(worker_state: WorkerS
     assert {told["product"] for told in heard(worker_state, "stage")} == {"touch"}
 
 
-def test_without_a_law_the_surface_is_seen_and_kept(worker_state: WorkerState, scene: Path):
+def test_make_without_a_law_shows_and_keeps_the_surface(worker_state: WorkerState, scene: Path):
     with pytest.raises(ConfigError, match="`render:` is missing"):
         make(worker_state, TEXT.replace("render:", "# render:"), scene)
     assert heard(worker_state, "scene")
@@ -146,7 +146,7 @@ def test_without_a_law_the_surface_is_seen_and_kept(worker_state: WorkerState, s
     ("said", "instead", "at_once"),
     [("segments: 3", "segments: 4", False), ("luminance}", "luminance, smoothing_px: 4}", True)],
 )
-def test_the_newer_waits_for_a_stage_that_it_needs_too_and_for_no_other(
+def test_newer_job_waits_only_for_a_stage_that_it_needs_too(
     worker_state: WorkerState, scene: Path, monkeypatch: pytest.MonkeyPatch, said: str, instead: str, at_once: bool
 ):
     begun, go = threading.Event(), threading.Event()
@@ -191,7 +191,7 @@ def _kept(ended: list[BaseException | None], do: Callable[[], Any]) -> None:
         ended.append(None)
 
 
-def test_an_edit_is_applied_at_once_where_nothing_slow_has_to_run(small: Any):
+def test_edit_is_applied_at_once_if_nothing_slow_has_to_run(small: Any):
     async def check(small: SmallSession, ask: Ask) -> None:
         first = len(small.felt)
         await ask("set", changes={"render.use": "proxy"}, apply=True)
@@ -208,7 +208,7 @@ def test_an_edit_is_applied_at_once_where_nothing_slow_has_to_run(small: Any):
     small(check)
 
 
-def test_what_is_edited_while_something_is_made_is_applied_after_it(small: Any, monkeypatch: pytest.MonkeyPatch):
+def test_edit_during_a_job_is_applied_after_it(small: Any, monkeypatch: pytest.MonkeyPatch):
     async def check(small: SmallSession, ask: Ask) -> None:
         begun, go = threading.Event(), threading.Event()
         monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
@@ -227,7 +227,7 @@ def test_what_is_edited_while_something_is_made_is_applied_after_it(small: Any, 
     small(check)
 
 
-def test_stopping_kills_the_maker_only_while_it_makes(small: Any, monkeypatch: pytest.MonkeyPatch):
+def test_stop_making_kills_the_worker_only_during_a_job(small: Any, monkeypatch: pytest.MonkeyPatch):
     async def check(small: SmallSession, ask: Ask) -> None:
         await ask("stop_making")
         assert small.worker.kills == 0
@@ -248,7 +248,7 @@ def test_stopping_kills_the_maker_only_while_it_makes(small: Any, monkeypatch: p
     small(check)
 
 
-def test_what_does_not_give_way_is_killed_and_the_newest_asked_again(small: Any, monkeypatch: pytest.MonkeyPatch):
+def test_job_that_does_not_give_way_is_killed_and_the_newest_repeated(small: Any, monkeypatch: pytest.MonkeyPatch):
     async def check(small: SmallSession, ask: Ask) -> None:
         monkeypatch.setattr(asks_making, "PATIENCE_S", 0.2)
         begun, go = threading.Event(), threading.Event()
@@ -269,7 +269,7 @@ def test_what_does_not_give_way_is_killed_and_the_newest_asked_again(small: Any,
     small(check)
 
 
-def test_a_failure_is_told_to_who_asked_and_to_all_tabs(small: Any):
+def test_failure_is_reported_to_the_requester_and_to_all_tabs(small: Any):
     async def check(small: SmallSession, ask: Ask) -> None:
         await ask("set", changes={"materials.by": {"7": "ice"}, "render.use": "proxy"})
         with pytest.raises(TangibleError, match="no segment"):
@@ -281,7 +281,7 @@ def test_a_failure_is_told_to_who_asked_and_to_all_tabs(small: Any):
     small(check)
 
 
-def test_preflight_judges_and_its_cures_change_the_document(small: Any):
+def test_preflight_cures_change_the_document(small: Any):
     async def check(small: SmallSession, ask: Ask) -> None:
         assert (await ask("preflight"))["device"] == ""  # the page's own hand
         steep = {"render.use": "penalty-gradient", "workspace.relief_m": 0.02, "workspace.smooth_m": 0}
@@ -306,7 +306,7 @@ def test_preflight_judges_and_its_cures_change_the_document(small: Any):
     small(check)
 
 
-def test_the_lateness_of_the_loop_that_gives_the_forces_counts(worker_state: WorkerState, scene: Path):
+def test_preflight_judges_the_lateness_of_the_running_loop(worker_state: WorkerState, scene: Path):
     late = Late(np.full(2000, 0.004), 0.001, True)
     told = {"text": TEXT, "path": scene, "sets": [], "own": DEVICE[0]}
     found = JOBS["preflight"].do(worker_state, number=1, late=late, **told)

@@ -23,7 +23,7 @@ def worker_state(tmp_path: Path) -> WorkerState:
     return WorkerState(tmp_path, lambda event, **told: None)
 
 
-def test_the_page_s_reference_is_what_the_core_computes():
+def test_mapping_reference_of_the_page_is_the_core_s():
     """web/test/placement.test.ts computes the same cases in the page's language."""
     cases = json.loads(CASES.read_text())["cases"]
     assert len(cases) > 4
@@ -46,7 +46,7 @@ def vector(numbers: list[float]) -> Vector:
     [("", "", None), ("device: {use: falcon-simulated}\n", "falcon-simulated", [0.08, 0.08, 0.08])],
     ids=["none", "one"],
 )
-def test_what_the_document_s_device_reaches(
+def test_reach_is_that_of_the_document_s_device(
     worker_state: WorkerState, device: str, name: str, workspace_m: list[float] | None
 ):
     text = f"scene: builtin/brick\nmapping: {{scale: 3}}\n{device}"
@@ -54,7 +54,7 @@ def test_what_the_document_s_device_reaches(
     assert found == {"device": name, "workspace_m": pytest.approx(workspace_m) if workspace_m else None}
 
 
-def test_what_limits_the_force_is_counted_by_the_loop():
+def test_limits_are_counted_by_the_loop():
     """The page takes two of these counts a second apart."""
     flagged = {"DAMPED": 3, "STALE": 1}
     servo = SimpleNamespace(report=lambda: SimpleNamespace(ticks=1000, overruns=2, flagged=flagged))

@@ -47,7 +47,7 @@ def picture(path: Path, columns: int = 8) -> Path:
 
 
 class TestUploadStore:
-    def test_a_batch_is_kept_whole_and_the_same_one_once(self, store: UploadStore) -> None:
+    def test_batch_is_stored_once_by_its_content(self, store: UploadStore) -> None:
         def kept() -> list[Path]:
             batch = store.batch()
             put(store, batch, "b.png", b"right", b" hand")
@@ -59,7 +59,7 @@ class TestUploadStore:
         assert first[1].read_bytes() == b"right hand"
         assert kept() == first
 
-    def test_other_contents_are_another_folder(self, store: UploadStore) -> None:
+    def test_batch_of_other_content_gets_another_folder(self, store: UploadStore) -> None:
         places = set[Path]()
         for contents in (b"one", b"two"):
             batch = store.batch()
@@ -68,30 +68,30 @@ class TestUploadStore:
         assert len(places) == 2
 
     @pytest.mark.parametrize("name", ["", ".", "..", "../a.png", "a/b.png", "a\\b.png", "a\0b", "a\nb", "x" * 200, " "])
-    def test_no_name_leads_elsewhere(self, store: UploadStore, name: str, tmp_path: Path) -> None:
+    def test_upload_name_that_leads_elsewhere_is_refused(self, store: UploadStore, name: str, tmp_path: Path) -> None:
         batch = store.batch()
         with pytest.raises(ConfigError, match="cannot be kept"):
             put(store, batch, name, b"x")
         assert not [path for path in tmp_path.rglob("*") if path.is_file()]
 
     @pytest.mark.parametrize("batch", ["", "..", "0" * 16, "../kept"])
-    def test_only_batches_that_were_begun(self, store: UploadStore, batch: str) -> None:
+    def test_upload_to_an_unknown_batch_is_refused(self, store: UploadStore, batch: str) -> None:
         with pytest.raises(ConfigError, match="send them again"):
             put(store, batch, "a.png", b"x")
 
-    def test_what_breaks_off_leaves_nothing(self, store: UploadStore, tmp_path: Path) -> None:
+    def test_upload_that_breaks_off_leaves_nothing(self, store: UploadStore, tmp_path: Path) -> None:
         batch = store.batch()
         with pytest.raises(RuntimeError):
             put(store, batch, "a.png", b"half", then=RuntimeError("gone"))
         assert not [path for path in tmp_path.rglob("*") if path.is_file()]
 
-    def test_a_full_disk_is_said(self, store: UploadStore, tmp_path: Path) -> None:
+    def test_upload_to_a_full_disk_is_reported(self, store: UploadStore, tmp_path: Path) -> None:
         batch = store.batch()
         with pytest.raises(ConfigError, match="free some space"):
             put(store, batch, "a.png", b"half", then=OSError(errno.ENOSPC, "No space left on device"))
         assert not [path for path in tmp_path.rglob("*") if path.is_file()]
 
-    def test_bounds(self, store: UploadStore, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_upload_bounds_are_kept(self, store: UploadStore, monkeypatch: pytest.MonkeyPatch) -> None:
         batch = store.batch()
         for number in range(MOST_FILES):
             put(store, batch, f"{number}.png", b"x")
@@ -104,56 +104,56 @@ class TestUploadStore:
 
 
 class TestBegin:
-    def test_a_picture_gets_a_pipeline(self, worker_state: WorkerState, tmp_path: Path) -> None:
+    def test_picture_opens_with_a_new_pipeline(self, worker_state: WorkerState, tmp_path: Path) -> None:
         found = opening.begin(worker_state, [picture(tmp_path / "cat.png")])
         assert "photo:" in found["text"]
         assert found["path"].name == "cat.yaml"
 
-    def test_a_video_is_its_first_frame(self, worker_state: WorkerState, tmp_path: Path) -> None:
+    def test_video_opens_with_a_new_pipeline(self, worker_state: WorkerState, tmp_path: Path) -> None:
         path = greys(tmp_path / "walk.avi", 3)
         assert read_values(opening.begin(worker_state, [path])["text"], path)["scene"] == {"video": str(path)}
         assert {"name": "walk.avi", "kind": "video"} in opening.folder(worker_state, tmp_path)["entries"]
 
-    def test_two_are_a_pair(self, worker_state: WorkerState, tmp_path: Path) -> None:
+    def test_two_pictures_open_as_a_pair_and_can_be_exchanged(self, worker_state: WorkerState, tmp_path: Path) -> None:
         found = opening.begin(worker_state, [picture(tmp_path / "l.png"), picture(tmp_path / "r.png")])
         scene = read_values(found["text"], found["path"])["scene"]
         assert (scene["left"].endswith("l.png"), scene["right"].endswith("r.png")) == (True, True)
         exchanged = opening.exchange(worker_state, found["text"], found["path"])
         assert read_values(exchanged, found["path"])["scene"] == {"left": scene["right"], "right": scene["left"]}
 
-    def test_only_a_pair_has_sides(self, worker_state: WorkerState, tmp_path: Path) -> None:
+    def test_exchange_without_a_pair_is_refused(self, worker_state: WorkerState, tmp_path: Path) -> None:
         with pytest.raises(ConfigError, match="not a pair"):
             opening.exchange(worker_state, "scene: builtin/brick\n", tmp_path / "a.yaml")
 
-    def test_a_file_counts_its_pictures_belong_to_it(self, worker_state: WorkerState, tmp_path: Path) -> None:
+    def test_pipeline_file_with_its_pictures_opens_as_the_file(self, worker_state: WorkerState, tmp_path: Path) -> None:
         (tmp_path / "mine.yaml").write_text("scene: {photo: cat.png}\n")
         found = opening.begin(worker_state, [picture(tmp_path / "cat.png"), tmp_path / "mine.yaml"])
         assert found == {"text": "scene: {photo: cat.png}\n", "path": tmp_path / "mine.yaml"}
 
     @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
-    def test_a_recording_is_one(self, worker_state: WorkerState, tmp_path: Path, suffix: str) -> None:
+    def test_recording_opens_as_its_path(self, worker_state: WorkerState, tmp_path: Path, suffix: str) -> None:
         path = tmp_path / f"felt{suffix}"
         Recording(np.zeros((3, 17)), "", About("mock", "penalty", "scene: x")).save(path)
         assert opening.begin(worker_state, [path]) == {"recording": str(path)}
 
-    def test_an_array_is_a_height_map(self, worker_state: WorkerState, tmp_path: Path) -> None:
+    def test_array_opens_as_a_height_map(self, worker_state: WorkerState, tmp_path: Path) -> None:
         np.savez(tmp_path / "hill.npz", height=np.eye(4))
         np.save(tmp_path / "hill.npy", np.eye(4))
         assert "height:" in opening.begin(worker_state, [tmp_path / "hill.npy"])["text"]
         assert "recording" not in opening.begin(worker_state, [tmp_path / "hill.npz"])
 
-    def test_what_is_nothing_of_it_is_said(self, worker_state: WorkerState, tmp_path: Path) -> None:
+    def test_unknown_kind_of_file_is_refused(self, worker_state: WorkerState, tmp_path: Path) -> None:
         (tmp_path / "note.docx").write_text("x")
         with pytest.raises(ConfigError, match=r"note.docx: is not a picture"):
             opening.begin(worker_state, [tmp_path / "note.docx"])
 
-    def test_a_missing_file_is_said(self, worker_state: WorkerState, tmp_path: Path) -> None:
+    def test_missing_file_is_reported(self, worker_state: WorkerState, tmp_path: Path) -> None:
         with pytest.raises(ConfigError, match="there is no such file"):
             opening.begin(worker_state, [tmp_path / "mine.yaml"])
 
 
 class TestSave:
-    def test_elsewhere_it_means_the_same(self, worker_state: WorkerState, tmp_path: Path) -> None:
+    def test_document_saved_elsewhere_names_the_same_files(self, worker_state: WorkerState, tmp_path: Path) -> None:
         picture(tmp_path / "cat.png")
         text = "# mine\nscene: {photo: cat.png}  # the cat\n"
         out = tmp_path / "other" / "mine.yaml"
@@ -162,13 +162,13 @@ class TestSave:
         assert out.read_text().startswith("# mine\n")
         assert "# the cat" in out.read_text()
 
-    def test_in_its_place_it_is_the_text(self, worker_state: WorkerState, tmp_path: Path) -> None:
+    def test_document_saved_in_place_is_its_text(self, worker_state: WorkerState, tmp_path: Path) -> None:
         text = "scene:   builtin/brick # as it was written\n"
         opening.save(worker_state, text, tmp_path / "mine.yaml", tmp_path / "mine.yaml")
         assert (tmp_path / "mine.yaml").read_text() == text
 
 
-def test_folders_list_what_can_be_opened(worker_state: WorkerState, tmp_path: Path) -> None:
+def test_folder_lists_what_can_be_opened(worker_state: WorkerState, tmp_path: Path) -> None:
     for name in ("b.PNG", "a.yaml", ".hidden.png", "note.txt", "felt.nc", "hill.npy"):
         (tmp_path / name).touch()
     (tmp_path / "more").mkdir()

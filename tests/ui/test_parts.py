@@ -47,7 +47,7 @@ def packed(labels: np.ndarray) -> bytes:
 
 class TestLabels:
     @pytest.mark.parametrize("count", [1, 2, 256, 257, 900])
-    def test_a_file_says_what_was_drawn(self, tmp_path: Path, count: int) -> None:
+    def test_label_file_holds_the_labels(self, tmp_path: Path, count: int) -> None:
         labels = (np.arange(1200, dtype=np.int32) % count).reshape(30, 40)
         path = tmp_path / "parts.png"
         path.write_bytes(as_png(labels, "mine.yaml"))
@@ -58,7 +58,7 @@ class TestLabels:
         assert is_ours(path, "mine.yaml")
         assert not is_ours(path, "other.yaml")
 
-    def test_a_file_that_somebody_painted_in_is_not_ours(self, tmp_path: Path) -> None:
+    def test_label_file_that_was_painted_in_is_not_ours(self, tmp_path: Path) -> None:
         path = tmp_path / "parts.png"
         path.write_bytes(as_png(drawn().astype(np.int32), "mine.yaml"))
         with Image.open(path) as image:
@@ -75,16 +75,16 @@ class TestLabels:
         path.write_bytes(b"no picture")
         assert not is_ours(path, "mine.yaml")
 
-    def test_more_labels_than_a_file_may_hold_are_said(self) -> None:
+    def test_label_file_with_too_many_labels_is_refused(self) -> None:
         with pytest.raises(ConfigError, match="5000 parts, and at most 4096"):
             as_png(np.arange(5000, dtype=np.int32).reshape(50, 100), "mine.yaml")
 
-    def test_what_is_sent_arrives(self, tmp_path: Path) -> None:
+    def test_upload_of_labels_is_unpacked(self, tmp_path: Path) -> None:
         path = tmp_path / "sent"
         path.write_bytes(packed(drawn()))
         np.testing.assert_array_equal(unpack(path, SHAPE), drawn())
 
-    def test_what_cannot_be_packed_arrives(self, tmp_path: Path) -> None:
+    def test_upload_of_incompressible_labels_is_unpacked(self, tmp_path: Path) -> None:
         labels = np.random.default_rng(0).integers(0, 2**16, (600, 800), np.uint16)
         path = tmp_path / "sent"
         path.write_bytes(gzip.compress(labels.astype("<u2").tobytes(), 0))
@@ -103,13 +103,13 @@ class TestLabels:
         ],
         ids=["nothing", "noise", "cut short", "too small", "too large", "another kind", "not packed"],
     )
-    def test_anything_else_is_refused(self, tmp_path: Path, sent: bytes) -> None:
+    def test_upload_of_anything_else_is_refused(self, tmp_path: Path, sent: bytes) -> None:
         path = tmp_path / "sent"
         path.write_bytes(sent)
         with pytest.raises(ConfigError, match="not a gzip of 32 x 24"):
             unpack(path, SHAPE)
 
-    def test_a_bomb_is_not_unpacked(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_upload_that_unpacks_to_too_much_is_refused(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         most: list[int] = []
         real = zlib.decompressobj
 
@@ -144,7 +144,7 @@ class TestNumbers:
         assert found == {"7": [0], "3": [1], "5": [2]}
         assert labels.shape == numbers.shape
 
-    def test_a_label_in_pieces_keeps_its_name_where_it_is_largest(self) -> None:
+    def test_label_in_pieces_names_the_largest_piece(self) -> None:
         numbers = np.array([[0, 1, 2, 2, 1, 3]], np.int32)
         told = [{"label": 7, "name": "leaf", "material": "wood"}, {"label": 8, "name": "leaf 2"}]
         choices, found = number_parts(told, [7, 8, 7, 7], numbers)
@@ -162,7 +162,7 @@ class TestNumbers:
             ([{"label": "7"}], "number of its label"),
         ],
     )
-    def test_what_is_told_of_no_label_is_refused(self, told: list[dict[str, Any]], says: str) -> None:
+    def test_part_entry_without_a_label_is_refused(self, told: list[dict[str, Any]], says: str) -> None:
         with pytest.raises(ConfigError, match=says):
             number_parts(told, [7], np.zeros((1, 1), np.int32))
 
@@ -171,46 +171,46 @@ class TestText:
     def said(self, text: str, path: Path, parts: dict[int, Any], **heights: Any) -> str:
         return document_with_parts(text, path, path.parent / "parts.png", parts, heights or None, {"title": None})
 
-    def test_parts_get_a_line_each_and_the_rest_stays(self, tmp_path: Path) -> None:
+    def test_document_gets_a_line_for_each_part(self, tmp_path: Path) -> None:
         parts = {0: {"name": "wall"}, 2: {"name": "hat", "height_m": 0.0042, "material": "glass"}, 3: {}}
         found = self.said(TEXT, tmp_path / "mine.yaml", parts, by="given")
         assert found == TEXT.replace("photo: mine.png", "photo: mine.png, segments: parts.png") + (
             "heights: {by: given}\nparts:\n  0: wall\n  2: {name: hat, height_m: 0.0042, material: glass}\n"
         )
 
-    def test_comments_beside_parts_stay(self, tmp_path: Path) -> None:
+    def test_document_keeps_comments_next_to_parts(self, tmp_path: Path) -> None:
         text = "scene: {photo: a.png}\nparts:\n  0: wall  # grey\n  1: hat\n  4: gone\n# the end\n"
         found = self.said(text, tmp_path / "mine.yaml", {0: {"name": "wall"}, 1: {"name": "cap"}, 2: {"name": "bag"}})
         assert "  0: wall  # grey\n  1: cap\n  2: bag\n# the end\n" in found
 
-    def test_no_parts_leave_no_block(self, tmp_path: Path) -> None:
+    def test_document_without_parts_has_no_block(self, tmp_path: Path) -> None:
         text = "scene: {photo: a.png}\nparts:\n  0: wall\nwant: touch\n"
         assert self.said(text, tmp_path / "mine.yaml", {0: {}}) == (
             "scene: {photo: a.png, segments: parts.png}\nwant: touch\n"
         )
 
-    def test_a_document_on_one_line_stays_one(self, tmp_path: Path) -> None:
+    def test_document_on_one_line_stays_on_one(self, tmp_path: Path) -> None:
         found = self.said("{scene: {photo: a.png}}", tmp_path / "mine.yaml", {0: {"name": "wall"}})
         assert found == "{scene: {photo: a.png, segments: parts.png}, parts: {0: wall}}"
 
     @pytest.mark.parametrize(
         "name", ["a: b", '"', "\\", "# no comment", "- x", "{}", "null", "007", "é ✂ 𝄞", "a\nb", "\x07", " a ", "&a *b"]
     )
-    def test_every_name_comes_back(self, tmp_path: Path, name: str) -> None:
+    def test_part_names_survive_writing_and_reading(self, tmp_path: Path, name: str) -> None:
         from tangible_core.pipeline.config.editing import read_values
 
         path = tmp_path / "mine.yaml"
         found = self.said(TEXT, path, {0: {"name": name}, 1: {"name": name + "x", "height_m": 0.001}})
         assert read_values(found, path)["parts"] == {"0": name, "1": {"name": name + "x", "height_m": 0.001}}
 
-    def test_a_great_many_parts_take_no_great_time(self, tmp_path: Path) -> None:
+    def test_document_with_many_parts_is_written_as_a_block(self, tmp_path: Path) -> None:
         path, many = tmp_path / "mine.yaml", {number: {"name": f"part {number}"} for number in range(600)}
         first = self.said(TEXT, path, many)
         assert first.count("\n  ") == 600
         renamed = {number: {"name": f"piece {number}"} for number in many}
         assert "  599: piece 599\n" in self.said(first, path, renamed)
 
-    def test_a_built_in_scene_becomes_its_files(self, tmp_path: Path) -> None:
+    def test_document_of_a_built_in_scene_names_its_files(self, tmp_path: Path) -> None:
         from tangible_core.pipeline.config.editing import read_values
 
         path = tmp_path / "mine.yaml"
@@ -266,7 +266,7 @@ async def saved(small: SmallSession, ask: Any, **told: Any) -> Any:
 
 
 class TestOpening:
-    def test_a_photo_without_segments_is_one_part(self, small: Callable[[Check], None]) -> None:
+    def test_photo_without_segments_opens_as_one_part(self, small: Callable[[Check], None]) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
             found = await ask("parts_open")
             assert (found["rows"], found["columns"], found["widthM"]) == (24, 32, 0.06)
@@ -281,7 +281,7 @@ class TestOpening:
 
         small(check)
 
-    def test_what_was_saved_is_opened_again(self, small: Callable[[Check], None]) -> None:
+    def test_saved_parts_are_opened_again(self, small: Callable[[Check], None]) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
             kept = await saved(small, ask, title="A hat", language="de")
             found = await ask("parts_open")
@@ -299,7 +299,7 @@ class TestOpening:
         small(check)
 
     @pytest.mark.parametrize("scene", ["{height: hill.npy}", "{height: hill.npy, segments: drawn.png}"])
-    def test_heights_are_a_picture_too(self, tmp_path: Path, scene: str) -> None:
+    def test_height_map_opens_as_a_picture(self, tmp_path: Path, scene: str) -> None:
         hill = np.add.outer(np.arange(24.0), np.arange(32.0))
         hill[0, 0] = np.nan
         np.save(tmp_path / "hill.npy", hill)
@@ -312,7 +312,7 @@ class TestOpening:
         assert grey[-1, -1] > 240
         assert grey[0, 1] < 30
 
-    def test_places_lie_in_their_parts_however_small(self) -> None:
+    def test_places_lie_in_their_parts(self) -> None:
         labels = np.random.default_rng(0).integers(0, 30, (900, 1100)).astype(np.int32)
         labels[100:800, 200:900] = 40
         found = find_parts(SegmentMap(np.unique(labels, return_inverse=True)[1].reshape(labels.shape).astype(np.int32)))
@@ -321,7 +321,7 @@ class TestOpening:
             if number > 200_000:
                 break
 
-    def test_a_full_disk_leaves_nothing(self, tmp_path: Path) -> None:
+    def test_opening_on_a_full_disk_leaves_nothing(self, tmp_path: Path) -> None:
         Image.fromarray(np.random.default_rng(0).integers(0, 255, (90, 90, 3)).astype(np.uint8)).save(
             tmp_path / "a.png"
         )
@@ -333,9 +333,7 @@ class TestOpening:
 
 
 class TestSaving:
-    def test_labels_lie_beside_the_document_which_runs_as_it_stands(
-        self, small: Callable[[Check], None], tmp_path: Path
-    ) -> None:
+    def test_labels_are_saved_next_to_the_document(self, small: Callable[[Check], None], tmp_path: Path) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
             found = await saved(small, ask)
             assert (found["path"], found["saved"]) == (str(tmp_path / "parts.png"), True)
@@ -353,7 +351,7 @@ class TestSaving:
 
         small(check)
 
-    def test_a_picture_that_nobody_saved_yet_keeps_its_parts_on_the_shelf(
+    def test_labels_of_an_unsaved_document_go_to_the_store(
         self, small: Callable[[Check], None], tmp_path: Path
     ) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
@@ -376,7 +374,7 @@ class TestSaving:
             ("{rules: [{part: hat, material: ice}]}", ""),
         ],
     )
-    def test_materials_by_number_that_are_others_now_are_told(
+    def test_materials_by_a_number_that_moved_are_warned_of(
         self, small: Callable[[Check], None], caplog: pytest.LogCaptureFixture, materials: str, says: str
     ) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
@@ -393,7 +391,7 @@ class TestSaving:
 
         small(check)
 
-    def test_nothing_is_written_over_that_is_not_ours(self, small: Callable[[Check], None], tmp_path: Path) -> None:
+    def test_labels_overwrite_no_foreign_file(self, small: Callable[[Check], None], tmp_path: Path) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
             (tmp_path / "parts.png").write_bytes(b"of somebody else")
             assert Path((await saved(small, ask))["path"]).name == "parts-2.png"
@@ -407,7 +405,7 @@ class TestSaving:
 
         small(check)
 
-    def test_other_labels_under_the_same_name_are_made_anew(self, small: Callable[[Check], None]) -> None:
+    def test_labels_that_changed_are_made_again(self, small: Callable[[Check], None]) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             await small.tab.until("touch")
@@ -422,7 +420,7 @@ class TestSaving:
 
         small(check)
 
-    def test_a_step_back_finds_the_labels_that_it_had(self, small: Callable[[Check], None]) -> None:
+    def test_labels_before_are_found_by_undo(self, small: Callable[[Check], None]) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             fewer = drawn()
@@ -449,7 +447,7 @@ class TestSaving:
             ({"of": "of another tab"}, "changed elsewhere meanwhile"),
         ],
     )
-    def test_what_cannot_be_said_changes_nothing(
+    def test_invalid_entry_changes_nothing(
         self, small: Callable[[Check], None], tmp_path: Path, told: dict[str, Any], says: str
     ) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
@@ -460,7 +458,7 @@ class TestSaving:
 
         small(check)
 
-    def test_a_disk_that_holds_the_document_and_not_the_labels_changes_nothing(
+    def test_disk_with_room_for_the_document_alone_changes_nothing(
         self, small: Callable[[Check], None], tmp_path: Path
     ) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
@@ -474,7 +472,7 @@ class TestSaving:
         small(check)
 
     @pytest.mark.parametrize("size", [100, 3000])
-    def test_a_full_disk_changes_nothing(self, small: Callable[[Check], None], tmp_path: Path, size: int) -> None:
+    def test_full_disk_changes_nothing(self, small: Callable[[Check], None], tmp_path: Path, size: int) -> None:
         """100: there is no room for the labels; 3000: for the document behind them."""
 
         async def check(small: SmallSession, ask: Any) -> None:
@@ -495,7 +493,7 @@ class TestSaving:
         small(check)
 
     @pytest.mark.parametrize("framing", ["crop: [3, 2, 20, 15]", "rotate: 90", "crop: [3, 2, 20, 15], rotate: 270"])
-    def test_what_is_cut_and_turned_comes_back_as_it_was_drawn(self, tmp_path: Path, framing: str) -> None:
+    def test_labels_of_a_cropped_and_rotated_scene_are_saved_in_its_frame(self, tmp_path: Path, framing: str) -> None:
         path = small_scene(tmp_path)
         text = TEXT.replace("photo: mine.png", f"photo: mine.png, {framing}")
         path.write_text(text)
@@ -515,9 +513,7 @@ class TestSaving:
 
 
 @pytest.mark.parametrize("want", ["materials", "relief", "surface"])
-def test_pages_know_the_names_of_parts_whatever_is_made(
-    small: Callable[[Check], None], tmp_path: Path, want: str
-) -> None:
+def test_scene_event_has_the_names_of_parts(small: Callable[[Check], None], tmp_path: Path, want: str) -> None:
     """Labels that are shown are those that materials are of, though two parts are of one segment."""
     labels = drawn() % 5
     labels[0:2, 0:2] = 2  # another piece of the hat's segment
@@ -545,7 +541,7 @@ def test_pages_know_the_names_of_parts_whatever_is_made(
 
 
 class TestHeights:
-    def test_what_is_felt_is_what_the_saved_document_gives(
+    def test_changed_heights_feel_as_the_saved_document(
         self, small: Callable[[Check], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         """To the bit: of surfaces, and of all that the force loop is sent."""
@@ -577,7 +573,7 @@ class TestHeights:
         small(check)
 
     @pytest.mark.parametrize("by", ["guess", "depth", "given"])
-    def test_what_the_recipe_finds_is_felt_where_nothing_is_given(
+    def test_missing_heights_are_those_of_the_recipe(
         self, small: Callable[[Check], None], tmp_path: Path, by: str
     ) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
@@ -595,7 +591,7 @@ class TestHeights:
 
         small(check)
 
-    def test_the_terrain_follows_and_the_document_stays(self, small: Callable[[Check], None]) -> None:
+    def test_changed_heights_are_drawn_and_leave_the_document(self, small: Callable[[Check], None]) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             await small.tab.until("touch")
@@ -608,7 +604,7 @@ class TestHeights:
 
         small(check)
 
-    def test_a_large_surface_is_felt_coarsely_until_it_is_saved(
+    def test_changed_heights_of_a_large_surface_use_a_coarse_grid(
         self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
     ) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
@@ -626,7 +622,7 @@ class TestHeights:
 
         small(check)
 
-    def test_a_height_makes_again_nothing_that_does_not_depend_on_it(
+    def test_changed_height_recomputes_only_what_depends_on_it(
         self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
     ) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
@@ -659,7 +655,7 @@ class TestHeights:
             ({"heights_m": [0.0, 0.0, 0.0], "heights": {"round_m": -1.0}}, "round_m"),
         ],
     )
-    def test_what_is_wrong_is_said(self, small: Callable[[Check], None], told: dict[str, Any], says: str) -> None:
+    def test_invalid_heights_are_refused(self, small: Callable[[Check], None], told: dict[str, Any], says: str) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             with pytest.raises(TangibleError, match=says):
@@ -667,9 +663,7 @@ class TestHeights:
 
         small(check)
 
-    def test_of_heights_that_come_faster_than_they_are_felt_the_newest_are(
-        self, small: Callable[[Check], None]
-    ) -> None:
+    def test_heights_that_come_too_fast_are_skipped_but_the_newest(self, small: Callable[[Check], None]) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
             await saved(small, ask)
             await small.tab.until("touch")
@@ -685,7 +679,7 @@ class TestHeights:
     @pytest.mark.parametrize(
         ("compared", "running", "says"), [(None, True, "put"), (None, False, "feel"), ({}, True, "feel")]
     )
-    def test_heights_that_are_dragged_fill_no_history(
+    def test_dragged_heights_fill_no_history(
         self, monkeypatch: pytest.MonkeyPatch, compared: Any, running: bool, says: str
     ) -> None:
         done: list[str] = []
@@ -706,7 +700,7 @@ class TestHeights:
         asyncio.run(Session.feel_on(session, {}))
         assert done == [says]
 
-    def test_parts_that_were_not_saved_have_no_heights(self, small: Callable[[Check], None]) -> None:
+    def test_heights_of_unsaved_parts_are_refused(self, small: Callable[[Check], None]) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
             with pytest.raises(ConfigError, match="save what was drawn"):
                 await ask("parts_heights", heights_m=[0.001])
@@ -714,7 +708,7 @@ class TestHeights:
         small(check)
 
 
-def test_of_asks_that_wait_the_newest_alone_is_done() -> None:
+def test_latest_wins_queue_runs_the_newest_of_those_that_wait() -> None:
     async def check() -> None:
         newest, go, done = LatestWins(), asyncio.Event(), list[int]()
 
@@ -732,7 +726,7 @@ def test_of_asks_that_wait_the_newest_alone_is_done() -> None:
     asyncio.run(check())
 
 
-def test_what_is_drawn_leaves_time_for_what_is_felt_and_the_last_is_drawn():
+def test_latest_wins_queue_pauses_between_calls():
     async def check() -> None:
         drawn, done = LatestWins(0.2), []
 

@@ -106,7 +106,7 @@ def high(page: "Page", x: float, y: float) -> float:
     )
 
 
-def test_from_a_photograph_to_five_parts_by_mouse(opened: Callable[..., str], open_page: OpenPage, photo: Path):
+def test_parts_editor_makes_five_parts_by_mouse(opened: Callable[..., str], open_page: OpenPage, photo: Path):
     (photo.parent / "ball.yaml").write_text(f"scene: {{photo: ball.png}}\ndepth: {{use: luminance}}\n{RELIEF}")
     page = open_page(opened(photo.parent / "ball.yaml") + "&measure", has_touch=True)
     felt(page)
@@ -196,7 +196,7 @@ def test_from_a_photograph_to_five_parts_by_mouse(opened: Callable[..., str], op
     assert (true & drawn).sum() / (true | drawn).sum() > 0.9, "the proposal is the ball"
 
 
-def test_from_a_photograph_to_five_parts_by_keyboard(opened: Callable[..., str], open_page: OpenPage, photo: Path):
+def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], open_page: OpenPage, photo: Path):
     """Opened as a photograph; what is drawn is spoken, saved, and kept as a pipeline file."""
     page = open_page("about:blank")
     page.add_init_script(SPY)

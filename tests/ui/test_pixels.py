@@ -141,7 +141,7 @@ def coloured(picture: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:
     return np.abs(picture - colour).max(axis=2) < 24
 
 
-def test_the_surface_is_the_right_way_round_and_where_it_is(shown: Shown):
+def test_surface_is_drawn_the_right_way_round_and_in_place(shown: Shown):
     """Right is right, away is up, high is up; its far edge, low on the left and high on the right, ends it."""
     middle, right, away, high = (shown.spot(*at) for at in ((0, 0, 0), (0.01, 0, 0), (0, 0.01, 0), (0, 0, 0.01)))
     assert right[0] > middle[0] + 10
@@ -159,7 +159,7 @@ def test_the_surface_is_the_right_way_round_and_where_it_is(shown: Shown):
 
 
 @pytest.mark.parametrize("hand", [(LEFT, 0.015, 0.004), (RIGHT, -0.002, HIGH_M - 0.001), (LEFT, -0.02, -0.002)])
-def test_the_cursor_is_at_the_hand(shown: Shown, hand: Vec):
+def test_cursor_is_drawn_at_the_hand(shown: Shown, hand: Vec):
     """Also under the surface, through which it is seen."""
     shown.only("device")
     shown.state(hand)
@@ -169,7 +169,7 @@ def test_the_cursor_is_at_the_hand(shown: Shown, hand: Vec):
 
 @pytest.mark.parametrize("force", [(0.0, 0.0, 3.0), (1.5, 0.0, 2.0), (-1.0, 1.5, 2.5)])
 @pytest.mark.parametrize("proxy", [None, (LEFT + 0.004, 0.003, 0.0)])
-def test_the_arrow_is_the_force(shown: Shown, force: Vec, proxy: Vec | None):
+def test_arrow_is_drawn_as_long_as_the_force(shown: Shown, force: Vec, proxy: Vec | None):
     """It begins at the contact, and ends where the scale of metres to a newton says."""
     hand = LEFT, 0.0, -0.001
     contact = np.array(proxy or (LEFT, 0.0, 0.0))
@@ -189,7 +189,7 @@ def test_the_arrow_is_the_force(shown: Shown, force: Vec, proxy: Vec | None):
     assert np.hypot(*(tip - end)) < 4
 
 
-def test_the_trace_is_where_the_contact_was(shown: Shown):
+def test_trace_is_drawn_where_the_contact_was(shown: Shown):
     """Between the places of two states, and not over a place where the hand was let go."""
     shown.only()
     before = shown.pixels()
@@ -203,7 +203,7 @@ def test_the_trace_is_where_the_contact_was(shown: Shown):
     assert near(changed, shown.spot(LEFT, 0.006, 0)).max() < 5
 
 
-def test_a_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
+def test_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
     """From the mouse to the loop and back: F = k d, drawn and said."""
     shown.only("device", "labels", "arrow")
     x, y = shown.on_page(RIGHT, 0.01, HIGH_M)
@@ -239,7 +239,7 @@ def test_a_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
     shown.page.evaluate("() => { document.getElementById('data-cursor').open = false; }")
 
 
-def test_the_values_are_copied_as_they_are(shown: Shown):
+def test_values_are_copied_as_they_are(shown: Shown):
     hand, force = (LEFT, 0.005, -0.0015), (0.25, 0.0, 0.75)
     shown.state(hand, force)
     shown.pixels()
@@ -254,7 +254,7 @@ def test_the_values_are_copied_as_they_are(shown: Shown):
     assert device["depth_m"] == pytest.approx(0.0015, abs=1e-6)
 
 
-def test_the_ruler_measures_the_step(shown: Shown):
+def test_ruler_measures_the_step(shown: Shown):
     """By the mouse, then by the keyboard; what it says is what it is drawn between."""
     shown.only("labels")
     shown.page.get_by_role("button", name="Measure with the mouse").click()
@@ -283,7 +283,7 @@ def test_the_ruler_measures_the_step(shown: Shown):
     assert not shown.page.locator("#ruler-panel dl").count()
 
 
-def test_the_frame_is_what_the_device_reaches_and_is_dragged(shown: Shown):
+def test_frame_is_the_device_s_reach_and_can_be_dragged(shown: Shown):
     """A Falcon reaches 80 mm: at twice the scale 40 mm of the picture. What is dragged is written to the document."""
     side = 0.04
     shown.only("labels")

@@ -71,7 +71,7 @@ STROKE = np.array([[120.0, 97.0], [160.0, 120.0], [200.0, 143.0]])
 class TestProposals:
     @pytest.mark.parametrize("kind", ["grabcut", "watershed"])
     @pytest.mark.parametrize("factor", [1, 6])
-    def test_the_thing_under_the_stroke_is_found(self, kind: proposals.Kind, factor: int) -> None:
+    def test_proposal_is_the_object_under_the_stroke(self, kind: proposals.Kind, factor: int) -> None:
         picture, inside = two_things()
         picture = cv2.resize(picture, None, fx=factor, fy=factor, interpolation=cv2.INTER_CUBIC)
         box, mask = propose(picture, STROKE * factor, 12 * factor, kind)
@@ -82,7 +82,7 @@ class TestProposals:
         assert mask[:, 0].any()
         assert mask[:, -1].any()
 
-    def test_a_border_is_as_fine_as_the_picture(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_proposal_border_is_as_fine_as_the_picture(self, monkeypatch: pytest.MonkeyPatch) -> None:
         picture, inside = two_things()
         monkeypatch.setattr(proposals, "MOST_CELLS", 2000)
         fine = placed(*propose(picture, STROKE, 12, "grabcut"))
@@ -91,7 +91,7 @@ class TestProposals:
         coarse = placed(*propose(picture, STROKE, 12, "grabcut"))
         assert overlap(fine, inside) > max(0.96, overlap(coarse, inside) + 0.02)
 
-    def test_things_in_photographs_are_found(self) -> None:
+    def test_proposal_finds_objects_in_photographs(self) -> None:
         """Overlap with parts drawn by hand, of one stroke along the middle of each."""
         found = {
             (name, part): overlap(
@@ -104,20 +104,20 @@ class TestProposals:
         assert {part for (_, part), share in found.items() if share > 0.75} >= good, found
         assert np.median(list(found.values())) > 0.75
 
-    def test_nothing_is_proposed_beyond_the_box_that_was_drawn(self) -> None:
+    def test_proposal_stays_in_the_drawn_box(self) -> None:
         picture, _ = two_things()
         box, mask = propose(picture, STROKE, 12, "grabcut", [100, 80, 215, 160])
         found = placed(box, mask)
         found[80:160, 100:215] = False
         assert not found.any()
 
-    def test_one_that_was_drawn_elsewhere_holds_nothing_back(self) -> None:
+    def test_proposal_ignores_a_box_that_the_stroke_leaves(self) -> None:
         picture, inside = two_things()
         assert overlap(placed(*propose(picture, STROKE, 12, "grabcut", [0, 0, 20, 20])), inside) > 0.95
 
     @pytest.mark.parametrize("kind", ["grabcut", "watershed"])
     @pytest.mark.parametrize("shape", [(1, 1), (1, 40), (3, 3), (40, 1), (60, 80)])
-    def test_a_flat_or_tiny_picture_gives_at_least_the_stroke(
+    def test_proposal_in_a_flat_or_tiny_picture_contains_the_stroke(
         self, kind: proposals.Kind, shape: tuple[int, int]
     ) -> None:
         picture = np.full((*shape, 3), 128, np.uint8)
@@ -127,19 +127,19 @@ class TestProposals:
         assert found[0, 0]
         assert found[0, -1]
 
-    def test_a_stroke_over_everything_is_everything(self) -> None:
+    def test_proposal_of_a_stroke_over_everything_is_everything(self) -> None:
         picture, _ = two_things()
         box, mask = propose(picture, STROKE, 1e6, "grabcut")
         assert box == (0, 0, 320, 240)
         assert mask.all()
 
-    def test_runs_say_the_mask(self) -> None:
+    def test_runs_encode_the_mask(self) -> None:
         for mask in (np.array([[True, False], [False, True]]), np.array([[False, True, True]]), np.ones((2, 2), bool)):
             inside = np.repeat(np.arange(len(runs(mask))) % 2, runs(mask))
             np.testing.assert_array_equal(inside.reshape(mask.shape), mask)
 
     @pytest.mark.parametrize("points", [[], [[1.0]], [[1.0, 2.0, 3.0]], [[float("nan"), 1.0]], [[1.0, 2.0], []]])
-    def test_what_is_no_stroke_is_said(self, points: list[list[float]]) -> None:
+    def test_invalid_stroke_is_refused(self, points: list[list[float]]) -> None:
         with pytest.raises(ConfigError, match="at least one"):
             as_points(points, (*SHAPE, 3))
 
@@ -158,7 +158,7 @@ class TestSnapping:
         return found.astype(bool)
 
     @pytest.mark.parametrize("factor", [1, 5])
-    def test_an_outline_comes_to_lie_on_the_edges(self, factor: int) -> None:
+    def test_outline_moves_to_the_edges(self, factor: int) -> None:
         picture, inside = two_things()
         outline = self.wobbling(inside, 0.07)
         assert overlap(self.filled(outline), inside) < 0.93
@@ -166,7 +166,7 @@ class TestSnapping:
         found = snap(picture, outline * factor, 12.0 * factor) / factor
         assert overlap(self.filled(found), inside) > 0.97
 
-    def test_it_moves_no_farther_than_it_may_and_not_at_all_without_edges(self) -> None:
+    def test_outline_stays_within_reach_and_without_edges_in_place(self) -> None:
         picture, inside = two_things()
         outline = self.wobbling(inside, 0.07)
         found = snap(picture, outline, 3.0)
@@ -179,7 +179,7 @@ class TestSnapping:
     @pytest.mark.parametrize(
         "points", [[[5, 5]], [[5, 5], [5, 5], [5, 5]], [[0, 0], [319, 0]], [[1, 1], [2, 1], [2, 2]]]
     )
-    def test_what_is_hardly_an_outline_stays_in_the_picture(self, points: list[list[float]]) -> None:
+    def test_degenerate_outline_stays_in_the_picture(self, points: list[list[float]]) -> None:
         picture, _ = two_things()
         found = snap(picture, np.array(points, float), 12.0)
         assert np.isfinite(found).all()
@@ -187,7 +187,7 @@ class TestSnapping:
         assert (found <= [319, 239]).all()
 
 
-def test_jobs_answer_what_json_can_say(tmp_path: Path) -> None:
+def test_jobs_return_json_data(tmp_path: Path) -> None:
     picture, inside = two_things()
     Image.fromarray(picture).save(tmp_path / "a.png")
     worker_state = WorkerState(tmp_path, lambda event, **told: None)

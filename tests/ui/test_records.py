@@ -51,7 +51,7 @@ def felt(servo: Servo, ticks: int) -> None:
 
 
 class TestRecorder:
-    def test_every_tick_from_now_on_is_kept_once(self, servo: Servo, tmp_path: Path) -> None:
+    def test_recorder_keeps_every_tick_once(self, servo: Servo, tmp_path: Path) -> None:
         ended: list[tuple[Path, int, str]] = []
         recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: ended.append(told))
         felt(servo, 1)
@@ -67,7 +67,7 @@ class TestRecorder:
         assert servo.running
         assert found.time_s[0] <= first_s
 
-    def test_it_ends_with_its_loop(self, servo: Servo, tmp_path: Path) -> None:
+    def test_recorder_ends_with_its_loop(self, servo: Servo, tmp_path: Path) -> None:
         recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: None)
         felt(servo, 100)
         servo.stop("the device was pulled out")
@@ -76,7 +76,7 @@ class TestRecorder:
         assert found.stopped == "the device was pulled out"
         assert len(found.rows) >= 50
 
-    def test_a_full_disk_ends_the_recording_and_not_the_loop(
+    def test_recorder_on_a_full_disk_ends_and_the_loop_goes_on(
         self, servo: Servo, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         ended: list[str] = []
@@ -91,7 +91,7 @@ class TestRecorder:
         assert "free some space" in ended[0]
         assert servo.running
 
-    def test_two_do_not_write_one_file(self, servo: Servo, tmp_path: Path) -> None:
+    def test_recorder_of_a_file_in_use_is_refused(self, servo: Servo, tmp_path: Path) -> None:
         recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: None)
         with pytest.raises(OutputError, match="another program"):
             Recorder(servo, tmp_path / "a.nc", About(), lambda *told: None)
@@ -99,7 +99,7 @@ class TestRecorder:
 
 
 class TestShown:
-    def test_the_ticks_of_a_day_old_clock_keep_their_time(self, worker_state: WorkerState, tmp_path: Path) -> None:
+    def test_shown_recording_of_an_old_clock_keeps_its_times(self, worker_state: WorkerState, tmp_path: Path) -> None:
         some(50).save(tmp_path / "a.nc")
         shown = records.show_record(worker_state, tmp_path / "a.nc")
         rows = np.fromfile(tmp_path / shown["digest"] / "ticks.f32", "<f4").reshape(shown["rows"], shown["columns"])
@@ -107,7 +107,7 @@ class TestShown:
         assert np.allclose(rows[:, 2], some(50).position_m[:, 0], atol=1e-8)
         assert (shown["every"], shown["law"], shown["stopped"]) == (1, "penalty", "")
 
-    def test_a_long_one_is_thinned_and_says_so(
+    def test_shown_recording_that_is_long_is_thinned(
         self, worker_state: WorkerState, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(records, "MOST_ROWS", 20)
@@ -115,11 +115,11 @@ class TestShown:
         shown = records.show_record(worker_state, tmp_path / "a.nc")
         assert (shown["rows"], shown["every"]) == (17, 3)
 
-    def test_an_empty_one(self, worker_state: WorkerState, tmp_path: Path) -> None:
+    def test_shown_recording_may_be_empty(self, worker_state: WorkerState, tmp_path: Path) -> None:
         some(0).save(tmp_path / "a.nc")
         assert records.show_record(worker_state, tmp_path / "a.nc")["rows"] == 0
 
-    def test_the_list_has_the_newest_first_and_what_cannot_be_read(
+    def test_list_of_recordings_has_the_newest_first_and_unreadable_ones(
         self, worker_state: WorkerState, tmp_path: Path
     ) -> None:
         some(5).save(tmp_path / "old.nc")
@@ -132,7 +132,7 @@ class TestShown:
         assert records.records(worker_state, tmp_path / "missing") == []
 
 
-def test_a_recording_of_the_page_holds_the_names_of_the_parts_and_materials(
+def test_recording_of_the_page_has_the_names_of_parts_and_materials(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     kept: list[About] = []
@@ -147,7 +147,7 @@ def test_a_recording_of_the_page_holds_the_names_of_the_parts_and_materials(
     assert [each.materials for each in kept] == ['{"1": "wood"}']
 
 
-def test_two_are_compared_place_by_place(worker_state: WorkerState, tmp_path: Path) -> None:
+def test_two_recordings_are_compared_place_by_place(worker_state: WorkerState, tmp_path: Path) -> None:
     some(50, 1.0).save(tmp_path / "a.nc")
     some(80, 1.5).save(tmp_path / "b.nc")
     found = records.compare_records(worker_state, tmp_path / "a.nc", tmp_path / "b.nc")
@@ -155,7 +155,7 @@ def test_two_are_compared_place_by_place(worker_state: WorkerState, tmp_path: Pa
     assert (found["first_peak_force_n"], found["second_peak_force_n"]) == (1.0, 1.5)
 
 
-def test_another_law_feels_the_same_states(worker_state: WorkerState, tmp_path: Path) -> None:
+def test_replay_with_another_law_uses_the_same_states(worker_state: WorkerState, tmp_path: Path) -> None:
     np.save(tmp_path / "flat.npy", np.zeros((8, 8)))
     text = (
         "scene: {height: flat.npy}\nwant: touch\nrender: {use: penalty, stiffness_n_per_m: 500}\n"

@@ -46,7 +46,7 @@ def keyed(path: str) -> str:
 
 
 class TestWhoIsLetIn:
-    def test_every_route_but_the_built_page_needs_the_key(self, page: PageServer) -> None:
+    def test_routes_but_the_built_page_need_the_key(self, page: PageServer) -> None:
         """Of all that there are: a new one cannot forget it."""
         seen = set()
         for route in routes.routes(lambda: page.session, KEY):
@@ -64,14 +64,14 @@ class TestWhoIsLetIn:
             with page.tab(key) as tab:
                 assert tab.closed() == WRONG_KEY
 
-    def test_the_key_is_long_and_another_one_each_time(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_key_is_long_and_new_each_time(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.delenv("TANGIBLE_UI_TOKEN", raising=False)
         keys = {new_key() for _ in range(50)}
         assert len(keys) == 50
         assert all(len(key) * 6 >= 128 for key in keys)
 
     @pytest.mark.parametrize("host", ["evil.example", "127.0.0.1", "127.0.0.1:1", "", None])
-    def test_no_other_name_leads_here(self, page: PageServer, host: str | None) -> None:
+    def test_host_of_another_name_is_refused(self, page: PageServer, host: str | None) -> None:
         for path in ("/", keyed("/scene/abc/a.f32")):
             answer = page.ask(path, host=host)
             assert answer.status in (400, 403)
@@ -80,7 +80,7 @@ class TestWhoIsLetIn:
             assert raw.recv(100).startswith(b"HTTP/1.1 403")
 
     @pytest.mark.parametrize("origin", [None, "null", "http://evil.example", "https://{host}", "http://{host}.evil"])
-    def test_no_other_page_changes_anything(self, page: PageServer, origin: str | None) -> None:
+    def test_origin_of_another_page_is_refused(self, page: PageServer, origin: str | None) -> None:
         said = origin and origin.format(host=page.host)
         for method, path in (("PUT", f"/upload/{NAMES['batch']}/a.png"), ("POST", "/stop")):
             assert page.ask(keyed(path), method, b"x", origin=said).text == "another page may not do that"
@@ -99,7 +99,7 @@ class TestWhoIsLetIn:
             ("/scene/abc/a.f32", 403, "no-store"),
         ],
     )
-    def test_every_answer_has_the_strict_headers(
+    def test_answers_have_the_strict_headers(
         self, page: PageServer, path: str, status: int, cached: str, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         (page.folder / "abc").mkdir()
@@ -115,7 +115,7 @@ class TestWhoIsLetIn:
         assert answer.headers.get_all("cache-control") == [cached]
         assert "server" not in answer.headers
 
-    def test_a_page_that_was_built_again_is_seen(self, page: PageServer, tmp_path: Path) -> None:
+    def test_page_that_was_built_again_is_served(self, page: PageServer, tmp_path: Path) -> None:
         tag = page.ask("/app.js").headers["etag"]
         assert page.ask("/app.js", if_none_match=tag).status == 304
         (tmp_path / "static" / "app.js").write_text("22")
@@ -132,7 +132,7 @@ class TestWhoIsLetIn:
             "/scene//secret", "/../secret", "/%2e%2e/secret", "/..%2fsecret", "//secret", "/scene", "/scene/",
         ],
     )  # fmt: skip
-    def test_no_path_leads_elsewhere(self, page: PageServer, tmp_path: Path, path: str) -> None:
+    def test_path_that_leads_elsewhere_is_not_found(self, page: PageServer, tmp_path: Path, path: str) -> None:
         (tmp_path / "secret").write_text("secret")
         (page.folder / "abc").mkdir()
         (page.folder / "abc" / "a.stl").write_text("of no export")
@@ -142,7 +142,7 @@ class TestWhoIsLetIn:
         assert page.ask(keyed(path)).status == 404
 
     @pytest.mark.parametrize("name", ["a.stl", "a.html", "ä b.svg"])
-    def test_what_was_exported_is_kept_as_a_file_and_never_shown(self, page: PageServer, name: str) -> None:
+    def test_exported_file_is_downloaded_and_never_shown(self, page: PageServer, name: str) -> None:
         """A page that an exporter wrote would otherwise be one of this address, with its key."""
         (page.folder / "export-1").mkdir()
         (page.folder / "export-1" / name).write_text("<script>")
@@ -153,17 +153,17 @@ class TestWhoIsLetIn:
         assert page.ask(f"/export/export-1/{quote(name)}").status == 403
         assert page.ask(keyed(f"/scene/export-1/{quote(name)}")).status == 404
 
-    def test_methods(self, page: PageServer) -> None:
+    def test_other_http_methods_are_refused(self, page: PageServer) -> None:
         for method in ("POST", "DELETE", "PUT", "OPTIONS", "TRACE"):
             assert page.ask(keyed("/scene/abc/a"), method).status == 405
             assert page.ask("/", method).status == 405
         assert page.ask(keyed("/stop")).status == 404
 
-    def test_what_is_too_large_is_refused_before_it_is_sent(self, page: PageServer) -> None:
+    def test_upload_that_is_too_large_is_refused_before_it_is_sent(self, page: PageServer) -> None:
         answer = page.ask(keyed(f"/upload/{NAMES['batch']}/a.png"), "PUT", content_length=str(MOST_BYTES + 1))
         assert (answer.status, "holds more than" in answer.text) == (413, True)
 
-    def test_a_header_without_end_is_not_read(self, page: PageServer) -> None:
+    def test_header_without_end_is_not_read(self, page: PageServer) -> None:
         with socket.create_connection(("127.0.0.1", page.port)) as raw:
             raw.settimeout(LONGEST_S)
             raw.sendall(b"GET / HTTP/1.1\r\nx: ")
@@ -217,7 +217,7 @@ def flood(*work: Callable[[], Any]) -> Iterator[None]:
 
 
 class TestFloods:
-    def test_ten_tabs_have_their_share(self, page: PageServer) -> None:
+    def test_ten_tabs_share_the_server_fairly(self, page: PageServer) -> None:
         tabs = [page.tab() for _ in range(10)]
         counts = [0] * 10
 
@@ -233,7 +233,7 @@ class TestFloods:
         for tab in tabs:
             tab.close()
 
-    def test_a_tab_that_draws_nothing_is_sent_two_states(self, page: PageServer) -> None:
+    def test_tab_that_draws_nothing_is_sent_two_states(self, page: PageServer) -> None:
         with page.tab() as tab:
             sent = partial(_frames, tab)
             until(lambda: sent() == IN_FLIGHT)
@@ -245,7 +245,7 @@ class TestFloods:
             until(lambda: sent() == 2 * IN_FLIGHT + 1)
             assert sent() == 2 * IN_FLIGHT + 1
 
-    def test_while_no_force_is_given_states_are_few(self, page: PageServer) -> None:
+    def test_states_without_force_are_few(self, page: PageServer) -> None:
         with page.tab() as tab:
             begun_s, count = time.monotonic(), 0
             while count < 10:
@@ -254,7 +254,7 @@ class TestFloods:
                     tab.socket.send(ack(count))
         assert time.monotonic() - begun_s > 8 * IDLE_SPACING_S
 
-    def test_a_tab_that_reads_nothing_is_cut_off(self, page: PageServer) -> None:
+    def test_tab_that_reads_nothing_is_cut_off(self, page: PageServer) -> None:
         raw = handshake(page, page.host)
         with page.tab() as other:
             until(lambda: page.done(lambda: len(page.session.tabs)) == 2)
@@ -266,7 +266,7 @@ class TestFloods:
                 other.until(event="log")
         raw.close()
 
-    def test_a_browser_that_answers_no_ping_is_gone(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_browser_that_answers_no_ping_is_removed(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(serve, "PING_S", 0.1)
         monkeypatch.setattr(routes, "static", lambda: tmp_path)
         with PageServer(tmp_path, monkeypatch) as page, handshake(page, page.host) as raw:
@@ -278,7 +278,7 @@ class TestFloods:
 
             until(is_gone)
 
-    def test_the_hand_is_kept_through_a_flood_of_pointers(self, page: PageServer) -> None:
+    def test_flood_of_pointers_keeps_the_hand_moving(self, page: PageServer) -> None:
         pointers = b"".join(masked(pointer(0.01, 0.0, k * 1e-6)) for k in range(500))
         with page.tab() as tab:
             tab.until(event="holding", holding=True)
@@ -289,7 +289,7 @@ class TestFloods:
                 AT_ONCE_BYTES
             }
 
-    def test_one_that_does_not_hold_moves_nothing(self, page: PageServer) -> None:
+    def test_tab_without_the_hand_moves_nothing(self, page: PageServer) -> None:
         with page.tab() as first, page.tab() as second:
             first.until(event="holding", holding=True)
             second.until(event="holding", holding=False)
@@ -309,7 +309,7 @@ class TestFloods:
             assert page.done(lambda: page.session.feeling.hand.holding)
 
     @pytest.mark.parametrize("at", [(float("nan"), 0, 0), (0, float("inf"), 0), (0, 0, -float("inf")), (1e30, 0, 0)])
-    def test_a_hand_is_somewhere(self, page: PageServer, at: tuple[float, float, float]) -> None:
+    def test_pointer_to_an_impossible_place_is_ignored(self, page: PageServer, at: tuple[float, float, float]) -> None:
         with page.tab() as tab:
             tab.until(event="holding", holding=True)
             tab.socket.send(pointer(*at))
@@ -317,7 +317,7 @@ class TestFloods:
             tab.until(event="refused")
             assert not page.done(lambda: page.session.feeling.hand.holding)
 
-    def test_asks_are_bounded_and_stop_is_not(self, page: PageServer) -> None:
+    def test_requests_are_bounded_and_stop_is_not(self, page: PageServer) -> None:
         worker: Any = page.session.worker
         page.done(lambda: setattr(worker, "wait", asyncio.Event()))
         with page.tab() as tab:
@@ -332,13 +332,13 @@ class TestFloods:
             tab.until(event="answer", number=MOST_ASKS)
             tab.until(event="answer", number=tab.ask("examples"))
 
-    def test_a_page_whose_websocket_hangs_can_stop(self, page: PageServer) -> None:
+    def test_page_with_a_hanging_websocket_can_stop(self, page: PageServer) -> None:
         with page.tab() as tab:
             assert page.ask(keyed("/stop"), "POST", b"").status == 204
             tab.until(event="loop", running=False, stopped=True)
             assert page.session.feeling.stopped
 
-    def test_connections_without_end_stop_nobody(self, page: PageServer) -> None:
+    def test_unfinished_connections_stop_nobody(self, page: PageServer) -> None:
         with page.tab() as tab:
             tab.until(event="holding", holding=True)
             slow = [socket.create_connection(("127.0.0.1", page.port)) for _ in range(300)]

@@ -152,7 +152,7 @@ def children(server: UiServer, name: str) -> list[int]:
     return [int(word) for word in found.stdout.split()]
 
 
-def test_what_ends_beside_the_server(home: Home) -> None:
+def test_force_ends_with_the_tab_the_loop_and_a_frozen_server(home: Home) -> None:
     """The page and its parts, one after the other on one server, which goes on."""
     server = home.server("level.yaml")
     press = Press(home, server)
@@ -191,7 +191,7 @@ def test_what_ends_beside_the_server(home: Home) -> None:
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
-def test_the_server_is_asked_to_end(home: Home, name: str) -> None:
+def test_server_ended_by_a_signal_leaves_no_force_and_no_file(home: Home, name: str) -> None:
     server, number = home.server("level.yaml"), getattr(signal, name)
     press = Press(home, server)
     let_go_s = press.let_go_s(lambda: server.process.send_signal(number))
@@ -205,7 +205,7 @@ def test_the_server_is_asked_to_end(home: Home, name: str) -> None:
     assert server.lines[1:] == [f"{words}; what was finished is kept"]
 
 
-def test_the_server_is_killed(home: Home) -> None:
+def test_server_that_is_killed_leaves_no_force_and_its_draft_is_offered(home: Home) -> None:
     """The next one clears away what it left, and offers what was not saved; a recording can be read."""
     server = home.server("level.yaml")
     press = Press(home, server)
@@ -237,7 +237,7 @@ def test_the_server_is_killed(home: Home) -> None:
     assert not home.left()
 
 
-def test_two_servers_beside_each_other(home: Home) -> None:
+def test_two_servers_run_at_the_same_time(home: Home) -> None:
     first, second = home.server("level.yaml"), home.server("level.yaml")
     presses = [Press(home, first), Press(home, second)]
     for each in presses:
@@ -246,7 +246,7 @@ def test_two_servers_beside_each_other(home: Home) -> None:
     assert not home.left()
 
 
-def test_the_server_imports_nothing_that_computes_and_says_its_key_once(home: Home) -> None:
+def test_server_imports_nothing_that_computes_and_prints_its_key_once(home: Home) -> None:
     """And whatever goes wrong with a request or with an ask, nothing of it is lost, and no key is printed."""
     looks = f"import atexit, sys; atexit.register(lambda: print('has', [n for n in {FORBIDDEN} if n in sys.modules])); "
     server = home.server("level.yaml", "--log-level", "debug", start=HEARING + looks + START)
@@ -270,7 +270,9 @@ def test_the_server_imports_nothing_that_computes_and_says_its_key_once(home: Ho
         ({"TANGIBLE_RUNTIME_DIR": "{file}"}, [], "{file}"),
     ],
 )
-def test_what_is_missing_at_the_start(home: Home, env: dict[str, str], words: list[str], says: str) -> None:
+def test_server_starts_with_missing_folders_or_reports_one_sentence(
+    home: Home, env: dict[str, str], words: list[str], says: str
+) -> None:
     """It starts all the same, or says one sentence."""
     import socket
 
@@ -309,7 +311,7 @@ def test_what_is_missing_at_the_start(home: Home, env: dict[str, str], words: li
         assert "Traceback" not in err
 
 
-def test_a_makers_end_under_work(home: Home) -> None:
+def test_worker_ends_with_its_pipe_during_a_job(home: Home) -> None:
     """It ends with its pipe, whatever it computes."""
     from tangible_core.runtime.child_process import command
     from tangible_core.servo.framing import send

@@ -14,7 +14,7 @@ from waiting import until
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
 
 
-def test_a_tab_that_stands_still_or_is_closed_gives_no_force(serve, open_page, browser, tmp_path: Path) -> None:
+def test_tab_that_is_frozen_or_closed_gives_no_force(serve, open_page, browser, tmp_path: Path) -> None:
     built_page()
     np.save(tmp_path / "level.npy", np.zeros((24, 32), np.float32))
     (tmp_path / "level.yaml").write_text(

@@ -40,7 +40,7 @@ def url(opened: Callable[..., str]) -> str:
 
 
 @pytest.mark.parametrize("name", PICTURES)
-def test_a_picture_of_the_page(open_page: Callable[..., Any], url: str, tmp_path: Path, name: str):
+def test_screenshot_of_the_page(open_page: Callable[..., Any], url: str, tmp_path: Path, name: str):
     page = open_page(url, **PICTURES[name])
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
     if name == "ui-dark":
@@ -51,7 +51,7 @@ def test_a_picture_of_the_page(open_page: Callable[..., Any], url: str, tmp_path
     keep(picture, tmp_path, name)
 
 
-def test_a_picture_of_each_panel(open_page: Callable[..., Any], url: str, tmp_path: Path):
+def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_path: Path):
     """With what it says once something is felt; a long one is cut."""
     page = open_page(url, viewport={"width": 1440, "height": 1100}, color_scheme="light")
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
@@ -72,7 +72,7 @@ def test_a_picture_of_each_panel(open_page: Callable[..., Any], url: str, tmp_pa
         panel.evaluate("(each) => (each.open = false)")
 
 
-def test_pictures_of_the_editor_of_parts(opened: Callable[..., str], open_page: Callable[..., Any], tmp_path: Path):
+def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: Callable[..., Any], tmp_path: Path):
     """A photograph with parts that were drawn by hand; and one that is proposed."""
     astronaut = drawn("astronaut")
     Image.fromarray(astronaut.picture).save(tmp_path / "astronaut.png")

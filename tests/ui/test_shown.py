@@ -55,7 +55,7 @@ def blocks(values: np.ndarray, step: int) -> np.ndarray:
 
 
 class TestLevels:
-    def test_each_level_is_the_mean_of_the_finest(self):
+    def test_level_of_values_is_the_mean_of_the_finest(self):
         values = RANDOM.random((37, 50)).astype(np.float32)
         for level, found in enumerate(levels.means(values, 5)):
             np.testing.assert_allclose(found, blocks(values, 2**level), rtol=1e-6)
@@ -64,10 +64,10 @@ class TestLevels:
     @pytest.mark.parametrize(
         ("shape", "count"), [((1, 1), 1), ((480, 640), 1), ((4200, 4300), 4), ((1, 70_000), 6), ((600, 601), 2)]
     )
-    def test_the_coarsest_is_small_and_no_smaller_than_it_need_be(self, shape: tuple[int, int], count: int):
+    def test_coarsest_level_is_small_and_no_smaller_than_needed(self, shape: tuple[int, int], count: int):
         assert levels.count(shape) == count
 
-    def test_labels_are_those_of_the_middle(self):
+    def test_level_of_labels_is_the_middle_one_of_each_block(self):
         labels = RANDOM.integers(0, 9, (13, 21)).astype(np.int32)
         coarse = levels.middles(labels, 3)[2]
         assert coarse.shape == (4, 6)
@@ -76,7 +76,7 @@ class TestLevels:
 
 
 class TestShow:
-    def test_the_finest_is_what_is_felt_and_a_coarser_one_its_mean(self, tmp_path: Path):
+    def test_finest_level_is_the_surface_and_a_coarser_one_its_mean(self, tmp_path: Path):
         height_m = 0.02 * RANDOM.random((700, 900)).astype(np.float32)
         labels = RANDOM.integers(0, 3, (700, 900)).astype(np.int32)
         about = show(seen(height_m, labels=labels, materials=(WOOD, ICE, WOOD)), tmp_path)
@@ -89,7 +89,7 @@ class TestShow:
         kinds = np.frombuffer((tmp_path / about["digest"] / "materials.u16").read_bytes(), "<u2")
         assert kinds.tolist() == [0, 1, 0]
 
-    def test_the_same_is_written_once_and_anything_else_is_another(self, tmp_path: Path):
+    def test_same_view_is_written_once(self, tmp_path: Path):
         plain = seen(np.zeros((3, 4)))
         layer = Layer.of(np.ones((3, 4)), "px")
         others = [
@@ -106,13 +106,13 @@ class TestShow:
         assert show(seen(np.zeros((3, 4))), tmp_path) == first
         assert (tmp_path / plain.digest / "height-0.f32").stat().st_mtime_ns == before
 
-    def test_the_newest_stay(self, tmp_path: Path):
+    def test_newest_views_are_kept(self, tmp_path: Path):
         all_seen = [seen(np.full((2, 2), 1e-3 * each)) for each in range(KEPT + 2)]
         for each in all_seen:
             show(each, tmp_path)
         assert {path.name for path in tmp_path.iterdir()} == {each.digest for each in all_seen[-KEPT:]}
 
-    def test_a_full_disk_leaves_nothing_and_is_said(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_full_disk_leaves_nothing_and_is_reported(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         def full(path: Path, data: object) -> int:
             raise OSError(28, "No space left on device")
 
@@ -122,13 +122,13 @@ class TestShow:
         assert list(tmp_path.iterdir()) == []
 
     @pytest.mark.parametrize("shape", [(1, 1), (1, 70_000), (5, 1)])
-    def test_edge_cases(self, tmp_path: Path, shape: tuple[int, int]):
+    def test_smallest_views_are_written(self, tmp_path: Path, shape: tuple[int, int]):
         about = show(seen(np.full(shape, 0.001), picture=np.zeros(shape, bool)), tmp_path)
         coarsest = len(about["levels"]) - 1
         assert np.allclose(array(tmp_path, about, f"height-{coarsest}.f32", "<f4", coarsest), 0.001)
         assert (tmp_path / about["digest"] / "photo.jpg").is_file()
 
-    def test_many_labels_and_few_materials(self, tmp_path: Path):
+    def test_view_with_many_labels_and_few_materials_is_written(self, tmp_path: Path):
         labels = np.arange(65_000, dtype=np.int32).reshape(250, 260)
         about = show(seen(np.zeros((250, 260)), labels=labels, materials=(WOOD, ICE) * 32_500), tmp_path)
         assert len(json.dumps(about)) < 3000
@@ -137,14 +137,14 @@ class TestShow:
         more = show(seen(np.zeros((250, 260)), labels=labels + 5000), tmp_path)
         np.testing.assert_array_equal(array(tmp_path, more, "labels-0.u", "<u4"), labels + 5000)
 
-    def test_a_large_picture_is_there_twice(self, tmp_path: Path):
+    def test_large_picture_is_written_twice(self, tmp_path: Path):
         about = show(seen(np.zeros((2, 3)), picture=np.zeros((1000, 1500), np.uint8)), tmp_path)
         folder = tmp_path / about["digest"]
         assert about["fine_photo"] == (1500, 1000)
         assert (folder / "photo-fine.jpg").is_file()
         assert (folder / "photo.jpg").stat().st_size < (folder / "photo-fine.jpg").stat().st_size
 
-    def test_two_threads_may_show_the_same(self, tmp_path: Path):
+    def test_same_view_written_by_two_threads_is_there(self, tmp_path: Path):
         for name in ("sooner", "later", "torn", "another"):
             (tmp_path / name).mkdir()
             (tmp_path / name / ("height-0.f32" if name == "torn" else ABOUT)).write_text(name)
@@ -155,14 +155,14 @@ class TestShow:
 
 
 class TestLayer:
-    def test_colours_span_most_of_what_is_known(self):
+    def test_layer_spans_most_of_its_values(self):
         values = np.linspace(0, 100, 2001, dtype=np.float32).reshape(3, 667)
         values[0, 0] = np.nan
         layer = Layer.of(values, "px")
         assert (layer.low, layer.high) == pytest.approx((0.55, 99.5), abs=0.02)
         np.testing.assert_array_equal(layer.values, values)
 
-    def test_a_large_one_is_reduced_and_one_that_knows_nothing_is_no_error(self):
+    def test_layer_that_is_large_is_reduced_and_an_empty_one_works(self):
         assert Layer.of(np.ones((2000, 2000)), "px").values.shape == (1000, 1000)
         nothing = Layer.of(np.full((2, 2), np.nan), "px")
         assert (nothing.low, nothing.high) == (0, 0)
@@ -178,7 +178,7 @@ def pair() -> Scene:
 
 
 class TestSee:
-    def test_a_layer_says_its_numbers(self, pair: Scene):
+    def test_layer_has_its_unit_and_span(self, pair: Scene):
         pipeline = Pipeline(pair, render=made("render", "proxy"), cached=False)
         found = view_of(pipeline, "surface")
         assert found.shows == "surface"
@@ -188,7 +188,7 @@ class TestSee:
         np.testing.assert_array_equal(found.layers["error"].values, error_px.astype(np.float32))
         np.testing.assert_array_equal(found.relief.height_m, pipeline.surface.height_m)
 
-    def test_segments_lie_over_the_flat_picture_and_no_depth_is_made_for_it(self):
+    def test_segments_are_viewed_flat_without_a_depth(self):
         picture = np.zeros((40, 60), np.uint8)
         picture[:, 30:] = np.random.default_rng(1).integers(0, 255, (40, 30))
         pipeline = of_photo(picture)
@@ -199,14 +199,14 @@ class TestSee:
         assert not is_there(pipeline, "relief")
         np.testing.assert_array_equal(found.labels, pipeline.segments.labels)
 
-    def test_they_lie_over_the_relief_that_is_there(self):
+    def test_segments_are_viewed_over_the_relief(self):
         picture = np.random.default_rng(1).integers(0, 255, (40, 60)).astype(np.uint8)
         pipeline = of_photo(picture)
         pipeline.make("relief")
         pipeline.make("segments")
         assert view_of(pipeline, "segments").relief.height_m.max() > 0
 
-    def test_a_depth_is_seen_as_a_relief(self, pair: Scene):
+    def test_depth_is_viewed_as_a_relief(self, pair: Scene):
         pipeline = Pipeline(pair, cached=False)
         pipeline.make("disparity")
         found = view_of(pipeline, "disparity")
@@ -214,7 +214,7 @@ class TestSee:
         assert found.relief.height_m.max() == pytest.approx(0.01, rel=0.2)
         assert not is_there(pipeline, "touch")
 
-    def test_materials_are_those_that_the_device_holds(self):
+    def test_materials_of_a_view_are_limited_to_the_device(self):
         segments = np.repeat([[0, 1]], 8, 0).repeat(8, 1).astype(np.int32)
         scene = Scene.of(height=np.zeros((8, 16)), segments=segments)
         by, law = {"by": {0: "brick", 1: "ice"}}, made("render", "proxy")
@@ -225,7 +225,7 @@ class TestSee:
         assert held[0].roughness_m < bare[0].roughness_m
 
 
-def test_every_product_can_be_asked_for_and_what_is_shown_is_told_once(tmp_path: Path):
+def test_every_product_can_be_requested_and_is_shown_once(tmp_path: Path):
     told: list[tuple[str, dict]] = []
     worker_state = WorkerState(tmp_path, lambda event, **more: told.append((event, more)))
     text = "scene: builtin/brick\ndepth: {use: luminance}\ntexture: {use: histogram}\nrender: {use: penalty}\n"
@@ -245,7 +245,7 @@ class TestTexture:
         labels = np.repeat([[0, 1]], 30, 0).repeat(20, 1).astype(np.int32)
         return show(seen(np.zeros((30, 40)), labels=labels, materials=(WOOD, ICE)), worker_state.folder)["digest"]
 
-    def test_it_is_what_a_law_feels(self, worker_state: WorkerState, digest: str):
+    def test_texture_patch_is_what_a_law_renders(self, worker_state: WorkerState, digest: str):
         found = textures.texture_patch(worker_state, digest, -0.004, 0.011, 0.01, 25)
         heights = np.fromfile(worker_state.folder / digest / found["file"], "<f4").reshape(25, 25)
         table = compile_textures((WOOD, ICE))
@@ -256,7 +256,7 @@ class TestTexture:
         assert np.abs(heights[:, :20]).max() > 1e-5
         assert not heights[:, 23:].any()
 
-    def test_beyond_the_rim_and_without_materials_it_is_flat(self, worker_state: WorkerState, digest: str):
+    def test_texture_patch_is_flat_beyond_the_rim_and_without_materials(self, worker_state: WorkerState, digest: str):
         found = textures.texture_patch(worker_state, digest, -0.04, 0.03, 0.01, 8)
         heights = np.fromfile(worker_state.folder / digest / found["file"], "<f4").reshape(8, 8)
         assert not heights[:4].any() and not heights[:, :4].any() and heights[4:, 4:].any()
@@ -264,13 +264,13 @@ class TestTexture:
         found = textures.texture_patch(worker_state, bare, 0.0, 0.0, 0.01, 8)
         assert not np.fromfile(worker_state.folder / bare / found["file"], "<f4").any()
 
-    def test_few_are_kept(self, worker_state: WorkerState, digest: str):
+    def test_texture_patches_beyond_the_limit_are_removed(self, worker_state: WorkerState, digest: str):
         for each in range(20):
             textures.texture_patch(worker_state, digest, 1e-3 * each, 0.0, 0.01, 4)
         assert len(list((worker_state.folder / digest).glob("texture-*"))) == textures.KEPT
 
     @pytest.mark.parametrize("wrong", [{"digest": "../x"}, {"digest": "0" * 32}, {"side_m": 0.0}, {"pixels": 10**6}])
-    def test_what_cannot_be_shown_is_said(self, worker_state: WorkerState, digest: str, wrong: dict):
+    def test_texture_patch_that_is_invalid_is_refused(self, worker_state: WorkerState, digest: str, wrong: dict):
         told = {"digest": digest, "x_m": 0.0, "y_m": 0.0, "side_m": 0.01, "pixels": 4, **wrong}
         with pytest.raises(GeometryError):
             textures.texture_patch(worker_state, **told)
@@ -286,14 +286,14 @@ class TestWindow:
         path.write_bytes(np.arange(7 * 11, dtype="<u2").tobytes())
         return path
 
-    def test_it_is_the_rectangle(self, path: Path):
+    def test_window_is_the_rectangle(self, path: Path):
         found = np.frombuffer(read_window(path, ASKED), "<u2").reshape(3, 4)
         np.testing.assert_array_equal(found, np.arange(77).reshape(7, 11)[2:5, 5:9])
 
     @pytest.mark.parametrize(
         "wrong", [{"row": 5}, {"column": 8}, {"row": -1}, {"column": -1}, {"rows": 0}, {"bytes": 0}, {"of": 10**9}]
     )
-    def test_there_is_none_beyond_the_file(self, path: Path, wrong: dict):
+    def test_window_beyond_the_file_is_refused(self, path: Path, wrong: dict):
         with pytest.raises(ValueError, match="no such window"):
             read_window(path, ASKED | wrong)
 

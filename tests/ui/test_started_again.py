@@ -9,7 +9,7 @@ from waiting import until
 TEXT = "scene: builtin/brick\nrender: {use: penalty, stiffness_n_per_m: 431}\n"
 
 
-def test_an_address_of_an_earlier_start_is_said_to_be_one(serve, open_page, complaints: list[str]):
+def test_address_of_an_earlier_start_is_reported(serve, open_page, complaints: list[str]):
     built_page()
     server = serve("builtin/brick")
     page = open_page(re.sub("token=.*", "token=of-yesterday", server.url))
@@ -21,7 +21,7 @@ def test_an_address_of_an_earlier_start_is_said_to_be_one(serve, open_page, comp
     complaints.clear()  # the browser's own, of a websocket that was closed
 
 
-def test_what_was_edited_when_the_program_was_killed_is_offered_once(serve, open_page, tmp_path: Path):
+def test_draft_of_a_killed_program_is_offered_once(serve, open_page, tmp_path: Path):
     built_page()
     mine = tmp_path / "mine.yaml"
     mine.write_text("scene: builtin/brick\n")

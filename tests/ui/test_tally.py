@@ -7,7 +7,7 @@ import pytest
 from tangible_ui.state.laws import Tally
 
 
-def test_a_choice_counts_for_the_law_that_was_called_so() -> None:
+def test_choice_counts_for_the_law_of_that_name() -> None:
     tally = Tally(("proxy", "penalty"), "Which is smoother?")
     for first, choice, chosen in ((0, 1, "proxy"), (1, 1, "penalty"), (0, 2, "penalty"), (1, 2, "proxy"), (0, 0, "")):
         tally.first = first
@@ -18,7 +18,7 @@ def test_a_choice_counts_for_the_law_that_was_called_so() -> None:
     assert tally.trials[1] == ("penalty", "proxy", "penalty")
 
 
-def test_both_come_first_equally_often() -> None:
+def test_laws_come_first_equally_often() -> None:
     tally = Tally(("a", "b"), "")
     drawn = Counter[int]()
     for _ in range(2000):

@@ -36,7 +36,7 @@ def says(page: "Page", panel: str, text: str) -> None:
     until(lambda: text in page.locator(f"#{panel}").inner_text())
 
 
-def test_depth_and_texture_are_run_apart(page: "Page") -> None:
+def test_depth_and_texture_are_run_separately(page: "Page") -> None:
     for name in ("Run depth", "Run texture"):
         press(page, "methods", name)
         until(lambda: page.locator("#status").get_attribute("data-state") in ("idle", "felt"))
@@ -45,7 +45,7 @@ def test_depth_and_texture_are_run_apart(page: "Page") -> None:
     until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
 
 
-def test_what_preflight_says_is_put_right(page: "Page") -> None:
+def test_preflight_cure_corrects_the_document(page: "Page") -> None:
     page.locator("#yaml > summary").press("Enter")
     before = page.locator("#yaml-text").input_value()
     page.locator("#yaml-text").fill(
@@ -59,7 +59,7 @@ def test_what_preflight_says_is_put_right(page: "Page") -> None:
     until(lambda: "40000" not in page.locator("#yaml-text").input_value())
 
 
-def test_a_stroke_is_recorded_played_and_felt_again_with_another_law(page: "Page") -> None:
+def test_stroke_is_recorded_played_and_replayed_with_another_law(page: "Page") -> None:
     press(page, "records", "Record touch")
     until(lambda: "Recording: " in page.locator("#records").inner_text())
     surface = page.locator("#terrain")
@@ -89,7 +89,7 @@ def test_a_stroke_is_recorded_played_and_felt_again_with_another_law(page: "Page
     says(page, "records", "worst error n")
 
 
-def test_two_laws_are_compared_and_blindly_too(page: "Page") -> None:
+def test_two_laws_are_compared_openly_and_blindly(page: "Page") -> None:
     page.locator("#laws > summary").press("Enter")
     until(lambda: page.locator("#laws-other option").count() > 3)
     page.locator("#laws-options").fill("{stiffness_n_per_m: 200}")
@@ -110,7 +110,7 @@ def test_two_laws_are_compared_and_blindly_too(page: "Page") -> None:
     until(page.locator("#laws-other").is_visible)
 
 
-def test_a_part_is_felt_enlarged_and_what_is_saved_opens_the_same(page: "Page", tmp_path: Path) -> None:
+def test_enlarged_region_is_saved_and_opens_the_same(page: "Page", tmp_path: Path) -> None:
     page.locator("#terrain").focus()
     page.keyboard.press("z")
     page.locator("#yaml > summary").press("Enter")

@@ -85,7 +85,7 @@ def viridis(share: float) -> np.ndarray:
     return np.round(255 * np.array(colormaps["viridis"](float(share))[:3]))
 
 
-def test_every_layer_has_the_colours_of_its_numbers_where_they_are(url: str, open_page):
+def test_layers_have_the_colours_of_their_values(url: str, open_page):
     page = open_page(f"{url}&measure", reduced_motion="reduce")
     settings(page)
     page.reload()
@@ -112,7 +112,7 @@ def test_every_layer_has_the_colours_of_its_numbers_where_they_are(url: str, ope
     assert page.inner_text("#view .legend") == "part 0: wood\npart 1: cloth"
 
 
-def test_a_curtain_is_shown_greyed_or_cut(url: str, open_page):
+def test_steep_edge_is_shown_greyed_or_cut(url: str, open_page):
     page = open_page(f"{url}&measure", reduced_motion="reduce")
     settings(page, look="photo")
     page.reload()
@@ -131,7 +131,7 @@ def test_a_curtain_is_shown_greyed_or_cut(url: str, open_page):
     assert np.ptp(seen["shown"]) > 40
 
 
-def test_a_large_relief_is_drawn_at_once_and_finer_where_one_looks(opened, open_page, tmp_path: Path):
+def test_large_relief_is_drawn_coarsely_and_finer_where_one_looks(opened, open_page, tmp_path: Path):
     """Its grain is of two cells: from afar it is even, from near it is seen, and the hand knows it."""
     rows, columns = np.indices((1400, 1500)) // 2
     heights = np.where((rows + columns) % 2, 1000, 0).astype(np.uint16)
@@ -183,7 +183,7 @@ PUT = """() => {
 """Notes when the view gets a surface."""
 
 
-def test_the_first_surface_needs_no_program_compiled_and_is_drawn_coarsely_for_a_while(
+def test_first_surface_compiles_no_program_and_is_drawn_coarsely_first(
     open_page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     """While it is drawn first, what is felt of it is being made, on the same processor."""
@@ -219,7 +219,7 @@ def test_the_first_surface_needs_no_program_compiled_and_is_drawn_coarsely_for_a
     assert fine_ms - put_ms > 1000
 
 
-def test_graphics_that_are_taken_away_and_come_back(url: str, open_page, complaints: list[str]):
+def test_lost_graphics_context_is_reported_and_restored(url: str, open_page, complaints: list[str]):
     """On a screen of fine pixels, too, which are drawn where that is not slow."""
     page = open_page(f"{url}&measure", reduced_motion="reduce", device_scale_factor=2)
     page.wait_for_function("() => window.page?.scene && window.figures.firstMs > 0")
@@ -238,7 +238,7 @@ def test_graphics_that_are_taken_away_and_come_back(url: str, open_page, complai
     complaints[:] = [each for each in complaints if "ontext" not in each]
 
 
-def test_without_webgl_the_page_says_so_and_works(url: str, browser, complaints: list[str]):
+def test_page_without_webgl_says_so_and_works(url: str, browser, complaints: list[str]):
     context = browser.new_context(locale="en-GB")
     page = context.new_page()
     page.on("pageerror", lambda error: complaints.append(str(error)))
@@ -259,7 +259,7 @@ def test_without_webgl_the_page_says_so_and_works(url: str, browser, complaints:
 POSE = "() => window.page.view.eye.pose"
 
 
-def test_the_camera_takes_what_is_its_own_and_leaves_the_rest_to_the_hand(url: str, open_page):
+def test_camera_takes_its_own_gestures_and_leaves_others_to_the_hand(url: str, open_page):
     page = open_page(f"{url}&measure", reduced_motion="reduce", has_touch=True)
     page.wait_for_function("() => window.page?.scene && window.figures.firstMs > 0")
     page.evaluate(
@@ -317,7 +317,7 @@ def test_the_camera_takes_what_is_its_own_and_leaves_the_rest_to_the_hand(url: s
     assert page.evaluate("() => window.heard") == ["pointerdown", "pointercancel"]
 
 
-def test_a_fine_texture_is_seen_under_the_magnifier_and_from_near(url: str, open_page):
+def test_fine_texture_is_drawn_in_the_magnifier_and_from_near(url: str, open_page):
     """The scene is flat there: whatever is seen is the cloth's texture."""
     page = open_page(f"{url}&measure", reduced_motion="reduce")
     settings(page, look="relief", raking=1, lensMm=10)

@@ -48,7 +48,7 @@ def page() -> dict[str, Any]:
 
 
 class TestFrames:
-    def test_constants(self) -> None:
+    def test_constants_are_those_of_the_page(self) -> None:
         said = page()["constants"]
         names = ("VERSION", "STATE", "POINTER", "ACK", "RELEASE", "TAGS")
         assert {name: said[name] for name in names} == {name: getattr(wire, name) for name in names}
@@ -57,7 +57,7 @@ class TestFrames:
         sizes = {name: getattr(wire, f"{name}_FRAME").size for name in ("STATE", "POINTER", "ACK", "RELEASE")}
         assert {name: said[f"{name}_BYTES"] for name in sizes} == sizes
 
-    def test_a_state_is_read_as_it_was_written(self) -> None:
+    def test_state_frame_is_read_as_it_was_written(self) -> None:
         read = page()["read"]
         _, status, flags, seq, tag, overruns, sample_ms = SAID
         assert [read[name] for name in ("status", "flags", "seq", "tag", "overruns", "sampleMs", "lateUs")] == [
@@ -68,7 +68,7 @@ class TestFrames:
         assert page()["short"] is None
         assert page()["other"] is None
 
-    def test_what_the_page_writes_is_read(self) -> None:
+    def test_frames_of_the_page_are_read(self) -> None:
         kind, buttons, tag, sent_ms, *hand = wire.POINTER_FRAME.unpack(bytes.fromhex(page()["pointer"]))
         assert (kind, buttons, tag, hand) == (wire.POINTER, 3, wire.TAGS, [0.5, -0.25, 0.125])
         assert sent_ms > 1.6e12
@@ -76,12 +76,12 @@ class TestFrames:
         assert bytes.fromhex(page()["release"]) == wire.RELEASE_FRAME.pack(wire.RELEASE)
 
     @pytest.mark.parametrize("name", ["STATE", "POINTER", "ACK", "RELEASE"])
-    def test_bytes_are_in_the_same_order_on_every_machine(self, name: str) -> None:
+    def test_frames_are_little_endian(self, name: str) -> None:
         frame: struct.Struct = getattr(wire, f"{name}_FRAME")
         assert frame.format.startswith("<")
 
 
-def test_columns_of_a_recording_are_where_the_page_reads_them() -> None:
+def test_recording_columns_are_those_of_the_page() -> None:
     said = (WEB / "src/panels/recordings/ticks.ts").read_text(encoding="utf-8")
     (count,), (places,) = re.findall(r"COLUMNS = (\d+);", said), re.findall(r"AT = \{(.*?)\}", said)
     assert int(count) == len(TICK_COLUMNS)
@@ -98,22 +98,22 @@ def sources(folder: Path, ending: str) -> str:
 
 
 class TestNames:
-    def test_what_the_page_asks_for_can_be_asked_for(self) -> None:
+    def test_requests_of_the_page_exist(self) -> None:
         asked = set(re.findall(r"\bask(?:<[^(]*>)?\(\s*[\"'](\w+)[\"']", sources(WEB / "src", ".ts")))
         assert len(asked) > 20
         assert asked <= REQUESTS.keys()
 
-    def test_what_can_be_asked_for_the_page_asks_for(self) -> None:
+    def test_requests_of_the_server_are_used_by_the_page(self) -> None:
         written = set(re.findall(r"[\"'](\w+)[\"']", sources(WEB / "src", ".ts")))
         assert REQUESTS.keys() - written <= NOT_ASKED
 
-    def test_events_have_the_same_names(self) -> None:
+    def test_event_names_are_those_of_the_page(self) -> None:
         here, there = sources(SOURCES, ".py"), (WEB / "src/server/messages.ts").read_text(encoding="utf-8")
         told = set(re.findall(r"(?:\btell|\bEvent)\(\s*\"(\w+)\"", here) + re.findall(r"\"event\": \"(\w+)\"", here))
         body = there[there.index("export interface Events") :]
         assert told - {"answer", "refused"} == set(re.findall(r"^  (\w+): Said\b", body, re.M)) - OF_THE_PAGE
 
-    def test_a_wrong_key_has_the_same_code(self) -> None:
+    def test_code_of_a_wrong_key_is_the_page_s(self) -> None:
         assert f"WRONG_KEY = {WRONG_KEY};" in (WEB / "src/server/connection.ts").read_text(encoding="utf-8")
 
 

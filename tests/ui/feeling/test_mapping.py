@@ -14,7 +14,7 @@ from tangible_ui.requests.devices import limits
 from tangible_ui.worker.jobs import devices as mapping
 from tangible_ui.worker.state import WorkerState
 
-CASES = Path(__file__).parents[2] / "plugins/ui/web/test/placement.json"
+CASES = Path(__file__).parents[3] / "plugins/ui/web/test/placement.json"
 PATH = Path("p.yaml")
 
 

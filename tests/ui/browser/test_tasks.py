@@ -1,6 +1,6 @@
 """The main tasks of the page that no other test does, by the keyboard alone: judge, record, compare, open again.
 
-That a first visit and an option's way from its form to the file need no mouse is tested in `test_everybody` and
+That a first visit and an option's way from its form to the file need no mouse is tested in `test_accessibility` and
 `test_forms_in_browser`.
 """
 

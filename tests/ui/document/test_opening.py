@@ -13,7 +13,7 @@ from tangible_core import load_pipeline
 from tangible_core.errors import ConfigError
 from tangible_core.pipeline.config.editing import read_values
 from tangible_core.session import Recording
-from tangible_core.session.tick_file import About
+from tangible_core.session.recording.tick_file import About
 from tangible_ui.state.uploads import MOST_FILES, UploadStore
 from tangible_ui.worker.jobs import document as opening
 from tangible_ui.worker.state import WorkerState

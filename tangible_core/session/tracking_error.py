@@ -1,4 +1,4 @@
-"""Whether the hand went where it wanted to go, and what held it if not, in one sentence or two."""
+"""The tracking error of a hand on its path, and its likely cause, in a sentence or two."""
 
 from typing import NamedTuple, final
 
@@ -9,77 +9,78 @@ from ..data import TICK_COLUMNS, HapticSurface
 from .recording import Recording
 
 EVERY = 10
-"""One of so many ticks is looked at."""
+"""Interval of the ticks that are examined."""
 MOST_LOOKS = 360_000
-"""As many as an hour has at 1 kHz."""
+"""Greatest number of ticks that are examined: an hour at 1 kHz."""
 OFF_M, OFF_PART = 0.01, 8
-"""Farther from its path than this, or than this part of the surface's shorter side, a hand does not follow it."""
+"""Tracking error above which a hand is off its path; at most this fraction, 1 / 8, of the surface's shorter side."""
 LATE_S = 0.25
-"""Where its path was so long ago a hand may still be: any hand is late."""
-TOLD_SHARE = 0.05
-"""What happens for less of the time is not told."""
+"""Greatest lag of a hand behind its path that does not count as an error."""
+REPORTED_SHARE = 0.05
+"""Share of the time below which a problem is not reported."""
 FOOT_M, AROUND_M, RISE_M = 0.003, 0.03, 0.001
-"""A hand stands on the lowest ground so near; what holds it is at most so far away, and rises by more than this."""
+"""Radius of the ground on which the hand stands; radius in which an obstacle is searched; its least height."""
 HOLDS_N = 0.5
-"""A weaker force along the ground holds no hand."""
+"""Least horizontal force that can hold a hand."""
 DIRECTIONS, IN_A_PIT = 16, 14
-"""In which ground is looked for, and in how many of them it rises around a hand in a pit."""
+"""Number of directions in which the ground is searched, and how many must rise around a hand in a pit."""
 
 Places = Float64[np.ndarray, "n 3"]
 Which = Bool[np.ndarray, " n"]
 GENTLER = "A smaller `workspace.relief_m` or a greater `workspace.smooth_m` makes a surface that lets it pass."
 
 
-class Followed(NamedTuple):
-    """How a hand followed its path, in numbers and words."""
+class TrackingError(NamedTuple):
+    """The tracking error of a hand on its path, in numbers and words."""
 
     off_share: float
-    """Of the time, in which it was off its path; 0 where no path is known."""
+    """Share of the time in which the hand was off its path; 0 if no path is known."""
     farthest_m: float
-    """From its path, at most."""
+    """Greatest distance from the path."""
     beside_share: float
-    """Of the time, in which a side wall of the surface held it off, under the rim."""
+    """Share of the time in which a side wall of the surface held the hand off, under the rim."""
     says: str
-    """What is to be told; nothing where all went well."""
+    """A report with the likely cause; empty if all went well."""
 
 
 @final
-class Looks:
-    """One of ten ticks of a session, for an hour."""
+class TickSampler:
+    """Every tenth tick of a session, for an hour."""
 
     def __init__(self) -> None:
         self._ticks = 0
-        self._kept = [np.empty((0, len(TICK_COLUMNS)))]
+        self._samples = [np.empty((0, len(TICK_COLUMNS)))]
 
     def keep(self, rows: np.ndarray) -> None:
-        """Look at these ticks, which follow those before."""
+        """Sample these ticks, which follow the ticks of the call before."""
         if self._ticks < MOST_LOOKS * EVERY:
-            self._kept.append(rows[-self._ticks % EVERY :: EVERY].copy())
+            self._samples.append(rows[-self._ticks % EVERY :: EVERY].copy())
         self._ticks += len(rows)
 
     def recording(self) -> Recording:
-        """What was seen: the ticks 0, 10, 20 and so on."""
-        return Recording(np.concatenate(self._kept))
+        """Return a recording of the ticks 0, 10, 20 and so on."""
+        return Recording(np.concatenate(self._samples))
 
 
-def followed(seen: Recording, wanted_m: Places | None, surface: HapticSurface) -> Followed:
-    """How the hand followed its path. wanted_m: where it wanted to be at each tick, where that is known."""
-    beside = _beside(seen, surface)
+def tracking_error(seen: Recording, wanted_m: Places | None, surface: HapticSurface) -> TrackingError:
+    """Return the tracking error of a hand. wanted_m: the place on its path at each tick; None if it is not known."""
+    beside = _held_off(seen, surface)
     beside_share = float(beside.mean()) if beside.size else 0.0
     if wanted_m is not None and beside.size:
-        away_m, most_m = _away(seen, wanted_m), min(OFF_M, min(surface.extent_m) / OFF_PART)
+        away_m, most_m = _distance(seen, wanted_m), min(OFF_M, min(surface.extent_m) / OFF_PART)
         share, farthest_m = float((away_m > most_m).mean()), float(away_m.max())
-        if share > TOLD_SHARE:
+        if share > REPORTED_SHARE:
             says = (
                 f"The hand did not follow its path: for {100 * share:.0f} % of the time it was more than "
                 f"{1000 * most_m:.2g} mm off, {1000 * farthest_m:.0f} mm at most. Likely cause: "
             )
-            return Followed(share, farthest_m, beside_share, says + _cause(seen, wanted_m, surface, away_m, most_m))
+            cause = _cause(seen, wanted_m, surface, away_m, most_m)
+            return TrackingError(share, farthest_m, beside_share, says + cause)
     else:
         share = farthest_m = 0.0
-    if beside_share <= TOLD_SHARE:
-        return Followed(share, farthest_m, beside_share, "")
-    return Followed(
+    if beside_share <= REPORTED_SHARE:
+        return TrackingError(share, farthest_m, beside_share, "")
+    return TrackingError(
         share,
         farthest_m,
         beside_share,
@@ -88,8 +89,8 @@ def followed(seen: Recording, wanted_m: Places | None, surface: HapticSurface) -
     )
 
 
-def _away(seen: Recording, wanted_m: Places) -> Float64[np.ndarray, " n"]:
-    """How far the hand is from the nearest place at which its path was of late, seen from above."""
+def _distance(seen: Recording, wanted_m: Places) -> Float64[np.ndarray, " n"]:
+    """Return the horizontal distance of the hand from its path within the last LATE_S."""
     period_s = float(np.median(np.diff(seen.time_s))) if len(seen.rows) > 1 else LATE_S
     late = min(round(LATE_S / period_s), len(wanted_m) - 1) if period_s > 0 else 0
     path_m = np.pad(wanted_m[:, :2], ((late, 0), (0, 0)), mode="edge")
@@ -98,8 +99,8 @@ def _away(seen: Recording, wanted_m: Places) -> Float64[np.ndarray, " n"]:
     return np.nan_to_num(np.min([np.hypot(*way_m.T) for way_m in ways_m], axis=0))
 
 
-def _beside(seen: Recording, surface: HapticSurface) -> Which:
-    """Where a side wall holds the hand off: in a contact that began beside the surface, by a force that is level."""
+def _held_off(seen: Recording, surface: HapticSurface) -> Which:
+    """Mark the ticks at which a side wall holds the hand off: a contact that began outside, a force mostly level."""
     touching: Which = np.asarray(seen.force_n.any(axis=1))
     over = _over(seen.position_m, surface)
     began = touching & ~np.append(False, touching[:-1])
@@ -116,16 +117,16 @@ def _over(at_m: Places, surface: HapticSurface) -> Which:
 def _cause(
     seen: Recording, wanted_m: Places, surface: HapticSurface, away_m: Float64[np.ndarray, " n"], most_m: float
 ) -> str:
-    """What keeps the hand off its path, as far as it can be told, and what to do about it."""
+    """Return the likely cause of the tracking error, and the cure."""
     off, worst = away_m > most_m, int(away_m.argmax())
-    if (_beside(seen, surface) | ~_over(wanted_m, surface))[off].mean() > 0.5:
+    if (_held_off(seen, surface) | ~_over(wanted_m, surface))[off].mean() > 0.5:
         return (
             f"its path leaves the surface, which is {_size(surface)}, and it came in again by the side, under the rim. "
             "Leave out the device's `size_m`, and its path stays over the surface."
         )
     held_n = float(np.median(np.hypot(*seen.force_n[off, :2].T)))
     if held_n < HOLDS_N:
-        return "nothing held it, it is too slow for its path. A smaller `speed_m_per_s` of the device lets it follow."
+        return "the hand was free, but too slow for its path. A smaller `speed_m_per_s` of the device lets it follow."
     at_m: Float64[np.ndarray, " 3"] = seen.proxy_m[worst]
     if not np.isfinite(at_m).all():
         at_m = seen.position_m[worst]
@@ -141,7 +142,7 @@ def _cause(
 
 
 def _ground(surface: HapticSurface, at_m: np.ndarray, angle: float, reach_m: float) -> Float32[np.ndarray, " n"]:
-    """Heights along a straight way from there, as far as the surface goes."""
+    """Return the heights along a straight line from a place, as far as the surface extends."""
     way_m = np.linspace(0, reach_m, 64)[:, None] * np.array([np.cos(angle), np.sin(angle), 0.0])
     places_m = at_m + way_m
     places_m = places_m[_over(places_m, surface)]

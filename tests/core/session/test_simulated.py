@@ -14,7 +14,7 @@ from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.plugins.interfaces import HapticDevice, Link, PlainTouch
 from tangible_core.servo import Safety
 from tangible_core.servo.guard.safety import gain
-from tangible_core.session import INTERRUPTED, failure, loop, run_simulated
+from tangible_core.session import INTERRUPTED, failure, run_simulated, simulated
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
 from tangible_render.proxy import Proxy
@@ -252,7 +252,7 @@ class TestEndings:
         assert link.held == NO_FORCE
 
     def test_a_recording_that_is_full(self, monkeypatch: pytest.MonkeyPatch):
-        monkeypatch.setattr(loop, "MOST_TICKS", 30)
+        monkeypatch.setattr(simulated, "MOST_TICKS", 30)
         recording, link = feel(lambda _: PUSH, 1e9)
         assert "full, 30 ticks" in recording.stopped
         assert recording.time_s.size == 30

@@ -1,8 +1,8 @@
-"""A process that compiles kernels beside this one, which compiles others meanwhile.
+"""A background process that compiles kernels while this process compiles others.
 
-numba compiles one kernel at a time in a process. The other process fills numba's cache on disk with what will be needed
-later, and says what is ready. It is started when a kernel is compiled here, so that nothing is where all of them are
-on disk, and it never outlives this one. No numba is imported here.
+numba compiles one kernel at a time in a process. The background process fills numba's disk cache with kernels that will
+be needed later, and reports each one that is ready. It is started when a kernel is compiled here, so not if all kernels
+are on disk, and it never outlives this process. This module does not import numba.
 """
 
 import logging
@@ -21,42 +21,43 @@ from ..runtime.stopping import check_stopped
 
 log = logging.getLogger(__name__)
 LOOK_EVERY_S = 0.1
+"""The period, s, at which a waiting thread checks whether it shall stop."""
 
 
 class Work(NamedTuple):
-    """What to do in the other process."""
+    """The work of the background process."""
 
     names: frozenset[str]
-    """What can be waited for."""
+    """The names that can be waited for."""
     function: Callable[..., Iterator[str]]
-    """Of a module; it gives each name when that is compiled."""
+    """A function of a module that yields each name once its kernels are compiled."""
     arguments: tuple[Any, ...]
 
 
-_waiting: "list[Beside]" = []
+_waiting: "list[BackgroundCompiler]" = []
 
 
-def kernels_are_compiled() -> None:
-    """Called when a kernel of ours is compiled in this process: whatever waits for that begins."""
+def start_waiting() -> None:
+    """Start the waiting background compilers; called when a kernel is compiled in this process."""
     for each in tuple(_waiting):
         each.begin()
 
 
 @final
-class Beside:
-    """Compiles in a process of its own from the first kernel on that is compiled in this block, and no longer than it.
+class BackgroundCompiler:
+    """A block with a process that compiles in the background, from the first kernel compiled in it to its end.
 
-    Nothing depends on it but time: where no process can be started, or it fails, kernels are compiled here.
+    Only time depends on it: if the process cannot be started, or fails, kernels are compiled here.
     """
 
     def __init__(self, work: Callable[[], Work | None]) -> None:
-        """work: asked when it begins; None if there is nothing left to do."""
+        """Prepare the block; work: called when the process starts, returns None if there is nothing to do."""
         self._work: Callable[[], Work | None] | None = work
         self._child: subprocess.Popen[bytes] | None = None
         self._due: frozenset[str] = frozenset()
-        """What the process is still to compile."""
-        self._lock, self._heard = threading.Lock(), threading.Condition()
-        self._ear: threading.Thread | None = None
+        """The names that the process has yet to compile."""
+        self._lock, self._progress = threading.Lock(), threading.Condition()
+        self._listener: threading.Thread | None = None
 
     def __enter__(self) -> Self:
         _waiting.append(self)
@@ -72,9 +73,9 @@ class Beside:
         if child is not None:
             child.kill()
             child.wait()
-            if self._ear is not None:
-                self._ear.join()
-            with suppress(OSError):  # what was not sent is not missed
+            if self._listener is not None:
+                self._listener.join()
+            with suppress(OSError):  # unsent data are not needed
                 _pipe(child.stdin).close()
             _pipe(child.stdout).close()
 
@@ -91,34 +92,34 @@ class Beside:
                 self._child = subprocess.Popen(
                     command(__name__), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
                 )
-            except Exception as error:  # noqa: BLE001 - whatever a method of others cannot do: it is no use, no more
-                log.debug("nothing is compiled in a process beside this one: %s", error)
+            except Exception as error:  # noqa: BLE001 - any fault of a plugin only costs the background process
+                log.debug("nothing is compiled in the background: %s", error)
                 return
             self._due = work.names
-            self._ear = threading.Thread(target=self._listen, args=(self._child, data), daemon=True)
-            self._ear.start()
+            self._listener = threading.Thread(target=self._listen, args=(self._child, data), daemon=True)
+            self._listener.start()
 
     def wait(self, what: str) -> None:
-        """Until the process has compiled this; at once if it was not started, is gone, or does not compile this.
+        """Wait until the process has compiled this; return at once if it is not running or does not compile this.
 
-        Raises: Stopped if this work shall end.
+        Raises: Stopped if the current work shall end.
         """
-        with self._heard:
+        with self._progress:
             while what in self._due:
-                self._heard.wait(LOOK_EVERY_S)
+                self._progress.wait(LOOK_EVERY_S)
                 check_stopped()
 
     def _listen(self, child: "subprocess.Popen[bytes]", data: bytes) -> None:
-        with suppress(OSError, ValueError):  # it is gone
+        with suppress(OSError, ValueError):  # the process has ended
             _pipe(child.stdin).write(data)
             _pipe(child.stdin).flush()
         for line in _pipe(child.stdout):
-            with self._heard:
+            with self._progress:
                 self._due -= {line.decode(errors="replace").strip()}
-                self._heard.notify_all()
-        with self._heard:
+                self._progress.notify_all()
+        with self._progress:
             self._due = frozenset()
-            self._heard.notify_all()
+            self._progress.notify_all()
 
 
 def _pipe(pipe: IO[bytes] | None) -> IO[bytes]:
@@ -127,14 +128,14 @@ def _pipe(pipe: IO[bytes] | None) -> IO[bytes]:
 
 
 def main() -> None:
-    """In the process: do the work that comes over the standard input, and end when that ends."""
+    """Do the work that arrives on standard input, in the background process, and end when that is closed."""
     work, arguments = pickle.load(sys.stdin.buffer)
-    threading.Thread(target=_leave_with_the_other, daemon=True).start()
+    threading.Thread(target=_exit_with_parent, daemon=True).start()
     for ready in work(*arguments):
         sys.stdout.write(f"{ready}\n")
         sys.stdout.flush()
 
 
-def _leave_with_the_other() -> None:
+def _exit_with_parent() -> None:
     sys.stdin.buffer.read()
     os._exit(0)

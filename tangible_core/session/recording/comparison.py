@@ -1,4 +1,4 @@
-"""Two recordings side by side: how the forces of one differ from those of the other, at the same places."""
+"""Comparison of two recordings: the difference of their forces at the same places."""
 # pyright: reportMissingTypeStubs=false
 
 from typing import Any
@@ -6,30 +6,28 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float64
 
-from ..errors import check_positive
-from ..metrics.forces import force_errors
+from ...errors import check_positive
+from ...metrics.forces import force_errors
 from .recording import Recording
 
 NEAR_M = 1e-3
-"""So near to each other, two places are one: no hand finds a place again more exactly."""
+"""Greatest distance of two places that count as one: no hand finds a place again more exactly."""
 MOST_COMPARED = 100_000
-"""Ticks; of a longer recording every so many are taken."""
+"""Greatest number of ticks that are compared; a longer recording is thinned evenly."""
 SHOWN = ("ticks", "seconds", "contact_share", "median_contact_force_n", "peak_force_n", "work_j")
-"""Figures of each recording that stand side by side."""
+"""Names of the figures of each recording in the comparison."""
 
 
-def beside(first: Recording, second: Recording, near_m: float = NEAR_M) -> dict[str, float]:
-    """How much the second recording differs from the first, in numbers, by name, each with its unit.
+def compare_recordings(first: Recording, second: Recording, near_m: float = NEAR_M) -> dict[str, float]:
+    """Compare two recordings along similar paths, of any speed and length, in numbers by name, each with its unit.
 
-    They are along similar paths, and may be of other speeds, lengths and times: each tick of the first is compared with
-    the tick of the second that was nearest to its place, on the way in the most similar direction, as friction turns
-    with the direction. A tick that has none within near_m is left out.
+    Each tick of the first recording is compared with the nearest tick of the second, in place and in direction of
+    motion, as friction turns with the direction. Ticks without a partner within near_m are left out.
 
     Returns: the figures of `Recording.figures` of the first as `first_...`, of the second as `second_...`; `compared`,
-    the ticks that have a partner, and `compared_share`, their share of those that were tried; `apart_m`, the median
-    distance of partners; and of the second's forces against the first's, over the partners, what `force_errors` says:
-    `error_n` is the root mean square of the difference over the ticks at which either is not zero. NaN where there is
-    no partner.
+    the number of ticks with a partner, and `compared_share`, their share; `apart_m`, the median distance of partners;
+    and the `force_errors` of the second's forces against the first's at partners, of which `error_n` is the root mean
+    square over the ticks where either force is not zero. NaN if there is no partner.
     Raises: ConfigError if near_m is not positive.
     """
     check_positive("near_m", near_m)
@@ -49,7 +47,7 @@ def beside(first: Recording, second: Recording, near_m: float = NEAR_M) -> dict[
 
 
 def _partners(here: Recording, there: Recording, near_m: float) -> tuple[np.ndarray, Float64[np.ndarray, "n"]]:
-    """Which tick of the second belongs to each of the first, and how far away it was."""
+    """Return the index of the second's tick that is the partner of each tick of the first, and their distance."""
     if not len(here.rows) or not len(there.rows):
         return np.zeros(len(here.rows), np.int64), np.full(len(here.rows), np.inf)
     from scipy.spatial import KDTree
@@ -60,6 +58,6 @@ def _partners(here: Recording, there: Recording, near_m: float) -> tuple[np.ndar
 
 
 def _places(recording: Recording, near_m: float) -> Float64[np.ndarray, "n 6"]:
-    """Places in steps of near_m, and the direction of motion: its reverse is as far away as two steps."""
+    """Return places in units of near_m with unit vectors of motion; a reverse motion is as far away as two units."""
     speed = np.linalg.norm(recording.velocity_m_per_s, axis=1, keepdims=True)
     return np.hstack([recording.position_m / near_m, recording.velocity_m_per_s / np.where(speed > 0, speed, 1)])

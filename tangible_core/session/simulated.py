@@ -1,4 +1,4 @@
-"""The loop that joins a touch and a device, in the device's own time."""
+"""A session in simulated time: the loop of a touch and a device, in the device's own time."""
 
 import logging
 import math
@@ -20,14 +20,15 @@ from ..servo.guard.stiffness import stiffness_of
 from ..servo.reports import brief_report
 from ..servo.ticks.python_tick import GuardedForce, guard_touch
 from .recording import INTERRUPTED, STOPPED, Recording
-from .replay import proxy_of
+from .recording.replay import proxy_of
 
 log = logging.getLogger(__name__)
 MOST_TICKS = 3_600_000
-"""Where a recording in memory is full, and the loop stops and says so: an hour at 1 kHz, half a gigabyte."""
+"""Greatest number of ticks of a recording in memory, at which the loop stops: an hour at 1 kHz, half a gigabyte."""
 REPORT_EVERY_S = 0.1
+"""Interval of the reports, in the device's time."""
 FIRST_S = 0.001
-"""The period that the first tick is taken to have."""
+"""Assumed period of the first tick."""
 
 
 def run_simulated(
@@ -40,17 +41,17 @@ def run_simulated(
     beacon: Beacon | None = None,
     frames: Callable[[float], None] | None = None,
 ) -> Recording:
-    """Feel for a while, in the device's own time: until its clock has gone on by so many seconds.
+    """Run until the device's clock has advanced by `seconds`, and return the recording.
 
     beacon: pulls from the first tick on, until a button releases it (`Servo.pull_to`). frames: called before each tick
-    with the device's time since the first, to show what is due by then on the film that is felt (`Film.show`).
+    with the device's time since the first, to show the reliefs due by then (`Film.show`).
 
-    The guard of these limits lets no force through that they forbid. `on_report` is called ten times a second of the
-    device's time, and at the end. Ctrl-C, `stop` set from another thread, a device that stops answering or whose clock
-    stands still, and a full recording (`MOST_TICKS`) end it early: the force is zero, what was felt so far is returned,
-    and `Recording.stopped` says why.
+    The guard enforces the limits. `on_report` is called ten times a second of the device's time, and at the end.
+    Ctrl-C, `stop` set from another thread, a device that stops answering or whose clock stands still, and a full
+    recording (`MOST_TICKS`) end the session early: the force is zero, the recording so far is returned, and
+    `Recording.stopped` has the reason.
     Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and whatever
-    a faulty touch, `on_report` or `frames` raises, after the force was made zero.
+    a faulty touch, `on_report` or `frames` raises, once the force is zero.
     """
     check_positive("seconds", seconds)
     touch, spec = touch_of(touch), device.spec()
@@ -74,14 +75,14 @@ def run_simulated(
     tape.report(tape.stopped or "the time is over")
     recording = tape.recording()
     if recording.not_finite:
-        log.warning("%d forces were not finite and were made zero: the renderer is at fault", recording.not_finite)
+        log.warning("%d forces were not finite and were set to zero: the force law is at fault", recording.not_finite)
     return recording
 
 
 def _feel(
     allowed_force: GuardedForce, link: Link, seconds: float, tape: "_Tape", frames: Callable[[float], None]
 ) -> None:
-    """Tick until the time is over; a cause to end early is left in tape.stopped."""
+    """Tick until the time is over; the reason for an early end is in tape.stopped."""
     try:
         state, period_s = link.read(), FIRST_S
         start_s = state.time_s
@@ -100,7 +101,7 @@ def _feel(
             elif stop_asked():
                 tape.stopped = STOPPED
             elif tape.ticks >= MOST_TICKS:
-                tape.stopped = f"the recording is full, {MOST_TICKS} ticks; feel for a shorter while"
+                tape.stopped = f"the recording is full, {MOST_TICKS} ticks; use a shorter time"
     except KeyboardInterrupt:
         tape.stopped = INTERRUPTED
     except DeviceError as error:
@@ -109,7 +110,7 @@ def _feel(
 
 @final
 class _Tape:
-    """What the loop remembers: the ticks, and the sums for its reports."""
+    """The memory of a loop: its ticks, and the sums for its reports."""
 
     def __init__(self, touch: Touch, on_report: Callable[[ServoReport], None]) -> None:
         self.stopped = ""
@@ -122,7 +123,7 @@ class _Tape:
         self._state, self._force = HapticState((0.0, 0.0, 0.0)), NO_FORCE
 
     def add(self, state: HapticState, force: Force, flags: int) -> None:
-        """One tick more, and a report when it is time."""
+        """Add a tick, and report when it is time."""
         if not self.ticks:
             self._start_s, self._state = state.time_s, state
         way = zip(self._force, state.position_m, self._state.position_m, strict=True)
@@ -138,12 +139,12 @@ class _Tape:
             self.report("")
 
     def report(self, stopped: str) -> None:
-        """Say how it goes."""
+        """Report the state so far."""
         last = np.array(self._numbers[-len(TICK_COLUMNS) :]).reshape(-1, len(TICK_COLUMNS))
         self._on_report(brief_report(last, self.ticks, self._peak_n, self._work_j, stopped))
 
     def recording(self) -> Recording:
-        """All of it."""
+        """Return all ticks."""
         return Recording(np.array(self._numbers, np.float64).reshape(-1, len(TICK_COLUMNS)), self.stopped)
 
 

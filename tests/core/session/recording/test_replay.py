@@ -6,7 +6,7 @@ import pytest
 from tangible_core.data import Force, HapticState, HapticSurface, TickFlag
 from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.servo import Safety
-from tangible_core.session import Recording, replay, run_simulated, undisturbed
+from tangible_core.session import Recording, replay, run_simulated, unaltered_forces
 from tangible_devices.mock import Mock
 from tangible_render.penalty import Penalty
 from tangible_render.proxy import Proxy
@@ -65,5 +65,5 @@ def test_nothing_is_replayed_to_nothing():
 def test_only_forces_that_are_the_laws_own_are_compared(flag: TickFlag):
     rows = np.ones((2, 17))
     rows[:, 14], rows[:, 16] = (0, flag), np.nan
-    own = np.isfinite(undisturbed(Recording(rows))).all(axis=1)
+    own = np.isfinite(unaltered_forces(Recording(rows))).all(axis=1)
     assert own.tolist() == [True, flag in (TickFlag.TOUCHING, TickFlag.OVERRUN, TickFlag.SWAPPED)]

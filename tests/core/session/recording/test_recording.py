@@ -16,7 +16,8 @@ from scipy.io import netcdf_file
 from hostile import npz_bomb
 from tangible_core.data import TICK_COLUMNS, HapticSurface, TickFlag
 from tangible_core.errors import OutputError
-from tangible_core.session import About, Recording, check_record_path, netcdf, run_simulated, tick_file
+from tangible_core.session import About, Recording, check_record_path, run_simulated
+from tangible_core.session.recording import netcdf, tick_file
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
 
@@ -106,7 +107,7 @@ def test_others_find_the_frame_or_that_there_is_none(tmp_path: Path):
 @pytest.mark.parametrize("name", ["time_s", "x_m", "vz_m_per_s", "fz_n"])
 def test_a_csv_without_a_column_that_each_recording_has(tmp_path: Path, name: str):
     (tmp_path / "less.csv").write_text(",".join(each for each in TICK_COLUMNS if each != name) + "\n")
-    with pytest.raises(OutputError, match=f"names no {name}"):
+    with pytest.raises(OutputError, match=f"first line has no {name}"):
         Recording.load(tmp_path / "less.csv")
 
 
@@ -151,7 +152,7 @@ def test_tables_that_are_none():
     with pytest.raises(OutputError, match=r"\(n, 17\)"):
         Recording(np.zeros((3, 10)))
     parts = {"time_s": np.zeros(3), "position_m": np.zeros((3, 3)), "velocity_m_per_s": np.zeros((3, 3))}
-    with pytest.raises(OutputError, match=r"force_n is \(1, 3\); with these times it is \(3, 3\)"):
+    with pytest.raises(OutputError, match=r"force_n has shape \(1, 3\); with these times it must be \(3, 3\)"):
         Recording.of(**parts, force_n=np.zeros((1, 3)))
 
 
@@ -287,7 +288,7 @@ def test_damaged_files(tmp_path: Path, suffix: str, damage: Callable[[bytes], by
     path = tmp_path / f"stroke{suffix}"
     some().save(path)
     path.write_bytes(damage(path.read_bytes()))
-    with pytest.raises(OutputError, match="is no recording, or a damaged one"):
+    with pytest.raises(OutputError, match="is not a recording, or a damaged one"):
         Recording.load(path)
 
 
@@ -298,7 +299,7 @@ def test_any_cut_is_seen(tmp_path: Path, suffix: str):
     path = tmp_path / f"cut{suffix}"
     for length in range(0, len(data), 7):
         path.write_bytes(data[:length])
-        with pytest.raises(OutputError, match="is no recording, or a damaged one"):
+        with pytest.raises(OutputError, match="is not a recording, or a damaged one"):
             Recording.load(path)
 
 
@@ -312,7 +313,7 @@ def test_files_that_are_something_else(tmp_path: Path):
         file.createDimension("x", 3)
         file.createVariable("time_s", "d", ("x",))[:] = 0
     for name in ("other.npz", "array.npz", "other.nc"):
-        with pytest.raises(OutputError, match="is no recording"):
+        with pytest.raises(OutputError, match="is not a recording"):
             Recording.load(tmp_path / name)
 
 

@@ -11,7 +11,7 @@ from command_line import tangible
 from tangible_core.data import TICK_COLUMNS, HapticSurface
 from tangible_core.mapping import WorkspaceMapping, intended_path, map_device, over
 from tangible_core.plugins.interfaces import ForceRenderer, HapticDevice
-from tangible_core.session import EVERY, Followed, Looks, Recording, followed, run_simulated
+from tangible_core.session import EVERY, Recording, TickSampler, TrackingError, run_simulated, tracking_error
 from tangible_devices.mock import Mock
 from tangible_render.penalty import Penalty
 from tangible_render.proxy import Proxy
@@ -23,12 +23,12 @@ WALL = np.where(abs(COLUMNS - 40) < 3, 0.015, 0.003)
 FLAT = np.full((64, 64), 0.01)
 
 
-def felt(heights: np.ndarray, device: HapticDevice, render: ForceRenderer = PROXY) -> tuple[Recording, Followed]:
+def felt(heights: np.ndarray, device: HapticDevice, render: ForceRenderer = PROXY) -> tuple[Recording, TrackingError]:
     surface = HapticSurface.from_heights(heights)
     device = over(device, surface.extent_m)
     felt = run_simulated(render.touch(surface), device, 3.0)
     seen = Recording(felt.rows[::EVERY])
-    return felt, followed(seen, intended_path(device, np.arange(len(seen.rows)) * EVERY), surface)
+    return felt, tracking_error(seen, intended_path(device, np.arange(len(seen.rows)) * EVERY), surface)
 
 
 @pytest.mark.parametrize(
@@ -101,7 +101,7 @@ def test_a_size_that_was_asked_for_stays():
 
 
 def test_looks_are_every_tenth_tick_however_they_come():
-    rows, looks = np.arange(1000.0)[:, None] * np.ones(len(TICK_COLUMNS)), Looks()
+    rows, looks = np.arange(1000.0)[:, None] * np.ones(len(TICK_COLUMNS)), TickSampler()
     for part in np.split(rows, [3, 4, 17, 120, 121, 500]):
         looks.keep(part)
     assert np.array_equal(looks.recording().rows, rows[::EVERY])

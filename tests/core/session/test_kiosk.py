@@ -14,7 +14,7 @@ from tangible_core.data import NO_FORCE, TICK_COLUMNS, Force, HapticState, Servo
 from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import PlainTouch, Touch
 from tangible_core.servo import OVER, Safety
-from tangible_core.session import INTERRUPTED, STOPPED, Turn, in_turn, run_in_turn
+from tangible_core.session import INTERRUPTED, STOPPED, Slot, kiosk, run_kiosk
 
 AT_ONCE = Safety(ramp_s=0, max_step_n=10, stale_s=1.0, passivity="off")  # late ticks change nothing
 pytestmark = pytest.mark.usefixtures("patient")
@@ -29,7 +29,7 @@ def proxy(height_m: float = 0.002) -> Touch:
 @pytest.fixture
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """A device is looked for again without a pause."""
-    monkeypatch.setattr(in_turn, "FIRST_PAUSE_S", 0.01)
+    monkeypatch.setattr(kiosk, "FIRST_PAUSE_S", 0.01)
 
 
 @pytest.mark.slow
@@ -43,8 +43,8 @@ def test_each_is_felt_in_its_turn_with_its_own_limits_and_the_first_again() -> N
         if sum(int((each[:, FLAGS].astype(int) & TickFlag.SWAPPED != 0).sum()) for each in kept) == 2:
             stop.set()
 
-    turns = [Turn(proxy(0.002), AT_ONCE), Turn(proxy(0.003), AT_ONCE.model_copy(update={"max_force_n": 0.3}))]
-    last = run_in_turn(turns, Circling(), 60.0, each_s=0.2, keep=keep, stop=stop)
+    turns = [Slot(proxy(0.002), AT_ONCE), Slot(proxy(0.003), AT_ONCE.model_copy(update={"max_force_n": 0.3}))]
+    last = run_kiosk(turns, Circling(), 60.0, each_s=0.2, keep=keep, stop=stop)
     rows = np.concatenate(kept)
     assert (last.stopped, last.ticks) == (STOPPED, len(rows))
     first, second = np.flatnonzero(rows[:, FLAGS].astype(int) & TickFlag.SWAPPED)
@@ -73,11 +73,11 @@ def test_a_device_that_goes_is_waited_for_without_force(tmp_path: Path) -> None:
             stop.set()
 
     device = Failing(record=str(force))
-    last = run_in_turn(
-        [Turn(proxy(), AT_ONCE)], device, keep=kept.append, on_report=reports.append, on_wait=wait, stop=stop
+    last = run_kiosk(
+        [Slot(proxy(), AT_ONCE)], device, keep=kept.append, on_report=reports.append, on_wait=wait, stop=stop
     )
     gone = "no force; waiting for the device: the failing device does not answer; plug it in"
-    assert said == [gone, "the device is there; the surface is felt", gone]
+    assert said == [gone, "the device is back; the session goes on", gone]
     assert left == [0, 0]
     assert (last, last.stopped, last.ticks, last.contact_share) == (reports[-1], STOPPED, 198, 1.0)
     rows = np.concatenate(kept)
@@ -95,7 +95,7 @@ def test_a_device_that_goes_is_waited_for_without_force(tmp_path: Path) -> None:
 def test_a_device_that_is_not_there_yet(tmp_path: Path) -> None:
     said: list[str] = []
     device = Failing(fault="none", opens="second", record=str(tmp_path / "force"))
-    last = run_in_turn([Turn(proxy(), AT_ONCE)], device, 0.1, on_wait=said.append)
+    last = run_kiosk([Slot(proxy(), AT_ONCE)], device, 0.1, on_wait=said.append)
     assert (last.stopped, last.ticks, len(said)) == (OVER, 100, 2)
     assert "in use by another program" in said[0]
 
@@ -103,14 +103,14 @@ def test_a_device_that_is_not_there_yet(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_time_goes_on_without_a_device() -> None:
-    last = run_in_turn([Turn(proxy(), AT_ONCE)], Failing(), 0.5, on_wait=lambda _: None)
+    last = run_kiosk([Slot(proxy(), AT_ONCE)], Failing(), 0.5, on_wait=lambda _: None)
     assert (last.stopped, last.ticks) == (OVER, 99)
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
 def test_without_the_word_to_wait_it_ends_with_its_device() -> None:
-    last = run_in_turn([Turn(proxy(), AT_ONCE)], Failing())
+    last = run_kiosk([Slot(proxy(), AT_ONCE)], Failing())
     assert (last.stopped, last.ticks) == ("the failing device does not answer; plug it in", 99)
 
 
@@ -119,7 +119,7 @@ def test_without_the_word_to_wait_it_ends_with_its_device() -> None:
 def test_a_fault_of_a_plugin_is_not_waited_for(tmp_path: Path) -> None:
     record = tmp_path / "force"
     with pytest.raises(ZeroDivisionError, match="the driver's own fault"):
-        run_in_turn([Turn(proxy(), AT_ONCE)], Failing(fault="bug", record=str(record)), on_wait=pytest.fail)
+        run_kiosk([Slot(proxy(), AT_ONCE)], Failing(fault="bug", record=str(record)), on_wait=pytest.fail)
     assert float(record.read_text()) == 0
 
 
@@ -135,7 +135,7 @@ def test_a_scene_that_cannot_be_sent_ends_it(tmp_path: Path) -> None:
     record = tmp_path / "force"
     device = Failing(fault="none", record=str(record))
     with pytest.raises(DeviceError, match="cannot be sent to the force loop"):
-        run_in_turn([Turn(proxy(), AT_ONCE), Turn(Local(), AT_ONCE)], device, each_s=0.05, on_wait=pytest.fail)
+        run_kiosk([Slot(proxy(), AT_ONCE), Slot(Local(), AT_ONCE)], device, each_s=0.05, on_wait=pytest.fail)
     assert float(record.read_text()) == 0
 
 
@@ -143,8 +143,8 @@ def test_a_scene_that_cannot_be_sent_ends_it(tmp_path: Path) -> None:
 def test_ctrl_c_while_it_waits() -> None:
     reports: list[ServoReport] = []
     with hearing():
-        last = run_in_turn(
-            [Turn(proxy(), AT_ONCE)],
+        last = run_kiosk(
+            [Slot(proxy(), AT_ONCE)],
             Failing(),
             5.0,
             on_report=reports.append,
@@ -154,10 +154,10 @@ def test_ctrl_c_while_it_waits() -> None:
 
 
 def test_a_reason_is_told_once_and_looked_into_less_and_less(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(in_turn, "FIRST_PAUSE_S", 1e-3)
-    monkeypatch.setattr(in_turn, "LONGEST_PAUSE_S", 3e-3)
+    monkeypatch.setattr(kiosk, "FIRST_PAUSE_S", 1e-3)
+    monkeypatch.setattr(kiosk, "LONGEST_PAUSE_S", 3e-3)
     said: list[str] = []
-    session = in_turn._Session([], Circling(), None, 1.0, None, None, None, said.append)
+    session = kiosk._Kiosk([], Circling(), None, 1.0, None, None, None, said.append)
     pauses: list[float] = []
     for why in ("it is out", "it is out", "it is in use"):
         pauses.append(session._pause_s)

@@ -15,7 +15,8 @@ from scipy.io import netcdf_file
 from full_disk import files_up_to
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import OutputError
-from tangible_core.session import About, Recording, Writer, netcdf, tick_file, writer
+from tangible_core.session import About, Recording, Writer
+from tangible_core.session.recording import netcdf, tick_file, writer
 
 ROWS = np.arange(17 * 50, dtype=float).reshape(50, 17)
 

@@ -1,4 +1,4 @@
-"""Ticks to a file while they happen: what was appended can be read, however the program ends."""
+"""A recording that is written during the session: appended ticks can be read, however the program ends."""
 
 from contextlib import suppress
 from pathlib import Path
@@ -8,27 +8,27 @@ from typing import Self, final
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import TICK_COLUMNS
-from ..errors import OutputError
-from ..files.writing import open_alone
+from ...data import TICK_COLUMNS
+from ...errors import OutputError
+from ...files.writing import open_alone
 from . import netcdf, tick_file
-from .tick_file import NOTHING_SAID, About
+from .tick_file import NO_INFORMATION, About
 
 
 @final
 class Writer:
-    """A recording as it grows, a `.nc` file. One writer a file: another one, in any process, is refused.
+    """A writer of a growing recording, a `.nc` file; a second writer of the file, in any process, is refused.
 
-    Ticks are written behind the last one, and only then counted in the header. Whoever reads, and whatever ends the
-    program (a full disk, kill -9), the counted ticks are whole. Nothing is held back in memory.
-    Raises: OutputError if the place cannot be written, or another writer is at it.
+    Ticks are written after the last one, and only then counted in the header: whenever a file is read, and whatever
+    ends the program (a full disk, kill -9), the counted ticks are complete. Nothing is buffered in memory.
+    Raises: OutputError if the place cannot be written, or has another writer.
     """
 
     def __init__(self, path: Path, about: About | None = None) -> None:
-        start = tick_file.header((about or NOTHING_SAID).stamped())
+        start = tick_file.header((about or NO_INFORMATION).with_versions())
         self.path = path
         self.ticks = 0
-        """So many are in the file."""
+        """Number of ticks in the file."""
         self._stopped_at = start.index(tick_file.CUT_OFF.encode())
         self._ticks_at = len(start)
         self._file = open_alone(path)
@@ -36,17 +36,17 @@ class Writer:
 
     @property
     def closed(self) -> bool:
-        """Whether nothing more can be appended."""
+        """True once nothing can be appended any more."""
         return self._file.closed
 
     def append(self, rows: Float64[np.ndarray, "n columns"]) -> None:
-        """Keep these ticks, rows of `TICK_COLUMNS`; all of them or, when that fails, none.
+        """Append ticks, rows of `TICK_COLUMNS`: all of them or, if that fails, none.
 
-        Raises: OutputError if they cannot be written, as on a full disk (the file is then closed, and says so), or the
-        writer is closed already, or the rows are no such table.
+        Raises: OutputError if they cannot be written, as on a full disk (the file is then closed, with the reason), or
+        the writer is closed already, or the rows are not such a table.
         """
         if rows.ndim != 2 or rows.shape[1] != len(TICK_COLUMNS):
-            raise OutputError(f"ticks are (n, {len(TICK_COLUMNS)}), a column each of TICK_COLUMNS, not {rows.shape}")
+            raise OutputError(f"ticks have shape (n, {len(TICK_COLUMNS)}), as TICK_COLUMNS, not {rows.shape}")
         if self.closed:
             raise OutputError(f"{self.path}: the recording is closed; start another one")
         if self.ticks + len(rows) > netcdf.MOST_RECORDS:
@@ -58,10 +58,10 @@ class Writer:
             self.ticks += len(rows)
 
     def close(self, stopped: str = "") -> None:
-        """Say why it ended, empty when the time was over, and let go of the file; a second call does nothing."""
+        """Write the reason of the end, "" if the time was over, and close the file; a second call does nothing."""
         if not self.closed:
-            with self._file, suppress(OSError):  # it says that it was cut off, if this cannot be said
-                self._put(tick_file.filled(stopped), self._stopped_at)
+            with self._file, suppress(OSError):  # if this cannot be written, the file has the reason CUT_OFF
+                self._put(tick_file.pad_reason(stopped), self._stopped_at)
 
     def __enter__(self) -> Self:
         return self
@@ -82,5 +82,5 @@ class Writer:
 
     def _put(self, data: bytes, at: int) -> None:
         self._file.seek(at)
-        while data:  # a disk that is nearly full takes a part, and only then says so
+        while data:  # a disk that is nearly full takes a part, and fails only then
             data = data[self._file.write(data) :]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tangible_core.errors import ConfigError
-from tangible_core.session import Recording, beside
-from tangible_core.session.beside import MOST_COMPARED
+from tangible_core.session import Recording, compare_recordings
+from tangible_core.session.recording.comparison import MOST_COMPARED
 
 DEEP_M, WIDE_M = 1e-3, 0.1
 
@@ -28,7 +28,7 @@ def pressed(stiffness_n_per_m: float, friction_n: float = 0.0, ticks: int = 2001
 
 def test_springs_of_other_stiffness_felt_at_other_speeds():
     """F = k d: the forces differ by (k2 - k1) d, whose root mean square over a sine is its height / sqrt(2)."""
-    found = beside(pressed(1000), pressed(600, ticks=901, away_m=1e-4))
+    found = compare_recordings(pressed(1000), pressed(600, ticks=901, away_m=1e-4))
     assert found["error_n"] == pytest.approx(400 * DEEP_M / math.sqrt(2), rel=0.01)
     assert found["error_percent"] == pytest.approx(40, abs=0.5)
     assert (found["first_peak_force_n"], found["second_peak_force_n"]) == pytest.approx((1.0, 0.6), rel=1e-3)
@@ -43,28 +43,28 @@ def test_springs_of_other_stiffness_felt_at_other_speeds():
 
 def test_a_way_back_is_compared_with_the_way_back():
     """Friction turns with the direction: compared with the way there, it would differ by twice its force."""
-    found = beside(pressed(0, 0.3), pressed(0, 0.3, ticks=1501))
+    found = compare_recordings(pressed(0, 0.3), pressed(0, 0.3, ticks=1501))
     assert found["error_n"] == pytest.approx(0, abs=0.05)
     assert found["first_work_j"] == pytest.approx(-0.3 * 2 * WIDE_M, rel=0.01)
-    assert beside(pressed(0, 0.3), pressed(0, 0.1))["error_n"] == pytest.approx(0.2, rel=0.02)
+    assert compare_recordings(pressed(0, 0.3), pressed(0, 0.1))["error_n"] == pytest.approx(0.2, rel=0.02)
 
 
 def test_what_was_never_touched_by_the_other_is_left_out():
-    apart = beside(pressed(1000), pressed(600, away_m=0.01))
+    apart = compare_recordings(pressed(1000), pressed(600, away_m=0.01))
     assert (apart["compared"], apart["compared_share"]) == (0, 0.0)
     assert math.isnan(apart["error_n"]) and math.isnan(apart["apart_m"])
     half = pressed(600)
     half = Recording(half.rows[half.position_m[:, 0] < WIDE_M / 2])
-    assert beside(pressed(1000), half)["compared_share"] == pytest.approx(0.5, abs=0.02)
+    assert compare_recordings(pressed(1000), half)["compared_share"] == pytest.approx(0.5, abs=0.02)
 
 
 def test_nothing_unknown_places_and_a_long_one():
     empty, one = Recording(np.empty((0, 17))), pressed(1000)
-    assert beside(empty, one)["compared"] == beside(one, empty)["compared"] == 0
+    assert compare_recordings(empty, one)["compared"] == compare_recordings(one, empty)["compared"] == 0
     lost = one.rows.copy()
     lost[:1000, 2] = np.nan
-    assert beside(Recording(lost), one)["compared"] == 1001
-    assert beside(one, Recording(lost))["compared"] > 1000
-    assert beside(pressed(1000, ticks=2 * MOST_COMPARED), one)["compared"] == MOST_COMPARED
+    assert compare_recordings(Recording(lost), one)["compared"] == 1001
+    assert compare_recordings(one, Recording(lost))["compared"] > 1000
+    assert compare_recordings(pressed(1000, ticks=2 * MOST_COMPARED), one)["compared"] == MOST_COMPARED
     with pytest.raises(ConfigError, match="near_m: is 0; it must be positive"):
-        beside(one, one, 0)
+        compare_recordings(one, one, 0)

@@ -11,24 +11,25 @@ from typing import Any, Self, cast
 import numpy as np
 from jaxtyping import Float64
 
-from ..data import TICK_COLUMNS, TickFlag
-from ..data.ticks import BEACON_SHIFT
+from ...data import TICK_COLUMNS, TickFlag
+from ...data.ticks import BEACON_SHIFT
 from . import netcdf
 from .netcdf import Variable
-from .tick_arrays import ARRAYS, unknown
+from .tick_arrays import ARRAYS, unknown_rows
 
 STILL = -1
-"""In the file, the frame of a surface that stands still: netCDF's readers take what a variable fills in for missing."""
+"""Frame of a surface at rest, in the file: the fill value, which netCDF's readers take for missing."""
 CUT_OFF = "cut off: the recorder was ended before it could close the file"
-"""What a file says until it is closed."""
+"""Reason of the end in a file that is not closed."""
 STOPPED_BYTES = 240
-"""Kept free in the header for why it ended, so that it can be said once that is known."""
+"""Bytes that are reserved in the header for the reason of the end, which is written last."""
 FRAME = "metres; x right, y away from the user, z up; the origin is the centre of the picture on the base plane"
+"""Description of the coordinates, an attribute of the file."""
 
 
 @dataclass(frozen=True)
 class About:
-    """What a recording is of; empty where nobody said."""
+    """Information about the session of a recording; empty where unknown."""
 
     device: str = ""
     renderer: str = ""
@@ -37,22 +38,23 @@ class About:
     started: str = ""
     """Date and time, ISO 8601."""
     software: str = ""
-    """What wrote it, with versions."""
+    """Programs that wrote the recording, with versions."""
     parts: str = ""
-    """Names of the surface's parts, a JSON object from number to name; of scenes felt in turn, a line each, which is
-    empty for one without names."""
+    """Names of the surface's parts, a JSON object from number to name; in a kiosk, a line for each scene, empty if it
+    has no names."""
     materials: str = ""
-    """Names of the surface's materials in the same form, by the number of the part or segment that is made of it."""
+    """Names of the surface's materials in the same form, by the number of the part or segment made of them."""
 
-    def stamped(self) -> Self:
-        """With date and versions, where they are not said."""
+    def with_versions(self) -> Self:
+        """Return a copy with date and versions filled in."""
         versions = [f"{name} {version(name)}" for name in ("tangible-images", "numpy")]
         software = ", ".join([*versions, f"Python {platform.python_version()}"])
         now = datetime.now(UTC).isoformat(timespec="seconds")
         return replace(self, started=self.started or now, software=self.software or software)
 
 
-NOTHING_SAID = About()
+NO_INFORMATION = About()
+"""The information of a recording of unknown origin."""
 
 
 def _variables() -> Iterator[Variable]:
@@ -77,27 +79,27 @@ def _variable(dtype: str, units: str, long_name: str, **more: str | np.ndarray) 
 
 
 VARIABLES = dict(zip(TICK_COLUMNS, _variables(), strict=True))
-"""What a law is given is exact: rounded by a nanometre, a proxy may take another way. What it gave is float32, within
-4 nm of a proxy under 0.125 m from the centre and 0.3 uN of a force under 8 N."""
+"""Variables by column. Inputs of a force law are exact: rounded by a nanometre, a proxy may take another way. Its
+outputs are float32: within 4 nm of a proxy under 0.125 m from the centre, and 0.3 uN of a force under 8 N."""
 RECORD = np.dtype([(name, variable.dtype) for name, variable in VARIABLES.items()])
-"""A tick, 96 bytes."""
+"""Record of a tick, 96 bytes."""
 
 
 def header(about: About, stopped: str = CUT_OFF, ticks: int = 0) -> bytes:
-    """The file up to its ticks, which follow as `pack` makes them."""
-    said = {name: text for name, text in asdict(about).items() if text}
-    attributes = {"stopped": filled(stopped).decode(), "frame": FRAME, **said}
+    """Return the bytes of a file before its ticks, which follow in the form of `pack`."""
+    texts = {name: text for name, text in asdict(about).items() if text}
+    attributes = {"stopped": pad_reason(stopped).decode(), "frame": FRAME, **texts}
     return netcdf.header("tick", attributes, VARIABLES, ticks)
 
 
-def filled(stopped: str) -> bytes:
-    """In UTF-8, cut and filled to what is kept free for it."""
+def pad_reason(stopped: str) -> bytes:
+    """Return the reason of an end in UTF-8, cut and padded to STOPPED_BYTES."""
     cut = stopped.encode()[:STOPPED_BYTES].decode(errors="ignore")
     return cut.encode().ljust(STOPPED_BYTES)
 
 
 def pack(rows: Float64[np.ndarray, "n columns"]) -> bytes:
-    """Rows of `TICK_COLUMNS` as records; what float32 cannot hold becomes infinite."""
+    """Return rows of `TICK_COLUMNS` as records; values beyond float32 become infinite."""
     records = np.empty(len(rows), RECORD)
     with np.errstate(over="ignore"):
         for name, values in zip(TICK_COLUMNS, rows.T, strict=True):
@@ -106,17 +108,17 @@ def pack(rows: Float64[np.ndarray, "n columns"]) -> bytes:
 
 
 def read(path: Path) -> tuple[Float64[np.ndarray, "n columns"], str, About]:
-    """Rows of `TICK_COLUMNS`, why it ended, and what it is of.
+    """Read rows of `TICK_COLUMNS`, the reason of the end, and the information about the session.
 
-    Raises: OSError, and what scipy raises for a file that is damaged or something else.
+    Raises: OSError, and whatever scipy raises for a file that is damaged or not netCDF.
     """
     from scipy.io import netcdf_file  # pyright: ignore[reportMissingTypeStubs]
 
     with netcdf_file(path, "r", mmap=True) as opened:
         file = cast(Any, opened)
-        rows = unknown(file.variables["time_s"].shape[0])
+        rows = unknown_rows(file.variables["time_s"].shape[0])
         for i, name in enumerate(TICK_COLUMNS):
-            if name in file.variables or name != "frame":  # which older recordings have not
+            if name in file.variables or name != "frame":  # older recordings have no frame
                 rows[:, i] = file.variables[name][:]
         frame = rows[:, ARRAYS["frame"]]
         frame[frame == STILL] = np.nan

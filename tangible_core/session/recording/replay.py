@@ -1,4 +1,4 @@
-"""A recording felt again: the same states, tick by tick, through any touch."""
+"""Replay of a recording: the same states, tick by tick, through any touch."""
 
 import math
 from collections.abc import Callable
@@ -7,24 +7,25 @@ from typing import Any, cast
 
 import numpy as np
 
-from ..compiled.touch import CompiledTouch
-from ..data import UNTOUCHED, HapticState, TickFlag
-from ..metrics.forces import force_errors
-from ..plugins.interfaces import Touch
+from ...compiled.touch import CompiledTouch
+from ...data import UNTOUCHED, HapticState, TickFlag
+from ...metrics.forces import force_errors
+from ...plugins.interfaces import Touch
 from .recording import Recording
 from .tick_arrays import ARRAYS
 
 NOWHERE = (math.nan, math.nan, math.nan)
+"""Place of a proxy that does not exist."""
 
 
 def replay(touch: Touch, recording: Recording) -> Recording:
-    """What this touch gives for each recorded state, velocity and time as they were recorded.
+    """Return the recording of this touch for each recorded state, with recorded velocities and times.
 
-    Forces are the law's own: nothing limits them, as nothing is pushed. Proxy and flags are the law's too.
+    Forces are the law's own, without limits, as no device moves. Proxy and flags are the law's too.
     """
     proxy_m, force_n = np.full((2, len(recording.rows), 3), np.nan)
     if isinstance(touch, CompiledTouch):
-        from ..compiled import kernels
+        from ...compiled import kernels
 
         law = touch.address(), touch.fixed, touch.memory
         states = np.hstack([recording.position_m, recording.velocity_m_per_s])
@@ -40,7 +41,7 @@ def replay(touch: Touch, recording: Recording) -> Recording:
 
 
 def proxy_of(touch: Touch) -> Callable[[], tuple[float, ...]]:
-    """What tells where the proxy of a touch is, whenever it is asked: NaN where there is none."""
+    """Return a function that returns the present place of a touch's proxy; NaN if there is none."""
     if not isinstance(touch, CompiledTouch):
         return lambda: NOWHERE
     at = touch.memory[:3]
@@ -52,18 +53,18 @@ def proxy_of(touch: Touch) -> Callable[[], tuple[float, ...]]:
     return proxy
 
 
-def undisturbed(recording: Recording) -> np.ndarray:
-    """Recorded forces, NaN at ticks whose force was not the law's own on the surface as it was at first.
+def unaltered_forces(recording: Recording) -> np.ndarray:
+    """Return the recorded forces, NaN where a force was not the law's own on the surface at its start.
 
-    That is limited, faded in, damped, none for a fault; or on a surface that had moved.
+    Such forces were limited, faded in, damped or zero for a fault; or the surface had moved.
     """
     changed = (recording.flags & ~int(UNTOUCHED) != 0) | (recording.frame > 0)
     return np.where(changed[:, None], np.nan, recording.force_n)
 
 
-def compared(before: Recording, after: Recording) -> dict[str, float]:
-    """How far replayed forces are from the recorded ones, in numbers, by name; both have the same states."""
-    truth_n = undisturbed(before)
+def compare_replay(before: Recording, after: Recording) -> dict[str, float]:
+    """Compare replayed forces with recorded ones of the same states, in figures by name."""
+    truth_n = unaltered_forces(before)
     then, now = before.figures(), after.figures()
     worst_n = np.linalg.norm(after.force_n - truth_n, axis=1)
     return {

@@ -9,12 +9,12 @@ from command_line import tangible
 from level_ground import GROUND
 from tangible_core import Pipeline
 from tangible_core.data import Force, HapticState, ServoReport
-from tangible_core.session import changed_most, run_simulated
+from tangible_core.session import guard_summary, run_simulated
 from tangible_devices.mock import Mock
 from tangible_render.proxy import Proxy
 
 STIFF = "scene: {height: level.npy}\nwant: touch\nrender: {use: proxy, stiffness_n_per_m: 5000}\ndevice: {use: mock}\n"
-SOFTENED = "100 % of the ticks in contact the force was softened, because the law is stiffer"
+SOFTENED = "100 % of the ticks in contact the force was scaled down, because the force law is stiffer"
 
 
 @pytest.fixture
@@ -31,16 +31,19 @@ def folder(tmp_path: Path) -> Path:
         ({}, ""),
         ({"TOUCHING": 1000, "RAMPING": 1000, "OVERRUN": 1000}, ""),
         ({"TOUCHING": 1000, "STIFFNESS_LIMITED": 500}, ""),
-        ({"TOUCHING": 1000, "STIFFNESS_LIMITED": 501}, "In 50 % of the ticks in contact the force was softened"),
-        ({"TOUCHING": 10, "FORCE_LIMITED": 6, "SLEW_LIMITED": 9}, "In 90 % of the ticks in contact the force was held"),
-        ({"TOUCHING": 10, "FORCE_LIMITED": 9}, "In 90 % of the ticks in contact the force was over the greatest"),
-        ({"TOUCHING": 10, "DAMPED": 9}, "In 90 % of the ticks in contact the hand was braked"),
+        ({"TOUCHING": 1000, "STIFFNESS_LIMITED": 501}, "In 50 % of the ticks in contact the force was scaled down"),
+        (
+            {"TOUCHING": 10, "FORCE_LIMITED": 6, "SLEW_LIMITED": 9},
+            "In 90 % of the ticks in contact the force was delayed",
+        ),
+        ({"TOUCHING": 10, "FORCE_LIMITED": 9}, "In 90 % of the ticks in contact the force exceeded the greatest"),
+        ({"TOUCHING": 10, "DAMPED": 9}, "In 90 % of the ticks in contact the hand was damped"),
         ({"TOUCHING": 10, "NOT_FINITE": 30}, "In 75 % of the ticks in contact the force was set to zero"),
         ({"STALE": 5}, "In 100 % of the ticks in contact the force was set to zero, because no new position came"),
     ],
 )
 def test_a_sentence_where_most_ticks_were_changed(flagged: dict[str, int], said: str):
-    found = changed_most(flagged)
+    found = guard_summary(flagged)
     assert found[: len(said)] == said
     assert bool(found) == bool(said)
 

@@ -1,6 +1,6 @@
 """The header of a netCDF file of records, in the classic format with 64-bit offsets (CDF-2).
 
-By hand, as libraries write a file when it is closed, and a recording must be one from its first byte on.
+Written by hand, as libraries write the file only when it is closed, but a recording must be valid from its first byte.
 Source: Unidata, NetCDF Classic Format Specification; OGC 10-092r3.
 """
 
@@ -11,31 +11,34 @@ import numpy as np
 
 Attributes = Mapping[str, str | np.ndarray]
 COUNT_AT = 4
-"""Where the number of records stands."""
+"""Offset of the number of records in the file, bytes."""
 MOST_RECORDS = 2**31 - 1
+"""Greatest number of records of the format."""
 DIMENSION, VARIABLE, ATTRIBUTE = 10, 11, 12
+"""Tags of the lists in a header."""
 CHAR, TYPES = 2, {">i4": 4, ">f4": 5, ">f8": 6}
+"""Tags of the types: of text, and of numbers by their dtype."""
 
 
 class Variable(NamedTuple):
-    """One number a record, and what it says of itself."""
+    """A variable with one number a record, and its attributes."""
 
     dtype: str
     attributes: Attributes
 
 
 def header(dimension: str, attributes: Attributes, variables: Mapping[str, Variable], records: int) -> bytes:
-    """All that comes before the records, each of which is one number a variable, packed, in this order.
+    """Return all bytes before the records; a record is one number of each variable, in this order, without padding.
 
-    dtypes: ">i4", ">f4" and ">f8", whole numbers of four bytes, so that nothing needs padding.
+    dtypes: ">i4", ">f4" and ">f8", whose sizes are multiples of four bytes, so that nothing needs padding.
     """
     start = b"CDF\x02" + integer(records) + _list(DIMENSION, [_text(dimension) + integer(0)]) + _attributes(attributes)
-    begin = len(start) + len(_variables(variables, 0))  # where the first record begins
+    begin = len(start) + len(_variables(variables, 0))  # offset of the first record
     return start + _variables(variables, begin)
 
 
 def integer(number: int) -> bytes:
-    """As all counts stand in the file."""
+    """Return a count as it is written in the file."""
     return number.to_bytes(4, "big")
 
 

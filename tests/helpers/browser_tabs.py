@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
+from waiting import LONGEST_MS
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
@@ -42,6 +44,7 @@ def tabs(browser: "Browser", complaints: list[str]) -> Iterator[OpenPage]:
     def open_page(url: str, **options: Any) -> "Page":
         context = browser.new_context(**{**OPTIONS, **options})
         contexts.append(context)
+        context.set_default_timeout(LONGEST_MS)
         context.on("page", lambda page: watch(page, complaints))  # those that a page opens too
         page = context.new_page()
         page.goto(url)

@@ -12,9 +12,10 @@ from ui_server import START, UiServer
 FORGETS = f"""
 import sys
 sys.path.insert(0, {str(Path(__file__).parent)!r})
-from lasting_server import forget
+from lasting_server import forget, let_go
 from tangible_ui.requests.table import REQUESTS
 REQUESTS["forget"] = forget
+REQUESTS["let_go"] = let_go
 {START}
 """
 
@@ -43,11 +44,19 @@ class LastingServer(UiServer):
                 tab.until(event="answer", number=tab.ask(name, **told))
             tab.ask("choose_device", kind="hand")
             tab.until(event="touch")
+            tab.until(event="answer", number=tab.ask("let_go"))
         return self.url
 
 
-async def forget(desk: Any, tab: Any) -> None:
-    """What has happened: no verdict, file, comparison or step back is left of the documents before."""
-    desk._history.clear()
-    desk._logged.clear()
-    desk.texts = type(desk.texts)()
+async def forget(session: Any, tab: Any) -> None:
+    """Forget verdicts, files, comparisons and steps back of the documents before; the worker and the surface stay."""
+    for event in session._latest.keys() - {"maker", "described"}:
+        del session._latest[event]
+    session._history.clear()
+    session._logged.clear()
+    session.texts = type(session.texts)()
+
+
+async def let_go(session: Any, tab: Any) -> None:
+    """Take the hand from all tabs: those of earlier tests may close late, and the next tab gets it as it comes."""
+    session.hold(None)

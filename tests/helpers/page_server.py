@@ -1,4 +1,4 @@
-"""The page's server in this process, in a thread of its own, with no maker and, unless asked for, no loop."""
+"""The page's server in this process, in a thread of its own, with no worker and, unless asked for, no loop."""
 
 import asyncio
 import http.client
@@ -16,13 +16,13 @@ from tangible_ui.address import HOST, Address
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.serving.routes import application
 from tangible_ui.serving.serve import Server, settings, watch
-from tangible_ui.state.session import Desk
+from tangible_ui.state.session import Session
+from waiting import LONGEST_S
 
 KEY = "key-of-a-test-0123456789"
-IN_TIME_S = 60.0
 
 
-class NoMaker:
+class NoWorker:
     """Does nothing that it is asked."""
 
     def __init__(self, folder: Path, hear: Callable[[Any], None]) -> None:
@@ -48,7 +48,7 @@ class PageServer:
     """It listens in its `with`."""
 
     def __init__(self, folder: Path, monkeypatch: Any) -> None:
-        monkeypatch.setattr("tangible_ui.state.session.Maker", NoMaker)
+        monkeypatch.setattr("tangible_ui.state.session.Worker", NoWorker)
         self.folder = folder / "drawn"
         self.folder.mkdir()
         self.complaints: list[dict[str, Any]] = []
@@ -59,7 +59,7 @@ class PageServer:
         with Address.of(0) as address:
             self.port = address.port
             self.host = f"{HOST}:{self.port}"
-            app = application(lambda: self.desk, KEY, frozenset({self.host}), self._lifespan)
+            app = application(lambda: self.session, KEY, frozenset({self.host}), self._lifespan)
             self.server = Server(settings(app), lambda: None)
             self.server.run(sockets=[address.listening])
 
@@ -67,20 +67,20 @@ class PageServer:
     async def _lifespan(self, _: Any) -> AsyncGenerator[None]:
         self.loop = asyncio.get_running_loop()
         self.loop.set_exception_handler(lambda _, context: self.complaints.append(context))
-        self.desk = Desk(self.folder, Feeling("ui-test"), [])
-        self.desk.begin(watch(self.desk))
+        self.session = Session(self.folder, Feeling("ui-test"), [])
+        self.session.begin(watch(self.session))
         self._ready.set()
         yield
-        await self.desk.close()
+        await self.session.close()
 
     def __enter__(self) -> Self:
         self._thread.start()
-        assert self._ready.wait(IN_TIME_S)
+        assert self._ready.wait(LONGEST_S)
         return self
 
     def __exit__(self, *_: object) -> None:
         self.server.should_exit = True
-        self._thread.join(IN_TIME_S)
+        self._thread.join(LONGEST_S)
         assert not self._thread.is_alive()
         assert not self.complaints, self.complaints
 
@@ -90,7 +90,7 @@ class PageServer:
         async def there() -> Any:
             return work()
 
-        return asyncio.run_coroutine_threadsafe(there(), self.loop).result(IN_TIME_S)
+        return asyncio.run_coroutine_threadsafe(there(), self.loop).result(LONGEST_S)
 
     def ask(
         self, path: str, method: str = "GET", body: bytes | None = None, **headers: str | None
@@ -98,7 +98,7 @@ class PageServer:
         """One request; headers are named with underscores, None leaves one out. The answer's text is its `text`."""
         said = {"host": self.host, "origin": f"http://{self.host}" if method not in ("GET", "HEAD") else None}
         said |= {name.replace("_", "-"): value for name, value in headers.items()}
-        connection = http.client.HTTPConnection(HOST, self.port, timeout=IN_TIME_S)
+        connection = http.client.HTTPConnection(HOST, self.port, timeout=LONGEST_S)
         connection.putrequest(method, path, skip_host=True, skip_accept_encoding=True)
         for name, value in said.items():
             if value is not None:
@@ -135,7 +135,7 @@ class TestTab:
         self.socket.send(json.dumps({"number": self._number, "ask": name, **told}))
         return self._number
 
-    def next(self, timeout: float = IN_TIME_S) -> dict[str, Any] | None:
+    def next(self, timeout: float = LONGEST_S) -> dict[str, Any] | None:
         """The next event; frames are counted. None if there is none in time. Raises: ConnectionClosed."""
         try:
             while isinstance(said := self.socket.recv(timeout), bytes):
@@ -155,7 +155,7 @@ class TestTab:
         """The code with which it is closed."""
         try:
             while True:
-                self.socket.recv(IN_TIME_S)
+                self.socket.recv(LONGEST_S)
         except ConnectionClosed as error:
             return error.rcvd.code if error.rcvd else 1006
 

@@ -12,10 +12,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Self
 
+from waiting import LONGEST_S
+
 START = "from tangible_core.cli import main; main()"
 ADDRESS = re.compile(r"http://127\.0\.0\.1:\d+/\S*")
-LONGEST_S = 60
-"""To listen or to end: nothing waits that long but a fault."""
 
 
 class UiServer:

@@ -41,10 +41,11 @@ Opened = Callable[..., str]
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Whatever needs a browser or a server is slow."""
+    """Mark as slow what needs a browser or a server, and leave it time on a machine that stands still meanwhile."""
     for item in items:
         if {"browser", "serve", "opened"} & set(getattr(item, "fixturenames", ())):
             item.add_marker("slow")
+            item.add_marker(pytest.mark.timeout(1200))
 
 
 @pytest.fixture(scope="package")

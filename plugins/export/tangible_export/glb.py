@@ -3,8 +3,7 @@
 import json
 import struct
 from math import ceil
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from jaxtyping import Float32, UInt8
@@ -26,16 +25,11 @@ class Glb(SolidExporter):
     Source: glTF 2.0 Specification, The Khronos Group, sec. 3 and 4.
     """
 
-    def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
-        """Write one file, `stem.glb`.
+    ending: ClassVar[str] = "glb"
 
-        Raises: GeometryError for a flat relief, BrailleError or OutputError for a title that cannot be written.
-        """
-        from .solid.making import make_solid
-
-        path = stem.with_name(f"{stem.name}.glb")
-        path.write_bytes(as_glb(*make_solid(self, work), work.title, work.picture))
-        return (path,)
+    def write_solid(self, file: IO[bytes], solid: "Solid", layout: "Layout", work: Work) -> None:
+        """Write the solid, with the picture if there is one."""
+        file.write(as_glb(solid, layout, work.title, work.picture))
 
 
 RIM_GREY = 225

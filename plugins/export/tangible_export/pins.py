@@ -88,7 +88,7 @@ class Pins(Exporter):
 def _parts(work: Work, display: Display) -> PartMap:
     """Return the parts to show. Raises: PictureError for a scene of one part, unless pins have several heights."""
     if (parts := work.simplified) is None:
-        raise PictureError("this scene has no parts to show; it needs a picture, or `parts:` of its own")
+        raise PictureError("this scene has no parts to show; it needs a picture, or its own `parts:`")
     if display.levels == 1 and (parts.labels == parts.labels.flat[0]).all():
         raise PictureError(
             "the picture is one part, and has no border to show; name or draw its parts (`parts:`), or choose "

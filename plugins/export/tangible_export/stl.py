@@ -1,7 +1,6 @@
 """A solid as STL, the format that every slicer reads."""
 
-from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -11,6 +10,13 @@ from .solid.exporter import SolidExporter
 
 if TYPE_CHECKING:
     from .solid.closed import Solid
+    from .solid.plate import Layout
+
+
+FACETS_AT_ONCE = 65_536
+"""Facets in memory at a time: a solid may have millions."""
+HEAD = b"tangible-images; unit: millimetre"
+_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
 
 
 class Stl(SolidExporter):
@@ -20,33 +26,15 @@ class Stl(SolidExporter):
     Source: StereoLithography Interface Specification, 3D Systems, 1988.
     """
 
-    def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
-        """Write one file, `stem.stl`.
+    ending: ClassVar[str] = "stl"
 
-        Raises: GeometryError for a flat relief, BrailleError or OutputError for a title that cannot be written.
-        """
-        from .solid.making import make_solid
-
-        solid, _ = make_solid(self, work)
-        path = stem.with_name(f"{stem.name}.stl")
-        with path.open("wb") as file:
-            write_stl(file, solid)
-        return (path,)
-
-
-FACETS_AT_ONCE = 65_536
-"""Facets in memory at a time: a solid may have millions."""
-HEAD = b"tangible-images; unit: millimetre"
-_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
-
-
-def write_stl(file: IO[bytes], solid: "Solid") -> None:
-    """Write the head, the number of facets and the facets, with their normals."""
-    file.write(HEAD.ljust(79) + b"\0" + np.uint32(len(solid.triangles)).tobytes())
-    for first in range(0, len(solid.triangles), FACETS_AT_ONCE):
-        corners = solid.vertices_mm[solid.triangles[first : first + FACETS_AT_ONCE]]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        facets = np.zeros(len(corners), _FACET)
-        facets["normal"] = normals / np.linalg.norm(normals, axis=1, keepdims=True)
-        facets["corners"] = corners
-        file.write(facets.tobytes())
+    def write_solid(self, file: IO[bytes], solid: "Solid", layout: "Layout", work: Work) -> None:
+        """Write the head, the number of facets and the facets, with their normals."""
+        file.write(HEAD.ljust(79) + b"\0" + np.uint32(len(solid.triangles)).tobytes())
+        for first in range(0, len(solid.triangles), FACETS_AT_ONCE):
+            corners = solid.vertices_mm[solid.triangles[first : first + FACETS_AT_ONCE]]
+            normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            facets = np.zeros(len(corners), _FACET)
+            facets["normal"] = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+            facets["corners"] = corners
+            file.write(facets.tobytes())

@@ -46,7 +46,7 @@ class Swell(Exporter):
         except ImportError as error:
             raise BrokenMethod(f"pages need shapely ({error}); pip install 'tangible-images[export]'") from error
         if (parts := work.simplified) is None:
-            raise PictureError("this scene has no parts to outline; it needs a picture, or `parts:` of its own")
+            raise PictureError("this scene has no parts to outline; it needs a picture, or its own `parts:`")
         sheet = sheet_for(self.page, _aspect(work, parts), self.width_m)
         check_readable(self.page, sheet)
         texts = drawn_pages(work, open_parts(work, parts, sheet.picture_mm[0] / 1000), sheet, self.page)

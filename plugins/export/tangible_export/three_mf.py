@@ -2,8 +2,7 @@
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, ClassVar
 from xml.sax.saxutils import escape, quoteattr
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
@@ -15,26 +14,7 @@ from .solid.exporter import SolidExporter
 
 if TYPE_CHECKING:
     from .solid.closed import Solid
-
-
-class ThreeMF(SolidExporter):
-    """A closed solid to print, as 3MF: the solid of `stl` in a third of the bytes, with its unit and its title.
-
-    Source: 3D Manufacturing Format, Core Specification 1.3, 3MF Consortium.
-    """
-
-    def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
-        """Write one file, `stem.3mf`.
-
-        Raises: GeometryError for a flat relief, BrailleError or OutputError for a title that cannot be written.
-        """
-        from .solid.making import make_solid
-
-        solid, _ = make_solid(self, work)
-        path = stem.with_name(f"{stem.name}.3mf")
-        with path.open("wb") as file:
-            write_3mf(file, solid, work.title, work.language)
-        return (path,)
+    from .solid.plate import Layout
 
 
 _XML = '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -59,14 +39,22 @@ ROWS_AT_ONCE = 65_536
 """Vertices or triangles written at a time: a solid may have millions."""
 
 
-def write_3mf(file: IO[bytes], solid: "Solid", title: str, language: str) -> None:
-    """Write the package: the same bytes for the same solid, as its parts have no date."""
-    with ZipFile(file, "w", ZIP_DEFLATED) as package:
-        for name, text in _PARTS.items():
-            package.writestr(_part(name), text)
-        with package.open(_part(_MODEL), "w", force_zip64=True) as model:
-            for text in _model(solid, title, language):
-                model.write(text.encode())
+class ThreeMF(SolidExporter):
+    """A closed solid to print, as 3MF: the solid of `stl` in a third of the bytes, with its unit and its title.
+
+    Source: 3D Manufacturing Format, Core Specification 1.3, 3MF Consortium.
+    """
+
+    ending: ClassVar[str] = "3mf"
+
+    def write_solid(self, file: IO[bytes], solid: "Solid", layout: "Layout", work: Work) -> None:
+        """Write the package: the same bytes for the same solid, as its parts have no date."""
+        with ZipFile(file, "w", ZIP_DEFLATED) as package:
+            for name, text in _PARTS.items():
+                package.writestr(_part(name), text)
+            with package.open(_part(_MODEL), "w", force_zip64=True) as model:
+                for text in _model(solid, work.title, work.language):
+                    model.write(text.encode())
 
 
 def _part(name: str) -> ZipInfo:

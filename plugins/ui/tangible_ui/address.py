@@ -1,6 +1,6 @@
-"""Where the page is served: the address is printed, and opened, before the server itself is imported.
+"""The page's address, printed and opened before the server itself is imported.
 
-The browser takes as long to open a page as the server takes to start; what it asks for meanwhile waits in the socket.
+The browser takes as long to open a page as the server takes to start; its first requests wait in the socket.
 """
 
 import os
@@ -22,7 +22,7 @@ HOST = "127.0.0.1"
 
 @dataclass(frozen=True)
 class Address:
-    """A socket that listens on this machine alone, and the key that whoever asks must know."""
+    """A socket that listens on this machine alone, and the key that every request must carry."""
 
     listening: socket.socket
     key: str
@@ -30,7 +30,7 @@ class Address:
     @classmethod
     @contextmanager
     def of(cls, port: int) -> Generator[Self]:
-        """Raises: ConfigError if the page was not built, or the port is taken."""
+        """Listen on a port; 0 takes a free one. Raises: ConfigError if the page was not built, or the port is taken."""
         if not (static() / "app.js").is_file():
             raise ConfigError(
                 "the page was not built when this was installed, as npm could not be reached; install again where it "
@@ -47,16 +47,16 @@ class Address:
 
     @property
     def port(self) -> int:
-        """The one that was asked for, or was free."""
+        """The port that listens."""
         return self.listening.getsockname()[1]
 
     @property
     def hosts(self) -> frozenset[str]:
-        """What a browser may call it."""
+        """The host names under which a browser may reach the server."""
         return frozenset({f"{HOST}:{self.port}", f"localhost:{self.port}"})
 
     def announce(self, browser: bool) -> None:
-        """Print it; and open it."""
+        """Print the address. browser: open it too."""
         url = f"http://{HOST}:{self.port}/?token={self.key}"
         print(url, flush=True)  # noqa: T201 - what the command is called for
         if browser:  # in a thread of its own: one that needs the terminal is waited for until it ends
@@ -64,10 +64,10 @@ class Address:
 
 
 def new_key() -> str:
-    """What the page's address holds: 128 bits, or what $TANGIBLE_UI_TOKEN says, as in a test."""
+    """Return a new key of 128 bits, or $TANGIBLE_UI_TOKEN, which tests set."""
     return os.environ.get("TANGIBLE_UI_TOKEN") or secrets.token_urlsafe(16)
 
 
 def static() -> Path:
-    """Where the built page lies, if it was built."""
+    """Return the folder of the built page; it does not exist if the page was not built."""
     return Path(str(files("tangible_ui"))) / "static"

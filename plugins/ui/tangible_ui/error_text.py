@@ -1,4 +1,4 @@
-"""Errors that nobody foresaw: pages are told one sentence, and the traceback is kept in a file."""
+"""Texts of unforeseen errors: pages show one sentence, and the traceback goes to a file."""
 
 import asyncio
 
@@ -6,8 +6,8 @@ from tangible_core.errors import TangibleError
 from tangible_core.plugins.failures import sentence
 
 
-async def told(error: BaseException) -> str:
-    """What a page is told of an error."""
+async def describe_error(error: BaseException) -> str:
+    """Return the sentence that a page shows for an error."""
     if isinstance(error, TangibleError):
         return str(error)
     return await asyncio.to_thread(sentence, error)

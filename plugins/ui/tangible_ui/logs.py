@@ -1,26 +1,26 @@
-"""What Python's logging and warnings say, told to pages: a plugin's warning is for who looks at the page."""
+"""Python's logging and warnings, forwarded to pages: who looks at the page sees a plugin's warnings there."""
 
 import logging
 import time
 from typing import Protocol, final
 
 OWN = ("tangible_core", "tangible_depth", "tangible_texture", "tangible_render", "tangible_devices", "tangible_ui")
-"""Packages of which pages hear what is logged as information, too; of others, warnings and errors."""
+"""Packages whose information pages get too; from others, warnings and errors."""
 KNOWN = "tangible_core.plugins.observers.log"
-"""It says of the stages what pages are told anyway."""
+"""The logger of stages, left out because pages get events of stages."""
 MOST_A_SECOND = 50
 
 
 class Tell(Protocol):
-    """Says a line of the log to all pages; in any thread. level: detail, warning or error."""
+    """A function that sends a log line to all pages, from any thread. level: detail, warning or error."""
 
     def __call__(self, *, level: str, logger: str, text: str) -> None:
-        """Does not wait."""
+        """Send the line without waiting."""
 
 
 @final
 class PageHandler(logging.Handler):
-    """Hands on what is logged, never more than pages can show; and never raises."""
+    """A handler that forwards records, at most MOST_A_SECOND, and never raises."""
 
     def __init__(self, tell: Tell) -> None:
         super().__init__(logging.INFO)
@@ -28,12 +28,12 @@ class PageHandler(logging.Handler):
         self._second, self._count = 0, 0
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Warnings of everybody; information of our own packages."""
+        """Pass warnings of every logger, and information of our own packages."""
         own = record.name.partition(".")[0] in OWN and record.name != KNOWN
         return (own or record.levelno >= logging.WARNING) and super().filter(record) is not False
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Told at once; what floods is counted, and the count told when it is over."""
+        """Forward a record at once; count those of a flood, and report the count when it is over."""
         try:
             if (second := int(time.monotonic())) != self._second:
                 left_out, self._second, self._count = self._count - MOST_A_SECOND, second, 0
@@ -48,9 +48,9 @@ class PageHandler(logging.Handler):
 
 
 def tell_pages(tell: Tell, *, information: bool = False) -> PageHandler:
-    """From now on what this process logs and warns of is told; standard error hears it as before.
+    """Forward this process's logging and warnings to pages; standard error gets them as before.
 
-    information: also where nobody asked for a log, as in a process whose standard error is nobody's.
+    information: also where no log was requested, as in a process whose standard error nobody reads.
     """
     root, handler = logging.getLogger(), PageHandler(tell)
     if information:
@@ -64,7 +64,7 @@ def tell_pages(tell: Tell, *, information: bool = False) -> PageHandler:
 
 
 def silence(handler: PageHandler) -> None:
-    """Pages are told nothing more."""
+    """Stop forwarding to pages."""
     logging.getLogger().removeHandler(handler)
     logging.captureWarnings(False)
 
@@ -74,7 +74,7 @@ def _level(number: int) -> str:
 
 
 def _text(record: logging.LogRecord) -> str:
-    """The message; of an exception the sentence, for the traceback is in standard error."""
+    """Return the message, with an exception's sentence; its traceback is on standard error."""
     text = record.getMessage().strip()
     error = record.exc_info[1] if record.exc_info else None
     return text if error is None else f"{text}: {type(error).__name__}: {error}"

@@ -1,4 +1,4 @@
-"""The maker's process, started before the server itself is imported: each takes half a second, side by side."""
+"""The worker's process, started before the server is imported: both take half a second, and start in parallel."""
 
 import subprocess
 from collections.abc import Generator
@@ -6,23 +6,23 @@ from contextlib import contextmanager
 
 from tangible_core.runtime.child_process import command
 
-_started: list[subprocess.Popen[bytes]] = []
+_prestarted: list[subprocess.Popen[bytes]] = []
 
 
-def maker_process() -> subprocess.Popen[bytes]:
-    """The one that was started beforehand, or another one; it waits for its folder on standard input."""
-    return _started.pop() if _started else _start()
+def take_worker_process() -> subprocess.Popen[bytes]:
+    """Return the prestarted process, or start another one; it waits for its folder on standard input."""
+    return _prestarted.pop() if _prestarted else _start()
 
 
 @contextmanager
-def maker_beforehand() -> Generator[None]:
-    """Start one that `maker_process` then gives; it is ended if nobody asked for it."""
-    _started.append(_start())
+def prestart_worker() -> Generator[None]:
+    """Start a process for `take_worker_process`; at the end of the block, kill it if nobody took it."""
+    _prestarted.append(_start())
     try:
         yield
     finally:
-        while _started:
-            with _started.pop() as process:
+        while _prestarted:
+            with _prestarted.pop() as process:
                 process.kill()
 
 

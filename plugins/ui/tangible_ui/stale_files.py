@@ -1,4 +1,4 @@
-"""What processes of this user that are gone left behind: named with the number of the process, as a ring is."""
+"""Temporary files of this process, and removal of those of dead processes: their names contain the process's number."""
 
 import os
 import re
@@ -19,9 +19,9 @@ NUMBER = re.compile(r"(?:.*-)?([0-9]{1,9})(?:-[\w.]+|\.\w+)")
 
 @contextmanager
 def folder_of_this_process() -> Generator[Path]:
-    """A folder for what pages fetch, empty, for this user alone; those of servers that were killed go.
+    """Make an empty folder for what pages fetch, for this user alone; remove those of servers that were killed.
 
-    Raises: OutputError if there is no room for it.
+    Raises: OutputError if it cannot be made.
     """
     try:
         for each in left_in(Path(tempfile.gettempdir()), f"{PREFIX}*"):
@@ -37,9 +37,9 @@ def folder_of_this_process() -> Generator[Path]:
 
 @contextmanager
 def channel_of_this_process() -> Generator[str]:
-    """The name of the page's own pointer; its files go at the end, and so do those of servers that were killed.
+    """Yield the channel of the page's own pointer; remove its files at the end, and now those of killed servers.
 
-    Raises: DeviceError if the folder for them is somebody else's.
+    Raises: DeviceError if the folder of channels belongs to somebody else.
     """
     name = f"{CHANNEL}{os.getpid()}"
     folder = channel_path(name).parent
@@ -53,7 +53,7 @@ def channel_of_this_process() -> Generator[str]:
 
 
 def left_in(folder: Path, pattern: str) -> Iterator[Path]:
-    """This user's files and folders of that name whose process is gone; none where that cannot be known."""
+    """Yield this user's files and folders of that pattern whose process is dead; none on systems that cannot tell."""
     for path in sorted(folder.glob(pattern)):
         with suppress(OSError):
             named = NUMBER.fullmatch(path.name)

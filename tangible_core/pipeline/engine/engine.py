@@ -9,7 +9,7 @@ from threading import Event
 from time import perf_counter
 from typing import Any
 
-from ...compiled.beside import Beside
+from ...compiled.background import BackgroundCompiler
 from ...data import Note, Outcome, Outcomes, Plan, Record
 from ...data.products import PRODUCTS
 from ...errors import TangibleError, UnknownMethod
@@ -24,7 +24,7 @@ from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from .cache import Cache, Notes
 from .keys import product_key
-from .planning import NEEDED, REQUESTED, SAME, foresee, not_needed, notes_ahead, with_notes
+from .planning import NEEDED, REQUESTED, SAME, Outlook, foresee, not_needed, notes_ahead, with_notes
 from .stage import Context, Progress, Stage, StageEvent, ignore_event, stage_class
 
 log = logging.getLogger(__name__)
@@ -43,7 +43,7 @@ class Engine:
         self.cache = cache
         self.threads = threads
         """The most threads at once, on which no result depends; None for the limit of `TANGIBLE_THREADS`, if any."""
-        self.beside: Beside | None = None
+        self.beside: BackgroundCompiler | None = None
         """A process that compiles in the background; a stage waits for what is compiled for it."""
         self.begun: set[str] = set()
         """The products whose making has begun."""
@@ -104,7 +104,8 @@ class Engine:
     def plan(self, want: str | None = None) -> Plan:
         """Foresee the outcomes of making a product. Raises: TangibleError for an unreadable scene, UnknownMethod."""
         want = self._product(want)
-        plan = Plan(want, tuple(foresee(self, want, REQUESTED, {}).values()))
+        ahead = Outlook(self.stages, self.scene_products, self.source_of, self.cache_for, self.key)
+        plan = Plan(want, tuple(foresee(ahead, want, REQUESTED, {}).values()))
         hooks.tell(self.registry.plugins, "tangible_plan_made", plan=plan)
         return plan
 

@@ -1,16 +1,11 @@
 """Plans: the outcome of each product, foreseen before anything is made."""
 
-from __future__ import annotations
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import NamedTuple
 
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
-
-from ...data import Note, Outcome
-from .cache import Notes
+from ...data import Note, Outcome, Record
+from .cache import Cache, Notes
 from .stage import Stage
-
-if TYPE_CHECKING:
-    from .engine import Engine
 
 REQUESTED = "requested"
 NEEDED = "needed for"
@@ -19,7 +14,18 @@ WITHIN_CACHED = "within a cached product"
 SAME = "same method, options and inputs as before"
 
 
-def foresee(engine: Engine, product: str, why: str, steps: dict[str, Outcome]) -> dict[str, Outcome]:
+class Outlook(NamedTuple):
+    """The part of an engine that a plan looks at."""
+
+    stages: Mapping[str, Stage]
+    scene_products: Mapping[str, Record]
+    source_of: Callable[[str], tuple[str, tuple[Note, ...]]]
+    """The function that returns where a given product comes from, with its notes."""
+    cache_for: Callable[[Stage], Cache | None]
+    key: Callable[[str], str]
+
+
+def foresee(engine: Outlook, product: str, why: str, steps: dict[str, Outcome]) -> dict[str, Outcome]:
     """Add the outcomes of a product and, before it, of the products that it needs; return all steps."""
     stage = engine.stages.get(product)
     if product in steps:

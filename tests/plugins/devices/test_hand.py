@@ -1,4 +1,4 @@
-"""The simulated hand: its motion, and what it does on ground."""
+"""The simulated hand: its motion, free and on ground."""
 
 import math
 
@@ -54,8 +54,8 @@ class TestHand:
 
     def test_hand_presses_with_limited_strength(self):
         with Mock(path="circle", z_m=-1.0, hand=VirtualHand(press_n=1.25)).open() as link:
-            felt = feel(link, PenaltyGradient(stiffness_n_per_m=800).touch(GROUND), 3000)
-        state, force = felt[-1]
+            ticks = feel(link, PenaltyGradient(stiffness_n_per_m=800).touch(GROUND), 3000)
+        state, force = ticks[-1]
         assert force.z == pytest.approx(1.25, rel=1e-9)
         assert state.position_m[2] == pytest.approx(GROUND_M - 1.25 / 800, rel=1e-9)
 
@@ -63,12 +63,12 @@ class TestHand:
     def test_hand_on_wall_at_one_kilohertz_is_stable(self, stiffness: float):
         """The hand's 6 N s/m are over K T / 2 = 1.5 N s/m, so a sampled wall of 3 N/mm is passive."""
         with Mock(path="circle").open() as link:
-            felt = feel(link, PenaltyGradient(stiffness_n_per_m=stiffness).touch(GROUND), 4000)
-        place, force = np.array([state.position_m for state, _ in felt]), np.array([force for _, force in felt])
+            ticks = feel(link, PenaltyGradient(stiffness_n_per_m=stiffness).touch(GROUND), 4000)
+        place, force = np.array([state.position_m for state, _ in ticks]), np.array([force for _, force in ticks])
         assert np.abs(np.diff(place[-1000:, 2])).max() < 1e-12
         assert force[:, 2].max() < 8
         landed = int(np.flatnonzero(force[:, 2])[0])
-        kinetic = 0.05 * np.square(felt[landed][0].velocity_m_per_s).sum()
+        kinetic = 0.05 * np.square(ticks[landed][0].velocity_m_per_s).sum()
         given_back = np.sum(force[:-1] * np.diff(place, axis=0))
         assert given_back < 0.25 * kinetic
 
@@ -78,11 +78,11 @@ class TestHand:
         heights = 0.01 + 0.008 * np.sin(2 * x)[None, :] * np.cos(2 * x)[:, None]
         surface = HapticSurface.from_heights(heights)
         with Mock().open() as link:
-            felt = feel(link, PenaltyGradient().touch(surface), 8000)
-        force = np.linalg.norm([force for _, force in felt], axis=1)
+            ticks = feel(link, PenaltyGradient().touch(surface), 8000)
+        force = np.linalg.norm([force for _, force in ticks], axis=1)
         assert np.mean(force > 0) > 0.95
         assert 1.0 < np.median(force) < 3.0
-        z = [state.position_m[2] for state, _ in felt[500:]]
+        z = [state.position_m[2] for state, _ in ticks[500:]]
         assert max(z) - min(z) > 0.01
 
     def test_hand_starts_lifted_and_at_rest(self):

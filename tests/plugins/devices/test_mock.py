@@ -1,4 +1,4 @@
-"""The mock device: its paths, its link, its clock, and what it does with bad files."""
+"""The mock device: its paths, its link, its clock, and invalid files."""
 
 import math
 import os
@@ -15,7 +15,7 @@ from tangible_core.errors import DeviceError
 from tangible_devices.mock import Mock
 
 
-def written(folder: Path, text: str | bytes) -> Path:
+def write_csv(folder: Path, text: str | bytes) -> Path:
     path = folder / "hand.csv"
     path.write_bytes(text.encode() if isinstance(text, str) else text)
     return path
@@ -24,43 +24,43 @@ def written(folder: Path, text: str | bytes) -> Path:
 class TestPaths:
     def test_raster_follows_lines_at_its_speed_and_repeats(self):
         """Two lines of 60 mm, 40 mm apart, and the way back: 200 mm at 0.1 m/s are 2000 ticks."""
-        felt = positions(Mock(hand=None, lines=2, size_m=(0.06, 0.04), z_m=-0.001, speed_m_per_s=0.1), 4001)
+        places = positions(Mock(hand=None, lines=2, size_m=(0.06, 0.04), z_m=-0.001, speed_m_per_s=0.1), 4001)
         corners = {0: (-0.03, 0.02), 600: (0.03, 0.02), 1000: (0.03, -0.02), 1600: (-0.03, -0.02), 300: (0, 0.02)}
         for tick, (x, y) in corners.items():
-            assert felt[tick] == pytest.approx((x, y, -0.001), abs=1e-15)
-        assert np.array_equal(felt[:2000], felt[2000:4000])
-        assert np.allclose(np.linalg.norm(np.diff(felt, axis=0), axis=1), 1e-4, rtol=1e-9)
+            assert places[tick] == pytest.approx((x, y, -0.001), abs=1e-15)
+        assert np.array_equal(places[:2000], places[2000:4000])
+        assert np.allclose(np.linalg.norm(np.diff(places, axis=0), axis=1), 1e-4, rtol=1e-9)
 
     def test_circle_is_an_ellipse_of_its_size(self):
-        felt = positions(Mock(hand=None, path="circle", size_m=(0.06, 0.02)), 2000)
-        assert np.abs(np.hypot(felt[:, 0] / 0.03, felt[:, 1] / 0.01) - 1).max() < 1e-5
-        assert tuple(felt[0]) == (0.03, 0.0, -0.005)
-        assert felt[100, 1] > 0  # counter-clockwise
+        places = positions(Mock(hand=None, path="circle", size_m=(0.06, 0.02)), 2000)
+        assert np.abs(np.hypot(places[:, 0] / 0.03, places[:, 1] / 0.01) - 1).max() < 1e-5
+        assert tuple(places[0]) == (0.03, 0.0, -0.005)
+        assert places[100, 1] > 0  # counter-clockwise
 
     def test_spiral_fills_its_size_and_comes_back(self):
         mock = Mock(hand=None, path="spiral", size_m=(0.04, 0.04), lines=4, speed_m_per_s=0.1)
-        felt = positions(mock, 10000)
-        radius = np.hypot(felt[:, 0], felt[:, 1])
+        places = positions(mock, 10000)
+        radius = np.hypot(places[:, 0], places[:, 1])
         lap = int(np.flatnonzero(radius[1000:] < 1e-9)[0]) + 1000
         assert radius[0] == 0
         assert radius.max() == pytest.approx(0.02, rel=1e-5)
-        assert np.allclose(felt[: lap // 2], felt[lap - 1 : lap - 1 - lap // 2 : -1], atol=2e-4)
-        assert np.array_equal(felt[: lap + 1][:500], felt[lap : lap + 500])
-        right = felt[: lap // 2][np.flatnonzero(np.diff(np.sign(felt[: lap // 2, 1])) > 0)]
+        assert np.allclose(places[: lap // 2], places[lap - 1 : lap - 1 - lap // 2 : -1], atol=2e-4)
+        assert np.array_equal(places[: lap + 1][:500], places[lap : lap + 500])
+        right = places[: lap // 2][np.flatnonzero(np.diff(np.sign(places[: lap // 2, 1])) > 0)]
         assert np.allclose(np.diff(right[:, 0]), 0.02 / 4, atol=2e-4)
 
     def test_press_goes_straight_down_and_up(self):
-        felt = positions(Mock(hand=None, path="press", z_m=-0.01, lift_m=0.03, speed_m_per_s=0.08), 2001)
-        assert not felt[:, :2].any()
-        assert felt[[0, 500, 1000, 1500], 2] == pytest.approx([0.03, -0.01, 0.03, -0.01], abs=1e-15)
-        assert felt[250, 2] == pytest.approx(0.01, abs=1e-15)
+        places = positions(Mock(hand=None, path="press", z_m=-0.01, lift_m=0.03, speed_m_per_s=0.08), 2001)
+        assert not places[:, :2].any()
+        assert places[[0, 500, 1000, 1500], 2] == pytest.approx([0.03, -0.01, 0.03, -0.01], abs=1e-15)
+        assert places[250, 2] == pytest.approx(0.01, abs=1e-15)
 
     @pytest.mark.parametrize("path", ["raster", "circle", "spiral", "press"])
     def test_lap_at_any_speed_is_whole_ticks(self, path: str):
         mock = Mock(hand=None, path=path, speed_m_per_s=0.8123, lines=3)
-        felt = positions(mock, 1500)
-        lap = next(n for n in range(2, 750) if np.array_equal(felt[: 1500 - n], felt[n:]))
-        steps = np.linalg.norm(np.diff(felt, axis=0), axis=1) / mock.period_s
+        places = positions(mock, 1500)
+        lap = next(n for n in range(2, 750) if np.array_equal(places[: 1500 - n], places[n:]))
+        steps = np.linalg.norm(np.diff(places, axis=0), axis=1) / mock.period_s
         assert lap > 10
         assert steps.max() <= 0.8123 * (1 + 1e-9)
 
@@ -91,13 +91,13 @@ class TestPaths:
 class TestCsv:
     def test_csv_is_played_exactly_and_then_held(self, tmp_path: Path):
         text = "x_m,time_s,note,z_m,y_m\n0,5,a,0.01,0\n0.004,5.004,b,0.01,0\n0.004,5.006,c,0.01,0.004\n"
-        felt = positions(Mock(hand=None, path="csv", csv_file=written(tmp_path, text)), 10)
+        places = positions(Mock(hand=None, path="csv", csv_file=write_csv(tmp_path, text)), 10)
         x = [0, 0.001, 0.002, 0.003, 0.004, 0.004, 0.004, 0.004, 0.004, 0.004]
         y = [0, 0, 0, 0, 0, 0.002, 0.004, 0.004, 0.004, 0.004]
-        assert np.allclose(felt, np.column_stack([x, y, np.full(10, 0.01)]), atol=1e-12)
+        assert np.allclose(places, np.column_stack([x, y, np.full(10, 0.01)]), atol=1e-12)
 
     def test_csv_with_one_row_and_byte_order_mark_is_read(self, tmp_path: Path):
-        path = written(tmp_path, b"\xef\xbb\xbftime_s,x_m,y_m,z_m\r\n0,1e-3,2e-3,3e-3\r\n")
+        path = write_csv(tmp_path, b"\xef\xbb\xbftime_s,x_m,y_m,z_m\r\n0,1e-3,2e-3,3e-3\r\n")
         assert np.array_equal(positions(Mock(hand=None, path="csv", csv_file=path), 3), [[0.001, 0.002, 0.003]] * 3)
 
     @pytest.mark.parametrize(
@@ -117,7 +117,7 @@ class TestCsv:
         ],
     )
     def test_csv_with_fault_names_place_and_cure(self, tmp_path: Path, text: str, place: str, cure: str):
-        path = written(tmp_path, text)
+        path = write_csv(tmp_path, text)
         with pytest.raises(DeviceError) as caught:
             Mock(path="csv", csv_file=path).open()
         assert str(caught.value).startswith(f"{path}{place}")
@@ -136,7 +136,7 @@ class TestCsv:
                 Mock(path="csv", csv_file=path).open()
 
     def test_csv_long_text_is_shortened_in_message(self, tmp_path: Path):
-        path = written(tmp_path, "time_s,x_m,y_m,z_m\n0,0,0," + "x" * 100_000 + "\n")
+        path = write_csv(tmp_path, "time_s,x_m,y_m,z_m\n0,0,0," + "x" * 100_000 + "\n")
         with pytest.raises(DeviceError, match="write a finite number") as error:
             Mock(path="csv", csv_file=path).open()
         assert len(str(error.value)) < 400

@@ -1,4 +1,4 @@
-"""The device that plays a recording: state by state, then at rest; and what it says of recordings it cannot play."""
+"""The device that plays a recording: state by state, then at rest; and messages for invalid recordings."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from tangible_devices.replay import Replay
 from tangible_render.penalty_gradient import PenaltyGradient
 
 
-def saved(folder: Path, rows: np.ndarray, suffix: str = ".npz") -> Path:
+def save_recording(folder: Path, rows: np.ndarray, suffix: str = ".npz") -> Path:
     path = folder / f"hand{suffix}"
     Recording(rows).save(path)
     return path
@@ -32,14 +32,14 @@ def rows(count: int) -> np.ndarray:
 def test_replay_tick_with_nonfinite_column_is_skipped(tmp_path: Path, column: int, bad: float):
     table = rows(3)
     table[1, column] = bad
-    with Replay(file=saved(tmp_path, table)).open() as link:
+    with Replay(file=save_recording(tmp_path, table)).open() as link:
         assert [link.read().time_s for _ in range(2)] == table[[0, 2], 0].tolist()
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
 def test_replay_read_is_a_recorded_tick(tmp_path: Path, suffix: str):
     table = rows(30)
-    with Replay(file=saved(tmp_path, table, suffix)).open() as link:
+    with Replay(file=save_recording(tmp_path, table, suffix)).open() as link:
         for row in table:
             link.write(Force(0.0, 0.0, 5.0))  # which moves nothing
             state = link.read()
@@ -52,7 +52,7 @@ def test_replay_read_is_a_recorded_tick(tmp_path: Path, suffix: str):
 def test_replay_at_end_rests_while_time_advances(tmp_path: Path):
     table = rows(3)
     table[:, 0] = 5, 5.002, 5.004
-    with Replay(file=saved(tmp_path, table)).open() as link:
+    with Replay(file=save_recording(tmp_path, table)).open() as link:
         states = [link.read() for _ in range(5)]
     assert [state.time_s for state in states] == pytest.approx([5, 5.002, 5.004, 5.006, 5.008], abs=1e-12)
     assert {state.position_m for state in states[2:]} == {tuple(table[2, 2:5])}
@@ -60,7 +60,7 @@ def test_replay_at_end_rests_while_time_advances(tmp_path: Path):
 
 
 def test_replay_of_one_tick_rests(tmp_path: Path):
-    with Replay(file=saved(tmp_path, rows(1))).open() as link:
+    with Replay(file=save_recording(tmp_path, rows(1))).open() as link:
         first, second = link.read(), link.read()
     assert second.time_s == pytest.approx(first.time_s + 0.001)
 
@@ -68,7 +68,7 @@ def test_replay_of_one_tick_rests(tmp_path: Path):
 def test_replay_nonfinite_ticks_are_skipped(tmp_path: Path):
     table = rows(9)
     table[[0, 4], 2], table[6, 6], table[2, 8:14] = np.nan, np.inf, np.nan
-    with Replay(file=saved(tmp_path, table)).open() as link:
+    with Replay(file=save_recording(tmp_path, table)).open() as link:
         assert [link.read().time_s for _ in range(6)] == table[[1, 2, 3, 5, 7, 8], 0].tolist()
 
 
@@ -98,16 +98,16 @@ def test_replay_without_file_goes_down_and_up_once():
     ],
 )
 def test_replay_of_invalid_recording_is_refused(tmp_path: Path, change, complaint: str):
-    path = saved(tmp_path, rows(5))
+    path = save_recording(tmp_path, rows(5))
     with np.errstate(invalid="ignore"):
-        path = saved(tmp_path, change(rows(5)))
+        path = save_recording(tmp_path, change(rows(5)))
     with pytest.raises(DeviceError, match=rf"{path}: .*{complaint}"):
         Replay(file=path).open()
 
 
 def test_replay_of_unreadable_file_is_refused(tmp_path: Path):
     (tmp_path / "text.nc").write_text("no recording")
-    for name, complaint in (("none.nc", "cannot be read"), ("text.nc", "is no recording")):
+    for name, complaint in (("none.nc", "cannot be read"), ("text.nc", "is not a recording")):
         with pytest.raises(DeviceError, match=complaint):
             Replay(file=tmp_path / name).open()
 

@@ -57,8 +57,8 @@ def test_pins_of_pictures_show_all_borders_and_no_others(tmp_path, name, display
     heights = heights_in(pins.write(work, tmp_path / name))
     columns, rows, levels = SIZES[display]
     assert heights.shape == (rows, columns)
-    kept, false = shares(heights == levels, wanted(work.simplified.labels, columns, rows))
-    assert kept >= 0.99
+    shown, false = shares(heights == levels, wanted(work.simplified.labels, columns, rows))
+    assert shown >= 0.99
     assert false == 0
     assert 0.03 < (heights == levels).mean() < 0.25
 
@@ -74,8 +74,8 @@ def test_pins_of_fields_show_all_borders(tmp_path_factory, data):
         return
     folder = tmp_path_factory.mktemp("pins")
     heights = heights_in(Pins(display={"columns": columns, "rows": rows}).write(labels_work(labels), folder / "fields"))
-    kept, false = shares(heights > 0, wanted(labels, columns, rows))
-    assert (kept, false) == (1, 0)
+    shown, false = shares(heights > 0, wanted(labels, columns, rows))
+    assert (shown, false) == (1, 0)
 
 
 def test_pins_picture_is_centred_and_upright(tmp_path):

@@ -104,7 +104,7 @@ def _driver(device: Any) -> str:
     except NotImplementedError:
         return "is WinUSB or the like, or none is needed"
     except OSError as error:
-        return f"cannot be asked ({error})"
+        return f"cannot be queried ({error})"
     return "no other driver has it"
 
 

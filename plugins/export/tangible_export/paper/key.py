@@ -68,10 +68,10 @@ class _Row:
 def _add_row(page: Drawing, row: _Row, left: float, top: float) -> Drawing:
     """Return the page with one more row, with this upper left corner."""
     middle, entry = top + row.height_mm / 2, row.entry
-    beside = middle - 500 * height_m(len(row.lines))
+    text_top = middle - 500 * height_m(len(row.lines))
     box = _box(left + row.sample_mm, middle - SAMPLE_MM[1] / 2)
-    texts: list[Braille] = [lines_at(entry.name, row.lines, left + row.name_mm, beside)]
-    texts += [lines_at(entry.letter, [row.letter], left, beside)] if entry.letter else []
+    texts: list[Braille] = [lines_at(entry.name, row.lines, left + row.name_mm, text_top)]
+    texts += [lines_at(entry.letter, [row.letter], left, text_top)] if entry.letter else []
     area = Area(f"{entry.name}: {entry.fill}", box, fill_shape(box, entry.fill))
     return replace(page, areas=(*page.areas, area), texts=(*page.texts, *texts))
 

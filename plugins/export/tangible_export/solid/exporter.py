@@ -1,17 +1,26 @@
-"""The options that all formats of solids share."""
+"""The options and the writing that all formats of solids share."""
 
-from typing import Annotated, ClassVar
+from abc import abstractmethod
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Annotated, ClassVar
 
 from pydantic import Field
 
+from tangible_core.data import Work
 from tangible_core.plugins.interfaces import Exporter, Medium
+
+if TYPE_CHECKING:
+    from .closed import Solid
+    from .plate import Layout
 
 
 class SolidExporter(Exporter):
-    """An exporter of the relief as a closed solid; each format has its own `write`."""
+    """An exporter of the relief as a closed solid, in one file; each format has its own `write_solid`."""
 
     needs: ClassVar[tuple[str, ...]] = ("relief",)
     medium: ClassVar[Medium | None] = "print"
+    ending: ClassVar[str]
+    """Ending of the file, without the dot."""
 
     longer_side_m: Annotated[float, Field(ge=0.01, le=1, allow_inf_nan=False)] = 0.16
     """Longer side of the picture on the plate, without the rim: with 0.16, the plate fits on the bed of most printers,
@@ -33,3 +42,20 @@ class SolidExporter(Exporter):
     def picture_width_m(self, aspect: float) -> float:
         """Return the width of the picture, whose longer side is `longer_side_m`."""
         return self.longer_side_m * min(1.0, aspect)
+
+    def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
+        """Write one file: `stem` with the format's ending.
+
+        Raises: GeometryError for a flat relief, BrailleError or OutputError for a title that cannot be written.
+        """
+        from .making import make_solid
+
+        solid, layout = make_solid(self, work)
+        path = stem.with_name(f"{stem.name}.{self.ending}")
+        with path.open("wb") as file:
+            self.write_solid(file, solid, layout, work)
+        return (path,)
+
+    @abstractmethod
+    def write_solid(self, file: IO[bytes], solid: "Solid", layout: "Layout", work: Work) -> None:
+        """Write the solid in this format."""

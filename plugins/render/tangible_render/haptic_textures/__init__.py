@@ -1,8 +1,8 @@
-"""Fine textures that a force renderer feels: heights and forces in metres and newtons, of no picture's resolution.
+"""Fine textures for force laws: heights in metres and forces in newtons, independent of any picture's resolution.
 
-Every model comes down to the same numbers, one row of them a material: plane waves, which are its heights (`waves`), a
-linear drag, and a friction that sticks and slips (`table`). `heights.texture_height` and `forces.texture_force` read a
-row at a point, compiled.
+Every model is one row of numbers for each material: plane waves, which are its heights (`waves`), a linear drag, and
+stick-slip friction (`table`). The compiled functions `heights.texture_height` and `forces.texture_force` evaluate a row
+at a point.
 """
 
 from .sample import sample_tile

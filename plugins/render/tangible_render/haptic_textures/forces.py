@@ -1,4 +1,4 @@
-"""The force of a texture at a point, compiled. Imports numba: what uses this module imports it inside its verb."""
+"""The force of a texture at a point, compiled. Imports numba, so import this module inside the verb that needs it."""
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 # pyright: basic
@@ -10,49 +10,49 @@ from numba import float64, int64, njit, types
 
 from tangible_core.compiled.compiling import KERNEL, inner
 
-from .heights import COSINE, SINE, TEXTURES, kept, series, texture_height
+from .heights import COSINE, SINE, TEXTURES, remaining, series, texture_height
 from .table import DRAG, DYNAMIC, PER_M, STIFFNESS, SWING
 
 STATE = 7
-"""Length of a contact's state: so many zeros, made anew for each contact point."""
+"""Length of a contact's state, which starts as zeros for each contact point."""
 _TURNS = np.arange(1, 5)
 _SHAPE = np.sinc(_TURNS / 5) / _TURNS
 _REACH = float(np.max(np.einsum("n,ni->i", _SHAPE, np.sin(np.outer(_TURNS, np.linspace(0, math.pi, 1000))))))
 HARMONICS = tuple(float(each) / _REACH for each in _SHAPE)
-"""Amplitudes of a sawtooth's, with Lanczos' factors, which keep the sum from overshooting; from -1 to 1 in all."""
+"""Amplitudes of a sawtooth from -1 to 1, with Lanczos' factors against overshoot."""
 
 _X, _Y, _BRISTLE_X, _BRISTLE_Y, _PHASE, _LEVEL, _OWNER = range(STATE)
 
 
 @inner()
 def _sawtooth(phase, turns):
-    """From -1 to 1 over a turn and back at once, in a few harmonics, each as far as it is sampled well enough."""
+    """Return a sawtooth, from -1 to 1 over a turn, of a few harmonics, each attenuated where it is undersampled."""
     half = phase - math.floor(phase + 0.5)
     half_sine, half_cosine = half * series(SINE, half * half), series(COSINE, half * half)
     sine, cosine = 2.0 * half_sine * half_cosine, 1.0 - 2.0 * half_sine * half_sine
     before, total = 0.0, 0.0
     for n in range(len(HARMONICS)):
-        total -= HARMONICS[n] * kept((n + 1) * turns) * sine
+        total -= HARMONICS[n] * remaining((n + 1) * turns) * sine
         before, sine = sine, 2.0 * cosine * sine - before
     return total
 
 
 @inner()
 def _attach(state, material, level, x, y):
-    """A contact begins: the bristle stands upright, and friction is at its static level."""
+    """Start a contact: the bristle is upright, and friction at its static level."""
     state[_X], state[_Y], state[_LEVEL], state[_OWNER] = x, y, level, material + 1.0
     state[_BRISTLE_X] = state[_BRISTLE_Y] = state[_PHASE] = 0.0
 
 
 @inner()
 def _stretch(row, state, x, y, normal_n):
-    """Carry the bristle along, and let it slip where it is stretched too far.
+    """Stretch the bristle, and let it slip beyond its greatest length.
 
     The bristle z gives F = -k m z and slips at |z| = mu_d N / k (an elasto-plastic Dahl model; Hayward & Armstrong,
-    Experimental Robotics VI, 2000). Where it slips, its level m runs over a sawtooth of one grain in length, from the
+    Experimental Robotics VI, 2000). While it slips, its level m follows a sawtooth of one grain in length, from the
     static friction, m = mu_s / mu_d, to as far below 1; the mean is the dynamic friction.
 
-    It never gives energy, whatever the path and N: over a tick from z to z', E = k m |z|^2 / 2 grows by no more than
+    It is passive for any path and N: over a tick from z to z', E = k m |z|^2 / 2 grows by no more than
     the hand puts in, -F'.dx, if and only if m' / m <= 1 + 2 s / |z'| for a slip by s. The level rises no faster.
     """
     bristle_x = state[_BRISTLE_X] + x - state[_X]
@@ -73,10 +73,10 @@ def _stretch(row, state, x, y, normal_n):
 
 @njit(types.UniTuple(float64, 2)(TEXTURES, int64, float64[::1], *[float64] * 5), **KERNEL)
 def texture_force(textures, material, state, x, y, vx, vy, normal_n):
-    """(Fx, Fy): lateral newtons of the textures that are no heights: drag, and friction that sticks and slips.
+    """Return the lateral force (Fx, Fy), newtons, of drag and stick-slip friction, which are not heights.
 
-    state: STATE zeros when the hand first comes, then handed on from tick to tick, whatever the material; it is cleared
-    where there is no contact (normal_n not above 0) or a value is not finite, and the force is then 0.
+    state: STATE zeros at first, then passed from tick to tick, for any material; without contact (normal_n not above 0)
+    or with a value that is not finite, it is cleared, and the force is 0.
     """
     if not (normal_n > 0.0 and np.isfinite(x + y + vx + vy + normal_n)):
         state[_OWNER] = 0.0
@@ -99,14 +99,13 @@ def texture_force(textures, material, state, x, y, vx, vy, normal_n):
 
 
 @njit(**KERNEL)
-def along(textures, material, state, positions_m, period_s, normal_n, felt):
-    """Height and lateral force, metres and newtons, at every position of a path, one period apart.
+def along(textures, material, state, positions_m, period_s, normal_n, result):
+    """Compute height and lateral force, metres and newtons, at every position of a path, one period apart.
 
-    The velocity at each is the step to it over the period; 0 at the first. felt: (n, 5), of each position h, dh/dx,
-    dh/dy, Fx and Fy.
+    The velocity is the last step over the period; 0 at first. result: (n, 5), a row of h, dh/dx, dh/dy, Fx and Fy each.
     """
     for i in range(positions_m.shape[0]):
         x, y, before = positions_m[i, 0], positions_m[i, 1], positions_m[max(i - 1, 0)]
         vx, vy = (x - before[0]) / period_s, (y - before[1]) / period_s
-        felt[i, 0], felt[i, 1], felt[i, 2] = texture_height(textures, material, x, y, vx, vy, period_s)
-        felt[i, 3], felt[i, 4] = texture_force(textures, material, state, x, y, vx, vy, normal_n)
+        result[i, 0], result[i, 1], result[i, 2] = texture_height(textures, material, x, y, vx, vy, period_s)
+        result[i, 3], result[i, 4] = texture_force(textures, material, state, x, y, vx, vy, normal_n)

@@ -1,9 +1,9 @@
-"""The height of a texture at a point, compiled. Imports numba: what uses this module imports it inside its verb.
+"""The height of a texture at a point, compiled. Imports numba, so import this module inside the verb that needs it.
 
-Sampling. A wave felt at a velocity is a vibration of f.v hertz. Each wave is whole while a period spans 5 ticks or
-more, gone where it spans 3 or fewer, and follows a cubic between: nothing above a third of the servo's rate is ever
-asked of it. Campion & Hayward (World Haptics 2005): a texture needs a wavelength above 2 v T to be sampled at all, and
-5 to 10 samples a period to feel right.
+Sampling. A wave of frequency f, crossed at a velocity v, is a vibration of f.v hertz. Each wave is whole while a period
+spans 5 ticks or more, gone where it spans 3 or fewer, and attenuated by a cubic between: the servo never has to render
+more than a third of its rate. Campion & Hayward (World Haptics 2005): a texture needs a wavelength above 2 v T to be
+sampled at all, and 5 to 10 samples a period to feel right.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
@@ -25,63 +25,63 @@ from .table import COUNT, HEAD
 from .waves import WAVES
 
 WHOLE, GONE = 1 / 5, 1 / 3
-"""Turns a tick, up to which a wave is whole, and from which it is gone."""
+"""Turns a tick up to which a wave is whole, and from which it is gone."""
 TEXTURES = types.Array(float64, 2, "C", readonly=True)
 
 SINE = tuple((-1.0) ** n * math.pi ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(8))
 COSINE = tuple((-1.0) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in range(8))
-"""sin(pi t) = t series(SINE, t^2) and cos(pi t) = series(COSINE, t^2) for half a turn to either side, |t| <= 1/2."""
+"""Taylor coefficients: sin(pi t) = t series(SINE, t^2), cos(pi t) = series(COSINE, t^2), for |t| <= 1/2."""
 
 
 @inner(forceinline=True)
-def kept(turns):
-    """Share of a wave that is left where it makes this many turns a tick."""
+def remaining(turns):
+    """Return the share of a wave's amplitude that remains at this many turns a tick."""
     over = min(max((turns - WHOLE) / (GONE - WHOLE), 0.0), 1.0)
     return 1.0 - over * over * (3.0 - 2.0 * over)
 
 
 @inner(forceinline=True)
 def series(terms, u):
-    """A polynomial of eight terms in u, in an order that a processor can work side by side."""
+    """Evaluate a polynomial of eight terms in u, in two independent halves."""
     low = terms[0] + u * (terms[1] + u * (terms[2] + u * terms[3]))
     return low + u * u * u * u * (terms[4] + u * (terms[5] + u * (terms[6] + u * terms[7])))
 
 
 operation: Any = intrinsic
-"""Called without the typing context that the function itself takes first, which type checkers cannot know."""
+"""`intrinsic`, without a type: its functions are called without their first parameter, the typing context."""
 
 
 @operation(prefer_literal=True)
 def _scratch(_context, count):
-    """An array of this many float64, on the stack: a kernel makes none otherwise. It must not be handed on."""
+    """Allocate an array of this many float64 on the stack, which must not leave its function."""
 
     def emit(context, builder, signature, _arguments):
         number = ir.DoubleType()
         data = cgutils.alloca_once(builder, ir.ArrayType(number, count.literal_value))
-        made = context.make_array(signature.return_type)(context, builder)
+        array = context.make_array(signature.return_type)(context, builder)
         sizes = (context.get_constant(types.intp, each) for each in (count.literal_value, 8, 8))
         shape, stride, item = sizes
-        populate_array(made, builder.bitcast(data, number.as_pointer()), [shape], [stride], item, None)
-        return made._getvalue()
+        populate_array(array, builder.bitcast(data, number.as_pointer()), [shape], [stride], item, None)
+        return array._getvalue()
 
     return types.Array(float64, 1, "C")(count), emit
 
 
 @inner()
 def _sum_of_waves(row, x, y, step_x, step_y):
-    """Height and gradient, of which nothing is known where a number is not finite.
+    """Return height and gradient; unspecified where a number is not finite.
 
-    First all waves, side by side, then their sums, one after the other: sums that a compiler may reorder have other
-    last bits with every width of a processor's vectors.
+    First all waves, vectorised, then their sums, in order: sums that a compiler may reorder have other last bits with
+    every width of a processor's vectors.
     """
     count = int(row[COUNT])
     heights, slopes_x, slopes_y = _scratch(WAVES), _scratch(WAVES), _scratch(WAVES)
-    for i in range(count):  # from 0: an index that may be negative is checked, and nothing vectorised
+    for i in range(count):  # from 0: a possibly negative index would be checked, which prevents vectorisation
         fx, fy = row[HEAD + i], row[HEAD + WAVES + i]
         turns = fx * x + fy * y + row[HEAD + 3 * WAVES + i]
         turns -= np.floor(turns + 0.5)
         sine, cosine = turns * series(SINE, turns * turns), series(COSINE, turns * turns)  # of half the angle
-        amplitude = row[HEAD + 2 * WAVES + i] * kept(abs(fx * step_x + fy * step_y))
+        amplitude = row[HEAD + 2 * WAVES + i] * remaining(abs(fx * step_x + fy * step_y))
         heights[i] = amplitude * (1.0 - 2.0 * sine * sine)
         slope = amplitude * sine * cosine
         slopes_x[i], slopes_y[i] = slope * fx, slope * fy
@@ -95,10 +95,10 @@ def _sum_of_waves(row, x, y, step_x, step_y):
 
 @njit(types.UniTuple(float64, 3)(TEXTURES, int64, *[float64] * 5), **KERNEL)
 def texture_height(textures, material, x, y, vx, vy, dt):
-    """(h, dh/dx, dh/dy): height in metres over the material's mean, and its exact gradient; zeros if not finite.
+    """Return (h, dh/dx, dh/dy): height in metres over the mean, and its exact gradient; zeros if not finite.
 
-    textures: what `compile_textures` made, and the row in it; x, y, vx, vy: metres and metres per second in the
-    workspace frame; dt: the servo's period, seconds. Zero velocity gives the texture whole.
+    textures, material: the table of `compile_textures`, and the row in it; x, y, vx, vy: metres and metres per second
+    in the workspace frame; dt: the servo's period, seconds. Zero velocity gives the whole texture.
     """
     step_x, step_y = vx * dt, vy * dt
     height, slope_x, slope_y = _sum_of_waves(textures[material], x, y, step_x, step_y)

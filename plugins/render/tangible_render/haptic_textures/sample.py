@@ -1,4 +1,4 @@
-"""A texture as an array of heights, for pictures and for files."""
+"""Textures sampled as arrays of heights, for pictures and files."""
 
 import numpy as np
 from jaxtyping import Float32
@@ -9,13 +9,13 @@ from tangible_core.errors import MaterialError
 from .waves import waves
 
 FINEST = 3
-"""Pixels a period, under which a wave is left out: a picture shows it as another one."""
+"""Fewest pixels a period: a picture would show a finer wave as another one."""
 
 
 def sample_tile(material: Material, width_m: float, pixels: int) -> Float32[np.ndarray, "n n"]:
-    """Heights over the material's mean, metres, of a square round the workspace's origin; the top row is far.
+    """Return heights over the mean, metres, of a square around the workspace's origin; the top row is far.
 
-    Each is the height at its pixel's centre. Waves that span fewer than 3 pixels along a row or a column are left out.
+    Heights are those at the pixel centres. Waves that span fewer than 3 pixels along a row or a column are left out.
     Raises: MaterialError if width_m is not positive and finite, or pixels under 1.
     """
     if not (0 < width_m < np.inf and pixels >= 1):

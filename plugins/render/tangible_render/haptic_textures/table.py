@@ -1,4 +1,4 @@
-"""Materials as rows of numbers, for code that must not know Python."""
+"""Materials as rows of numbers, for compiled code."""
 
 from collections.abc import Sequence
 
@@ -10,19 +10,19 @@ from tangible_core.data import Material
 from .waves import WAVES, waves
 
 COUNT, DRAG, STIFFNESS, DYNAMIC, SWING, PER_M = range(6)
-"""Columns: number of waves; drag [N s/m]; of a friction that sticks and slips its bristle's stiffness [N/m] (0: there
-is none), dynamic friction, share by which it swings about that, slips per metre."""
+"""Columns: number of waves; drag [N s/m]; for stick-slip friction the bristle's stiffness [N/m] (0 without such
+friction), the dynamic friction, the share by which friction swings about it, and slips per metre."""
 HEAD = 8
-"""Columns before the waves, of which there are then fx, fy, amplitude and phase, WAVES of each (see `waves`)."""
+"""Number of columns before the waves: fx, fy, amplitude and phase, WAVES of each (see `waves`)."""
 MOST_SWING = 0.9
-"""A friction that once came down to 0 would have to stay there to be passive."""
+"""Largest swing: friction that reached 0 would have to stay there to be passive."""
 
 
 def compile_textures(materials: Sequence[Material]) -> Float64[np.ndarray, "n p"]:
-    """One row a material, read-only: what `heights.texture_height` and `forces.texture_force` take.
+    """Compile materials to a read-only table, a row each, for `heights.texture_height` and `forces.texture_force`.
 
-    The bristle is as stiff as the material. A row with a bristle brings the whole of the material's friction: a
-    renderer leaves its own out there.
+    The bristle is as stiff as the material. A row with a bristle has all of the material's friction: a force law
+    leaves its own out there.
     """
     table = np.zeros((len(materials), HEAD + 4 * WAVES))
     for row, material in zip(table, materials, strict=True):
@@ -41,5 +41,5 @@ def compile_textures(materials: Sequence[Material]) -> Float64[np.ndarray, "n p"
 
 
 def bristle_stiffness(table: Float64[np.ndarray, "n p"]) -> float:
-    """Of a friction that sticks, at most, N/m: k mu_s / mu_d, the level at which its bristle starts; 0 without one."""
+    """Return the largest stiffness of stick-slip friction, N/m: k mu_s / mu_d, its initial level; 0 without any."""
     return float(np.max(table[:, STIFFNESS] * (1 + table[:, SWING]), initial=0.0))

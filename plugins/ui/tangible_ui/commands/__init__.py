@@ -1,4 +1,4 @@
-"""What the page adds to `tangible`. Imported whenever `tangible` starts, so this room imports next to nothing."""
+"""The command `tangible ui`. Every start of `tangible` imports this package, so it imports next to nothing."""
 
 from __future__ import annotations
 

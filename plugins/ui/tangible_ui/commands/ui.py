@@ -19,9 +19,9 @@ def ui(
     The page is served to this machine alone; its address holds a key that changes with every start. Ctrl-C ends it.
     """
     from ..address import Address
-    from ..prestart import maker_beforehand
+    from ..prestart import prestart_worker
 
-    with Address.of(port) as address, maker_beforehand():
+    with Address.of(port) as address, prestart_worker():
         address.announce(browser)
         from ..serving.serve import serve
 

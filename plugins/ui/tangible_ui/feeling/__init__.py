@@ -1,1 +1,1 @@
-"""The force loop as the page's server has it: the page's hand, other devices, another law beside, recordings."""
+"""The server's force loop: the page's hand, other devices, a second force law to compare, recordings."""

@@ -1,4 +1,4 @@
-"""Which device is felt, and whether somebody agreed to that."""
+"""The chosen device, and the person's consent to its motor."""
 
 import json
 from collections.abc import Mapping
@@ -9,39 +9,39 @@ from tangible_core.errors import ConfigError
 from tangible_core.plugins.interfaces import HapticDevice
 
 NOT_FOR_A_PAGE = ("mapping.clutch_button=null", "mapping.limits_m=null")
-"""A page's hand is where the mouse is: no clutch moves it, and no box of another device's bounds it."""
+"""Changes to the document for the page's hand, which is where the mouse is: no clutch, and no other device's limits."""
 
 
 @dataclass
 class Choice:
-    """What a person chose to feel with."""
+    """The device that a person chose."""
 
     kind: Literal["hand", "document", "other"] = "hand"
-    """The page's own hand; the device of the document; another one."""
+    """The page's own hand, the device of the document, or another device."""
     name: str = ""
-    """Of another one."""
+    """Name of the other device."""
     sure: bool = False
-    """Whether the person was told that it has a motor, and said yes."""
+    """True if the person was warned of the motor and agreed."""
     agreed: type[HapticDevice] | None = None
-    """The device that was said yes to; that of a document may become another one."""
+    """The device that the person agreed to: a document may come to name another one."""
 
     def sets(self, own_device: Mapping[str, Any]) -> list[str]:
-        """Changes to the document."""
+        """Return the changes to the document, as `--set` takes them."""
         if self.kind == "hand":
             return [f"device={json.dumps(own_device)}", *NOT_FOR_A_PAGE]
         return [f"device={json.dumps({'use': self.name})}"] if self.kind == "other" else []
 
     def check(self, device: HapticDevice) -> None:
-        """Whether this may be opened. Raises: NotAgreed for a motor that nobody said yes to."""
+        """Check that a device may be opened. Raises: NotConfirmed for a motor that nobody agreed to."""
         if device.spec().simulated:
             return
         if not self.sure or self.agreed not in (None, type(device)):
-            raise NotAgreed(
-                f"the device {type(device).__name__} has a motor, and is opened only by who chooses it in the panel "
-                "Devices; what was felt before goes on"
+            raise NotConfirmed(
+                f"the device {type(device).__name__} has a motor; choose it in the panel Devices to open it. The "
+                "device before stays in use"
             )
         self.agreed = type(device)
 
 
-class NotAgreed(ConfigError):
-    """A device with a motor was to be opened, and nobody had said yes."""
+class NotConfirmed(ConfigError):
+    """A device with a motor was about to be opened without consent."""

@@ -1,4 +1,4 @@
-"""Another law on the same hand: a force loop of its own, whose force is shown beside the one that is felt."""
+"""A second force law on the same hand: its own force loop computes it, and the page shows its force."""
 
 import math
 from contextlib import suppress
@@ -14,17 +14,17 @@ from tangible_devices.pointer.pointer import Pointer
 NOTHING: Vector = (0.0, 0.0, 0.0)
 STALE_AFTER_S = 0.3
 FOLLOW_S = 0.008
-"""The hand is handed on every 8 ms, and followed smoothly in between: this law is that much behind."""
+"""Time constant with which the loop follows the hand, s; the hand arrives every 10 ms, and this law lags by so much."""
 HIGHEST_M = 0.5
-"""Above, nobody holds the hand."""
+"""Height above which the hand counts as released, m."""
 
 
 @final
-class Rival:
-    """A law that is computed on the hand of another loop, and pushes nobody. What takes long blocks."""
+class ComparisonLoop:
+    """A force loop that computes a law on the hand of another loop and moves no motor. Slow methods block."""
 
     def __init__(self, channel: str) -> None:
-        """channel: of a pointer device of its own."""
+        """channel: of this loop's own pointer device."""
         self._channel = channel
         self._servo: Servo | None = None
         self._client: PointerClient | None = None
@@ -32,7 +32,7 @@ class Rival:
 
     @property
     def running(self) -> bool:
-        """Whether it gives forces."""
+        """True while the loop runs."""
         return self._servo is not None and self._servo.running
 
     def feel(self, touch: Packed, safety: Safety) -> None:
@@ -44,7 +44,7 @@ class Rival:
             self._servo.swap(touch, safety)
 
     def follow(self, position_m: Vector) -> None:
-        """Where the other loop's hand is. Returns at once."""
+        """Move this loop's hand to that of the other loop. Returns at once."""
         client = self._client
         if client is None:
             return
@@ -56,7 +56,7 @@ class Rival:
 
     @property
     def force_n(self) -> Vector:
-        """What it gives now; nothing while it does not run."""
+        """The current force; zero while the loop does not run."""
         servo = self._servo
         if servo is None or not servo.running or (row := servo.ring.latest()) is None:
             return NOTHING
@@ -64,7 +64,7 @@ class Rival:
         return (x, y, z) if math.isfinite(x + y + z) else NOTHING
 
     def close(self) -> None:
-        """End its loop; a second call does nothing."""
+        """End the loop; a second call does nothing."""
         with self._lock:
             self._end()
 

@@ -1,4 +1,4 @@
-"""How the force loop is, in numbers that a page shows four times a second."""
+"""Figures of the force loop, which the page shows four times a second."""
 
 from typing import Any
 
@@ -11,12 +11,12 @@ from ..framing import BUTTON_BITS
 
 LOOKED_BACK_S = 1.0
 LATE_US = 200
-"""A tick that begins later is felt, and is counted as late."""
+"""Delay from which a tick counts as late, µs; it can then be felt."""
 LATE_S, BUTTONS = TICK_COLUMNS.index("late_s"), TICK_COLUMNS.index("buttons")
 
 
 def figures(servo: Servo) -> dict[str, Any]:
-    """Of the last second: rate, lateness, force, place, buttons. Of the whole loop: lateness, overruns, flags."""
+    """Return figures of the last second (rate, lateness, force, place, buttons) and of the whole loop."""
     report, ring = servo.report(), servo.ring
     rows, _ = ring.since(ring.count - round(LOOKED_BACK_S / 0.001))
     late_us = 1e6 * rows[:, LATE_S]

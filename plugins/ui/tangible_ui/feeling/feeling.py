@@ -1,4 +1,4 @@
-"""The force loop as the page's server has it: started before there is a scene, swapped, watched. No numba here."""
+"""The server's force loop: started before there is a scene, swapped, watched. This module does not import numba."""
 
 import math
 import pickle
@@ -23,81 +23,81 @@ from .hand import HIGH_M, Hand
 NOBODY: Vector = (0.0, 0.0, 0.0)
 UNKNOWN: Vector = (math.nan, math.nan, math.nan)
 STALE_AFTER_S = 0.3
-"""The server's own silence, after which the loop lets go of the page's hand: a machine that starts a browser keeps it
-waiting for a quarter of a second. A page's silence is `hand.SILENT_S`."""
+"""Silence of the server after which the loop releases the page's hand, s: a machine that starts a browser keeps the
+server waiting for a quarter of a second. A page's own silence is `hand.SILENT_S`."""
 FOLLOW_S = 0.012
-"""A mouse moves 60 times a second, the loop looks a thousand times: the hand follows smoothly."""
+"""Time constant with which the loop follows the mouse, s: mice move 60 times a second, the loop ticks 1000 times."""
 STOPPED = "stopped"
 BUTTONS, PRESSED = (1 << BUTTON_BITS) - 1, 1
-"""A device's buttons; and that of the page's own hand by which it is pressed down, and which lets go of no beacon."""
+"""Bits of a device's buttons; and the button by which the page's own hand is pressed down, which ends no beacon."""
 
 
-class Felt(NamedTuple):
-    """What the maker made, as the loop needs it."""
+class LoopInput(NamedTuple):
+    """The input of the force loop for one scene, as the worker made it."""
 
     touch: Packed
     law: str
     device_name: str
     device: HapticDevice
-    """As the picture sees it, by the mapping."""
+    """The device, moved by the document's mapping into the picture's frame."""
     own_hand: bool
-    """Whether that is the page's own pointer."""
+    """True for the page's own pointer."""
     mapping: WorkspaceMapping
     safety: Safety
     materials: str = ""
-    """Their names by label, as a recording has them."""
+    """Names of the materials by label, as recordings store them."""
 
     @classmethod
-    def of(cls, made: dict[str, Any], channel: str) -> "Felt":
-        """From the maker's answer; channel: of the page's own pointer."""
+    def of(cls, made: dict[str, Any], channel: str) -> "LoopInput":
+        """Build it from the worker's answer. channel: of the page's own pointer."""
         touch = Packed(Path(made["parcel"]), made["stiffness_n_per_m"])
         parts = (pickle.loads(made[name]) for name in ("device", "mapping", "safety"))
         device, mapping, safety = parts
-        own_hand = getattr(unmapped(device), "channel", None) == channel
+        own_hand = getattr(without_mapping(device), "channel", None) == channel
         return cls(
             touch, made["law"], made["device_name"], device, own_hand, mapping, safety, made.get("materials", "")
         )
 
     @property
-    def held(self) -> HapticDevice:
-        """The device itself."""
-        return unmapped(self.device)
+    def unmapped_device(self) -> HapticDevice:
+        """The device without the mapping."""
+        return without_mapping(self.device)
 
 
-class Beside(NamedTuple):
-    """What is shown beside the law that is felt."""
+class OtherLaw(NamedTuple):
+    """The second force law, as frames show it."""
 
     force_n: Vector = NOBODY
-    """Of another law on the same hand."""
+    """Force of that law on the same hand."""
     blind: bool = False
-    """Whether who feels shall not see which law it is: not every law has a proxy."""
+    """True if the page must not reveal which law acts: the proxy is then hidden too, as not every law has one."""
 
 
-ALONE = Beside()
+ALONE = OtherLaw()
 
 
-class Ended(NamedTuple):
-    """A loop that ended though nobody stopped it."""
+class LoopEnd(NamedTuple):
+    """The end of a loop that nobody stopped."""
 
     why: str
     lost: bool
-    """Whether its device went: it may come back."""
+    """True if the device was lost; it may come back."""
 
 
 @final
 class Feeling:
-    """One force loop at a time, and the page's hand in it.
+    """The force loop, one at a time, and the page's hand in it.
 
-    What takes long blocks: call it in a thread. `cut` and `frame` do not, and may be called whatever else goes on.
+    Slow methods block: call them in a thread. `cut` and `frame` return at once and may be called at any moment.
     """
 
     def __init__(self, channel: str) -> None:
         """channel: of the page's own pointer device."""
         self.channel = channel
         self.hand = Hand(channel)
-        self.felt: Felt | None = None
+        self.felt: LoopInput | None = None
         self.stopped = False
-        """Whether somebody pressed stop: no loop starts until `allow`."""
+        """True after a stop: no loop starts until `allow`."""
         self._stops = 0
         self._servo: Servo | None = None
         self._starting: Servo | None = None
@@ -105,12 +105,12 @@ class Feeling:
         self._told: Servo | None = None
         """The loop whose end is known."""
         self._pulling: Servo | None = None
-        """The loop in which a beacon was asked for, and is not known to be over."""
+        """The loop with a beacon that is not known to have ended."""
         self._lock = Lock()
 
     @property
     def own_device(self) -> dict[str, Any]:
-        """The page's own device, as a pipeline file says it."""
+        """The page's own device, as a pipeline file writes it."""
         return {
             "use": "pointer",
             "channel": self.channel,
@@ -120,24 +120,24 @@ class Feeling:
 
     @property
     def servo(self) -> Servo | None:
-        """The loop; None before the first, and between two."""
+        """The loop; None before the first one and between two."""
         return self._servo
 
     @property
     def running(self) -> bool:
-        """Whether forces are given."""
+        """True while forces are given."""
         servo = self._servo
         return servo is not None and servo.running and not servo.ring.header[STOP]
 
     @property
     def how(self) -> str:
-        """What the operating system granted the loop, and how what is felt now is computed."""
+        """The loop's scheduling, as the operating system granted it, and how the current force law is computed."""
         return "" if self._servo is None else self._servo.how
 
     def start(self) -> float | None:
-        """Start the loop on the page's own device before there is a scene; seconds that took, None if it was stopped.
+        """Start the loop on the page's own device before there is a scene.
 
-        Raises: DeviceError.
+        Returns: seconds that took, None after a stop. Raises: DeviceError.
         """
         from tangible_core import load_method
 
@@ -146,22 +146,22 @@ class Feeling:
         with self._lock:
             if self.stopped or self.running:
                 return None
-            with self._unless_stopped() as stopped:
+            with self._unless_stopped() as is_stopped:
                 self._restart(load_method("device", "pointer")(**options), own_hand=True)
-        return None if stopped() else time.monotonic() - begun_s
+        return None if is_stopped() else time.monotonic() - begun_s
 
-    def feel(self, felt: Felt) -> float | None:
-        """Feel a scene, from one tick to the next where the device is the same; seconds that took.
+    def feel(self, felt: LoopInput) -> float | None:
+        """Put a scene under the hand, between two ticks if the device stays the same.
 
-        Returns: None if somebody pressed stop, before or meanwhile: it is then not felt.
-        Raises: DeviceError if the device cannot be opened; then nothing is felt.
+        Returns: seconds that took; None if a stop came before or meanwhile: the scene is then not used.
+        Raises: DeviceError if the device cannot be opened; then no loop runs.
         """
         begun_s = time.monotonic()
         with self._lock:
             try:
                 if self.stopped:
                     return None
-                with self._unless_stopped() as stopped:
+                with self._unless_stopped() as is_stopped:
                     if not self.running or felt.device != self._device:
                         self._restart(felt.device, felt.own_hand)
                     assert self._servo is not None
@@ -169,10 +169,10 @@ class Feeling:
             finally:
                 self.felt = felt
                 felt.touch.discard()
-        return None if stopped() else time.monotonic() - begun_s
+        return None if is_stopped() else time.monotonic() - begun_s
 
     def pull_to(self, beacon: Beacon | None) -> None:
-        """Pull the hand to a part of what is felt, or let go of it. Raises: DeviceError if nothing is felt."""
+        """Pull the hand to a part of the surface, or release it. Raises: DeviceError if no loop runs."""
         if beacon is None:
             self._pulling, servo = None, self._servo
             if servo is not None:
@@ -187,7 +187,7 @@ class Feeling:
             self._pulling = servo
 
     def beacon_over(self) -> str:
-        """Why a beacon ended by itself: `button`, `scene` or `ended`, of the loop; said once. To be asked often."""
+        """Return once why a beacon ended by itself: `button`, `scene` or `ended`; else "". Meant to be polled."""
         servo = self._pulling
         if servo is None or (self.running and servo is self._servo and servo.beacon.part is not None):
             return ""
@@ -195,9 +195,9 @@ class Feeling:
         return servo.ring.beacon.state.why or "ended"
 
     def cut(self) -> Callable[[], None]:
-        """No force from the next tick on, and none until `allow`. Waits for nothing and nobody.
+        """Take all force away from the next tick on, until `allow`. Returns at once.
 
-        Returns: what waits until the loops that there are now are gone, and leaves later ones alone.
+        Returns: a function that waits until the current loops have ended, and leaves later ones alone.
         """
         self.stopped, self._stops = True, self._stops + 1
         self._told = self._servo
@@ -207,32 +207,32 @@ class Feeling:
             with suppress(DeviceError):  # it has no ring yet; what it begins with gives no force
                 servo.ring.header[STOP] = 1
 
-        def ended() -> None:
+        def wait_until_gone() -> None:
             for servo in cut:
                 _end(servo)
 
-        return ended
+        return wait_until_gone
 
     def stop(self) -> None:
-        """No force, at once, and for good; returns when the loop is gone, but does not wait for one that starts."""
-        ended = self.cut()
+        """Take all force away for good; return when the loop has ended. A loop that is starting is not waited for."""
+        wait_until_gone = self.cut()
         self.hand.close()
-        ended()
+        wait_until_gone()
 
     def allow(self) -> None:
-        """Loops may start again."""
+        """Allow loops to start again."""
         self.stopped = False
 
-    def ended(self) -> Ended | None:
-        """Why the loop ended, if it did so by itself; said once. To be asked often."""
+    def loop_end(self) -> LoopEnd | None:
+        """Return once why the loop ended by itself; else None. Meant to be polled."""
         servo = self._servo
         if servo is None or servo.running or servo is self._told:
             return None
         self._told = servo
-        return None if self.stopped else Ended(_end(servo), servo.device_lost)
+        return None if self.stopped else LoopEnd(_end(servo), servo.device_lost)
 
-    def frame(self, seq: int, status: int, beside: Beside = ALONE) -> bytes | None:
-        """The newest tick as a STATE; a hand that is nowhere without a loop; None for a tick that was overwritten."""
+    def frame(self, seq: int, status: int, other_law: OtherLaw = ALONE) -> bytes | None:
+        """Return the newest tick as a STATE frame, without a loop a hand that is nowhere; None if overwritten."""
         servo = self._servo
         if servo is None or not self.running:
             nowhere = *HIGH_M, *UNKNOWN, *NOBODY, *NOBODY, *NOBODY
@@ -244,31 +244,32 @@ class Feeling:
         tag = int(buttons) >> BUTTON_BITS
         return STATE_FRAME.pack(
             STATE, status, int(flags) & FLAG_BITS, seq & 0xFFFFFFFF, tag, servo.ring.overruns, sample_ms,
-            x, y, z, *(UNKNOWN if beside.blind else (px, py, pz)), fx, fy, fz, vx, vy, vz, *beside.force_n, 1e6 * late,
+            x, y, z, *(UNKNOWN if other_law.blind else (px, py, pz)), fx, fy, fz, vx, vy, vz,
+            *other_law.force_n, 1e6 * late,
         )  # fmt: skip
 
     @contextmanager
     def _unless_stopped(self) -> Iterator[Callable[[], bool]]:
-        """What fails because somebody pressed stop did not fail. Gives who can say whether somebody has.
+        """Suppress errors that a stop causes within the block. Yields: a function that tells if a stop came.
 
-        Who pressed it did not see the loop that came to be meanwhile: that one is ended here.
+        A loop that came to be meanwhile was not seen by that stop: it is ended here.
         """
         before = self._stops
 
-        def stopped() -> bool:
+        def is_stopped() -> bool:
             return self._stops != before
 
         try:
-            yield stopped
+            yield is_stopped
         except DeviceError:
-            if not stopped():
+            if not is_stopped():
                 raise
         finally:
-            if stopped() and self._servo is not None:
+            if is_stopped() and self._servo is not None:
                 _end(self._servo)
 
     def _restart(self, device: HapticDevice, own_hand: bool) -> None:
-        """Another loop, on this device; it begins without force."""
+        """Replace the loop by one on this device; it begins without force."""
         self.hand.close()
         before, self._servo, self._device = self._servo, None, None
         if before is not None:
@@ -283,13 +284,13 @@ class Feeling:
             self.hand.open(placement_of(device))
 
 
-def unmapped(device: HapticDevice) -> HapticDevice:
-    """What the hand holds."""
+def without_mapping(device: HapticDevice) -> HapticDevice:
+    """Return the device itself."""
     return device.device if isinstance(device, MappedDevice) else device
 
 
 def _end(servo: Servo) -> str:
-    """End it, if it still runs; why it ended."""
+    """End a loop if it still runs, and return why it ended."""
     try:
         return servo.stop(STOPPED).stopped
     except TangibleError as error:

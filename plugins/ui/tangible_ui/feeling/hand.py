@@ -1,4 +1,4 @@
-"""The hand that a page moves: its pointer, kept alive while the page is, and let go when it falls silent."""
+"""The page's hand: the pointer device of this server, kept alive with the page, released when the page falls silent."""
 
 import math
 import time
@@ -12,21 +12,21 @@ from tangible_devices.pointer import PointerClient
 from ..framing import BUTTON_BITS, TAGS
 
 SILENT_S = 0.1
-"""A page that has not moved its hand for so long is taken for gone: no force."""
+"""Silence after which a page counts as gone, and its hand is released, s."""
 FARTHEST_M = 1.0
 OPENING_S = 1.0
-"""A loop that runs has opened its device long ago."""
+"""Longest wait for the pointer's channel, s; a running loop has opened its device long before."""
 HIGH_M: Vector = (0.0, 0.0, FARTHEST_M)
-"""Where the hand is that nobody holds: in the picture's frame, over every surface."""
+"""Position of a released hand in the picture's frame, above every surface."""
 CLEAR_M = 0.5
-"""A pointer that nobody holds is at least so high in the picture, or it is held there from here."""
+"""Minimum height of a released pointer in the picture, m; a lower one is held up from here."""
 
 
 class Held(NamedTuple):
-    """A hand that was let go of is high."""
+    """A position of the hand; by default high above, which is a released hand."""
 
     at: Vector = HIGH_M
-    """In the picture's frame, metres."""
+    """Position in the picture's frame, m."""
     buttons: int = 0
     heard_s: float = -math.inf
 
@@ -36,8 +36,9 @@ NOBODY = Held()
 
 @final
 class Hand:
-    """Moves the pointer device of this page's server. The page says places of the picture, the pointer is told those
-    of its own frame, which lie under them by the document's mapping: the loop feels at the place that the page said.
+    """The client of this server's pointer device.
+
+    A page sends positions in the picture; the document's mapping turns them into positions in the pointer's own frame.
     """
 
     def __init__(self, channel: str) -> None:
@@ -48,42 +49,42 @@ class Hand:
 
     @property
     def holding(self) -> bool:
-        """Whether a page moves it now."""
+        """True while a page moves the hand."""
         return time.monotonic() - self._held.heard_s < SILENT_S
 
     def open(self, to: Placement) -> None:
-        """Take hold of the device, which must be open; to: how the picture lies under it. Raises: DeviceError."""
+        """Connect to the device, which must be open. to: the picture's place under it. Raises: DeviceError."""
         self.close()
         self._to = to
         self._client = PointerClient(self._channel, OPENING_S)
         self.release()
 
     def point(self, at: Vector, buttons: int, tag: int) -> None:
-        """Where a page has it; what is not finite, or farther than a metre, is not heard."""
+        """Move the hand to where a page has it; ignored if not finite, or farther than a metre."""
         if all(abs(part) < FARTHEST_M for part in at):
             self._held = Held(at, (tag & TAGS) << BUTTON_BITS | buttons & 0xFF, time.monotonic())
             self._send()
 
     def release(self) -> None:
-        """Let go: nothing is felt from the next tick on."""
+        """Release the hand: no force from the next tick on."""
         self._held = NOBODY
         self._send()
 
     def keep(self) -> None:
-        """Say that the server lives; a page that fell silent lets go. To be called often."""
+        """Tell the loop that the server lives; release the hand of a page that fell silent. Meant to be polled."""
         if self._held is not NOBODY and not self.holding:
             self.release()
         else:
             self._send()
 
     def close(self) -> None:
-        """Leave the device."""
+        """Disconnect from the device."""
         client, self._client = self._client, None
         if client is not None:
             client.close()
 
     def _send(self) -> None:
-        """Another thread may close it meanwhile, and the loop may end."""
+        """Send the position; another thread may disconnect meanwhile, and the loop may end."""
         if (client := self._client) is None:
             return
         held = self._held
@@ -98,7 +99,8 @@ class Hand:
 
 
 def high_without_client(to: Placement) -> bool:
-    """Whether a pointer without a client, a metre up in its own frame, is over every surface in the picture's: much
-    enlarged, or lifted, that metre may be inside it.
+    """Return True if a pointer without a client, a metre up in its own frame, is above every surface.
+
+    Under a mapping that enlarges or lifts much, that metre may lie inside a surface.
     """
     return (FARTHEST_M - to.offset_z_m) / to.scale >= CLEAR_M

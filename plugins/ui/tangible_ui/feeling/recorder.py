@@ -1,4 +1,4 @@
-"""What is felt, kept tick by tick in a file, while the loop goes on."""
+"""Recording of a running loop, tick by tick, into a file."""
 
 import threading
 from collections.abc import Callable
@@ -7,37 +7,37 @@ from typing import final
 
 from tangible_core.errors import TangibleError
 from tangible_core.servo import Servo
-from tangible_core.session import About, Keeper, Writer
+from tangible_core.session import About, RingDrain, Writer
 
 LOOK_EVERY_S = 0.05
-"""What a crash of the server can lose of a recording."""
+"""Seconds between two writes: what a crash of the server can lose of a recording."""
 BY_HAND = "stopped by hand"
 
 
 @final
 class Recorder:
-    """A recording that grows, in a thread of its own; `stop` ends it, or its loop, or a file that cannot be written."""
+    """A growing recording, written by its own thread; `stop`, the end of the loop, or a write error end it."""
 
     def __init__(self, servo: Servo, path: Path, about: About, ended: Callable[[Path, int, str], None]) -> None:
-        """ended: told the file, how many ticks it holds and why it ended, in the recorder's thread.
+        """Begin recording. ended: called in the recorder's thread with the file, its number of ticks, and the reason.
 
         Raises: OutputError if the file cannot be written.
         """
         self.path = path
         self._servo, self._ended = servo, ended
         self._writer = Writer(path, about)
-        self._keeper = Keeper(servo, self._writer.append, servo.ring.count)
+        self._drain = RingDrain(servo, self._writer.append, servo.ring.count)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._record, daemon=True)
         self._thread.start()
 
     @property
     def recording(self) -> bool:
-        """Whether ticks are kept."""
+        """True while ticks are written."""
         return self._thread.is_alive()
 
     def stop(self) -> None:
-        """End it, and return when the file is closed; a second call does nothing."""
+        """End the recording; return when the file is closed. A second call does nothing."""
         self._stop.set()
         self._thread.join()
 
@@ -47,7 +47,7 @@ class Recorder:
             while not why:
                 stopped = self._stop.wait(LOOK_EVERY_S)
                 running = self._servo.running  # before the look: what it ended with is then kept
-                self._keeper.look()
+                self._drain.look()
                 why = BY_HAND if stopped else "" if running else self._servo.report().stopped
         except TangibleError as error:
             why = str(error)

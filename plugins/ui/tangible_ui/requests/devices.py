@@ -1,4 +1,4 @@
-"""Requests about devices: which there are, which one is used, what it reaches, how its loop runs."""
+"""Requests about devices: list, choose and examine them, what they reach, how the loop runs."""
 
 import asyncio
 from typing import Any
@@ -7,62 +7,61 @@ from tangible_core.errors import ConfigError, DeviceError
 
 from ..feeling.choice import Choice
 from ..feeling.doctor import figures
-from ..state.session import Desk, Tab
+from ..state.session import Session, Tab
 from .making import make
 from .table import request
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 8.0
-"""Before a device is looked for again; twice as long each time: to look for one starts a process."""
+"""First and longest pause before a device is looked for again, s; each doubles the last, as a look starts a process."""
 KINDS = ("hand", "document", "other")
 
 
 @request()
-async def devices(desk: Desk, tab: Tab | None) -> dict[str, Any]:
-    """Every installed device, and which one is chosen; none is opened."""
-    return {"devices": await desk.maker.ask("devices"), "kind": desk.choice.kind, "name": desk.choice.name}
+async def devices(session: Session, tab: Tab | None) -> dict[str, Any]:
+    """List the installed devices, and the chosen one; none is opened."""
+    return {"devices": await session.worker.ask("devices"), "kind": session.choice.kind, "name": session.choice.name}
 
 
 @request()
-async def examine(desk: Desk, tab: Tab | None, name: str) -> list[dict[str, Any]]:
-    """What keeps a device from working, and the cure."""
-    return await desk.maker.ask("examine", name=name)
+async def examine(session: Session, tab: Tab | None, name: str) -> list[dict[str, Any]]:
+    """Return what keeps a device from working, and the cure."""
+    return await session.worker.ask("examine", name=name)
 
 
 @request()
-async def about_device(desk: Desk, tab: Tab | None, kind: str, name: str = "") -> dict[str, Any]:
-    """What it means to feel with this device: whether it has a motor, and how strong that may be."""
-    return await _about(desk, _choice(kind, name, sure=False))
+async def about_device(session: Session, tab: Tab | None, kind: str, name: str = "") -> dict[str, Any]:
+    """Describe a device before it is used: whether it has a motor, and its greatest force."""
+    return await _about(session, _choice(kind, name, sure=False))
 
 
 @request()
-async def choose_device(desk: Desk, tab: Tab | None, kind: str, name: str = "", sure: bool = False) -> None:
-    """Feel with the page's own hand ("hand"), the document's device ("document"), or another one by its name ("other");
-    also after a stop.
+async def choose_device(session: Session, tab: Tab | None, kind: str, name: str = "", sure: bool = False) -> None:
+    """Use the page's own hand ("hand"), the document's device ("document"), or another one by name ("other").
 
-    sure: that the person was told that it has a motor, and said yes; it is not opened without.
-    Raises: NotAgreed, DeviceError if it cannot be opened.
+    Also after a stop. sure: the person was warned of its motor and agreed; without that it is not opened.
+    Raises: NotConfirmed, DeviceError if it cannot be opened.
     """
     choice = _choice(kind, name, sure)
-    about = await _about(desk, choice)
+    about = await _about(session, choice)
     if not about["simulated"] and not sure:
-        raise ConfigError(f"{about['name']} has a motor: say yes to that first")
-    desk.choice = choice
-    desk.tell("device", kind=choice.kind, name=about["name"])
-    desk.feeling.allow()
-    await make(desk, tab)
+        raise ConfigError(f"{about['name']} has a motor: agree to that first")
+    session.choice = choice
+    session.tell("device", kind=choice.kind, name=about["name"])
+    session.feeling.allow()
+    await make(session, tab)
 
 
 @request()
-async def wait_for_device(desk: Desk, tab: Tab | None) -> None:
-    """Look for the chosen device again and again, until it is felt, or another one is chosen, or stop is pressed."""
-    desk.begin(_wait(desk))
+async def wait_for_device(session: Session, tab: Tab | None) -> None:
+    """Look for the chosen device until it can be used, another one is chosen, or a stop."""
+    session.begin(_wait(session))
 
 
 @request()
-async def doctor(desk: Desk, tab: Tab | None) -> dict[str, Any] | None:
-    """How the loop is; None where none runs."""
-    servo = desk.feeling.servo
-    return figures(servo) if servo is not None and desk.feeling.running else None
+async def doctor(session: Session, tab: Tab | None) -> dict[str, Any] | None:
+    """Return figures of the loop; None if none runs."""
+    servo = session.feeling.servo
+    return figures(servo) if servo is not None and session.feeling.running else None
 
 
 def _choice(kind: str, name: str, sure: bool) -> Choice:
@@ -71,34 +70,34 @@ def _choice(kind: str, name: str, sure: bool) -> Choice:
     return Choice(kind, name, sure)
 
 
-async def _about(desk: Desk, choice: Choice) -> dict[str, Any]:
-    sets = [*desk.sets, *choice.sets(desk.feeling.own_device)]
-    return await desk.maker.ask("about_device", text=desk.text, path=desk.path, sets=sets)
+async def _about(session: Session, choice: Choice) -> dict[str, Any]:
+    sets = [*session.sets, *choice.sets(session.feeling.own_device)]
+    return await session.worker.ask("about_device", text=session.text, path=session.path, sets=sets)
 
 
-async def _wait(desk: Desk) -> None:
-    choice, pause_s, told = desk.choice, FIRST_PAUSE_S, None
-    while desk.choice is choice and not desk.feeling.stopped and not desk.feeling.running:
+async def _wait(session: Session) -> None:
+    choice, pause_s, told = session.choice, FIRST_PAUSE_S, None
+    while session.choice is choice and not session.feeling.stopped and not session.feeling.running:
         try:
-            await make(desk, None)
+            await make(session, None)
         except DeviceError as error:
             if str(error) != told:
                 told = str(error)
-                desk.tell("loop", running=False, why=told, lost=True, waiting=True)
+                session.tell("loop", running=False, why=told, lost=True, waiting=True)
             await asyncio.sleep(pause_s)
             pause_s = min(2 * pause_s, LONGEST_PAUSE_S)
 
 
 @request()
-async def reach(desk: Desk, tab: Tab) -> dict[str, Any]:
-    """What the document's device reaches: its name, and its workspace in metres, or none."""
-    return await desk.maker.quick("reach", text=desk.text, path=desk.path, sets=desk.sets)
+async def reach(session: Session, tab: Tab) -> dict[str, Any]:
+    """Return the name of the document's device, and its workspace in metres; None without a device."""
+    return await session.worker.quick("reach", text=session.text, path=session.path, sets=session.sets)
 
 
 @request()
-async def limits(desk: Desk, tab: Tab) -> dict[str, Any] | None:
-    """Ticks since the loop began, and those in which each limit acted; none before there is a loop."""
-    servo = desk.feeling.servo
+async def limits(session: Session, tab: Tab) -> dict[str, Any] | None:
+    """Return the number of ticks since the loop began, and of those in which each limit acted; None before a loop."""
+    servo = session.feeling.servo
     if servo is None:
         return None
     report = await asyncio.to_thread(servo.report)

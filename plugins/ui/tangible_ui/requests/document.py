@@ -7,200 +7,197 @@ from typing import Any
 from tangible_core.errors import ConfigError
 from tangible_core.files.paths import as_path
 
-from ..state.session import Desk, Tab
+from ..state.session import Session, Tab
 from ..state.texts import Text
 from .making import foresee, make
 from .table import request
 
 
 @request()
-async def begin(desk: Desk, tab: Tab | None, files: list[str], make_it: bool = True) -> dict[str, Any]:
-    """Open a pipeline file, pictures or a recording; what can be felt is made and felt.
+async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bool = True) -> dict[str, Any]:
+    """Open a pipeline file, pictures or a recording; make what can be felt.
 
-    Returns: where a recording lies, if it is one: it is for whoever shows recordings.
+    Returns: the path of a recording, if it is one, for the panel of recordings.
     """
-    found = await desk.maker.quick("begin", files=[Path(each) for each in files])
+    found = await session.worker.quick("begin", files=[Path(each) for each in files])
     if "text" not in found:
         return found
     text, path = found["text"], found["path"]
-    if desk.sets:  # of the command line: the text says them from now on
-        text, desk.sets = await desk.maker.quick("overridden", text=text, path=path, sets=desk.sets), []
-    desk.drafts.opened(text)
-    async with desk.texts.lock:
-        said = await take(desk, Text(text, path))
+    if session.sets:  # of the command line: the text says them from now on
+        text, session.sets = await session.worker.quick("overridden", text=text, path=path, sets=session.sets), []
+    session.drafts.remember_opened(text)
+    async with session.texts.lock:
+        said = await take(session, Text(text, path))
     if make_it and not said["complaints"]:
-        desk.begin(make(desk, tab))
+        session.begin(make(session, tab))
     return {}
 
 
 @request()
-async def edit(desk: Desk, tab: Tab | None, text: str, of: str = "", apply: bool = False) -> dict[str, Any]:
-    """Take another text for the document; all tabs hear what it says, or what is wrong with it.
+async def edit(session: Session, tab: Tab | None, text: str, of: str = "", apply: bool = False) -> dict[str, Any]:
+    """Replace the document's text; all tabs get its values, or its errors.
 
-    of: digest of the text that was edited; if another took its place meanwhile, it is refused. apply: make and feel it
-    if nothing slow has to run. Raises: ConfigError.
+    of: digest of the text that was edited; if another text replaced that meanwhile, the edit is refused. apply: make it
+    unless something slow has to run. Raises: ConfigError.
     """
-    async with desk.texts.lock:
-        if of and of != desk.digest:
+    async with session.texts.lock:
+        if of and of != session.digest:
             raise ConfigError("the document was changed elsewhere meanwhile; look at what it says now")
-        return _then(desk, await take(desk, Text(text, desk.path)), apply)
+        return _follow_up(session, await take(session, Text(text, session.path)), apply)
 
 
 @request("set")
 async def change(
-    desk: Desk,
+    session: Session,
     tab: Tab | None,
     changes: dict[str, Any] | None = None,
     written: dict[str, str] | None = None,
     removed: list[str] | None = None,
     apply: bool = False,
 ) -> dict[str, Any]:
-    """Change keys of the document, and nothing else in it: values, values written in YAML, keys to go.
-
-    Raises: ConfigError.
-    """
-    async with desk.texts.lock:
+    """Change keys of the document and nothing else: values, values in YAML, keys to remove. Raises: ConfigError."""
+    async with session.texts.lock:
         told = {"changes": changes or {}, "written": written or {}, "removed": removed or []}
-        found = await desk.maker.quick("change", text=desk.text, path=desk.path, sets=desk.sets, **told)
-        return _then(desk, _put(desk, Text(found["text"], desk.path), found), apply)
+        found = await session.worker.quick("change", text=session.text, path=session.path, sets=session.sets, **told)
+        return _follow_up(session, _put(session, Text(found["text"], session.path), found), apply)
 
 
 @request()
-async def undo(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
-    """The document as it was one step before."""
-    return await _step(desk, back=True, apply=apply)
+async def undo(session: Session, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
+    """Go one step back in the document's history."""
+    return await _step(session, back=True, apply=apply)
 
 
 @request()
-async def redo(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
-    """What was undone last."""
-    return await _step(desk, back=False, apply=apply)
+async def redo(session: Session, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
+    """Redo what was undone last."""
+    return await _step(session, back=False, apply=apply)
 
 
 @request()
-async def schema(desk: Desk, tab: Tab | None) -> dict[str, Any]:
-    """What forms are made of."""
-    return await desk.maker.quick("schema")
+async def schema(session: Session, tab: Tab | None) -> dict[str, Any]:
+    """Return the JSON Schema, from which the page builds its forms."""
+    return await session.worker.quick("schema")
 
 
 @request()
-async def library(desk: Desk, tab: Tab | None) -> list[dict[str, Any]]:
-    """The materials that the document can name."""
-    return await desk.maker.quick("library", text=desk.text, path=desk.path, sets=desk.sets)
+async def library(session: Session, tab: Tab | None) -> list[dict[str, Any]]:
+    """List the materials that the document can name."""
+    return await session.worker.quick("library", text=session.text, path=session.path, sets=session.sets)
 
 
-async def take(desk: Desk, text: Text) -> dict[str, Any]:
-    """Another text and place of the document, which all tabs hear of; under the lock of `desk.texts`."""
-    return _put(desk, text, await _checked(desk, text))
+async def take(session: Session, text: Text) -> dict[str, Any]:
+    """Replace text and path of the document, and send it to all tabs. The caller holds `session.texts.lock`."""
+    return _put(session, text, await _check(session, text))
 
 
-async def _step(desk: Desk, *, back: bool, apply: bool) -> dict[str, Any] | None:
-    async with desk.texts.lock:
-        text = desk.texts.before() if back else desk.texts.after()
+async def _step(session: Session, *, back: bool, apply: bool) -> dict[str, Any] | None:
+    async with session.texts.lock:
+        text = session.texts.before() if back else session.texts.after()
         if text is None:
             return None
-        found = await _checked(desk, text)
-        desk.texts.step(Text(desk.text, desk.path), back=back)
-        return _then(desk, _told(desk, text, found), apply)
+        found = await _check(session, text)
+        session.texts.step(Text(session.text, session.path), back=back)
+        return _follow_up(session, _publish(session, text, found), apply)
 
 
-async def _checked(desk: Desk, text: Text) -> dict[str, Any]:
-    return await desk.maker.quick("check", text=text.text, path=text.path, sets=desk.sets)
+async def _check(session: Session, text: Text) -> dict[str, Any]:
+    return await session.worker.quick("check", text=text.text, path=text.path, sets=session.sets)
 
 
-def _put(desk: Desk, text: Text, found: dict[str, Any]) -> dict[str, Any]:
-    """The document's text from now on, if it is another."""
-    now = Text(desk.text, desk.path)
+def _put(session: Session, text: Text, found: dict[str, Any]) -> dict[str, Any]:
+    """Replace the document's text, and add the one before to the history."""
+    now = Text(session.text, session.path)
     if text != now:
-        desk.texts.leave(now)
-    return _told(desk, text, found)
+        session.texts.leave(now)
+    return _publish(session, text, found)
 
 
-def _told(desk: Desk, text: Text, found: dict[str, Any]) -> dict[str, Any]:
-    desk.text, desk.path = text
-    desk.digest = found["digest"]
-    desk.begin(desk.drafts.keep(text))
-    found |= {"can_undo": desk.texts.can_undo, "can_redo": desk.texts.can_redo}
-    desk.tell("document", **found)
+def _publish(session: Session, text: Text, found: dict[str, Any]) -> dict[str, Any]:
+    session.text, session.path = text
+    session.digest = found["digest"]
+    session.begin(session.drafts.keep(text))
+    found |= {"can_undo": session.texts.can_undo, "can_redo": session.texts.can_redo}
+    session.tell("document", **found)
     return found
 
 
-def _then(desk: Desk, found: dict[str, Any], apply: bool) -> dict[str, Any]:
+def _follow_up(session: Session, found: dict[str, Any], apply: bool) -> dict[str, Any]:
     if not found["complaints"]:
-        desk.begin(foresee(desk, apply))
+        session.begin(foresee(session, apply))
     return found
 
 
 @request()
-async def folder(desk: Desk, tab: Tab | None, path: str = "") -> dict[str, Any]:
-    """What lies in a folder of this machine that can be opened; of the current one, without a name."""
-    return await desk.maker.quick("folder", path=as_path(path) if path else Path.cwd())
+async def folder(session: Session, tab: Tab | None, path: str = "") -> dict[str, Any]:
+    """List what can be opened in a folder of this machine; the current folder without a path."""
+    return await session.worker.quick("folder", path=as_path(path) if path else Path.cwd())
 
 
 @request()
-async def batch(desk: Desk, tab: Tab | None) -> str:
-    """The name under which a page may send files."""
-    return await asyncio.to_thread(desk.shelf.batch)
+async def batch(session: Session, tab: Tab | None) -> str:
+    """Begin a batch of files to upload, and return its name."""
+    return await asyncio.to_thread(session.uploads.batch)
 
 
 @request()
-async def open_batch(desk: Desk, tab: Tab | None, batch: str) -> dict[str, Any]:
-    """Open the files that a page has sent, together."""
-    files = await asyncio.to_thread(desk.shelf.keep, batch)
-    return await begin(desk, tab, [str(each) for each in files])
+async def open_batch(session: Session, tab: Tab | None, batch: str) -> dict[str, Any]:
+    """Open the files of an uploaded batch together."""
+    files = await asyncio.to_thread(session.uploads.keep, batch)
+    return await begin(session, tab, [str(each) for each in files])
 
 
 @request()
-async def examples(desk: Desk, tab: Tab | None) -> list[str]:
-    """Scenes that are built in."""
-    return await desk.maker.quick("examples")
+async def examples(session: Session, tab: Tab | None) -> list[str]:
+    """List the built-in scenes."""
+    return await session.worker.quick("examples")
 
 
 @request()
-async def save(desk: Desk, tab: Tab | None, path: str, replace: bool = False) -> dict[str, Any]:
-    """Write the document to a file of this machine, its relative paths leading to the same files from there.
+async def save(session: Session, tab: Tab | None, path: str, replace: bool = False) -> dict[str, Any]:
+    """Write the document to a file of this machine; its relative paths lead to the same files from there.
 
-    Raises: ConfigError if a file is there and is not to be replaced; OutputError if it cannot be written.
+    Raises: ConfigError if a file exists and is not to be replaced; OutputError if it cannot be written.
     """
     place = as_path(path)
     if not place.is_absolute():
         place = Path.cwd() / place
     if place.suffix not in (".yaml", ".yml"):
         place = place.with_name(f"{place.name}.yaml")
-    if not replace and place.exists() and place != desk.path:
+    if not replace and place.exists() and place != session.path:
         raise ConfigError(f"{place}: is there already; choose another name, or replace it")
-    await desk.maker.quick("save", text=desk.text, path=desk.path, out=place)
-    return await begin(desk, tab, [str(place)], make_it=False)
+    await session.worker.quick("save", text=session.text, path=session.path, out=place)
+    return await begin(session, tab, [str(place)], make_it=False)
 
 
 @request()
-async def exchange(desk: Desk, tab: Tab | None) -> None:
-    """Left and right of the pair change places, in the document and under the hand."""
-    await edit(desk, tab, await desk.maker.quick("exchange", text=desk.text, path=desk.path))
-    desk.begin(make(desk, tab))
+async def exchange(session: Session, tab: Tab | None) -> None:
+    """Exchange left and right of the pair, and make it again."""
+    await edit(session, tab, await session.worker.quick("exchange", text=session.text, path=session.path))
+    session.begin(make(session, tab))
 
 
-async def offer(desk: Desk) -> None:
-    """Tell pages of what a program before this one left, if it left something."""
-    if (draft := await asyncio.to_thread(desk.drafts.look)) is not None:
-        desk.tell("restored", path=str(draft.text.path), edited_s=draft.at_s)
+async def offer(session: Session) -> None:
+    """Tell pages of the draft of an earlier program, if there is one."""
+    if (draft := await asyncio.to_thread(session.drafts.look)) is not None:
+        session.tell("restored", path=str(draft.text.path), edited_s=draft.at_s)
 
 
 @request()
-async def restore(desk: Desk, tab: Tab | None) -> None:
-    """What was left is the document from now on, a step after that of before. Raises: ConfigError if there is none."""
-    draft = desk.drafts.left
+async def restore(session: Session, tab: Tab | None) -> None:
+    """Replace the document by the earlier program's draft, as an edit. Raises: ConfigError if there is none."""
+    draft = session.drafts.left
     if draft is None:
-        raise ConfigError("there is nothing that was not saved")
-    async with desk.texts.lock:
-        said = await take(desk, draft.text)
-    await forget(desk, tab)
+        raise ConfigError("there is no unsaved draft")
+    async with session.texts.lock:
+        said = await take(session, draft.text)
+    await forget(session, tab)
     if not said["complaints"]:
-        desk.begin(make(desk, tab))
+        session.begin(make(session, tab))
 
 
 @request("forget_draft")
-async def forget(desk: Desk, tab: Tab | None) -> None:
-    """What was left is not offered again."""
-    await asyncio.to_thread(desk.drafts.drop)
-    desk.tell("restored", path="", edited_s=0.0)
+async def forget(session: Session, tab: Tab | None) -> None:
+    """Remove the earlier program's draft."""
+    await asyncio.to_thread(session.drafts.drop)
+    session.tell("restored", path="", edited_s=0.0)

@@ -2,21 +2,21 @@
 
 from typing import Any
 
-from ..state.session import Desk, Tab
+from ..state.session import Session, Tab
 from .making import long_job
 from .table import request
 
 
 @request()
-async def export(desk: Desk, tab: Tab | None, exports: list[dict[str, Any] | str]) -> dict[str, Any] | None:
+async def export(session: Session, tab: Tab | None, exports: list[dict[str, Any] | str]) -> dict[str, Any] | None:
     """Write files of the document as it is on the screen; None if it was stopped.
 
-    exports: as `export:` of a pipeline file has them. Raises: ConfigError for what none can be.
+    exports: as `export:` of a pipeline file has them. Raises: ConfigError for invalid ones.
     """
-    return await long_job(desk, "export", "surface", sets=desk.sets, exports=exports)
+    return await long_job(session, "export", "surface", sets=session.sets, exports=exports)
 
 
 @request()
-async def export_zip(desk: Desk, tab: Tab | None, folder: str) -> str:
-    """Pack what was exported into one file; its name in the same folder. Raises: ConfigError if it is gone."""
-    return await desk.maker.quick("export_zip", folder=folder)
+async def export_zip(session: Session, tab: Tab | None, folder: str) -> str:
+    """Pack exported files into one; return its name in the same folder. Raises: ConfigError if they are gone."""
+    return await session.worker.quick("export_zip", folder=folder)

@@ -1,96 +1,96 @@
-"""Make what the document says: products, and what is felt; and stop."""
+"""Requests to make products of the document, and to stop."""
 
 import asyncio
 from typing import Any
 
 from tangible_core.errors import Stopped
 
-from ..state.session import Desk, Tab
-from ..worker.handle import MakingStopped
+from ..state.session import Session, Tab
+from ..worker.handle import WorkerKilled
 from .table import request
 
 PATIENCE_S = 1.5
-"""So long what is outdated may take to end by itself."""
+"""Time that an outdated job has to end by itself before the worker is killed, s."""
 
 
 @request()
-async def make(desk: Desk, tab: Tab | None, want: str = "touch") -> None:
-    """Make a product of the document, and feel it if it is a touch. What was being made before gives way."""
-    made = await long_job(desk, "make", want, sets=desk.felt_sets(), want=want)
+async def make(session: Session, tab: Tab | None, want: str = "touch") -> None:
+    """Make a product of the document, and feel it if it is a touch. Earlier jobs give way."""
+    made = await long_job(session, "make", want, sets=session.felt_sets(), want=want)
     if made is not None:
-        await desk.feel(made)
+        await session.feel(made)
 
 
 @request()
-async def stop_making(desk: Desk, tab: Tab | None) -> None:
-    """End what is being made at once; what is felt goes on."""
-    if desk.makes.running:
-        desk.makes.stop()
-        desk.maker.kill()
+async def stop_making(session: Session, tab: Tab | None) -> None:
+    """Stop the running jobs at once; the loop goes on."""
+    if session.long_jobs.running:
+        session.long_jobs.stop()
+        session.worker.kill()
 
 
 @request()
-async def try_again(desk: Desk, tab: Tab | None) -> None:
-    """Start the maker again, which did not start."""
-    desk.maker.try_again()
+async def try_again(session: Session, tab: Tab | None) -> None:
+    """Start the worker again after it failed to start."""
+    session.worker.try_again()
 
 
-async def foresee(desk: Desk, apply: bool = False) -> None:
-    """Tell what making the document would do; make it if that is asked for and nothing slow has to run."""
-    digest, told = desk.digest, {"text": desk.text, "path": desk.path, "sets": desk.felt_sets()}
-    plan = await desk.maker.quick("plan", **told, want="touch")
-    if desk.digest != digest:
+async def foresee(session: Session, apply: bool = False) -> None:
+    """Send all tabs the plan of making the document. apply: make it unless something slow has to run."""
+    digest, told = session.digest, {"text": session.text, "path": session.path, "sets": session.felt_sets()}
+    plan = await session.worker.quick("plan", **told, want="touch")
+    if session.digest != digest:
         return  # of a text that was edited again: that edit has its own
-    desk.tell("plan", **plan)
-    if apply and desk.makes.running:
-        desk.makes.apply_after = True
+    session.tell("plan", **plan)
+    if apply and session.long_jobs.running:
+        session.long_jobs.apply_after = True
     elif apply and not plan["slow"] and not plan["refusal"]:
-        await make(desk, None)
+        await make(session, None)
 
 
-async def long_job(desk: Desk, job: str, needs: str, sets: list[str], **told: Any) -> Any:
-    """Do a long job of the document as it is now; None if it was stopped, which pages hear.
+async def long_job(session: Session, job: str, needs: str, sets: list[str], **told: Any) -> Any:
+    """Do a long job of the current document; None if it was stopped, which all tabs get to know.
 
     needs: the product that it is made from. Raises: whatever the job raises.
     """
-    document = {"text": desk.text, "path": desk.path, "sets": sets}
-    digest, earlier, number = desk.digest, set(desk.makes.running), desk.makes.begin()
+    document = {"text": session.text, "path": session.path, "sets": sets}
+    digest, earlier, number = session.digest, set(session.long_jobs.running), session.long_jobs.begin()
     try:
-        if earlier and await desk.maker.quick("give_way", number=number, **document, want=needs):
-            desk.begin(_insist(desk, earlier))
-        return await _asked(desk, job, number, {**document, **told})
+        if earlier and await session.worker.quick("give_way", number=number, **document, want=needs):
+            session.begin(_insist(session, earlier))
+        return await _request_job(session, job, number, {**document, **told})
     except Exception as error:
-        outcome = "failed" if _is_wanted(desk, number, error) else "stopped"
-        desk.tell("made", want=told.get("want", job), digest=digest, outcome=outcome, why=str(error), seconds=0.0)
+        outcome = "failed" if _is_wanted(session, number, error) else "stopped"
+        session.tell("made", want=told.get("want", job), digest=digest, outcome=outcome, why=str(error), seconds=0.0)
         if outcome == "stopped":
             return None
         raise
     finally:
-        desk.makes.running.discard(number)
-        if desk.makes.apply_after and not desk.makes.running:
-            desk.makes.apply_after = False
-            desk.begin(foresee(desk, apply=True))
+        session.long_jobs.running.discard(number)
+        if session.long_jobs.apply_after and not session.long_jobs.running:
+            session.long_jobs.apply_after = False
+            session.begin(foresee(session, apply=True))
 
 
-async def _asked(desk: Desk, job: str, number: int, told: dict[str, Any]) -> Any:
-    """Ask for a long job; again, if the maker was killed for its sake."""
+async def _request_job(session: Session, job: str, number: int, told: dict[str, Any]) -> Any:
+    """Request a long job, and again if the worker was killed for its sake."""
     while True:
         try:
-            return await desk.maker.ask(job, number=number, **told)
-        except MakingStopped:
-            if not desk.makes.killed or number != desk.makes.newest:
+            return await session.worker.ask(job, number=number, **told)
+        except WorkerKilled:
+            if not session.long_jobs.killed or number != session.long_jobs.newest:
                 raise
-            desk.makes.killed = False
+            session.long_jobs.killed = False
 
 
-def _is_wanted(desk: Desk, number: int, error: Exception) -> bool:
-    """Whether somebody still waits for it, so that its failure is news."""
-    return number == desk.makes.newest or not isinstance(error, Stopped | MakingStopped)
+def _is_wanted(session: Session, number: int, error: Exception) -> bool:
+    """Return True if somebody still waits for the job, so that its failure is reported."""
+    return number == session.long_jobs.newest or not isinstance(error, Stopped | WorkerKilled)
 
 
-async def _insist(desk: Desk, numbers: set[int]) -> None:
-    """Kill the maker if these do not end by themselves."""
+async def _insist(session: Session, numbers: set[int]) -> None:
+    """Kill the worker if these jobs do not end by themselves."""
     await asyncio.sleep(PATIENCE_S)
-    if numbers & desk.makes.running:
-        desk.makes.killed = True
-        desk.maker.kill()
+    if numbers & session.long_jobs.running:
+        session.long_jobs.killed = True
+        session.worker.kill()

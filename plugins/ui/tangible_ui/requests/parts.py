@@ -1,9 +1,9 @@
-"""The parts editor: begin, propose a part, follow the picture's edges, feel heights, and keep what was drawn."""
+"""Requests of the parts editor: open, propose a part, follow the picture's edges, feel heights, save."""
 
 import asyncio
 from typing import Any, Literal
 
-from ..state.session import Desk, Tab
+from ..state.session import Session, Tab
 from ..state.texts import Text
 from ..state.uploads import user_folder
 from .document import take
@@ -12,14 +12,14 @@ from .table import request
 
 
 @request()
-async def parts_open(desk: Desk, tab: Tab | None) -> dict[str, Any]:
-    """What an editor begins with: the document's picture and parts."""
-    return await desk.maker.quick("parts_open", **_document(desk))
+async def parts_open(session: Session, tab: Tab | None) -> dict[str, Any]:
+    """Return what the editor begins with: the document's picture and parts."""
+    return await session.worker.quick("parts_open", **_document(session))
 
 
 @request()
 async def parts_save(
-    desk: Desk,
+    session: Session,
     tab: Tab | None,
     upload: str,
     parts: list[dict[str, Any]],
@@ -28,79 +28,81 @@ async def parts_save(
     language: str | None = None,
     of: str = "",
 ) -> dict[str, Any]:
-    """Keep labels that a page has sent, what is said of each, and the document where it stands in a file.
+    """Save labels that a page has uploaded and the entries of their parts; save the document too if it has a file.
 
-    upload: the batch that they were sent in, as a gzip of uint16. of: digest of the parts that were edited; if others
-    took their place meanwhile, it is refused. Raises: ConfigError, OutputError; then nothing is changed.
+    upload: their batch, a gzip of uint16. of: digest of the parts that were edited; if others replaced those
+    meanwhile, the request is refused. Raises: ConfigError, OutputError; then nothing is changed.
     """
-    async with desk.texts.lock:
-        sent = await asyncio.to_thread(desk.shelf.single, upload)
+    async with session.texts.lock:
+        sent = await asyncio.to_thread(session.uploads.single, upload)
         try:
-            found = await desk.maker.quick(
-                "parts_save", **_document(desk), sent=sent, parts=parts, heights=heights, of=of,
-                words={"title": title, "language": language}, opened=desk.drafts.opened_text,
-                shelf=user_folder("opened"), earlier=desk.texts.all,
+            found = await session.worker.quick(
+                "parts_save", **_document(session), sent=sent, parts=parts, heights=heights, of=of,
+                words={"title": title, "language": language}, opened=session.drafts.opened_text,
+                store=user_folder("opened"), earlier=session.texts.all,
             )  # fmt: skip
         finally:
-            await asyncio.to_thread(desk.shelf.drop, upload)
+            await asyncio.to_thread(session.uploads.drop, upload)
         text, moved = found.pop("text"), found.pop("moved")
-        desk.texts.rewrite(moved)
-        desk.text = moved.get(desk.text, desk.text)
+        session.texts.rewrite(moved)
+        session.text = moved.get(session.text, session.text)
         if found["saved"]:
-            desk.drafts.opened(text)
-        await take(desk, Text(text, desk.path))
-    desk.begin(foresee(desk, apply=True))
+            session.drafts.remember_opened(text)
+        await take(session, Text(text, session.path))
+    session.begin(foresee(session, apply=True))
     return found
 
 
 @request()
 async def parts_propose(
-    desk: Desk,
+    session: Session,
     tab: Tab | None,
     points: list[list[float]],
     width_px: float,
     kind: Literal["grabcut", "watershed"] = "grabcut",
     within: list[float] | None = None,
 ) -> dict[str, Any] | None:
-    """The part on which a stroke lies, in pixels of the picture; nothing if another stroke came before this began.
+    """Propose the part under a stroke, in pixels of the picture; None if a newer stroke came before this began.
 
-    within: first column and row, and those after the last, beyond which nothing is proposed. Raises: ConfigError.
+    within: first column and row, and those after the last, which bound the proposal. Raises: ConfigError.
     """
     told = {"points": points, "width_px": width_px, "kind": kind, "within": within}
-    return await desk.strokes.do(lambda: desk.maker.quick("parts_propose", **_document(desk), **told))
+    return await session.strokes.run(lambda: session.worker.quick("parts_propose", **_document(session), **told))
 
 
 @request()
-async def parts_snap(desk: Desk, tab: Tab | None, points: list[list[float]], reach_px: float) -> dict[str, Any]:
-    """A closed outline on the picture's edges that are no farther away than this. Raises: ConfigError."""
-    return await desk.maker.quick("parts_snap", **_document(desk), points=points, reach_px=reach_px)
+async def parts_snap(session: Session, tab: Tab | None, points: list[list[float]], reach_px: float) -> dict[str, Any]:
+    """Move a closed outline to the picture's edges within this reach. Raises: ConfigError."""
+    return await session.worker.quick("parts_snap", **_document(session), points=points, reach_px=reach_px)
 
 
 @request()
 async def parts_heights(
-    desk: Desk,
+    session: Session,
     tab: Tab | None,
     heights_m: list[float | None],
     materials: list[str | None] | None = None,
     heights: dict[str, Any] | None = None,
 ) -> dict[str, Any] | None:
-    """Feel the parts at these heights, by number, and see them; the document stays as it is.
+    """Feel and show the parts at other heights, by number; the document stays unchanged.
 
-    heights_m: nothing for what the document's recipe finds. materials, heights: others than the document's.
-    Returns: nothing if newer ones came before this began. Raises: TangibleError, and what was felt before is felt on.
+    heights_m: None for what the document's recipe finds. materials, heights: in place of the document's.
+    Returns: None if newer heights came before this began. Raises: TangibleError; the touch before stays.
     """
     told = {"heights_m": heights_m, "materials": materials, "heights": heights}
 
-    async def felt() -> dict[str, Any]:
-        made = await desk.maker.quick("parts_heights", **{**_document(desk), "sets": desk.felt_sets()}, **told)
-        await desk.feel_on(made)
+    async def feel() -> dict[str, Any]:
+        made = await session.worker.quick(
+            "parts_heights", **{**_document(session), "sets": session.felt_sets()}, **told
+        )
+        await session.feel_on(made)
         return {}
 
-    done = await desk.heights.do(felt)
+    done = await session.heights.run(feel)
     if done is not None:
-        desk.begin(desk.drawn.do(lambda: desk.maker.quick("parts_shown")))
+        session.begin(session.drawn.run(lambda: session.worker.quick("parts_shown")))
     return done
 
 
-def _document(desk: Desk) -> dict[str, Any]:
-    return {"text": desk.text, "path": desk.path, "sets": desk.sets}
+def _document(session: Session) -> dict[str, Any]:
+    return {"text": session.text, "path": session.path, "sets": session.sets}

@@ -1,4 +1,4 @@
-"""Judge the document before a hand meets it, and put right what can be."""
+"""Requests to judge the document before a hand meets it, and to correct what can be."""
 
 import json
 from typing import Any
@@ -7,48 +7,50 @@ from tangible_core.data import TICK_COLUMNS
 from tangible_core.plugins.interfaces import Medium
 from tangible_core.servo.ring import PERIOD_NS, SPINS
 
-from ..state.session import Desk, Tab
+from ..state.session import Session, Tab
 from ..worker.messages import Late
 from .document import change
 from .making import long_job
 from .table import request
 
 LEAST_TICKS = 1000
-"""Of a loop whose lateness counts."""
+"""Minimum number of ticks of a loop whose lateness is judged."""
 
 
 @request()
-async def preflight(desk: Desk, tab: Tab | None) -> dict[str, Any] | None:
-    """Judge the document on its device, or on the page's own hand where it names none; None if it was stopped."""
-    return await long_job(desk, "preflight", "touch", sets=desk.sets, **_loop(desk))
+async def preflight(session: Session, tab: Tab | None) -> dict[str, Any] | None:
+    """Judge the document on its device, or on the page's own hand without one; None if it was stopped."""
+    return await long_job(session, "preflight", "touch", sets=session.sets, **_loop(session))
 
 
 @request()
-async def fix(desk: Desk, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
-    """Change what preflight would have changed, and judge again; None if it was stopped."""
-    found = await long_job(desk, "fix", "touch", sets=desk.sets, **_loop(desk))
+async def fix(session: Session, tab: Tab | None, apply: bool = False) -> dict[str, Any] | None:
+    """Apply the changes that preflight proposes, and judge again; None if it was stopped."""
+    found = await long_job(session, "fix", "touch", sets=session.sets, **_loop(session))
     if found is None:
         return None
     if found["changes"]:
-        await change(desk, tab, changes=found["changes"], apply=apply)
-    await preflight(desk, tab)
+        await change(session, tab, changes=found["changes"], apply=apply)
+    await preflight(session, tab)
     return found
 
 
 @request()
-async def legible(desk: Desk, tab: Tab | None, medium: Medium, width_m: float | None = None) -> dict[str, Any] | None:
+async def legible(
+    session: Session, tab: Tab | None, medium: Medium, width_m: float | None = None
+) -> dict[str, Any] | None:
     """Judge the document by the rules of one medium; None if it was stopped.
 
-    width_m: of the whole picture there; that of the workspace without one.
+    width_m: of the whole picture there; by default that of the workspace.
     """
-    return await long_job(desk, "legible", "parts", sets=desk.sets, medium=medium, width_m=width_m)
+    return await long_job(session, "legible", "parts", sets=session.sets, medium=medium, width_m=width_m)
 
 
-def _loop(desk: Desk) -> dict[str, Any]:
-    """The page's own hand, and how late the loop's ticks begin, where enough of them were."""
-    own = f"device={json.dumps(desk.feeling.own_device)}"
-    servo = desk.feeling.servo
-    if servo is None or not desk.feeling.running:
+def _loop(session: Session) -> dict[str, Any]:
+    """Return the page's own hand, and the lateness of the loop's ticks if there were enough of them."""
+    own = f"device={json.dumps(session.feeling.own_device)}"
+    servo = session.feeling.servo
+    if servo is None or not session.feeling.running:
         return {"own": own, "late": None}
     rows, _ = servo.ring.since(0)
     header = servo.ring.header

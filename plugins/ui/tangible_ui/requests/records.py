@@ -1,4 +1,4 @@
-"""Recordings: keep what is felt, list what was kept, show it again, compare two."""
+"""Requests about recordings: record, list, show, compare."""
 
 import asyncio
 from datetime import datetime
@@ -9,7 +9,7 @@ from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.session import About, names_in
 
 from ..feeling.recorder import Recorder
-from ..state.session import Desk, Tab
+from ..state.session import Session, Tab
 from ..state.uploads import user_folder
 from .table import request
 
@@ -17,62 +17,62 @@ FOLDER = "recordings"
 
 
 @request()
-async def record(desk: Desk, tab: Tab | None) -> str:
-    """Keep what is felt from now on, in a new file of the user's. Raises: DeviceError if nothing is felt."""
-    servo, felt = desk.feeling.servo, desk.feeling.felt
+async def record(session: Session, tab: Tab | None) -> str:
+    """Record the loop from now on into a new file of the user's. Raises: DeviceError if no loop runs."""
+    servo, felt = session.feeling.servo, session.feeling.felt
     if servo is None or not servo.running or felt is None:
         raise DeviceError("nothing is felt, so there is nothing to record; make and feel a surface first")
-    if desk.recorder is not None and desk.recorder.recording:
-        raise ConfigError(f"{desk.recorder.path}: is being recorded already; stop that first")
+    if session.recorder is not None and session.recorder.recording:
+        raise ConfigError(f"{session.recorder.path}: is being recorded already; stop that first")
     now = datetime.now()  # the user's own clock, as files are looked for by it
     path = user_folder(FOLDER) / f"{now:%Y-%m-%d %H.%M.%S} {felt.law}.nc"
     loop = asyncio.get_running_loop()
 
-    def ended(path: Path, ticks: int, why: str) -> None:
+    def notify_end(path: Path, ticks: int, why: str) -> None:
         told = {"recording": False, "path": str(path), "ticks": ticks, "why": why}
-        loop.call_soon_threadsafe(lambda: desk.tell("recorder", **told))
+        loop.call_soon_threadsafe(lambda: session.tell("recorder", **told))
 
-    text = desk.text
+    text = session.text
     parts = await asyncio.to_thread(names_in, text)
     about = About(felt.device_name, felt.law, text, parts=parts, materials=felt.materials)
-    desk.recorder = await asyncio.to_thread(Recorder, servo, path, about, ended)
-    desk.tell("recorder", recording=True, path=str(path), ticks=0, why="")
+    session.recorder = await asyncio.to_thread(Recorder, servo, path, about, notify_end)
+    session.tell("recorder", recording=True, path=str(path), ticks=0, why="")
     return str(path)
 
 
 @request()
-async def stop_recording(desk: Desk, tab: Tab | None) -> None:
-    """Close the file."""
-    if desk.recorder is not None:
-        await asyncio.to_thread(desk.recorder.stop)
+async def stop_recording(session: Session, tab: Tab | None) -> None:
+    """End the recording, and close its file."""
+    if session.recorder is not None:
+        await asyncio.to_thread(session.recorder.stop)
 
 
 @request()
-async def records(desk: Desk, tab: Tab | None) -> list[dict[str, Any]]:
-    """The user's recordings, the newest first: name, path, seconds, law, device, why it ended."""
-    return await desk.maker.quick("records", folder=user_folder(FOLDER))
+async def records(session: Session, tab: Tab | None) -> list[dict[str, Any]]:
+    """List the user's recordings, newest first: name, path, seconds, law, device, why each ended."""
+    return await session.worker.quick("records", folder=user_folder(FOLDER))
 
 
 @request()
-async def show_record(desk: Desk, tab: Tab | None, path: str) -> dict[str, Any]:
-    """Lay out a recording's ticks for pages to fetch; what it is of, and its figures."""
-    return await desk.maker.quick("show_record", path=Path(path))
+async def show_record(session: Session, tab: Tab | None, path: str) -> dict[str, Any]:
+    """Write a recording's ticks for pages to fetch; return its description and figures."""
+    return await session.worker.quick("show_record", path=Path(path))
 
 
 @request()
-async def compare_records(desk: Desk, tab: Tab | None, path: str, other: str) -> dict[str, Any]:
-    """Two recordings in figures, and how far they are from each other."""
-    return await desk.maker.quick("compare_records", path=Path(path), other=Path(other))
+async def compare_records(session: Session, tab: Tab | None, path: str, other: str) -> dict[str, Any]:
+    """Compare two recordings: figures of both, and the distance between them."""
+    return await session.worker.quick("compare_records", path=Path(path), other=Path(other))
 
 
 @request()
-async def try_law(desk: Desk, tab: Tab | None, path: str) -> dict[str, Any]:
-    """What the document's law gives for each recorded state: laid out as a recording, and compared with it."""
-    return await desk.maker.ask(
+async def try_law(session: Session, tab: Tab | None, path: str) -> dict[str, Any]:
+    """Replay a recording with the document's force law: write the result as a recording, and compare both."""
+    return await session.worker.ask(
         "try_law",
         path=Path(path),
-        text=desk.text,
-        document=desk.path,
-        sets=desk.felt_sets(),
+        text=session.text,
+        document=session.path,
+        sets=session.felt_sets(),
         folder=user_folder(FOLDER),
     )

@@ -4,7 +4,7 @@ from collections.abc import Awaitable, Callable
 from typing import Any, TypeVar
 
 Request = Callable[..., Awaitable[Any]]
-"""Called with the session's state, the tab, and the tab's arguments by name; its result is the answer, as JSON."""
+"""A request's function: called with the session, the tab, and the tab's arguments by name; its result is the answer."""
 R = TypeVar("R", bound=Request)
 
 REQUESTS: dict[str, Request] = {}

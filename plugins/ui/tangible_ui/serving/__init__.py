@@ -1,1 +1,1 @@
-"""The web server of the page: socket, routes, the tabs' websockets, and what watches over the loop meanwhile."""
+"""The page's web server: socket, routes, the tabs' websockets, and polling of the loop."""

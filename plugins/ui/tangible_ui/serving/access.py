@@ -1,4 +1,4 @@
-"""Access to the server: this machine's own page alone, under strict headers."""
+"""Access control: the server answers this machine's own page alone, with strict headers."""
 
 from starlette.requests import HTTPConnection
 from starlette.responses import PlainTextResponse
@@ -20,13 +20,13 @@ READING = ("GET", "HEAD")
 
 
 class Guarded:
-    """Answers none but this machine's own page: the name it is called by is this machine's, the headers are strict."""
+    """An ASGI app that refuses foreign hosts and origins, and adds strict headers to every answer."""
 
     def __init__(self, app: ASGIApp, hosts: frozenset[str]) -> None:
         self._app, self._hosts = app, hosts
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Whatever it answers, errors too, has the headers."""
+        """Answer a request; errors have the headers too."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
@@ -45,8 +45,10 @@ class Guarded:
             await PlainTextResponse(why, 403)(scope, receive, with_headers)
 
     def _wrong(self, connection: HTTPConnection) -> str:
-        """A page elsewhere whose name was made to lead here (DNS rebinding) says its own name as host; one that reaches
-        out to here, its own origin: browsers say it with all that changes something, and with every websocket.
+        """Return why a request is refused; "" if it is not.
+
+        A foreign name that was made to lead here (DNS rebinding) shows in the host; a foreign page that sends requests
+        here shows in the origin, which browsers send with every change and every websocket.
         """
         host = connection.headers.get("host", "")
         if host not in self._hosts:

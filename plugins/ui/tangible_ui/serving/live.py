@@ -1,4 +1,4 @@
-"""One tab's websocket: the newest state out, never more than it draws; its hand and its asks in."""
+"""A tab's websocket: sends the newest state, never more than the tab draws; receives its hand and its requests."""
 
 import asyncio
 import json
@@ -8,7 +8,7 @@ from typing import Any, final
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from ..error_text import told
+from ..error_text import describe_error
 from ..framing import (
     ACK,
     ACK_FRAME,
@@ -21,31 +21,31 @@ from ..framing import (
     RUNNING,
     VERSION,
 )
-from ..state.session import Desk
+from ..state.session import Session
 from .connection import cut_off
-from .parsing import Asked, NotUnderstood, parse
+from .parsing import BadRequest, ParsedRequest, parse
 
 IN_FLIGHT = 2
-"""States that a tab has not drawn yet; more would only queue up in the browser."""
+"""Maximum number of states that a tab has not drawn yet; more would only queue up in the browser."""
 PAUSE_S = 0.01
-"""From what was drawn to the next state: sent at once, it would wait in a busy browser until the frame after next, and
-show the hand where it was; a screen draws every 17 ms."""
+"""Pause from a drawn state to the next one, s. A state sent at once would wait in a busy browser until the frame after
+next, and show where the hand was; a screen draws every 17 ms."""
 SPACING_S = 0.012
-"""Between two states: a screen draws sixty a second."""
+"""Minimum time between two states, s; a screen draws sixty a second."""
 IDLE_SPACING_S = 0.1
-"""While no force is given nothing moves, and the processor has a loop and a surface to start."""
+"""Minimum time between two states without force, s: nothing moves, and loop and surface need the processor to start."""
 MOST_WAITING, MOST_WAITING_CHARACTERS = 2000, 16_000_000
-"""Events that a tab may leave unread; one that reads none is cut off."""
+"""Limits of unread events, in number and characters; a tab that reads none is cut off."""
 MOST_ASKS = 32
-"""That a tab may wait for at once; `stop` is always heard."""
+"""Maximum number of requests that a tab may wait for at once; `stop` is always taken."""
 
 
 @final
 class LiveTab:
-    """A tab that is connected."""
+    """A connected tab."""
 
-    def __init__(self, desk: Desk, socket: WebSocket) -> None:
-        self._desk, self._socket = desk, socket
+    def __init__(self, session: Session, socket: WebSocket) -> None:
+        self._session, self._socket = session, socket
         self._events: asyncio.Queue[str] = asyncio.Queue()
         self._waiting = self._asks = 0
         self._seq = self._drawn = 0
@@ -53,7 +53,7 @@ class LiveTab:
         self._gone = False
 
     def say(self, event: dict[str, Any]) -> None:
-        """Tell it something; one that does not listen is cut off."""
+        """Send an event; a tab that does not read is cut off."""
         if self._gone:
             return
         text = _as_json(event)
@@ -65,10 +65,10 @@ class LiveTab:
             self._events.put_nowait(text)
 
     async def live(self) -> None:
-        """Until it is closed."""
+        """Serve the tab until it is closed."""
         await self._socket.accept()
-        self.say({"event": "hello", "version": VERSION, "history": self._desk.history, "scene": self._desk.scene})
-        self._desk.enter(self)
+        self.say({"event": "hello", "version": VERSION, "history": self._session.history, "scene": self._session.scene})
+        self._session.enter(self)
         try:
             with suppress(WebSocketDisconnect):
                 async with asyncio.TaskGroup() as group:
@@ -78,45 +78,45 @@ class LiveTab:
                         each.cancel()
         finally:
             self._gone = True
-            self._desk.leave(self)
+            self._session.leave(self)
 
     async def _hear(self) -> None:
         while (message := await self._socket.receive())["type"] != "websocket.disconnect":
             if body := message.get("bytes"):
-                self._frame(body)
+                self._handle_frame(body)
             elif text := message.get("text"):
-                self._asked(text)
+                self._begin_request(text)
 
-    def _frame(self, body: bytes) -> None:
-        """A frame that is no whole one of a known kind is not heard."""
-        kind, hand = body[0], self._desk.feeling.hand
+    def _handle_frame(self, body: bytes) -> None:
+        """Handle a binary frame; one that is incomplete or of an unknown kind is ignored."""
+        kind, hand = body[0], self._session.feeling.hand
         if kind == ACK and len(body) == ACK_FRAME.size:
             self._drawn = max(self._drawn, min(ACK_FRAME.unpack(body)[1], self._seq))
             self._acked.set()
-        elif kind == POINTER and len(body) == POINTER_FRAME.size and self._desk.holder is self:
+        elif kind == POINTER and len(body) == POINTER_FRAME.size and self._session.holder is self:
             _, buttons, tag, _, x, y, z = POINTER_FRAME.unpack(body)
             hand.point((x, y, z), buttons, tag)
-        elif kind == RELEASE and len(body) == RELEASE_FRAME.size and self._desk.holder is self:
+        elif kind == RELEASE and len(body) == RELEASE_FRAME.size and self._session.holder is self:
             hand.release()
 
-    def _asked(self, text: str) -> None:
-        """Begin what it asks for, or refuse it with a sentence."""
+    def _begin_request(self, text: str) -> None:
+        """Begin a request, or refuse it with a sentence."""
         try:
             asked = parse(text)
-        except NotUnderstood as error:
+        except BadRequest as error:
             self._refuse(error.number, str(error))
             return
         if self._asks < MOST_ASKS or asked.name == "stop":
             self._asks += 1
-            self._desk.begin(self._answer(asked))
+            self._session.begin(self._answer(asked))
         else:
-            self._refuse(asked.number, f"{MOST_ASKS} things were asked for that are not done yet; wait for them")
+            self._refuse(asked.number, f"{MOST_ASKS} requests are not done yet; wait for them")
 
-    async def _answer(self, asked: Asked) -> None:
+    async def _answer(self, asked: ParsedRequest) -> None:
         try:
-            found = await asked.ask(self._desk, self, **asked.told)
+            found = await asked.ask(self._session, self, **asked.told)
         except Exception as error:  # noqa: BLE001 - whatever a plugin raises is for the page to say
-            self._refuse(asked.number, await told(error))
+            self._refuse(asked.number, await describe_error(error))
         else:
             self.say({"event": "answer", "number": asked.number, "value": found})
         finally:
@@ -133,7 +133,7 @@ class LiveTab:
                 await self._socket.send_text(text)
 
     async def _send_states(self) -> None:
-        """The newest tick soon after one before was drawn: as late as it still comes before the page draws again."""
+        """Send the newest state soon after one was drawn, as late as it still arrives before the page draws again."""
         loop, sent_s, idle = asyncio.get_running_loop(), 0.0, False
         with suppress(WebSocketDisconnect, RuntimeError):
             while True:
@@ -142,17 +142,19 @@ class LiveTab:
                     await self._acked.wait()
                     await asyncio.sleep(PAUSE_S)
                 await asyncio.sleep(sent_s + SPACING_S - loop.time())
-                while idle and not self._desk.feeling.running and loop.time() < sent_s + IDLE_SPACING_S:
+                while idle and not self._session.feeling.running and loop.time() < sent_s + IDLE_SPACING_S:
                     await asyncio.sleep(SPACING_S)
-                sent_s, idle = loop.time(), not self._desk.feeling.running
-                if frame := self._desk.feeling.frame(self._seq + 1, self._status(), self._desk.laws.beside()):
+                sent_s, idle = loop.time(), not self._session.feeling.running
+                if frame := self._session.feeling.frame(self._seq + 1, self._status(), self._session.laws.other_law()):
                     self._seq += 1
                     await self._socket.send_bytes(frame)
 
     def _status(self) -> int:
-        recorder = self._desk.recorder
+        recorder = self._session.recorder
         recording = recorder is not None and recorder.recording
-        return RUNNING * self._desk.feeling.running | HOLDING * (self._desk.holder is self) | RECORDING * recording
+        return (
+            RUNNING * self._session.feeling.running | HOLDING * (self._session.holder is self) | RECORDING * recording
+        )
 
 
 def _as_json(event: dict[str, Any]) -> str:
@@ -163,7 +165,7 @@ def _as_json(event: dict[str, Any]) -> str:
 
 
 def _without_nan(value: Any) -> Any:
-    """JSON knows no NaN: null stands for it."""
+    """Replace NaN by None: JSON has no NaN."""
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):

@@ -1,4 +1,4 @@
-"""What a tab asks for, taken apart: a name that there is and arguments that fit, or a sentence of what is wrong."""
+"""Parsing of a tab's requests: a known name and valid arguments, or a sentence that says what is wrong."""
 
 import inspect
 import json
@@ -14,17 +14,17 @@ from ..requests import REQUESTS, Request
 MOST_SHOWN = 200
 
 
-class NotUnderstood(TangibleError):
-    """What a tab says is nothing that can be asked for."""
+class BadRequest(TangibleError):
+    """A message that is not a valid request."""
 
     def __init__(self, number: int | None, text: str) -> None:
         super().__init__(text)
         self.number = number
-        """Under which the tab waits for an answer, if it said one."""
+        """Number under which the tab waits for the answer; None if it gave none."""
 
 
-class Asked(NamedTuple):
-    """Something to do for a tab."""
+class ParsedRequest(NamedTuple):
+    """A valid request of a tab."""
 
     number: int
     name: str
@@ -32,40 +32,40 @@ class Asked(NamedTuple):
     told: dict[str, Any]
 
 
-def parse(text: str) -> Asked:
-    """Raises: NotUnderstood."""
+def parse(text: str) -> ParsedRequest:
+    """Parse a message. Raises: BadRequest."""
     try:
         said = json.loads(text, parse_constant=_refuse)
     except (ValueError, RecursionError) as error:
-        raise NotUnderstood(None, "a message is no JSON") from error
+        raise BadRequest(None, "the message is not JSON") from error
     number = said.pop("number", None) if isinstance(said, dict) else None
     if type(number) is not int:
-        raise NotUnderstood(None, 'a message is no JSON object with a "number"')
+        raise BadRequest(None, 'the message is not a JSON object with a "number"')
     name = said.pop("ask", None)
     if not isinstance(name, str) or (ask := REQUESTS.get(name)) is None:
         hint = did_you_mean(name, REQUESTS) if isinstance(name, str) else ""
-        raise NotUnderstood(number, f"there is no {quoted(name)} to ask for{hint}")
-    return Asked(number, name, ask, _fitting(number, name, ask, said))
+        raise BadRequest(number, f"there is no request {quoted(name)}{hint}")
+    return ParsedRequest(number, name, ask, _fitting(number, name, ask, said))
 
 
 def _fitting(number: int, name: str, ask: Request, said: dict[str, Any]) -> dict[str, Any]:
-    """The arguments that were said, of the types that they must have."""
+    """Return the arguments, validated by their types."""
     try:
         found = _arguments(ask).model_validate_json(json.dumps(said))
     except ValidationError as error:
         first = error.errors()[0]
-        where = ".".join(map(str, first["loc"])) or "what is told"
-        raise NotUnderstood(number, shown(f"{name}: {where}: {first['msg']}", MOST_SHOWN)) from error
+        where = ".".join(map(str, first["loc"])) or "arguments"
+        raise BadRequest(number, shown(f"{name}: {where}: {first['msg']}", MOST_SHOWN)) from error
     except RecursionError as error:
-        raise NotUnderstood(number, f"{name}: what is told is nested too deep") from error
+        raise BadRequest(number, f"{name}: the arguments are nested too deeply") from error
     return {key: getattr(found, key) for key in found.model_fields_set}
 
 
 @cache
 def _arguments(ask: Request) -> type[BaseModel]:
-    """All that may be told, with its types; nothing else may."""
+    """Return a model of the arguments that a request takes, and no others."""
     types = get_type_hints(ask)
-    _, _, *rest = inspect.signature(ask).parameters.values()  # the desk and the tab come first
+    _, _, *rest = inspect.signature(ask).parameters.values()  # the session and the tab come first
     fields: dict[str, Any] = {
         each.name: (types[each.name], ... if each.default is each.empty else each.default) for each in rest
     }
@@ -73,4 +73,4 @@ def _arguments(ask: Request) -> type[BaseModel]:
 
 
 def _refuse(constant: str) -> NoReturn:
-    raise ValueError(f"{constant} is no JSON")
+    raise ValueError(f"{constant} is not JSON")

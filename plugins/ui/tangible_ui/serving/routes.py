@@ -1,4 +1,4 @@
-"""What the server answers: the page, the arrays it draws, and its websocket; to this machine and to who has the key."""
+"""Routes of the server: the page, the arrays it draws, and its websocket; for whoever has the key."""
 
 import asyncio
 import secrets
@@ -19,68 +19,76 @@ from tangible_core.files.reading import MOST_BYTES, in_words
 
 from ..address import static
 from ..requests import feeling
-from ..state.session import Desk
+from ..state.session import Session
 from .access import Guarded
 from .live import LiveTab
 
 FOREVER = "private, max-age=31536000, immutable"
 ASK_AGAIN = "no-cache"
-"""A browser may keep it, and asks each time whether it is still the same."""
+"""Cache rule: a browser may keep the file, and asks each time if it is still current."""
 WRONG_KEY = 4401
 EXPORTS = "export-"
-"""How the maker names folders of files that it exported."""
+"""Prefix of the worker's folders of exported files."""
 NOT_YOURS = "the key in the address is not this program's; open the address it printed"
 
 WINDOW = frozenset({"row", "rows", "column", "columns", "of", "bytes"})
-"""The first row and how many, the first column and how many, of how many columns, and the bytes of an item."""
+"""Query of a window: first row and number of rows, first column and number, columns of the file, bytes of an item."""
 MOST_ITEMS = 4_000_000
 
 Answer = Callable[[Request], Awaitable[Response]]
 
 
 class BuiltPage(StaticFiles):
-    """The page's own files. One that was built again is seen at the next load."""
+    """The page's own files; a new build is used at the next load."""
 
     def file_response(self, *args: Any, **options: Any) -> Response:
-        """With its ETag, which a browser has to show each time."""
+        """Return the file with its ETag, which the browser must send each time."""
         response = super().file_response(*args, **options)
         response.headers["cache-control"] = ASK_AGAIN
         return response
 
 
-def application(desk: Callable[[], Desk], key: str, hosts: frozenset[str], lifespan: Any) -> ASGIApp:
-    """What is served."""
-    return Guarded(Starlette(routes=routes(desk, key), lifespan=lifespan), hosts)
+def application(session: Callable[[], Session], key: str, hosts: frozenset[str], lifespan: Any) -> ASGIApp:
+    """Return the server's ASGI app."""
+    return Guarded(Starlette(routes=routes(session, key), lifespan=lifespan), hosts)
 
 
-def routes(desk: Callable[[], Desk], key: str) -> list[BaseRoute]:
-    """Everything but the built page needs the key."""
+def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
+    """Return the routes; all but the built page need the key."""
 
     def has_key(connection: HTTPConnection) -> bool:
         return secrets.compare_digest(connection.query_params.get("token", "").encode(), key.encode())
 
-    def keyed(answer: Answer) -> Answer:
-        async def checked(request: Request) -> Response:
+    def require_key(answer: Answer) -> Answer:
+        async def check_key(request: Request) -> Response:
             return await answer(request) if has_key(request) else PlainTextResponse(NOT_YOURS, 403)
 
-        return checked
+        return check_key
 
     async def scene(request: Request) -> Response:
         digest, name = request.path_params["digest"], request.path_params["name"]
-        path = None if digest.startswith(EXPORTS) else _lying(desk().folder, digest, name)
+        path = None if digest.startswith(EXPORTS) else _lying(session().folder, digest, name)
         if path is None:
-            return PlainTextResponse("there is no such thing any more", 404)
+            return PlainTextResponse("this file is gone", 404)
         if request.query_params.keys() & WINDOW:
             return await window_of(path, request)
         return FileResponse(path, headers={"cache-control": FOREVER})
 
-    async def exported(request: Request) -> Response:
-        """A file to keep: it is never shown as a page of this address, whatever is in it."""
+    async def export_file(request: Request) -> Response:
+        """Send a file to keep; it is never shown as a page of this address, whatever it contains."""
         folder, name = request.path_params["folder"], request.path_params["name"]
-        path = _lying(desk().folder, folder, name) if folder.startswith(EXPORTS) else None
+        path = _lying(session().folder, folder, name) if folder.startswith(EXPORTS) else None
         if path is None:
             return PlainTextResponse("this file is not there any more; export it again", 404)
         return FileResponse(path, filename=name)
+
+    async def panel_file(request: Request) -> Response:
+        """Send an ES module, or another file, of a plugin's panel."""
+        folder = session().panel_folders.get(request.path_params["panel"])
+        path = None if folder is None else _lying(folder.parent, folder.name, request.path_params["name"])
+        if path is None:
+            return PlainTextResponse("no plugin brings this file", 404)
+        return FileResponse(path, headers={"cache-control": ASK_AGAIN})
 
     async def window_of(path: Path, request: Request) -> Response:
         try:
@@ -95,37 +103,38 @@ def routes(desk: Callable[[], Desk], key: str) -> list[BaseRoute]:
         if int(said) > MOST_BYTES:  # before a byte of it is read
             return PlainTextResponse(f"{name}: holds more than {in_words(MOST_BYTES)}; open a smaller one", 413)
         try:
-            await desk().shelf.put(request.path_params["batch"], name, request.stream())
+            await session().uploads.put(request.path_params["batch"], name, request.stream())
         except TangibleError as error:
             return PlainTextResponse(str(error), 400)
         except ClientDisconnect:
-            return PlainTextResponse("it broke off", 400)
+            return PlainTextResponse("the upload broke off", 400)
         return Response(status_code=204)
 
     async def stop(_: Request) -> Response:
-        """For a page whose websocket does not answer."""
-        await feeling.stop(desk(), None)
+        """Stop, for a page whose websocket does not answer."""
+        await feeling.stop(session(), None)
         return Response(status_code=204)
 
     async def live(socket: WebSocket) -> None:
         if has_key(socket):
-            await LiveTab(desk(), socket).live()
+            await LiveTab(session(), socket).live()
         else:  # a page can tell this from a program that is gone only if it is let in first
             await socket.accept()
             await socket.close(WRONG_KEY, NOT_YOURS)
 
     return [
-        Route("/scene/{digest}/{name}", keyed(scene)),
-        Route("/export/{folder}/{name}", keyed(exported)),
-        Route("/upload/{batch}/{name}", keyed(upload), methods=["PUT"]),
-        Route("/stop", keyed(stop), methods=["POST"]),
+        Route("/scene/{digest}/{name}", require_key(scene)),
+        Route("/export/{folder}/{name}", require_key(export_file)),
+        Route("/panels/{panel}/{name}", require_key(panel_file)),
+        Route("/upload/{batch}/{name}", require_key(upload), methods=["PUT"]),
+        Route("/stop", require_key(stop), methods=["POST"]),
         WebSocketRoute("/live", live),
         Mount("/", BuiltPage(directory=static(), html=True)),
     ]
 
 
 def _lying(folder: Path, digest: str, name: str) -> Path | None:
-    """A file in a folder of this one; None for whatever leads elsewhere, or is no name of a file."""
+    """Return a file in a folder of this one; None for a path that leads elsewhere, or an impossible name."""
     try:
         path = (folder / digest / name).resolve()
         return path if folder.resolve() in path.parents and path.is_file() else None
@@ -134,7 +143,7 @@ def _lying(folder: Path, digest: str, name: str) -> Path | None:
 
 
 def read_window(path: Path, asked: dict[str, int]) -> bytes:
-    """The rectangle, row by row. asked: a number for each of WINDOW. Raises: ValueError if the file has none such."""
+    """Return the rectangle, row by row. asked: a number for each of WINDOW. Raises: ValueError if it is not there."""
     row, rows, column, columns, of, size = (asked[key] for key in ("row", "rows", "column", "columns", "of", "bytes"))
     inside = min(row, column) >= 0 and min(rows, columns, size) > 0 and column + columns <= of
     if not inside or rows * columns > MOST_ITEMS or (row + rows) * of * size > path.stat().st_size:

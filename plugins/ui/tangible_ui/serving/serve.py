@@ -1,4 +1,4 @@
-"""`tangible ui` at work: the start and the end."""
+"""Start and end of `tangible ui`."""
 
 import asyncio
 import gc
@@ -22,30 +22,30 @@ from ..logs import silence, tell_pages
 from ..requests import document
 from ..requests import document as drafts
 from ..stale_files import channel_of_this_process, folder_of_this_process
-from ..state.session import Desk
+from ..state.session import Session
 from .connection import PING_S, Connection
 from .routes import application
 
 EXAMPLE = Path("builtin/motorcycle")
 MOST_CONNECTIONS = 256
-"""Whoever comes then is told to come again later; who is there is served on."""
+"""Maximum number of connections at once; more are told to come again later, and the others are served on."""
 MOST_MESSAGE_BYTES = 2**20
-"""A pipeline file is smaller."""
+"""Size limit of a message, bytes; pipeline files are smaller."""
 THREADS = 32
-"""For what waits: a disk, a pipe, a loop that ends. It is to wait for nothing else that waits."""
+"""Threads for waiting calls: a disk, a pipe, a loop that ends. Such a call must not wait for another one of them."""
 ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 KEEP_S = 0.01
-"""How often the server says that it lives, and hands the hand on to a law that is computed beside."""
+"""Interval at which the server polls the loop, s: it proves that it lives, and moves the hand of a compared law."""
 LATEST_START_S = 2.0
-"""A scene that takes longer than that is not waited for."""
+"""Longest wait for a first scene before the loop starts, s."""
 
 
 def serve(files: list[Path], sets: list[str], address: Address) -> None:
-    """Until Ctrl-C. Raises: OutputError if there is no room for a folder."""
+    """Serve until Ctrl-C. Raises: OutputError if no temporary folder can be made."""
     with folder_of_this_process() as folder, channel_of_this_process() as channel:
         served = Served(folder, channel, files or [EXAMPLE], sets)
-        app = application(lambda: served.desk, address.key, address.hosts, served.lifespan)
+        app = application(lambda: served.session, address.key, address.hosts, served.lifespan)
         server = Server(settings(app), served.asked_to_end)
         server.run(sockets=[address.listening])
     served.raise_if_failed()
@@ -54,7 +54,7 @@ def serve(files: list[Path], sets: list[str], address: Address) -> None:
 
 
 def settings(app: ASGIApp) -> uvicorn.Config:
-    """How it is served: nobody can make it wait, or fill its memory, or read the key in a log."""
+    """Return settings with which nobody can block the server, fill its memory, or find the key in a log."""
     return uvicorn.Config(
         app, log_level="warning", access_log=False, server_header=False, loop="asyncio", http="h11", lifespan="on",
         ws=Connection, ws_per_message_deflate=False, ws_max_size=MOST_MESSAGE_BYTES,
@@ -65,7 +65,7 @@ def settings(app: ASGIApp) -> uvicorn.Config:
 
 @final
 class Server(uvicorn.Server):
-    """Asked to end, it first takes the force away; then it ends as the whole program does on that signal."""
+    """A server that first takes the force away on a signal; then it ends as programs do on that signal."""
 
     def __init__(self, config: uvicorn.Config, asked_to_end: Callable[[], None]) -> None:
         super().__init__(config)
@@ -74,7 +74,7 @@ class Server(uvicorn.Server):
 
     @contextmanager
     def capture_signals(self) -> Generator[None]:
-        """Those that were not ignored before, as by nohup."""
+        """Handle the signals that were not ignored before, as by nohup."""
         here = threading.current_thread() is threading.main_thread()
         before = {each: signal.getsignal(each) for each in ENDING if here}
         mine = {each: handler for each, handler in before.items() if handler != signal.SIG_IGN}
@@ -87,7 +87,7 @@ class Server(uvicorn.Server):
                 signal.signal(each, handler)
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
-        """A second Ctrl-C waits for nobody."""
+        """Take the force away, and end; a second Ctrl-C does not wait."""
         self.heard.append(sig)
         self._asked_to_end()
         super().handle_exit(sig, frame)
@@ -95,77 +95,77 @@ class Server(uvicorn.Server):
 
 @final
 class Served:
-    """What lives as long as the server."""
+    """The session, for as long as the server lives."""
 
     def __init__(self, folder: Path, channel: str, files: list[Path], sets: list[str]) -> None:
         self._folder, self._channel, self._files, self._sets = folder, channel, files, sets
-        self._desk: Desk | None = None
+        self._session: Session | None = None
         self._failure: Exception | None = None
 
     @property
-    def desk(self) -> Desk:
-        """There from the start on."""
-        assert self._desk is not None
-        return self._desk
+    def session(self) -> Session:
+        """The session, which exists from the start on."""
+        assert self._session is not None
+        return self._session
 
     def asked_to_end(self) -> None:
-        """No force, at once; the rest in its time."""
-        if self._desk is not None:
-            self._desk.feeling.cut()
+        """Take the force away at once; the rest ends later."""
+        if self._session is not None:
+            self._session.feeling.cut()
 
     def raise_if_failed(self) -> None:
-        """Raises: why it could not start."""
+        """Raise the error that kept it from starting."""
         if self._failure is not None:
             raise self._failure
 
     @asynccontextmanager
     async def lifespan(self, _: Any) -> AsyncGenerator[None]:
-        """Start what takes long at once; at the end leave no force, no process and no file."""
+        """Start slow things at once; at the end leave no force, no process and no file."""
         loop = asyncio.get_running_loop()
         loop.set_default_executor(ThreadPoolExecutor(THREADS))
         try:
-            self._desk = desk = Desk(self._folder, Feeling(self._channel), self._sets)
+            self._session = session = Session(self._folder, Feeling(self._channel), self._sets)
         except Exception as error:
             self._failure = error
             raise
 
         def tell(**told: str) -> None:
-            loop.call_soon_threadsafe(partial(desk.tell, "log", **told))
+            loop.call_soon_threadsafe(partial(session.tell, "log", **told))
 
         telling = tell_pages(tell)
-        loop.set_exception_handler(partial(_unforeseen, desk))
-        desk.begin(watch(desk))
-        desk.begin(drafts.offer(desk))
-        desk.begin(document.begin(desk, None, [str(each) for each in self._files]))
-        desk.begin(_start(desk))
+        loop.set_exception_handler(partial(_unforeseen, session))
+        session.begin(watch(session))
+        session.begin(drafts.offer(session))
+        session.begin(document.begin(session, None, [str(each) for each in self._files]))
+        session.begin(_start(session))
         gc.freeze()  # what was imported is never looked through again
         try:
             yield
         finally:
             silence(telling)
-            await desk.close()
+            await session.close()
 
 
-def _unforeseen(desk: Desk, _: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """What asyncio says of an error that nobody waited for."""
-    desk.failed(context.get("exception") or RuntimeError(context["message"]))
+def _unforeseen(session: Session, _: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """Report an error that asyncio found in a task that nobody waited for."""
+    session.report_failure(context.get("exception") or RuntimeError(context["message"]))
 
 
-async def _start(desk: Desk) -> None:
-    """Start the loop when the surface is on its way to the screen, or late: both take all that the processor has."""
+async def _start(session: Session) -> None:
+    """Start the loop when the surface is on its way to the screen, or late: both need the whole processor."""
     until_s = time.monotonic() + LATEST_START_S
-    while desk.scene is None and time.monotonic() < until_s:
+    while session.scene is None and time.monotonic() < until_s:
         await asyncio.sleep(0.02)
-    await asyncio.to_thread(desk.feeling.start)
+    await asyncio.to_thread(session.feeling.start)
 
 
-async def watch(desk: Desk) -> None:
-    """Until the server ends."""
+async def watch(session: Session) -> None:
+    """Poll the loop until the server ends: keep the hand, move a compared law's hand, report ends."""
     while True:
-        desk.feeling.hand.keep()
-        desk.laws.follow(desk.feeling)
-        if why := desk.feeling.beacon_over():
-            desk.tell("beacon", part=None, name="", why=why)
-        if (ended := desk.feeling.ended()) is not None:
-            desk.tell("loop", running=False, why=ended.why, lost=ended.lost)
+        session.feeling.hand.keep()
+        session.laws.follow(session.feeling)
+        if why := session.feeling.beacon_over():
+            session.tell("beacon", part=None, name="", why=why)
+        if (end := session.feeling.loop_end()) is not None:
+            session.tell("loop", running=False, why=end.why, lost=end.lost)
         await asyncio.sleep(KEEP_S)

@@ -1,1 +1,1 @@
-"""What all tabs share: the document with its earlier texts and drafts, files that came from a page, and comparisons."""
+"""The state that all tabs share: the document with its history and drafts, uploads, and force laws compared."""

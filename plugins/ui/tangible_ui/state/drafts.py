@@ -1,4 +1,4 @@
-"""The document as it was edited and not saved: kept in a file of the user's, and offered at the next start."""
+"""Unsaved edits of the document, kept in a file of the user's and offered at the next start."""
 
 import asyncio
 import json
@@ -16,21 +16,21 @@ from .texts import Text
 
 log = logging.getLogger(__name__)
 MOST_LEFT = 10
-"""Older ones are taken away."""
+"""Number of drafts that are kept; older ones are removed."""
 
 
 class Draft(NamedTuple):
-    """What a program that ended had not saved."""
+    """The unsaved document of a program that ended."""
 
     file: Path
     text: Text
     at_s: float
-    """When it was edited last, Unix time."""
+    """Time of the last edit, Unix time."""
 
 
 @final
 class Drafts:
-    """One file for each program that runs; it is there while the document says what no file says."""
+    """The draft of this program: a file that exists while the document differs from the saved one."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -40,19 +40,19 @@ class Drafts:
         self._lock = asyncio.Lock()
         self._failed = False
         self.left: Draft | None = None
-        """Of a program before this one."""
+        """The draft of an earlier program."""
 
-    def opened(self, text: str) -> None:
-        """This text is that of a file, or can be had again."""
+    def remember_opened(self, text: str) -> None:
+        """Remember the text that a file holds: it needs no draft."""
         self._opened = text
 
     @property
     def opened_text(self) -> str:
-        """What the document's file said when it was opened or saved."""
+        """The text of the document's file when it was opened or saved."""
         return self._opened
 
     async def keep(self, text: Text) -> None:
-        """The document's text from now on. A disk that is full is warned of once."""
+        """Write the document's text as a draft. A full disk is warned of once."""
         self._newest = text
         async with self._lock:  # one after the other; of many edits the newest alone is written
             if (text := self._newest) != self._kept:
@@ -60,7 +60,7 @@ class Drafts:
                 self._kept = text
 
     def look(self) -> Draft | None:
-        """The newest that a program before this one left."""
+        """Return the newest draft of an earlier program, and remove old ones."""
         found = sorted(filter(None, map(_read, left_in(self._folder, "*.json"))), key=lambda draft: draft.at_s)
         for draft in found[:-MOST_LEFT]:
             _remove(draft.file)
@@ -68,7 +68,7 @@ class Drafts:
         return self.left
 
     def drop(self) -> None:
-        """What was left is not wanted any more, or is the document now."""
+        """Remove the earlier program's draft: it was restored, or is not wanted."""
         if self.left is not None:
             _remove(self.left.file)
             self.left = None
@@ -82,7 +82,7 @@ class Drafts:
             self._failed = False
         except OutputError as error:
             if not self._failed:
-                log.warning("what is edited and not saved is not kept for the next start: %s", error)
+                log.warning("unsaved edits are not kept for the next start: %s", error)
             self._failed = True
 
 

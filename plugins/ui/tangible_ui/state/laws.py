@@ -1,15 +1,15 @@
-"""Two force laws that are compared: which one is felt, and the trials of a blind comparison."""
+"""Two force laws compared: which one acts, and the trials of a blind comparison."""
 
 import math
 import secrets
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from ..feeling.comparison import Rival
-from ..feeling.feeling import ALONE, Beside, Feeling
+from ..feeling.comparison import ComparisonLoop
+from ..feeling.feeling import ALONE, Feeling, OtherLaw
 
 Choice = Literal[0, 1, 2]
-"""The one that is called 1, or 2; 0 for neither."""
+"""The law named 1 or 2; 0 for neither."""
 
 
 @dataclass
@@ -18,36 +18,36 @@ class Tally:
 
     laws: tuple[str, str]
     question: str
-    """What is asked in each trial."""
+    """The question of each trial."""
     trials: list[tuple[str, str, str]] = field(default_factory=list[tuple[str, str, str]])
-    """Of each: the law that was called 1, the one called 2, and the one that was chosen, empty for neither."""
+    """For each trial: the law named 1, the law named 2, and the chosen law, "" for neither."""
     first: int = 0
-    """Which of the laws is called 1 now."""
+    """Index of the law that is named 1 now."""
 
     def draw(self) -> None:
-        """Another trial."""
+        """Begin another trial."""
         self.first = secrets.randbelow(2)
 
     def law(self, called: int) -> int:
-        """Which of the laws is called 1, or 2."""
+        """Return the index of the law that is named 1, or 2."""
         return self.first if called == 1 else 1 - self.first
 
     def choose(self, choice: Choice) -> None:
-        """What was chosen in this trial; another one is drawn."""
+        """Count the choice of this trial, and draw the next one."""
         named = self.laws[self.law(1)], self.laws[self.law(2)]
         self.trials.append((*named, self.laws[self.law(choice)] if choice else ""))
         self.draw()
 
     @property
     def counts(self) -> tuple[int, int, int]:
-        """How often each was chosen, and neither."""
+        """Numbers of choices: of each law, and of neither."""
         chosen = [trial[2] for trial in self.trials]
         one, two = (sum(1 for each in chosen if each == law) for law in self.laws)
         return one, two, len(chosen) - one - two
 
     @property
     def chance(self) -> float:
-        """How likely it is that who feels no difference chooses so one-sidedly, or more; exact.
+        """Probability of a result at least this one-sided without any difference between the laws; exact.
 
         The two-sided sign test, trials without a choice left out. Source: Dixon and Mood, J. Am. Stat. Assoc. 41
         (1946), 557.
@@ -60,8 +60,8 @@ class Tally:
         tail = sum(math.comb(trials, k) for k in range(fewer + 1)) / 2**trials
         return min(1.0, 2 * tail)
 
-    def told(self) -> dict[str, Any]:
-        """All of it, as JSON has it."""
+    def as_data(self) -> dict[str, Any]:
+        """Return all of it as JSON data."""
         one, two, neither = self.counts
         return {
             "question": self.question,
@@ -75,39 +75,39 @@ class Tally:
 
 @dataclass
 class Laws:
-    """The document's law and another one; none while one law alone is felt."""
+    """The document's law and a second one; without a comparison, the document's alone."""
 
-    rival: Rival
+    comparison: ComparisonLoop
     other: dict[str, Any] | None = None
-    """The other law, as `render:` has it."""
+    """The second law, as `render:` has it."""
     named: tuple[str, str] = ("", "")
     felt: int = 0
-    """Which of the two is felt."""
+    """Index of the law that acts."""
     tally: Tally | None = None
-    """Of a blind comparison that goes on."""
+    """Trials of a blind comparison in progress."""
     called: int = 1
-    """What the law that is felt is called there."""
+    """Name of the acting law in the trial, 1 or 2."""
 
     def alone(self) -> None:
-        """One law again; what was counted is lost."""
+        """End the comparison; its trials are lost."""
         self.other, self.tally, self.felt = None, None, 0
 
     def follow(self, feeling: Feeling) -> None:
-        """Hand the hand that is felt on to the law beside. To be called often; returns at once."""
+        """Move the hand of the second law's loop to that of the first. Meant to be polled; returns at once."""
         servo = feeling.servo
-        if not self.rival.running or servo is None or (row := servo.ring.latest()) is None:
+        if not self.comparison.running or servo is None or (row := servo.ring.latest()) is None:
             return
         x, y, z = row[2:5].tolist()
-        self.rival.follow((x, y, z if feeling.running else math.inf))
+        self.comparison.follow((x, y, z if feeling.running else math.inf))
 
-    def beside(self) -> Beside:
-        """What pages are shown of the other law."""
+    def other_law(self) -> OtherLaw:
+        """Return what frames show of the second law."""
         if self.tally is not None:
-            return Beside(blind=True)
-        return ALONE if self.other is None else Beside(self.rival.force_n)
+            return OtherLaw(blind=True)
+        return ALONE if self.other is None else OtherLaw(self.comparison.force_n)
 
-    def told(self) -> dict[str, Any]:
-        """What pages may know."""
+    def message(self) -> dict[str, Any]:
+        """Return the message `laws`: what pages may know."""
         if self.tally is not None:
             trials = len(self.tally.trials)
             return {"state": "blind", "called": self.called, "trials": trials, "question": self.tally.question}

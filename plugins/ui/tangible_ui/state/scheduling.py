@@ -7,26 +7,26 @@ from typing import TypeVar, final
 
 
 @final
-class Makes:
-    """Long jobs are numbered: a newer one takes the place of those before it."""
+class LongJobs:
+    """Numbers of long jobs: a newer one replaces those before it."""
 
     def __init__(self) -> None:
         self.newest = 0
         self.running: set[int] = set()
-        """Numbers of those that somebody waits for."""
+        """Numbers of the jobs that somebody waits for."""
         self.apply_after = False
-        """Whether to look, after the one at work, if what was edited meanwhile can be applied at once."""
+        """True if edits came during the running job: when it ends, apply them unless something slow has to run."""
         self.killed = False
-        """Whether the maker was killed for an earlier one: if the newest met the one that died, it is asked again."""
+        """True if the worker was killed for an earlier job: if the newest job died with it, it is requested again."""
 
     def begin(self) -> int:
-        """The number of another one."""
+        """Return the number of a new job."""
         self.newest += 1
         self.running.add(self.newest)
         return self.newest
 
     def stop(self) -> None:
-        """None of those at work is wanted any more."""
+        """Mark all running jobs as unwanted."""
         self.newest += 1
         self.killed, self.apply_after = True, False
 
@@ -35,17 +35,17 @@ T = TypeVar("T")
 
 
 @final
-class Newest:
-    """One at a time. Nothing queues up."""
+class LatestWins:
+    """A queue of one: the running call is finished, and of those that wait the newest alone is run."""
 
     def __init__(self, pause_s: float = 0.0) -> None:
-        """pause_s: after each, for others; the first one after a longer rest begins at once."""
+        """pause_s: after each call, for others; the first call after a longer rest starts at once."""
         self._lock = asyncio.Lock()
         self._newest = 0
         self._pause_s, self._rested_s = pause_s, 0.0
 
-    async def do(self, work: Callable[[], Awaitable[T]]) -> T | None:
-        """Do it, once what is done now is done; None if a newer one was asked for before that."""
+    async def run(self, work: Callable[[], Awaitable[T]]) -> T | None:
+        """Run the call once the running one has ended; None if a newer call came before that."""
         self._newest += 1
         mine = self._newest
         async with self._lock:

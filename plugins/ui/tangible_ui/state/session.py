@@ -1,4 +1,4 @@
-"""What all tabs share: the document, what is being made and felt, who holds the hand, and what has happened."""
+"""The session that all tabs share: the document, running jobs, the force loop, the holder of the hand, past events."""
 
 import asyncio
 import time
@@ -9,104 +9,110 @@ from typing import Any, Protocol, final, runtime_checkable
 
 from tangible_core.errors import DeviceError
 
-from ..error_text import told
-from ..feeling.choice import Choice, NotAgreed
-from ..feeling.comparison import Rival
-from ..feeling.feeling import Feeling, Felt
+from ..error_text import describe_error
+from ..feeling.choice import Choice, NotConfirmed
+from ..feeling.comparison import ComparisonLoop
+from ..feeling.feeling import Feeling, LoopInput
 from ..feeling.recorder import Recorder
-from ..worker import Maker
+from ..worker import Worker
 from ..worker.messages import Event
 from .drafts import Drafts
 from .laws import Laws
-from .scheduling import Makes, Newest
+from .scheduling import LatestWins, LongJobs
 from .texts import Texts
-from .uploads import Shelf, user_folder
+from .uploads import UploadStore, user_folder
 
 MOST_HISTORY, MOST_LOGGED = 500, 200
-"""Events, and lines that were logged, that a tab which is opened later hears of."""
+"""Numbers of past events and of log lines that a tab opened later gets."""
 DRAWN_PAUSE_S = 0.4
-"""Between two surfaces that are drawn while a height is dragged: a browser draws one while the hand feels five."""
-LAST_ALONE = frozenset({"restored", "document", "plan", "materials", "preflight", "legible", "exported", "beacon"})
-"""Events of which only the last one counts."""
+"""Pause between two drawings while a height is dragged, s: a browser draws once while the hand feels five heights."""
+LATEST_ONLY = frozenset(
+    {"restored", "document", "plan", "materials", "preflight", "legible", "exported", "beacon", "described"}
+) | {"maker", "maker_gone"}
+"""Events that describe a state: only the latest of each counts, and it is kept however many other events follow."""
 
 
 @runtime_checkable
 class Tab(Protocol):
-    """A page in a browser, as the desk knows it."""
+    """A page in a browser."""
 
     def say(self, event: dict[str, Any]) -> None:
-        """Tell it something; it does not wait."""
+        """Send an event without waiting."""
 
 
 @final
-class Desk:
-    """One program's state, in the event loop's thread."""
+class Session:
+    """The state of one program; used in the event loop's thread alone."""
 
     def __init__(self, folder: Path, feeling: Feeling, sets: Iterable[str]) -> None:
         self.folder, self.feeling = folder, feeling
         self.sets = list(sets)
-        """Changes from the command line, which go before what the file says."""
+        """Changes from the command line, which override the file."""
         self.text, self.path = "", Path.cwd() / "untitled.yaml"
-        """The document: a pipeline file as text, and where it stands."""
+        """The document: the text of a pipeline file, and its path."""
         self.digest = ""
-        """Of the text, as events name it."""
+        """Digest of the text, as events name it."""
         self.texts = Texts()
-        self.makes = Makes()
-        self.strokes = Newest()
-        """Asks for a part under a stroke."""
-        self.heights, self.drawn = Newest(), Newest(DRAWN_PAUSE_S)
-        """Asks to feel parts at other heights, and to draw them."""
+        self.long_jobs = LongJobs()
+        self.strokes = LatestWins()
+        """Requests for a part under a stroke."""
+        self.heights, self.drawn = LatestWins(), LatestWins(DRAWN_PAUSE_S)
+        """Requests for other heights of parts: to feel them, and to draw them."""
         self.choice = Choice()
-        """Which device is felt."""
+        """The chosen device."""
         self.drafts = Drafts(user_folder("unsaved"))
-        self.shelf = Shelf(user_folder("opened"), folder / "incoming")
+        self.uploads = UploadStore(user_folder("opened"), folder / "incoming")
         self.recorder: Recorder | None = None
-        """Of the recording that was made last, or is being made."""
-        self.laws = Laws(Rival(f"{feeling.channel}-beside"))
+        """The last recording, or the running one."""
+        self.laws = Laws(ComparisonLoop(f"{feeling.channel}-beside"))
         self.scene: dict[str, Any] | None = None
+        self.panel_folders: dict[str, Path] = {}
+        """Folders of the ES modules of plugins' panels, by name of the panel."""
         self.tabs: list[Tab] = []
         self.holder: Tab | None = None
-        """The tab whose hand is felt."""
+        """The tab that moves the hand."""
+        self._latest: dict[str, dict[str, Any]] = {}
+        """The latest event of each kind in `LATEST_ONLY`."""
         self._history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
         self._logged: deque[dict[str, Any]] = deque(maxlen=MOST_LOGGED)
-        self.maker = Maker(folder, self._hear)
+        self.worker = Worker(folder, self._hear)
         self.began_s = time.time()
         self._tasks: set[asyncio.Task[Any]] = set()
 
     def felt_sets(self) -> list[str]:
-        """Changes to the document for the one who feels: the page's own hand, unless a device was chosen."""
+        """Return the changes to the document for the loop: the page's own hand, unless a device was chosen."""
         return [*self.sets, *self.choice.sets(self.feeling.own_device)]
 
     async def feel(self, made: dict[str, Any]) -> None:
-        """Feel what was made, alone. Raises: as `put`."""
-        felt = Felt.of(made, self.feeling.channel)
+        """Put a made touch under the hand, and end a comparison of laws. Raises: as `put`."""
+        felt = LoopInput.of(made, self.feeling.channel)
         seconds = await self.put(felt)
         if seconds is not None:
             self.laws.alone()
-            self.tell("laws", **self.laws.told())
-            await asyncio.to_thread(self.laws.rival.close)
+            self.tell("laws", **self.laws.message())
+            await asyncio.to_thread(self.laws.comparison.close)
             self.tell("touch", law=felt.law, seconds=seconds, how=self.feeling.how)
             self.tell("loop", running=True, why="", device=felt.device_name, own_hand=felt.own_hand)
 
     async def feel_on(self, made: dict[str, Any]) -> None:
-        """Feel what is hardly another than what is felt: pages hear of it only if that was not felt. Raises: as `put`.
+        """Put a touch under the hand that hardly differs from the current one; announce it only if no loop ran.
 
-        Many come in a second while somebody drags; what has happened is not to be forgotten for that.
+        Dragging makes many in a second: they must not fill the history. Raises: as `put`.
         """
         if self.laws.other is not None or not self.feeling.running:
             await self.feel(made)
         else:
-            await self.put(Felt.of(made, self.feeling.channel))
+            await self.put(LoopInput.of(made, self.feeling.channel))
 
-    async def put(self, felt: Felt) -> float | None:
-        """Put a touch under the hand; seconds that took.
+    async def put(self, felt: LoopInput) -> float | None:
+        """Put a touch under the hand; return the seconds that took.
 
-        Returns: None after a stop, and with a device that is not the one that is chosen by now: it is then not felt.
-        Raises: NotAgreed for a motor that nobody said yes to, DeviceError if the device cannot be opened.
+        Returns: None after a stop, or if another device was chosen meanwhile: the touch is then not used.
+        Raises: NotConfirmed for a motor that nobody agreed to, DeviceError if the device cannot be opened.
         """
         try:
-            self.choice.check(felt.held)
-        except NotAgreed:
+            self.choice.check(felt.unmapped_device)
+        except NotConfirmed:
             felt.touch.discard()
             raise
         if felt.own_hand != (self.choice.kind == "hand"):
@@ -120,28 +126,24 @@ class Desk:
             raise
 
     def tell(self, event: str, **told: Any) -> None:
-        """Say something to all tabs, and to those that come later."""
+        """Send an event to all tabs, and to those opened later."""
         said = {"event": event, "at_s": round(time.time(), 3), **told}
         if event == "scene":
             self.scene = said
+        elif event in LATEST_ONLY:
+            self._latest[event] = said
         else:
-            if event in LAST_ALONE:
-                self._forget(event)
             (self._logged if event == "log" else self._history).append(said)
         for tab in list(self.tabs):
             tab.say(said)
 
-    def _forget(self, event: str) -> None:
-        if (before := next((each for each in self._history if each["event"] == event), None)) is not None:
-            self._history.remove(before)
-
     @property
     def history(self) -> list[dict[str, Any]]:
-        """What a tab that comes later hears of; however much is logged, the rest is there."""
-        return sorted([*self._history, *self._logged], key=lambda said: said["at_s"])
+        """The events that a tab opened now has missed, oldest first; however much is logged, the rest is there."""
+        return sorted([*self._latest.values(), *self._history, *self._logged], key=lambda said: said["at_s"])
 
     def enter(self, tab: Tab) -> None:
-        """Another tab; it holds the hand if no other one does."""
+        """Add a tab; it gets the hand if no other tab holds it."""
         self.tabs.append(tab)
         if self.holder is None:
             self.hold(tab)
@@ -149,16 +151,16 @@ class Desk:
             self._say_who_holds()
 
     def leave(self, tab: Tab) -> None:
-        """It was closed, or is gone: if its hand was felt, nothing is, until another tab takes it.
+        """Remove a tab that was closed or is gone. If it held the hand, nobody does until a tab takes it.
 
-        None gets it unasked: a mouse may lie pressed on a page that nobody looks at.
+        No tab gets the hand unasked: a mouse may lie pressed on a page that nobody looks at.
         """
         self.tabs.remove(tab)
         if self.holder is tab:
             self.hold(None)
 
     def hold(self, tab: Tab | None) -> None:
-        """From now on this tab's hand is felt, or none; the others watch."""
+        """Give the hand to this tab, or to none; the others watch."""
         self.feeling.hand.release()
         self.holder = tab
         self._say_who_holds()
@@ -168,33 +170,33 @@ class Desk:
             each.say({"event": "holding", "holding": each is self.holder, "free": self.holder is None})
 
     def begin(self, work: Any) -> None:
-        """Do something beside; what it raises is said to all tabs."""
+        """Run a coroutine in the background; its errors are sent to all tabs."""
         task = asyncio.ensure_future(work)
         self._tasks.add(task)
-        task.add_done_callback(self._done)
+        task.add_done_callback(self._finish_task)
 
-    def _done(self, task: "asyncio.Task[Any]") -> None:
+    def _finish_task(self, task: "asyncio.Task[Any]") -> None:
         self._tasks.discard(task)
         if not task.cancelled() and (error := task.exception()) is not None:
-            self.failed(error)
+            self.report_failure(error)
 
-    def failed(self, error: BaseException) -> None:
-        """Something beside failed: all tabs are told a sentence."""
+    def report_failure(self, error: BaseException) -> None:
+        """Send the sentence of a background error to all tabs."""
         self.begin(self._say_failure(error))
 
     async def _say_failure(self, error: BaseException) -> None:
-        self.tell("error", text=await told(error))
+        self.tell("error", text=await describe_error(error))
 
     def _hear(self, event: Event) -> None:
         self.tell(event.event, **event.told)
 
     async def close(self) -> None:
-        """No force, no process, no recording that is open; whatever of it fails, the rest is done."""
+        """End force, worker and recording; a failure of one does not keep the others."""
         self.feeling.cut()
-        self.maker.close()
+        self.worker.close()
         try:
             await asyncio.to_thread(self.feeling.stop)
         finally:
-            await asyncio.to_thread(self.laws.rival.close)
+            await asyncio.to_thread(self.laws.comparison.close)
             if self.recorder is not None:
                 await asyncio.to_thread(self.recorder.stop)

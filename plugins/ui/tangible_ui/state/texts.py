@@ -1,4 +1,4 @@
-"""The texts that the document had: one step back, one step forth."""
+"""The document's history: undo and redo."""
 
 from asyncio import Lock
 from collections import deque
@@ -10,7 +10,7 @@ MOST_STEPS = 100
 
 
 class Text(NamedTuple):
-    """A pipeline file as text, and where it stands."""
+    """The text of a pipeline file, and its path."""
 
     text: str
     path: Path
@@ -18,51 +18,51 @@ class Text(NamedTuple):
 
 @final
 class Texts:
-    """What was before, and what was undone."""
+    """Texts to undo and to redo."""
 
     def __init__(self) -> None:
         self.lock = Lock()
-        """Held by who reads the document, makes another text of it, and puts that in its place."""
+        """Lock for reading the document, computing another text of it, and replacing it."""
         self._before: deque[Text] = deque(maxlen=MOST_STEPS)
         self._after: list[Text] = []
 
     @property
     def can_undo(self) -> bool:
-        """Whether there is a text before."""
+        """True if there is a text to undo to."""
         return bool(self._before)
 
     @property
     def can_redo(self) -> bool:
-        """Whether one was undone."""
+        """True if there is a text to redo."""
         return bool(self._after)
 
     @property
     def all(self) -> list[str]:
-        """Every text that can be stepped to."""
+        """All texts of the history."""
         return [each.text for each in (*self._before, *self._after)]
 
     def rewrite(self, others: Mapping[str, str]) -> None:
-        """Texts that say the same in other words, as a file that they name is elsewhere now."""
+        """Replace texts by equivalent ones, after a file that they name was moved."""
         before = [each._replace(text=others.get(each.text, each.text)) for each in self._before]
         self._before = deque(before, maxlen=MOST_STEPS)
         self._after = [each._replace(text=others.get(each.text, each.text)) for each in self._after]
 
     def leave(self, now: Text) -> None:
-        """Another text takes the place of this one, and what was undone is lost."""
+        """Add the text that is replaced to the history; what was undone is lost."""
         if now.text:
             self._before.append(now)
         self._after.clear()
 
     def before(self) -> Text | None:
-        """The text of one step back."""
+        """Return the text of one step back."""
         return self._before[-1] if self._before else None
 
     def after(self) -> Text | None:
-        """The text that was undone last."""
+        """Return the text that was undone last."""
         return self._after[-1] if self._after else None
 
     def step(self, now: Text, *, back: bool) -> None:
-        """This one gives way to `before` or `after`."""
+        """Move this text to the other side of the history, after a step to `before` or `after`."""
         if back:
             self._after.append(now)
             self._before.pop()

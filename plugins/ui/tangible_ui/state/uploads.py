@@ -1,4 +1,4 @@
-"""Files that a page sends: kept on this machine, where a pipeline file that names them finds them tomorrow."""
+"""Files that pages send, kept on this machine so that a pipeline file that names them finds them later."""
 
 import asyncio
 import hashlib
@@ -15,16 +15,16 @@ from tangible_core.files.paths import as_path
 from tangible_core.files.reading import MOST_BYTES, in_words
 
 MOST_FILES = 16
-"""Of one drop: two pictures and what belongs to them, or a pipeline file and its pictures."""
+"""Maximum number of files of one drop: two pictures with their maps, or a pipeline file and its pictures."""
 MOST_NAME = 120
 AT_ONCE_BYTES = 1 << 22
-"""So much is collected before it is written."""
+"""Bytes collected before they are written."""
 WRONG = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*]')
-"""What cannot stand in a name on every system."""
+"""Characters that some system does not allow in file names."""
 
 
 def user_folder(name: str) -> Path:
-    """Where this user's data of one kind is kept: below $TANGIBLE_DATA_DIR, or where the system has such data."""
+    """Return the folder of this user's data of one kind: below $TANGIBLE_DATA_DIR, or the system's folder."""
     if named := os.environ.get("TANGIBLE_DATA_DIR"):
         return as_path(named, "TANGIBLE_DATA_DIR") / name
     from platformdirs import user_data_path
@@ -33,24 +33,23 @@ def user_folder(name: str) -> Path:
 
 
 @final
-class Shelf:
-    """Files arrive in batches; a batch that is whole gets a folder named by what is in it, once."""
+class UploadStore:
+    """A store of batches of files; a complete batch gets a folder named by its content, once."""
 
     def __init__(self, folder: Path, incoming: Path) -> None:
-        """folder: where batches are kept. incoming: where they lie meanwhile; whoever ends this clears it away."""
+        """folder: of complete batches. incoming: of incomplete ones; whoever ends the program removes it."""
         self._folder, self._incoming = folder, incoming
 
     def batch(self) -> str:
-        """The name of a new batch."""
+        """Begin a batch, and return its name."""
         name = secrets.token_hex(8)
         (self._incoming / name).mkdir(parents=True)
         return name
 
     async def put(self, batch: str, name: str, body: AsyncIterator[bytes]) -> None:
-        """Take a file; one that breaks off leaves nothing.
+        """Store a file; a broken transfer leaves nothing.
 
-        Raises: ConfigError for a batch that there is not, a name that no file can have, too many files, one that is
-        too large, or a disk that is full.
+        Raises: ConfigError for an unknown batch, an impossible name, too many or too large files, or a full disk.
         """
         path = self._place(batch, name)
         try:
@@ -73,7 +72,7 @@ class Shelf:
             raise
 
     def keep(self, batch: str) -> list[Path]:
-        """The files of a whole batch, in the folder where they stay. Raises: ConfigError as `put`."""
+        """Move a complete batch to its folder, and return its files. Raises: ConfigError as `put`."""
         here = self._batch(batch)
         names = sorted(path.name for path in here.iterdir())
         there = self._folder / _digest([here / name for name in names])
@@ -91,14 +90,14 @@ class Shelf:
         return [there / name for name in names]
 
     def single(self, batch: str) -> Path:
-        """The one file of a batch, where it waits. Raises: ConfigError if there is not one."""
+        """Return the only file of a batch. Raises: ConfigError if there is not exactly one."""
         files = list(self._batch(batch).iterdir())
         if len(files) != 1:
             raise ConfigError(f"{len(files)} files were sent where one is wanted; send one")
         return files[0]
 
     def drop(self, batch: str) -> None:
-        """Take a batch away that is not to be kept."""
+        """Remove a batch."""
         shutil.rmtree(self._batch(batch), ignore_errors=True)
 
     def _batch(self, batch: str) -> Path:
@@ -118,7 +117,7 @@ class Shelf:
 
 
 def _digest(paths: list[Path]) -> str:
-    """Of names and contents."""
+    """Return the digest of names and contents."""
     digest = hashlib.sha256()
     for path in paths:
         digest.update(f"{path.name}\0{path.stat().st_size}\0".encode())

@@ -1,5 +1,5 @@
-"""The process that makes surfaces, and its handle in the server: it may take long, and be killed at any moment."""
+"""The process that computes surfaces, and its handle in the server: jobs may take long, and be killed at any moment."""
 
-from .handle import Maker
+from .handle import Worker
 
-__all__ = ["Maker"]
+__all__ = ["Worker"]

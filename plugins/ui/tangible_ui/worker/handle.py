@@ -1,4 +1,4 @@
-"""The maker from outside: ask it, hear it, kill it, start it again."""
+"""The server's handle of the worker: request jobs, receive events, kill it, start it again."""
 
 import asyncio
 import itertools
@@ -14,31 +14,31 @@ from typing import Any, final
 from tangible_core.errors import TangibleError, shown
 from tangible_core.servo.framing import receive, send
 
-from ..prestart import maker_process
-from .messages import Answer, Ask, Event, Refused
+from ..prestart import take_worker_process
+from .messages import Event, JobFailure, JobRequest, JobResult
 
 MOST_DEATHS = 3
-"""So often in a row it may end before it is ready; then somebody has to say that it is worth another try."""
+"""Failed starts in a row after which the worker is given up until `try_again`."""
 
 
-class MakingStopped(TangibleError):
-    """The maker was killed while it worked."""
+class WorkerKilled(TangibleError):
+    """The worker was killed during the job."""
 
 
-class MakerAbsent(TangibleError):
-    """The maker does not start."""
+class WorkerAbsent(TangibleError):
+    """The worker does not start."""
 
 
 @final
-class Maker:
-    """A process that does jobs. One that is killed is followed by another; what waited for it gets MakingStopped.
+class Worker:
+    """A process that does jobs. A killed one is replaced; jobs that waited for it raise WorkerKilled.
 
-    One that ends before it is ready, three times in a row, is not: pages hear `maker_gone` with the reason, and what is
-    asked of it is refused until `try_again`.
+    After three failed starts in a row it is given up: pages get `maker_gone` with the reason, and requests are refused
+    until `try_again`.
     """
 
     def __init__(self, folder: Path, hear: Callable[[Event], None]) -> None:
-        """folder: where it leaves what pages fetch. hear: called in the event loop's thread for each event."""
+        """folder: for what pages fetch. hear: called in the event loop's thread for each event."""
         self._folder, self._hear = folder, hear
         self._numbers = itertools.count(1)
         self._waiting: dict[int, asyncio.Future[Any]] = {}
@@ -53,59 +53,59 @@ class Maker:
 
     @property
     def busy(self) -> bool:
-        """Whether anybody waits for a job."""
+        """True while somebody waits for a job."""
         return bool(self._waiting)
 
     async def ask(self, job: str, **told: Any) -> Any:
-        """Do a job, and return what it made.
+        """Do a job, and return its result.
 
-        Raises: MakingStopped if the maker was killed meanwhile, MakerAbsent if it does not start, and whatever the job
+        Raises: WorkerKilled if the worker was killed meanwhile, WorkerAbsent if it does not start, and whatever the job
         raises.
         """
         if self._gone:
-            raise MakerAbsent(self._gone)
+            raise WorkerAbsent(self._gone)
         number, future = next(self._numbers), self._loop.create_future()
         self._waiting[number] = future
         try:
-            await asyncio.to_thread(self._send, Ask(number, job, told))
+            await asyncio.to_thread(self._send, JobRequest(number, job, told))
             return await future
         finally:
             self._waiting.pop(number, None)
 
     async def quick(self, job: str, **told: Any) -> Any:
-        """Do a quick job; once more, if the maker was killed for the sake of a long one. Raises: as `ask`."""
+        """Do a quick job; once more if the worker was killed for the sake of a long one. Raises: as `ask`."""
         try:
             return await self.ask(job, **told)
-        except MakingStopped:
+        except WorkerKilled:
             return await self.ask(job, **told)
 
     def kill(self) -> None:
-        """End whatever it does; another one takes its place."""
+        """Kill the process; another one replaces it."""
         self._killed = True
         if self._process is not None:
             self._process.kill()
 
     def close(self) -> None:
-        """End it for good."""
+        """Kill the process for good."""
         self._closed = True
         self.kill()
 
     def try_again(self) -> None:
-        """Start it, if it was given up."""
+        """Start the worker if it was given up."""
         if self._gone:
             self._gone, self._deaths = "", 0
             self._start()
 
     def _start(self) -> None:
         self._ready = self._killed = False
-        self._process = process = maker_process()
+        self._process = process = take_worker_process()
         self._send(self._folder)
         reading = threading.Thread(target=self._read, args=(process,), daemon=True)
         reading.start()
         threading.Thread(target=self._listen, args=(process, reading), daemon=True).start()
 
     def _read(self, process: subprocess.Popen[bytes]) -> None:
-        """What it prints goes where this process prints; its last line says why it ended."""
+        """Print the process's standard error, and keep its last line, which tells why it ended."""
         assert process.stderr is not None
         with process.stderr as lines, suppress(OSError, ValueError):
             for line in lines:
@@ -128,9 +128,9 @@ class Maker:
         with suppress(OSError):
             process.stdin.close()
         with suppress(RuntimeError):  # the server ended
-            self._loop.call_soon_threadsafe(self._lost)
+            self._loop.call_soon_threadsafe(self._handle_exit)
 
-    def _take(self, message: Answer | Refused | Event) -> None:
+    def _take(self, message: JobResult | JobFailure | Event) -> None:
         if isinstance(message, Event):
             self._ready, self._deaths = True, 0
             self._hear(message)
@@ -138,22 +138,22 @@ class Maker:
         future = self._waiting.get(message.number)
         if future is None or future.done():
             return
-        if isinstance(message, Refused):
+        if isinstance(message, JobFailure):
             future.set_exception(message.error)
         else:
             future.set_result(message.value)
 
-    def _lost(self) -> None:
+    def _handle_exit(self) -> None:
         if self._closed:
             return
         self._deaths += not (self._ready or self._killed)
         if self._deaths < MOST_DEATHS:
             self._start()
-            error: TangibleError = MakingStopped("making was stopped; what was finished is kept")
+            error: TangibleError = WorkerKilled("computation was stopped; finished products are kept")
         else:
-            why = self._last_words[-1] if self._last_words else "it says nothing"
+            why = self._last_words[-1] if self._last_words else "it printed nothing"
             self._gone = f"the process that computes does not start: {shown(why, 300)}"
-            error = MakerAbsent(self._gone)
+            error = WorkerAbsent(self._gone)
             self._hear(Event("maker_gone", {"why": self._gone}))
         for future in self._waiting.values():
             if not future.done():

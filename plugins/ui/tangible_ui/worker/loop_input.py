@@ -1,4 +1,4 @@
-"""What the force loop needs of a touch: the touch in a parcel, its device, mapping and limits."""
+"""Input of the force loop: a packed touch, its device, mapping and limits."""
 
 from threading import Event
 from typing import Any
@@ -14,14 +14,14 @@ from tangible_core.servo import pack_touch
 from tangible_core.session import materials_text
 
 
-def felt(pipeline: Pipeline, heard: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
-    """What the force loop needs of a touch, which is made. Raises: ConfigError without a device; as `Pipeline.make`."""
-    touch, config = pipeline.make("touch", heard, stop), pipeline.config
+def loop_input_of(pipeline: Pipeline, report: Progress | None = None, stop: Event | None = None) -> dict[str, Any]:
+    """Make the touch, and return the loop's input. Raises: ConfigError without a device; as `Pipeline.make`."""
+    touch, config = pipeline.make("touch", report, stop), pipeline.config
     return parcel_of(touch, pipeline.make("surface"), config)
 
 
 def parcel_of(touch: Touch, surface: HapticSurface, config: PipelineConfig) -> dict[str, Any]:
-    """What the force loop needs of a touch. Raises: ConfigError without a device; DeviceError if there is no room."""
+    """Pack a touch into the loop's input. Raises: ConfigError without a device; DeviceError if there is no room."""
     if config.device is None or config.felt_device is None:
         raise config.missing("device")
     device = over(config.felt_device, surface.extent_m)

@@ -1,12 +1,12 @@
-"""What the server and the maker tell each other: pickles over a pipe, as the force loop has them."""
+"""Messages between server and worker: pickles over a pipe, as those of the force loop."""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
 
-class Ask(NamedTuple):
-    """Do one of the maker's jobs."""
+class JobRequest(NamedTuple):
+    """A job to do."""
 
     number: int
     job: str
@@ -14,31 +14,31 @@ class Ask(NamedTuple):
     """Arguments by name."""
 
 
-class Answer(NamedTuple):
-    """The job is done."""
+class JobResult(NamedTuple):
+    """The result of a job."""
 
     number: int
     value: Any
 
 
-class Refused(NamedTuple):
-    """The job could not be done."""
+class JobFailure(NamedTuple):
+    """The failure of a job."""
 
     number: int
     error: Exception
 
 
 class Event(NamedTuple):
-    """Something happened meanwhile that pages should hear of."""
+    """An event for pages."""
 
     event: str
     told: dict[str, Any]
 
 
 class Late(NamedTuple):
-    """How late the ticks of the loop began that gives the forces now."""
+    """Lateness of the ticks of the running loop."""
 
     late_s: np.ndarray
     period_s: float
     real_time: bool
-    """Whether it runs before all others."""
+    """True if the loop has real-time priority."""

@@ -1,4 +1,4 @@
-"""The maker's process: quick jobs and long ones, each kind in a thread of its own, one job after the other.
+"""The worker's process: quick jobs and long ones, each kind in a thread of its own, one job after the other.
 
 A long job may hold Python's lock for seconds, or be killed: neither the page's server nor the force loop notices.
 """
@@ -15,23 +15,23 @@ from typing import IO, Any, final
 from tangible_core.errors import OutputError
 from tangible_core.servo.framing import receive, send, sendable
 
-from .messages import Answer, Ask, Event, Refused
+from .messages import Event, JobFailure, JobRequest, JobResult
 
 FULL = {getattr(errno, name, -1) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EROFS")}
 NICENESS = 10
-"""After the first long job: pictures can then wait, the loop and the page cannot. Before it, nothing is felt."""
+"""Niceness after the first long job: pictures can then wait, loop and page cannot. Before it, no loop has input."""
 _keep_precedence: set[int] = set()
 
 
 @final
-class Voice:
-    """Says what happens to the server; any thread may."""
+class Sender:
+    """Sender of messages to the server; safe to use from any thread."""
 
     def __init__(self, replies: IO[bytes]) -> None:
         self._replies, self._lock = replies, threading.Lock()
 
-    def say(self, message: Answer | Refused | Event) -> None:
-        """Ends the process if nobody listens any more."""
+    def say(self, message: JobResult | JobFailure | Event) -> None:
+        """Send a message; end the process if nobody reads any more."""
         try:
             with self._lock:
                 send(self._replies, message)
@@ -40,38 +40,38 @@ class Voice:
 
 
 def main() -> None:
-    """Until the pipe closes."""
+    """Do jobs until the pipe closes."""
     replies = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a plugin prints goes to standard error
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the server, which ends this
-    commands, voice = open(0, "rb", buffering=0), Voice(replies)  # noqa: SIM115 - a buffer's lock outlives its thread
-    lanes: dict[bool, queue.SimpleQueue[Ask]] = {quick: queue.SimpleQueue() for quick in (True, False)}
+    commands, voice = open(0, "rb", buffering=0), Sender(replies)  # noqa: SIM115 - a buffer's lock outlives its thread
+    lanes: dict[bool, queue.SimpleQueue[JobRequest]] = {quick: queue.SimpleQueue() for quick in (True, False)}
     from ..logs import tell_pages
     from .jobs import JOBS
-    from .state import Bench
+    from .state import WorkerState
 
     folder: Path = receive(commands)
     tell_pages(lambda **told: voice.say(Event("log", told)), information=True)
-    bench = Bench(folder, lambda event, **told: voice.say(Event(event, told)))
+    state = WorkerState(folder, lambda event, **told: voice.say(Event(event, told)))
     for quick, lane in lanes.items():
-        threading.Thread(target=_work, args=(bench, lane, voice, quick), daemon=True).start()
+        threading.Thread(target=_work, args=(state, lane, voice, quick), daemon=True).start()
     voice.say(Event("maker", {}))
     while (ask := receive(commands)) is not None:
         lanes[JOBS[ask.job].quick].put(ask)
     os._exit(0)  # no thread is waited for: the server is gone
 
 
-def _work(bench: Any, asks: "queue.SimpleQueue[Ask]", voice: Voice, quick: bool) -> None:
+def _work(state: Any, asks: "queue.SimpleQueue[JobRequest]", voice: Sender, quick: bool) -> None:
     if quick:
         _keep_precedence.add(threading.get_native_id())
     while True:
-        voice.say(answer(bench, asks.get()))
+        voice.say(answer(state, asks.get()))
         if not quick:
             give_precedence()
 
 
 def give_precedence() -> None:
-    """Let others go first, with every thread but that of the quick jobs, for which somebody waits.
+    """Lower the priority of every thread but that of the quick jobs, for which somebody waits.
 
     In Linux each thread has a niceness of its own.
     """
@@ -82,26 +82,26 @@ def give_precedence() -> None:
             os.setpriority(os.PRIO_PROCESS, thread, NICENESS)
 
 
-def answer(bench: Any, ask: Ask) -> Answer | Refused:
-    """Do a job; whatever becomes of it, the next one can be done."""
+def answer(state: Any, ask: JobRequest) -> JobResult | JobFailure:
+    """Do a job; a failure does not keep the next one from being done."""
     from .jobs import JOBS
 
     try:
-        keep_folder(bench)
-        return Answer(ask.number, JOBS[ask.job].do(bench, **ask.told))
+        keep_folder(state)
+        return JobResult(ask.number, JOBS[ask.job].do(state, **ask.told))
     except BaseException as error:  # noqa: BLE001 - whatever a plugin raises is for the page to say
-        return Refused(ask.number, full(error) or sendable(error))
+        return JobFailure(ask.number, full(error) or sendable(error))
 
 
-def keep_folder(bench: Any) -> None:
-    """What pages fetch lies in a temporary folder: a system that cleans up may have taken it away."""
-    if not bench.folder.is_dir():
-        bench.folder.mkdir(parents=True, exist_ok=True)
-        bench.shown = ""
+def keep_folder(state: Any) -> None:
+    """Make the folder for pages anew if it is gone: it is temporary, and the system may have removed it."""
+    if not state.folder.is_dir():
+        state.folder.mkdir(parents=True, exist_ok=True)
+        state.shown = ""
 
 
 def full(error: BaseException) -> OutputError | None:
-    """A disk that takes no more: what a person can do about it; None for any other error."""
+    """Return an error with its cure for a full disk; None for any other error."""
     if not isinstance(error, OSError) or error.errno not in FULL:
         return None
     return OutputError(f"{error.filename or 'a temporary folder'}: {error.strerror or error}; free some space")

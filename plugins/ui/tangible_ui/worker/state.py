@@ -1,4 +1,4 @@
-"""What lies on the maker's bench, and what a job is."""
+"""The worker's state, and the progress of a long job."""
 
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
@@ -20,11 +20,11 @@ NEVER = -1
 
 
 Stamp = tuple[tuple[Path, int, int], ...]
-"""Of files: when each was changed last, and its size."""
+"""Files with the time of their last change, and their size."""
 
 
 def stamp_of(config: PipelineConfig) -> Stamp:
-    """Of the files of a scene that are there; none of a built-in one."""
+    """Return the stamp of a scene's existing files; empty for a built-in scene."""
     named = config.scene if isinstance(config.scene, SceneFiles) else ()
     paths = [config.folder / value for _, value in named if isinstance(value, Path)]
     found: list[tuple[Path, int, int]] = []
@@ -36,32 +36,32 @@ def stamp_of(config: PipelineConfig) -> Stamp:
 
 
 class Tell(Protocol):
-    """Says an event to all pages."""
+    """A function that sends an event to all pages."""
 
     def __call__(self, event: str, **told: Any) -> None:
-        """Its name, and what there is to know of it."""
+        """Send the event with its fields."""
 
 
 @final
 class Work:
-    """What a long job is at: one stage after the other, until it is told to stop."""
+    """The progress of a long job: one stage after the other, until a stop."""
 
     def __init__(self, pipeline: Pipeline) -> None:
         self.pipeline = pipeline
         self.stop = Event()
         self.worth = False
-        """Whether there is something to see of it, even if the rest fails."""
+        """True if there is something to show, even if the rest fails."""
         self._product = ""
         self._after = False
 
-    def heard(self, stage: StageEvent) -> None:
-        """A stage began or ended."""
+    def follow(self, stage: StageEvent) -> None:
+        """Note the begin or end of a stage."""
         self._product = "" if stage.outcome else stage.product
         if stage.outcome and self._after:
             self.stop.set()
 
     def give_way(self, to: Pipeline, want: str) -> bool:
-        """Stop for another pipeline: at once, or after a stage which that one needs too; whether at once."""
+        """Stop for another pipeline: at once, or after a stage that it needs too. Returns: True if at once."""
         product, needed = self._product, to.engine.inputs_of(want)
         if product in needed and self.pipeline.engine.key(product) == to.engine.key(product):
             self._after = True
@@ -71,26 +71,26 @@ class Work:
 
 
 @final
-class Bench:
-    """The last pipeline that became something to feel or to see, and the folder of what pages fetch.
+class WorkerState:
+    """The last pipeline that was felt or shown, and the folder for pages.
 
-    Long jobs and quick ones come from two threads. A pipeline that lies here is never worked on: a job works on
-    another one, which shares what was made, and lays it here when it is done. One that fails leaves the last good one.
+    Long jobs and quick ones come from two threads. The pipeline here is never worked on: a job works on another one,
+    which shares results, and puts it here when it is done. A failed job leaves the last good one.
     """
 
     def __init__(self, folder: Path, tell: Tell, cache: Cache | None = None) -> None:
-        """cache: where results are kept; the user's own by default."""
+        """cache: of results; the user's own by default."""
         self.folder, self.tell = folder, tell
         self.registry: Registry = default_registry()
         self.pipeline: Pipeline | None = None
         self.shown = ""
-        """Digest of the surface that pages were told of last."""
+        """Digest of the surface that pages got last."""
         self.described: Any = None
-        """The pipeline and what is seen of it, of which pages were told in words last."""
+        """The pipeline and the view whose description pages got last."""
         self.opened: Any = None
-        """What an editor of parts works on; quick jobs alone look at it."""
+        """The scene in the parts editor; used by quick jobs alone."""
         self.kept: Any = None
-        """What does not depend on the heights of parts; quick jobs alone look at it."""
+        """Results that do not depend on the heights of parts; used by quick jobs alone."""
         self._cache = cache or Cache()
         self._stamps: WeakKeyDictionary[Pipeline, Stamp] = WeakKeyDictionary()
         self._newest, self._work = NEVER, None
@@ -98,7 +98,7 @@ class Bench:
         self._lock = Lock()
 
     def config_of(self, text: str, path: Path, sets: list[str]) -> PipelineConfig:
-        """What a text says; the last one is remembered, as one edit asks for it three times. Raises: ConfigError."""
+        """Return the configuration of a text; the last one is cached for further jobs. Raises: ConfigError."""
         asked = text, path, tuple(sets)
         if (parsed := self._parsed) is not None and parsed[0] == asked:
             return parsed[1]
@@ -107,7 +107,7 @@ class Bench:
         return config
 
     def pipeline_of(self, text: str, path: Path, sets: list[str]) -> Pipeline:
-        """The pipeline that a text says; what is alike in the last good one is not made again. Raises: ConfigError."""
+        """Return the pipeline of a text, with the results shared with the last good one. Raises: ConfigError."""
         config, before = self.config_of(text, path, sets), self.pipeline
         made = self.after(before, config) if before is not None else None
         if made is None:
@@ -116,7 +116,7 @@ class Bench:
         return made
 
     def after(self, before: Pipeline, config: PipelineConfig) -> Pipeline | None:
-        """A pipeline after another one; None if files of its scene are not those that were read for that one."""
+        """Return a pipeline derived from another; None if files of its scene have changed since."""
         if (stamp := stamp_of(config)) != self._stamps.get(before):
             return None
         made = Pipeline.from_config(config, like=before)
@@ -125,7 +125,7 @@ class Bench:
 
     @contextmanager
     def work(self, pipeline: Pipeline, number: int) -> Generator[Work]:
-        """A long job's block; others see what it is at. Raises: Stopped if a newer one was asked for already."""
+        """Yield the progress of a long job. Raises: Stopped if a newer job was requested already."""
         work = Work(pipeline)
         with self._lock:
             if number < self._newest:
@@ -141,7 +141,7 @@ class Bench:
                 self.pipeline = pipeline
 
     def give_way(self, number: int, to: Pipeline, want: str) -> bool:
-        """Jobs below this number stop, or do not begin; whether one was told to stop at once."""
+        """Stop jobs below this number, and keep them from starting. Returns: True if a running one stops at once."""
         with self._lock:
             self._newest, work = number, self._work
         return work is not None and work.give_way(to, want)

@@ -23,6 +23,7 @@ import { Connection } from "./server/connection";
 import { showGraphicsTrouble } from "./frame/graphics_notice";
 import { Overlay } from "./overlay/overlay";
 import type { Page } from "./page";
+import type { PluginPanel } from "./server/messages";
 import { build } from "./panels/panel";
 import { panels } from "./panels";
 import { pluginPanel } from "./panels/plugins";
@@ -79,8 +80,9 @@ hub.on("hello", ({ history, scene }) => {
   announcer.muted = false;
 });
 const plugins = new Set<string>();
-hub.on("hello", ({ panels: brought = [] }) => {
-  const fresh = brought.filter(({ name }) => !plugins.has(name)); // hello comes again with each connection
+hub.on("maker", async () => {
+  const brought = await net.ask<PluginPanel[]>("panels").catch(() => []);
+  const fresh = brought.filter(({ name }) => !plugins.has(name)); // the worker may start again
   for (const { name } of fresh) plugins.add(name);
   build(page, fresh.map((each) => pluginPanel(each)));
 });

@@ -71,7 +71,7 @@ describe("plugin panel", () => {
 
   test("request carries the plugin's name and returns the answer", async () => {
     const { page } = fake();
-    assert.deepEqual(await plugins.panelInterface("glove", page, panelElement(true).root).ask("stretch", { by: 2 }), ["glove.stretch", { by: 2 }]);
+    assert.deepEqual(await plugins.panelInterface("glove", page, panelElement(true).root).ask("stretch", { by: 2 }), ["ask_panel", { panel: "glove", request: "stretch", arguments: { by: 2 } }]);
   });
 
   test("listener gets the latest message at once and each that follows", () => {

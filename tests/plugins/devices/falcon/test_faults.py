@@ -1,4 +1,4 @@
-"""A Falcon whose USB fails at any step: no force stays, one message says what to do, and it can be opened again."""
+"""A Falcon whose USB fails at any step: no force stays, one message gives the cure, and it can be opened again."""
 
 import logging
 

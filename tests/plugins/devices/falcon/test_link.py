@@ -1,4 +1,4 @@
-"""An open Falcon: homing, forces, the wire at the end, several of them, and what an exchange costs."""
+"""An open Falcon: homing, forces, the wire at the end, several devices, and the memory of an exchange."""
 
 import gc
 import tracemalloc
@@ -18,8 +18,8 @@ from tangible_devices.falcon.usb.firmware import NULL
 PUSH = Force(0.5, -0.25, 2.0)
 
 
-def recorded(bus: Bus, monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
-    """Every write from now on."""
+def record_writes(bus: Bus, monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
+    """Record every write from now on."""
     sent: list[bytes] = []
     write = bus.bulk_write
 
@@ -34,7 +34,7 @@ def recorded(bus: Bus, monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
 class TestHoming:
     def test_homing_shows_red_light_without_torque(self, monkeypatch: pytest.MonkeyPatch):
         bus, clock = held_bus()
-        sent = recorded(bus, monkeypatch)
+        sent = record_writes(bus, monkeypatch)
         open_on(bus, clock)
         packets = [each for each in sent if len(each) == 16 and each != NULL]
         assert {each[1:13] for each in packets} == {b"A" * 12}
@@ -44,7 +44,7 @@ class TestHoming:
 
     def test_homing_without_leds_keeps_lights_off(self, monkeypatch: pytest.MonkeyPatch):
         bus, clock = held_bus()
-        sent = recorded(bus, monkeypatch)
+        sent = record_writes(bus, monkeypatch)
         open_on(bus, clock, leds=False)
         assert {each[13] - 0x41 for each in sent if len(each) == 16 and each != NULL} == {HOMING}
 
@@ -110,7 +110,7 @@ class TestForce:
         bus, clock = held_bus()
         with open_on(bus, clock) as link:
             link.write(PUSH)
-            sent = recorded(bus, monkeypatch)
+            sent = record_writes(bus, monkeypatch)
         zero, *goodbyes = sent
         assert zero[1:13] == b"A" * 12
         assert goodbyes == [NULL] * 3
@@ -133,7 +133,7 @@ class TestForce:
         assert bus.units[0].chip.processor.body.torque_counts == (0, 0, 0)
 
     def test_force_above_limit_is_scaled_down(self):
-        """Up, the motors could give more."""
+        """Upwards, the motors could give more."""
         bus, clock = held_bus()
         with open_on(bus, clock) as link:
             link.read()
@@ -148,7 +148,7 @@ class TestForce:
         if ended == "closed":
             link.close()
         else:
-            bus.units[0].chip._spoil = lambda said, data: b""
+            bus.units[0].chip._spoil = lambda sent, data: b""
             with pytest.raises(DeviceError, match="no longer answers"):
                 for _ in range(1000):
                     link.exchange()
@@ -185,9 +185,9 @@ class TestRate:
         bus, clock = held_bus()
         chip = bus.units[0].chip
         with open_on(bus, clock, in_flight=1) as link:
-            spoil, chip._spoil = chip._spoil, lambda said, data: b""
+            spoil, chip._spoil = chip._spoil, lambda sent, data: b""
             lost_s = clock()
-            chip._spoil = lambda said, data: b"" if clock() < lost_s + 0.03 else data
+            chip._spoil = lambda sent, data: b"" if clock() < lost_s + 0.03 else data
             first, second = link.read(), link.read()
             assert 0.03 < second.time_s - lost_s < 0.1
             assert link.health().lost >= 1 and first.time_s < second.time_s
@@ -201,7 +201,7 @@ class TestRate:
             spoil = chip._spoil
             for _ in range(3):
                 lost = link.health().lost
-                chip._spoil = lambda said, data: b""
+                chip._spoil = lambda sent, data: b""
                 while link.health().lost < lost + 4:
                     link.exchange()
                 chip._spoil = spoil
@@ -213,7 +213,7 @@ class TestRate:
         bus, clock = held_bus()
         with pytest.raises(DeviceError, match="no longer answers"), open_on(bus, clock) as link:
             link.write(PUSH)
-            bus.units[0].chip._spoil = lambda said, data: b""
+            bus.units[0].chip._spoil = lambda sent, data: b""
             silent_s = clock()
             for _ in range(100):
                 link.exchange()
@@ -235,7 +235,7 @@ class TestRate:
         bus, clock = held_bus()
         with pytest.raises(DeviceError, match="no longer answers"), open_on(bus, clock) as link:
             link.write(PUSH)
-            bus.units[0].chip._spoil = lambda said, data: b""
+            bus.units[0].chip._spoil = lambda sent, data: b""
             for _ in range(1000):
                 link.read()
         assert bus.units[0].chip.processor.body.torque_counts == (0, 0, 0)

@@ -1,4 +1,4 @@
-"""What the doctor finds of a Falcon, and what a calibration measures and changes."""
+"""The findings of the doctor about a Falcon; measuring and saving a calibration."""
 
 import math
 from collections.abc import Callable
@@ -119,7 +119,7 @@ class TestConnected:
 
 
 class Grip(Link):
-    """A grip that is where the last question put it, in the device's own axes; laden, a mass on the spring."""
+    """A grip that each question moves to the next place, in the device's axes; with a load, a mass on the spring."""
 
     def __init__(self, places: list[tuple[float, float, float]]) -> None:
         super().__init__("the grip", 8.0)
@@ -195,7 +195,7 @@ class TestMeasuring:
 
     @pytest.mark.parametrize("true", [0.5, 1.0, 1.25])
     def test_measured_strength_follows_from_a_weight(self, true: float):
-        """Motors that give `true` times what is asked carry 2 N with 2 N / true more; its own weight drops out."""
+        """Motors that give `true` times the commanded force carry 2 N with 2 N / true more; their own load cancels."""
         grip = Grip([])
         grip.strength = true
         counts = measuring.measure_strength(grip, grip.ask({"grams": str(2000 / 9.80665)}), 10_000.0)
@@ -221,10 +221,10 @@ class TestMeasuring:
 
 class TestKept:
     def test_saved_calibration_is_used_for_its_serial_number(self):
-        kept = Calibration(axes=("x", "y", "z"), counts_per_newton_metre=12_000.0)
-        save_calibration("falcon", "SIM0001", kept)
+        saved = Calibration(axes=("x", "y", "z"), counts_per_newton_metre=12_000.0)
+        save_calibration("falcon", "SIM0001", saved)
         bus, clock = held_bus(("SIM0002", "SIM0001"))
-        for index, calibration in enumerate((Calibration(), kept)):
+        for index, calibration in enumerate((Calibration(), saved)):
             with open_on(bus, clock, index=index) as link:
                 assert np.array_equal(link._buffers.frame, calibration.frame())
                 assert np.array_equal(link._buffers.arms, calibration.arms())

@@ -1,4 +1,4 @@
-"""The simulated Falcon: deterministic, felt through the real driver, and wrong on demand."""
+"""The simulated Falcon: deterministic, under the real driver, with faults on demand."""
 
 import re
 import textwrap

@@ -1,4 +1,4 @@
-"""Force Dimension's devices over a library of the same functions: axes, failures, who has it open."""
+"""Force Dimension's devices over a library of the same functions: axes, failures, exclusive use."""
 
 import ast
 import inspect
@@ -18,7 +18,7 @@ from tangible_devices.force_dimension.library import check_result
 
 
 class Library:
-    """The functions of `forcedimension_core.dhd` that are used, over devices that are not there."""
+    """The functions of `forcedimension_core.dhd` that are used, over simulated devices."""
 
     def __init__(self) -> None:
         self.serials = [1234, 77]
@@ -255,8 +255,8 @@ class TestService:
         assert [each.verdict for each in ForceDimension().examine()] == ["fine", "not asked"]
 
     def test_doctor_without_package_has_not_asked(self, missing: None):
-        [found] = ForceDimension().examine()
-        assert isinstance(found, Finding) and found.verdict == "not asked"
+        [finding] = ForceDimension().examine()
+        assert isinstance(finding, Finding) and finding.verdict == "not asked"
 
 
 def test_read_time_increases(dhd: Library):

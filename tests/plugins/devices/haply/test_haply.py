@@ -1,4 +1,4 @@
-"""The Inverse3 against a mock of its service: the exact messages, and everything that goes wrong."""
+"""The Inverse3 against a mock of its service: the exact messages, and faults."""
 
 import json
 import socket
@@ -121,7 +121,7 @@ class TestMessages:
 
 
 class RecordingSession:
-    """A session that writes down what it is asked, and fails from some step on."""
+    """A session that records its calls, and fails after `fails` is set."""
 
     def __init__(self) -> None:
         self.steps: list[object] = []
@@ -151,7 +151,7 @@ class RecordingSession:
 
 @pytest.mark.usefixtures("unchecked_shapes")
 class TestSteps:
-    """A link and what it asks of its session, in order."""
+    """The calls of a link to its session, in order."""
 
     def link_and_session(self) -> tuple[HaplyLink, RecordingSession]:
         session = RecordingSession()
@@ -319,14 +319,14 @@ class TestService:
 
     def test_doctor_repeats_the_arm_s_problem(self, service: MockService):
         service.status |= {"power_supply": False, "calibrated": False}
-        found = list(Haply(uri=service.uri).examine())
-        assert found[0] == Finding("service", "fine", f"answers at {service.uri}")
-        assert found[1].verdict == "failed"
-        assert "plug in its power supply" in found[1].says and "not calibrated" in found[1].says
+        findings = list(Haply(uri=service.uri).examine())
+        assert findings[0] == Finding("service", "fine", f"answers at {service.uri}")
+        assert findings[1].verdict == "failed"
+        assert "plug in its power supply" in findings[1].says and "not calibrated" in findings[1].says
 
     def test_doctor_finds_nothing_wrong(self, service: MockService):
         assert {each.verdict for each in Haply(uri=service.uri).examine()} == {"fine"}
 
     def test_doctor_without_service_has_not_asked(self):
-        [found] = Haply(uri="ws://127.0.0.1:9").examine()
-        assert found.verdict == "not asked"
+        [finding] = Haply(uri="ws://127.0.0.1:9").examine()
+        assert finding.verdict == "not asked"

@@ -1,4 +1,4 @@
-"""The pointer: what two processes say to each other, what is torn, silent, killed, taken twice."""
+"""The pointer: the exchange of two processes; torn blocks, silence, killed processes, second users."""
 
 import json
 import os
@@ -43,7 +43,7 @@ def link() -> Iterator[CompiledLink]:
     link.close()
 
 
-def ticked(link: CompiledLink) -> tuple[int, np.ndarray]:
+def run_tick(link: CompiledLink) -> tuple[int, np.ndarray]:
     kernels, state = link.kernels(), np.full(7, 9.0)
     return kernels.read(*kernels.fixed, state), state
 
@@ -62,7 +62,7 @@ class TestExchange:
         kernels = link.kernels()
         with PointerClient() as client:
             client.send((0.01, -0.02, 0.003), buttons=5, velocity_m_per_s=(1.0, 2.0, 3.0))
-            fresh, state = ticked(link)
+            fresh, state = run_tick(link)
             assert fresh == 1
             assert state.tolist() == [0.01, -0.02, 0.003, 1.0, 2.0, 3.0, 5.0]
             kernels.write(*kernels.fixed, 1.0, -2.0, 3.0)
@@ -78,13 +78,13 @@ class TestExchange:
             then = client._last[0]
             monkeypatch.setattr(time, "monotonic", lambda: then + 0.25)
             client.send((0.01, -0.02, 0.0))
-            assert ticked(link)[1][3:6] == pytest.approx([0.04, -0.08, 0.0])
+            assert run_tick(link)[1][3:6] == pytest.approx([0.04, -0.08, 0.0])
 
     def test_link_through_mapping_stays_compiled(self):
         with map_device(Pointer(), WorkspaceMapping(scale=2.0)).open() as link, PointerClient() as client:
             assert isinstance(link, CompiledLink) and not link.exchanges
             client.send((0.02, 0.0, 0.01))
-            assert ticked(link)[1][:3].tolist() == [0.01, 0.0, 0.005]
+            assert run_tick(link)[1][:3].tolist() == [0.01, 0.0, 0.005]
 
     def test_kernels_are_callable_by_address(self, link: CompiledLink):
         @njit(nogil=True)
@@ -103,7 +103,7 @@ class TestExchange:
             assert client.force() == (0.5, 0.25, 0.125)
 
 
-def compiled(link: Link) -> CompiledLink:
+def as_compiled(link: Link) -> CompiledLink:
     assert isinstance(link, CompiledLink)
     return link
 
@@ -118,27 +118,27 @@ class TestFollowing:
             here, there = (0.01, -0.02, 0.003), (0.3, 0.2, -0.1)
             with PointerClient() as client:
                 client.send(here, 1, (1.0, 2.0, 3.0))
-                assert ticked(compiled(link))[1].tolist() == [*here, 1.0, 2.0, 3.0, 1.0]
+                assert run_tick(as_compiled(link))[1].tolist() == [*here, 1.0, 2.0, 3.0, 1.0]
                 for _ in range(25):
-                    silent = ticked(compiled(link))[0]
+                    silent = run_tick(as_compiled(link))[0]
                 assert not silent
                 client.send(there)
-                assert ticked(compiled(link))[1][:3].tolist() == list(there)
+                assert run_tick(as_compiled(link))[1][:3].tolist() == list(there)
                 client.release()
-                assert ticked(compiled(link))[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
+                assert run_tick(as_compiled(link))[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
                 client.send(here)
-                assert ticked(compiled(link))[1].tolist() == [*here, 0, 0, 0, 0]
-            assert ticked(compiled(link))[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
+                assert run_tick(as_compiled(link))[1].tolist() == [*here, 0, 0, 0, 0]
+            assert run_tick(as_compiled(link))[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
             with PointerClient() as client:
                 client.send(there)
-                assert ticked(compiled(link))[1][:3].tolist() == list(there)
+                assert run_tick(as_compiled(link))[1][:3].tolist() == list(there)
 
     def test_filter_of_kernel_is_first_order_at_a_millisecond(self):
         with Pointer(follow_s=FOLLOW_S).open() as link, PointerClient() as client:
             client.send((0.0, 0.0, 0.0))
-            ticked(compiled(link))
+            run_tick(as_compiled(link))
             client.send((0.01, -0.02, 0.003), 5, (1.0, 2.0, 3.0))
-            seen = np.array([ticked(compiled(link))[1] for _ in range(50)])
+            seen = np.array([run_tick(as_compiled(link))[1] for _ in range(50)])
         way = 1 - np.exp(-np.arange(1, 51) / (1000 * FOLLOW_S))
         np.testing.assert_allclose(seen[:, :6], way[:, None] * [0.01, -0.02, 0.003, 1.0, 2.0, 3.0], rtol=1e-9)
         assert (seen[:, 6] == 5).all()
@@ -174,7 +174,7 @@ class TestFollowing:
         with Pointer(channel="bits").open() as link, PointerClient("bits") as client:
             for sample in samples:
                 client.send(sample[:3], 1, sample[3:])
-                assert ticked(compiled(link))[1].tobytes() == np.array([*sample, 1.0]).tobytes()
+                assert run_tick(as_compiled(link))[1].tobytes() == np.array([*sample, 1.0]).tobytes()
                 assert (*link.read().position_m, *link.read().velocity_m_per_s) == sample
 
 
@@ -182,11 +182,11 @@ class Spring:
     """A spring of 1 N/mm under z = 0 on a link, tick by tick of 1 ms, by its kernels and a guard."""
 
     def __init__(self, link: Link, limits: Safety) -> None:
-        self._kernels = compiled(link).kernels()
+        self._kernels = as_compiled(link).kernels()
         self._settings, self._memory = limits.arrays(Pointer().spec(), 1000.0)
 
     def ticks(self, count: int) -> list[float]:
-        """What is given in these ticks, N upwards."""
+        """Return the forces of these ticks, N upwards."""
         return [self._tick() for _ in range(count)]
 
     def _tick(self) -> float:
@@ -205,7 +205,7 @@ class TestLettingGo:
     """A hand 2 mm deep, which the spring and nothing else holds."""
 
     @pytest.fixture
-    def held(self, follow_s: float) -> Iterator[tuple[PointerClient, Spring]]:
+    def grip(self, follow_s: float) -> Iterator[tuple[PointerClient, Spring]]:
         with Pointer(follow_s=follow_s).open() as link, PointerClient() as client:
             spring = Spring(link, Safety(ramp_s=0, passivity="off"))
             client.send((0.0, 0.0, -0.002))
@@ -213,20 +213,20 @@ class TestLettingGo:
             yield client, spring
 
     @pytest.mark.parametrize("leave", [PointerClient.release, PointerClient.close])
-    def test_release_ends_law_at_next_tick_and_guard_fades_out(self, held, leave):
-        client, spring = held
+    def test_release_ends_law_at_next_tick_and_guard_fades_out(self, grip, leave):
+        client, spring = grip
         leave(client)
         assert spring.ticks(6) == [1.5, 1.0, 0.5, 0.0, 0.0, 0.0]
 
-    def test_release_gives_client_no_force(self, held):
-        client, spring = held
+    def test_release_gives_client_no_force(self, grip):
+        client, spring = grip
         client.release()
         assert client.force() == NO_FORCE
         spring.ticks(1)
         assert client.force() == NO_FORCE
 
-    def test_release_then_send_starts_at_rest_with_force(self, held):
-        client, spring = held
+    def test_release_then_send_starts_at_rest_with_force(self, grip):
+        client, spring = grip
         client.release()
         spring.ticks(10)
         client.send((0.1, 0.0, -0.001))
@@ -234,21 +234,21 @@ class TestLettingGo:
         assert client.force().z == 1.0
         assert client._channel.take(channel.SAMPLE, channel.SAMPLE_WORDS)[1][3:6] == (0, 0, 0)
 
-    def test_release_after_close_leaves_next_client_alone(self, held):
-        client, spring = held
+    def test_release_after_close_leaves_next_client_alone(self, grip):
+        client, spring = grip
         client.close()
         with PointerClient() as other:
             other.send((0.0, 0.0, -0.002))
             client.release()
             assert spring.ticks(10)[-1] == 2.0
 
-    def test_release_of_closed_device_raises_nothing(self, held):
-        client, _ = held
+    def test_release_of_closed_device_raises_nothing(self, grip):
+        client, _ = grip
         client._channel.set_flag(channel.DEVICE_OPEN, False)
         client.release()
 
-    def test_silence_ends_force_after_stale_times(self, held):
-        _, spring = held
+    def test_silence_ends_force_after_stale_times(self, grip):
+        _, spring = grip
         forces = spring.ticks(200)
         assert 90 < (end := forces.index(0.0)) <= 90 + 20, "100 reads of a sample, ten of which were; then 20 ms"
         assert set(forces[:end]) == {2.0}
@@ -265,7 +265,7 @@ def test_clutch_ignores_client_number_in_buttons(tag: int):
     with map_device(Pointer(), WorkspaceMapping(scale=2.0, clutch_button=1)).open() as link, PointerClient() as client:
         for x, buttons, seen in ((0.02, 0, 0.01), (0.04, 1, 0.02), (0.06, 2, 0.02), (0.06, 3, 0.02), (0.08, 5, 0.03)):
             client.send((x, 0.0, 0.01), tag << 8 | buttons)
-            state = ticked(compiled(link))[1]
+            state = run_tick(as_compiled(link))[1]
             assert (state[0], state[6]) == (pytest.approx(seen), tag << 8 | buttons)
 
 
@@ -283,9 +283,9 @@ def test_client_number_in_buttons_returns_with_its_tick(tmp_path: Path):
         rows, _ = servo.ring.since(0)
     with keeping(tmp_path / "hand.nc", About()) as writer:
         writer.append(rows)
-    kept = Recording.load(tmp_path / "hand.nc").rows[:, BUTTONS]
-    assert set(kept.tolist()) <= {0, *sent}
-    assert kept[-1] == sent[-1]
+    recorded = Recording.load(tmp_path / "hand.nc").rows[:, BUTTONS]
+    assert set(recorded.tolist()) <= {0, *sent}
+    assert recorded[-1] == sent[-1]
 
 
 def before_a_device(force_n: tuple[float, float, float]) -> Channel:
@@ -302,7 +302,7 @@ def before_a_device(force_n: tuple[float, float, float]) -> Channel:
 class TestNobody:
     def test_tip_without_client_is_high_above(self, link: CompiledLink):
         assert link.read()[:2] == (HIGH_M, (0.0, 0.0, 0.0))
-        fresh, state = ticked(link)
+        fresh, state = run_tick(link)
         assert fresh == 1
         assert state.tolist() == [*HIGH_M, 0, 0, 0, 0]
 
@@ -311,7 +311,7 @@ class TestNobody:
             client.send((0.0, 0.0, 0.0))
             assert link.read().position_m == (0, 0, 0)
         assert link.read().position_m == HIGH_M
-        assert ticked(link)[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
+        assert run_tick(link)[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
 
     def test_silent_client_is_ignored(self):
         with Pointer(stale_after_s=0.03).open() as link, PointerClient() as client:
@@ -326,9 +326,9 @@ class TestNobody:
         with Pointer(stale_after_s=0.03).open() as link, PointerClient() as client:
             assert isinstance(link, CompiledLink)
             client.send((0.0, 0.0, 0.0))
-            assert [ticked(link)[0] for _ in range(40)] == [1] * 30 + [0] * 10
+            assert [run_tick(link)[0] for _ in range(40)] == [1] * 30 + [0] * 10
             client.send((0.0, 0.0, 0.0))
-            assert ticked(link)[0] == 1
+            assert run_tick(link)[0] == 1
 
     def test_sample_of_earlier_client_is_not_new(self):
         with Pointer().open(), PointerClient() as client:
@@ -342,24 +342,24 @@ class TestNobody:
         with Pointer().open() as link:
             assert link.read().position_m == HIGH_M
             assert isinstance(link, CompiledLink)
-            assert ticked(link)[0] == 0
+            assert run_tick(link)[0] == 0
 
     def test_silent_client_is_used_again_when_it_sends(self, link: CompiledLink):
         with PointerClient() as client:
             client.send((0.0, 0.0, 0.0), 3)
-            assert ticked(link)[0] == 1
-        assert ticked(link)[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
-        link.kernels().fixed[0][channel.CLIENT_OPEN] = 1  # who is there, and has said nothing
-        assert ticked(link)[0] == 0
+            assert run_tick(link)[0] == 1
+        assert run_tick(link)[1].tolist() == [*HIGH_M, 0, 0, 0, 0]
+        link.kernels().fixed[0][channel.CLIENT_OPEN] = 1  # a client that has sent nothing
+        assert run_tick(link)[0] == 0
         with PointerClient() as client:
             client.send((0.1, 0.0, 0.0))
-            assert ticked(link)[1][0] == 0.1
+            assert run_tick(link)[1][0] == 0.1
 
     def test_first_sample_of_next_client_is_new(self, link: CompiledLink):
         for x in (0.1, 0.2):
             with PointerClient() as client:
                 client.send((x, 0.0, 0.0), velocity_m_per_s=(0.0, 0.0, 0.0))
-                assert ticked(link)[1][0] == x
+                assert run_tick(link)[1][0] == x
                 assert link.read().position_m[0] == x
 
     def test_closed_device_shows_no_force(self, link: CompiledLink):
@@ -377,12 +377,12 @@ class TestNobody:
         with Pointer().open() as link:
             assert shown.take(channel.FORCE, channel.FORCE_WORDS)[1] == (0, 0, 0)
             assert isinstance(link, CompiledLink)
-            assert ticked(link)[0] == 0
+            assert run_tick(link)[0] == 0
             assert link.read().position_m == HIGH_M
         shown.close()
 
     def test_device_is_open_only_after_zero_force(self):
-        """What a killed one left says that it is: a client would be shown its last force."""
+        """A killed device leaves its flag set, and a client would read its last force."""
         shown = before_a_device(force_n=(0.0, 0.0, 2.0))
         open_then: list[bool] = []
 
@@ -397,11 +397,11 @@ class TestNobody:
         shown.close()
 
     def test_sample_of_killed_client_is_ignored_from_first_read(self):
-        """As long as a client may be silent, the last place of one that was killed would be a place."""
+        """The last sample of a killed client must not count as new during the time allowed for silence."""
         shown = before_a_device(force_n=(0.0, 0.0, 0.0))
         with Pointer(stale_after_s=10.0).open() as link:
             assert isinstance(link, CompiledLink)
-            assert [ticked(link)[0] for _ in range(3)] == [0, 0, 0]
+            assert [run_tick(link)[0] for _ in range(3)] == [0, 0, 0]
             assert link.read().position_m == HIGH_M
         shown.close()
 
@@ -413,7 +413,7 @@ class TestNobody:
         assert link.applied == NO_FORCE
 
     def test_force_blocks_have_rising_numbers(self, link: CompiledLink, monkeypatch: pytest.MonkeyPatch):
-        """By which a client tells a device that lives from one that shows its last force for ever."""
+        """By these numbers a client tells a living device from one that shows its last force for ever."""
         with PointerClient() as client:
             link.write(Force(0.0, 0.0, 1.0))
             assert client.force() == (0, 0, 1)
@@ -437,7 +437,7 @@ class TestNobody:
         with PointerClient() as client:
             client.send((0.0, 0.0, 0.0))
             client._channel.put(channel.SAMPLE, 2**63, (np.nan,) * 7)
-            assert ticked(link)[0] == 0
+            assert run_tick(link)[0] == 0
             assert np.isfinite(link.read().position_m).all()
 
     @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
@@ -447,10 +447,10 @@ class TestNobody:
         with PointerClient() as client:
             client.send((0.0, 0.0, 0.0), velocity_m_per_s=(0.0, 0.0, 0.0))
             client._channel.put(channel.SAMPLE, 2**63, (*good[:place], bad, *good[place + 1 :]))
-            assert ticked(link)[0] == 0
+            assert run_tick(link)[0] == 0
             assert link.read().position_m == HIGH_M, "nothing was heard yet"
             client._channel.put(channel.SAMPLE, 2**63 + 1, tuple(good))
-            assert ticked(link)[1].tolist() == good
+            assert run_tick(link)[1].tolist() == good
 
     @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize("bad", [(np.nan, 0, 0), (0, np.inf, 0), (0, 0), (0, 0, 0, 0)])
@@ -488,11 +488,11 @@ class TestTorn:
 
         @njit(nogil=True)
         def mixtures(read, fixed, state, count):
-            found = 0
+            mixtures = 0
             for _ in range(count):
                 if read(*fixed, state) and state[2] != 1.0:
-                    found += (state != state[0]).any()
-            return found
+                    mixtures += (state != state[0]).any()
+            return mixtures
 
         thread = Thread(target=hammer)
         thread.start()
@@ -511,12 +511,12 @@ class TestTorn:
         words = kernels.fixed[0]
         with PointerClient() as client:
             client.send((0.5, 0.25, 0.125), 1, (0.5, 0.25, 0.125))
-            assert ticked(link)[0] == 1
+            assert run_tick(link)[0] == 1
             words[channel.SAMPLE + word] ^= np.uint64(1 << bit)
-            assert ticked(link)[0] == 0
+            assert run_tick(link)[0] == 0
             assert link.read().position_m == HIGH_M
             words[channel.SAMPLE + word] ^= np.uint64(1 << bit)
-            assert ticked(link)[0] == 1
+            assert run_tick(link)[0] == 1
             assert link.read().position_m == (0.5, 0.25, 0.125)
 
     @pytest.mark.parametrize("word", range(channel.FORCE_WORDS + 1))

@@ -50,16 +50,16 @@ def installed() -> Louis:
 def without(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[object], None]]:
     """Has something else in place of liblouis, or an error where it is looked for."""
 
-    def replaced(library: object) -> None:
-        def loaded(name: str) -> object:
+    def replace(library: object) -> None:
+        def load(name: str) -> object:
             if isinstance(library, Exception):
                 raise library
             return library
 
         louis.cache_clear()
-        monkeypatch.setattr(ctypes, "CDLL", loaded)
+        monkeypatch.setattr(ctypes, "CDLL", load)
 
-    yield replaced
+    yield replace
     louis.cache_clear()
 
 
@@ -204,14 +204,14 @@ def test_liblouis_is_called_by_one_thread_at_a_time(without: Callable[[object], 
     library, inside, most = odd(), list[None](), list[int]()
     write: Any = library.lou_translateString  # pyright: ignore[reportAttributeAccessIssue]
 
-    def watched(*given: Any) -> int:
+    def watch(*given: Any) -> int:
         inside.append(None)
         time.sleep(1e-3)
         most.append(len(inside))
         inside.pop()
         return write(*given)
 
-    library.lou_translateString = watched  # pyright: ignore[reportAttributeAccessIssue]
+    library.lou_translateString = watch  # pyright: ignore[reportAttributeAccessIssue]
     without(library)
     with ThreadPoolExecutor(4) as pool:
         assert set(pool.map(translate, ["abc"] * 40)) == {(1, 3, 9)}

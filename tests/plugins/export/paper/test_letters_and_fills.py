@@ -22,7 +22,7 @@ def test_key_letters_are_different_for_all_names(names):
 
 def test_key_letter_is_the_first_free_letter_of_the_name():
     assert key_letters(["table", "spoon", "saucer", "Übung"]) == ["t", "s", "c", "u"]
-    assert key_letters(["apple", "bear"]) == ["p", "b"]  # a single dot is felt as a stray one
+    assert key_letters(["apple", "bear"]) == ["p", "b"]  # a finger takes a single dot for a stray one
 
 
 @given(st.integers(0, 1000), st.integers(4, 60))

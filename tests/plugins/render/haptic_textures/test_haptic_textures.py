@@ -1,4 +1,4 @@
-"""Textures as a hand meets them: exact where there is a formula, passive, sampled well, the same everywhere."""
+"""Textures: exact against formulas, passive, sampled without aliasing, the same on every machine."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -19,7 +19,7 @@ from tangible_render.haptic_textures import (
     stroke,
 )
 from tangible_render.haptic_textures.forces import STATE, along, texture_force
-from tangible_render.haptic_textures.heights import GONE, WHOLE, kept, texture_height
+from tangible_render.haptic_textures.heights import GONE, WHOLE, remaining, texture_height
 from tangible_render.haptic_textures.spectrum import line_spectrum
 from tangible_render.haptic_textures.table import DRAG, STIFFNESS, SWING
 from tangible_render.haptic_textures.waves import WAVES, waves
@@ -35,25 +35,25 @@ points = st.tuples(*[st.floats(-0.1, 0.1)] * 2)
 
 
 def heights(material: Material, xs: np.ndarray, ys: np.ndarray, vx: float = 0.0, vy: float = 0.0) -> np.ndarray:
-    """(n, 3): h, dh/dx, dh/dy at points."""
+    """Return h, dh/dx and dh/dy at points, (n, 3)."""
     table = compile_textures([material])
     return np.array([texture_height(table, 0, x, y, vx, vy, TICK_S) for x, y in zip(xs, ys, strict=True)])
 
 
 def forces(material: Material, path_m: np.ndarray, normal_n: np.ndarray | float = 1.0) -> np.ndarray:
-    """(n, 2): lateral force along a path, one tick a row, without velocity."""
+    """Return the lateral force along a path without velocity, (n, 2), a row each tick."""
     table, state = compile_textures([material]), np.zeros(STATE)
     normals = np.broadcast_to(normal_n, len(path_m))
     return np.array([texture_force(table, 0, state, *p, 0.0, 0.0, n) for p, n in zip(path_m, normals, strict=True)])
 
 
 def line(length_m: float, step_m: float) -> np.ndarray:
-    """Positions along x."""
+    """Return positions along x."""
     return np.arange(0, length_m, step_m)[:, None] * (1.0, 0.0)
 
 
 def unit(random: np.random.Generator) -> np.ndarray:
-    """A direction."""
+    """Return a random direction."""
     angle = random.uniform(0, 2 * np.pi)
     return np.array([np.cos(angle), np.sin(angle)])
 
@@ -70,19 +70,19 @@ class TestWaves:
         assert 0 < len(made.phase) <= WAVES
 
     @pytest.mark.parametrize("name", ["plain", "ice", "glass", "water"])
-    def test_what_is_smooth_has_none(self, name: str):
+    def test_smooth_material_has_no_waves(self, name: str):
         assert len(waves(library()[name]).phase) == 0
 
-    def test_a_seed_is_a_specimen(self):
+    def test_another_seed_is_another_specimen(self):
         tiles = [sample_tile(replace(PLAIN, seed=seed), 0.01, 64) for seed in (1, 1, 2)]
         assert np.array_equal(tiles[0], tiles[1])
         assert np.corrcoef(tiles[0].ravel(), tiles[2].ravel())[0, 1] < 0.3
 
-    def test_another_material_is_another_texture_without_being_told(self):
+    def test_materials_of_one_seed_have_different_textures(self):
         tiles = [sample_tile(replace(PLAIN, name=name), 0.01, 64).ravel() for name in ("sand", "snow")]
         assert abs(np.corrcoef(*tiles)[0, 1]) < 0.3
 
-    def test_a_seed_is_the_same_on_every_machine(self):
+    def test_seed_gives_the_same_waves_on_every_machine(self):
         made = waves(replace(PLAIN, name="sand", seed=3))
         assert made.phase[:3] == pytest.approx([0.5365125855, 0.9444867216, 0.2684379101], abs=1e-9)
 
@@ -93,8 +93,8 @@ class TestWaves:
             assert made.fx * along[0] + made.fy * along[1] == pytest.approx(0, abs=1e-9)
 
     @pytest.mark.parametrize(("texture", "count"), [("stochastic", 24), ("drag", 24), ("stick-slip", 8)])
-    def test_noise_is_of_one_octave_and_fills_its_fan(self, texture: str, count: int):
-        """One wave of each stratum: of a triangle of octaves with its tip at the grain, and of a fan of directions."""
+    def test_noise_fills_one_octave_and_its_fan(self, texture: str, count: int):
+        """Expect one wave in each stratum: of a triangle in octaves, its tip at the grain, and of a fan."""
         made = waves(replace(RUBBER, texture=texture, roughness_m=ROUGH_M, drag_n_s_per_m=1.0, anisotropy=0.75, seed=5))
         octaves = np.sort(np.log2(np.hypot(made.fx, made.fy) * GRAIN_M))
         below = 0.5 + 0.5 * np.sign(octaves) * (1 - (1 - 2 * np.abs(octaves)) ** 2)
@@ -103,7 +103,7 @@ class TestWaves:
         assert np.array_equal(np.floor((across_deg / 45 + 0.5) * count), np.arange(count))
         assert made.amplitude_m == pytest.approx(ROUGH_M / np.sqrt(count))
 
-    def test_a_weave_has_less_across_as_it_has_a_direction(self):
+    def test_weave_has_less_power_across_its_direction(self):
         made = waves(replace(PLAIN, texture="periodic", anisotropy=0.6, direction_deg=30.0))
         ahead, across = np.argsort(made.amplitude_m)
         assert made.amplitude_m[ahead] / made.amplitude_m[across] == pytest.approx(0.4)
@@ -121,7 +121,7 @@ class TestWaves:
         assert turned_deg[0] == pytest.approx(0, abs=1e-9)
         assert np.sort(turned_deg[1:]) == pytest.approx(np.linspace(-6, 6, 7), abs=1e-9)
 
-    def test_nothing_repeats(self):
+    def test_noise_does_not_repeat(self):
         made = waves(library()["sand"])
         lags_m = np.linspace(-32, 32, 513) * library()["sand"].grain_m
         share = made.amplitude_m**2 / np.sum(made.amplitude_m**2)
@@ -143,7 +143,7 @@ class TestHeights:
         assert slope_y == pytest.approx(-ROUGH_M * turn * np.sin(turn * at[1]), abs=1e-8)
 
     @given(points)
-    def test_a_weave_is_two(self, at: tuple[float, float]):
+    def test_weave_is_two_cosines(self, at: tuple[float, float]):
         turn = 2 * np.pi / GRAIN_M
         expected = ROUGH_M / np.sqrt(2) * (np.cos(turn * at[0]) + np.cos(turn * at[1]))
         assert heights(replace(PLAIN, texture="periodic"), *np.transpose([at]))[0, 0] == pytest.approx(
@@ -162,8 +162,8 @@ class TestHeights:
         assert found[:, 2] == pytest.approx(away / (2 * step_m), abs=1e-5 * steep)
 
     @pytest.mark.parametrize("material", WAVING, ids=lambda each: each.texture)
-    def test_a_closed_path_costs_nothing(self, material: Material):
-        """The work of -N grad h round a square, by Gauss and Legendre's rule."""
+    def test_closed_path_has_no_work(self, material: Material):
+        """Integrate -N grad h around a square by the rule of Gauss and Legendre."""
         nodes, weights = np.polynomial.legendre.leggauss(60)
         corners_m = 0.003 * np.array([(0, 0), (1, 0.2), (0.9, 1), (-0.1, 0.7), (0, 0)])
         total = 0.0
@@ -173,7 +173,7 @@ class TestHeights:
         assert abs(total) < 1e-8 * ROUGH_M
 
     @given(st.tuples(*[st.floats()] * 4))
-    def test_it_is_finite_everywhere(self, state: tuple[float, ...]):
+    def test_height_is_finite_everywhere(self, state: tuple[float, ...]):
         table = compile_textures([PLAIN])
         found = texture_height(table, 0, *state, TICK_S)
         assert np.isfinite(found).all()
@@ -182,10 +182,10 @@ class TestHeights:
             assert found == (0.0, 0.0, 0.0)
 
     @pytest.mark.parametrize("grain_m", [1e-300, 1e-12, 1e12])
-    def test_odd_grains_stay_finite(self, grain_m: float):
+    def test_extreme_grains_stay_finite(self, grain_m: float):
         assert np.isfinite(heights(replace(PLAIN, grain_m=grain_m), *np.array([[0.01], [0.02]]))).all()
 
-    def test_a_table_serves_many_materials(self):
+    def test_table_serves_many_materials(self):
         table = compile_textures([PLAIN, RUBBER, library()["water"]])
         assert texture_height(table, 1, 0.01, 0.0, 0.0, 0.0, TICK_S) == (0.0, 0.0, 0.0)
         assert texture_height(table, 0, 0.01, 0.0, 0.0, 0.0, TICK_S)[0] != 0
@@ -198,30 +198,30 @@ class TestHeights:
 
 
 class TestSampling:
-    def test_a_wave_is_whole_gone_or_between(self):
-        assert [kept(turns) for turns in (0.0, WHOLE, GONE, 0.5, 1e300)] == [1, 1, 0, 0, 0]
-        assert kept((WHOLE + GONE) / 2) == pytest.approx(0.5)
-        assert np.all(np.diff([kept(turns) for turns in np.linspace(0, 0.5, 101)]) <= 0)
+    def test_wave_is_whole_gone_or_between(self):
+        assert [remaining(turns) for turns in (0.0, WHOLE, GONE, 0.5, 1e300)] == [1, 1, 0, 0, 0]
+        assert remaining((WHOLE + GONE) / 2) == pytest.approx(0.5)
+        assert np.all(np.diff([remaining(turns) for turns in np.linspace(0, 0.5, 101)]) <= 0)
 
-    def test_it_is_whole_over_five_ticks_and_gone_over_three(self):
-        """The bounds themselves, by which the other tests go."""
+    def test_wave_is_whole_over_five_ticks_and_gone_over_three(self):
+        """Check the bounds on which the other tests rely."""
         assert (WHOLE, GONE) == (1 / 5, 1 / 3)
-        assert kept(0.25) == pytest.approx(1 - 3 * 0.375**2 + 2 * 0.375**3)
+        assert remaining(0.25) == pytest.approx(1 - 3 * 0.375**2 + 2 * 0.375**3)
 
-    def test_a_slow_hand_feels_the_texture_whole(self):
+    def test_slow_hand_gets_the_whole_texture(self):
         x = np.linspace(0, 0.02, 100)
         slow = 0.99 * WHOLE * GRAIN_M / np.sqrt(2) / TICK_S  # the shortest wave is half an octave below the grain
         assert np.array_equal(heights(PLAIN, x, 0 * x, slow), heights(PLAIN, x, 0 * x))
 
-    def test_a_hand_too_fast_for_it_feels_a_smooth_plane(self):
+    def test_fast_hand_gets_a_smooth_plane(self):
         fast = GONE * GRAIN_M * np.sqrt(2) / TICK_S
         lines = replace(PLAIN, direction_deg=90.0, anisotropy=1.0)
         assert not heights(lines, *np.random.default_rng(0).uniform(-1, 1, (2, 50)), fast).any()
 
     @pytest.mark.parametrize("speed_m_per_s", [0.02, 0.1, 0.2, 0.3, 0.5, 1.0])
     @pytest.mark.parametrize("material", [*WAVING, replace(PLAIN, grain_m=2e-4)])
-    def test_nothing_vibrates_above_a_third_of_the_rate(self, material: Material, speed_m_per_s: float):
-        """The stated bound, under a window whose side lobes are at -92 dB."""
+    def test_vibration_stays_below_a_third_of_the_rate(self, material: Material, speed_m_per_s: float):
+        """Check the bound under a window with side lobes at -92 dB."""
         count = 4096
         x = np.arange(count) * speed_m_per_s * TICK_S
         found = heights(material, x, 0.3 * x, speed_m_per_s, 0.3 * speed_m_per_s)
@@ -234,46 +234,46 @@ class TestSampling:
 
 class TestDrag:
     @given(points, st.tuples(*[st.floats(-1, 1)] * 2), st.floats(1e-3, 10))
-    def test_it_opposes_the_velocity_alone(self, at: tuple, velocity: tuple, normal_n: float):
+    def test_drag_opposes_the_velocity_only(self, at: tuple, velocity: tuple, normal_n: float):
         table = compile_textures([library()["water"]])
         found = texture_force(table, 0, np.zeros(STATE), *at, *velocity, normal_n)
         assert found == pytest.approx(-library()["water"].drag_n_s_per_m * np.array(velocity))
 
-    def test_there_is_none_in_free_air(self):
+    def test_drag_is_zero_without_contact(self):
         table = compile_textures([library()["water"]])
         assert texture_force(table, 0, np.zeros(STATE), 0.0, 0.0, 1.0, 1.0, 0.0) == (0.0, 0.0)
 
-    def test_heights_alone_have_no_force(self):
+    def test_material_of_heights_only_has_no_texture_force(self):
         assert not forces(PLAIN, line(0.01, 1e-4)).any()
 
 
 class TestStickSlip:
-    def test_it_begins_to_slide_at_the_static_friction(self):
+    def test_sliding_starts_at_the_static_friction(self):
         for normal_n in (0.5, 1.0, 3.0):
             pull_n = -forces(RUBBER, line(0.01, 1e-6), normal_n)[:, 0]
             assert pull_n.max() == pytest.approx(RUBBER.static_friction * normal_n, rel=2e-3)
 
-    def test_on_average_it_is_the_dynamic_friction(self):
+    def test_mean_force_is_the_dynamic_friction(self):
         sliding_n = -forces(RUBBER, line(0.0412, 2e-5))[600:, 0]  # forty grains
         assert sliding_n.mean() == pytest.approx(RUBBER.dynamic_friction, rel=0.005)
         assert sliding_n.min() == pytest.approx(2 * RUBBER.dynamic_friction - RUBBER.static_friction, rel=0.01)
 
     @pytest.mark.parametrize("normal_n", [0.5, 1.0, 2.0])
-    def test_it_slips_once_a_grain(self, normal_n: float):
+    def test_friction_slips_once_a_grain(self, normal_n: float):
         path_m = line(0.066, 2e-5)
         sliding_n = forces(RUBBER, path_m, normal_n)[300:, 0]
         spectrum = line_spectrum(sliding_n, len(sliding_n) * 2e-5)
         assert peak_wavelength_m(spectrum) == pytest.approx(GRAIN_M, rel=0.02)
 
-    def test_until_it_slips_it_is_a_spring(self):
+    def test_friction_is_a_spring_until_it_slips(self):
         way_m = np.append(np.linspace(0, 5e-4, 50), np.linspace(5e-4, 0, 50))
         found = forces(RUBBER, way_m[:, None] * (0.6, -0.8))
         rise = RUBBER.stiffness_n_per_m * RUBBER.static_friction / RUBBER.dynamic_friction
         assert found == pytest.approx(-rise * way_m[:, None] * (0.6, -0.8), abs=1e-12)
 
     @given(st.integers(0, 2**32), st.floats(1e-6, 1e-2), st.floats(0.01, 100))
-    def test_it_never_gives_energy(self, seed: int, step_m: float, hard_n: float):
-        """Whatever the path and the pressure, up to any moment: the force at a tick's end times its step."""
+    def test_friction_never_gives_energy(self, seed: int, step_m: float, hard_n: float):
+        """Sum, over any path and pressure, the force at a tick's end times its step."""
         random = np.random.default_rng(seed)
         path_m = np.cumsum(random.normal(0, step_m, (200, 2)), axis=0)
         found_n = forces(RUBBER, path_m, hard_n * random.random(200))
@@ -282,9 +282,9 @@ class TestStickSlip:
 
     @pytest.mark.parametrize("hard_n", [3.0, 10.0, 30.0])
     @pytest.mark.parametrize("static_friction", [0.6, 0.9])
-    def test_a_hand_that_presses_only_where_the_level_is_low_gains_nothing(self, hard_n: float, static_friction: float):
-        """It stretches the bristle at its lowest level, slides until that is at its highest, and lets the bristle go;
-        what then falls, falls under a light hand. Without a bound of how the level rises it gains 17 mJ here, or 1 J.
+    def test_hand_that_presses_at_low_levels_gains_no_energy(self, hard_n: float, static_friction: float):
+        """Stretch the bristle at its lowest level, slide until the level is highest, and let the bristle go under a
+        light hand. Without a bound on the rise of the level, the hand gains 17 mJ here, or 1 J.
         """
         sticky, light_n = replace(RUBBER, static_friction=static_friction), 0.01 * hard_n
         far_m, near_m = (sticky.dynamic_friction * n / sticky.stiffness_n_per_m for n in (hard_n, light_n))
@@ -302,10 +302,10 @@ class TestStickSlip:
         assert given_j[-1] < -1e-3
 
     @pytest.mark.parametrize("static_friction", [0.5, 0.6, 5.0])
-    def test_it_stores_no_more_than_the_hand_puts_in(self, static_friction: float):
-        """A tick from any state: k m |z|^2 / 2 grows by -F.dx at most.
+    def test_bristle_stores_no_more_than_the_hand_puts_in(self, static_friction: float):
+        """Take a tick from any state: k m |z|^2 / 2 must grow by -F.dx at most.
 
-        Every other hand is the worst that there is: it eases, and goes back by half of what the bristle shortens.
+        Every other hand is the worst case: it eases, and goes back by half of the bristle's shortening.
         """
         sticky = replace(RUBBER, static_friction=static_friction)
         table, random = compile_textures([sticky]), np.random.default_rng(4)
@@ -329,8 +329,8 @@ class TestStickSlip:
         assert static_friction == 0.5 or tight > 100  # where the bound holds the level back, it is met exactly
 
     @pytest.mark.parametrize("turns", [0.01, 0.07, 0.11, 0.15, 0.3])
-    def test_its_level_rises_over_a_grain_and_falls_at_once(self, turns: float):
-        """A sawtooth of four harmonics with Lanczos' factors, each as far as it is sampled: gone over a third."""
+    def test_level_rises_over_a_grain_and_falls_at_once(self, turns: float):
+        """Compare with a sawtooth of four harmonics with Lanczos' factors, each gone above a third of the rate."""
         table, state, normal_n = compile_textures([RUBBER]), np.zeros(STATE), 0.01
         most_m = RUBBER.dynamic_friction * normal_n / RUBBER.stiffness_n_per_m
         texture_force(table, 0, state, 0.0, 0.0, 0.0, 0.0, normal_n)
@@ -348,7 +348,7 @@ class TestStickSlip:
             assert 0 <= state[4] < 1  # turns are left out, so that a phase keeps its digits
 
     @given(st.lists(st.tuples(*[st.floats()] * 5), max_size=5))
-    def test_it_is_finite_whatever_happens(self, states: list[tuple[float, ...]]):
+    def test_friction_is_finite_for_any_state(self, states: list[tuple[float, ...]]):
         table, state = compile_textures([replace(RUBBER, drag_n_s_per_m=2.0)]), np.zeros(STATE)
         for each in states:
             assert np.isfinite(texture_force(table, 0, state, *each)).all()
@@ -369,35 +369,35 @@ class TestStickSlip:
         ],
         ids=["lifted", "under tension", "no number", "no speed", "flung away", "on another", "on none"],
     )
-    def test_each_contact_is_the_first(self, material: int, between: tuple[float, ...]):
-        """Of bristle, level and phase nothing is left, whatever ended the contact before."""
+    def test_each_contact_starts_afresh(self, material: int, between: tuple[float, ...]):
+        """Expect no trace of bristle, level and phase, however the previous contact ended."""
         table, state = compile_textures([RUBBER, replace(RUBBER, name="soft"), PLAIN]), np.zeros(STATE)
         way_m = np.append(np.linspace(0, 0.0034, 100), np.linspace(0.0034, 0.0022, 30))[:, None] * (0.6, -0.8)
 
-        def felt() -> list[tuple[float, float]]:
+        def strokes() -> list[tuple[float, float]]:
             return [texture_force(table, 0, state, *at, 0.0, 0.0, 1.0) for at in way_m]
 
-        first = felt()
+        first = strokes()
         assert texture_force(table, material, state, *between) == (0.0, 0.0)
-        assert felt() == first
+        assert strokes() == first
 
-    def test_a_great_difference_of_the_two_frictions_is_felt_as_most_of_it(self):
+    def test_large_difference_of_frictions_is_limited(self):
         sticky = replace(RUBBER, static_friction=5.0)
         pull_n = -forces(sticky, line(0.02, 2e-5))[:, 0]
         assert 0 < pull_n[500:].min() < 0.2 * sticky.dynamic_friction
         assert pull_n.max() == pytest.approx(1.9 * sticky.dynamic_friction, rel=0.03)
 
-    def test_rubbing_dissipates_what_friction_costs(self):
+    def test_rubbing_dissipates_the_work_of_friction(self):
         way_m = 0.02 * np.sin(np.linspace(0, 2 * np.pi, 8000))
         found_n = forces(RUBBER, way_m[:, None] * (1.0, 0.0))[:, 0]
         work_j = np.sum(found_n[1:] * np.diff(way_m))
         assert work_j == pytest.approx(-RUBBER.dynamic_friction * 0.08, rel=0.06)
 
-    def test_too_fast_to_follow_it_is_plain_friction(self):
+    def test_fast_stroke_has_plain_friction(self):
         found_n = forces(RUBBER, line(0.2, GONE * GRAIN_M))[20:, 0]
         assert found_n == pytest.approx(-RUBBER.dynamic_friction, rel=1e-9)
 
-    def test_where_two_materials_meet_the_contact_begins_anew(self):
+    def test_contact_starts_afresh_on_another_material(self):
         table, state = (
             compile_textures([RUBBER, replace(RUBBER, name="hard", stiffness_n_per_m=5000.0)]),
             np.zeros(STATE),
@@ -407,7 +407,7 @@ class TestStickSlip:
         assert texture_force(table, 1, state, 0.0006, 0.0, 0.0, 0.0, 1.0) == (0.0, 0.0)
 
     @pytest.mark.parametrize("lifted", [(0.0, 0.0, 0.0, 0.0, 0.0), (np.nan, 0.0, 0.0, 0.0, 1.0), (0, 0, 0, 0, np.inf)])
-    def test_a_hand_that_lifts_begins_anew(self, lifted: tuple[float, ...]):
+    def test_contact_starts_afresh_after_lifting(self, lifted: tuple[float, ...]):
         table, state = compile_textures([RUBBER]), np.zeros(STATE)
         for x in (0.0, 0.0005):
             texture_force(table, 0, state, x, 0.0, 0.0, 0.0, 1.0)
@@ -416,7 +416,7 @@ class TestStickSlip:
 
 
 class TestTile:
-    def test_it_is_the_height_at_the_centres_of_its_pixels(self):
+    def test_tile_has_the_heights_at_its_pixel_centres(self):
         for material in WAVING:
             tile = sample_tile(material, 0.004, 40)
             at_m = (np.arange(40) + 0.5) * 1e-4 - 0.002
@@ -424,21 +424,21 @@ class TestTile:
             expected = heights(material, x.ravel(), y.ravel())[:, 0].reshape(40, 40)
             assert tile == pytest.approx(expected, abs=1e-6 * ROUGH_M)
 
-    def test_another_resolution_is_the_same_texture(self):
+    def test_tile_of_another_resolution_shows_the_same_texture(self):
         coarse, fine = sample_tile(PLAIN, 0.006, 40), sample_tile(PLAIN, 0.006, 120)
         assert fine[1::3, 1::3] == pytest.approx(coarse, abs=1e-6 * ROUGH_M)
 
     @pytest.mark.parametrize("direction_deg", [0.0, 90.0])
-    def test_what_a_picture_cannot_show_is_left_out(self, direction_deg: float):
+    def test_tile_leaves_out_undersampled_waves(self, direction_deg: float):
         lines = replace(PLAIN, texture="periodic", anisotropy=1.0, direction_deg=direction_deg)
         assert not sample_tile(lines, 0.1, 299).any()
         assert sample_tile(lines, 0.1, 301).any()
 
-    def test_one_pixel(self):
+    def test_tile_of_one_pixel(self):
         assert sample_tile(library()["ice"], 0.01, 1).tolist() == [[0.0]]
 
     @pytest.mark.parametrize(("width_m", "pixels"), [(0.0, 8), (np.nan, 8), (np.inf, 8), (-1.0, 8), (0.01, 0)])
-    def test_what_is_no_tile(self, width_m: float, pixels: int):
+    def test_tile_of_wrong_size_is_refused(self, width_m: float, pixels: int):
         with pytest.raises(MaterialError, match="a tile needs a positive width"):
             sample_tile(PLAIN, width_m, pixels)
 
@@ -446,19 +446,19 @@ class TestTile:
 class TestSpectrum:
     @pytest.mark.parametrize("seed", [0, 1, 2])
     @pytest.mark.parametrize("material", ROUGH, ids=by_name)
-    def test_its_peak_is_the_stated_wavelength(self, material: Material, seed: int):
+    def test_spectrum_peaks_at_the_stated_wavelength(self, material: Material, seed: int):
         width_m = 96 * material.grain_m
         tile = sample_tile(replace(material, seed=seed), width_m, 480)
         assert peak_wavelength_m(radial_spectrum(tile, width_m)) == pytest.approx(material.grain_m, rel=0.05)
 
-    def test_a_wave_has_one_wavelength(self):
+    def test_spectrum_of_a_wave_has_one_peak(self):
         way_m = np.arange(1000) * 1e-4
         wavelength_m, power = spectrum = line_spectrum(np.cos(2 * np.pi * way_m / 0.005), 0.1)
         assert peak_wavelength_m(spectrum) == pytest.approx(0.005, rel=0.02)
         assert power.sum() == pytest.approx(1)
         assert np.all(np.diff(wavelength_m) < 0)
 
-    def test_a_line_is_blurred_over_an_eighth_of_an_octave(self):
+    def test_spectrum_of_a_line_is_blurred_over_an_eighth_of_an_octave(self):
         for spectrum in (
             line_spectrum(np.cos(2 * np.pi * np.arange(4000) / 10), 0.1),
             radial_spectrum(np.cos(2 * np.pi * np.arange(512) / 8) * np.ones((512, 1)), 0.1),
@@ -467,20 +467,20 @@ class TestSpectrum:
             middle = octaves @ power
             assert np.sqrt((octaves - middle) ** 2 @ power) == pytest.approx(1 / 8, rel=0.05)
 
-    def test_a_plane_has_none(self):
+    def test_spectrum_of_a_plane_is_zero(self):
         spectrum = radial_spectrum(np.zeros((16, 16), np.float32), 0.01)
         assert not spectrum[1].any()
         assert np.isnan(peak_wavelength_m(spectrum))
 
 
 class TestStroke:
-    def test_ice_is_its_friction(self):
+    def test_stroke_over_ice_is_its_friction(self):
         felt = stroke(library()["ice"], speed_m_per_s=0.05, normal_n=2.0, length_m=0.01)
         assert felt.way_m == pytest.approx(np.arange(200) * 5e-5)
         assert felt.force_n[1:] == pytest.approx(-0.06)
         assert felt.force_n[0] == 0
 
-    def test_lines_push_where_they_rise(self):
+    def test_stroke_over_lines_pushes_back_where_they_rise(self):
         lines = replace(PLAIN, texture="periodic", anisotropy=1.0, direction_deg=90.0)
         felt = stroke(lines, 0.02)
         turn = 2 * np.pi / GRAIN_M
@@ -489,8 +489,8 @@ class TestStroke:
         )
 
     @pytest.mark.parametrize("speed_m_per_s", [0.02, 0.1])
-    def test_in_any_direction_at_any_rate(self, speed_m_per_s: float):
-        """Lines that run along x, stroked away from the user at 2 kHz: a wave of 1 mm at 100 mm/s spans 20 ticks."""
+    def test_stroke_takes_any_direction_and_rate(self, speed_m_per_s: float):
+        """Stroke lines along x away from the user at 2 kHz: a wave of 1 mm at 100 mm/s spans 20 ticks."""
         lines = replace(PLAIN, texture="periodic", anisotropy=1.0)
         felt = stroke(lines, speed_m_per_s, 2.0, 0.005, 0.0005, 90.0)
         turn = 2 * np.pi / GRAIN_M
@@ -502,16 +502,16 @@ class TestStroke:
         assert not np.any(stroke(lines, speed_m_per_s, 2.0, 0.005, 0.0005, 0.0).height_m - ROUGH_M)
 
     @pytest.mark.parametrize("period_s", [1e-3, 1e-4])
-    def test_a_stroke_is_felt_at_its_own_rate(self, period_s: float):
+    def test_stroke_is_sampled_at_its_own_rate(self, period_s: float):
         water = library()["water"]
         felt = stroke(water, 0.1, period_s=period_s)
         friction_n = 0.1 * water.drag_n_s_per_m + water.dynamic_friction
         assert felt.force_n[1:] == pytest.approx(-friction_n)
 
-    def test_a_texture_that_brings_its_friction_is_not_given_it_twice(self):
+    def test_stroke_does_not_add_friction_twice(self):
         assert stroke(RUBBER, 0.02).force_n.min() == pytest.approx(-RUBBER.static_friction, rel=0.02)
 
-    def test_along_is_tick_by_tick(self):
+    def test_along_equals_tick_by_tick(self):
         table = compile_textures([library()["skin"]])
         path_m = np.cumsum(np.random.default_rng(0).normal(0, 1e-4, (50, 2)), axis=0)
         felt, state = np.empty((50, 5)), np.zeros(STATE)
@@ -524,6 +524,6 @@ class TestStroke:
     @pytest.mark.parametrize(
         "wrong", [{"speed_m_per_s": 0.0}, {"normal_n": -1.0}, {"length_m": np.nan}, {"direction_deg": np.inf}]
     )
-    def test_what_is_no_stroke(self, wrong: dict[str, float]):
+    def test_wrong_stroke_is_refused(self, wrong: dict[str, float]):
         with pytest.raises(MaterialError, match="a stroke needs positive numbers"):
             stroke(PLAIN, **wrong)

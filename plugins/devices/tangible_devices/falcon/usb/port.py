@@ -60,7 +60,7 @@ class Port:
         with usb_errors(self.place, "reading its serial number"):
             try:
                 return usb.util.get_string(self._device, self._device.iSerialNumber) or ""
-            except ValueError:  # how pyusb says that there are no strings
+            except ValueError:  # pyusb's error if there are no strings
                 return ""
 
     def purge(self) -> None:
@@ -137,7 +137,7 @@ def serial_of(device: Any) -> str | None:
     with usb_errors(place_of(device), "reading its serial number"):
         try:
             return device.serial_number
-        except ValueError as error:  # how pyusb says that no string at all can be read
+        except ValueError as error:  # pyusb's error if no string at all can be read
             raise error_of_cause(place_of(device), "reading its serial number", NO_PERMISSION) from error
         finally:
             usb.util.dispose_resources(device)

@@ -183,9 +183,9 @@ def _distance_to_centres(
 
 def _sides(places: Int32[np.ndarray, "r c"], rest: Bool[np.ndarray, "r c"], count: int) -> Int64[np.ndarray, " n"]:
     """Return the number of sides on which each place is connected with the rest."""
-    beside = np.where(rest, cv2.dilate(places.astype(np.float32), np.ones((3, 3), np.uint8)), 0).astype(np.int32)
-    _, sides = cv2.connectedComponents((beside > 0).astype(np.uint8), connectivity=8)
-    pairs = np.unique(np.stack([sides[beside > 0], beside[beside > 0]]), axis=1)
+    adjacent = np.where(rest, cv2.dilate(places.astype(np.float32), np.ones((3, 3), np.uint8)), 0).astype(np.int32)
+    _, sides = cv2.connectedComponents((adjacent > 0).astype(np.uint8), connectivity=8)
+    pairs = np.unique(np.stack([sides[adjacent > 0], adjacent[adjacent > 0]]), axis=1)
     return np.bincount(np.asarray(pairs[1], np.int64), minlength=count)
 
 

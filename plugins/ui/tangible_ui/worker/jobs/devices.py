@@ -7,26 +7,26 @@ from typing import Any
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.devices import examine_device, installed_devices
 
-from ..state import Bench
+from ..state import WorkerState
 from .table import job
 
 
 @job(quick=True)
-def devices(bench: Bench) -> list[dict[str, Any]]:
-    """Every installed device: what it is, its units that are connected, and why one cannot be used."""
-    return [{**asdict(each), "usable": each.usable} for each in installed_devices(bench.registry)]
+def devices(state: WorkerState) -> list[dict[str, Any]]:
+    """List the installed devices: facts, connected units, and why one cannot be used."""
+    return [{**asdict(each), "usable": each.usable} for each in installed_devices(state.registry)]
 
 
 @job(quick=True)
-def examine(bench: Bench, name: str) -> list[dict[str, Any]]:
-    """What keeps a device from working, and the cure."""
-    return [asdict(each) for each in examine_device(bench.registry, name)]
+def examine(state: WorkerState, name: str) -> list[dict[str, Any]]:
+    """Return what keeps a device from working, and the cure."""
+    return [asdict(each) for each in examine_device(state.registry, name)]
 
 
 @job(quick=True)
-def about_device(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
-    """What feeling this document with its device means. Raises: ConfigError, also where it names no device."""
-    config = parse_config(text, path, bench.registry, sets)
+def about_device(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
+    """Describe the document's device: motor, greatest force, relief. Raises: ConfigError, also without a device."""
+    config = parse_config(text, path, state.registry, sets)
     if config.device is None or config.felt_device is None:
         raise config.missing("device")
     spec, limit_n = config.device.method.spec(), config.safety.max_force_n
@@ -39,9 +39,9 @@ def about_device(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[s
 
 
 @job(quick=True)
-def reach(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
-    """The device that the document names, and its workspace; none where it names none. Raises: ConfigError."""
-    device = parse_config(text, path, bench.registry, sets).device
+def reach(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
+    """Return the document's device and its workspace; None without a device. Raises: ConfigError."""
+    device = parse_config(text, path, state.registry, sets).device
     if device is None:
         return {"device": "", "workspace_m": None}
     return {"device": device.name, "workspace_m": list(device.method.spec().workspace_m)}

@@ -16,25 +16,25 @@ from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.config.schema import json_schema
 from tangible_core.pipeline.starter import MAPS, PICTURES, VIDEOS, are_pictures, starter
 from tangible_core.scene.scene_files import BUILTINS
-from tangible_core.session.recording_files import SUFFIXES
+from tangible_core.session.recording.files import SUFFIXES
 
-from ..state import Bench
+from ..state import WorkerState
 from .table import job
 
 
 @job(quick=True)
-def check(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
-    """What a pipeline file says, alone and with every default filled in, or what is wrong with it."""
+def check(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
+    """Return what a pipeline file says, alone and with every default filled in, or its errors."""
     values, complaints = None, list[Complaint]()
     try:
-        values = bench.config_of(text, path, sets).as_data()
+        values = state.config_of(text, path, sets).as_data()
     except ConfigError as error:
         complaints = list(error.complaints)
     return {
         "text": text,
         "path": str(path),
         "digest": digest_of(text),
-        "said": _said(text, path),
+        "said": _parse(text, path),
         "values": values,
         "complaints": [each._asdict() for each in complaints],
     }
@@ -42,7 +42,7 @@ def check(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any
 
 @job(quick=True)
 def change(
-    bench: Bench,
+    state: WorkerState,
     text: str,
     path: Path,
     sets: list[str],
@@ -50,40 +50,40 @@ def change(
     written: dict[str, str],
     removed: list[str],
 ) -> dict[str, Any]:
-    """A text with some keys changed, and `check` of it.
+    """Change keys of a text, and return `check` of the result.
 
-    changes: values by key, as `render.stiffness_n_per_m`. written: the same, each value in YAML. removed: keys to go.
-    Raises: ConfigError if the text is no YAML, or a key leads nowhere; nothing is checked but that it is YAML.
+    changes: values by key, as `render.stiffness_n_per_m`. written: the same, each value in YAML. removed: keys.
+    Raises: ConfigError if the text is not YAML, or a key leads nowhere; nothing else is checked.
     """
     loaded = {key: _value(key, value) for key, value in written.items()}
     gone = dict.fromkeys(removed, REMOVE)
-    return check(bench, edit_text(text, path, {**gone, **changes, **loaded}), path, sets)
+    return check(state, edit_text(text, path, {**gone, **changes, **loaded}), path, sets)
 
 
 @job(quick=True)
-def overridden(bench: Bench, text: str, path: Path, sets: list[str]) -> str:
-    """The text with `key.key=value`, each as `--set` takes it. Raises: ConfigError."""
+def overridden(state: WorkerState, text: str, path: Path, sets: list[str]) -> str:
+    """Return the text with `key.key=value` changes, each as `--set` takes it. Raises: ConfigError."""
     return with_overrides(text, path, sets)
 
 
 @job(quick=True)
-def schema(bench: Bench) -> dict[str, Any]:
-    """The JSON Schema of all methods that are installed."""
-    return json_schema(bench.registry, None)
+def schema(state: WorkerState) -> dict[str, Any]:
+    """Return the JSON Schema of all installed methods."""
+    return json_schema(state.registry, None)
 
 
 @job(quick=True)
-def library(bench: Bench, text: str, path: Path, sets: list[str]) -> list[dict[str, Any]]:
-    """The materials that a document can name: figures, and where they come from. Raises: ConfigError."""
-    return [asdict(each) for each in load_library(bench.config_of(text, path, sets).materials.library).values()]
+def library(state: WorkerState, text: str, path: Path, sets: list[str]) -> list[dict[str, Any]]:
+    """List the materials that a document can name, with figures and sources. Raises: ConfigError."""
+    return [asdict(each) for each in load_library(state.config_of(text, path, sets).materials.library).values()]
 
 
 def digest_of(text: str) -> str:
-    """What two events say that are of the same text."""
+    """Return the digest by which events name a text."""
     return sha256(text.encode()).hexdigest()[:16]
 
 
-def _said(text: str, path: Path) -> dict[str, Any] | None:
+def _parse(text: str, path: Path) -> dict[str, Any] | None:
     try:
         return read_values(text, path)
     except ConfigError:
@@ -91,7 +91,7 @@ def _said(text: str, path: Path) -> dict[str, Any] | None:
 
 
 def _value(key: str, written: str) -> Any:
-    """Raises: ConfigError for what is no YAML."""
+    """Parse a value. Raises: ConfigError if it is not YAML."""
     try:
         return plain(parse_value(written))
     except YAMLError as error:
@@ -108,14 +108,14 @@ KINDS = {
     **dict.fromkeys(MAPS, "heights"),
     **dict.fromkeys(PIPELINES, "pipeline"),
 }
-"""What a file is taken for, by the end of its name; whether an .npz is a recording is looked up."""
+"""Kind of a file by its ending; an .npz file is read to tell if it is a recording."""
 MOST = 2000
-"""Entries that are shown of a folder."""
+"""Maximum number of entries that are listed of a folder."""
 
 
 @job(quick=True)
-def folder(bench: Bench, path: Path) -> dict[str, Any]:
-    """Folders, and files that can be opened, by name. Raises: ConfigError if it is no folder."""
+def folder(state: WorkerState, path: Path) -> dict[str, Any]:
+    """List folders, and files that can be opened, by name. Raises: ConfigError if it is not a folder."""
     try:
         path = path.expanduser().absolute()
         found = [(each.name, "folder" if each.is_dir() else KINDS.get(each.suffix.lower())) for each in path.iterdir()]
@@ -131,10 +131,10 @@ def folder(bench: Bench, path: Path) -> dict[str, Any]:
 
 
 @job(quick=True)
-def begin(bench: Bench, files: list[Path]) -> dict[str, Any]:
-    """A pipeline file's text, or that of a new one for pictures, and where it stands; or the path of a recording.
+def begin(state: WorkerState, files: list[Path]) -> dict[str, Any]:
+    """Return the text and path of a pipeline file, or of a new one for pictures; or the path of a recording.
 
-    Of a pipeline file and its pictures, the file counts. Raises: ConfigError for what cannot be opened together.
+    Of a pipeline file and its pictures, the file counts. Raises: ConfigError for files that cannot be opened together.
     """
     pipelines = [each for each in files if each.suffix.lower() in PIPELINES]
     if len(pipelines) > 1:
@@ -147,7 +147,7 @@ def begin(bench: Bench, files: list[Path]) -> dict[str, Any]:
     if not are_pictures(files):
         odd = next(each for each in files if not are_pictures([each]))
         raise ConfigError(
-            f"{odd.name}: is no picture, video, height map (.npy, .npz, .pfm), recording (.nc, .npz, .csv) or "
+            f"{odd.name}: is not a picture, video, height map (.npy, .npz, .pfm), recording (.nc, .npz, .csv) or "
             "pipeline file (.yaml); if it is one, give it the right ending"
         )
     path = Path.cwd() / f"{files[0].stem}.yaml"
@@ -168,25 +168,25 @@ def _is_recording(path: Path) -> bool:
 
 
 @job(quick=True)
-def examples(bench: Bench) -> list[str]:
-    """Scenes that are built in."""
+def examples(state: WorkerState) -> list[str]:
+    """List the built-in scenes."""
     return list(BUILTINS)
 
 
 @job(quick=True)
-def save(bench: Bench, text: str, path: Path, out: Path) -> None:
-    """Write a document that stood at `path` to another place; its relative paths lead to the same files from there.
+def save(state: WorkerState, text: str, path: Path, out: Path) -> None:
+    """Write the document of `path` to another place; its relative paths lead to the same files from there.
 
-    Raises: OutputError if it cannot be written; ConfigError for what is wrong with it.
+    Raises: OutputError if it cannot be written; ConfigError if it is wrong.
     """
-    config = parse_config(text, path, bench.registry)
+    config = parse_config(text, path, state.registry)
     write_text(out, relocate_text(text, path, config, out))
 
 
 @job(quick=True)
-def exchange(bench: Bench, text: str, path: Path) -> str:
-    """The text with left and right in each other's place. Raises: ConfigError if they are no pair."""
+def exchange(state: WorkerState, text: str, path: Path) -> str:
+    """Return the text with left and right exchanged. Raises: ConfigError if the scene is not a pair."""
     scene = read_values(text, path).get("scene")
     if not (isinstance(scene, dict) and {"left", "right"} <= scene.keys()):
-        raise ConfigError("the scene is no pair of pictures, left and right")
+        raise ConfigError("the scene is not a pair of pictures, left and right")
     return edit_text(text, path, {"scene.left": scene["right"], "scene.right": scene["left"]})

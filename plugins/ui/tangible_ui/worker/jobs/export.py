@@ -1,4 +1,4 @@
-"""Jobs that write files for others into a folder that pages fetch from, and pack them."""
+"""Jobs that write exported files into a folder that pages fetch from, and pack them."""
 
 import json
 import re
@@ -15,45 +15,51 @@ from tangible_core.errors import ConfigError
 from tangible_core.pipeline.output.export_folder import read_list
 from tangible_core.pipeline.output.exporting import Exported
 
-from ..state import Bench
+from ..state import WorkerState
 from .document import digest_of
-from .making import telling
+from .making import stage_reporter
 from .table import job
 
 FOLDER = "export-"
 NAMED = re.compile(rf"{FOLDER}[0-9a-f]{{16}}")
 KEPT = 2
-"""Folders that stay: tabs may still fetch from the one before."""
+"""Folders that are kept: tabs may still fetch from the one before."""
 
 
 @job()
-def export(bench: Bench, number: int, text: str, path: Path, sets: list[str], exports: list[Any]) -> dict[str, Any]:
-    """Have exporters write their files, into a folder that pages fetch from; what became of each.
+def export(
+    state: WorkerState, number: int, text: str, path: Path, sets: list[str], exports: list[Any]
+) -> dict[str, Any]:
+    """Run exporters into a folder that pages fetch from; return their outcomes.
 
-    exports: as `export:` of a pipeline file has them. Raises: ConfigError for what none can be; TangibleError as
+    exports: as `export:` of a pipeline file has them. Raises: ConfigError for invalid ones; TangibleError as
     `Pipeline.export`.
     """
     begun_s = perf_counter()
-    pipeline = bench.pipeline_of(text, path, [*sets, f"export={json.dumps(exports)}"])
-    at = bench.folder / f"{FOLDER}{secrets.token_hex(8)}"
+    pipeline = state.pipeline_of(text, path, [*sets, f"export={json.dumps(exports)}"])
+    at = state.folder / f"{FOLDER}{secrets.token_hex(8)}"
     try:
-        with bench.work(pipeline, number) as work:
-            bench.tell("making", want="export", digest=digest_of(text))
-            _sweep(bench.folder)
-            done = pipeline.export(at, None, telling(bench, work), work.stop)
-        found = {"digest": digest_of(text), "folder": at.name, "exports": [_told(each) for each in done.exports]}
+        with state.work(pipeline, number) as work:
+            state.tell("making", want="export", digest=digest_of(text))
+            _sweep(state.folder)
+            done = pipeline.export(at, None, stage_reporter(state, work), work.stop)
+        found = {
+            "digest": digest_of(text),
+            "folder": at.name,
+            "exports": [_outcome_data(each) for each in done.exports],
+        }
     except BaseException:
         shutil.rmtree(at, ignore_errors=True)
         raise
-    bench.tell("exported", **found)
-    bench.tell("made", want="export", digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
+    state.tell("exported", **found)
+    state.tell("made", want="export", digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
     return found
 
 
 @job(quick=True)
-def export_zip(bench: Bench, folder: str) -> str:
-    """Pack what was exported into that folder into one file beside it; its name. Raises: ConfigError if it is gone."""
-    at = bench.folder / folder
+def export_zip(state: WorkerState, folder: str) -> str:
+    """Pack the exported files of a folder into one, and return its name. Raises: ConfigError if they are gone."""
+    at = state.folder / folder
     names = sorted(read_list(at)) if NAMED.fullmatch(folder) else []
     if not names:
         raise ConfigError("these files are not there any more; export them again")
@@ -70,7 +76,7 @@ def export_zip(bench: Bench, folder: str) -> str:
     return whole.name
 
 
-def _told(each: Exported) -> dict[str, Any]:
+def _outcome_data(each: Exported) -> dict[str, Any]:
     said = asdict(each.outcome)
     return {
         "name": each.name,
@@ -82,7 +88,7 @@ def _told(each: Exported) -> dict[str, Any]:
 
 
 def _sweep(folder: Path) -> None:
-    """Files that were exported long ago go; so do those of a process that was killed."""
+    """Remove folders of files that were exported long ago, also by a killed process."""
     found: list[tuple[int, Path]] = []
     for each in folder.glob(f"{FOLDER}*"):
         with suppress(OSError):  # another thread swept it

@@ -1,4 +1,4 @@
-"""Jobs that prepare what the force loop takes: a beacon, and several force laws on one surface."""
+"""Jobs that prepare input of the force loop: a beacon, and several force laws on one surface."""
 
 import json
 from pathlib import Path
@@ -10,16 +10,16 @@ from tangible_core.files.yaml.source import parse_value, plain
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.servo import beacon_to, parcel
 
-from ..loop_input import felt
-from ..state import Bench
+from ..loop_input import loop_input_of
+from ..state import WorkerState
 from ..view.surface_view import at_hand
 from .table import job
 
 
 @job(quick=True)
-def beacon(bench: Bench, text: str, path: Path, sets: list[str], part: int) -> dict[str, Any]:
-    """A beacon to a part of the document's surface, by its number, in a parcel. Raises: ConfigError without one."""
-    surface: HapticSurface | None = at_hand(bench.pipeline_of(text, path, sets), "surface")
+def beacon(state: WorkerState, text: str, path: Path, sets: list[str], part: int) -> dict[str, Any]:
+    """Pack a beacon to a part of the document's surface, by number. Raises: ConfigError without a surface."""
+    surface: HapticSurface | None = at_hand(state.pipeline_of(text, path, sets), "surface")
     if surface is None:
         raise ConfigError("the surface of this document is not made yet; make it, and a beacon leads to its parts")
     made = beacon_to(surface, part)
@@ -27,14 +27,14 @@ def beacon(bench: Bench, text: str, path: Path, sets: list[str], part: int) -> d
 
 
 @job(quick=True)
-def law_names(bench: Bench) -> list[str]:
-    """The force laws that are installed."""
-    return sorted(bench.registry.names("render"))
+def law_names(state: WorkerState) -> list[str]:
+    """List the installed force laws."""
+    return sorted(state.registry.names("render"))
 
 
 @job(quick=True)
-def law_block(bench: Bench, use: str, options: str) -> dict[str, Any]:
-    """A law as `render:` has it, its options written in YAML, such as {stiffness_n_per_m: 500}. Raises: ConfigError."""
+def law_block(state: WorkerState, use: str, options: str) -> dict[str, Any]:
+    """Return a law as `render:` has it. options: YAML, such as {stiffness_n_per_m: 500}. Raises: ConfigError."""
     try:
         said = plain(parse_value(options)) if options.strip() else {}
     except Exception as error:
@@ -45,13 +45,15 @@ def law_block(bench: Bench, use: str, options: str) -> dict[str, Any]:
 
 
 @job()
-def laws(bench: Bench, text: str, path: Path, sets: list[str], others: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """What the force loop needs of the document's law, and then of others, blocks as `render:` has them.
+def laws(
+    state: WorkerState, text: str, path: Path, sets: list[str], others: list[dict[str, Any]]
+) -> list[dict[str, Any]]:
+    """Return the loop's input for the document's law, then for others, which are blocks as `render:` has them.
 
     Raises: ConfigError if the document has no law, or a block is wrong; TangibleError as `Pipeline.make`.
     """
-    first = bench.pipeline_of(text, path, sets)
+    first = state.pipeline_of(text, path, sets)
     if first.config.render is None:
         raise first.config.missing("render")
-    with_others = [bench.config_of(text, path, [*sets, f"render={json.dumps(each)}"]) for each in others]
-    return [felt(first), *(felt(Pipeline.from_config(config, like=first)) for config in with_others)]
+    with_others = [state.config_of(text, path, [*sets, f"render={json.dumps(each)}"]) for each in others]
+    return [loop_input_of(first), *(loop_input_of(Pipeline.from_config(config, like=first)) for config in with_others)]

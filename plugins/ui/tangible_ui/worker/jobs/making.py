@@ -1,4 +1,4 @@
-"""Jobs that make products, and say on the way what there is to see; and what making would do."""
+"""Jobs that make products and show them on the way; and the plan of making."""
 
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -13,29 +13,29 @@ from tangible_core.errors import TangibleError
 from tangible_core.pipeline.engine.stage import Progress, StageEvent
 from tangible_core.pipeline.pipeline import Pipeline
 
-from ..loop_input import felt
-from ..state import Bench, Work
+from ..loop_input import loop_input_of
+from ..state import Work, WorkerState
 from ..view.files import show
-from ..view.surface_view import Seen, see
+from ..view.surface_view import SurfaceView, view_of
 from .document import digest_of
-from .surface import described
+from .surface import description_data
 from .table import job
 
 SLOW = ("disparity", "segments")
-"""Products that take seconds: who edits says when they are made."""
+"""Products that take seconds: they are not made again at every edit, but on request."""
 
 
 @job(quick=True)
-def plan(bench: Bench, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
-    """What making a product would do, and why; what stands in the way where it cannot."""
+def plan(state: WorkerState, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any]:
+    """Return the plan of making a product with its reasons; the refusal if it cannot be made."""
     try:
-        return planned(bench.pipeline_of(text, path, sets), text, want)
+        return plan_data(state.pipeline_of(text, path, sets), text, want)
     except TangibleError as error:
         return {"digest": digest_of(text), "want": want, "steps": [], "slow": [], "refusal": str(error)}
 
 
-def planned(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
-    """The plan as pages have it. Raises: as `Pipeline.plan`."""
+def plan_data(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
+    """Return the plan as pages have it. Raises: as `Pipeline.plan`."""
     found = pipeline.plan(cast(Any, want))
     slow = [each.product for each in found.steps if each.outcome == "ran" and each.product in SLOW]
     steps = [asdict(each) for each in _all_steps(pipeline, found)]
@@ -43,7 +43,7 @@ def planned(pipeline: Pipeline, text: str, want: str) -> dict[str, Any]:
 
 
 def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
-    """Those of the plan, and the products that are within one which is kept, in the order of making."""
+    """Return the plan's steps, and the products inside a cached one, in the order of making."""
     steps = {each.product: each for each in found.steps}
     if not found.refusal:
         needed = pipeline.engine.inputs_of(found.want)
@@ -55,62 +55,62 @@ def _all_steps(pipeline: Pipeline, found: Plan) -> list[Outcome]:
 
 
 @job()
-def make(bench: Bench, number: int, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:
-    """Make a product; pages hear of every stage, and of the surface as soon as it can be drawn.
+def make(state: WorkerState, number: int, text: str, path: Path, sets: list[str], want: str) -> dict[str, Any] | None:
+    """Make a product; send pages every stage, and the surface as soon as it can be drawn.
 
-    Returns: what the force loop needs, where a touch was wanted.
+    Returns: the loop's input, if a touch was wanted.
     """
     begun_s = perf_counter()
-    pipeline = bench.pipeline_of(text, path, sets)
-    with bench.work(pipeline, number) as work:
-        bench.tell("making", want=want, digest=digest_of(text))
-        bench.tell("plan", **planned(pipeline, text, want))
-        heard = telling(bench, work)
+    pipeline = state.pipeline_of(text, path, sets)
+    with state.work(pipeline, number) as work:
+        state.tell("making", want=want, digest=digest_of(text))
+        state.tell("plan", **plan_data(pipeline, text, want))
+        report = stage_reporter(state, work)
         product = TO_SEE.get(want, want)
-        pipeline.make(product, heard, work.stop)
-        _show(bench, pipeline, product)
+        pipeline.make(product, report, work.stop)
+        _show(state, pipeline, product)
         work.worth = True
-        made = felt(pipeline, heard, work.stop) if want == "touch" else None
-    bench.tell("made", want=want, digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
+        made = loop_input_of(pipeline, report, work.stop) if want == "touch" else None
+    state.tell("made", want=want, digest=digest_of(text), outcome="made", why="", seconds=perf_counter() - begun_s)
     return made
 
 
-def telling(bench: Bench, work: Work) -> Progress:
-    """Hears of stages, and tells pages."""
+def stage_reporter(state: WorkerState, work: Work) -> Progress:
+    """Return a function that sends the events of stages to pages."""
 
-    def heard(stage: StageEvent) -> None:
+    def report(stage: StageEvent) -> None:
         done = {} if stage.outcome is None else asdict(stage.outcome)
-        bench.tell("stage", product=stage.product, method=stage.method, done=done)
-        work.heard(stage)
+        state.tell("stage", product=stage.product, method=stage.method, done=done)
+        work.follow(stage)
 
-    return heard
+    return report
 
 
 @job(quick=True)
-def give_way(bench: Bench, number: int, text: str, path: Path, sets: list[str], want: str) -> bool:
-    """What is being made ends for this newer document; whether at once, as it needs nothing of what is at work.
+def give_way(state: WorkerState, number: int, text: str, path: Path, sets: list[str], want: str) -> bool:
+    """End the running job for this newer document; return True if that was at once, as no stage at work is needed.
 
-    Raises: ConfigError if that makes no sense; then what is being made goes on.
+    Raises: ConfigError if the document is wrong; then the running job goes on.
     """
-    return bench.give_way(number, bench.pipeline_of(text, path, sets), want)
+    return state.give_way(number, state.pipeline_of(text, path, sets), want)
 
 
 TO_SEE = {"touch": "surface", "disparity": "relief", "segments": "materials"}
-"""What is seen of a product, where that is another one."""
+"""The product that is shown for a product, if that is another one."""
 
 
-def _show(bench: Bench, pipeline: Pipeline, product: str) -> None:
-    """Pages draw it while the touch is made."""
-    if (seen := see(pipeline, product)).digest != bench.shown:
-        bench.tell("scene", **show(seen, bench.folder))
-        bench.shown = seen.digest
-        bench.described = pipeline, seen
-        bench.tell("described", **described(pipeline, seen))
-    bench.tell("materials", segments=_segments(pipeline, seen))
+def _show(state: WorkerState, pipeline: Pipeline, product: str) -> None:
+    """Send pages the surface, which they draw while the touch is made."""
+    if (seen := view_of(pipeline, product)).digest != state.shown:
+        state.tell("scene", **show(seen, state.folder))
+        state.shown = seen.digest
+        state.described = pipeline, seen
+        state.tell("described", **description_data(pipeline, seen))
+    state.tell("materials", segments=_segments(pipeline, seen))
 
 
-def _segments(pipeline: Pipeline, seen: Seen) -> list[dict[str, Any]]:
-    """Each segment with its material, why it has it, its share of the area, and its name where it is a part."""
+def _segments(pipeline: Pipeline, seen: SurfaceView) -> list[dict[str, Any]]:
+    """Return for each segment its material, the reason, its share of the area, and its name if it is a part."""
     if seen.labels is None or not seen.materials:
         return []
     chosen = pipeline.make("materials")

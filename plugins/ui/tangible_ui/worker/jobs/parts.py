@@ -1,4 +1,4 @@
-"""Jobs of the parts editor: open it, propose a part, follow edges, feel heights, save what was drawn."""
+"""Jobs of the parts editor: open it, propose a part, follow edges, feel heights, save the parts."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -19,40 +19,49 @@ from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.notes import silently
 
 from ..loop_input import parcel_of
-from ..parts.heights import Kept, checked, coarse, kept_of, known_heights, materials_of, of_parts
-from ..parts.label_files import as_png, unpacked
-from ..parts.opening import FOLDER, config_heights, config_parts, digest, edited_of, leave_files, listed, opened_of
-from ..parts.outlines import snapped
-from ..parts.proposals import Kind, as_points, proposed, runs
+from ..parts.heights import Kept, coarse, kept_of, known_heights, materials_of, of_parts, validate
+from ..parts.label_files import as_png, unpack
+from ..parts.opening import (
+    FOLDER,
+    config_heights,
+    config_parts,
+    digest,
+    edited_of,
+    leave_files,
+    opened_of,
+    part_entries,
+)
+from ..parts.outlines import snap
+from ..parts.proposals import Kind, as_points, propose, runs
 from ..parts.saving import (
-    beside,
     compact,
-    kept_before,
-    numbered,
-    on_shelf,
-    said_of_parts,
-    stands,
-    unframed,
+    document_with_parts,
+    in_store,
+    is_in_file,
+    keep_replaced,
+    number_parts,
+    place_next_to,
+    undo_framing,
     warn_of_numbers,
     write,
 )
-from ..state import Bench
+from ..state import WorkerState
 from ..view.files import show
-from ..view.surface_view import see_parts
+from ..view.surface_view import view_parts
 from .table import job
 
 
 @job(quick=True)
-def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
-    """What an editor begins with; the picture, and the number of each pixel's part, are left in files.
+def parts_open(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
+    """Return what an editor begins with; write the picture, and the number of each pixel's part, into files.
 
-    Raises: ConfigError for a document that is wrong; PictureError for a scene that cannot be read, or has too many
-    parts; OutputError if there is no room for the files.
+    Raises: ConfigError for a wrong document; PictureError for a scene that cannot be read, or has too many parts;
+    OutputError if the files cannot be written.
     """
-    pipeline = edited_of(bench, text, path, sets)
-    opened, config = opened_of(bench, pipeline), pipeline.config
+    pipeline = edited_of(state, text, path, sets)
+    opened, config = opened_of(state, pipeline), pipeline.config
     at = f"{FOLDER}{digest_of((opened.picture, opened.parts))}"
-    leave_files(opened, bench.folder / at)
+    leave_files(opened, state.folder / at)
     by_parts = config.with_values(heights=config_heights(config))
     rows, columns = opened.parts.labels.shape
     return {
@@ -61,7 +70,7 @@ def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str
         "picture": f"{at}/picture.jpg",
         "labels": f"{at}/labels.u16",
         "digest": digest(opened.parts, config),
-        "parts": listed(opened.parts, config_parts(config)),
+        "parts": part_entries(opened.parts, config_parts(config)),
         "heights": config_heights(config).model_dump(mode="json"),
         "top_m": max(0.0, by_parts.top_m),
         "widthM": by_parts.size.width_m,
@@ -72,7 +81,7 @@ def parts_open(bench: Bench, text: str, path: Path, sets: list[str]) -> dict[str
 
 @job(quick=True)
 def parts_propose(
-    bench: Bench,
+    state: WorkerState,
     text: str,
     path: Path,
     sets: list[str],
@@ -81,28 +90,28 @@ def parts_propose(
     kind: Kind,
     within: Sequence[float] | None,
 ) -> dict[str, Any]:
-    """The part on which a stroke lies: its box, and runs of pixels outside and inside in turn, row by row.
+    """Propose the part under a stroke: its box, and run lengths of pixels outside and inside in turn, row by row.
 
-    Raises: ConfigError for what is no stroke in the picture; otherwise as `parts_open`.
+    Raises: ConfigError for a stroke outside of the picture; otherwise as `parts_open`.
     """
-    picture = opened_of(bench, edited_of(bench, text, path, sets)).picture
-    box, mask = proposed(picture, as_points(points, picture.shape), width_px, kind, within)
+    picture = opened_of(state, edited_of(state, text, path, sets)).picture
+    box, mask = propose(picture, as_points(points, picture.shape), width_px, kind, within)
     return {"box": list(box), "runs": runs(mask)}
 
 
 @job(quick=True)
 def parts_snap(
-    bench: Bench, text: str, path: Path, sets: list[str], points: Sequence[Sequence[float]], reach_px: float
+    state: WorkerState, text: str, path: Path, sets: list[str], points: Sequence[Sequence[float]], reach_px: float
 ) -> dict[str, Any]:
-    """A closed outline, moved to the strongest edges that are no farther than this. Raises: as `parts_propose`."""
-    picture = opened_of(bench, edited_of(bench, text, path, sets)).picture
+    """Move a closed outline to the strongest edges within reach. Raises: as `parts_propose`."""
+    picture = opened_of(state, edited_of(state, text, path, sets)).picture
     outline = as_points(points, picture.shape)
-    return {"points": np.round(snapped(picture, outline, reach_px), 2).tolist()}
+    return {"points": np.round(snap(picture, outline, reach_px), 2).tolist()}
 
 
 @job(quick=True)
 def parts_save(
-    bench: Bench,
+    state: WorkerState,
     text: str,
     path: Path,
     sets: list[str],
@@ -112,41 +121,41 @@ def parts_save(
     words: Mapping[str, str | None],
     of: str,
     opened: str,
-    shelf: Path,
+    store: Path,
     earlier: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Keep labels that a page has sent, and what is said of each; a document that stands in its file is saved there.
+    """Save labels that a page has uploaded and the entries of their parts; save the document too if it has a file.
 
-    of: digest of the parts that were edited, or nothing. opened: what the document's file said when it was opened or
-    saved; a file that says something else is left alone. shelf: where the labels of a document go without a file, and
-    those that others take the place of. earlier: texts that the document had.
-    Returns: with `moved`, what earlier texts, and this one, say from now on if they named labels that are elsewhere.
-    Raises: ConfigError for labels that are none, parts that were changed elsewhere meanwhile, and what the document
-    must not say; OutputError, and then nothing is changed.
+    of: digest of the parts that were edited, or "". opened: the document's text when its file was opened or saved; a
+    file with another text is left alone. store: folder for labels of a document without a file, and for labels that
+    were replaced. earlier: texts of the document's history.
+    Returns: with `moved`, new versions of earlier texts, and of this one, that named replaced labels.
+    Raises: ConfigError for invalid labels, parts that were changed elsewhere meanwhile, and invalid entries;
+    OutputError; then nothing is changed.
     """
-    pipeline = edited_of(bench, text, path, sets)
-    if of and of != digest(opened_of(bench, pipeline).parts, pipeline.config):
+    pipeline = edited_of(state, text, path, sets)
+    if of and of != digest(opened_of(state, pipeline).parts, pipeline.config):
         raise ConfigError("the parts were changed elsewhere meanwhile, as in another tab; open the editor again")
-    labels = unpacked(sent, pipeline.scene.shape)
+    labels = unpack(sent, pipeline.scene.shape)
     known, segments = compact(labels)
     found = find_parts(SegmentMap(segments))
-    choices, numbers = numbered(parts, [int(known[each]) for each in found.segments], found.labels)
-    picture = as_png(unframed(found.labels, pipeline.config), path.name)
-    in_file = stands(path, opened)
-    place = beside(path) if in_file else on_shelf(shelf, picture)
-    changed = said_of_parts(text, path, place, choices, heights, words)
-    config = parse_config(changed, path, bench.registry, sets)
+    choices, numbers = number_parts(parts, [int(known[each]) for each in found.segments], found.labels)
+    picture = as_png(undo_framing(found.labels, pipeline.config), path.name)
+    in_file = is_in_file(path, opened)
+    place = place_next_to(path) if in_file else in_store(store, picture)
+    changed = document_with_parts(text, path, place, choices, heights, words)
+    config = parse_config(changed, path, state.registry, sets)
     check_parts(config, found, labels.shape[1])
-    moved = kept_before(place, picture, shelf, [*earlier, text], path)
+    moved = keep_replaced(place, picture, store, [*earlier, text], path)
     write(place, picture, path if in_file else None, changed)
-    warn_of_numbers(config, opened_of(bench, pipeline), found)
+    warn_of_numbers(config, opened_of(state, pipeline), found)
     of = digest(found, config)
     return {"text": changed, "path": str(place), "numbers": numbers, "saved": in_file, "digest": of, "moved": moved}
 
 
 @job(quick=True)
 def parts_heights(
-    bench: Bench,
+    state: WorkerState,
     text: str,
     path: Path,
     sets: list[str],
@@ -154,22 +163,22 @@ def parts_heights(
     materials: Sequence[str | None] | None = None,
     heights: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """What the force loop needs of the document with these heights of its parts; the document stays as it is.
+    """Return the loop's input for the document with other heights of its parts; the document stays unchanged.
 
-    heights_m: by the number of a part; None for what the recipe finds, by guess or by depth. materials: the same; None
-    for those that the document says. heights: the recipe, widths of rims and the like, where they are not the
-    document's. Raises: ConfigError for a height above the workspace, a part that is not there, a depth that was not
-    made yet, a document without a law or a device; MaterialError; TangibleError as `Pipeline.make`.
+    heights_m: by number of the part; None for what the recipe finds, by guess or by depth. materials: the same; None
+    for those of the document. heights: the recipe, widths of rims and the like, in place of the document's.
+    Raises: ConfigError for a height above the workspace, an unknown part, a depth that is not made yet, a document
+    without a law or a device; MaterialError; TangibleError as `Pipeline.make`.
     """
-    pipeline = edited_of(bench, text, path, sets)
-    opened_of(bench, pipeline)
+    pipeline = edited_of(state, text, path, sets)
+    opened_of(state, pipeline)
     config = coarse(of_parts(pipeline.config, heights), pipeline.scene.shape)
     if config.render is None:
         raise config.missing("render")
     if pipeline.scene.segments is None and not pipeline.config.by_parts:
         raise ConfigError("no parts are saved yet; save what was drawn, and its heights can be felt")
-    kept = kept_of(bench, Pipeline.from_config(config, like=pipeline))
-    said = {number: checked(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
+    kept = kept_of(state, Pipeline.from_config(config, like=pipeline))
+    said = {number: validate(PartChoice, {"height_m": height_m}) for number, height_m in enumerate(heights_m)}
     part_validation.check_parts(config.with_values(parts=said), kept.parts, kept.grid.scene.shape[1])
     part_validation.check_numbers(config, kept.parts.count)
     known = known_heights(kept, heights_m, (heights or {}).get("by", config_heights(pipeline.config).by))
@@ -188,13 +197,13 @@ def parts_heights(
 
 
 @job(quick=True)
-def parts_shown(bench: Bench) -> None:
-    """Pages draw what `parts_heights` made last."""
-    kept: Kept | None = bench.kept
+def parts_shown(state: WorkerState) -> None:
+    """Send pages the surface that `parts_heights` made last."""
+    kept: Kept | None = state.kept
     if kept is None or kept.surface is None:
         return
     surface, kept.surface = kept.surface, None
-    kept.seen = see_parts(kept.pipeline, surface, kept.seen)
-    if kept.seen.digest != bench.shown:
-        bench.tell("scene", **show(kept.seen, bench.folder))
-        bench.shown = kept.seen.digest
+    kept.seen = view_parts(kept.pipeline, surface, kept.seen)
+    if kept.seen.digest != state.shown:
+        state.tell("scene", **show(kept.seen, state.folder))
+        state.shown = kept.seen.digest

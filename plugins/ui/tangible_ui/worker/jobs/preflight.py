@@ -14,33 +14,33 @@ from tangible_core.preflight.timing import Lateness
 from tangible_core.runtime.stopping import stoppable
 
 from ..messages import Late
-from ..state import Bench
+from ..state import WorkerState
 from .document import digest_of
-from .making import telling
+from .making import stage_reporter
 from .table import job
 
 
 @job()
 def preflight(
-    bench: Bench, number: int, text: str, path: Path, sets: list[str], own: str, late: Late | None
+    state: WorkerState, number: int, text: str, path: Path, sets: list[str], own: str, late: Late | None
 ) -> dict[str, Any]:
-    """What is safe and what will be felt, on the document's device, or on the page's own hand where it names none.
+    """Judge safety and touch on the document's device, or on the page's own hand without one.
 
-    own: the page's hand, as `--set` takes it. late: of the loop that runs; without one this process takes a sample.
+    own: the page's hand, as `--set` takes it. late: of the running loop; without one this process takes a sample.
     Raises: ConfigError if there is no law; TangibleError as `Pipeline.make`.
     """
     begun_s = perf_counter()
-    pipeline, is_own = _judged(bench, text, path, sets, own)
-    with bench.work(pipeline, number) as work:
-        bench.tell("making", want="preflight", digest=digest_of(text))
-        pipeline.make("touch", telling(bench, work), work.stop)
+    pipeline, is_own = _pipeline_to_judge(state, text, path, sets, own)
+    with state.work(pipeline, number) as work:
+        state.tell("making", want="preflight", digest=digest_of(text))
+        pipeline.make("touch", stage_reporter(state, work), work.stop)
         with stoppable(work.stop):
             flight = Feeling(pipeline).flight(loop=_loop(late))
     if late is not None:
         flight = replace(flight, lateness=Lateness(*late))
-    found = _told(judge(flight), text, pipeline, is_own, late)
-    bench.tell("preflight", **found)
-    bench.tell(
+    found = _verdict_data(judge(flight), text, pipeline, is_own, late)
+    state.tell("preflight", **found)
+    state.tell(
         "made", want="preflight", digest=found["digest"], outcome="made", why="", seconds=perf_counter() - begun_s
     )
     return found
@@ -48,34 +48,36 @@ def preflight(
 
 @job()
 def fix(
-    bench: Bench, number: int, text: str, path: Path, sets: list[str], own: str, late: Late | None
+    state: WorkerState, number: int, text: str, path: Path, sets: list[str], own: str, late: Late | None
 ) -> dict[str, Any]:
-    """What to change in the document for it to pass, by key, and what preflight says then. Raises: as `preflight`."""
-    pipeline, is_own = _judged(bench, text, path, sets, own)
-    with bench.work(pipeline, number) as work:
-        bench.tell("making", want="preflight", digest=digest_of(text))
-        pipeline.make("touch", telling(bench, work), work.stop)
+    """Return the changes with which the document passes, by key, and the verdicts then. Raises: as `preflight`."""
+    pipeline, is_own = _pipeline_to_judge(state, text, path, sets, own)
+    with state.work(pipeline, number) as work:
+        state.tell("making", want="preflight", digest=digest_of(text))
+        pipeline.make("touch", stage_reporter(state, work), work.stop)
         lateness = None if late is None else Lateness(*late)
         with stoppable(work.stop):
             found = cured(text, path, pipeline, Hand(), _loop(late), [*sets, own] if is_own else sets, lateness)
-    bench.tell("made", want="preflight", digest=digest_of(text), outcome="made", why="", seconds=0.0)
+    state.tell("made", want="preflight", digest=digest_of(text), outcome="made", why="", seconds=0.0)
     settings = {key: change.setting for key, change in found.changes.items()}
     return {"changes": settings, "safe": found.verdicts.safe, "sentence": found.verdicts.sentence}
 
 
-def _judged(bench: Bench, text: str, path: Path, sets: list[str], own: str) -> tuple[Pipeline, bool]:
-    """The pipeline, and whether it is felt with the page's own hand."""
-    pipeline = bench.pipeline_of(text, path, sets)
+def _pipeline_to_judge(state: WorkerState, text: str, path: Path, sets: list[str], own: str) -> tuple[Pipeline, bool]:
+    """Return the pipeline, and True if it uses the page's own hand."""
+    pipeline = state.pipeline_of(text, path, sets)
     if pipeline.config.device is not None:
         return pipeline, False
-    return bench.pipeline_of(text, path, [*sets, own]), True
+    return state.pipeline_of(text, path, [*sets, own]), True
 
 
 def _loop(late: Late | None) -> Loop:
     return Loop() if late is None else Loop(seconds=AT_ONCE)
 
 
-def _told(verdicts: Preflight, text: str, pipeline: Pipeline, is_own: bool, late: Late | None) -> dict[str, Any]:
+def _verdict_data(
+    verdicts: Preflight, text: str, pipeline: Pipeline, is_own: bool, late: Late | None
+) -> dict[str, Any]:
     device, law = pipeline.config.device, pipeline.config.render
     return {
         "digest": digest_of(text),
@@ -88,21 +90,21 @@ def _told(verdicts: Preflight, text: str, pipeline: Pipeline, is_own: bool, late
 
 @job()
 def legible(
-    bench: Bench, number: int, text: str, path: Path, sets: list[str], medium: Medium, width_m: float | None
+    state: WorkerState, number: int, text: str, path: Path, sets: list[str], medium: Medium, width_m: float | None
 ) -> dict[str, Any]:
-    """Verdicts by the rules of one medium. width_m: of the whole picture there; that of the workspace without one.
+    """Judge by the rules of one medium. width_m: of the whole picture there; by default that of the workspace.
 
     Raises: TangibleError as `Pipeline.legible`.
     """
     begun_s, digest = perf_counter(), digest_of(text)
-    pipeline = bench.pipeline_of(text, path, sets)
-    with bench.work(pipeline, number) as work:
-        bench.tell("making", want="legible", digest=digest)
-        pipeline.make("parts", telling(bench, work), work.stop)
+    pipeline = state.pipeline_of(text, path, sets)
+    with state.work(pipeline, number) as work:
+        state.tell("making", want="legible", digest=digest)
+        pipeline.make("parts", stage_reporter(state, work), work.stop)
         with stoppable(work.stop):
             judged = Feeling(pipeline).legible(medium, width_m)
     width_m = pipeline.config.size.width_m if width_m is None else width_m
     found = {"digest": digest, "medium": medium, "width_m": width_m, **judged.as_data()}
-    bench.tell("legible", **found)
-    bench.tell("made", want="legible", digest=digest, outcome="made", why="", seconds=perf_counter() - begun_s)
+    state.tell("legible", **found)
+    state.tell("made", want="legible", digest=digest, outcome="made", why="", seconds=perf_counter() - begun_s)
     return found

@@ -1,4 +1,4 @@
-"""Jobs on recordings: list, lay out for pages, compare, and feel again with another law."""
+"""Jobs on recordings: list, write out for pages, compare, and replay with another law."""
 
 from pathlib import Path
 from typing import Any
@@ -9,37 +9,39 @@ from tangible_core.data import TICK_COLUMNS
 from tangible_core.data.records import digest_of
 from tangible_core.errors import OutputError
 from tangible_core.pipeline.feeling import Feeling
-from tangible_core.session import Recording, beside, compared
-from tangible_core.session.recording_files import SUFFIXES
+from tangible_core.session import Recording, compare_recordings, compare_replay
+from tangible_core.session.recording.files import SUFFIXES
 
 from ...framing import FLAG_BITS
-from ..state import Bench
+from ..state import WorkerState
 from .table import job
 
 MOST_ROWS = 120_000
-"""Of a recording as pages have it, 8 MB; of a longer one, every second tick, or third..."""
+"""Maximum number of rows of a recording for pages, 8 MB; of a longer one every second tick, or third, is shown."""
 MOST_LISTED = 500
 AT_FLAGS = TICK_COLUMNS.index("flags")
 
 
 @job(quick=True)
-def records(bench: Bench, folder: Path) -> list[dict[str, Any]]:
-    """Recordings of a folder, the newest first; of one that cannot be read, why."""
+def records(state: WorkerState, folder: Path) -> list[dict[str, Any]]:
+    """List the recordings of a folder, newest first; for an unreadable one, the reason."""
     try:
-        found = sorted((each for each in folder.iterdir() if each.suffix in SUFFIXES), key=_changed, reverse=True)
+        found = sorted(
+            (each for each in folder.iterdir() if each.suffix in SUFFIXES), key=_modification_time, reverse=True
+        )
     except OSError:
         return []
-    return [_listed(path) for path in found[:MOST_LISTED]]
+    return [_entry(path) for path in found[:MOST_LISTED]]
 
 
-def _changed(path: Path) -> float:
+def _modification_time(path: Path) -> float:
     try:
         return path.stat().st_mtime
     except OSError:
         return 0.0
 
 
-def _listed(path: Path) -> dict[str, Any]:
+def _entry(path: Path) -> dict[str, Any]:
     try:
         found = Recording.load(path)
     except OutputError as error:
@@ -58,19 +60,19 @@ def _about(found: Recording) -> dict[str, Any]:
 
 
 @job(quick=True)
-def show_record(bench: Bench, path: Path) -> dict[str, Any]:
-    """Write the ticks where pages fetch them. Raises: OutputError for a file that is no recording."""
-    return _shown(bench, Recording.load(path), str(path))
+def show_record(state: WorkerState, path: Path) -> dict[str, Any]:
+    """Write the ticks where pages fetch them. Raises: OutputError if the file is not a recording."""
+    return _lay_out(state, Recording.load(path), str(path))
 
 
-def _shown(bench: Bench, found: Recording, path: str) -> dict[str, Any]:
+def _lay_out(state: WorkerState, found: Recording, path: str) -> dict[str, Any]:
     every = -(-len(found.rows) // MOST_ROWS) or 1
     rows = found.rows[::every].copy()
     start_s = float(found.time_s[0]) if len(rows) else 0.0
     rows[:, AT_FLAGS] = found.flags[::every] & FLAG_BITS
     rows[:, 0] -= start_s  # what float32 holds of a clock that has run for days
     digest = digest_of(found.rows)
-    at = bench.folder / digest
+    at = state.folder / digest
     at.mkdir(exist_ok=True)
     (at / "ticks.f32").write_bytes(np.ascontiguousarray(rows, "<f4").tobytes())
     shape = {"rows": len(rows), "columns": len(TICK_COLUMNS), "every": every}
@@ -78,22 +80,22 @@ def _shown(bench: Bench, found: Recording, path: str) -> dict[str, Any]:
 
 
 @job(quick=True)
-def compare_records(bench: Bench, path: Path, other: Path) -> dict[str, Any]:
-    """Two recordings, place by place along their paths. Raises: OutputError for a file that is no recording."""
-    return beside(Recording.load(path), Recording.load(other))
+def compare_records(state: WorkerState, path: Path, other: Path) -> dict[str, Any]:
+    """Compare two recordings place by place along their paths. Raises: OutputError if a file is not a recording."""
+    return compare_recordings(Recording.load(path), Recording.load(other))
 
 
 @job()
-def try_law(bench: Bench, path: Path, text: str, document: Path, sets: list[str], folder: Path) -> dict[str, Any]:
-    """Feel a recording's states with the document's law, keep that as a recording beside it, and compare."""
+def try_law(state: WorkerState, path: Path, text: str, document: Path, sets: list[str], folder: Path) -> dict[str, Any]:
+    """Replay a recording with the document's law, write the result next to it, and compare both."""
     before = Recording.load(path)
-    after = Feeling(bench.pipeline_of(text, document, sets)).replay(before)
+    after = Feeling(state.pipeline_of(text, document, sets)).replay(before)
     out = _free(folder, f"{path.stem} with {after.about.renderer}")
     after.save(out)
-    return {**_shown(bench, after, str(out)), "compared": compared(before, after)}
+    return {**_lay_out(state, after, str(out)), "compared": compare_replay(before, after)}
 
 
 def _free(folder: Path, name: str) -> Path:
-    """A file that is not there yet."""
+    """Return the path of a new file."""
     numbered = (folder / f"{name}{f' {number}' if number else ''}.nc" for number in range(10_000))
     return next(path for path in numbered if not path.exists())

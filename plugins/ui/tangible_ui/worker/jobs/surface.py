@@ -19,9 +19,9 @@ from tangible_render.haptic_textures.waves import waves
 from tangible_report.description import describe, describe_at_length, facts, page_of
 from tangible_report.description.at_length import tell
 
-from ..state import Bench
+from ..state import WorkerState
 from ..view.files import ABOUT
-from ..view.surface_view import Seen
+from ..view.surface_view import SurfaceView
 from .table import job
 
 KEPT = 8
@@ -31,13 +31,13 @@ LARGEST_M = 0.1
 
 @job(quick=True)
 def texture_patch(
-    bench: Bench, digest: str, x_m: float, y_m: float, side_m: float, pixels: int = 192
+    state: WorkerState, digest: str, x_m: float, y_m: float, side_m: float, pixels: int = 192
 ) -> dict[str, Any]:
-    """Write the heights of a square round a place over the surface's own, metres, the top row far; and say where.
+    """Write the heights of the textures in a square around a place, metres, far row first; return the file.
 
-    digest: of the surface as pages know it. Raises: GeometryError if that is gone, or the square is none.
+    digest: of the surface as pages know it. Raises: GeometryError if that is gone, or the square is invalid.
     """
-    at = bench.folder / digest
+    at = state.folder / digest
     if not re.fullmatch("[0-9a-f]{32}", digest) or not (at / ABOUT).is_file():
         raise GeometryError("this surface is not kept any more; make it again")
     square = 0 < side_m <= LARGEST_M and 1 <= pixels <= MOST_PIXELS and np.isfinite(x_m + y_m)
@@ -54,7 +54,7 @@ def texture_patch(
 
 
 def patch(at: Path, centre_m: tuple[float, float], side_m: float, pixels: int) -> Float32[np.ndarray, "n n"]:
-    """Heights of the textures of all materials in a square, each at its pixel's centre; 0 beyond the surface."""
+    """Return heights of all materials' textures in a square, at pixel centres; 0 beyond the surface."""
     about = json.loads((at / ABOUT).read_text())
     steps_m = ((np.arange(pixels) + 0.5) / pixels - 0.5) * side_m
     x, y = np.meshgrid(centre_m[0] + steps_m, centre_m[1] - steps_m)
@@ -71,7 +71,7 @@ def patch(at: Path, centre_m: tuple[float, float], side_m: float, pixels: int) -
 
 
 def _labels(at: Path, about: dict[str, Any], x: np.ndarray, y: np.ndarray) -> Shaped[np.ndarray, "n n"]:
-    """Of the cell that each place is in, or is nearest to."""
+    """Return the label of the cell that contains each place, or is nearest to it."""
     rows, columns, (width_m, length_m) = about["rows"], about["columns"], about["extent_m"]
     labels = np.memmap(at / "labels-0.u", f"<u{about['label_bytes']}", "r", shape=(rows, columns))
     row = np.clip(((0.5 - y / length_m) * rows).astype(int), 0, rows - 1)
@@ -89,11 +89,11 @@ def _heights(
 
 
 @job(quick=True)
-def description(bench: Bench, language: Language) -> dict[str, Any] | None:
-    """What there is to say, as text too and as a page of its own; nothing while there is no surface."""
-    if bench.described is None:
+def description(state: WorkerState, language: Language) -> dict[str, Any] | None:
+    """Describe the surface at length, as text and as an HTML page; None without a surface."""
+    if state.described is None:
         return None
-    pipeline, seen = bench.described
+    pipeline, seen = state.described
     config, kind = pipeline.config, kind_of(pipeline.scene)
     title, parts = title_of(config, pipeline.scene), facts(seen.surface)
     told = tell(seen.surface, title, language, parts, kind)
@@ -109,8 +109,8 @@ def description(bench: Bench, language: Language) -> dict[str, Any] | None:
     }
 
 
-def described(pipeline: Pipeline, seen: Seen) -> dict[str, Any]:
-    """What is said of what is seen, by language; a material that has no name in a language keeps its own."""
+def description_data(pipeline: Pipeline, seen: SurfaceView) -> dict[str, Any]:
+    """Return descriptions by language, and names of the materials; one without a name in a language keeps its own."""
     scene = pipeline.scene
     kind = kind_of(scene)
     names = {each.name for each in seen.materials}

@@ -11,7 +11,7 @@ class Job(NamedTuple):
 
     do: Callable[..., Any]
     quick: bool = False
-    """Whether it runs next to a long job rather than after it; it must then leave `WorkerState.pipeline` alone."""
+    """True if it runs next to a long job rather than after it; it must then leave `WorkerState.pipeline` alone."""
 
 
 JOBS: dict[str, Job] = {}

@@ -1,8 +1,8 @@
-"""Jobs that make heights and materials of parts felt while they are changed, and that show them.
+"""Heights and materials of parts that are felt and shown while they change.
 
-What does not depend on the heights is made once and kept. What is felt is, to the bit, what the document gives once it
-says these heights: the same stages make it (`Engine.with_products`). Only where that has more than MOST_CELLS it is
-felt on a coarser grid until it is saved: a hand that drags a height waits for nothing.
+What does not depend on the heights is computed once and kept. The surface is, to the bit, what the document gives once
+it has these heights: the same stages make it (`Engine.with_products`). Only one of more than MOST_CELLS is computed on
+a coarser grid until it is saved: a hand that drags a height must not wait.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,45 +26,45 @@ from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scaling import felt_factor
 from tangible_core.scene.scene import Scene
 
-from ..state import Bench
-from ..view.surface_view import Seen, at_hand
+from ..state import WorkerState
+from ..view.surface_view import SurfaceView, at_hand
 from .opening import config_heights
 
 S = TypeVar("S", bound=BaseModel)
 MOST_CELLS = 500_000
-"""Of a surface that is felt while it is changed."""
+"""Maximum number of cells of a surface that changes under the hand."""
 
 
 @dataclass
 class Kept:
-    """What is made once for all heights."""
+    """Results that are the same for all heights."""
 
     scene: Scene
     config: PipelineConfig
-    """With nothing said of the parts but their names, by which rules may call them."""
+    """The configuration with the parts' names alone, by which rules may refer to them."""
     pipeline: Pipeline
     grid: working_grid.WorkingGrid
     parts: PartMap
-    """On the grid that is felt."""
+    """Parts on the working grid."""
     materials: MaterialMap | None
-    """By part, of those that say none themselves; None where the law uses none."""
+    """Materials by part, for parts without an own one; None if the law uses none."""
     layering: Layering
     found_m: dict[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
-    """What recipes find, by part; those that were asked for."""
-    seen: Seen | None = None
-    """What was seen last, and the surface that is felt now, if it is another."""
+    """Heights that each requested recipe finds, by part."""
+    seen: SurfaceView | None = None
+    """The last view; `surface` is the current surface if that is a newer one."""
     surface: HapticSurface | None = None
 
 
 def of_parts(config: PipelineConfig, heights: Mapping[str, Any] | None) -> PipelineConfig:
-    """The configuration with a relief of parts, as it is once all their heights are given."""
+    """Return the configuration with a relief of parts whose heights are all given."""
     choice = config_heights(config)
     told = {**choice.model_dump(), **(heights or {}), "by": "given"}
-    return config.with_values(heights=checked(HeightChoice, told), parts=config.parts or {})
+    return config.with_values(heights=validate(HeightChoice, told), parts=config.parts or {})
 
 
 def coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
-    """With a grid of at most about MOST_CELLS, in steps of half a pixel of the pictures as every felt grid."""
+    """Return the configuration with a grid of about MOST_CELLS at most, in steps of half a pixel."""
     size, (rows, columns) = config.size, shape
     factor = ceil(2 * sqrt(rows * columns / MOST_CELLS)) / 2
     if factor <= felt_factor(columns, size.width_m, size.finest_m):
@@ -73,8 +73,8 @@ def coarse(config: PipelineConfig, shape: tuple[int, int]) -> PipelineConfig:
     return config.with_values(workspace=config.workspace.model_copy(update={"finest_m": finest_m}))
 
 
-def checked(section: type[S], said: Mapping[str, Any]) -> S:
-    """Raises: ConfigError for what it cannot say."""
+def validate(section: type[S], said: Mapping[str, Any]) -> S:
+    """Validate options. Raises: ConfigError."""
     try:
         return section.model_validate(said)
     except ValidationError as error:
@@ -83,22 +83,22 @@ def checked(section: type[S], said: Mapping[str, Any]) -> S:
 
 
 def known_heights(kept: Kept, heights_m: Sequence[float | None], by: str) -> list[float]:
-    """With what the recipe finds where nothing is given. Raises: ConfigError for a depth that was not made yet."""
+    """Return the heights, with what the recipe finds for None. Raises: ConfigError for a depth that is not made yet."""
     if None in heights_m and by not in kept.found_m:
         assert kept.config.heights is not None
         disparity = at_hand(kept.pipeline, "disparity") if by == "depth" else None
         if by == "depth" and disparity is None:
             raise ConfigError("the picture's depth is not made yet; make it, and heights by depth are felt")
-        recipe = kept.config.with_values(heights=checked(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
+        recipe = kept.config.with_values(heights=validate(HeightChoice, {**kept.config.heights.model_dump(), "by": by}))
         kept.found_m[by] = ReliefStage(Context(recipe, kept.scene)).part_heights(kept.parts, disparity).heights_m
     found_m = kept.found_m.get(by, ())
     return [found_m[number] if each is None and number < len(found_m) else each or 0.0
             for number, each in enumerate(heights_m)]  # fmt: skip
 
 
-def kept_of(bench: Bench, pipeline: Pipeline) -> Kept:
-    """What was kept, or as much of it as still holds."""
-    config, before = pipeline.config, bench.kept
+def kept_of(state: WorkerState, pipeline: Pipeline) -> Kept:
+    """Return what was kept, as far as it still holds; compute the rest."""
+    config, before = pipeline.config, state.kept
     named = {number: PartChoice(name=each.name) for number, each in (config.parts or {}).items() if each.name}
     bare = config.with_values(parts=named, title="", language="en", source=None)
     if before is not None and before.scene is pipeline.scene and before.config == bare:
@@ -114,14 +114,14 @@ def kept_of(bench: Bench, pipeline: Pipeline) -> Kept:
     if layering is None:
         assert bare.heights is not None
         layering = Layering(parts, bare.size.width_m, bare.heights, grid.views.left if grid.views else None)
-    bench.kept = kept = Kept(made.scene, bare, made, grid, parts, chosen, layering)
+    state.kept = kept = Kept(made.scene, bare, made, grid, parts, chosen, layering)
     return kept
 
 
 def _same_layering(
     before: Kept, config: PipelineConfig, parts: PartMap, grid: working_grid.WorkingGrid
 ) -> Layering | None:
-    """The one that is there, if it is of the same parts."""
+    """Return the kept layering if it is of the same parts."""
     same = before.config.heights == config.heights and before.config.size == config.size
     return (
         before.layering
@@ -133,7 +133,7 @@ def _same_layering(
 def materials_of(
     found: tuple[Material, ...], own: Mapping[int, str | None], config: PipelineConfig
 ) -> tuple[Material, ...]:
-    """With those that parts say themselves. Raises: MaterialError for a name that is not in the library."""
+    """Replace materials by those of the parts. Raises: MaterialError for a name that is not in the library."""
     library = load_library(config.materials.library)
     named = {number: find(name, library) for number, name in own.items() if name is not None}
     return tuple(named.get(number, each) for number, each in enumerate(found))

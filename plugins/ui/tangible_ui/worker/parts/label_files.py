@@ -1,4 +1,4 @@
-"""Label pictures as a page sends them, and as files: `parts.png`, which paint programs open and pipelines read."""
+"""Label pictures as a page uploads them, and as files: `parts.png`, which paint programs open and pipelines read."""
 
 import hashlib
 import struct
@@ -16,20 +16,20 @@ from tangible_core.scene.formats.pictures import MAX_LABELS
 
 NAME = "parts.png"
 GZIP = 31
-"""What zlib is told so that it takes a gzip file and nothing else."""
+"""Window bits with which zlib takes gzip files alone."""
 PNG = b"\x89PNG\r\n\x1a\n"
 AFTER_SIZE = len(PNG) + 4 + 4 + 13 + 4
-"""Where a PNG's second chunk begins: the first one says its size."""
+"""Offset of a PNG's second chunk; the first one holds its size."""
 _TEXT, _PIXELS = b"tEXt", b"IDAT"
 
 
-def unpacked(path: Path, shape: tuple[int, int]) -> UInt16[np.ndarray, "h w"]:
-    """Labels as a page has sent them: uint16, little-endian, row by row, as gzip.
+def unpack(path: Path, shape: tuple[int, int]) -> UInt16[np.ndarray, "h w"]:
+    """Unpack labels that a page has uploaded: uint16, little-endian, row by row, as gzip.
 
-    No more than one byte too many is ever unpacked. Raises: ConfigError for anything else, and another size.
+    At most one byte too many is unpacked. Raises: ConfigError for anything else, and another size.
     """
     size = 2 * shape[0] * shape[1]
-    wrong = f"the labels that were sent are no gzip of {shape[1]} x {shape[0]} numbers of two bytes; send them again"
+    wrong = f"the labels that were sent are not a gzip of {shape[1]} x {shape[0]} numbers of two bytes; send them again"
     if not 0 < size <= 2 * MOST_PIXELS:
         raise ConfigError(wrong)
     try:
@@ -44,9 +44,9 @@ def unpacked(path: Path, shape: tuple[int, int]) -> UInt16[np.ndarray, "h w"]:
 
 
 def as_png(labels: Int32[np.ndarray, "h w"], document: str) -> bytes:
-    """A picture of labels that says whose it is.
+    """Return a PNG of labels, marked with the pipeline file that it belongs to.
 
-    document: the name of the pipeline file that it belongs to. Raises: ConfigError for more labels than one may hold.
+    document: name of that file. Raises: ConfigError for more labels than a picture may hold.
     """
     count = int(labels.max(initial=0)) + 1
     if count > MAX_LABELS:
@@ -56,7 +56,7 @@ def as_png(labels: Int32[np.ndarray, "h w"], document: str) -> bytes:
 
 
 def is_ours(path: Path, document: str) -> bool:
-    """Whether a file is as `as_png` made it for this pipeline file: nobody has painted in it since."""
+    """Return True if the file is as `as_png` made it for this pipeline file: nobody has painted in it since."""
     try:
         picture = path.read_bytes()
     except OSError:
@@ -65,7 +65,7 @@ def is_ours(path: Path, document: str) -> bool:
 
 
 def _mark(picture: bytes, document: str) -> bytes:
-    """Of a PNG's pixels, and of the file that it belongs to."""
+    """Return the mark of a PNG's pixels and of the file that it belongs to."""
     digest = hashlib.sha256(document.encode(errors="surrogateescape"))
     for kind, data in _chunks(picture):
         if kind == _PIXELS:
@@ -74,7 +74,7 @@ def _mark(picture: bytes, document: str) -> bytes:
 
 
 def _chunks(picture: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """Kind and data of each of a PNG's chunks; none of what is no PNG."""
+    """Yield kind and data of each chunk of a PNG; nothing for other data."""
     at = len(PNG) if picture.startswith(PNG) else len(picture)
     while at + 8 <= len(picture):
         size, kind = struct.unpack_from(">I4s", picture, at)

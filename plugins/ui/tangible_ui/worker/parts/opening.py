@@ -1,4 +1,4 @@
-"""Jobs of the parts editor: what a scene's parts are, and parts that were drawn, as files."""
+"""Start of the parts editor: a scene's picture and parts, also as files."""
 
 import shutil
 from collections.abc import Mapping
@@ -18,61 +18,61 @@ from tangible_core.pipeline.engine.part_validation import parts_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
 
-from ..state import Bench
+from ..state import WorkerState
 from ..view.files import leave, write_whole
 from ..view.surface_view import is_there
 
 FOLDER = "parts-"
 KEPT = 3
-"""Folders of what editors fetch that stay: tabs may still fetch from the one before."""
+"""Folders of the editor that are kept: tabs may still fetch from the one before."""
 MOST_LOOKED_AT = 400_000
-"""Pixels among which a place is looked for that is well inside a part."""
+"""Maximum number of pixels among which a place well inside a part is searched."""
 
 
 class Opened(NamedTuple):
-    """What an editor works on."""
+    """Input of the editor."""
 
     pipeline: Pipeline
-    """The last one; what it read is not read again."""
+    """The last pipeline; the files that it read are not read again."""
     scene: Scene
     picture: UInt8[np.ndarray, "h w 3"]
     parts: PartMap
 
 
-def edited_of(bench: Bench, text: str, path: Path, sets: list[str]) -> Pipeline:
-    """The pipeline that a text says, after that of the last quick job here. Raises: ConfigError."""
-    config, before = bench.config_of(text, path, sets), bench.opened
-    made = bench.after(before.pipeline, config) if before and before.pipeline.config.scene == config.scene else None
-    return made or bench.pipeline_of(text, path, sets)
+def edited_of(state: WorkerState, text: str, path: Path, sets: list[str]) -> Pipeline:
+    """Return the pipeline of a text, derived from that of the last quick job here. Raises: ConfigError."""
+    config, before = state.config_of(text, path, sets), state.opened
+    made = state.after(before.pipeline, config) if before and before.pipeline.config.scene == config.scene else None
+    return made or state.pipeline_of(text, path, sets)
 
 
-def opened_of(bench: Bench, pipeline: Pipeline) -> Opened:
-    """A scene's picture and parts; the last one's are kept. Raises: as `parts_open`."""
-    before, scene = bench.opened, pipeline.scene
+def opened_of(state: WorkerState, pipeline: Pipeline) -> Opened:
+    """Return a scene's picture and parts; those of the last scene are kept. Raises: as `parts_open`."""
+    before, scene = state.opened, pipeline.scene
     if before is None or before.scene is not scene:
         before = Opened(pipeline, scene, to_rgb8(_picture(scene)), _parts(pipeline))
-    bench.opened = before._replace(pipeline=pipeline)
+    state.opened = before._replace(pipeline=pipeline)
     return before
 
 
 def digest(parts: PartMap, config: PipelineConfig) -> str:
-    """Of the parts, and of what a document says of them."""
+    """Return the digest of the parts and of the document's entries for them."""
     choices = tuple((number, repr(each)) for number, each in sorted(config_parts(config).items()))
     return digest_of((parts.labels, choices, repr(config_heights(config))))
 
 
 def config_parts(config: PipelineConfig) -> Mapping[int, PartChoice]:
-    """What a document says of its parts, by number."""
+    """Return the document's entries for its parts, by number."""
     return config.parts or {}
 
 
 def config_heights(config: PipelineConfig) -> HeightChoice:
-    """How a document makes its relief of parts; how an editor begins, where it does not."""
+    """Return the document's recipe for a relief of parts; without one, the editor's."""
     return config.heights or HeightChoice(by="given")
 
 
-def listed(parts: PartMap, choices: Mapping[int, PartChoice]) -> list[dict[str, Any]]:
-    """Every part: what is said of it, its pixels, and a pixel well inside it."""
+def part_entries(parts: PartMap, choices: Mapping[int, PartChoice]) -> list[dict[str, Any]]:
+    """Return every part with its entry, its number of pixels, and a pixel well inside it."""
     places = _places(parts)
     said = [choices.get(number, PartChoice()).model_dump(mode="json") for number in range(parts.count)]
     sizes = part_sizes(parts).tolist()
@@ -83,7 +83,7 @@ def listed(parts: PartMap, choices: Mapping[int, PartChoice]) -> list[dict[str, 
 
 
 def _picture(scene: Scene) -> np.ndarray:
-    """The left view, the photo, or the heights as grey values, higher being lighter."""
+    """Return the left view, the photo, or the heights as grey values, higher being lighter."""
     if scene.views is not None:
         return scene.views.left
     height = scene.height
@@ -96,7 +96,7 @@ def _picture(scene: Scene) -> np.ndarray:
 
 
 def _parts(pipeline: Pipeline) -> PartMap:
-    """Those of the scene's own segments, or of those that a document names parts of; one part without any."""
+    """Return the parts of the scene's segments, or those that a document names; one part without any."""
     scene = pipeline.scene
     if scene.segments is not None:
         return parts_of(scene.segments)
@@ -106,7 +106,7 @@ def _parts(pipeline: Pipeline) -> PartMap:
 
 
 def _places(parts: PartMap) -> list[tuple[int, int]]:
-    """Column and row of a pixel well inside each part: of those looked at, the farthest from all borders."""
+    """Return column and row of a pixel well inside each part: of a sample, the farthest from all borders."""
     import cv2
 
     step = max(1, round((parts.labels.size / MOST_LOOKED_AT) ** 0.5))
@@ -130,7 +130,7 @@ def _places(parts: PartMap) -> list[tuple[int, int]]:
 
 
 def leave_files(opened: Opened, at: Path) -> None:
-    """Write what an editor fetches, whole or not at all."""
+    """Write the files that an editor fetches, atomically."""
 
     def write(part: Path) -> None:
         (part / "labels.u16").write_bytes(opened.parts.labels.astype("<u2").data)

@@ -1,30 +1,30 @@
-"""The job that moves an outline to the picture's edges."""
+"""Outlines that follow the picture's edges."""
 
 import numpy as np
 from jaxtyping import Float32, Float64, Int, UInt8
 
 MOST_PLACES = 1500
-"""Along an outline."""
+"""Maximum number of places along an outline."""
 MOST_STEPS = 24
-"""To either side of it."""
+"""Maximum number of steps to either side of it."""
 MOST_REACH_PX = 400.0
 FAR = 0.15
-"""What it costs to move by the whole reach, beside 1 for a place without any edge."""
+"""Cost of a shift by the whole reach; a place without any edge costs 1."""
 BEND = 0.12
-"""What it costs to move one step farther than the place before."""
+"""Cost of a shift that is one step farther than that of the place before."""
 TURN = 2
-"""Steps by which neighbours may differ."""
+"""Maximum number of steps by which neighbours may differ."""
 
 
-def snapped(
+def snap(
     picture: UInt8[np.ndarray, "h w 3"], outline: Float64[np.ndarray, "n 2"], reach_px: float
 ) -> Float64[np.ndarray, "m 2"]:
-    """The closed outline through the edges: of all that stay within reach, the one of the least cost.
+    """Return the closed outline of least cost within reach, along the picture's edges.
 
-    The strip along the outline is looked at straightened, and nothing else of the picture. The path through it is found
-    by dynamic programming (Amini, Weymouth and Jain 1990), twice round, so that its end meets its beginning.
+    The strip along the outline is resampled to a rectangle. The path through it is found by dynamic programming (Amini,
+    Weymouth and Jain 1990), twice round, so that its end meets its beginning.
     """
-    places = _spaced(outline)
+    places = _resample(outline)
     if len(places) < 4 or not 0 < reach_px < np.inf:
         return outline
     steps = int(np.clip(round(reach_px), 1, MOST_STEPS))
@@ -35,8 +35,8 @@ def snapped(
     return np.clip(moved, 0, [picture.shape[1] - 1, picture.shape[0] - 1])
 
 
-def _spaced(outline: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "m 2"]:
-    """Places along the closed outline, a pixel or more apart."""
+def _resample(outline: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "m 2"]:
+    """Return places along the closed outline, a pixel or more apart."""
     closed = np.concatenate([outline, outline[:1]])
     lengths = np.hypot(*np.diff(closed, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(lengths)])
@@ -46,7 +46,7 @@ def _spaced(outline: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, "m 2"]:
 
 
 def _normals(places: Float64[np.ndarray, "m 2"]) -> Float64[np.ndarray, "m 2"]:
-    """Across the outline, smoothed along it, so that those of neighbours do not cross at every corner."""
+    """Return normals of the outline, smoothed so that those of neighbours do not cross at every corner."""
     smooth = np.mean([np.roll(places, shift, 0) for shift in range(-2, 3)], axis=0)
     tangents = np.roll(smooth, -1, 0) - np.roll(smooth, 1, 0)
     lengths = np.maximum(np.hypot(*tangents.T), 1e-9)[:, None]
@@ -56,7 +56,7 @@ def _normals(places: Float64[np.ndarray, "m 2"]) -> Float64[np.ndarray, "m 2"]:
 def _edges(
     picture: np.ndarray, places: np.ndarray, normals: np.ndarray, away: np.ndarray
 ) -> Float32[np.ndarray, "m k"]:
-    """How steep the picture is across the outline, at each place and distance; 1 is the steepest there is here."""
+    """Return the gradient across the outline, at each place and distance; 1 is the steepest here."""
     import cv2
 
     step = float(away[1] - away[0])
@@ -71,7 +71,7 @@ def _edges(
 
 
 def _cheapest(cost: Float32[np.ndarray, "m k"]) -> Int[np.ndarray, " m"]:
-    """Which column each row takes, for the least sum, neighbours being no more than TURN apart; round and round."""
+    """Return the column of each row with the least sum, neighbours at most TURN apart, round and round."""
     rows, columns = cost.shape
     turns = np.arange(-TURN, TURN + 1)
     price = (BEND * np.abs(turns)).astype(np.float32)[:, None]

@@ -1,4 +1,4 @@
-"""The job that proposes a part from a stroke: what looks like what the stroke lies on, up to the picture's edges."""
+"""Proposal of a part from a stroke: what resembles the stroke's surroundings, up to the picture's edges."""
 
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
@@ -11,22 +11,22 @@ from tangible_core.errors import ConfigError
 Kind = Literal["grabcut", "watershed"]
 MOST_POINTS = 2000
 MOST_CELLS = 16_000
-"""Of the window that is looked at as a whole: GrabCut takes a tenth of a second for so many."""
+"""Maximum number of cells of the reduced window: GrabCut takes a tenth of a second for these."""
 AROUND = 0.4
-"""How far the window reaches beyond the stroke, of the stroke's own length."""
+"""Reach of the window beyond the stroke, as a share of the stroke's length."""
 NEAR = 2.0
-"""So many widths of the stroke from it, a pixel is taken for the part's before anything is known."""
+"""Distance from the stroke within which a pixel is first taken for the part's, in widths of the stroke."""
 ROUNDS = 3
 BLOCK = 12
-"""Cells of a side of what is looked at again at the picture's own size, where the border runs through it."""
+"""Side of the blocks that are refined at the picture's own size, in cells; only those that the border crosses."""
 SMALL_HOLE = 0.01
-"""Of the part's area."""
+"""Greatest hole that is filled, as a share of the part's area."""
 RIM = 2
 OUTSIDE, PART = 2, 1
 
 
 class Window(NamedTuple):
-    """The part of the picture that is looked at: first column and row, columns and rows."""
+    """A window of the picture: first column and row, numbers of columns and rows."""
 
     x: int
     y: int
@@ -34,21 +34,21 @@ class Window(NamedTuple):
     rows: int
 
     def of(self, picture: np.ndarray) -> np.ndarray:
-        """The picture there."""
+        """Return the picture's pixels in the window."""
         return picture[self.y : self.y + self.rows, self.x : self.x + self.columns]
 
 
-def proposed(
+def propose(
     picture: UInt8[np.ndarray, "h w 3"],
     points: Float64[np.ndarray, "n 2"],
     width_px: float,
     kind: Kind,
     within: Sequence[float] | None = None,
 ) -> tuple[Window, Bool[np.ndarray, "r c"]]:
-    """The part in the picture as a box that just holds it, and where in that box it is.
+    """Return the part in the picture: its bounding box, and its mask in that box.
 
-    Found in a reduced window round the stroke, by GrabCut (Rother, Kolmogorov and Blake 2004) or by a watershed
-    (Meyer 1992); then its border, and nothing else, is looked for again at the picture's own size.
+    A reduced window around the stroke is segmented by GrabCut (Rother, Kolmogorov and Blake 2004) or by a watershed
+    (Meyer 1992); then the border alone is refined at the picture's own size.
     """
     import cv2
 
@@ -58,16 +58,18 @@ def proposed(
     factor = min(1.0, (MOST_CELLS / (window.rows * window.columns)) ** 0.5)
     size = max(1, round(window.columns * factor)), max(1, round(window.rows * factor))
     small = np.ascontiguousarray(cv2.resize(whole, size, interpolation=cv2.INTER_AREA) if factor < 1 else whole)
-    stroke = _drawn(points, width_px, window, size)
-    mask = _connected(_found(small, stroke, _rim(window, stroke, picture.shape), width_px * factor, kind), stroke)
+    stroke = _draw_stroke(points, width_px, window, size)
+    mask = _keep_connected(
+        _segment(small, stroke, _rim(window, stroke, picture.shape), width_px * factor, kind), stroke
+    )
     if factor < 1:
-        mask = _refined(whole, mask)
-    mask |= _drawn(points, width_px, window, (window.columns, window.rows))
-    return _boxed(mask, window)
+        mask = _refine_border(whole, mask)
+    mask |= _draw_stroke(points, width_px, window, (window.columns, window.rows))
+    return _crop_to_box(mask, window)
 
 
 def as_points(points: Sequence[Sequence[float]], shape: tuple[int, ...]) -> Float64[np.ndarray, "n 2"]:
-    """Points in the picture, columns and rows. Raises: ConfigError for what is none, or far too many."""
+    """Return points in the picture, columns and rows, at most MOST_POINTS. Raises: ConfigError for anything else."""
     found = np.array([list(each) for each in points if len(each) == 2], np.float64).reshape(-1, 2)
     if not 0 < len(found) == len(points) or not np.isfinite(found).all():
         raise ConfigError("points: are [[column, row], ...] in pixels of the picture, at least one")
@@ -77,7 +79,7 @@ def as_points(points: Sequence[Sequence[float]], shape: tuple[int, ...]) -> Floa
 
 
 def runs(mask: Bool[np.ndarray, "r c"]) -> list[int]:
-    """How many pixels are outside, then inside, then outside again, row by row.
+    """Return run lengths of pixels outside, then inside, then outside again, row by row.
 
     >>> runs(np.array([[False, True], [True, False]]))
     [1, 2, 1]
@@ -101,8 +103,8 @@ def _window(shape: tuple[int, ...], points: np.ndarray, width_px: float, within:
     return Window(x0, y0, max(1, x1 - x0), max(1, y1 - y0))
 
 
-def _drawn(points: np.ndarray, width_px: float, window: Window, size: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
-    """The stroke, on a grid of so many columns and rows over the window."""
+def _draw_stroke(points: np.ndarray, width_px: float, window: Window, size: tuple[int, int]) -> Bool[np.ndarray, "r c"]:
+    """Draw the stroke on a grid of this size over the window."""
     import cv2
 
     scale = np.array(size) / [window.columns, window.rows]
@@ -113,7 +115,7 @@ def _drawn(points: np.ndarray, width_px: float, window: Window, size: tuple[int,
 
 
 def _rim(window: Window, stroke: np.ndarray, shape: tuple[int, ...]) -> Bool[np.ndarray, "r c"]:
-    """Where the window ends and the picture goes on: that is outside the part."""
+    """Return the rim of the window where the picture goes on: it is outside the part."""
     found = np.zeros(stroke.shape, np.bool_)
     found[:RIM] |= window.y > 0
     found[:, :RIM] |= window.x > 0
@@ -122,13 +124,13 @@ def _rim(window: Window, stroke: np.ndarray, shape: tuple[int, ...]) -> Bool[np.
     return found & ~stroke
 
 
-def _found(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: float, kind: Kind) -> np.ndarray:
+def _segment(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: float, kind: Kind) -> np.ndarray:
     import cv2
 
     if stroke.all():
         return stroke
     if kind == "watershed":
-        return _flooded(cv2.bilateralFilter(small, 7, 30, 5), stroke, rim) if rim.any() else ~rim
+        return _watershed(cv2.bilateralFilter(small, 7, 30, 5), stroke, rim) if rim.any() else ~rim
     state = np.full(stroke.shape, cv2.GC_PR_BGD, np.uint8)
     far = cv2.distanceTransform((~stroke).astype(np.uint8), cv2.DIST_L2, 3)
     state[far <= max(NEAR * width, 1)] = cv2.GC_PR_FGD
@@ -141,8 +143,8 @@ def _found(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: float,
     return (state == cv2.GC_FGD) | (state == cv2.GC_PR_FGD)
 
 
-def _flooded(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> Bool[np.ndarray, "r c"]:
-    """What is nearer to the inside than to the outside, the picture's edges being steep."""
+def _watershed(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> Bool[np.ndarray, "r c"]:
+    """Return what is nearer to the inside than to the outside, the picture's edges being steep."""
     import cv2
 
     markers = np.zeros(inside.shape, np.int32)
@@ -150,8 +152,8 @@ def _flooded(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> Bo
     return np.asarray(cv2.watershed(np.ascontiguousarray(picture), markers)) == PART
 
 
-def _connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "r c"]:
-    """What hangs together with the stroke, without specks at its border and small holes."""
+def _keep_connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "r c"]:
+    """Keep what is connected to the stroke, without specks at its border and small holes."""
     import cv2
 
     smooth = np.asarray(cv2.medianBlur(mask.astype(np.uint8), 3)).astype(np.bool_) | stroke
@@ -162,8 +164,8 @@ def _connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c"]) -
     return found | small[holes]
 
 
-def _refined(whole: np.ndarray, mask: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "h w"]:
-    """The mask at the picture's own size: along its border, a watershed between what is surely in and out."""
+def _refine_border(whole: np.ndarray, mask: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "h w"]:
+    """Return the mask at the picture's own size: a watershed along its border, between sure inside and sure outside."""
     import cv2
 
     rows, columns = whole.shape[:2]
@@ -177,18 +179,18 @@ def _refined(whole: np.ndarray, mask: Bool[np.ndarray, "r c"]) -> Bool[np.ndarra
     for top in range(0, mask.shape[0], BLOCK):
         for left in range(0, mask.shape[1], BLOCK):
             if (state[top : top + BLOCK, left : left + BLOCK] == 0).any():
-                _refine(whole, state, found, (row_ends, column_ends), (top, left))
+                _refine_block(whole, state, found, (row_ends, column_ends), (top, left))
     return found
 
 
-def _refine(
+def _refine_block(
     whole: np.ndarray,
     state: np.ndarray,
     found: np.ndarray,
     ends: tuple[np.ndarray, np.ndarray],
     block: tuple[int, int],
 ) -> None:
-    """One block: looked at with a rim of cells about it, so that blocks fit together."""
+    """Refine one block, with a rim of cells around it so that blocks fit together."""
     import cv2
 
     inner = [(at, min(at + BLOCK, n)) for at, n in zip(block, state.shape, strict=True)]
@@ -198,10 +200,10 @@ def _refine(
     near = state[outer[0][0] : outer[0][1], outer[1][0] : outer[1][1]]
     markers = np.asarray(cv2.resize(near, (x1 - x0, y1 - y0), interpolation=cv2.INTER_NEAREST))
     if (markers == PART).any() and (markers == OUTSIDE).any():
-        part = _flooded(cv2.GaussianBlur(whole[y0:y1, x0:x1], (0, 0), 1.0), markers == PART, markers == OUTSIDE)
+        part = _watershed(cv2.GaussianBlur(whole[y0:y1, x0:x1], (0, 0), 1.0), markers == PART, markers == OUTSIDE)
         found[v0:v1, u0:u1] = part[v0 - y0 : v1 - y0, u0 - x0 : u1 - x0]
 
 
-def _boxed(mask: Bool[np.ndarray, "r c"], window: Window) -> tuple[Window, Bool[np.ndarray, "R C"]]:
+def _crop_to_box(mask: Bool[np.ndarray, "r c"], window: Window) -> tuple[Window, Bool[np.ndarray, "R C"]]:
     (y0, y1), (x0, x1) = (np.flatnonzero(mask.any(axis))[[0, -1]].tolist() for axis in (1, 0))
     return Window(window.x + x0, window.y + y0, x1 + 1 - x0, y1 + 1 - y0), mask[y0 : y1 + 1, x0 : x1 + 1]

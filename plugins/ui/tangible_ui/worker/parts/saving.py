@@ -1,4 +1,4 @@
-"""The job that keeps parts which were drawn: `parts.png`, and what the document says of them."""
+"""Saving of parts: `parts.png`, and the document's entries for them."""
 
 import hashlib
 import itertools
@@ -26,12 +26,12 @@ from .opening import Opened
 
 log = logging.getLogger(__name__)
 MOST_EDITED = 200
-"""Keys that are changed one by one, each in its place; of more, the whole block is written anew."""
+"""Maximum number of keys that are changed one by one, each in its place; beyond it the whole block is rewritten."""
 SAID = ("name", "height_m", "material")
 
 
 def warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> None:
-    """Say whose materials are others now: those that are for a segment or a part by a number that lies elsewhere."""
+    """Warn of materials that are chosen by the number of a segment or part that has moved."""
     rules, by = config.materials.rules, config.materials.by
     segments = {each.segment for each in rules if each.segment is not None} | set(by if isinstance(by, dict) else ())
     named = {each.part for each in rules if isinstance(each.part, int)}
@@ -52,19 +52,19 @@ def warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> N
         )
 
 
-def numbered(
+def number_parts(
     parts: Sequence[Mapping[str, Any]], labels: Sequence[int], numbers: Int32[np.ndarray, "h w"]
 ) -> tuple[dict[int, dict[str, Any]], dict[str, list[int]]]:
-    """What is said of each part by its number, and the numbers that each label became.
+    """Return the entries by number of the part, and the numbers that each label became.
 
-    labels: the label of each part. A label whose pixels do not hang together is several parts: the largest keeps the
-    name, the others are called after it. Raises: ConfigError if a label is told of twice, or has no pixel.
+    labels: the label of each part. A label whose pixels are not connected becomes several parts: the largest keeps the
+    name, the others get numbered names. Raises: ConfigError if a label has two entries, or has no pixel.
     """
     if not all(type(each.get("label")) is int for each in parts):
-        raise ConfigError("parts: each is told of with the number of its label")
+        raise ConfigError("parts: each entry needs the number of its label")
     told = {each["label"]: each for each in parts}
     if len(told) < len(parts):
-        raise ConfigError("a label is told of twice; tell of each once")
+        raise ConfigError("a label has two entries; give each label one")
     of_label: dict[int, list[int]] = {}
     for number, label in enumerate(labels):
         of_label.setdefault(label, []).append(number)
@@ -82,7 +82,7 @@ def numbered(
     return choices, {str(label): found for label, found in of_label.items()}
 
 
-def said_of_parts(
+def document_with_parts(
     text: str,
     path: Path,
     place: Path,
@@ -90,7 +90,7 @@ def said_of_parts(
     heights: Mapping[str, Any] | None,
     words: Mapping[str, str | None],
 ) -> str:
-    """The document's text with these parts; comments elsewhere, and the order, stay. Raises: ConfigError."""
+    """Return the document's text with these parts; order and other comments stay. Raises: ConfigError."""
     now = read_values(text, path)
     changes: dict[Any, Any] = dict(_scene(now, path, place))
     changes |= {("heights", key): value for key, value in (heights or {}).items()}
@@ -117,12 +117,12 @@ def _with_block(text: str, path: Path, parts: Mapping[int, Any]) -> str:
 
 
 def _short(each: Mapping[str, Any]) -> Any:
-    """A name alone is enough where nothing else is said."""
+    """Return the name alone if the entry has nothing else."""
     return each["name"] if set(each) == {"name"} else dict(each)
 
 
 def _another(name: str, taken: set[str]) -> str:
-    """A name after this one that no part has."""
+    """Return the name with a number, so that no other part has it."""
     others = (f"{name.strip()} {number}" for number in itertools.count(2))
     found = next(each for each in others if each.casefold() not in taken)
     taken.add(found.casefold())
@@ -130,7 +130,7 @@ def _another(name: str, taken: set[str]) -> str:
 
 
 def compact(labels: UInt16[np.ndarray, "h w"]) -> tuple[np.ndarray, Int32[np.ndarray, "h w"]]:
-    """The labels that there are, and which of them each pixel has."""
+    """Return the distinct labels, and the index of each pixel's label among them."""
     known = np.flatnonzero(np.bincount(labels.ravel(), minlength=1))
     places = np.zeros(int(known[-1]) + 1, np.int32)
     places[known] = np.arange(known.size, dtype=np.int32)
@@ -138,7 +138,7 @@ def compact(labels: UInt16[np.ndarray, "h w"]) -> tuple[np.ndarray, Int32[np.nda
 
 
 def _scene(now: Mapping[str, Any], path: Path, place: Path) -> dict[tuple[str, ...], Any]:
-    """What the scene says from now on: a built-in one becomes its files."""
+    """Return the changes of the scene's keys: a built-in scene becomes its files."""
     named = place.name if place.parent == path.parent else str(place)
     scene = now.get("scene")
     if isinstance(scene, dict):
@@ -149,8 +149,8 @@ def _scene(now: Mapping[str, Any], path: Path, place: Path) -> dict[tuple[str, .
     return {("scene",): {**files, "segments": named}}
 
 
-def unframed(labels: Int32[np.ndarray, "h w"], config: PipelineConfig) -> Shaped[np.ndarray, "H W"]:
-    """Labels as the scene's files have them: turned back, and what was cut off gets the label that is nearest."""
+def undo_framing(labels: Int32[np.ndarray, "h w"], config: PipelineConfig) -> Shaped[np.ndarray, "H W"]:
+    """Return labels in the frame of the scene's files: rotated back, the cropped margin filled by nearest labels."""
     files = config.scene
     if not isinstance(files, SceneFiles) or (files.crop is None and not files.rotate):
         return labels
@@ -163,32 +163,32 @@ def unframed(labels: Int32[np.ndarray, "h w"], config: PipelineConfig) -> Shaped
     return np.pad(labels, ((y, rows - y - height), (x, columns - x - width)), mode="edge")
 
 
-def stands(path: Path, opened: str) -> bool:
-    """Whether the document's file is there, and says what was read from it or written to it last."""
+def is_in_file(path: Path, opened: str) -> bool:
+    """Return True if the document's file exists with the text that was last read from it or written to it."""
     try:
         return path.is_file() and read_text(path) == opened
     except ConfigError:
         return False
 
 
-def beside(path: Path) -> Path:
-    """Where the labels go beside a pipeline file: where there is nothing, or what was written for that very file."""
+def place_next_to(path: Path) -> Path:
+    """Return a path for labels next to a pipeline file: a new one, or one that was written for that very file."""
     names = itertools.chain([NAME], (f"{Path(NAME).stem}-{number}.png" for number in itertools.count(2)))
     places = (path.parent / name for name in names)
     return next(each for each in places if not os.path.lexists(each) or is_ours(each, path.name))
 
 
-def on_shelf(shelf: Path, picture: bytes) -> Path:
-    """Where a label picture lies on the shelf: by its content."""
-    return shelf / hashlib.sha256(picture).hexdigest()[:16] / NAME
+def in_store(store: Path, picture: bytes) -> Path:
+    """Return the path of a label picture in the store, named by its content."""
+    return store / hashlib.sha256(picture).hexdigest()[:16] / NAME
 
 
-def kept_before(place: Path, picture: bytes, shelf: Path, texts: Sequence[str], path: Path) -> dict[str, str]:
-    """Keep what another picture is to take the place of, for the texts that name it: a step back finds it there."""
+def keep_replaced(place: Path, picture: bytes, store: Path, texts: Sequence[str], path: Path) -> dict[str, str]:
+    """Keep the picture that is about to be replaced, for texts that name it: undo finds it in the store."""
     before = place.read_bytes() if place.is_file() else picture
     if before == picture:
         return {}
-    kept = on_shelf(shelf, before)
+    kept = in_store(store, before)
     moved: dict[str, str] = {}
     for text in dict.fromkeys(texts):
         scene = read_values(text, path).get("scene") if place.name in text else None
@@ -201,7 +201,7 @@ def kept_before(place: Path, picture: bytes, shelf: Path, texts: Sequence[str], 
 
 
 def write(place: Path, picture: bytes, document: Path | None, text: str) -> None:
-    """The labels and the document; neither without the other. Raises: OutputError."""
+    """Write the labels and the document, both or neither. Raises: OutputError."""
     with atomic_write(place) as file:
         file.write(picture)
         file.flush()  # what there is no room for shows before the document is touched

@@ -1,1 +1,1 @@
-"""A surface as pages draw it and read it: arrays in files, levels of detail, words."""
+"""A surface as pages draw and read it: arrays in files, levels of detail, words."""

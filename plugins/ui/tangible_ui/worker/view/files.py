@@ -1,4 +1,4 @@
-"""What is seen as pages fetch it: raw arrays in files, in a folder named by content."""
+"""Views as pages fetch them: raw arrays in files, in a folder named by content."""
 
 import json
 import shutil
@@ -17,22 +17,22 @@ from tangible_core.data.pictures import to_grey
 from tangible_core.errors import OutputError
 
 from . import levels
-from .surface_view import Seen
+from .surface_view import SurfaceView
 
 KEPT = 3
-"""Folders that stay: tabs may still fetch from the one before."""
+"""Folders that are kept: tabs may still fetch from the one before."""
 ABOUT = "about.json"
 MOST_PREVIEW = 1_000_000
-"""Pixels of the picture that is drawn first."""
+"""Maximum number of pixels of the picture that is drawn first."""
 MOST_FINE_SIDE = 16_384
-"""Browsers decode no larger ones."""
+"""Greatest side of a picture that browsers decode, pixels."""
 
 
-def show(seen: Seen, folder: Path) -> dict[str, Any]:
-    """Write what pages draw, whole or not at all, and return what they need to know of it.
+def show(seen: SurfaceView, folder: Path) -> dict[str, Any]:
+    """Write a view's files atomically, and return the message `scene`.
 
-    Heights are float32 as they are felt, not rounded: their slopes are drawn. Level 0 is the finest.
-    Raises: OutputError if it cannot be written.
+    Heights are float32 and not rounded: their slopes are drawn. Level 0 is the finest.
+    Raises: OutputError if they cannot be written.
     """
     at = folder / seen.digest
     about = _about(seen)
@@ -43,9 +43,9 @@ def show(seen: Seen, folder: Path) -> dict[str, Any]:
 
 
 def leave(at: Path, what: str, write: Callable[[Path], None]) -> None:
-    """Have a folder filled that pages fetch from: it is there whole or not at all, and one that is there stays.
+    """Fill a folder that pages fetch from, atomically; an existing one stays.
 
-    what: it holds, for people. Raises: OutputError if it cannot be written.
+    what: its contents, in words. Raises: OutputError if it cannot be written.
     """
     if at.exists():
         return
@@ -63,17 +63,17 @@ def leave(at: Path, what: str, write: Callable[[Path], None]) -> None:
 
 
 def material_of(materials: tuple[Material, ...]) -> tuple[list[Material], np.ndarray]:
-    """The materials, each once, and which of them each label has."""
+    """Return the distinct materials, and the index of each label's material among them."""
     places = {each: place for place, each in enumerate(dict.fromkeys(materials))}
     return list(places), np.array([places[each] for each in materials], "<u2")
 
 
 def label_type(labels: np.ndarray) -> str:
-    """The smallest type that holds them."""
+    """Return the smallest data type that holds the labels."""
     return "<u2" if int(labels.max(initial=0)) < 2**16 else "<u4"
 
 
-def _about(seen: Seen) -> dict[str, Any]:
+def _about(seen: SurfaceView) -> dict[str, Any]:
     rows, columns = seen.relief.height_m.shape
     steps = [2**level for level in range(levels.count((rows, columns)))]
     return {
@@ -104,7 +104,7 @@ def _about(seen: Seen) -> dict[str, Any]:
     }
 
 
-def _write(seen: Seen, about: dict[str, Any], part: Path) -> None:
+def _write(seen: SurfaceView, about: dict[str, Any], part: Path) -> None:
     _write_arrays(seen, len(about["levels"]), part)
     if seen.picture is not None:
         _write_picture(seen.picture, part)
@@ -112,7 +112,7 @@ def _write(seen: Seen, about: dict[str, Any], part: Path) -> None:
 
 
 def _put(part: Path, at: Path) -> None:
-    """In its place; if another thread put the same there first, that stays."""
+    """Rename the folder to its place; if another thread put the same there first, that stays."""
     try:
         part.rename(at)
     except OSError:
@@ -120,7 +120,7 @@ def _put(part: Path, at: Path) -> None:
             raise
 
 
-def _write_arrays(seen: Seen, count: int, part: Path) -> None:
+def _write_arrays(seen: SurfaceView, count: int, part: Path) -> None:
     for level, height_m in enumerate(levels.means(seen.relief.height_m, count)):
         _raw(part / f"height-{level}.f32", height_m, "<f4")
     if seen.labels is not None:
@@ -137,7 +137,7 @@ def _raw(path: Path, values: np.ndarray, kind: str) -> None:
 
 
 def _fine_size(picture: np.ndarray) -> tuple[int, int] | None:
-    """Width and height of the picture that is kept beside the one that is drawn first, where that is smaller."""
+    """Return width and height of the fine picture; None if the preview is as large."""
     rows, columns = picture.shape[:2]
     if rows * columns <= MOST_PREVIEW and max(rows, columns) <= levels.MOST_SIDE:
         return None
@@ -151,7 +151,7 @@ def _size(size: tuple[int, int], most_pixels: int, most_side: int) -> tuple[int,
 
 
 def _write_picture(picture: np.ndarray, part: Path) -> None:
-    """At a size that is drawn at once, and as it is where that is larger."""
+    """Write the preview, and the fine picture if that is larger."""
     whole = image_of(picture)
     if (fine := _fine_size(picture)) is not None:
         _save(whole, fine, part / "photo-fine.jpg")
@@ -159,14 +159,14 @@ def _write_picture(picture: np.ndarray, part: Path) -> None:
 
 
 def image_of(picture: np.ndarray) -> Image.Image:
-    """A picture as a browser shows it."""
+    """Return a picture as a browser shows it."""
     if picture.dtype != np.uint8:
         picture = np.round(255 * np.clip(to_grey(picture), 0, 1)).astype(np.uint8)
     return Image.fromarray(picture).convert("RGB")
 
 
 def write_whole(picture: np.ndarray, path: Path) -> None:
-    """A picture as it is, as far as a browser decodes it."""
+    """Write a picture at full size, up to what browsers decode."""
     whole = image_of(picture)
     _save(whole, _size(whole.size, whole.width * whole.height, MOST_FINE_SIDE), path)
 
@@ -177,7 +177,7 @@ def _save(whole: Image.Image, size: tuple[int, int], path: Path) -> None:
 
 
 def _sweep(folder: Path) -> None:
-    """Surfaces that were shown long ago go: a large one is a hundred megabytes."""
+    """Remove old surfaces: a large one has a hundred megabytes."""
     shown = sorted(folder.glob(f"*/{ABOUT}"), key=lambda path: path.stat().st_mtime_ns)
     for path in shown[:-KEPT]:
         shutil.rmtree(path.parent, ignore_errors=True)

@@ -1,4 +1,4 @@
-"""What there is to see of a pipeline: what was made of it, and nothing that would have to be made first."""
+"""Views of a pipeline: what was made of it, without making anything first."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -21,11 +21,11 @@ from tangible_core.scene.scaling import reduced_map, reduced_segments, reduced_s
 
 Shows = Literal["surface", "relief", "segments"]
 MOST_LAYER_CELLS = 1_000_000
-"""Of values that are only looked at."""
+"""Maximum number of cells of layers, which are only looked at."""
 
 
 class Layer(NamedTuple):
-    """Values to be warped over the surface, NaN where unknown; colours run from low to high."""
+    """Values to drape over the surface, NaN where unknown; colours run from low to high."""
 
     values: Float32[np.ndarray, "h w"]
     unit: str
@@ -34,7 +34,7 @@ class Layer(NamedTuple):
 
     @classmethod
     def of(cls, values: np.ndarray, unit: str, span: tuple[float, float] | None = None) -> "Layer":
-        """Reduced where it is large. span: low and high; without it, those of most of the values."""
+        """Build a layer, reduced if it is large. span: low and high; by default percentiles of the values."""
         factor = max(1.0, (values.size / MOST_LAYER_CELLS) ** 0.5)
         seen = reduced_map(np.ascontiguousarray(values, np.float32), reduced_shape(values.shape, factor))
         known = seen[np.isfinite(seen)]
@@ -45,7 +45,7 @@ class Layer(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Seen:
+class SurfaceView:
     """A surface to draw, or what there is of one."""
 
     name: str
@@ -54,46 +54,46 @@ class Seen:
     relief: Relief
     labels: Int32[np.ndarray, "h w"] | None
     materials: tuple[Material, ...]
-    """By label, as they are felt; empty where there are none."""
+    """Materials by label, as the device renders them; empty if there are none."""
     picture: np.ndarray | None
     layers: dict[str, Layer]
     names: tuple[str, ...] | None = None
-    """By label, of what the labels are parts of; None where they are of no parts."""
+    """Names of the parts by label; None if the labels are not parts."""
 
     @property
     def surface(self) -> HapticSurface:
-        """What is described of it."""
+        """The surface to describe in words."""
         if self.materials or self.names:
             return HapticSurface(self.relief, self.labels, self.materials or None, self.names)
         return HapticSurface(self.relief)
 
     @cached_property
     def digest(self) -> str:
-        """Of everything that is drawn."""
+        """Digest of everything that is drawn."""
         layers = tuple((name, *layer) for name, layer in sorted(self.layers.items()))
         parts = (self.name, self.shows, self.relief, self.labels, self.materials, self.picture, layers, self.names)
         return digest_of(parts)
 
 
-def see(pipeline: Pipeline, product: str) -> Seen:
-    """What there is to see once this product is made. Raises: as `make`, where a relief cannot be made of a depth."""
+def view_of(pipeline: Pipeline, product: str) -> SurfaceView:
+    """Return the view once this product is made. Raises: as `make`, if no relief can be made of a depth."""
     if product in ("surface", "touch"):
-        return see_surface(pipeline)
-    return see_relief(pipeline) if product in ("disparity", "relief") else see_segments(pipeline)
+        return view_surface(pipeline)
+    return view_relief(pipeline) if product in ("disparity", "relief") else view_segments(pipeline)
 
 
-def see_surface(pipeline: Pipeline) -> Seen:
-    """What is touched, its materials as the device holds them."""
-    return _of(_seen(pipeline, "surface", pipeline.surface.relief), pipeline.surface, pipeline.config)
+def view_surface(pipeline: Pipeline) -> SurfaceView:
+    """Return the view of the surface, with its materials as the device renders them."""
+    return _of(_view(pipeline, "surface", pipeline.surface.relief), pipeline.surface, pipeline.config)
 
 
-def see_parts(pipeline: Pipeline, surface: HapticSurface, before: Seen | None) -> Seen:
-    """A surface of the pipeline's parts that have other heights or materials. before: what was seen of it so far."""
-    seen = before or _seen(pipeline, "surface", surface.relief)
+def view_parts(pipeline: Pipeline, surface: HapticSurface, before: SurfaceView | None) -> SurfaceView:
+    """Return the view of a surface whose parts have other heights or materials. before: the last view."""
+    seen = before or _view(pipeline, "surface", surface.relief)
     return _of(replace(seen, relief=surface.relief), surface, pipeline.config)
 
 
-def _of(seen: Seen, surface: HapticSurface, config: PipelineConfig) -> Seen:
+def _of(seen: SurfaceView, surface: HapticSurface, config: PipelineConfig) -> SurfaceView:
     if config.felt_device is not None:
         surface, _ = fit_to_device(surface, config, config.felt_device)
     if surface.labels is None:
@@ -101,24 +101,24 @@ def _of(seen: Seen, surface: HapticSurface, config: PipelineConfig) -> Seen:
     return replace(seen, labels=surface.labels, materials=surface.materials or (), names=surface.names)
 
 
-def see_relief(pipeline: Pipeline) -> Seen:
-    """Heights, and segments where they are there. Raises: GeometryError where the depth gives none."""
-    return _seen(pipeline, "relief", pipeline.relief)
+def view_relief(pipeline: Pipeline) -> SurfaceView:
+    """Return the view of the heights, and of any segments. Raises: GeometryError if the depth gives no heights."""
+    return _view(pipeline, "relief", pipeline.relief)
 
 
-def see_segments(pipeline: Pipeline) -> Seen:
-    """Segments over the relief that is there, or over a flat picture."""
+def view_segments(pipeline: Pipeline) -> SurfaceView:
+    """Return the view of segments over the relief, or over a flat picture without one."""
     if is_there(pipeline, "relief"):
         relief = pipeline.relief
     else:
         felt = pipeline.engine.make_on_grid("segments")
         shape = pipeline.scene.shape if felt is None else felt.labels.shape
         relief = flat_relief(shape, pipeline.config.size.width_m)
-    return _seen(pipeline, "segments", relief)
+    return _view(pipeline, "segments", relief)
 
 
 def is_there(pipeline: Pipeline, product: Product) -> bool:
-    """Whether a product is at hand: the scene brings it, it was made, or is kept."""
+    """Return True if a product is available without making it: given, made, or cached."""
     done = {each.product: each.outcome for each in pipeline.outcomes}
     if done.get(product) in ("given", "ran", "cached"):
         return True
@@ -126,24 +126,24 @@ def is_there(pipeline: Pipeline, product: Product) -> bool:
     return steps.get(product) in ("given", "cached")
 
 
-def _seen(pipeline: Pipeline, shows: Shows, relief: Relief) -> Seen:
+def _view(pipeline: Pipeline, shows: Shows, relief: Relief) -> SurfaceView:
     labels = _labels(pipeline, relief.height_m.shape)
     chosen = at_hand(pipeline, "materials")
     materials = chosen.materials if chosen is not None and labels is not None else ()
     picture = None if pipeline.scene.views is None else pipeline.scene.views.left
     names = _names(pipeline) if labels is not None else None
-    return Seen(pipeline.scene.name, shows, relief, labels, materials, picture, _layers(pipeline), names)
+    return SurfaceView(pipeline.scene.name, shows, relief, labels, materials, picture, _layers(pipeline), names)
 
 
 def _names(pipeline: Pipeline) -> tuple[str, ...] | None:
-    """Of the parts, which are there; None where nothing is by parts."""
+    """Return the names of the parts; None if nothing is by parts."""
     config = pipeline.config
     parts: PartMap | None = at_hand(pipeline, config.felt_parts) if config.by_parts else None
     return None if parts is None else names_of(config.parts or {}, parts.count)
 
 
 def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h w"] | None:
-    """Of what has materials: of parts where anything is by parts, else of segments; None where they are not there."""
+    """Return labels of the parts if anything is by parts, else of the segments; None if they are not made."""
     parts = pipeline.config.felt_parts
     product: Product = parts if pipeline.config.by_parts else "segments"
     found = at_hand(pipeline, product)
@@ -153,7 +153,7 @@ def _labels(pipeline: Pipeline, shape: tuple[int, int]) -> Int32[np.ndarray, "h 
 
 
 def at_hand(pipeline: Pipeline, product: Product) -> Any:
-    """The product on the grid that is felt; None where it would have to be made."""
+    """Return a product on the working grid; None if it would have to be made."""
     return pipeline.engine.make_on_grid(product) if is_there(pipeline, product) else None
 
 
@@ -172,7 +172,7 @@ def _layers(pipeline: Pipeline) -> dict[str, Layer]:
 
 
 def _error(pipeline: Pipeline, disparity: DisparityMap) -> dict[str, Layer]:
-    """How far the disparity is from the truth, where the scene knows that."""
+    """Return the distance of the disparity from the truth, if the scene has one."""
     truth, whole = pipeline.scene.truth, pipeline.disparity
     if truth is None or whole is None or disparity.unit != "px" or truth.shape != whole.disparity_px.shape:
         return {}

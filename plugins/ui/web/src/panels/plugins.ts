@@ -49,7 +49,7 @@ export function panelInterface(name: string, page: Pick<Page, "hub" | "net" | "s
     root,
     language,
     words,
-    ask: (request, args) => page.net.ask(`${name}.${request}`, args),
+    ask: (request, args = {}) => page.net.ask("ask_panel", { panel: name, request, arguments: args }),
     on: (message, listener) => {
       if (!MESSAGES.includes(message)) throw new Error(`"${message}" is not a message; there are ${MESSAGES.join(", ")}`);
       const latest = page.hub.last(message);

@@ -177,7 +177,7 @@ interface Said {
 }
 
 export interface Events {
-  hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null; panels?: PluginPanel[] };
+  hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null };
   gone: Said;
   /** Told by the page itself: the server is another one, by its key or by its version. */
   refused: Said & { why: "key" | "version" };

@@ -1,4 +1,4 @@
-"""Answers out of damaged streams: none that was not sent, and back on track within two."""
+"""Answers from damaged streams: none that was not sent, and recovery within two answers."""
 
 import numpy as np
 import pytest
@@ -45,12 +45,12 @@ class Receiver:
 
 @given(st.lists(st.integers(1, 62), min_size=1, max_size=30))
 def test_receive_joins_answers_from_any_pieces(sizes: list[int]):
-    stream, receiver, found = b"".join(answer(n, -n, 2 * n) for n in range(20)), Receiver(), 0
+    stream, receiver, answers = b"".join(answer(n, -n, 2 * n) for n in range(20)), Receiver(), 0
     for size in sizes:
-        found += receiver(stream[:size])
+        answers += receiver(stream[:size])
         stream = stream[size:]
-    found += receiver(stream)
-    assert found == 20
+    answers += receiver(stream)
+    assert answers == 20
     assert receiver.answer.tobytes() == answer(19, -19, 38)
     assert receiver.counts[framing.DROPPED] == 0
 

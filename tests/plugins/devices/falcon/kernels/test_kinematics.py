@@ -45,16 +45,16 @@ def test_inverse_of_documented_tips_gives_counts(z: float, counts: int):
 
 @given(tips())
 def test_forward_undoes_inverse(tip: tuple[float, float, float]):
-    *found, ok = kinematics.forward(*kinematics.inverse(*tip), *START)
+    *tip_again, ok = kinematics.forward(*kinematics.inverse(*tip), *START)
     assert ok
-    assert np.linalg.norm(np.subtract(found, tip)) <= 1e-9
+    assert np.linalg.norm(np.subtract(tip_again, tip)) <= 1e-9
 
 
 @given(tips(), tips())
 def test_forward_from_any_start_finds_the_tip(tip: tuple[float, float, float], start: tuple[float, float, float]):
-    *found, ok = kinematics.forward(*kinematics.inverse(*tip), *start)
+    *tip_again, ok = kinematics.forward(*kinematics.inverse(*tip), *start)
     assert ok
-    assert np.linalg.norm(np.subtract(found, tip)) <= 1e-9
+    assert np.linalg.norm(np.subtract(tip_again, tip)) <= 1e-9
 
 
 @given(tips())
@@ -100,8 +100,8 @@ def test_forward_of_impossible_angles_returns_the_last_tip(angles: tuple[float, 
 
 @given(st.tuples(*[st.floats()] * 6))
 def test_forward_of_any_numbers_ends_and_is_finite_if_found(six: tuple[float, ...]):
-    *found, ok = kinematics.forward(*six)
-    assert not ok or np.isfinite(found).all()
+    *tip_again, ok = kinematics.forward(*six)
+    assert not ok or np.isfinite(tip_again).all()
 
 
 @pytest.mark.parametrize("far", [(0.0, 0.0, 0.3), (0.3, 0.0, 0.1), (0.0, 0.0, 0.0)])

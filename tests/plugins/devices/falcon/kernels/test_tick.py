@@ -1,4 +1,4 @@
-"""One tick of a Falcon: what is trusted, how fast it moves, and what force goes out."""
+"""A tick of a Falcon: trusted answers, velocity, and the force that is sent."""
 
 import math
 
@@ -15,7 +15,7 @@ from tangible_devices.falcon.kernels.velocity import rates
 
 
 class Falcon:
-    """The kernels on buffers of their own, fed with whole answers."""
+    """The kernels on separate buffers, fed with whole answers."""
 
     def __init__(self, calibration: Calibration | None = None) -> None:
         chosen = calibration or Calibration()
@@ -91,7 +91,7 @@ def test_force_fades_in_over_half_a_second(seconds: float, share: float):
 
 
 def in_packet(falcon: Falcon) -> list[int]:
-    """What goes out next, if nothing else is written."""
+    """The next packet, if no other force is written."""
     return list(packet.decode(falcon.buffers.packet)[:3])
 
 
@@ -200,9 +200,9 @@ def test_rate_is_that_of_the_longest_straight_window(arm: int):
         history = np.zeros((16, 4))
         history[: len(counts), 0] = np.arange(len(counts)) * 0.001
         history[: len(counts), arm] = counts
-        found = rates(history, len(counts) - 1, len(counts))
-        assert not np.delete(found, arm - 1).any()
-        return found[arm - 1]
+        estimates = rates(history, len(counts) - 1, len(counts))
+        assert not np.delete(estimates, arm - 1).any()
+        return estimates[arm - 1]
 
     assert rate([0, 0, 0, 0, 3, 6, 9, 12]) == pytest.approx(3000)
     assert rate([0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5]) == pytest.approx(500, rel=0.1)
@@ -235,7 +235,7 @@ def test_velocity_of_still_tip_is_quiet():
     st.tuples(*[st.floats(allow_nan=True, allow_infinity=True)] * 3),
 )
 def test_force_never_reverses(place: tuple[float, float, float], force: tuple[float, float, float]):
-    """Whatever is asked for, the torques on the wire are those of a force along it, to half a count."""
+    """For any force, the torques on the wire are those of a force along it, to half a count."""
     falcon = Falcon()
     falcon.settle(counts_at(*place), 0.6)
     *counts, _info = falcon.push(*force)[0]

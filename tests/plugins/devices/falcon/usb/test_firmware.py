@@ -1,4 +1,4 @@
-"""Firmware: what is refused before a byte is sent, and what a bad line costs."""
+"""Firmware: invalid images are refused before a byte is sent, and bad lines cost attempts."""
 
 import os
 from pathlib import Path
@@ -62,7 +62,7 @@ class TestImage:
 
 
 def load(line: Line, image: bytes | None = IMAGE) -> int:
-    """Start a Falcon over this line; how often it was reset."""
+    """Start a Falcon over this line; return the number of resets."""
     bus = bus_of(line)
     firmware.open_running(opener_of(bus), image).close()
     assert bus.units[0].chip.processor.mode == "run"

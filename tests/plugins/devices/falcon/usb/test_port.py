@@ -1,4 +1,4 @@
-"""The USB side of a Falcon: how it is found, claimed and set up, and what an error of any system is called."""
+"""The USB side of a Falcon: how it is found, claimed and set up, and how the errors of each system are reported."""
 
 import errno
 from array import array
@@ -17,7 +17,7 @@ LATENCY_1, BAUD, PURGES = (9, 1), (3, 0x0002), [(0, 1), (0, 2)]
 
 
 def requests(bus: Bus, monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
-    """What the chip is asked from now on."""
+    """The requests to the chip from now on."""
     asked: list[tuple[int, int]] = []
     chip = bus.units[0].chip
     control = chip.control
@@ -98,13 +98,13 @@ def test_serial_of_leaves_device_closed():
     + [(errno.EIO, "the transfer failed"), (None, "check its plug"), (9999, "check its plug")],
 )
 def test_device_error_of_each_number_has_its_words(number: int | None, word: str):
-    said = str(device_error(USBError("what libusb says", -1, number), "the Falcon", "reading"))
-    assert said.startswith("the Falcon, reading: ") and word in said and ";" in said
+    message = str(device_error(USBError("what libusb says", -1, number), "the Falcon", "reading"))
+    assert message.startswith("the Falcon, reading: ") and word in message and ";" in message
 
 
 def test_device_error_of_permission_has_rule_on_its_own_line():
-    said = str(device_error(USBError("what libusb says", -1, errno.EACCES), "the Falcon", "reading"))
-    assert UDEV_RULE in [line.strip() for line in said.splitlines()]
+    message = str(device_error(USBError("what libusb says", -1, errno.EACCES), "the Falcon", "reading"))
+    assert UDEV_RULE in [line.strip() for line in message.splitlines()]
 
 
 def test_device_error_of_wrong_driver_names_zadig():

@@ -1,0 +1,26 @@
+"""Requests of panels that plugins bring."""
+
+from pathlib import Path
+from typing import Any
+
+from ..state.session import Session, Tab
+from .table import request
+
+
+@request()
+async def panels(session: Session, tab: Tab | None) -> list[dict[str, Any]]:
+    """List the panels of plugins: name, titles by language, address of the ES module."""
+    found = await session.worker.quick("panels")
+    modules = {each["name"]: Path(each["module"]) for each in found}
+    session.panel_folders = {name: module.parent for name, module in modules.items()}
+    return [{**each, "module": f"/panels/{each['name']}/{modules[each['name']].name}"} for each in found]
+
+
+@request()
+async def ask_panel(
+    session: Session, tab: Tab | None, panel: str, request: str, arguments: dict[str, Any] | None = None
+) -> Any:
+    """Have a plugin answer a request of its panel, about the current document. Raises: whatever the plugin raises."""
+    document = {"text": session.text, "path": session.path, "sets": session.sets}
+    told = {"panel": panel, "request": request, "arguments": arguments or {}}
+    return await session.worker.quick("ask_panel", **document, **told)

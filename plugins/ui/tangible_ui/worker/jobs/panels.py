@@ -1,0 +1,39 @@
+"""Jobs of panels that plugins bring: list them, and answer their requests. The server imports no plugin for them."""
+
+from pathlib import Path
+from typing import Any
+
+from tangible_core.errors import ConfigError, did_you_mean, quoted
+
+from ...page_panel import installed_panels
+from ..state import WorkerState
+from .table import job
+
+
+@job(quick=True)
+def panels(state: WorkerState) -> list[dict[str, Any]]:
+    """List the installed panels: name, titles by language, path of the ES module."""
+    return [
+        {"name": name, "title": dict(panel.title), "module": str(panel.module.resolve())}
+        for name, panel in installed_panels().items()
+    ]
+
+
+@job(quick=True)
+def ask_panel(
+    state: WorkerState,
+    text: str,
+    path: Path,
+    sets: list[str],
+    panel: str,
+    request: str,
+    arguments: dict[str, Any],
+) -> Any:
+    """Have a plugin answer a request of its panel. Raises: ConfigError if there is none; whatever the plugin raises."""
+    found = installed_panels().get(panel)
+    if found is None:
+        raise ConfigError(f"{quoted(panel)} is not a panel of a plugin{did_you_mean(panel, installed_panels())}")
+    if request not in found.requests:
+        hint = did_you_mean(request, found.requests)
+        raise ConfigError(f"the panel {panel} answers no request {quoted(request)}{hint}")
+    return found.requests[request](state.pipeline_of(text, path, sets), **arguments)

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Int64
 
 from ..data import Material, MaterialMap, PartMap, Relief
-from ..preflight.verdict import Cure, Verdict, held
+from ..preflight.verdict import Cure, Verdict, check_bound
 from .neighbours import Steps, sample_relief, steps_between
 from .rules import Profile
 from .simplifying.textures import count_textures
@@ -120,7 +120,7 @@ class LegibilityInput:
         at: tuple[tuple[float, float], ...],
     ) -> Verdict:
         rule = self.profile.rules[check]
-        verdict = held(
+        verdict = check_bound(
             *(check, of, float(value), rule.relation, rule.bound, rule.unit, rule.citation),
             cure=cure(float(value)),
             says=says,

@@ -6,8 +6,8 @@ from typing import Any, Self
 from ..data import MaterialMap, PartMap, Relief
 from ..errors import GeometryError
 from ..plugins.interfaces import Medium
-from ..preflight.preflight import agreed, reasons, worst
-from ..preflight.verdict import Grade, Verdict, held
+from ..preflight.preflight import reasons, reconcile_cures, worst
+from ..preflight.verdict import Grade, Verdict, check_bound
 from ..preflight.wording import as_data
 from .checks import CHECKS, height
 from .grid import on_grid
@@ -24,7 +24,7 @@ class Legibility(tuple[Verdict, ...]):
     @classmethod
     def of(cls, verdicts: Iterable[Verdict]) -> Self:
         """Collect independent verdicts; cures that change the same key get the same value."""
-        return cls(agreed(verdicts))
+        return cls(reconcile_cures(verdicts))
 
     @property
     def grade(self) -> Grade:
@@ -91,7 +91,7 @@ def _judge_undivided(medium: Medium, relief: Relief | None, width_m: float) -> I
     rule, cure = PROFILES[medium].rules["parts"], "add `parts: {}` to the file, and a method for `texture:`"
     says = "the picture is not divided into parts"
     worse: Grade = "warn" if medium in ("print", "force") else rule.worse
-    yield held(
+    yield check_bound(
         *("parts", "the picture", 0.0, rule.relation, rule.bound, rule.unit, rule.citation),
         cure=cure, says=says, worse=worse,
     )  # fmt: skip
@@ -115,7 +115,7 @@ def sizes(medium: Medium, **sizes_m: float) -> Legibility:
 
 def _size(rule: Rule, size_m: float) -> Verdict:
     most = "at most" if rule.relation == "<=" else "at least"
-    return held(
+    return check_bound(
         *(rule.check, rule.says, size_m, rule.relation, rule.bound, rule.unit, rule.citation),
         says=f"the {rule.check} is {millimetres(size_m)}, and {most} {millimetres(rule.bound)} are needed",
         cure=f"{most} {millimetres(rule.bound)}",

@@ -1,4 +1,4 @@
-"""What can be known before a motor moves: of the surface, the law, the device and this machine; a verdict a line."""
+"""Checks before a motor moves: of the surface, the force law, the device and this machine; a verdict a line."""
 
 from .checks import CHECKS, judge
 from .fitting import fit_surface

@@ -1,4 +1,4 @@
-"""Materials made to fit a device: what it cannot hold of one is taken off that one, before the guard softens all."""
+"""Materials limited to what a device renders stably, one by one, before the guard would soften all of them."""
 
 import math
 from dataclasses import replace
@@ -13,19 +13,20 @@ from ..servo.guard.safety import (
 )
 
 EXPLORING_N = 1.0
-"""What a hand presses with that explores (HaTT): under it, a texture's curvature adds so much stiffness."""
+"""Press of a hand that explores (HaTT), under which the curvature of a texture adds stiffness."""
 
 
 def fit(material: Material, spec: DeviceSpec, safety: Safety) -> Material:
-    """The material as far as this device holds it at 1 kHz; itself, where that is all of it.
+    """Limit a material to what this device renders stably at 1 kHz; return itself if that is all of it.
 
-    A wave of amplitude a and wavelength L under a press P is a spring sideways, of P a (2 pi / L)^2 at most: beside the
-    material's stiffness it is to stay under what the guard leaves to a law, and the damping under what stiffness leaves
-    of the device's own, b > K T (1 + 2 d) / 2 + B (1 + g^2), g the greatest slope of such a wave.
+    A wave of amplitude a and wavelength L under a press P is a sideways spring of at most P a (2 pi / L)^2. This and
+    the material's stiffness together stay below the stiffness that the guard leaves to a force law. The damping B stays
+    below what stiffness leaves of the device's damping b: b > K T (1 + 2 d) / 2 + B (1 + g^2), with g the greatest
+    slope of the wave.
     Source: Colgate & Schenkel 1997, as `safety`.
     """
     damping = effective_damping_n_s_per_m(spec)
-    most = _left_to_a_law(damping, spec, safety)
+    most = _most_n_per_m(damping, spec, safety)
     if not most > 0:
         return material
     stiffness = min(material.stiffness_n_per_m, most)
@@ -38,21 +39,21 @@ def fit(material: Material, spec: DeviceSpec, safety: Safety) -> Material:
 
 
 def fit_surface(surface: HapticSurface, spec: DeviceSpec, safety: Safety) -> tuple[HapticSurface, str]:
-    """The surface with its materials as far as this device holds them, and what was taken off them, in words."""
+    """Limit the materials of a surface to what this device renders stably; return a text on the changes as well."""
     if surface.materials is None:
         return surface, ""
     pairs = {each: fit(each, spec, safety) for each in dict.fromkeys(surface.materials)}  # however many labels have it
     materials = tuple(pairs[each] for each in surface.materials)
-    if not (said := ", ".join(filter(None, (changes(*pair) for pair in pairs.items())))):
+    if not (changes := ", ".join(filter(None, (describe_change(*pair) for pair in pairs.items())))):
         return surface, ""
-    return replace(surface, materials=materials), f"softened to what the device holds: {said}"
+    return replace(surface, materials=materials), f"limited to what the device renders stably: {changes}"
 
 
-def changes(before: Material, after: Material) -> str:
-    """What was taken off a material, in words; empty where nothing was.
+def describe_change(before: Material, after: Material) -> str:
+    """Describe the change of a material; empty if there is none.
 
     >>> glass = Material("glass", 2500.0, 2.0, 0.2, 0.1, texture="smooth")
-    >>> changes(glass, replace(glass, stiffness_n_per_m=2400.0))
+    >>> describe_change(glass, replace(glass, stiffness_n_per_m=2400.0))
     'glass (stiffness 2500 to 2400 N/m)'
     """
     each = (
@@ -60,13 +61,13 @@ def changes(before: Material, after: Material) -> str:
         ("texture", 1e6 * before.roughness_m, 1e6 * after.roughness_m, "um"),
         ("damping", before.damping_n_s_per_m, after.damping_n_s_per_m, "N s/m"),
     )
-    said = [f"{what} {was:g} to {float(f'{now:.3g}'):g} {unit}" for what, was, now, unit in each if was != now]
-    return f"{before.name} ({', '.join(said)})" if said else ""
+    texts = [f"{name} {was:g} to {float(f'{now:.3g}'):g} {unit}" for name, was, now, unit in each if was != now]
+    return f"{before.name} ({', '.join(texts)})" if texts else ""
 
 
-def _left_to_a_law(damping_n_s_per_m: float, spec: DeviceSpec, safety: Safety) -> float:
-    """The stiffness that the guard leaves to a law, as `Safety.arrays` has it."""
-    held = safety.stiffness_margin * stiffness_limit_n_per_m(damping_n_s_per_m, NOMINAL_S, safety.delay_ticks)
+def _most_n_per_m(damping_n_s_per_m: float, spec: DeviceSpec, safety: Safety) -> float:
+    """Return the stiffness that the guard leaves to a force law, as in `Safety.arrays`."""
+    most = safety.stiffness_margin * stiffness_limit_n_per_m(damping_n_s_per_m, NOMINAL_S, safety.delay_ticks)
     if safety.friction_n is not None:
-        held = min(held, safety.stiffness_margin * encoder_limit_n_per_m(safety.friction_n, spec.resolution_m))
-    return min(held, spec.max_stiffness_n_per_m)
+        most = min(most, safety.stiffness_margin * encoder_limit_n_per_m(safety.friction_n, spec.resolution_m))
+    return min(most, spec.max_stiffness_n_per_m)

@@ -1,4 +1,4 @@
-"""All that the checks know: facts and measurements, none of which the checks take themselves."""
+"""The input of the checks: facts and measurements, all taken before the checks run."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -29,12 +29,12 @@ ENCODER = "Abbott & Okamura 2005: 2 f / resolution"
 
 @dataclass(frozen=True)
 class Hand:
-    """How the surface is explored."""
+    """The hand that explores the surface."""
 
     speed_m_per_s: float = 0.12
-    """Of a stroke: that at which the library's textures were measured (HaTT)."""
+    """Speed of a stroke: that at which the library's textures were measured (HaTT)."""
     press_n: float = 3.0
-    """Downwards, firmly: exploring takes about 1 N (HaTT)."""
+    """Downward force of a firm press; exploring takes about 1 N (HaTT)."""
 
     def __post_init__(self) -> None:
         _check("speed", self.speed_m_per_s, 0.001, 10, "metres a second")
@@ -43,7 +43,7 @@ class Hand:
 
 @dataclass(frozen=True)
 class Loop:
-    """How often forces are computed, and for how long this machine is tried."""
+    """The rate at which forces are computed, and the time for which this machine is measured."""
 
     rate_hz: float = 1000.0
     seconds: float = 2.0
@@ -54,50 +54,50 @@ class Loop:
 
     @property
     def period_s(self) -> float:
-        """From tick to tick."""
+        """Time from tick to tick."""
         return 1 / self.rate_hz
 
 
 def _check(option: str, value: float, least: float, most: float, unit: str) -> None:
     if not least <= value <= most:
-        raise ConfigError(f"--{option}: is {value:g}; it is {least:g} to {most:g} {unit}")
+        raise ConfigError(f"--{option}: is {value:g}; it must be {least:g} to {most:g} {unit}")
 
 
 class Ceiling(NamedTuple):
     """A limit of stiffness."""
 
     limit_n_per_m: float
-    """Above it, a law may buzz."""
+    """Stiffness above which a force law may buzz."""
     share: float
-    """What the guard of the loop leaves to a law of that; a stiffer one it softens."""
+    """Share of the limit that the guard leaves to a force law; a stiffer one is softened."""
     source: str
 
     @property
     def most_n_per_m(self) -> float:
-        """What is left to a law."""
+        """Stiffness that is left to a force law."""
         return self.share * self.limit_n_per_m
 
 
 @dataclass(frozen=True, eq=False)
 class Flight:
-    """One surface under one law on one device, on this machine."""
+    """A surface under a force law on a device, on this machine."""
 
     surface: HapticSurface
     law: ForceRenderer
     stiffness_n_per_m: float
-    """The law's own word for the greatest on level ground, or what was felt of it; 0 for one that is no spring."""
+    """Stated or else measured stiffness of the force law on level ground; 0 for one that is not a spring."""
     spec: DeviceSpec
     size: FeltSize
     relief_key: str
-    """Where the configuration says how high the relief is, empty where each part has a height of its own;"""
+    """Config key that sets the relief height; empty if heights are per part."""
     relief_m: float
-    """and what it says there."""
+    """Relief height, metres."""
     smoothed: bool
-    """Whether `workspace.smooth_m` rounds the relief; one that the scene brings stays as it is."""
+    """True if `workspace.smooth_m` rounds the relief; a relief that the scene brings is not rounded."""
     law_name: str
-    """What the configuration calls the law."""
+    """Name of the force law in the configuration."""
     fitted: bool
-    """Whether the materials were made to fit the device."""
+    """True if the materials were limited to the device."""
     safety: Safety
     hand: Hand
     period_s: float
@@ -106,8 +106,8 @@ class Flight:
     cost: TickCost
 
     @property
-    def met(self) -> tuple[Material, ...]:
-        """The materials that a hand can meet: those of labels that the surface has."""
+    def present_materials(self) -> tuple[Material, ...]:
+        """The materials of labels that the surface has."""
         if self.surface.labels is None or self.surface.materials is None:
             return ()
         labels: list[int] = np.unique(self.surface.labels).tolist()
@@ -115,32 +115,32 @@ class Flight:
 
     @property
     def max_force_n(self) -> float:
-        """The greatest force that reaches the hand."""
+        """Greatest force that reaches the hand."""
         return min(self.safety.max_force_n or np.inf, self.spec.max_force_n)
 
     @property
     def max_step_n(self) -> float:
-        """The most by which a force may grow in a tick."""
+        """Greatest growth of a force in a tick."""
         return self.safety.max_step_n * min(1.0, self.period_s / NOMINAL_S)
 
     @property
     def damping_n_s_per_m(self) -> float:
-        """The device's damping, as far as it is to be believed."""
+        """Plausible part of the device's damping."""
         return effective_damping_n_s_per_m(self.spec)
 
     @cached_property
     def coupling_m_per_n(self) -> float:
-        """By how much the loop's virtual coupling gives way; 0 without one."""
+        """Compliance of the loop's virtual coupling; 0 without one."""
         settings, _ = self.safety.arrays(self.spec, self.stiffness_n_per_m)
         stiffness = float(settings[layout.COUPLING])
         return 1 / stiffness if stiffness > 0 else 0.0
 
     def felt_n_per_m(self, stiffness_n_per_m: float) -> float:
-        """What the device feels of a stiffness, through the coupling."""
+        """Return the stiffness that reaches the device through the coupling."""
         return stiffness_n_per_m / (1 + max(0.0, stiffness_n_per_m) * self.coupling_m_per_n)
 
     def felt_damping_n_s_per_m(self, damping_n_s_per_m: float) -> float:
-        """What the device feels of a damping that changes fast, through the coupling."""
+        """Return the part of a fast-changing damping that reaches the device through the coupling."""
         settings, _ = self.safety.arrays(self.spec, self.stiffness_n_per_m)
         if not settings[layout.COUPLING] > 0:
             return damping_n_s_per_m
@@ -149,19 +149,19 @@ class Flight:
 
     @property
     def nominal_n_per_m(self) -> float:
-        """The stiffest wall that a loop of 1 kHz holds on this device, by its damping."""
+        """Stiffness of the stiffest wall that a loop of 1 kHz renders stably on this device, by its damping."""
         return stiffness_limit_n_per_m(self.damping_n_s_per_m, NOMINAL_S, self.safety.delay_ticks)
 
     def passive_n_per_m(self, late_s: float = 0.0) -> float:
-        """The stiffest wall that this loop holds where ticks come so late."""
+        """Return the stiffness of the stiffest wall that this loop renders stably if ticks are late by `late_s`."""
         return stiffness_limit_n_per_m(self.damping_n_s_per_m, self.period_s + late_s, self.safety.delay_ticks)
 
     @property
     def ceilings(self) -> Sequence[Ceiling]:
-        """The limits of stiffness, the lowest first."""
+        """Limits of stiffness, the lowest first."""
         own = self.spec.max_stiffness_n_per_m * min(1.0, NOMINAL_S / self.period_s)
         margin, friction_n = self.safety.stiffness_margin, self.safety.friction_n
-        found = [Ceiling(self.passive_n_per_m(), margin, PASSIVE), Ceiling(own, 1.0, DEVICE)]
+        ceilings = [Ceiling(self.passive_n_per_m(), margin, PASSIVE), Ceiling(own, 1.0, DEVICE)]
         if friction_n is not None:
-            found.append(Ceiling(encoder_limit_n_per_m(friction_n, self.spec.resolution_m), margin, ENCODER))
-        return sorted(found, key=lambda each: each.most_n_per_m)
+            ceilings.append(Ceiling(encoder_limit_n_per_m(friction_n, self.spec.resolution_m), margin, ENCODER))
+        return sorted(ceilings, key=lambda each: each.most_n_per_m)

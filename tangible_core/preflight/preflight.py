@@ -1,4 +1,4 @@
-"""All verdicts of one preflight: one sentence, and cures that agree with each other."""
+"""All verdicts of a preflight, with one sentence and cures that agree with each other."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -7,8 +7,8 @@ from typing import Any, Self
 from .verdict import Change, Grade, Verdict
 from .wording import as_data
 
-SAID = 3
-"""So many reasons are named in a sentence; how many more there are is counted."""
+MOST_REASONS = 3
+"""Number of reasons in a sentence; further ones are counted."""
 
 
 class Preflight(tuple[Verdict, ...]):
@@ -18,25 +18,25 @@ class Preflight(tuple[Verdict, ...]):
 
     @classmethod
     def of(cls, verdicts: Iterable[Verdict]) -> Self:
-        """Of verdicts each of which knows nothing of the others: where several change one key, all say the same value.
+        """Collect independent verdicts; cures that change the same key get the same value.
 
         A change that would undo that of another verdict is left out.
         """
-        return cls(agreed(verdicts))
+        return cls(reconcile_cures(verdicts))
 
     @property
     def grade(self) -> Grade:
-        """The worst of them."""
+        """The worst grade."""
         return worst(self)
 
     @property
     def safe(self) -> bool:
-        """Whether nothing is unsafe."""
+        """True if nothing is unsafe."""
         return self.grade != "unsafe"
 
     @property
     def sentence(self) -> str:
-        """Safe, safe but, or unsafe because: in plain words.
+        """A sentence on the result: safe, safe but ..., or unsafe because ....
 
         >>> Preflight().sentence
         'Safe: nothing is wrong.'
@@ -46,9 +46,9 @@ class Preflight(tuple[Verdict, ...]):
         return f"{'Safe, but' if self.safe else 'Unsafe, because'} {reasons(self)}."
 
     def as_data(self) -> dict[str, Any]:
-        """All of it as JSON says it, for a program that shows it: see `wording.as_data`."""
-        said = {"grade": self.grade, "safe": self.safe, "sentence": self.sentence}
-        return {**said, "verdicts": [as_data(each) for each in self]}
+        """Return the verdicts as JSON data, for programs: see `wording.as_data`."""
+        summary = {"grade": self.grade, "safe": self.safe, "sentence": self.sentence}
+        return {**summary, "verdicts": [as_data(each) for each in self]}
 
     def __repr__(self) -> str:
         wrong = [each for each in self if each.verdict != "ok"]
@@ -59,27 +59,27 @@ class Preflight(tuple[Verdict, ...]):
 GRADES: tuple[Grade, ...] = ("unsafe", "illegible", "warn", "ok")
 
 
-def agreed(verdicts: Iterable[Verdict]) -> list[Verdict]:
-    """With one value for each key that several change; a change that would undo that of another is left out."""
-    found = list(verdicts)
-    wanted: dict[str, Change] = {}
-    for change in (change for each in sorted(found, key=_rank) for change in each.changes):
-        wanted[change.key] = wanted[change.key].stricter(change) if change.key in wanted else change
-    return [_agreed(each, wanted) for each in found]
+def reconcile_cures(verdicts: Iterable[Verdict]) -> list[Verdict]:
+    """Give all changes of a key the strictest value; leave out a change that would undo that of a worse verdict."""
+    verdicts = list(verdicts)
+    strictest: dict[str, Change] = {}
+    for change in (change for each in sorted(verdicts, key=_rank) for change in each.changes):
+        strictest[change.key] = strictest[change.key].stricter(change) if change.key in strictest else change
+    return [_reconcile(each, strictest) for each in verdicts]
 
 
 def worst(verdicts: Iterable[Verdict]) -> Grade:
-    """The worst grade of them; `ok` of none."""
+    """Return the worst grade; `ok` without a verdict."""
     return GRADES[min(map(_rank, verdicts), default=-1)]
 
 
 def reasons(verdicts: Iterable[Verdict]) -> str:
-    """What the worst of them say, as the end of a sentence."""
-    found = list(verdicts)
-    grade = worst(found)
-    said = list(dict.fromkeys(each.says for each in found if each.verdict == grade and each.says))
-    more = len(said) - SAID
-    named = said[:SAID] + ([f"{more} more thing{'s' * (more > 1)}"] if more > 0 else [])
+    """Join the texts of the worst verdicts, as the end of a sentence."""
+    verdicts = list(verdicts)
+    grade = worst(verdicts)
+    texts = list(dict.fromkeys(each.says for each in verdicts if each.verdict == grade and each.says))
+    more = len(texts) - MOST_REASONS
+    named = texts[:MOST_REASONS] + ([f"{more} more thing{'s' * (more > 1)}"] if more > 0 else [])
     return " and ".join(filter(None, [", ".join(named[:-1]), named[-1]]))
 
 
@@ -87,11 +87,11 @@ def _rank(verdict: Verdict) -> int:
     return GRADES.index(verdict.verdict)
 
 
-def _agreed(verdict: Verdict, wanted: dict[str, Change]) -> Verdict:
-    """With the values that all verdicts agree on."""
+def _reconcile(verdict: Verdict, strictest: dict[str, Change]) -> Verdict:
+    """Replace the values of a verdict's changes by the strictest ones."""
     cure, kept = verdict.cure, list[Change]()
     for change in verdict.changes:
-        best = wanted[change.key]
+        best = strictest[change.key]
         if best.keeps(change):
             kept.append(best)
             cure = cure.replace(str(change), str(best))

@@ -1,4 +1,4 @@
-"""A touch felt all over, by a hand that presses down as a hand does: whatever the law, it is only asked for forces."""
+"""Probes of a touch all over its surface, by a hand that presses down; any force law works, as only forces are read."""
 
 from dataclasses import dataclass
 from typing import final
@@ -11,21 +11,21 @@ from ..plugins.interfaces import Touch
 from ..scene.geometry import picture_to_workspace
 
 PLACES = 64
-"""A side of the grid; a surface of fewer cells is probed at each of them."""
+"""Places along a side of the grid; a surface of fewer cells is probed at every cell."""
 SKIN_M = 1e-6
-"""As deep as a hand that has only just come in."""
+"""Depth of a hand that has just made contact."""
 STEP_M = 1e-4
-"""How much farther it goes in to find the stiffness: about what a hand moves in a tick."""
+"""Further depth at which the stiffness is measured: about the movement of a hand in a tick."""
 SLOW_STEP_M = 2e-5
-"""And to find the damping: so little in a tick that the waves of a fine texture, which fade with speed, are whole."""
+"""Step at which the damping is measured: so short that waves of a fine texture, which fade with speed, do not fade."""
 SOFT_M = 1e-3
-"""How deep a hand is taken to press where a law is no spring and does not hold it up."""
+"""Depth of the hand under a force law that is not a spring and does not hold the hand up."""
 CLEAR_M = 0.02
-"""Between two places the hand is so far above the highest point."""
+"""Height of the hand over the highest point, between two places."""
 RESTS = 8
 """Ticks at rest, in which a proxy settles."""
 ROUNDS = 3
-"""Depths tried until the force is what the hand presses with; one is enough where force grows with depth in line."""
+"""Depths tried until the force equals the press; one is enough if force is proportional to depth."""
 
 Points = Float64[np.ndarray, "n 3"]
 Each = Float64[np.ndarray, " n"]
@@ -33,18 +33,18 @@ Each = Float64[np.ndarray, " n"]
 
 @dataclass(frozen=True, eq=False)
 class Probes(Record):
-    """What was felt at each place."""
+    """Measurements at each place."""
 
     depth_m: Each
-    """How far straight under the surface the hand came to rest."""
+    """Depth straight under the surface at which the hand came to rest."""
     force_n: Points
-    """What it then felt."""
+    """Force at rest."""
     onset_n: Each
-    """Magnitude of the force a micrometre under the surface: how much it steps on contact."""
+    """Magnitude of the force a micrometre under the surface: its step on contact."""
     stiffness_n_per_m: Each
-    """By how much the force grows, along itself, for a metre farther against it."""
+    """Growth of the force, along itself, with the distance moved against it."""
     damping_n_s_per_m: Each
-    """And for a metre per second."""
+    """Growth of the force, along itself, with the speed against it."""
 
     @property
     def strength_n(self) -> Each:
@@ -57,8 +57,8 @@ def probe(
 ) -> Probes:
     """Press down on a grid of places with press_n, no deeper than reach_m under the surface.
 
-    Sideways the hand is held, so that a slope's force is whole: as strong as it gets for this press. A law that does
-    not hold the hand up (one for a device on a table) is felt at the depth at which its spring would.
+    The hand is held sideways, so that the force of a slope is the strongest for this press. A force law that does not
+    hold the hand up (one for a device on a table) is probed at the depth at which its spring would.
     """
     feeler = _Feeler(touch, float(surface.height_m.max()) + CLEAR_M, period_s)
     places = _places(surface)
@@ -86,22 +86,22 @@ def probe(
 
 @final
 class _Feeler:
-    """A hand that is lifted clear of the surface before every place, so that no place remembers another."""
+    """A hand that is lifted clear of the surface before every place, so that places do not affect each other."""
 
     def __init__(self, touch: Touch, clear_m: float, period_s: float) -> None:
         self._touch, self._clear_m, self._period_s = touch, clear_m, period_s
 
     def rest(self, places: Points) -> Points:
-        """The force at each place, the hand at rest."""
+        """Return the force at each place, the hand at rest."""
         return self._stop(places)[:, 0, -1]
 
     def push(self, places: Points, step_m: Points) -> tuple[Points, Points, Points]:
-        """The force at rest at each place; a step farther in the tick after; and there, at rest."""
+        """Return the force at rest at each place, a step farther in the next tick, and there at rest."""
         forces = self._stop(places, places + step_m)
         return forces[:, 0, -1], forces[:, 1, 0], forces[:, 1, -1]
 
     def _stop(self, *stops: Points) -> Float64[np.ndarray, "n stops ticks 3"]:
-        """Forces at each stop, tick by tick, from the arrival on."""
+        """Return the forces at each stop, tick by tick, from the arrival on."""
         lifted = stops[0].copy()
         lifted[:, 2] = self._clear_m
         ticks = 1 + RESTS
@@ -111,7 +111,7 @@ class _Feeler:
 
 
 def _places(surface: HapticSurface) -> Points:
-    """Centres of cells, evenly spread, on the surface."""
+    """Return evenly spread cell centres on the surface."""
     rows, columns = (_spread(count) for count in surface.height_m.shape)
     row, column = (each.ravel() for each in np.meshgrid(rows, columns, indexing="ij"))
     x, y = picture_to_workspace(column, row, surface.height_m.shape, surface.extent_m)
@@ -119,6 +119,6 @@ def _places(surface: HapticSurface) -> Points:
 
 
 def _spread(count: int) -> np.ndarray:
-    """At most PLACES whole numbers under count, symmetric: the middles of so many equal parts."""
+    """Return at most PLACES indices below count, symmetric: the middles of equal parts."""
     parts = min(count, PLACES)
     return ((np.arange(parts) + 0.5) * count / parts).astype(np.int64)

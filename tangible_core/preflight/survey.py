@@ -1,4 +1,4 @@
-"""Gather what the checks need: feel the touch all over, and time it and this machine. No device is opened."""
+"""Gather the input of the checks: probe the touch, and time it and this machine. No device is opened."""
 
 import math
 
@@ -34,14 +34,13 @@ def survey(
     hand: Hand | None = None,
     loop: Loop | None = None,
 ) -> Flight:
-    """What there is to know of this surface and its touch under a law, on a device that is not opened for it.
+    """Gather facts and measurements of a surface and its touch under a force law, on a device that is not opened.
 
-    scene_relief_m: height of the relief, where the scene says it and not the workspace. of_parts: whether it
-    is made of parts, each of its own height. smoothed: whether
-    `workspace.smooth_m` rounds the relief; one that the scene brings stays as it is. law_name: what the configuration
-    calls the law. fitted: whether the materials were made to fit the device.
-    Takes `loop.seconds`, in which this machine's lateness is measured, and a moment more. Raises: BrokenMethod if the
-    touch gives a force that is not finite, for no bound can then be told.
+    scene_relief_m: height of the relief if the scene sets it and not the workspace. of_parts: heights are per part.
+    smoothed: `workspace.smooth_m` rounds the relief. law_name: of the force law in the configuration. fitted: the
+    materials were limited to the device.
+    Takes `loop.seconds`, in which this machine's lateness is measured, and a moment more.
+    Raises: BrokenMethod if the touch gives a force that is not finite, as a bound cannot be computed then.
     """
     size, safety = size or Workspace().size("heights"), safety or Safety()
     hand, loop = hand or Hand(), loop or Loop()
@@ -70,8 +69,8 @@ def survey(
 
 
 def _check_finite(law: ForceRenderer, probes: Probes) -> None:
-    felt = (probes.force_n.sum(axis=1), probes.onset_n, probes.stiffness_n_per_m, probes.damping_n_s_per_m)
-    broken = ~np.isfinite(felt).all(axis=0)
+    values = (probes.force_n.sum(axis=1), probes.onset_n, probes.stiffness_n_per_m, probes.damping_n_s_per_m)
+    broken = ~np.isfinite(values).all(axis=0)
     if broken.any():
         who = plugin_name("render", type(law).__module__, type(law).__qualname__)
         raise BrokenMethod(
@@ -81,16 +80,16 @@ def _check_finite(law: ForceRenderer, probes: Probes) -> None:
 
 
 def _stroke(surface: HapticSurface, probes: Probes, step_m: float) -> Float64[np.ndarray, "n 3"]:
-    """To and fro over the surface, pressed in as deep as the probes were in the middle."""
+    """Return a path to and fro over the surface, at the median depth of the probes."""
     (width_m, length_m), shape = surface.extent_m, surface.height_m.shape
-    gone_m = np.arange(TICKS) * step_m
-    x, y = _to_and_fro(gone_m, width_m), _to_and_fro(gone_m / math.e, length_m)
+    way_m = np.arange(TICKS) * step_m
+    x, y = _to_and_fro(way_m, width_m), _to_and_fro(way_m / math.e, length_m)
     column, row = workspace_to_picture(x, y, shape, surface.extent_m)
     heights = surface.height_m[np.rint(row).astype(int), np.rint(column).astype(int)]
     return np.column_stack([x, y, heights - np.median(probes.depth_m)])
 
 
-def _to_and_fro(gone_m: np.ndarray, length_m: float) -> np.ndarray:
-    """Between the outermost thousandths of a length, from its middle on."""
-    turns = gone_m / (2 * length_m) + 0.25
+def _to_and_fro(way_m: np.ndarray, length_m: float) -> np.ndarray:
+    """Return positions on a way to and fro, from the middle of a length, without its outermost thousandths."""
+    turns = way_m / (2 * length_m) + 0.25
     return 0.999 * length_m * (np.abs(2 * (turns - np.floor(turns)) - 1) - 0.5)

@@ -1,4 +1,4 @@
-"""What this machine does right now: how late it wakes, and how long a tick takes."""
+"""Timing of this machine at present: the lateness of its wake-ups, and the duration of a tick."""
 
 import os
 import time
@@ -15,19 +15,19 @@ from ..plugins.interfaces import Touch
 from ..servo.ticks.priority import PRIORITY
 
 TICKS = 2000
-"""So many ticks are timed one by one, of a stroke over the surface."""
+"""Number of ticks of a stroke over the surface that are timed one by one."""
 PERCENTILES = {"p50": 50.0, "p99": 99.0, "p99.9": 99.9, "max": 100.0}
-"""What is reported of times."""
+"""Percentiles of times that are reported."""
 
 
 @dataclass(frozen=True, eq=False)
 class Lateness(Record):
-    """How late each tick of a loop without work began."""
+    """The lateness of each tick of a loop without work."""
 
     late_s: Float64[np.ndarray, " n"]
     period_s: float
     real_time: bool
-    """Whether the loop ran, and so may run, before all others (SCHED_FIFO)."""
+    """True if the loop ran, and so may run, with real-time priority (SCHED_FIFO)."""
 
     @property
     def overruns(self) -> float:
@@ -35,30 +35,30 @@ class Lateness(Record):
         return float(np.mean(self.late_s > self.period_s))
 
     def at(self, percent: float) -> float:
-        """What this many per cent of the ticks do not exceed, seconds."""
+        """Return a percentile of the lateness, seconds."""
         return float(np.percentile(self.late_s, percent))
 
 
 @dataclass(frozen=True, eq=False)
 class TickCost(Record):
-    """How long a tick of the law takes."""
+    """The duration of a tick of the force law."""
 
     call_s: Float64[np.ndarray, " n"]
-    """Each, called from Python."""
+    """Duration of each call from Python."""
     kernel_s: float
-    """Of the law alone, the mean along a path."""
+    """Mean duration along a path, without the call from Python."""
     compiled: bool = True
-    """Whether the law is one of kernels, and not Python's."""
+    """True for a force law of compiled kernels."""
 
     def at(self, percent: float) -> float:
-        """What this many per cent of the calls do not exceed, seconds."""
+        """Return a percentile of the calls' duration, seconds."""
         return float(np.percentile(self.call_s, percent))
 
 
 def measure_lateness(seconds: float, period_s: float) -> Lateness:
-    """Sleep to absolute deadlines for a while. A tick that is over a period late takes the next deadline to come.
+    """Measure the lateness of sleeps to absolute deadlines, with SCHED_FIFO if that is permitted.
 
-    SCHED_FIFO where that is permitted, for the while.
+    A tick that is more than a period late takes the next deadline to come.
     """
     late_s = np.zeros(max(1, round(seconds / period_s)))
     with _first_in_line() as real_time:
@@ -74,7 +74,7 @@ def measure_lateness(seconds: float, period_s: float) -> Lateness:
 
 
 def measure_ticks(touch: Touch, way_m: Float64[np.ndarray, "n 3"], period_s: float) -> TickCost:
-    """Time the touch along a way, one position a tick, after a lap that nobody times."""
+    """Time the touch along a path, one position a tick, after a warm-up lap."""
     touch.path(way_m, period_s)
     start = time.perf_counter()
     touch.path(way_m, period_s)
@@ -94,7 +94,7 @@ def measure_ticks(touch: Touch, way_m: Float64[np.ndarray, "n 3"], period_s: flo
 
 @contextmanager
 def _first_in_line() -> Generator[bool]:
-    """SCHED_FIFO for this block, where the system has it and permits it; whether it does."""
+    """Run a block with SCHED_FIFO if the system permits it; yield whether it does."""
     before = _take_fifo()
     try:
         yield before is not None
@@ -104,7 +104,7 @@ def _first_in_line() -> Generator[bool]:
 
 
 def _take_fifo() -> "tuple[int, os.sched_param] | None":
-    """Ask for SCHED_FIFO; what there was before, or None if it is refused."""
+    """Request SCHED_FIFO; return the previous scheduling, or None if it is refused."""
     try:
         before = os.sched_getscheduler(0), os.sched_getparam(0)
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))

@@ -1,4 +1,4 @@
-"""A verdict: one number, the bound it is held against, where the bound comes from, and the cure; and all of them."""
+"""Verdicts: a value, its bound, the source of the bound, and the cure."""
 
 import json
 import math
@@ -7,84 +7,84 @@ from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple
 
 Grade = Literal["ok", "warn", "unsafe", "illegible"]
-"""`warn`: it will not feel as it should. `unsafe`: the device may buzz, or be driven too late. `illegible`: fingers
-cannot read it."""
+"""Grade of a verdict. `warn`: it will not feel as intended. `unsafe`: the device may buzz, or be driven too late.
+`illegible`: fingers cannot read it."""
 FEW = 0.01
-"""Share of the surface up to which a place is called the exception."""
+"""Share of the surface up to which places count as exceptions."""
 
 Unit = Literal["m", "s", "N", "N/m", "N s/m", "share", "pins", "parts", "textures", "JND"]
 
 
 class Change(NamedTuple):
-    """A key of the configuration, and what to write there."""
+    """A key of the configuration and its new value."""
 
     key: str
     value: str
     towards: Literal["at most", "at least", "is"]
-    """Which other values would do as well."""
+    """Direction in which other values would do as well."""
 
     def __str__(self) -> str:
         return f"`{self.key}: {self.value}`"
 
     @property
     def setting(self) -> float | str:
-        """The value as JSON and `pipeline.editing.edited` take it: a number, or a word."""
+        """The value as a number or a word, for JSON and `pipeline.editing.edited`."""
         try:
             return json.loads(self.value)
         except ValueError:
             return self.value
 
     def keeps(self, other: "Change") -> bool:
-        """Whether the other, of the same key, is content with this value too."""
+        """Test whether this value satisfies another change of the same key too."""
         if self.towards == other.towards:
             return True
         numbers = float(self.value), float(other.value)
         return numbers[0] >= numbers[1] if other.towards == "at least" else numbers[0] <= numbers[1]
 
     def stricter(self, other: "Change") -> "Change":
-        """Of two for one key, the one that keeps both bounds."""
+        """Return the one of two changes of a key that meets both bounds."""
         if self.towards == "is" or self.towards != other.towards:
             return self
         return (min if self.towards == "at most" else max)(self, other, key=lambda each: float(each.value))
 
 
 Cure = str | Sequence[str | Change]
-"""What to change to what: a text, or its parts in order."""
+"""A cure: a text, or its parts in order."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What one check says of one thing."""
+    """The result of one check of one thing."""
 
     check: str
     of: str
-    """What was looked at: `the law`, a material, a size of features."""
+    """The thing checked: `the law`, a material, a size of features."""
     verdict: Grade
     value: float
     unit: Unit
     relation: Literal["<=", ">=", ""] = ""
-    """What the value is to be to the bound; empty for a figure that has none."""
+    """Required relation of the value to the bound; empty for a value without a bound."""
     bound: float = math.nan
     source: str = ""
-    """Where the bound comes from."""
+    """Source of the bound."""
     note: str = ""
     cure: str = ""
-    """What to change to what; empty where all is well."""
+    """Cure; empty for `ok`."""
     says: str = ""
-    """What is wrong, as the end of a plain sentence; empty where all is well."""
+    """Fault, as the end of a plain sentence; empty for `ok`."""
     changes: tuple[Change, ...] = ()
-    """What of the cure a configuration can say, the first that does first."""
+    """Changes of the configuration in the cure, the preferred one first."""
     at: tuple[tuple[float, float], ...] = ()
-    """Where it is in the picture: shares of its width from the left and of its length from the top."""
+    """Places in the picture: shares of its width from the left and of its length from the top."""
 
     @property
     def keeps(self) -> bool:
-        """Whether the value keeps its bound; one at its bound does, NaN keeps none."""
+        """True if the value meets its bound; a value at its bound does, NaN meets none."""
         within = self.value <= self.bound if self.relation == "<=" else self.value >= self.bound
         return not self.relation or within or math.isclose(self.value, self.bound)
 
 
-def held(
+def check_bound(
     check: str,
     of: str,
     value: float,
@@ -98,9 +98,9 @@ def held(
     worse: Grade = "warn",
     note: str = "",
 ) -> Verdict:
-    """`ok` where the value keeps its bound; else `worse`, with the cure. A value at its bound keeps it; NaN keeps none.
+    """Return a verdict: `ok` if the value meets its bound, else `worse`, with the cure. NaN meets no bound.
 
-    >>> held("stiffness", "the law", 800.0, "<=", 600.0, "N/m", "", cure="soften it", worse="unsafe").verdict
+    >>> check_bound("stiffness", "the law", 800.0, "<=", 600.0, "N/m", "", cure="soften it", worse="unsafe").verdict
     'unsafe'
     """
     fine = Verdict(check, of, "ok", value, unit, relation, bound, source, note)
@@ -112,7 +112,7 @@ def held(
 
 
 def under(value: float) -> str:
-    """Two digits, rounded down: what to write into a file for a value that may be at most this.
+    """Format an upper bound for a file: two digits, rounded down.
 
     >>> under(1287.0), under(0.00999)
     ('1200', '0.0099')
@@ -121,7 +121,7 @@ def under(value: float) -> str:
 
 
 def over(value: float) -> str:
-    """Two digits, rounded up: what to write into a file for a value that must be at least this.
+    """Format a lower bound for a file: two digits, rounded up.
 
     >>> over(1287.0), over(0.00061)
     ('1300', '0.00061')

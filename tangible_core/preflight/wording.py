@@ -1,4 +1,4 @@
-"""Verdicts for people, as they stand to their bounds; and for programs, as plain values."""
+"""Verdicts as text, with their relation to the bound, and as JSON data."""
 
 import math
 from dataclasses import asdict
@@ -11,7 +11,7 @@ PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "u"))
 
 
 def relation(verdict: Verdict) -> str:
-    """The value and how it stands to its bound, as it is, with as many digits as show it.
+    """Format the value and its true relation to the bound, with enough digits to show it.
 
     >>> relation(Verdict("damping", "the law", "warn", 3.215, "N s/m", "<=", 0.4))
     '3.215 N s/m > 0.4 N s/m'
@@ -24,7 +24,7 @@ def relation(verdict: Verdict) -> str:
         return f"{quantity(verdict.value, verdict.unit)} {verdict.relation} {quantity(verdict.bound, verdict.unit)}"
     numbers = verdict.value, verdict.bound
     if any(map(math.isnan, numbers)):
-        return f"{verdict.value:g} is to be {verdict.relation} {verdict.bound:g} {verdict.unit}"
+        return f"{verdict.value:g} must be {verdict.relation} {verdict.bound:g} {verdict.unit}"
     texts = ([quantity(each, verdict.unit, digits) for each in numbers] for digits in range(MOST_DIGITS))
     value, bound = next(
         (pair for pair in texts if pair[0] != pair[1]), [f"{each!r} {verdict.unit}" for each in numbers]
@@ -33,7 +33,7 @@ def relation(verdict: Verdict) -> str:
 
 
 def quantity(value: float, unit: str, more_digits: int = 0) -> str:
-    """A value for people: with three digits, of newtons with four, and as many more.
+    """Format a value with its unit: three digits, four for newtons, plus `more_digits`.
 
     >>> quantity(2.9e-5, "m"), quantity(800.0, "N/m"), quantity(0.125, "share"), quantity(0.0, "s")
     ('29 um', '800 N/m', '12.5 %', '0 s')
@@ -47,10 +47,9 @@ def quantity(value: float, unit: str, more_digits: int = 0) -> str:
 
 
 def as_data(verdict: Verdict) -> dict[str, Any]:
-    """A verdict as JSON says it: its fields, `stands` for how the value stands to its bound, and what it would change.
+    """Return a verdict as JSON data: its fields, its changes, and `stands`, the text of `relation`.
 
-    Each of `changes` has the `key` and the `value` that `pipeline.editing.edited` takes, the first one first; None is
-    what is not finite.
+    Each of `changes` has a `key` and a `value` for `pipeline.editing.edited`; values that are not finite become None.
     """
     plain = {name: _finite(value) for name, value in asdict(verdict).items()}
     changes = [{"key": each.key, "value": each.setting, "towards": each.towards} for each in verdict.changes]

@@ -1,4 +1,4 @@
-"""Flights made up: everything that is measured of a machine stands still, so that every verdict is known."""
+"""Fake flights: all measurements of a machine are fixed, so that every verdict is known."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -23,11 +23,11 @@ SPEC = DeviceSpec(
     workspace_m=(0.1, 0.1, 0.1),
     resolution_m=1e-5,
 )
-"""At 1 kHz without delay it holds 4000 N/m by its damping, of which a guard leaves 3200 to a law."""
+"""A device that renders 4000 N/m by its damping at 1 kHz without delay; a guard leaves 3200 to a force law."""
 
 
 def fly(surface: HapticSurface, law: str = "proxy", device: Any = None, **changes: Any) -> Flight:
-    """A flight over a surface; `changes` are options of the law, and fields of the hand, the device or the flight.
+    """Return a flight over a surface; `changes` are options of the law, or fields of the hand, device or flight.
 
     device: fields of the device that a law has too.
     """
@@ -56,12 +56,12 @@ def fly(surface: HapticSurface, law: str = "proxy", device: Any = None, **change
 
 
 def level(height_m: float = 0.01, cells: int = 32, **materials: Any) -> HapticSurface:
-    """Level ground, 80 mm wide."""
+    """Return level ground, 80 mm wide."""
     return HapticSurface.from_heights(np.full((cells, cells), height_m, np.float32), **materials)
 
 
 def shape(height_m: Callable[[np.ndarray, np.ndarray], Any], cells: int = 128, width_m: float = 0.08) -> HapticSurface:
-    """A surface whose heights are a function of x and y, lifted so that its lowest is 0."""
+    """Return a surface whose heights are a function of x and y, lifted so that its lowest point is 0."""
     at = ((np.arange(cells) + 0.5) / cells - 0.5) * width_m
     x, y = np.meshgrid(at, -at)
     heights = np.broadcast_to(height_m(x, y), x.shape)
@@ -69,17 +69,17 @@ def shape(height_m: Callable[[np.ndarray, np.ndarray], Any], cells: int = 128, w
 
 
 def half_slope(slope: float, cells: int = 128) -> HapticSurface:
-    """Level to the left, and to the right rising with this slope."""
+    """Return a surface that is level on the left and rises with this slope on the right."""
     return shape(lambda x, y: slope * np.maximum(x, 0), cells)
 
 
 def material(name: str = "made-up", **values: Any) -> Material:
-    """A material of which only this much matters."""
+    """Return a material with these values."""
     plain = {"stiffness_n_per_m": 500.0, "damping_n_s_per_m": 0.0, "static_friction": 0.0, "dynamic_friction": 0.0}
     return Material(name, **{**plain, "texture": "smooth", **values})
 
 
 def of(verdicts: Any, what: str) -> Verdict:
-    """The one verdict of this thing."""
+    """Return the one verdict of this thing."""
     [found] = [each for each in verdicts if each.of == what]
     return found

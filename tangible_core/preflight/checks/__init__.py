@@ -1,4 +1,4 @@
-"""Every check, a family a file: a function from what is known to verdicts."""
+"""The checks, one topic a file: functions from a flight to verdicts."""
 
 from collections.abc import Callable, Iterable
 
@@ -6,13 +6,11 @@ from ..flight import Flight
 from ..preflight import Preflight
 from ..verdict import Verdict
 from .clipping import clipping, contact
-from .device import damping, friction
-from .features import features
+from .device import damping, friction, workspace
+from .features import features, textures
 from .jitter import lateness, tick_cost
 from .slopes import cliffs, slope_stiffness
 from .stiffness import law_damping, law_stiffness, material_stiffness, quantisation
-from .textures import textures
-from .workspace import workspace
 
 Check = Callable[[Flight], Iterable[Verdict]]
 
@@ -27,5 +25,5 @@ CHECKS: tuple[Check, ...] = (
 
 
 def judge(flight: Flight) -> Preflight:
-    """What every check says, in their order; their cures agree with each other."""
+    """Run every check in order; return the verdicts, with cures that agree with each other."""
     return Preflight.of(verdict for check in CHECKS for verdict in check(flight))

@@ -1,4 +1,4 @@
-"""What several checks advise: the key to change, and to what."""
+"""Cures that several checks share: the key to change, and its new value."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -6,26 +6,26 @@ from collections.abc import Callable, Iterable
 from ...data import Material, Relief
 from ...scene.geometry import smooth
 from ...servo.guard.safety import NOMINAL_S
-from ..bumps import reduced
+from ..bumps import reduce_relief
 from ..flight import Flight
 from ..verdict import Change, Cure, over, under
 
 CELLS = 512
-"""A side: on so many, how much smoothing will do is soon tried."""
+"""Cells along a side on which smoothing is tried: few, for speed."""
 SOFTEST_N_PER_M = 50.0
-"""A hand that explores with 1 N sinks 20 mm into a law so soft, as deep as most reliefs are high: no cure is softer."""
+"""Smallest stiffness of a cure: an exploring hand of 1 N sinks in by 20 mm, as deep as most reliefs are high."""
 FIT = Change("materials.fit", "device", "is")
 COUPLE = Change("safety.coupling", "auto", "is")
 
 
-def joined(*cures: Cure) -> Cure:
-    """One after the other."""
+def join_cures(*cures: Cure) -> Cure:
+    """Join cures one after the other."""
     return [part for cure in cures for part in ((cure,) if isinstance(cure, str) else cure)]
 
 
 def soften(flight: Flight, most_n_per_m: float) -> Cure:
-    """How the law becomes at most this stiff."""
-    materials = flight.surface.materials or ()  # those that no hand meets count in what the law says of itself
+    """Return the cure that makes the force law at most this stiff."""
+    materials = flight.surface.materials or ()  # absent materials count in the stiffness that the force law states
     stiffer = [material for material in materials if material.stiffness_n_per_m > most_n_per_m]
     if stiffer:
         return soften_materials(flight, stiffer, most_n_per_m)
@@ -35,36 +35,34 @@ def soften(flight: Flight, most_n_per_m: float) -> Cure:
 
 
 def soften_materials(flight: Flight, materials: Iterable[Material], most_n_per_m: float) -> Cure:
-    """How materials become at most this stiff: by the device that they fit, or each in a library of one's own."""
+    """Return the cure that makes materials at most this stiff: fit them to the device, or use a custom library."""
     if not flight.fitted:
         return [FIT]
-    held = flight.safety.stiffness_margin * flight.nominal_n_per_m
-    if flight.period_s <= NOMINAL_S and most_n_per_m < held:  # a slower loop's limits come down with the margin
-        return [
-            Change("safety.stiffness_margin", under(flight.safety.stiffness_margin * most_n_per_m / held), "at most")
-        ]
+    margin, stable = flight.safety.stiffness_margin, flight.safety.stiffness_margin * flight.nominal_n_per_m
+    if flight.period_s <= NOMINAL_S and most_n_per_m < stable:  # a slower loop's limits come down with the margin
+        return [Change("safety.stiffness_margin", under(margin * most_n_per_m / stable), "at most")]
     softer = (f"`{each.name}: {{stiffness_n_per_m: {under(most_n_per_m)}}}`" for each in materials)
     return f"in a file for `materials.library`, {', '.join(softer)}"
 
 
 def flatten(flight: Flight, share: float) -> Change | str:
-    """How all slopes come down to this share of what they are."""
+    """Return the cure that scales all slopes by this share."""
     if not flight.relief_key:
         return "lower parts (`height_m` under `parts:`)"
     return Change(flight.relief_key, under(flight.relief_m * share), "at most")
 
 
 def heighten(flight: Flight, times: float) -> Change | str:
-    """How the relief becomes so many times as high."""
+    """Return the cure that makes the relief `times` as high."""
     if not flight.relief_key:
         return "higher parts (`height_m` under `parts:`)"
     return Change(flight.relief_key, over(flight.relief_m * times), "at least")
 
 
 def round_off(flight: Flight, gentle: Callable[[Relief], bool]) -> Change | None:
-    """How the relief becomes gentle by smoothing; None where it is given and not smoothed, or no smoothing will do."""
+    """Return the smoothing that makes the relief gentle; None if it is not smoothed or no smoothing suffices."""
     longest_m, before_m = max(flight.surface.extent_m), flight.size.smooth_m
-    relief = reduced(flight.surface.relief, longest_m / CELLS)
+    relief = reduce_relief(flight.surface.relief, longest_m / CELLS)
     sigma_m = 2 * longest_m / CELLS
     while flight.smoothed and sigma_m < longest_m / 8:
         if gentle(smooth(relief, sigma_m)):

@@ -1,13 +1,16 @@
-"""What is known of the device itself, and what is a guess."""
+"""Checks of the device: plausible damping, known friction, and the reach of its workspace."""
 
 from collections.abc import Iterator
 
 from ..flight import Flight
-from ..verdict import Verdict
+from ..verdict import Change, Verdict, check_bound, under
+from .cures import flatten
+
+REACH = "the device's workspace"
 
 
 def damping(flight: Flight) -> Iterator[Verdict]:
-    """Whether the device's damping, on which the limit of stiffness rests, can be believed.
+    """Check that the device's damping, on which the limit of stiffness rests, is plausible.
 
     Makers' tables give the damping that a device can display: more than its greatest stiffness at 1 kHz implies.
     """
@@ -27,12 +30,31 @@ def damping(flight: Flight) -> Iterator[Verdict]:
 
 
 def friction(flight: Flight) -> Iterator[Verdict]:
-    """Whether the handle's friction is known, which keeps the steps of its encoders from buzzing."""
-    found = flight.safety.friction_n
-    known = flight.spec.simulated or found is not None
+    """Check that the handle's friction is known, which keeps the steps of its encoders from buzzing."""
+    friction_n = flight.safety.friction_n
+    known = flight.spec.simulated or friction_n is not None
     cure = "" if known else "unknown: measure the force at which the handle starts to move, `safety.friction_n: ...`"
     source = "simulated" if flight.spec.simulated else "`safety.friction_n`" if known else ""
     says = "" if known else "the friction of the device's handle is unknown"
     yield Verdict(
-        *("device", "friction", "ok" if known else "warn", found or 0.0, "N"), source=source, cure=cure, says=says
+        *("device", "friction", "ok" if known else "warn", friction_n or 0.0, "N"), source=source, cure=cure, says=says
+    )
+
+
+def workspace(flight: Flight) -> Iterator[Verdict]:
+    """Check width, length and height of the surface against the device's reach along x, y and z."""
+    reach_x, reach_y, reach_z = flight.spec.workspace_m
+    width_m, length_m = flight.surface.extent_m
+    for of, size_m, reach_m in (("width", width_m, reach_x), ("length", length_m, reach_y)):
+        narrower = under(width_m * reach_m / size_m)
+        yield check_bound(
+            *("workspace", of, size_m, "<=", reach_m, "m", REACH),
+            says=f"the surface has more {of} than the device reaches",
+            cure=[Change("workspace.width_m", narrower, "at most"), "; or the borders cannot be reached"],
+        )
+    height_m = float(flight.surface.height_m.max())
+    yield check_bound(
+        *("workspace", "height", height_m, "<=", reach_z, "m", REACH),
+        says="the surface is higher than the device reaches",
+        cure=[flatten(flight, reach_z / max(height_m, reach_z))],
     )

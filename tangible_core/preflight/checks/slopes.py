@@ -1,4 +1,4 @@
-"""Places too steep: where the law is stiffer than on level ground, and where the hand runs into a wall."""
+"""Checks of slopes: places where the force law is stiffer than on level ground, and walls."""
 
 import math
 from collections.abc import Iterator
@@ -8,21 +8,20 @@ from jaxtyping import Float32
 
 from ...data import Relief
 from ..flight import Flight
-from ..verdict import FEW, Cure, Verdict, held
-from .cures import COUPLE, FIT, SOFTEST_N_PER_M, flatten, joined, round_off, soften
+from ..verdict import FEW, Cure, Verdict, check_bound
+from .cures import COUPLE, FIT, SOFTEST_N_PER_M, flatten, join_cures, round_off, soften
 from .stiffness import TOO_STIFF
 
 MEASURED = 1.01
-"""A stiffness that was felt may be so much over what it is."""
+"""Ratio of a measured stiffness to the true one that is allowed as an error."""
 WALL = 1.0
-"""Above 45 degrees a hand must push harder sideways than it presses down: a slope is then a wall."""
+"""Slope of a wall: above 45 degrees a hand must push harder sideways than it presses down."""
 WALLS = 0.1
-"""Share of the surface up to which walls are its outlines."""
-
+"""Share of the surface up to which walls count as its outlines."""
 PROXY = "proxy"
-"""The law whose stiffness is that of level ground everywhere."""
+"""Name of the force law whose stiffness is that of level ground everywhere."""
 LEVEL = 1.1
-"""Times a law's stiffness on level ground, up to which no slope is at fault."""
+"""Ratio to the stiffness on level ground up to which slopes are not at fault."""
 RARE = 0.001
 """Share of the surface that may be too stiff: the passivity controller brakes there."""
 
@@ -30,15 +29,15 @@ Slopes = Float32[np.ndarray, "h w"]
 
 
 def slope_stiffness(flight: Flight) -> Iterator[Verdict]:
-    """Share of the surface where the law, felt along its own force, is stiffer than the device holds.
+    """Check the share of the surface where the force law, along its force, is stiffer than the device renders stably.
 
-    A penalty along the gradient grows by 1 + |g|^2 with the slope g, a texture's by its curvature times the force; a
-    proxy does not grow with slopes. No guard knows of it.
+    The stiffness of a penalty along the gradient grows by 1 + |g|^2 with the slope g, that of a texture by its
+    curvature times the force; that of a proxy does not grow with slopes. The guard does not see it.
     """
     limit, _, source = flight.ceilings[0]
     felt = np.array([flight.felt_n_per_m(each) for each in flight.probes.stiffness_n_per_m.tolist()])
     share, most = float(np.mean(~(felt <= MEASURED * limit))), float(felt.max())
-    yield held(
+    yield check_bound(
         *("slope", "too stiff", share, "<=", RARE, "share", source),
         worse="unsafe" if share > FEW else "warn",
         says=TOO_STIFF if most <= LEVEL * flight.stiffness_n_per_m else f"on slopes and textures {TOO_STIFF}",
@@ -48,34 +47,34 @@ def slope_stiffness(flight: Flight) -> Iterator[Verdict]:
 
 
 def _less_stiff(flight: Flight, limit: float, most: float) -> Cure:
-    """What of it is not done already, the least that it changes first."""
+    """Return the cures that are not yet applied, the least intrusive first."""
     level = flight.stiffness_n_per_m
     if most <= LEVEL * level:
         return soften(flight, limit)
     ways: list[Cure] = []
-    if flight.met and not flight.fitted:
+    if flight.present_materials and not flight.fitted:
         ways.append([FIT])
     if flight.safety.coupling is None:
         ways.append([COUPLE])
-    if level > 0 and not flight.met:
+    if level > 0 and not flight.present_materials:
         softer = level * limit / most
         ways += [soften(flight, softer)] if softer >= SOFTEST_N_PER_M else _rounder(flight, limit / level)
     if flight.law_name != PROXY:
         ways.append(f"a law that slopes do not stiffen, `render.use: {PROXY}`")
     if not ways:
         ways.append([flatten(flight, limit / most)])
-    return joined(ways[0], *(part for way in ways[1:] for part in ("; or ", way)))
+    return join_cures(ways[0], *(part for way in ways[1:] for part in ("; or ", way)))
 
 
 def _rounder(flight: Flight, times: float) -> list[Cure]:
-    """Where slopes may make a penalty so many times as stiff as level ground."""
+    """Return the smoothing after which slopes make a penalty at most `times` as stiff as level ground, if any."""
     steepest = math.sqrt(max(times - 1, 0.0))
     change = round_off(flight, lambda relief: float(np.mean(slopes(relief) > steepest)) <= RARE)
     return [[change]] if change else []
 
 
 def cliffs(flight: Flight) -> Iterator[Verdict]:
-    """Shares of the surface that are walls, and that a stroke meets faster than a safe loop lets a force grow."""
+    """Check the shares of the surface that are walls, and that a stroke meets faster than a force may grow."""
     steep = slopes(flight.surface.relief)
     source = "over 45 degrees a hand pushes harder sideways than down"
     yield _gentle(flight, steep, "a wall", WALL, WALLS, source, "much of the surface is as steep as a wall")
@@ -87,9 +86,9 @@ def cliffs(flight: Flight) -> Iterator[Verdict]:
 
 
 def _gentle(flight: Flight, steep: Slopes, of: str, bound: float, few: float, source: str, says: str) -> Verdict:
-    """Whether no more than a few places are steeper."""
+    """Check that only a few places are steeper than a bound."""
     share = float(np.mean(steep > np.float64(bound)))
-    return held(
+    return check_bound(
         *("slope", of, share, "<=", few, "share", source),
         note=f"slope over {bound:.3g}; the steepest is {steep.max():.3g}",
         says=says,
@@ -106,13 +105,13 @@ def _gentler(flight: Flight, steep: Slopes, bound: float, few: float) -> Cure:
 
 
 def slopes(relief: Relief) -> Slopes:
-    """Magnitude of the slope from each cell to the next, the greater one to either side; 0 for a single cell."""
+    """Return the slope from each cell to its neighbours, the greater one of both sides; 0 for a single cell."""
     across, along = relief.pitch_m
     return np.hypot(_rise(relief.height_m.T).T / np.float32(across), _rise(relief.height_m) / np.float32(along))
 
 
 def _rise(heights: Slopes) -> Slopes:
-    """The greater step to the row before or after."""
+    """Return the greater step to the row before or after."""
     rise = np.zeros_like(heights)
     steps = np.abs(np.diff(heights, axis=0))
     rise[1:] = steps

@@ -1,4 +1,4 @@
-"""How stiff and how damped a wall this loop and this device hold."""
+"""Checks of stiffness and damping against what this loop and this device render stably."""
 
 import math
 from collections.abc import Iterator
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..flight import PASSIVE, Ceiling, Flight
-from ..verdict import FEW, Change, Cure, Verdict, held, under
+from ..verdict import FEW, Change, Cure, Verdict, check_bound, under
 from .cures import COUPLE, FIT, SOFTEST_N_PER_M, soften, soften_materials
 
 STIFFER = "stiffer than the device holds"
@@ -18,13 +18,13 @@ STEP = "Pang, Tan & Durlach 1991: a step of 7 % is felt"
 
 
 def law_stiffness(flight: Flight) -> Iterator[Verdict]:
-    """The law's stiffness on level ground against each limit."""
+    """Check the force law's stiffness on level ground against each limit."""
     if flight.stiffness_n_per_m == 0:
         yield Verdict("stiffness", "the law", "ok", 0.0, "N/m", note="not a spring; see `contact`")
         return
     felt = flight.felt_n_per_m(flight.stiffness_n_per_m)
     if felt < SOFTEST_N_PER_M:
-        yield held(
+        yield check_bound(
             *("stiffness", "the law", felt, ">=", SOFTEST_N_PER_M, "N/m", "a hand that explores with 1 N sinks 20 mm"),
             says="the law is so soft that a hand goes through the surface",
             cure="a stiffer law, such as by `render.stiffness_n_per_m`",
@@ -35,23 +35,25 @@ def law_stiffness(flight: Flight) -> Iterator[Verdict]:
 
 
 def material_stiffness(flight: Flight) -> Iterator[Verdict]:
-    """Each material's stiffness against the lowest limit; or against what lets a texture be clean, if that is lower."""
+    """Check each material's stiffness against the lowest limit, or that of a clean texture if it is lower."""
     ceiling = flight.ceilings[0]
-    for material in flight.met:
+    for material in flight.present_materials:
         stiffness = flight.felt_n_per_m(material.stiffness_n_per_m)
         if material.roughness_m > 0 and CLEAN_N_PER_M <= ceiling.most_n_per_m >= stiffness:
             cure = f"in a file for `materials.library`, `{material.name}: {{stiffness_n_per_m: {CLEAN_N_PER_M:g}}}`"
             says = f"the texture of {material.name} is not clean on ground so stiff"
-            yield held("stiffness", material.name, stiffness, "<=", CLEAN_N_PER_M, "N/m", CLEAN, cure=cure, says=says)
+            yield check_bound(
+                "stiffness", material.name, stiffness, "<=", CLEAN_N_PER_M, "N/m", CLEAN, cure=cure, says=says
+            )
         else:
             cure = soften_materials(flight, [material], ceiling.most_n_per_m)
             yield _under_ceiling(material.name, stiffness, ceiling, cure)
 
 
 def _under_ceiling(of: str, stiffness: float, ceiling: Ceiling, cure: Cure) -> Verdict:
-    """Over what the guard leaves to a law, it is softened: it feels softer than it says. Over the limit it may buzz."""
+    """Check a stiffness against a limit: above the guard's share it is softened, above the limit it may buzz."""
     limit, share, source = ceiling
-    return held(
+    return check_bound(
         *("stiffness", of, stiffness, "<=", ceiling.most_n_per_m, "N/m", source),
         worse="unsafe" if not stiffness <= limit else "warn",
         note="" if share == 1 else f"{100 * share:g} % of {limit:.4g} N/m",
@@ -61,38 +63,41 @@ def _under_ceiling(of: str, stiffness: float, ceiling: Ceiling, cure: Cure) -> V
 
 
 def law_damping(flight: Flight) -> Iterator[Verdict]:
-    """The law's damping against what its stiffness leaves of the device's own: b > K T (1 + 2 d) / 2 + B.
+    """Check the force law's damping against what its stiffness leaves of the device's: b > K T (1 + 2 d) / 2 + B.
 
-    Each place has a stiffness and a damping of its own; where a proxy leaps, it is no damping, so a few are left out.
+    Each place has its own stiffness and damping. A few places are left out: where a proxy leaps, it is not damping.
     """
     felt = np.array([flight.felt_damping_n_s_per_m(each) for each in flight.probes.damping_n_s_per_m.clip(0).tolist()])
-    level = np.clip(flight.probes.stiffness_n_per_m, 0, flight.stiffness_n_per_m)  # no slope's, of which `slope` says
-    held_n_per_m = np.array([flight.felt_n_per_m(each) for each in level.tolist()])
+    level = np.clip(flight.probes.stiffness_n_per_m, 0, flight.stiffness_n_per_m)  # `slope` checks that of slopes
+    level_n_per_m = np.array([flight.felt_n_per_m(each) for each in level.tolist()])
     tick_s = flight.period_s * (1 + 2 * flight.safety.delay_ticks) / 2
-    left = np.maximum(0.0, flight.damping_n_s_per_m - tick_s * held_n_per_m)
+    left = np.maximum(0.0, flight.damping_n_s_per_m - tick_s * level_n_per_m)
     worst = int(np.argsort(felt - left, kind="stable")[math.ceil((1 - FEW) * (felt.size - 1))])
-    found, most = max(0.0, round(float(felt[worst]), 3)), float(left[worst])
-    yield held(
-        *("damping", "the law", found, "<=", most, "N s/m", PASSIVE),
+    damping, most = max(0.0, round(float(felt[worst]), 3)), float(left[worst])
+    yield check_bound(
+        *("damping", "the law", damping, "<=", most, "N s/m", PASSIVE),
         note=f"b = {flight.damping_n_s_per_m:.3g} N s/m",
         says="the law is damped more than the device can render",
-        cure=_less_damped(flight, found, most),
+        cure=_less_damping(flight, damping, most),
     )
 
 
-def _less_damped(flight: Flight, found: float, most: float) -> Cure:
-    own = getattr(flight.law, "damping_n_s_per_m", None)
-    if own and not (flight.met and type(flight.law).renders_materials):
-        return [Change("render.damping_n_s_per_m", under(own * most / found) if most else "0", "at most")]
-    ways = [[FIT]] if flight.met and not flight.fitted else [[COUPLE]] if flight.safety.coupling is None else []
-    return ways[0] if ways else "less `damping_n_s_per_m` of the materials, in a file for `materials.library`"
+def _less_damping(flight: Flight, damping: float, most: float) -> Cure:
+    own, materials = getattr(flight.law, "damping_n_s_per_m", None), flight.present_materials
+    if own and not (materials and type(flight.law).renders_materials):
+        return [Change("render.damping_n_s_per_m", under(own * most / damping) if most else "0", "at most")]
+    if materials and not flight.fitted:
+        return [FIT]
+    if flight.safety.coupling is None:
+        return [COUPLE]
+    return "less `damping_n_s_per_m` of the materials, in a file for `materials.library`"
 
 
 def quantisation(flight: Flight) -> Iterator[Verdict]:
-    """By how much the force steps where the device's position does."""
+    """Check the step of the force where the device's position steps."""
     felt_n, step_m = STEP_SHARE * flight.hand.press_n, flight.spec.resolution_m
     if (stiffness := flight.felt_n_per_m(flight.stiffness_n_per_m)) > 0:
-        yield held(
+        yield check_bound(
             *("quantisation", "a step of position", stiffness * step_m, "<=", felt_n, "N", STEP),
             says="the steps of the device's encoders are felt",
             cure=soften(flight, felt_n / step_m),

@@ -12,7 +12,7 @@ from tangible_core.data import HapticSurface, Plan
 from tangible_core.errors import ConfigError, DeviceError, OutputError, PictureError, Stopped, UnknownMethod
 from tangible_core.pipeline.engine.stage import StageEvent
 from tangible_core.plugins import DepthEstimator
-from tangible_core.session import STOPPED, compared
+from tangible_core.session import STOPPED, compare_replay
 from tangible_depth import SemiGlobal, Zncc
 from tangible_devices import Mock
 from tangible_render import GreyLevel, Penalty, Proxy
@@ -320,7 +320,7 @@ class TestFeeling:
         other = Pipeline(pipeline.scene, render=Penalty(stiffness_n_per_m=400.0), cached=False)
         after = other.replay(before)
         assert after.about.device == "replay of mock"
-        assert compared(before, after)["ticks"] == 1000
+        assert compare_replay(before, after)["ticks"] == 1000
         assert 0 < after.peak_force_n < before.peak_force_n
 
     def test_a_device_that_fails(self, pipeline: Pipeline):

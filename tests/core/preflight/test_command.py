@@ -1,4 +1,4 @@
-"""`tangible preflight`, as a user calls it."""
+"""The command `tangible preflight`, as a user calls it."""
 
 import json
 import math
@@ -11,7 +11,8 @@ import pytest
 
 from command_line import tangible
 from tangible_core import load_pipeline
-from tangible_core.cli.commands.preflight import line, preflight
+from tangible_core.cli.commands.preflight import COLOURS, WIDTHS, preflight
+from tangible_core.cli.show import verdict_line
 from tangible_core.data import HapticState
 from tangible_core.errors import BrokenMethod, ConfigError
 from tangible_core.preflight import Hand, Loop, Verdict
@@ -29,7 +30,7 @@ GRADES = {"ok", "warn", "unsafe"}
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Gentle hills, and one pixel."""
+    """Write scenes of gentle hills and of one pixel."""
     x, y = np.meshgrid(np.linspace(0, 2 * np.pi, 96), np.linspace(0, 2 * np.pi, 64))
     np.save(tmp_path / "hills.npy", 2 + np.sin(x) * np.sin(y))
     np.save(tmp_path / "dot.npy", np.ones((1, 1)))
@@ -37,7 +38,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_a_line_a_verdict_and_0_where_nothing_is_unsafe(folder: Path):
+def test_preflight_safe_file_exits_with_0(folder: Path):
     done = tangible("preflight", "p.yaml", "--seconds", 0.1, cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
     sentence, _, *verdicts, _, summary = done.stdout.splitlines()
@@ -47,7 +48,7 @@ def test_a_line_a_verdict_and_0_where_nothing_is_unsafe(folder: Path):
     assert summary.endswith(" 0 unsafe")
 
 
-def test_1_where_something_is_and_json_says_all_of_it(folder: Path):
+def test_preflight_unsafe_file_exits_with_1_and_json_has_all(folder: Path):
     words = ("preflight", "p.yaml", "--set", "render.stiffness_n_per_m=9000", "--seconds", 0.1, "--rate", 500, "--json")
     done = tangible(*words, cwd=folder)
     assert done.returncode == 1, done.stderr
@@ -84,7 +85,7 @@ def test_1_where_something_is_and_json_says_all_of_it(folder: Path):
 
 
 @pytest.mark.parametrize("sets", ["render.use=grey-level", "render.use=tangible-mask", "scene.height=dot.npy"])
-def test_any_law_and_one_pixel(folder: Path, sets: str):
+def test_preflight_any_law_accepts_one_pixel(folder: Path, sets: str):
     preflight(folder / "p.yaml", [sets], seconds=0.01, as_json=True, no_cache=True)
 
 
@@ -95,32 +96,33 @@ def test_any_law_and_one_pixel(folder: Path, sets: str):
         ("render: {use: proxy, stiffness_n_per_m: 700}", "p.yaml: `render:` is missing; name a method"),
     ],
 )
-def test_what_must_be_configured(folder: Path, line: str, said: str):
+def test_preflight_missing_configuration_is_refused(folder: Path, line: str, said: str):
     (folder / "p.yaml").write_text(SAFE.replace(line, ""))
     with pytest.raises(ConfigError, match=re.escape(said)):
         preflight(folder / "p.yaml", seconds=0.01, no_cache=True)
 
 
-def test_a_mistake_costs_one_clear_line(folder: Path):
+def test_preflight_wrong_option_prints_one_line(folder: Path):
     done = tangible("preflight", "p.yaml", "--rate", 0, cwd=folder)
-    assert (done.returncode, done.stderr) == (2, "--rate: is 0; it is 1 to 100000 ticks a second\n")
+    assert (done.returncode, done.stderr) == (2, "--rate: is 0; it must be 1 to 100000 ticks a second\n")
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
-def test_numbers_that_make_no_sense(value: float):
+def test_options_out_of_range_are_refused(value: float):
     for made in (Hand, Loop):
         for field in fields(made):
             with pytest.raises(ConfigError, match="--"):
                 made(**{field.name: value})
 
 
-def test_the_device_is_never_opened(folder: Path, monkeypatch: pytest.MonkeyPatch):
+def test_preflight_device_is_never_opened(folder: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(Mock, "open", lambda self: pytest.fail("opened"))
     preflight(folder / "p.yaml", seconds=0.01, as_json=True, no_cache=True)
 
 
-def test_a_cure_stands_below_its_verdict_and_brackets_are_no_marks():
-    shown = line(Verdict("slope", "a[b]", "warn", 0.125, "share", "<=", 0.01, "why [1]", "note", "do `x: [1]`"))
+def test_preflight_cure_is_below_its_verdict_with_plain_brackets():
+    verdict = Verdict("slope", "a[b]", "warn", 0.125, "share", "<=", 0.01, "why [1]", "note", "do `x: [1]`")
+    shown = verdict_line(verdict, COLOURS, WIDTHS)
     assert shown.splitlines() == [
         "[yellow]warn  [/] slope        a\\[b]: 12.5 % > 1 %; note; why [1]",
         f"{'':20}cure: do `x: [1]`",
@@ -128,8 +130,8 @@ def test_a_cure_stands_below_its_verdict_and_brackets_are_no_marks():
 
 
 @pytest.mark.slow
-def test_a_law_of_somebody_elses_without_a_word_on_its_stiffness():
-    """It is felt."""
+def test_survey_law_without_stated_stiffness_is_measured():
+    """The stiffness is measured."""
     from tangible_core import HapticSurface
     from tangible_core.data import Force
     from tangible_core.plugins.interfaces import PlainTouch
@@ -146,8 +148,8 @@ def test_a_law_of_somebody_elses_without_a_word_on_its_stiffness():
     assert (flight.relief_key, flight.relief_m) == ("workspace.relief_m", 0.02)
 
 
-def test_a_law_whose_force_is_no_number_is_named_and_not_measured():
-    """Bounds of NaN would name cures that are no values: `render.stiffness_n_per_m: nan`."""
+def test_survey_law_with_nan_force_is_refused():
+    """Bounds of NaN would give cures that are not values: `render.stiffness_n_per_m: nan`."""
     from tangible_core import HapticSurface
     from tangible_core.data import Force
     from tangible_core.plugins.interfaces import PlainTouch
@@ -165,7 +167,7 @@ def test_a_law_whose_force_is_no_number_is_named_and_not_measured():
         survey(surface, Broken(), Proxy(), Mock(), loop=Loop(seconds=0.01))
 
 
-def test_where_the_height_of_a_relief_is_said(folder: Path):
+def test_relief_key_is_where_the_height_is_set(folder: Path):
     flight = load_pipeline(folder / "p.yaml").flight(loop=Loop(seconds=0.01))
     assert (flight.relief_key, flight.relief_m, flight.smoothed) == ("workspace.relief_m", 0.004, False)
     own = load_pipeline(folder / "p.yaml", ["scene.relief_m=0.003"]).flight(loop=Loop(seconds=0.01))

@@ -1,4 +1,4 @@
-"""Materials made to fit a device: what is taken off, what is left alone, and what is then felt."""
+"""Materials limited to a device: the changes, the materials that stay, and the force that results."""
 
 import math
 from dataclasses import replace
@@ -21,7 +21,7 @@ SHIPPED = ("mock", "falcon", "falcon-simulated", "haply")
 ROUGH = {"texture": "stochastic", "roughness_m": 2e-4, "grain_m": 1e-3}
 
 
-def test_what_a_device_holds_is_left_alone():
+def test_fit_stable_material_is_unchanged():
     """SPEC leaves 3200 N/m to a law: a wave of 50 um and 1 mm adds 1974 N/m under 1 N."""
     for each in (
         material(stiffness_n_per_m=3200.0),
@@ -39,7 +39,7 @@ def test_what_a_device_holds_is_left_alone():
         (Safety(friction_n=0.01), 0.8 * 2 * 0.01 / 1e-5),
     ],
 )
-def test_stiffness_and_texture_together_are_what_the_guard_leaves(safety: Safety, most: float):
+def test_fit_stiffness_and_texture_sum_to_the_limit(safety: Safety, most: float):
     hard, rough = material(stiffness_n_per_m=9000.0), material(**ROUGH, stiffness_n_per_m=500.0)
     assert fit(hard, SPEC, safety).stiffness_n_per_m == pytest.approx(most)
     fitted = fit(rough, SPEC, safety)
@@ -47,39 +47,39 @@ def test_stiffness_and_texture_together_are_what_the_guard_leaves(safety: Safety
     assert fit(replace(rough, stiffness_n_per_m=9000.0), SPEC, safety).roughness_m == 0
 
 
-def test_the_device_s_own_word_bounds_too():
+def test_fit_stated_stiffness_of_the_device_is_a_limit():
     assert (
         fit(material(stiffness_n_per_m=9000.0), replace(SPEC, max_stiffness_n_per_m=1000.0), Safety()).stiffness_n_per_m
         == 800
     )
 
 
-def test_damping_is_what_stiffness_leaves():
+def test_fit_damping_is_what_stiffness_leaves():
     """b is 2 N s/m: 2000 N/m leave 1, without delay."""
     damped = material(stiffness_n_per_m=1000.0, damping_n_s_per_m=5.0)
     assert fit(damped, SPEC, Safety()).damping_n_s_per_m == pytest.approx(1.5)
     assert fit(damped, SPEC, Safety(delay_ticks=1)).damping_n_s_per_m == pytest.approx(0.5)
 
 
-def test_a_device_that_holds_nothing_takes_nothing_off():
+def test_fit_device_without_limit_changes_nothing():
     each = material(stiffness_n_per_m=500.0)
     assert fit(each, replace(SPEC, max_stiffness_n_per_m=0.0), Safety()) is each
 
 
-def test_what_was_taken_off_is_said_once():
+def test_fit_surface_describes_each_change_once():
     hard = material("hard", stiffness_n_per_m=9000.0)
     labels = np.tile(np.array([0, 1], np.int32), (32, 16))
     named = replace(level(labels=labels, materials=(hard, hard)), names=("wall", "cup"))
     surface, said = fit_surface(named, SPEC, Safety())
     assert surface.names == ("wall", "cup")
-    assert said == "softened to what the device holds: hard (stiffness 9000 to 3200 N/m)"
+    assert said == "limited to what the device renders stably: hard (stiffness 9000 to 3200 N/m)"
     assert [each.stiffness_n_per_m for each in surface.materials] == [3200, 3200]
     plain = level()
     assert fit_surface(plain, SPEC, Safety()) == (plain, "")
 
 
 @pytest.mark.parametrize("device", SHIPPED)
-def test_shipped_materials_are_no_stiffer_nor_more_damped_than_shipped_devices_hold(device: str):
+def test_fit_shipped_materials_keep_the_limits_of_shipped_devices(device: str):
     spec = load_method("device", device)().spec()
     for each in library().values():
         fitted = fit(each, spec, Safety())
@@ -90,7 +90,7 @@ def test_shipped_materials_are_no_stiffer_nor_more_damped_than_shipped_devices_h
 
 @pytest.mark.parametrize("name", ["glass", "ice"])
 @pytest.mark.parametrize("device", ["mock", "falcon-simulated"])
-def test_the_guard_softens_none_of_the_hardest_shipped(name: str, device: str):
+def test_guard_softens_no_fitted_material(name: str, device: str):
     surface = level(labels=np.zeros((32, 32), np.int32), materials=(library()[name],))
     felt = run_simulated(Proxy().touch(surface), load_method("device", device)(), 1.0)
     assert np.count_nonzero(felt.flags & TickFlag.TOUCHING) > 100
@@ -112,14 +112,14 @@ class TestPipeline:
             **changes,
         )
 
-    def test_the_touch_says_what_was_taken_off(self):
+    def test_touch_outcome_describes_the_changes(self):
         pipeline = self.pipeline(device=Mock())
         pipeline.make("touch")
         [touch] = [each for each in pipeline.outcomes if each.product == "touch"]
-        assert "softened to what the device holds: brick (texture 225 to 85.5 um), stone" in touch.why
+        assert "limited to what the device renders stably: brick (texture 225 to 85.5 um), stone" in touch.why
         assert pipeline.surface.materials[0] == library()["brick"]
 
-    def test_a_device_that_is_given_counts_and_not_the_configured_one(self):
+    def test_given_device_replaces_the_configured_one(self):
         strong = load_method("device", "force-dimension")(model="sigma")
         pipeline = self.pipeline(device=strong)
         pipeline.feel(Mock(), 0.01, in_real_time=False)
@@ -127,19 +127,19 @@ class TestPipeline:
         assert "brick (texture 225 to 85.5 um)" in touch.why
         assert pipeline.preflight(Mock()).safe
 
-    def test_a_hand_is_replayed_on_the_materials_that_it_felt(self):
-        """Unguarded as far as can be: what the law says is what was felt, once the force is there."""
+    def test_replay_uses_the_materials_of_the_session(self):
+        """The guard is as weak as possible: after the ramp, the force of the law is the recorded one."""
         free = {"ramp_s": 0, "max_step_n": 10, "passivity": "off"}
         pipeline = self.pipeline(safety=free)
         felt = pipeline.feel(Mock(), 0.3, in_real_time=False)
         assert np.abs(pipeline.replay(felt, Mock()).force_n - felt.force_n).max() < 1e-6
         assert np.abs(pipeline.replay(felt).force_n - felt.force_n).max() > 0.01
 
-    def test_nothing_where_it_is_not_wanted_or_no_device_is_known(self):
+    def test_fit_off_or_without_device_changes_nothing(self):
         for pipeline in (self.pipeline(device=Mock(), materials={"fit": "never"}), self.pipeline()):
             pipeline.make("touch")
             assert not any("softened" in each.why for each in pipeline.outcomes)
 
-    def test_surfaces_without_materials(self):
+    def test_fit_surface_without_materials_is_unchanged(self):
         surface = HapticSurface.from_heights(np.zeros((2, 2)))
         assert fit_surface(surface, SPEC, Safety())[0] is surface

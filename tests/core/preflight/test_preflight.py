@@ -1,4 +1,4 @@
-"""All verdicts together: one sentence, and cures that agree."""
+"""All verdicts together: a sentence, and cures that agree."""
 
 import json
 import math
@@ -8,24 +8,26 @@ import pytest
 
 from tangible_core.pipeline.config.editing import edit_text
 from tangible_core.preflight import Preflight, Verdict, relation
-from tangible_core.preflight.verdict import Change, held
+from tangible_core.preflight.verdict import Change, check_bound
 
 RELIEF = "workspace.relief_m"
 
 
 def low(value: str, worse: str = "warn") -> Verdict:
-    """A verdict that wants a lower relief."""
+    """Return a verdict whose cure is a lower relief."""
     cure = [Change(RELIEF, value, "at most"), ", or press less"]
-    return held("slope", "a wall", 2.0, "<=", 1.0, "share", "", cure=cure, says=f"it is over {value}", worse=worse)
+    return check_bound(
+        "slope", "a wall", 2.0, "<=", 1.0, "share", "", cure=cure, says=f"it is over {value}", worse=worse
+    )
 
 
 def high(value: str) -> Verdict:
-    return held(
+    return check_bound(
         "features", "3 mm wide", 1.0, ">=", 2.0, "m", "", cure=[Change(RELIEF, value, "at least")], says="too low"
     )
 
 
-OK = held("stiffness", "the law", 1.0, "<=", 2.0, "N/m", "", cure="softer", says="too stiff")
+OK = check_bound("stiffness", "the law", 1.0, "<=", 2.0, "N/m", "", cure="softer", says="too stiff")
 
 
 @pytest.mark.parametrize(
@@ -43,27 +45,27 @@ OK = held("stiffness", "the law", 1.0, "<=", 2.0, "N/m", "", cure="softer", says
         ),
     ],
 )
-def test_one_sentence_on_top(verdicts: list[Verdict], sentence: str, grade: str):
+def test_sentence_summarises_the_worst_verdicts(verdicts: list[Verdict], sentence: str, grade: str):
     found = Preflight.of(verdicts)
     assert (found.sentence, found.grade, found.safe) == (sentence, grade, grade != "unsafe")
     assert repr(found).splitlines()[0] == sentence
     assert len(repr(found).splitlines()) == 1 + sum(each.verdict != "ok" for each in verdicts)
 
 
-def test_all_cures_of_one_key_say_one_value_the_strictest():
+def test_cures_of_one_key_get_the_strictest_value():
     found = Preflight.of([low("0.01"), low("0.0021"), low("0.014")])
     assert {each.cure for each in found} == {"`workspace.relief_m: 0.0021`, or press less"}
     assert {change.value for each in found for change in each.changes} == {"0.0021"}
 
 
-def test_no_cure_undoes_that_of_what_is_worse():
+def test_cure_that_undoes_a_worse_one_is_left_out():
     one, other = Preflight.of([high("0.02"), low("0.01", "unsafe")])
     assert one.changes == ()
     assert one.cure == "(not by `workspace.relief_m`, which another check wants at most 0.01)"
     assert other.cure.startswith("`workspace.relief_m: 0.01`")
 
 
-def test_two_bounds_that_leave_room_are_met_by_one_value():
+def test_cures_compatible_bounds_get_one_value():
     found = Preflight.of([low("0.01", "unsafe"), high("0.004")])
     assert [each.cure for each in found] == ["`workspace.relief_m: 0.01`, or press less", "`workspace.relief_m: 0.01`"]
 
@@ -75,15 +77,15 @@ def test_two_bounds_that_leave_room_are_met_by_one_value():
         (0.1, ">=", 0.4, "0.1 N s/m < 0.4 N s/m"),
         (0.4, "<=", 0.4, "0.4 N s/m <= 0.4 N s/m"),
         (0.400001, "<=", 0.4, "0.400001 N s/m > 0.4 N s/m"),
-        (float("nan"), "<=", 0.4, "nan is to be <= 0.4 N s/m"),
+        (float("nan"), "<=", 0.4, "nan must be <= 0.4 N s/m"),
     ],
 )
-def test_an_inequality_is_a_true_one(value: float, sign: str, bound: float, said: str):
-    assert relation(held("damping", "the law", value, sign, bound, "N s/m", "", cure="less")) == said
+def test_relation_text_is_a_true_inequality(value: float, sign: str, bound: float, said: str):
+    assert relation(check_bound("damping", "the law", value, sign, bound, "N s/m", "", cure="less")) == said
 
 
-def test_a_program_is_told_all_of_it_and_can_apply_a_cure():
-    fit = held(
+def test_as_data_has_all_fields_and_applicable_changes():
+    fit = check_bound(
         *("textures", "brick", math.inf, "<=", 1.0, "N/m", "here"),
         cure=[Change("materials.fit", "device", "is"), "; or ", Change(RELIEF, "0.0012", "at most")],
         says="brick buzzes",

@@ -1,4 +1,4 @@
-"""What a hand that presses down all over a surface finds, against laws that are known in closed form."""
+"""Probes of a hand that presses down all over a surface, against force laws in closed form."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from tangible_core import HapticSurface
 
 
 class TestSprings:
-    def test_level_ground(self):
+    def test_probe_level_ground_has_the_spring_s_values(self):
         probes = fly(level(), "proxy", stiffness_n_per_m=600.0, press_n=1.5).probes
         np.testing.assert_allclose(probes.depth_m, 1.5 / 600, rtol=1e-5)
         np.testing.assert_allclose(probes.force_n, [[0, 0, 1.5]] * 1024, rtol=1e-5, atol=1e-5)
@@ -16,24 +16,24 @@ class TestSprings:
         np.testing.assert_allclose(probes.damping_n_s_per_m, 0, atol=1e-3)
         assert probes.onset_n.max() < 1e-3
 
-    def test_a_slope_stiffens_a_penalty_along_the_gradient(self):
+    def test_probe_slope_stiffens_a_penalty_along_the_gradient(self):
         probes = fly(shape(lambda x, y: 0.75 * x), "penalty-gradient", stiffness_n_per_m=400.0, press_n=2.0).probes
         inside = np.isfinite(probes.depth_m).reshape(64, 64)[1:-1, 1:-1]
         assert inside.all()
         np.testing.assert_allclose(probes.stiffness_n_per_m.reshape(64, 64)[:, 1:-1], 400 * (1 + 0.75**2), rtol=1e-3)
         np.testing.assert_allclose(probes.strength_n.reshape(64, 64)[:, 1:-1], 2 * 1.25, rtol=1e-3)
 
-    def test_and_no_proxy(self):
+    def test_probe_slope_does_not_stiffen_a_proxy(self):
         probes = fly(shape(lambda x, y: 0.75 * x), "proxy", stiffness_n_per_m=400.0, press_n=2.0).probes
         middle = probes.stiffness_n_per_m.reshape(64, 64)[8:-8, 8:-8]
         np.testing.assert_allclose(middle, 400, rtol=1e-3)
 
-    def test_damping(self):
+    def test_probe_measures_damping(self):
         for law in ("proxy", "penalty-gradient"):
             probes = fly(level(), law, damping_n_s_per_m=0.7).probes
             np.testing.assert_allclose(probes.damping_n_s_per_m, 0.7, rtol=1e-3)
 
-    def test_each_material_is_pressed_as_hard(self):
+    def test_probe_presses_each_material_equally(self):
         labels = np.repeat(np.array([[0, 1]], np.int32), 16, axis=1).repeat(32, axis=0)
         pair = material("soft", stiffness_n_per_m=200.0), material("hard", stiffness_n_per_m=1000.0)
         probes = fly(level(labels=labels, materials=pair), "proxy", press_n=1.0).probes
@@ -41,19 +41,19 @@ class TestSprings:
         np.testing.assert_allclose(depth_m[:, :15], 1 / 200, rtol=1e-4)
         np.testing.assert_allclose(depth_m[:, 17:], 1 / 1000, rtol=1e-4)
 
-    def test_no_hand_reaches_farther_than_the_device(self):
+    def test_probe_depth_is_limited_by_the_reach(self):
         probes = fly(level(), "proxy", stiffness_n_per_m=10.0, workspace_m=(0.1, 0.1, 0.004)).probes
         np.testing.assert_allclose(probes.depth_m, 0.004)
         np.testing.assert_allclose(probes.strength_n, 0.04, rtol=1e-4)
 
 
 class TestOtherLaws:
-    def test_a_force_that_steps(self):
+    def test_probe_measures_a_force_that_steps(self):
         probes = fly(level(), "grey-level", force_at_white_n=2.0).probes
         np.testing.assert_allclose(probes.onset_n, 2)
         np.testing.assert_allclose(probes.stiffness_n_per_m, 0, atol=1e-6)
 
-    def test_a_law_that_holds_nothing_up_is_felt_where_its_spring_would(self):
+    def test_probe_lateral_law_is_probed_at_its_spring_s_depth(self):
         probes = fly(half_slope(0.5), "lateral-shape", dequantise="never", press_n=2.0).probes
         np.testing.assert_allclose(probes.depth_m, 2 / 800, rtol=1e-6)
         np.testing.assert_allclose(probes.strength_n.reshape(64, 64)[:, 40:-4], 2 * 0.5, rtol=1e-3)
@@ -64,7 +64,7 @@ class TestOtherLaws:
 @pytest.mark.parametrize(
     "heights", [np.zeros((1, 1)), np.zeros((1, 5)), np.array([[0.0, 0.01]]), np.full((7, 3), 0.02)]
 )
-def test_any_law_on_hardly_a_surface(law: str, heights: np.ndarray):
+def test_probe_any_law_accepts_tiny_surfaces(law: str, heights: np.ndarray):
     probes = fly(HapticSurface.from_heights(heights.astype(np.float32)), law).probes
     for values in vars(probes).values():
         assert len(values) == heights.size

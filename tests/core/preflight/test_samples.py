@@ -1,4 +1,4 @@
-"""What comes with the house, and what anybody begins with, is safe as it is: samples, built-in scenes, photographs."""
+"""Samples, built-in scenes and photographs pass the preflight with their defaults."""
 
 from pathlib import Path
 
@@ -18,8 +18,8 @@ FOLDERS = "configs", "tangible_core"
 DEVICES = "mock", "falcon-simulated"
 
 
-def felt() -> list[Path]:
-    """Those with a law and a device; examples name devices that are installed with them."""
+def sample_files() -> list[Path]:
+    """Return the samples with a force law and a device; examples name devices that are installed with them."""
     files = [path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*.yaml"))]
     texts = {path: path.read_text(encoding="utf-8").splitlines() for path in files}
     keys = {path: {line.partition(":")[0] for line in lines} for path, lines in texts.items()}
@@ -27,17 +27,17 @@ def felt() -> list[Path]:
     return [path for path, named in keys.items() if {"scene", "render", "device"} <= named and path not in templates]
 
 
-def test_the_samples_are_found():
-    assert {path.name for path in felt()} >= {"demo.yaml", "feel.yaml"}
+def test_samples_exist():
+    assert {path.name for path in sample_files()} >= {"demo.yaml", "feel.yaml"}
 
 
 def complaints(verdicts: Preflight) -> list[str]:
-    """All but those of the machine that the tests run on."""
+    """Return all complaints except those on the machine that runs the tests."""
     return [repr(each) for each in verdicts if each.verdict != "ok" and each.check not in ("jitter", "tick")]
 
 
-@pytest.mark.parametrize("path", felt(), ids=lambda path: str(path.relative_to(ROOT)))
-def test_no_verdict_on_a_sample_is_a_complaint(path: Path):
+@pytest.mark.parametrize("path", sample_files(), ids=lambda path: str(path.relative_to(ROOT)))
+def test_sample_passes_preflight(path: Path):
     verdicts = load_pipeline(path).preflight(loop=Loop(seconds=0.05))
     assert len(verdicts) > 10
     assert complaints(verdicts) == []
@@ -45,7 +45,7 @@ def test_no_verdict_on_a_sample_is_a_complaint(path: Path):
 
 
 @pytest.mark.slow
-def test_the_first_file_of_the_readme(tmp_path: Path):
+def test_first_file_of_the_readme_passes_preflight(tmp_path: Path):
     text = (ROOT / "README.md").read_text(encoding="utf-8").partition("# mine.yaml\n")[2].partition("```")[0]
     left, right = (Scene.builtin("motorcycle").views.left, Scene.builtin("motorcycle").views.right)
     cv2.imwrite(str(tmp_path / "left.png"), left[:, :, ::-1])
@@ -59,7 +59,7 @@ def test_the_first_file_of_the_readme(tmp_path: Path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", BUILTINS)
-def test_a_builtin_scene_with_what_is_default(name: str):
+def test_builtin_scene_with_defaults_passes_preflight(name: str):
     scene = Scene.builtin(name)
     depth = SemiGlobal() if scene.views.right is not None else Luminance()
     pipeline = Pipeline(scene, depth=depth, texture=Gradient(segments=6), render=Proxy())
@@ -70,7 +70,7 @@ def test_a_builtin_scene_with_what_is_default(name: str):
 
 
 def photograph(rows: int, columns: int) -> np.ndarray:
-    """Soft hills, noise, stripes and sharp blocks, a quarter each: a bright picture of everything that is steep."""
+    """Return a bright picture of soft hills, noise, stripes and sharp blocks, a quarter each: all that is steep."""
     random = np.random.default_rng(1)
     y, x = np.mgrid[:rows, :columns]
     hills = cv2.normalize(
@@ -83,7 +83,7 @@ def photograph(rows: int, columns: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("size", [(120, 160), (400, 600)])
-def test_a_photograph_of_one_s_own_with_the_roughest_materials(size: tuple[int, int]):
+def test_photograph_with_the_roughest_materials_passes_preflight(size: tuple[int, int]):
     rows, columns = size
     quarters = (np.arange(rows)[:, None] * 2 // rows * 2 + np.arange(columns) * 2 // columns).astype(np.int32)
     scene = Scene.photo(photograph(rows, columns), segments=quarters)

@@ -1,4 +1,4 @@
-"""Lateness and the cost of a tick: on a clock that is made up, and once on the real one."""
+"""Lateness and the duration of a tick, on a fake clock and once on the real one."""
 
 import os
 
@@ -11,7 +11,7 @@ from tangible_core.preflight import timing
 
 
 class Clock:
-    """Time that passes only when somebody sleeps, always a little too long, and once far too long."""
+    """A clock that advances only in sleeps, always by a little too much, and once by far too much."""
 
     def __init__(self, over_s: float, stall_at: int, stall_s: float) -> None:
         self.now, self.sleeps = 100.0, 0
@@ -25,7 +25,7 @@ class Clock:
         self.sleeps += 1
 
 
-def test_a_late_tick_is_counted_once_and_nothing_is_caught_up(monkeypatch: pytest.MonkeyPatch):
+def test_measure_lateness_late_tick_counts_once(monkeypatch: pytest.MonkeyPatch):
     clock = Clock(over_s=1e-5, stall_at=4, stall_s=3.5e-3)
     monkeypatch.setattr(timing, "time", clock)
     late = timing.measure_lateness(0.02, 0.001)
@@ -38,7 +38,7 @@ def test_a_late_tick_is_counted_once_and_nothing_is_caught_up(monkeypatch: pytes
     assert clock.now == pytest.approx(100 + 0.023 + 1e-5)
 
 
-def test_this_machine_wakes_late_and_its_scheduling_is_as_before():
+def test_measure_lateness_restores_the_scheduling():
     before = os.sched_getscheduler(0)
     late = timing.measure_lateness(0.05, 0.001)
     assert late.late_s.size == 50
@@ -46,7 +46,7 @@ def test_this_machine_wakes_late_and_its_scheduling_is_as_before():
     assert os.sched_getscheduler(0) == before
 
 
-def test_where_real_time_is_refused(monkeypatch: pytest.MonkeyPatch):
+def test_measure_lateness_without_real_time_rights(monkeypatch: pytest.MonkeyPatch):
     def refuse(*_: object) -> None:
         raise PermissionError
 
@@ -57,7 +57,7 @@ def test_where_real_time_is_refused(monkeypatch: pytest.MonkeyPatch):
 
 
 @pytest.mark.parametrize("ticks", [1, 50])
-def test_every_tick_is_timed(ticks: int):
+def test_measure_ticks_times_every_tick(ticks: int):
     touch = load_method("render", "proxy")().touch(level())
     cost = timing.measure_ticks(touch, np.tile([0.0, 0.0, 0.009], (ticks, 1)), 0.001)
     assert cost.call_s.size == ticks

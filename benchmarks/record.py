@@ -14,7 +14,7 @@ import numpy as np
 from tangible_core.data import HapticSurface
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import Safety
-from tangible_core.session import Recording, Writer, replay, run_simulated, undisturbed
+from tangible_core.session import Recording, Writer, replay, run_simulated, unaltered_forces
 from tangible_devices.mock import Mock
 from tangible_render.proxy import Proxy
 
@@ -95,7 +95,7 @@ def _replaying(path: Path, minute: Recording) -> Iterator[Figure]:
     yield Figure("time stamps, off by at most", "<= 1 us", f"{1e6 * late:g} us", late <= 1e-6)
     off_n = float(np.abs(kept.force_n - minute.force_n).max())
     yield Figure("forces, off by at most", "<= 0.3 uN", f"{1e6 * off_n:.2f} uN", off_n <= 3e-7)
-    own = ~np.isnan(undisturbed(minute))
+    own = ~np.isnan(unaltered_forces(minute))
     again = np.array_equal(replay(_touch(), kept).force_n[own], minute.force_n[own])
     yield Figure("the same law on the file gives", "the same forces to the last bit", "yes" if again else "no", again)
 

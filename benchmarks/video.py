@@ -21,7 +21,7 @@ from tangible_core.pipeline.feeling import Feeling
 from tangible_core.runtime.threads import limited_threads
 from tangible_core.scene.geometry import smooth
 from tangible_core.servo import Safety, Servo
-from tangible_core.session import Turn, run_in_turn, run_simulated
+from tangible_core.session import Slot, run_kiosk, run_simulated
 from tangible_core.session.film import Steady
 from tangible_depth import SemiGlobal
 from tangible_devices import Mock
@@ -72,7 +72,7 @@ def _pipeline(folder: Path, size: tuple[int, int], fps: float, **scene: Any) -> 
     path = folder / f"{size[0]}-{fps:g}.avi"
     if not path.exists():
         _write(path, size, fps)
-    made = Scene.of(video=path, layout="side-by-side", **scene)
+    made = Scene.video(path, layout="side-by-side", **scene)
     return Pipeline(made, depth=SemiGlobal(resolution="half"), render=Proxy(), cached=False)
 
 
@@ -113,8 +113,8 @@ def _played(
     on_report: Callable[[ServoReport], None] | None = None,
 ) -> ServoReport:
     """A session of a film on a device without Python; of its first frame alone, if it is not to play."""
-    turn = Turn(Feeling(pipeline).film(), Safety(), reliefs=(lambda: Feeling(pipeline).reliefs) if playing else None)
-    return run_in_turn([turn], Circling(), seconds, on_start=on_start, on_report=on_report)
+    turn = Slot(Feeling(pipeline).film(), Safety(), reliefs=(lambda: Feeling(pipeline).reliefs) if playing else None)
+    return run_kiosk([turn], Circling(), seconds, on_start=on_start, on_report=on_report)
 
 
 def _rates() -> Iterator[Figure]:

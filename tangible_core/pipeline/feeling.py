@@ -20,17 +20,17 @@ from ..runtime.threads import limited_threads
 from ..servo import OVER, Beacon, Servo, beacon_to
 from ..session import (
     About,
-    Followed,
     PartFelt,
     Recording,
-    Turn,
+    Slot,
+    TrackingError,
     check_record_path,
     keeping,
     parts_felt,
     replay,
-    run_in_turn,
+    run_kiosk,
     run_simulated,
-    telling_parts,
+    with_parts,
 )
 from ..session.film import ByClock, Reliefs
 from .config.methods import check_kind, named_method
@@ -77,7 +77,7 @@ class FeelOptions(TypedDict, total=False):
     each_s: float
     """Seconds for each pipeline of `then`; 60 by default."""
     on_wait: Callable[[str], None] | None
-    """Waits for a device that is missing or goes away, and is called with a sentence (`session.run_in_turn`); in real
+    """Waits for a device that is missing or goes away, and is called with a sentence (`session.run_kiosk`); in real
     time alone."""
     beacon: str | int | None
     """The name or the number of a part to which the hand is pulled gently, with 1 N at most, until a button of the
@@ -165,7 +165,7 @@ class Feeling:
                     "then, on_wait: are for a session in real time; leave them out, or in_real_time=False"
                 )
             simulated = self._run_simulated(device, math.inf if seconds is None else seconds, tell, stop, beacon)
-            simulated = replace(simulated, about=said.stamped())
+            simulated = replace(simulated, about=said.with_versions())
             if file is not None:
                 simulated.save(file)
             return simulated
@@ -174,7 +174,7 @@ class Feeling:
         said = _in_turn(said, [Feeling(each)._about() for each in (self.pipeline, *then)])
 
         def run(rows: Callable[[np.ndarray], None]) -> str:
-            report = run_in_turn(
+            report = run_kiosk(
                 turns, device, seconds, each_s if then else math.inf, on_report=tell, keep=rows, on_start=on_start,
                 on_wait=on_wait, stop=stop, threads=self.engine.threads,
             )  # fmt: skip
@@ -184,10 +184,10 @@ class Feeling:
             with keeping(file, said) as writer:
                 stopped = run(_both(writer.append, keep))
                 writer.close(stopped)
-            return Recording.load(file) if keep is None else Recording(NO_ROWS, stopped, said.stamped())
+            return Recording.load(file) if keep is None else Recording(NO_ROWS, stopped, said.with_versions())
         rows = [NO_ROWS]
         stopped = run(keep or rows.append)
-        return Recording(np.concatenate(rows), stopped, said.stamped())
+        return Recording(np.concatenate(rows), stopped, said.with_versions())
 
     def _run_simulated(
         self,
@@ -198,13 +198,13 @@ class Feeling:
         beacon: str | int | None,
     ) -> Recording:
         """Feel by the clock of a simulated device."""
-        tell = telling_parts(self.pipeline.make("surface"), tell)
+        tell = with_parts(self.pipeline.make("surface"), tell)
         touch, how = self._touch_or_film(), (self.engine.config.safety, stop, self._beacon(beacon))
         if not isinstance(touch, Film):
             return run_simulated(touch, device, seconds, tell, *how)
         with self.reliefs as reliefs, limited_threads(self.engine.threads):
             frames = ByClock(reliefs, touch)
-            return run_simulated(touch, device, seconds, frames.told(tell), *how, frames=frames)
+            return run_simulated(touch, device, seconds, frames.with_counts(tell), *how, frames=frames)
 
     def replay(self, recording: Recording | str | PathLike[str]) -> Recording:
         """Return the forces of this pipeline's law for each recorded state; nothing limits them.
@@ -214,9 +214,9 @@ class Feeling:
         """
         recording = recording if isinstance(recording, Recording) else Recording.load(recording)
         said = replace(about(self.engine), device=f"replay of {recording.about.device or 'a recording'}")
-        return replace(replay(self.touch, recording), about=said.stamped())
+        return replace(replay(self.touch, recording), about=said.with_versions())
 
-    def track(self, seen: Recording) -> Followed:
+    def track(self, seen: Recording) -> TrackingError:
         """Return how the hand followed its path on the device, where the device knows that.
 
         seen: the ticks, one of `session.EVERY`. Raises: as `run`.
@@ -273,7 +273,7 @@ class Feeling:
             loop=loop,
         )
 
-    def _turn(self, first: "Feeling", beacon: str | int | None) -> Turn:
+    def _turn(self, first: "Feeling", beacon: str | int | None) -> Slot:
         """Return the turn of this scene on the device of the first one. Raises: ConfigError for another device."""
         ours, theirs = self.engine.config, first.engine.config
         own = self.given is None and ours.device is not None
@@ -286,12 +286,12 @@ class Feeling:
         on = self
         if self.given is None and ours.device is None and theirs.device is not None:
             on = Feeling(self.pipeline, theirs.device.method)
-        reliefs = None if self.engine.scene.video is None else lambda: self.reliefs
-        return Turn(on._touch_or_film(), ours.safety, self.pipeline.make("surface"), self._beacon(beacon), reliefs)
+        reliefs = None if self.engine.scene.frames is None else lambda: self.reliefs
+        return Slot(on._touch_or_film(), ours.safety, self.pipeline.make("surface"), self._beacon(beacon), reliefs)
 
     def _touch_or_film(self) -> Touch | Film:
         """Return what a loop feels: of a video, a film."""
-        return self.touch if self.engine.scene.video is None else self.film()
+        return self.touch if self.engine.scene.frames is None else self.film()
 
     def _beacon(self, part: str | int | None) -> Beacon | None:
         """Return the beacon to a part, by its name or number. Raises: ConfigError for an unknown part."""

@@ -1,31 +1,33 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
-from .beside import beside
-from .following import EVERY, Followed, Looks, followed
-from .in_turn import Turn, run_in_turn
-from .keeper import Keeper
-from .limited import changed_most
-from .live import figures, keeping, run_in_real_time
-from .loop import run_simulated
+from .guard_summary import guard_summary
+from .kiosk import Slot, run_kiosk
+from .live import RingDrain, figures, keeping, run_in_real_time
 from .parts_felt import (
     BeaconFelt,
     PartFelt,
     beacons_felt,
-    called,
     material_under,
     materials_text,
     names_in,
     names_of,
     names_text,
+    part_label,
     part_under,
     parts_felt,
-    telling_parts,
+    with_parts,
 )
 from .recording import INTERRUPTED, STOPPED, Recording, failure
-from .recording_files import check_record_path
-from .replay import compared, replay, undisturbed
-from .tick_file import About
-from .writer import Writer
+from .recording.comparison import compare_recordings
+from .recording.files import check_record_path
+from .recording.replay import compare_replay, replay, unaltered_forces
+from .recording.tick_file import About
+from .recording.writer import Writer
+from .simulated import run_simulated
+from .tracking_error import EVERY, TickSampler, TrackingError, tracking_error
+
+beside, Keeper, Turn, run_in_turn = compare_recordings, RingDrain, Slot, run_kiosk
+"""Former names of these four."""
 
 __all__ = [
     "EVERY",
@@ -33,34 +35,34 @@ __all__ = [
     "STOPPED",
     "About",
     "BeaconFelt",
-    "Followed",
-    "Keeper",
-    "Looks",
     "PartFelt",
     "Recording",
-    "Turn",
+    "RingDrain",
+    "Slot",
+    "TickSampler",
+    "TrackingError",
     "Writer",
     "beacons_felt",
-    "beside",
-    "called",
-    "changed_most",
     "check_record_path",
-    "compared",
+    "compare_recordings",
+    "compare_replay",
     "failure",
     "figures",
-    "followed",
+    "guard_summary",
     "keeping",
     "material_under",
     "materials_text",
     "names_in",
     "names_of",
     "names_text",
+    "part_label",
     "part_under",
     "parts_felt",
     "replay",
     "run_in_real_time",
-    "run_in_turn",
+    "run_kiosk",
     "run_simulated",
-    "telling_parts",
-    "undisturbed",
+    "tracking_error",
+    "unaltered_forces",
+    "with_parts",
 ]

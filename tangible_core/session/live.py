@@ -1,12 +1,13 @@
-"""A session in real time: the force loop in its own process, watched and recorded from here."""
+"""A session in real time: the force loop in its own process, watched and recorded from this one."""
 
+import logging
 import time
 from collections.abc import Callable, Generator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 
@@ -14,14 +15,43 @@ from ..data import UNTOUCHED, FilmFelt, ServoReport, TickFlag
 from ..plugins.interfaces import Film, HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
 from ..servo import Beacon, Safety, Servo
-from .keeper import Keeper
 from .recording import INTERRUPTED, STOPPED, Recording
-from .tick_file import About
-from .writer import Writer
+from .recording.tick_file import About
+from .recording.writer import Writer
 
+log = logging.getLogger(__name__)
 LOOK_EVERY_S = 0.05
-"""How often what was felt is taken from the loop's ring: what a crash of this process can lose of a recording."""
+"""Interval at which ticks are taken from the loop's ring, and so the most that a crash can lose of a recording."""
 REPORT_EVERY_S = 0.1
+"""Interval of the reports."""
+
+
+@final
+class RingDrain:
+    """A drain that passes each tick of a loop to `keep` once, in tables of `data.TICK_COLUMNS`, as for a `Writer`.
+
+    The owner of the loop calls `look` at least every few seconds, as a ring holds eight seconds, and once more after
+    the loop has ended. Swapped scenes make no difference. Use it for one loop and from one thread at a time, preferably
+    a thread that Ctrl-C cannot interrupt, as otherwise it is unknown which ticks were passed on.
+    """
+
+    def __init__(self, servo: Servo, keep: Callable[[np.ndarray], None], first: int = 0) -> None:
+        """Begin with the tick of number `first`, such as `servo.ring.count` for all ticks from now on."""
+        self._servo, self._keep = servo, keep
+        self._next = first
+
+    def look(self) -> None:
+        """Pass on the ticks since the last call; logs how many were overwritten before, and so are lost.
+
+        Raises: whatever `keep` raises, such as OutputError on a full disk; the loop goes on, and the next call passes
+        these ticks on again.
+        """
+        rows, following = self._servo.ring.since(self._next)
+        if lost := following - self._next - len(rows):
+            log.warning("%d ticks were overwritten before they could be recorded; the machine is too busy", lost)
+        if len(rows):
+            self._keep(rows)
+        self._next = following
 
 
 def run_in_real_time(
@@ -35,66 +65,66 @@ def run_in_real_time(
     stop: Event | None = None,
     beacon: Beacon | None = None,
 ) -> ServoReport:
-    """Feel in real time, until time is over, Ctrl-C, `stop` or what else ends a `Servo`; then no force is left.
+    """Run in real time, until the end of the time, Ctrl-C, `stop` or the end of the `Servo`; then no force is left.
 
-    on_report: called ten times a second, and at the end. keep: given all ticks, as rows of `data.TICK_COLUMNS`, in a
-    thread of its own. on_start: called once the loop runs. What these raise ends the session, such as a full disk.
+    on_report: called ten times a second, and at the end. keep: called with all ticks, as rows of `data.TICK_COLUMNS`,
+    in its own thread. on_start: called once the loop runs. An error of these, such as a full disk, ends the session.
     stop: set from another thread, it ends the session within a tenth of a second. beacon: pulls from the start, until a
     button releases it (`Servo.pull_to`).
-    Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and what a
-    plugin raises.
+    Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and whatever
+    a plugin raises.
     """
     with stoppable(stop):
         servo = Servo(touch, device, limits, seconds)
 
-        def begun(servo: Servo) -> None:
+        def start(servo: Servo) -> None:
             servo.pull_to(beacon)
-            (on_start or ignored)(servo)
+            (on_start or ignore)(servo)
 
-        return attended(servo, on_report or ignored, keep or ignored, begun)
+        return watch_loop(servo, on_report or ignore, keep or ignore, start)
 
 
-def attended(
+def watch_loop(
     servo: Servo,
-    tell: Callable[[ServoReport], None],
+    on_report: Callable[[ServoReport], None],
     keep: Callable[[np.ndarray], None],
     on_start: Callable[[Servo], None],
     look: Callable[[], str] = str,
 ) -> ServoReport:
-    """Start this loop, watch over it until something ends it, and leave no force.
+    """Start a loop, record and report it until something ends it, and leave no force.
 
-    look: called twenty times a second, for what else there is to do; says why the loop shall end, if it shall.
+    look: called twenty times a second for other work; returns why the loop must end, if so.
     Raises: as `run_in_real_time`.
     """
-    with ThreadPoolExecutor(1) as aside, servo:  # the force goes first
+    with ThreadPoolExecutor(1) as background, servo:  # in this order, the force ends first
         on_start(servo)
-        keeper, next_s, ended = Keeper(servo, keep), time.monotonic(), ""
+        drain, next_s, ended = RingDrain(servo, keep), time.monotonic(), ""
         try:
             while servo.running and not ended:
                 time.sleep(LOOK_EVERY_S)
-                aside.submit(keeper.look).result()
+                background.submit(drain.look).result()
                 if time.monotonic() >= next_s:
                     next_s += REPORT_EVERY_S
-                    tell(servo.report())
+                    on_report(servo.report())
                 ended = STOPPED if stop_asked() else look()
             last = servo.stop(ended)
         except KeyboardInterrupt:
             last = servo.stop(INTERRUPTED)
-        aside.submit(keeper.look).result()
-        tell(last)
+        background.submit(drain.look).result()
+        on_report(last)
     return last
 
 
-def ignored(_: Any) -> None:
-    """Nobody listens."""
+def ignore(_: Any) -> None:
+    """Do nothing, where no function was given."""
 
 
 @contextmanager
 def keeping(path: Path, about: About) -> Generator[Writer]:
-    """A writer to a file of any of the recordings' suffixes.
+    """Open a writer to a recording of any suffix.
 
-    What it appends is safe at once, in a .nc file; where another suffix was asked for, that file is made of it at the
-    end, and goes. Raises: OutputError as `Writer` and `Recording.save`.
+    Appended ticks are safe at once, in a .nc file; for another suffix, that file is converted at the end and deleted.
+    Raises: OutputError as `Writer` and `Recording.save`.
     """
     growing = path if path.suffix == ".nc" else path.with_name(f"{path.name}.nc")
     with Writer(growing, about) as writer:
@@ -105,7 +135,7 @@ def keeping(path: Path, about: About) -> Generator[Writer]:
 
 
 def figures(report: ServoReport) -> dict[str, float]:
-    """How the loop was, in numbers, by name."""
+    """Return the figures of a loop, by name."""
     times = {"period": report.period_us, "late": report.late_us}
     return {
         "ticks": report.ticks,
@@ -131,4 +161,4 @@ def _of_film(film: FilmFelt) -> dict[str, float]:
 
 
 LIMITS = [flag.name or "" for flag in TickFlag if not flag & UNTOUCHED]
-"""What safety does to a force, by the names of the flags."""
+"""Names of the flags of limited forces."""

@@ -1,4 +1,4 @@
-"""Which part and material the tip is on, by their names; looked up beside the force loop, never in it."""
+"""The part and material under the tip, by name; looked up outside the force loop."""
 
 import json
 from collections import Counter
@@ -18,39 +18,41 @@ Places = Float64[np.ndarray, "n 3"]
 
 
 class BeaconFelt(NamedTuple):
-    """How long a beacon was on."""
+    """The time in which a beacon was on."""
 
     number: int
-    """Of its part."""
+    """Number of its part."""
     name: str
-    """Of its part; empty where nobody gave it one, or the surface is another one."""
+    """Name of its part; empty if it has none on this surface."""
     share: float
-    """Of all ticks."""
+    """Share of all ticks."""
 
     def __str__(self) -> str:
-        return f"A beacon pulled to {called(self.number, self.name)} for {100 * self.share:.0f} % of the time"
+        return f"A beacon pulled to {part_label(self.number, self.name)} for {100 * self.share:.0f} % of the time"
 
 
 class PartFelt(NamedTuple):
-    """How a part was felt."""
+    """The contact with one part."""
 
     number: int
     name: str
-    """Empty where nobody gave it one."""
+    """Name of the part; empty if it has none."""
     share: float
-    """Of the time in contact, in which the tip was on it."""
+    """Share of the time in contact in which the tip was on the part."""
     peak_force_n: float
     material: str = ""
-    """The name of its material; empty where the surface has none."""
+    """Name of its material; empty if the surface has none."""
 
 
-def telling_parts(surface: HapticSurface | None, tell: Callable[[ServoReport], None]) -> Callable[[ServoReport], None]:
-    """`tell`, which then hears of the part and the material under the tip too. surface: None for one without either."""
-    return lambda report: tell(with_part(report, surface))
+def with_parts(
+    surface: HapticSurface | None, on_report: Callable[[ServoReport], None]
+) -> Callable[[ServoReport], None]:
+    """Return a function that adds the part and the material under the tip to a report, and passes it on."""
+    return lambda report: on_report(with_part(report, surface))
 
 
 def with_part(report: ServoReport, surface: HapticSurface | None) -> ServoReport:
-    """A report with what the part under the tip is called, and its material."""
+    """Return a report with the part and the material under the tip."""
     if surface is None or not report.ticks:
         return report
     at_m = report.state.position_m
@@ -58,15 +60,15 @@ def with_part(report: ServoReport, surface: HapticSurface | None) -> ServoReport
 
 
 def part_under(surface: HapticSurface, position_m: Vector) -> str:
-    """What the part under a tip is called, touched or not; empty beside the surface, and where that has no parts."""
+    """Return the label of the part under a tip, in contact or not; empty off the surface, or if it has no parts."""
     if surface.names is None:
         return ""
     number = _under(surface, position_m)
-    return "" if number < 0 else called(number, surface.names[number])
+    return "" if number < 0 else part_label(number, surface.names[number])
 
 
 def material_under(surface: HapticSurface, position_m: Vector) -> str:
-    """The name of the material under a tip, touched or not; empty beside the surface, and where that has none."""
+    """Return the name of the material under a tip, in contact or not; empty off the surface, or if it has none."""
     if not surface.materials:
         return ""
     number = _under(surface, position_m)
@@ -74,29 +76,29 @@ def material_under(surface: HapticSurface, position_m: Vector) -> str:
 
 
 def names_text(names: Mapping[int, str]) -> str:
-    """The names of parts by number, as the header of a recording has them; empty for none."""
+    """Return the names of parts as text for the header of a recording; empty for none."""
     return json.dumps({str(number): names[number] for number in sorted(names)}, ensure_ascii=False) if names else ""
 
 
 def materials_text(surface: HapticSurface) -> str:
-    """The names of a surface's materials by the number of their label, as `names_text`; empty where it has none."""
+    """Return the names of a surface's materials by the number of their label, as `names_text`; empty for none."""
     return names_text({number: each.name for number, each in enumerate(surface.materials or ())})
 
 
 def names_in(configuration: str) -> str:
-    """`names_text` of the parts that the text of a pipeline file names; empty where it is none that can be read."""
+    """Return `names_text` of the parts in the text of a pipeline file; empty if it cannot be read."""
     from ..files.yaml.source import parse_source, plain
 
     try:
         parts: Any = plain(parse_source(configuration, Path(), "a mapping", empty=True).tree).get("parts")
         names = {int(number): getattr(each, "get", {"name": each}.get)("name") for number, each in parts.items()}
         return names_text({number: str(name).strip() for number, name in names.items() if name})
-    except (TangibleError, AttributeError, TypeError, ValueError):  # whoever runs it complains of it
+    except (TangibleError, AttributeError, TypeError, ValueError):  # reported when the file is run
         return ""
 
 
 def names_of(text: str) -> list[dict[int, str]]:
-    """What `names_text` wrote, of each scene that was felt in turn. Raises: OutputError if it is damaged."""
+    """Read the text of `names_text`, a line for each scene of a kiosk. Raises: OutputError if it is damaged."""
     try:
         scenes = [json.loads(line or "{}") for line in text.splitlines()]
         return [{int(number): str(name) for number, name in names.items()} for names in scenes]
@@ -104,19 +106,19 @@ def names_of(text: str) -> list[dict[int, str]]:
         raise OutputError(f"the names of its parts are damaged: {quoted(text)}; record it again") from error
 
 
-def called(number: int, name: str) -> str:
-    """A part by its name, or by its number where it has none."""
+def part_label(number: int, name: str) -> str:
+    """Return a part's name, or its number if it has none."""
     return name or f"part {number}"
 
 
-def parts_felt(felt: Recording, surface: HapticSurface) -> tuple[PartFelt, ...]:
-    """Every part that was touched, the longest touched first; none where the surface has no parts."""
-    force_n = np.linalg.norm(felt.force_n, axis=1)
-    pulled_in_air = (felt.flags & (TickFlag.BEACON | TickFlag.TOUCHING)) == TickFlag.BEACON
+def parts_felt(recording: Recording, surface: HapticSurface) -> tuple[PartFelt, ...]:
+    """Return every part that was touched, by time in contact, longest first; none if the surface has no parts."""
+    force_n = np.linalg.norm(recording.force_n, axis=1)
+    pulled_in_air = (recording.flags & (TickFlag.BEACON | TickFlag.TOUCHING)) == TickFlag.BEACON
     touching = (force_n > 0) & ~pulled_in_air
     if surface.names is None or not touching.any():
         return ()
-    under, force_n = _parts_under(surface, felt.position_m[touching]), force_n[touching]
+    under, force_n = _parts_under(surface, recording.position_m[touching]), force_n[touching]
     numbers, ticks = np.unique(under[under >= 0], return_counts=True)
     order = np.argsort(-ticks, kind="stable")
     materials = [each.name for each in surface.materials or ()]
@@ -132,23 +134,22 @@ def parts_felt(felt: Recording, surface: HapticSurface) -> tuple[PartFelt, ...]:
     )
 
 
-def beacons_felt(felt: Recording, surface: HapticSurface) -> tuple[BeaconFelt, ...]:
-    """Every part that a beacon pulled to, the longest first; by the names of this surface."""
-    ticks = Counter[int](felt.beacon[felt.beacon >= 0].tolist())
+def beacons_felt(recording: Recording, surface: HapticSurface) -> tuple[BeaconFelt, ...]:
+    """Return every part that a beacon pulled to, with its name on this surface, longest first."""
+    ticks, count = Counter[int](recording.beacon[recording.beacon >= 0].tolist()), len(recording.rows)
     names = dict(enumerate(surface.names or ()))
-    found = [BeaconFelt(number, names.get(number, ""), count / len(felt.rows)) for number, count in ticks.items()]
-    return tuple(sorted(found, key=lambda each: -each.share))
+    return tuple(BeaconFelt(number, names.get(number, ""), n / count) for number, n in ticks.most_common())
 
 
 def _under(surface: HapticSurface, position_m: Vector) -> int:
-    """The label under a place, -1 beside the surface and where that has no labels."""
+    """Return the label under a place; -1 off the surface, or if it has no labels."""
     if surface.labels is None:
         return -1
     return int(_parts_under(surface, np.array([position_m], np.float64))[0])
 
 
 def _parts_under(surface: HapticSurface, at_m: Places) -> Int32[np.ndarray, " n"]:
-    """The number of the part under each place, -1 beside the surface."""
+    """Return the number of the part under each place; -1 off the surface."""
     labels = surface.labels
     assert labels is not None
     (rows, columns), (width_m, length_m) = labels.shape, surface.extent_m

@@ -1,4 +1,4 @@
-"""How fast a device is read and written, and how evenly."""
+"""A stress test of a device: rate and jitter of reading and writing."""
 
 import time
 from array import array
@@ -10,12 +10,13 @@ from ..data import NO_FORCE
 from ..plugins.interfaces import HapticDevice
 
 WARM_UP = 100
-"""Cycles that are not counted."""
+"""Number of cycles before the measurement."""
 MOST_CYCLES = 10_000_000
+"""Greatest number of cycles, as all of their times are in memory."""
 
 
-def stressed(device: HapticDevice, seconds: float) -> dict[str, Any]:
-    """Rate, and percentiles of the time of one read and one write. Raises: DeviceError as the device."""
+def stress_device(device: HapticDevice, seconds: float) -> dict[str, Any]:
+    """Measure the rate, and percentiles of the time of one read and one write. Raises: DeviceError as the device."""
     spent_ns = array("q")
     with device.open() as link:
         for _ in range(WARM_UP):

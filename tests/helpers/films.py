@@ -7,6 +7,7 @@ import numpy as np
 
 from tangible_core.data import DisparityMap, Relief, Views
 from tangible_core.errors import PictureError
+from tangible_core.plugins.interfaces import Film, Touch
 from tangible_core.scene.geometry import ValueRange, make_relief, nearness_range
 from tangible_core.scene.video.frames import VideoFrame, VideoFrames
 from tangible_core.session.film import FrameMaker
@@ -68,15 +69,18 @@ class NearnessOfGrey(FrameMaker):
         return make_relief(disparity, None, 0.08, 0.01, "fill", spans)
 
 
-@final
-class Seen:
-    """A film that keeps what it is shown."""
+class Seen(Film):
+    """A film that keeps what it is shown, and has no touch."""
 
     def __init__(self, arrives: int = 0) -> None:
         """arrives: so many showings after a new frame it is there."""
         self.frames: list[int] = []
         self.reliefs: list[Relief] = []
         self._arrives, self._left = arrives, 0
+
+    @property
+    def touch(self) -> Touch:
+        raise AssertionError("this film is only shown")
 
     def show(self, relief: Relief, frame: int) -> None:
         self._left = self._left - 1 if self.frames[-1:] == [frame] else self._arrives

@@ -21,13 +21,13 @@ from ...plugins.interfaces import HapticDevice, Touch
 from ...session import (
     EVERY,
     About,
-    Followed,
     Recording,
-    followed,
+    TrackingError,
     materials_text,
     names_text,
     run_simulated,
-    telling_parts,
+    tracking_error,
+    with_parts,
 )
 from ..engine.cache import write_record
 from ..engine.engine import Engine
@@ -163,10 +163,10 @@ def felt_device(engine: Engine, device: HapticDevice | None = None) -> HapticDev
     return felt and over(felt, engine.make("surface").extent_m)
 
 
-def how_followed(engine: Engine, felt: HapticDevice | None, seen: Recording) -> Followed:
+def how_followed(engine: Engine, felt: HapticDevice | None, seen: Recording) -> TrackingError:
     """How the hand followed the path of a device of `felt_device`. seen: one of `EVERY` ticks."""
     path_m = felt and intended_path(felt, np.arange(len(seen.rows)) * EVERY)
-    return followed(seen, path_m, engine.make("surface"))
+    return tracking_error(seen, path_m, engine.make("surface"))
 
 
 def _felt(
@@ -175,10 +175,10 @@ def _felt(
     device = felt_device(engine)
     if device is None or not device.spec().simulated:
         return None
-    said = about(engine).stamped()
+    said = about(engine).with_versions()
     if engine.beside is not None:
         engine.beside.wait(FELT)
-    told = telling_parts(engine.make_on_grid("surface"), on_report) if on_report else None
+    told = with_parts(engine.make_on_grid("surface"), on_report) if on_report else None
     recording = run_simulated(touch, device, seconds, told, engine.config.safety)
     return replace(recording, about=said)
 

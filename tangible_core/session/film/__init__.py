@@ -1,7 +1,7 @@
-"""Moving pictures: disparity that is steady in time, reliefs of one scale, and who shows them to a loop."""
+"""Moving pictures: disparity filtered in time, reliefs of one scale, and players that show them to a force loop."""
 
 from .player import ByClock, Player
 from .reliefs import FrameMaker, FrameRelief, Reliefs
-from .steady import Steadied, Steady
+from .steady import FilteredMap, Steady
 
-__all__ = ["ByClock", "FrameMaker", "FrameRelief", "Player", "Reliefs", "Steadied", "Steady"]
+__all__ = ["ByClock", "FilteredMap", "FrameMaker", "FrameRelief", "Player", "Reliefs", "Steady"]

@@ -1,5 +1,6 @@
 """The frames of a video as reliefs of one scale, one after the other."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from types import TracebackType
@@ -12,35 +13,36 @@ from ...errors import ConfigError
 from ...plugins.notes import silently
 from ...scene.geometry import ValueRange
 from ...scene.video.frames import VideoFrame, VideoFrames
-from .scale import Scale
 from .steady import Steady
 
 LOOK_EVERY, LOOK_PIXELS = 8, 4
-"""Frames after which the range of nearness is looked at, and one pixel in so many a side that is."""
+"""Interval, in frames, of measuring the range of nearness; and step, in pixels, of the thinned map for it."""
+ADAPTS_S = 10.0
+"""Time constant with which the range follows the frames: a relief of 10 mm then moves by 1 mm/s at most."""
 
 
 class FrameMaker(ABC):
-    """How one frame of a film becomes a disparity map, and that a relief: as the pipeline has it."""
+    """A pipeline's conversion of one frame of a film into a disparity map, and of that into a relief."""
 
     @abstractmethod
     def begin(self, views: Views) -> DisparityMap:
-        """As `disparity`, of the first frame, in which what is found once, such as the range of disparities, is."""
+        """Return the disparity of the first frame, and store what is determined once, such as the disparity range."""
 
     @abstractmethod
     def disparity(self, views: Views) -> DisparityMap:
-        """Of a frame, on the grid that is felt."""
+        """Return the disparity of a frame, on the grid of the surface."""
 
     @abstractmethod
     def nearness(self, disparity: DisparityMap) -> ValueRange:
-        """The range of it that would span a relief of this map alone. Raises: GeometryError if nothing is known."""
+        """Return the range of nearness for a relief of this map alone. Raises: GeometryError if nothing is known."""
 
     @abstractmethod
     def relief(self, disparity: DisparityMap, spans: ValueRange) -> Relief:
-        """Of a map, within this range. Raises: GeometryError if nothing is known."""
+        """Return the relief of a map, within this range. Raises: GeometryError if nothing is known."""
 
 
 class FrameRelief(NamedTuple):
-    """A frame of a film as it is felt."""
+    """A frame of a film as a relief."""
 
     number: int
     time_s: float
@@ -48,23 +50,46 @@ class FrameRelief(NamedTuple):
 
 
 @final
-class Reliefs:
-    """A video's frames as reliefs, as a context manager and an iterator; of one reader.
+class Scale:
+    """The range of the first frame, which follows that of later ones slowly."""
 
-    What a frame shows is made steady against the frames before it, and has their scale until the scene is cut.
+    def __init__(self, first: ValueRange, time_s: float = 0.0) -> None:
+        self.spans = first
+        self._time_s = time_s
+
+    def look(self, seen: ValueRange, time_s: float) -> None:
+        """Follow the range of a frame at this time of the film; the first that is not empty is adopted at once.
+
+        That is for films that begin in the dark.
+        """
+        share = 1 - math.exp(-max(0.0, time_s - self._time_s) / ADAPTS_S)
+        self._time_s = time_s
+        if not self.spans.low < self.spans.high:
+            self.spans = seen
+        elif seen.low < seen.high:
+            low, high = (then + share * (now - then) for then, now in zip(self.spans, seen, strict=True))
+            self.spans = ValueRange(low, high)
+
+
+@final
+class Reliefs:
+    """A video's frames as reliefs, as a context manager and an iterator for one reader.
+
+    Each frame is filtered in time with the frames before it, and has their scale until the scene is cut.
     """
 
-    def __init__(self, opened: Callable[[], VideoFrames], maker: FrameMaker) -> None:
-        """opened: opens the video, such as `Video.open`."""
-        self._opened, self._maker = opened, maker
+    def __init__(self, open_frames: Callable[[], VideoFrames], maker: FrameMaker) -> None:
+        """Prepare the reliefs. open_frames: opens the video, such as `Video.open`."""
+        self._open_frames, self._maker = open_frames, maker
         self._frames: VideoFrames | None = None
         self._steady, self._scale = Steady(), Scale(ValueRange(0, 0))
-        self._made = 0
+        self._count = 0
+        """Number of frames since the last cut; 0 before the first frame of a scene."""
 
     def __enter__(self) -> Self:
-        """Raises: PictureError if the video is not there."""
-        self._frames = self._opened()
-        self._made = 0
+        """Open the video. Raises: PictureError if it does not exist."""
+        self._frames = self._open_frames()
+        self._count = 0
         return self
 
     def __exit__(
@@ -74,45 +99,45 @@ class Reliefs:
             self._frames.close()
 
     def __iter__(self) -> Iterator[FrameRelief]:
-        """All of them, in order. Raises: TangibleError for a frame that cannot be read, or has no depth."""
+        """Yield all reliefs in order. Raises: TangibleError for a frame that cannot be read, or has no depth."""
         while (frame := self.frames.next()) is not None:
-            yield self.made(frame)
+            yield self.make(frame)
 
     @property
     def frames(self) -> VideoFrames:
-        """Those of the video."""
+        """The frames of the video."""
         if self._frames is None:
             raise ConfigError("the film is not open; use it in `with reliefs:`")
         return self._frames
 
-    def made(self, frame: VideoFrame) -> FrameRelief:
-        """The relief of the next frame that is to be felt. Raises: TangibleError if no depth can be found in it."""
+    def make(self, frame: VideoFrame) -> FrameRelief:
+        """Return the relief of the next frame. Raises: TangibleError if the frame has no depth."""
         with silently():
             disparity = self._disparity(frame)
             return FrameRelief(frame.number, frame.time_s, self._maker.relief(disparity, self._scale.spans))
 
     def _disparity(self, frame: VideoFrame) -> DisparityMap:
-        if not self._made:
+        if not self._count:
             return self._begin(frame)
-        found = self._steady.next(self._maker.disparity(frame.views))
-        if found.cut:
+        filtered = self._steady.next(self._maker.disparity(frame.views))
+        if filtered.cut:
             return self._begin(frame)
-        if self._made % LOOK_EVERY == 0:
-            self._scale.look(self._maker.nearness(_thinned(found.disparity)), frame.time_s)
-        self._made += 1
-        return found.disparity
+        if self._count % LOOK_EVERY == 0:
+            self._scale.look(self._maker.nearness(_thin(filtered.disparity)), frame.time_s)
+        self._count += 1
+        return filtered.disparity
 
     def _begin(self, frame: VideoFrame) -> DisparityMap:
-        """A scene: the film's first, or one after a cut; the next frame, if nothing can be found in this one."""
-        self._made = 0
+        """Begin a scene, the first or one after a cut; if this frame has no depth, the next one begins it."""
+        self._count = 0
         self._steady = Steady()
         disparity = self._steady.next(self._maker.begin(frame.views)).disparity
         self._scale = Scale(self._maker.nearness(disparity), frame.time_s)
-        self._made = 1
+        self._count = 1
         return disparity
 
 
-def _thinned(disparity: DisparityMap) -> DisparityMap:
+def _thin(disparity: DisparityMap) -> DisparityMap:
     step = slice(None, None, LOOK_PIXELS)
     few = disparity.disparity_px[step, step]
     return DisparityMap(few if np.isfinite(few).any() else disparity.disparity_px, unit=disparity.unit)

@@ -1,4 +1,4 @@
-"""Disparity that is steady in time: noise is averaged, and a change counts once it was seen twice."""
+"""A temporal filter of disparity: it averages noise, and adopts a change once two frames agree on it."""
 
 from typing import Any, NamedTuple, cast, final
 
@@ -8,17 +8,17 @@ from jaxtyping import Float32
 from ...data import DisparityMap
 
 AVERAGED = 0.2
-"""Share of a new value in what is kept, where it differs little: after five frames, two thirds are new."""
+"""Weight of a new value in the average, where it differs little: after five frames, two thirds are new."""
 GATE_PX, GATE_SHARE = 1.0, 0.03
-"""What differs by more is a change, not noise: pixels of the pictures, or a share of the range of a relative map."""
+"""Threshold between noise and change: pixels of the pictures, or a share of the range of a relative map."""
 MOST_DOUBTS, MOST_MISSING = 2, 5
-"""Frames: a value that is not seen for longer makes way for what is, whatever that is, or for the unknown."""
+"""Greatest number of frames for which a value is kept while other values, or none, are seen in its place."""
 CUT_SHARE = 0.5
-"""More of what is known changes at once at a cut to another scene."""
+"""Share of the known pixels above which a simultaneous change is a cut to another scene."""
 
 
-class Steadied(NamedTuple):
-    """A map as it is felt, and whether another scene began with it."""
+class FilteredMap(NamedTuple):
+    """A filtered map, and whether another scene began with it."""
 
     disparity: DisparityMap
     cut: bool
@@ -26,12 +26,12 @@ class Steadied(NamedTuple):
 
 @final
 class Steady:
-    """Maps of one film, one after the other, made steady.
+    """A temporal filter for the maps of one film.
 
-    At each pixel a value that differs little from the one that is kept is averaged with it; one that differs more is
-    taken when the next agrees with it, so that an error of one frame is never felt, and nothing drags a trail. Where it
-    is unknown, the kept value stays for some frames. After two frames most of which differ from what is kept, all is
-    taken as it is: a cut.
+    At each pixel, a value that differs little from the kept one is averaged with it; a value that differs more is
+    adopted when the next one agrees, so that an error of one frame has no effect and no change leaves a trail. Where
+    the value is unknown, the kept one stays for some frames. After two frames of which most pixels differ from the kept
+    ones, the whole map is adopted: a cut.
     """
 
     def __init__(self) -> None:
@@ -39,28 +39,28 @@ class Steady:
         self._doubts = np.empty((0, 0), np.uint8)
         self._gate = GATE_PX
         self._changed = False
-        """Whether most of the frame before differed from what is kept."""
+        """True if most of the frame before differed from the kept values."""
 
-    def next(self, found: DisparityMap) -> Steadied:
-        """The next map, as it is felt. The first, and one of another size, is taken as it is."""
-        new = found.disparity_px
+    def next(self, disparity: DisparityMap) -> FilteredMap:
+        """Filter the next map. The first one, and one of another size, is adopted as it is."""
+        new = disparity.disparity_px
         if self._kept.shape != new.shape:
-            return self._begun(found, cut=self._kept.size > 0)
-        out, changed = self._stepped(new)
+            return self._restart(disparity, cut=self._kept.size > 0)
+        out, changed = self._step(new)
         if changed and self._changed:
-            return self._begun(found, cut=True)
+            return self._restart(disparity, cut=True)
         self._changed = changed
-        return Steadied(DisparityMap(out, found.confidence, found.unit), cut=False)
+        return FilteredMap(DisparityMap(out, disparity.confidence, disparity.unit), cut=False)
 
-    def _begun(self, found: DisparityMap, cut: bool) -> Steadied:
-        """Everything as this map has it."""
-        new = found.disparity_px
+    def _restart(self, disparity: DisparityMap, cut: bool) -> FilteredMap:
+        """Adopt the whole map."""
+        new = disparity.disparity_px
         self._kept, self._waiting = new.copy(), np.full(new.shape, np.nan, np.float32)
         self._doubts = np.zeros(new.shape, np.uint8)
-        self._gate, self._changed = _gate(found), False
-        return Steadied(found, cut)
+        self._gate, self._changed = _gate(disparity), False
+        return FilteredMap(disparity, cut)
 
-    def _stepped(self, new: Float32[np.ndarray, "h w"]) -> tuple[Float32[np.ndarray, "h w"], bool]:
+    def _step(self, new: Float32[np.ndarray, "h w"]) -> tuple[Float32[np.ndarray, "h w"], bool]:
         from . import steady_kernels
 
         out = np.empty_like(new)
@@ -69,9 +69,9 @@ class Steady:
         return out, changed > CUT_SHARE * known
 
 
-def _gate(found: DisparityMap) -> float:
-    """What is more than noise, in the unit of this map."""
-    if found.unit == "px":
+def _gate(disparity: DisparityMap) -> float:
+    """Return the threshold between noise and change, in the unit of this map."""
+    if disparity.unit == "px":
         return GATE_PX
-    known = found.disparity_px[np.isfinite(found.disparity_px)]
+    known = disparity.disparity_px[np.isfinite(disparity.disparity_px)]
     return GATE_SHARE * float(np.ptp(known)) if known.size else GATE_SHARE

@@ -1,7 +1,4 @@
-"""One step of disparity over time; compiled.
-
-Imports numba: imported inside the verb.
-"""
+"""A step of the temporal filter of disparity, compiled. Imports numba: its users import it inside their verbs."""
 
 # ruff: noqa: ANN001, ANN201 -- numba finds the types of what it compiles; the docstrings say them
 # pyright: basic
@@ -14,10 +11,10 @@ from ...compiled.compiling import KERNEL
 
 @njit(**KERNEL)
 def step(new, kept, waiting, doubts, out, averaged, gate, most_doubts, most_missing):
-    """A map taken into what is kept, which goes to `out`; how many known pixels are new, and how many there are.
+    """Filter a map into `kept`, copied to `out`; return the number of changed pixels, and of known ones.
 
-    new, kept, waiting, out: float32 (h, w), NaN where unknown; waiting: a change that was seen once. doubts: uint8, for
-    how many frames in a row the kept value was not seen. averaged: share of a new value that is within `gate`.
+    new, kept, waiting, out: float32 (h, w), NaN where unknown; waiting: a change that was seen once. doubts: uint8,
+    number of consecutive frames without the kept value. averaged: weight of a new value that differs by at most `gate`.
     """
     changed, known = 0, 0
     for y in range(new.shape[0]):

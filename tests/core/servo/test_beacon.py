@@ -35,11 +35,11 @@ from tangible_core.servo.ring import Ring
 from tangible_core.servo.ticks.python_tick import GuardedForce, guard_touch
 from tangible_core.session import (
     Recording,
-    Turn,
+    Slot,
     beacons_felt,
     parts_felt,
     run_in_real_time,
-    run_in_turn,
+    run_kiosk,
     run_simulated,
 )
 from tangible_devices import Mock
@@ -410,7 +410,7 @@ def test_in_the_loop_s_own_process_it_is_switched_while_feeling_and_released_by_
 @pytest.mark.usefixtures("patient")
 @pytest.mark.usefixtures("loop_in_thread")
 def test_scenes_in_turn_pull_each_to_its_own_until_a_button_is_pressed():
-    turns = [Turn(null_touch(), AT_ONCE, SURFACE, beacon_to(SURFACE, part)) for part in (1, 4)]
+    turns = [Slot(null_touch(), AT_ONCE, SURFACE, beacon_to(SURFACE, part)) for part in (1, 4)]
     rows: list[np.ndarray] = []
     stop = Event()
 
@@ -419,7 +419,7 @@ def test_scenes_in_turn_pull_each_to_its_own_until_a_button_is_pressed():
         if 4 in Recording(felt).beacon:
             stop.set()
 
-    last = run_in_turn(turns, Failing(fault="none"), IN_TIME_S, 0.4, keep=keep, stop=stop)
+    last = run_kiosk(turns, Failing(fault="none"), IN_TIME_S, 0.4, keep=keep, stop=stop)
     felt = Recording(np.concatenate(rows)).beacon
     pulled, way = felt[felt >= 0], np.flatnonzero(np.diff(felt))
     assert (pulled[0], pulled[-1], last.flagged["BEACON"]) == (1, 4, pulled.size)
@@ -449,11 +449,11 @@ class TestSessionsAndRecordings:
         assert (alone.beacon == -1).all() and beacons_felt(alone, SURFACE) == ()
 
     def test_its_ticks_are_not_compared_in_a_replay_and_what_it_pulls_over_is_not_touched(self):
-        from tangible_core.session import compared, replay
+        from tangible_core.session import compare_replay, replay
 
         felt = self.felt(beacon_to(SURFACE, 4))
         again = replay(load_method("render", "penalty")().touch(SURFACE), felt)
-        assert compared(felt, again)["compared"] == 0
+        assert compare_replay(felt, again)["compared"] == 0
         in_air = felt.rows.copy()
         in_air[:, 14] = beacon_flags(4)
         assert parts_felt(Recording(in_air), SURFACE) == ()

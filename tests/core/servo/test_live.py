@@ -21,8 +21,8 @@ from tangible_core.servo import OVER, Ring, Safety, Servo
 from tangible_core.servo.ring import STOP
 from tangible_core.servo.ticks import cycle
 from tangible_core.servo.ticks.loop import sections
-from tangible_core.session import INTERRUPTED, Keeper, Recording, figures, keeping, run_in_real_time
-from tangible_core.session.tick_file import About
+from tangible_core.session import INTERRUPTED, Recording, RingDrain, figures, keeping, run_in_real_time
+from tangible_core.session.recording.tick_file import About
 
 pytestmark = pytest.mark.usefixtures("patient")
 
@@ -92,9 +92,9 @@ def test_ticks_that_were_overwritten_are_told_and_the_others_kept(caplog: pytest
 
     kept: list[np.ndarray] = []
     servo: Any = SimpleNamespace(ring=SimpleNamespace(since=since))
-    keeper = Keeper(servo, kept.append)
-    keeper.look()
-    keeper.look()
+    drain = RingDrain(servo, kept.append)
+    drain.look()
+    drain.look()
     assert (firsts, len(kept)) == ([0, 5], 2)
     assert caplog.text.count("2 ticks were overwritten before they could be recorded") == 2
 
@@ -109,7 +109,7 @@ def written(ring: Ring, count: int) -> None:
 
 @pytest.fixture
 def looped(touch: Touch) -> Iterator[Servo]:
-    """As much of a loop as a keeper sees."""
+    """As much of a loop as a drain sees."""
     servo = Servo(touch, Circling())
     servo._ring = Ring.create(64)
     yield servo
@@ -119,31 +119,31 @@ def looped(touch: Touch) -> Iterator[Servo]:
 def test_a_keeper_begins_where_it_is_told_and_hands_on_each_tick_once(looped: Servo) -> None:
     kept: list[np.ndarray] = []
     written(looped.ring, 100)
-    keeper = Keeper(looped, kept.append, looped.ring.count)
-    keeper.look()
+    drain = RingDrain(looped, kept.append, looped.ring.count)
+    drain.look()
     assert kept == [], "of what was before, nothing"
     for count in (1, 0, 30):
         written(looped.ring, count)
-        keeper.look()
+        drain.look()
     looped.ring.remove()  # the loop has ended
-    keeper.look()
+    drain.look()
     assert [rows[:, 0].tolist() for rows in kept] == [[100], list(range(101, 131))]
 
 
 def test_a_full_disk_is_told_and_the_loop_goes_on(looped: Servo, tmp_path: Path) -> None:
     with keeping(tmp_path / "hand.nc", About("none", "none", "")) as writer:
-        keeper = Keeper(looped, writer.append)
+        drain = RingDrain(looped, writer.append)
         written(looped.ring, 10)
-        keeper.look()
+        drain.look()
         written(looped.ring, 50)
         with files_up_to((tmp_path / "hand.nc").stat().st_size + 1000), pytest.raises(OutputError, match="free some"):
-            keeper.look()
+            drain.look()
     assert not looped.ring.header[STOP]
     whole = Recording.load(tmp_path / "hand.nc")
     assert whole.time_s.tolist() == list(range(10))
     assert whole.stopped.startswith("the recording ends early")
     with keeping(tmp_path / "again.csv", About("none", "none", "")) as writer:  # begun in the middle of a life
-        Keeper(looped, writer.append, 55).look()
+        RingDrain(looped, writer.append, 55).look()
     assert Recording.load(tmp_path / "again.csv").time_s.tolist() == [55, 56, 57, 58, 59]
 
 
@@ -156,12 +156,12 @@ def test_what_could_not_be_kept_is_handed_on_again(looped: Servo) -> None:
             raise full.pop()
         kept.append(rows)
 
-    keeper = Keeper(looped, keep)
+    drain = RingDrain(looped, keep)
     written(looped.ring, 5)
     with pytest.raises(OutputError, match="no room"):
-        keeper.look()
+        drain.look()
     written(looped.ring, 5)
-    keeper.look()
+    drain.look()
     assert [rows[:, 0].tolist() for rows in kept] == [list(range(10))]
 
 

@@ -14,7 +14,7 @@ from tangible_core.servo import Safety
 from tangible_core.session import (
     About,
     Recording,
-    Turn,
+    Slot,
     material_under,
     materials_text,
     names_in,
@@ -22,9 +22,9 @@ from tangible_core.session import (
     names_text,
     part_under,
     parts_felt,
-    run_in_turn,
+    run_kiosk,
     run_simulated,
-    telling_parts,
+    with_parts,
 )
 from tangible_devices import Mock
 from tangible_render import Penalty
@@ -71,7 +71,7 @@ def test_the_material_under_a_tip_of_parts_and_of_segments(names: tuple[str, ...
     assert material_under(in_parts(), (0.0, -0.01, 0.1)) == "", "it has parts and no materials"
     assert names_of(materials_text(surface)) == [{0: "glass", 1: "wood", 2: "moss"}]
     heard: list[ServoReport] = []
-    run_simulated(Penalty().touch(surface), Mock(path="press"), 0.2, telling_parts(surface, heard.append))
+    run_simulated(Penalty().touch(surface), Mock(path="press"), 0.2, with_parts(surface, heard.append))
     assert {each.material for each in heard} == {"moss"}
 
 
@@ -101,15 +101,15 @@ def test_reports_name_the_part_of_the_scene_that_is_felt():
             both.set()
 
     scenes = [in_parts(0 * LABELS, ("door",)), in_parts(0 * LABELS, ("wall",))]
-    turns = [Turn(Penalty().touch(surface), Safety(), surface) for surface in scenes]
-    last = run_in_turn(turns, Failing(fault="none"), 60.0, 0.3, on_report=hear, stop=both)
+    turns = [Slot(Penalty().touch(surface), Safety(), surface) for surface in scenes]
+    last = run_kiosk(turns, Failing(fault="none"), 60.0, 0.3, on_report=hear, stop=both)
     assert [*dict.fromkeys(filter(None, said))] == ["door", "wall"]
     assert last.part in ("door", "wall")
 
 
 def test_reports_of_simulated_time_too_and_none_before_the_first_tick():
     heard: list[ServoReport] = []
-    told = telling_parts(in_parts(0 * LABELS, ("door",)), heard.append)
+    told = with_parts(in_parts(0 * LABELS, ("door",)), heard.append)
     run_simulated(Penalty().touch(in_parts()), Mock(path="press"), 0.3, told)
     assert {each.part for each in heard} == {"door"}
     told(replace(heard[0], ticks=0, part=""))

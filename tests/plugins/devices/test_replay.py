@@ -107,7 +107,7 @@ def test_replay_of_invalid_recording_is_refused(tmp_path: Path, change, complain
 
 def test_replay_of_unreadable_file_is_refused(tmp_path: Path):
     (tmp_path / "text.nc").write_text("no recording")
-    for name, complaint in (("none.nc", "cannot be read"), ("text.nc", "is no recording")):
+    for name, complaint in (("none.nc", "cannot be read"), ("text.nc", "is not a recording")):
         with pytest.raises(DeviceError, match=complaint):
             Replay(file=tmp_path / name).open()
 

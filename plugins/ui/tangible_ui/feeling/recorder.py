@@ -7,7 +7,7 @@ from typing import final
 
 from tangible_core.errors import TangibleError
 from tangible_core.servo import Servo
-from tangible_core.session import About, Keeper, Writer
+from tangible_core.session import About, RingDrain, Writer
 
 LOOK_EVERY_S = 0.05
 """Seconds between two writes: what a crash of the server can lose of a recording."""
@@ -26,7 +26,7 @@ class Recorder:
         self.path = path
         self._servo, self._ended = servo, ended
         self._writer = Writer(path, about)
-        self._keeper = Keeper(servo, self._writer.append, servo.ring.count)
+        self._drain = RingDrain(servo, self._writer.append, servo.ring.count)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._record, daemon=True)
         self._thread.start()
@@ -47,7 +47,7 @@ class Recorder:
             while not why:
                 stopped = self._stop.wait(LOOK_EVERY_S)
                 running = self._servo.running  # before the look: what it ended with is then kept
-                self._keeper.look()
+                self._drain.look()
                 why = BY_HAND if stopped else "" if running else self._servo.report().stopped
         except TangibleError as error:
             why = str(error)

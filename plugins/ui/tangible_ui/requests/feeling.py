@@ -9,7 +9,7 @@ from typing import Any
 from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.files.writing import write_text
 from tangible_core.servo import Beacon, parcel
-from tangible_core.session import called
+from tangible_core.session import part_label
 
 from ..feeling.feeling import LoopInput
 from ..state.laws import Choice, Tally
@@ -55,7 +55,7 @@ async def beacon(session: Session, tab: Tab | None, part: int | None) -> dict[st
     made = await session.worker.quick("beacon", **document, part=part)
     found: Beacon = await asyncio.to_thread(parcel.unpack, Path(made["parcel"]))
     await asyncio.to_thread(session.feeling.pull_to, found)
-    return _tell(session, found.part, called(found.part, found.name))
+    return _tell(session, found.part, part_label(found.part, found.name))
 
 
 def _tell(session: Session, part: int | None, name: str) -> dict[str, Any]:

@@ -25,16 +25,16 @@ def until(true):
         time.sleep(0.002)
 
 
-class Slow:
+class Slow(Seen):
     """A film each of whose showings takes a while."""
 
     def __init__(self, wait_s=0.0):
-        self.seen, self._wait_s = Seen(), wait_s
-        self.arrived, self.dropped = True, 0
+        super().__init__()
+        self._wait_s = wait_s
 
     def show(self, relief, frame):
         time.sleep(self._wait_s)
-        self.seen.show(relief, frame)
+        super().show(relief, frame)
 
 
 @pytest.fixture
@@ -58,15 +58,15 @@ def test_frames_are_shown_in_order_and_the_surface_stands_where_the_source_ends(
     player = play(greys(*[BOX] * 5), film)
     until(lambda: film.frames[-1:] == [4])
     assert film.frames == sorted(set(film.frames))
-    assert player.felt.shown + player.felt.skipped == 5
+    assert player.counts.shown + player.counts.skipped == 5
     player.check()
 
 
 def test_the_latest_frame_wins_and_those_between_are_counted(play):
     film = Slow(0.03)
     player = play(greys(*[BOX] * 60), film, fps=200)
-    until(lambda: film.seen.frames[-1:] == [59])
-    felt = player.felt
+    until(lambda: film.frames[-1:] == [59])
+    felt = player.counts
     assert felt.skipped > 20 and felt.shown + felt.skipped == 60
     assert 0 < felt.per_s < 40
     assert felt.age_ms >= 30
@@ -86,9 +86,9 @@ def test_damaged_frames_are_said_once_and_the_film_goes_on(play, caplog):
     given[1] = given[3] = PictureError("frame is damaged")
     player = play(given, film, fps=20)
     until(lambda: film.frames[-1:] == [5])
-    assert player.felt.damaged >= 1
+    assert player.counts.damaged >= 1
     assert [each.message for each in caplog.records].count(
-        "the surface stands still until a frame can be felt again: frame is damaged"
+        "the surface stands still until the next valid frame: frame is damaged"
     ) == 1
     player.check()
 
@@ -140,9 +140,7 @@ def test_a_plugins_fault_ends_it_and_is_raised_once_for_whoever_watches(play, er
 def test_it_ends_soon_though_a_method_takes_long_and_keeps_no_process_alive(play):
     begun, release = threading.Event(), threading.Event()
 
-    class Long:
-        arrived, dropped = True, 0
-
+    class Long(Seen):
         def show(self, relief, frame):
             begun.set()
             release.wait(SOON_S)
@@ -164,9 +162,9 @@ def test_by_a_clock_nothing_is_left_out_and_frames_come_when_they_are_due():
         for tick in range(700):
             show(tick / 1000)
             shown.append(film.frames[-1])
-        felt = show.felt
+        felt = show.counts
         heard = []
-        show.told(heard.append)(ServoReport(1, 0.0, HapticState((0.0, 0.0, 0.0)), NO_FORCE, 0.0, 0.0))
+        show.with_counts(heard.append)(ServoReport(1, 0.0, HapticState((0.0, 0.0, 0.0)), NO_FORCE, 0.0, 0.0))
     assert [shown.index(number) for number in range(5)] == [0, 100, 200, 300, 400]
     assert (felt.shown, felt.skipped, felt.damaged, felt.age_ms) == (5, 0, 0, None)
     assert felt.per_s == pytest.approx(10)
@@ -180,5 +178,5 @@ def test_by_a_clock_a_relief_is_shown_again_and_damaged_frames_are_passed_over(c
         show = ByClock(reliefs, film)
         for tick in range(700):
             show(tick / 1000)
-    assert film.frames == [0, 0, 0, 3, 3, 3] and show.felt.damaged == 2
+    assert film.frames == [0, 0, 0, 3, 3, 3] and show.counts.damaged == 2
     assert sum("frame is damaged" in each.message for each in caplog.records) == 1

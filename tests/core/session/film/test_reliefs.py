@@ -8,7 +8,7 @@ from tangible_core.data import DisparityMap
 from tangible_core.errors import ConfigError, GeometryError
 from tangible_core.scene.geometry import ValueRange
 from tangible_core.session.film import FrameMaker, Reliefs
-from tangible_core.session.film.scale import ADAPTS_S, Scale
+from tangible_core.session.film.reliefs import ADAPTS_S, Scale
 
 GROUND = np.full((8, 12), 20.0)
 BOX = GROUND.copy()
@@ -87,8 +87,8 @@ def test_a_frame_without_depth_is_refused_and_the_next_goes_on():
     dark = np.full((8, 12), 255.0)
     with Reliefs(lambda: GivenFrames(greys(dark, BOX)), NearnessOfGrey()) as reliefs:
         with pytest.raises(GeometryError, match="no depth is known"):
-            reliefs.made(reliefs.frames.next())
-        assert reliefs.made(reliefs.frames.next()).relief.height_m.any()
+            reliefs.make(reliefs.frames.next())
+        assert reliefs.make(reliefs.frames.next()).relief.height_m.any()
 
 
 def test_after_a_dark_pause_a_scene_begins_by_what_is_seen_then():
@@ -97,7 +97,7 @@ def test_after_a_dark_pause_a_scene_begins_by_what_is_seen_then():
     with Reliefs(lambda: GivenFrames(greys(BOX, *[dark] * 12, *[other] * 3)), maker) as reliefs:
         while (frame := reliefs.frames.next()) is not None:
             with suppress(GeometryError):
-                film.append(reliefs.made(frame).relief.height_m)
+                film.append(reliefs.make(frame).relief.height_m)
     assert maker.begun == 2
     assert film[-1][0, 0] == pytest.approx(0.01) and film[-1][2, 3] == 0, "the range is the new one"
 
@@ -123,5 +123,5 @@ def test_a_scene_that_begins_with_a_frame_that_shows_nothing_begins_with_the_nex
     maker = Blind()
     with Reliefs(lambda: GivenFrames(greys(np.zeros((8, 12)), BOX)), maker) as reliefs:
         with pytest.raises(GeometryError):
-            reliefs.made(reliefs.frames.next())
-        assert reliefs.made(reliefs.frames.next()).relief.height_m[2, 3] > 0
+            reliefs.make(reliefs.frames.next())
+        assert reliefs.make(reliefs.frames.next()).relief.height_m[2, 3] > 0

@@ -16,7 +16,7 @@ from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.config.schema import json_schema
 from tangible_core.pipeline.starter import MAPS, PICTURES, VIDEOS, are_pictures, starter
 from tangible_core.scene.scene_files import BUILTINS
-from tangible_core.session.recording_files import SUFFIXES
+from tangible_core.session.recording.files import SUFFIXES
 
 from ..state import WorkerState
 from .table import job

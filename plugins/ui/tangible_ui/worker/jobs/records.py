@@ -9,8 +9,8 @@ from tangible_core.data import TICK_COLUMNS
 from tangible_core.data.records import digest_of
 from tangible_core.errors import OutputError
 from tangible_core.pipeline.feeling import Feeling
-from tangible_core.session import Recording, beside, compared
-from tangible_core.session.recording_files import SUFFIXES
+from tangible_core.session import Recording, compare_recordings, compare_replay
+from tangible_core.session.recording.files import SUFFIXES
 
 from ...framing import FLAG_BITS
 from ..state import WorkerState
@@ -82,7 +82,7 @@ def _lay_out(state: WorkerState, found: Recording, path: str) -> dict[str, Any]:
 @job(quick=True)
 def compare_records(state: WorkerState, path: Path, other: Path) -> dict[str, Any]:
     """Compare two recordings place by place along their paths. Raises: OutputError if a file is not a recording."""
-    return beside(Recording.load(path), Recording.load(other))
+    return compare_recordings(Recording.load(path), Recording.load(other))
 
 
 @job()
@@ -92,7 +92,7 @@ def try_law(state: WorkerState, path: Path, text: str, document: Path, sets: lis
     after = Feeling(state.pipeline_of(text, document, sets)).replay(before)
     out = _free(folder, f"{path.stem} with {after.about.renderer}")
     after.save(out)
-    return {**_lay_out(state, after, str(out)), "compared": compared(before, after)}
+    return {**_lay_out(state, after, str(out)), "compared": compare_replay(before, after)}
 
 
 def _free(folder: Path, name: str) -> Path:

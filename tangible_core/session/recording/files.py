@@ -1,0 +1,109 @@
+"""Recordings on disk: .nc, .npz and .csv."""
+
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Float64
+
+from ...data import TICK_COLUMNS
+from ...errors import OutputError, shown
+from ...files.arrays import Archive
+from ...files.reading import check_file, read_bytes
+from ...files.writing import atomic_write
+from . import tick_file
+from .tick_arrays import ARRAYS, NEEDED, UNKNOWN, join_arrays, unknown_rows
+from .tick_file import NO_INFORMATION, About
+
+SUFFIXES = (".nc", ".npz", ".csv")
+NPZ_NAMES = frozenset(("stopped", *ARRAYS, *(each.name for each in fields(About))))
+"""Names of the arrays that are read from an .npz."""
+
+
+class RecordingContents(NamedTuple):
+    """The contents of a file: rows of `TICK_COLUMNS`, the reason of an early end, and information about the session."""
+
+    rows: Float64[np.ndarray, "n columns"]
+    stopped: str = ""
+    about: About = NO_INFORMATION
+
+
+def check_record_path(path: Path, endless: bool = False) -> None:
+    """Check the name of a recording before it begins. Raises: OutputError for a suffix that it cannot have."""
+    if path.suffix not in SUFFIXES:
+        raise OutputError(f"{path}: a recording is written as .nc, .npz or .csv; change the end of the name")
+    if endless and path.suffix != ".nc":
+        raise OutputError(
+            f"{path}: is written only at the end of a session; a session without end is recorded as .nc, which grows: "
+            "change the end of the name"
+        )
+
+
+def write(path: Path, contents: RecordingContents) -> None:
+    """Write a whole file or nothing. Raises: OutputError for another suffix, or if the place cannot be written."""
+    check_record_path(path)
+    with atomic_write(path) as file:
+        if path.suffix == ".nc":
+            file.write(tick_file.header(contents.about, contents.stopped, len(contents.rows)))
+            file.write(tick_file.pack(contents.rows))
+        elif path.suffix == ".npz":
+            arrays = {name: contents.rows[:, at] for name, at in ARRAYS.items()}
+            bits = {name: arrays[name].astype(np.int64) for name in ("flags", "buttons")}
+            np.savez_compressed(file, stopped=contents.stopped, **arrays | bits, **asdict(contents.about))
+        else:
+            np.savetxt(file, contents.rows, "%.17g", ",", header=",".join(TICK_COLUMNS), comments="")
+
+
+def read(path: Path) -> RecordingContents:
+    """Read a recording. Raises: OutputError if the file cannot be read or is not a recording."""
+    check_record_path(path)
+    try:
+        check_file(path)
+        with np.errstate(all="ignore"):  # NaN and infinity stay as they are
+            contents = READERS[path.suffix](path)
+        _check_bits(contents.rows)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except Exception as error:  # a damaged file can provoke any
+        why = shown(str(error), 200)
+        raise OutputError(f"{path}: is not a recording, or a damaged one ({why}); record it again") from error
+    return contents
+
+
+def _check_bits(rows: Float64[np.ndarray, "n columns"]) -> None:
+    """Check flags and buttons. Raises: ValueError if one does not fit into 32 bits."""
+    for name in ("flags", "buttons"):
+        if not (np.abs(rows[:, ARRAYS[name]]) < 2**31).all():
+            raise ValueError(f"its {name} do not all fit into 32 bits")
+
+
+def _from_nc(path: Path) -> RecordingContents:
+    return RecordingContents(*tick_file.read(path))
+
+
+def _from_npz(path: Path) -> RecordingContents:
+    with path.open("rb") as file:
+        archive = Archive(file)
+        values: dict[str, Any] = archive.read([name for name in archive.names if name in NPZ_NAMES])
+    about = About(**{each.name: str(values.get(each.name, "")) for each in fields(About)})
+    if missing := [name for name in (*NEEDED, "stopped") if name not in values]:
+        raise ValueError(f"it holds no {', '.join(missing)}")
+    rows = join_arrays({name: values[name] for name in ARRAYS if name in values})
+    return RecordingContents(rows, str(values["stopped"]), about)
+
+
+def _from_csv(path: Path) -> RecordingContents:
+    header, *lines = read_bytes(path).decode("utf-8-sig").splitlines()
+    names = header.split(",")
+    if missing := [name for name in TICK_COLUMNS if name not in (*names, *UNKNOWN)]:
+        raise ValueError(f"its first line has no {', '.join(missing)}")
+    table = np.array([line.split(",") for line in lines], np.float64).reshape(-1, len(names))
+    rows = unknown_rows(len(table))
+    for name, values in zip(names, table.T, strict=True):
+        if name in TICK_COLUMNS:
+            rows[:, TICK_COLUMNS.index(name)] = values
+    return RecordingContents(rows)
+
+
+READERS = {".nc": _from_nc, ".npz": _from_npz, ".csv": _from_csv}

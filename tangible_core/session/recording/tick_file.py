@@ -1,0 +1,130 @@
+"""The file of a recording: netCDF, a variable for each of TICK_COLUMNS, a record a tick (docs/recordings.md)."""
+
+import platform
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, fields, replace
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Self, cast
+
+import numpy as np
+from jaxtyping import Float64
+
+from ...data import TICK_COLUMNS, TickFlag
+from ...data.ticks import BEACON_SHIFT
+from . import netcdf
+from .netcdf import Variable
+from .tick_arrays import ARRAYS, unknown_rows
+
+STILL = -1
+"""Frame of a surface at rest, in the file: the fill value, which netCDF's readers take for missing."""
+CUT_OFF = "cut off: the recorder was ended before it could close the file"
+"""Reason of the end in a file that is not closed."""
+STOPPED_BYTES = 240
+"""Bytes that are reserved in the header for the reason of the end, which is written last."""
+FRAME = "metres; x right, y away from the user, z up; the origin is the centre of the picture on the base plane"
+"""Description of the coordinates, an attribute of the file."""
+
+
+@dataclass(frozen=True)
+class About:
+    """Information about the session of a recording; empty where unknown."""
+
+    device: str = ""
+    renderer: str = ""
+    configuration: str = ""
+    """The completed pipeline file, as YAML."""
+    started: str = ""
+    """Date and time, ISO 8601."""
+    software: str = ""
+    """Programs that wrote the recording, with versions."""
+    parts: str = ""
+    """Names of the surface's parts, a JSON object from number to name; in a kiosk, a line for each scene, empty if it
+    has no names."""
+    materials: str = ""
+    """Names of the surface's materials in the same form, by the number of the part or segment made of them."""
+
+    def with_versions(self) -> Self:
+        """Return a copy with date and versions filled in."""
+        versions = [f"{name} {version(name)}" for name in ("tangible-images", "numpy")]
+        software = ", ".join([*versions, f"Python {platform.python_version()}"])
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        return replace(self, started=self.started or now, software=self.software or software)
+
+
+NO_INFORMATION = About()
+"""The information of a recording of unknown origin."""
+
+
+def _variables() -> Iterator[Variable]:
+    yield _variable(">f8", "s", "when the tick began, by the device's clock")
+    yield _variable(">f4", "s", "how late it began")
+    for dtype, units, what in (
+        (">f8", "m", "position of the tip"),
+        (">f8", "m s-1", "velocity of the tip"),
+        (">f4", "m", "position of the proxy, NaN where there is none"),
+        (">f4", "N", "force on the hand that the device was given"),
+    ):
+        yield from (_variable(dtype, units, f"{axis} of the {what}") for axis in "xyz")
+    flags = np.array(list(TickFlag), ">i4"), " ".join(str(each.name).lower() for each in TickFlag)
+    what = f"what happened in the tick; from bit {BEACON_SHIFT} on the number of the part that a beacon pulls to"
+    yield _variable(">i4", "1", what, flag_masks=flags[0], flag_meanings=flags[1])
+    yield _variable(">i4", "1", "buttons held, one bit each")
+    yield _variable(">i4", "1", "frame that a surface which moves went to", _FillValue=np.array([STILL], ">i4"))
+
+
+def _variable(dtype: str, units: str, long_name: str, **more: str | np.ndarray) -> Variable:
+    return Variable(dtype, {"long_name": long_name, "units": units, **more})
+
+
+VARIABLES = dict(zip(TICK_COLUMNS, _variables(), strict=True))
+"""Variables by column. Inputs of a force law are exact: rounded by a nanometre, a proxy may take another way. Its
+outputs are float32: within 4 nm of a proxy under 0.125 m from the centre, and 0.3 uN of a force under 8 N."""
+RECORD = np.dtype([(name, variable.dtype) for name, variable in VARIABLES.items()])
+"""Record of a tick, 96 bytes."""
+
+
+def header(about: About, stopped: str = CUT_OFF, ticks: int = 0) -> bytes:
+    """Return the bytes of a file before its ticks, which follow in the form of `pack`."""
+    texts = {name: text for name, text in asdict(about).items() if text}
+    attributes = {"stopped": pad_reason(stopped).decode(), "frame": FRAME, **texts}
+    return netcdf.header("tick", attributes, VARIABLES, ticks)
+
+
+def pad_reason(stopped: str) -> bytes:
+    """Return the reason of an end in UTF-8, cut and padded to STOPPED_BYTES."""
+    cut = stopped.encode()[:STOPPED_BYTES].decode(errors="ignore")
+    return cut.encode().ljust(STOPPED_BYTES)
+
+
+def pack(rows: Float64[np.ndarray, "n columns"]) -> bytes:
+    """Return rows of `TICK_COLUMNS` as records; values beyond float32 become infinite."""
+    records = np.empty(len(rows), RECORD)
+    with np.errstate(over="ignore"):
+        for name, values in zip(TICK_COLUMNS, rows.T, strict=True):
+            records[name] = values if name != "frame" else np.where((values >= 0) & (values < 2**31), values, STILL)
+    return records.tobytes()
+
+
+def read(path: Path) -> tuple[Float64[np.ndarray, "n columns"], str, About]:
+    """Read rows of `TICK_COLUMNS`, the reason of the end, and the information about the session.
+
+    Raises: OSError, and whatever scipy raises for a file that is damaged or not netCDF.
+    """
+    from scipy.io import netcdf_file  # pyright: ignore[reportMissingTypeStubs]
+
+    with netcdf_file(path, "r", mmap=True) as opened:
+        file = cast(Any, opened)
+        rows = unknown_rows(file.variables["time_s"].shape[0])
+        for i, name in enumerate(TICK_COLUMNS):
+            if name in file.variables or name != "frame":  # older recordings have no frame
+                rows[:, i] = file.variables[name][:]
+        frame = rows[:, ARRAYS["frame"]]
+        frame[frame == STILL] = np.nan
+        about = {each.name: _text(file, each.name) for each in fields(About)}
+        return rows, _text(file, "stopped"), About(**about)
+
+
+def _text(file: Any, name: str) -> str:
+    return getattr(file, name, b"").decode().rstrip(" ")

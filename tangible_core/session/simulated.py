@@ -1,0 +1,152 @@
+"""A session in simulated time: the loop of a touch and a device, in the device's own time."""
+
+import logging
+import math
+from array import array
+from collections.abc import Callable
+from threading import Event
+from typing import Any, final
+
+import numpy as np
+
+from ..compiled.touch import FRAME, moving_of
+from ..data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport
+from ..errors import DeviceError, check_positive
+from ..plugins.interfaces import Film, HapticDevice, Link, Touch, touch_of
+from ..runtime.stopping import stop_asked, stoppable
+from ..servo import Beacon, Safety
+from ..servo.beacon import BeaconMemory
+from ..servo.guard.stiffness import stiffness_of
+from ..servo.reports import brief_report
+from ..servo.ticks.python_tick import GuardedForce, guard_touch
+from .recording import INTERRUPTED, STOPPED, Recording
+from .recording.replay import proxy_of
+
+log = logging.getLogger(__name__)
+MOST_TICKS = 3_600_000
+"""Greatest number of ticks of a recording in memory, at which the loop stops: an hour at 1 kHz, half a gigabyte."""
+REPORT_EVERY_S = 0.1
+"""Interval of the reports, in the device's time."""
+FIRST_S = 0.001
+"""Assumed period of the first tick."""
+
+
+def run_simulated(
+    touch: Touch | Film,
+    device: HapticDevice,
+    seconds: float,
+    on_report: Callable[[ServoReport], None] | None = None,
+    limits: Safety | None = None,
+    stop: Event | None = None,
+    beacon: Beacon | None = None,
+    frames: Callable[[float], None] | None = None,
+) -> Recording:
+    """Run until the device's clock has advanced by `seconds`, and return the recording.
+
+    beacon: pulls from the first tick on, until a button releases it (`Servo.pull_to`). frames: called before each tick
+    with the device's time since the first, to show the reliefs due by then (`Film.show`).
+
+    The guard enforces the limits. `on_report` is called ten times a second of the device's time, and at the end.
+    Ctrl-C, `stop` set from another thread, a device that stops answering or whose clock stands still, and a full
+    recording (`MOST_TICKS`) end the session early: the force is zero, the recording so far is returned, and
+    `Recording.stopped` has the reason.
+    Raises: ConfigError if seconds is not positive and finite, DeviceError if the device cannot be opened, and whatever
+    a faulty touch, `on_report` or `frames` raises, once the force is zero.
+    """
+    check_positive("seconds", seconds)
+    touch, spec = touch_of(touch), device.spec()
+    settings, memory = (limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m)
+    pull = None if beacon is None else BeaconMemory.of(beacon).arrays
+    allowed_force = guard_touch(touch, settings, memory, pull)
+    tape = _Tape(touch, on_report or _ignore)
+    link = device.open()
+    try:
+        with stoppable(stop), link:
+            _feel(allowed_force, link, seconds, tape, frames or _ignore)
+    except DeviceError as error:  # also when the device is gone before its force could be made zero
+        tape.stopped = tape.stopped or str(error)
+    if tape.stopped:
+        log.log(
+            logging.INFO if tape.stopped in (INTERRUPTED, STOPPED) else logging.WARNING,
+            "stopped after %d ticks: %s",
+            tape.ticks,
+            tape.stopped,
+        )
+    tape.report(tape.stopped or "the time is over")
+    recording = tape.recording()
+    if recording.not_finite:
+        log.warning("%d forces were not finite and were set to zero: the force law is at fault", recording.not_finite)
+    return recording
+
+
+def _feel(
+    allowed_force: GuardedForce, link: Link, seconds: float, tape: "_Tape", frames: Callable[[float], None]
+) -> None:
+    """Tick until the time is over; the reason for an early end is in tape.stopped."""
+    try:
+        state, period_s = link.read(), FIRST_S
+        start_s = state.time_s
+        while not tape.stopped:
+            frames(state.time_s - start_s)
+            force, flags = allowed_force(state, period_s)
+            link.write(force)
+            tape.add(state, link.applied, flags)
+            last_s, state = state.time_s, link.read()
+            period_s = state.time_s - last_s
+            if not period_s > 0:
+                tape.stopped = f"the device's clock stands still at {state.time_s} s"
+            # ticks come at 0, T, 2 T ...: round(seconds / T) of them, whatever the rounding of their stamps
+            elif state.time_s - start_s >= seconds - period_s / 2:
+                return
+            elif stop_asked():
+                tape.stopped = STOPPED
+            elif tape.ticks >= MOST_TICKS:
+                tape.stopped = f"the recording is full, {MOST_TICKS} ticks; use a shorter time"
+    except KeyboardInterrupt:
+        tape.stopped = INTERRUPTED
+    except DeviceError as error:
+        tape.stopped = str(error)
+
+
+@final
+class _Tape:
+    """The memory of a loop: its ticks, and the sums for its reports."""
+
+    def __init__(self, touch: Touch, on_report: Callable[[ServoReport], None]) -> None:
+        self.stopped = ""
+        self.ticks = 0
+        self._numbers = array("d")
+        self._proxy, self._moving = proxy_of(touch), moving_of(touch)
+        self._on_report = on_report
+        self._reports = 0
+        self._start_s = self._peak_n = self._work_j = 0.0
+        self._state, self._force = HapticState((0.0, 0.0, 0.0)), NO_FORCE
+
+    def add(self, state: HapticState, force: Force, flags: int) -> None:
+        """Add a tick, and report when it is time."""
+        if not self.ticks:
+            self._start_s, self._state = state.time_s, state
+        way = zip(self._force, state.position_m, self._state.position_m, strict=True)
+        self._work_j += sum(held * (now - then) for held, now, then in way)
+        self._peak_n = max(self._peak_n, math.hypot(*force))
+        moved = *state.position_m, *state.velocity_m_per_s
+        row = state.time_s, 0.0, *moved, *self._proxy(), *force, flags, state.buttons, self._moving[FRAME]
+        self._numbers.extend(row)  # all at once: Ctrl-C leaves whole rows
+        self._state, self._force = state, force
+        self.ticks += 1
+        if state.time_s - self._start_s >= REPORT_EVERY_S * (self._reports + 1):
+            self._reports += 1
+            self.report("")
+
+    def report(self, stopped: str) -> None:
+        """Report the state so far."""
+        last = np.array(self._numbers[-len(TICK_COLUMNS) :]).reshape(-1, len(TICK_COLUMNS))
+        self._on_report(brief_report(last, self.ticks, self._peak_n, self._work_j, stopped))
+
+    def recording(self) -> Recording:
+        """Return all ticks."""
+        return Recording(np.array(self._numbers, np.float64).reshape(-1, len(TICK_COLUMNS)), self.stopped)
+
+
+def _ignore(_: Any) -> None:
+    pass

@@ -1,0 +1,325 @@
+"""What was felt, in memory and in its files."""
+
+import csv
+import os
+import tracemalloc
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.lib import recfunctions as rfn
+from scipy.io import netcdf_file
+
+from hostile import npz_bomb
+from tangible_core.data import TICK_COLUMNS, HapticSurface, TickFlag
+from tangible_core.errors import OutputError
+from tangible_core.session import About, Recording, check_record_path, run_simulated
+from tangible_core.session.recording import netcdf, tick_file
+from tangible_devices.mock import Mock
+from tangible_render.penalty_gradient import PenaltyGradient
+
+ABOUT = About("mock", "proxy", "scene: x\nwörds: 1\n", "2026-01-02T03:04:05+00:00", "mine 1.0")
+
+
+def some(count: int = 5, **more) -> Recording:
+    """A recording of numbers that float32 holds."""
+    rows = np.random.default_rng(1).normal(size=(count, 17)).astype(np.float32).astype(float)
+    rows[:, 0] = 1e5 + np.arange(count) * 0.001
+    rows[:, 14:] = np.arange(3 * count).reshape(count, 3)
+    rows[2:, 16] = np.nan  # from the third tick on, another surface, that stands still
+    rows[1:, 8:11] = np.nan
+    return Recording(rows, **more)
+
+
+def same(one: Recording, other: Recording) -> bool:
+    return one.digest() == other.digest()
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz"])
+@pytest.mark.parametrize("count", [0, 1, 5])
+@pytest.mark.parametrize("about", [About(), ABOUT])
+def test_all_of_it_is_kept(tmp_path: Path, count: int, about: About, suffix: str):
+    recording = some(count, stopped="the cable is out", about=about)
+    recording.save(tmp_path / "deep" / f"stroke{suffix}")
+    assert same(Recording.load(tmp_path / "deep" / f"stroke{suffix}"), recording)
+
+
+def test_numpy_reads_npz(tmp_path: Path):
+    some().save(tmp_path / "stroke.npz")
+    with np.load(tmp_path / "stroke.npz") as file:
+        assert np.array_equal(file["force_n"], some().force_n)
+        assert np.array_equal(file["flags"], some().flags)
+
+
+@pytest.mark.parametrize("count", [0, 1, 5])
+def test_csv_keeps_every_digit_of_the_ticks(tmp_path: Path, count: int):
+    recording = Recording(some(count).rows + np.pi)
+    recording.save(tmp_path / "stroke.csv")
+    assert same(Recording.load(tmp_path / "stroke.csv"), recording)
+    with (tmp_path / "stroke.csv").open(newline="") as file:
+        assert [float(row["fz_n"]) for row in csv.DictReader(file)] == recording.force_n[:, 2].tolist()
+
+
+def test_csv_is_read_by_the_names_of_its_columns(tmp_path: Path):
+    """Ten columns were all, once; nothing was known of the others."""
+    names = [name for name in TICK_COLUMNS if not name.startswith(("proxy", "late", "flags", "buttons", "frame"))]
+    (tmp_path / "old.csv").write_text(
+        "\ufeff" + ",".join(["note", *reversed(names)]) + "\n" + "9,9,8,7,6,5,4,3,2,1,0\n" * 2
+    )
+    recording = Recording.load(tmp_path / "old.csv")
+    assert recording.time_s.tolist() == [0, 0]
+    assert (recording.position_m[0].tolist(), recording.force_n[1].tolist()) == ([1, 2, 3], [7, 8, 9])
+    assert np.isnan(recording.proxy_m).all() and np.isnan(recording.frame).all()
+    assert not (recording.late_s.any() or recording.flags.any() or recording.buttons.any())
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz"])
+def test_of_a_file_from_before_there_were_films_every_surface_stood_still(tmp_path: Path, suffix: str):
+    before = some()
+    path = tmp_path / f"old{suffix}"
+    if suffix == ".nc":
+        names = TICK_COLUMNS[:-1]
+        head = netcdf.header("tick", {"stopped": ""}, {name: tick_file.VARIABLES[name] for name in names}, 5)
+        ticks = np.frombuffer(tick_file.pack(before.rows), tick_file.RECORD)
+        path.write_bytes(head + rfn.repack_fields(ticks[list(names)]).tobytes())
+    else:
+        before.save(tmp_path / "new.npz")
+        with np.load(tmp_path / "new.npz") as new:
+            np.savez(path, **{name: new[name] for name in new.files if name != "frame"})
+    found = Recording.load(path)
+    assert np.array_equal(found.rows[:, :-1], before.rows[:, :-1], equal_nan=True)
+    assert np.isnan(found.frame).all()
+
+
+def test_others_find_the_frame_or_that_there_is_none(tmp_path: Path):
+    """Numbers that float32 does not hold, and whatever else may stand there."""
+    rows = some().rows.copy()
+    rows[:, 16] = 0, 2**24 + 1, np.nan, np.inf, -7
+    Recording(rows).save(tmp_path / "stroke.nc")
+    with netcdf_file(tmp_path / "stroke.nc", mmap=False, maskandscale=True) as file:
+        assert file.variables["frame"][:].tolist() == [0, 2**24 + 1, None, None, None]
+    assert np.array_equal(Recording.load(tmp_path / "stroke.nc").frame[:2], rows[:2, 16])
+
+
+@pytest.mark.parametrize("name", ["time_s", "x_m", "vz_m_per_s", "fz_n"])
+def test_a_csv_without_a_column_that_each_recording_has(tmp_path: Path, name: str):
+    (tmp_path / "less.csv").write_text(",".join(each for each in TICK_COLUMNS if each != name) + "\n")
+    with pytest.raises(OutputError, match=f"first line has no {name}"):
+        Recording.load(tmp_path / "less.csv")
+
+
+def test_an_npz_of_before(tmp_path: Path):
+    arrays = {name: getattr(some(), name) for name in ("time_s", "position_m", "velocity_m_per_s", "force_n")}
+    np.savez(tmp_path / "old.npz", **arrays, stopped="", not_finite=2, limited=3)
+    recording = Recording.load(tmp_path / "old.npz")
+    assert all(np.array_equal(getattr(recording, name), array) for name, array in arrays.items())
+    assert np.isnan(recording.proxy_m).all()
+    assert recording.about == About()
+
+
+def test_a_mock_plays_a_csv_again(tmp_path: Path):
+    touch = PenaltyGradient().touch(HapticSurface.from_heights(np.full((3, 3), 0.01)))
+    first = run_simulated(touch, Mock(speed_m_per_s=0.2), 0.3)
+    first.save(tmp_path / "stroke.csv")
+    again = run_simulated(touch, Mock(path="csv", csv_file=tmp_path / "stroke.csv", hand=None), 0.3)
+    assert np.allclose(again.position_m, first.position_m, rtol=0, atol=1e-15)
+    assert np.allclose(again.force_n, first.force_n, rtol=0, atol=1e-11)
+
+
+def test_figures():
+    force = np.array([[0, 0, 0], [0, 3, 4], [0, 0, 1], [0, 0, 0]], float)
+    position = np.array([[0, 0, 0], [0, 0, 0], [0, 1, 1], [0, 1, 3]], float)
+    flags = np.array([0, TickFlag.FORCE_LIMITED | TickFlag.TOUCHING, TickFlag.NOT_FINITE, TickFlag.NOT_FINITE])
+    recording = Recording.of(
+        time_s=np.arange(4.0), position_m=position, velocity_m_per_s=np.zeros((4, 3)), force_n=force, flags=flags
+    )
+    assert recording.figures() == {
+        "ticks": 4,
+        "seconds": 3.0,
+        "contact_share": 0.5,
+        "median_contact_force_n": 3.0,
+        "peak_force_n": 5.0,
+        "work_j": 7.0 + 2.0,
+        "force_limited": 1,
+        "not_finite": 2,
+    }
+
+
+def test_tables_that_are_none():
+    with pytest.raises(OutputError, match=r"\(n, 17\)"):
+        Recording(np.zeros((3, 10)))
+    parts = {"time_s": np.zeros(3), "position_m": np.zeros((3, 3)), "velocity_m_per_s": np.zeros((3, 3))}
+    with pytest.raises(OutputError, match=r"force_n has shape \(1, 3\); with these times it must be \(3, 3\)"):
+        Recording.of(**parts, force_n=np.zeros((1, 3)))
+
+
+def refusal(path: Path) -> str:
+    with pytest.raises(OutputError) as error:
+        Recording.load(path)
+    message = str(error.value)
+    assert message.startswith(f"{path}: ")
+    assert message.isprintable()
+    assert len(message) < 500
+    return message
+
+
+def header(path: Path) -> str:
+    some(1).save(path)
+    return path.read_text().splitlines()[0]
+
+
+@pytest.mark.timeout(20)
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+def test_what_has_no_end_or_never_begins_is_no_recording(tmp_path: Path, suffix: str):
+    os.mkfifo(tmp_path / f"pipe{suffix}")
+    (tmp_path / f"zero{suffix}").symlink_to("/dev/zero")
+    for name in ("pipe", "zero"):
+        assert "cannot be read: it is not a file but a folder or a device" in refusal(tmp_path / f"{name}{suffix}")
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+def test_a_recording_of_more_than_is_read(tmp_path: Path, suffix: str):
+    with (tmp_path / f"a{suffix}").open("wb") as file:
+        file.truncate(1_500_000_000)
+    assert "cannot be read: it holds more than 1424 MB" in refusal(tmp_path / f"a{suffix}")
+
+
+def test_a_bomb_is_not_unpacked(tmp_path: Path):
+    ticks = 12_000_000
+    shapes = {"time_s": (ticks,), "position_m": (ticks, 3), "velocity_m_per_s": (ticks, 3), "force_n": (ticks, 10)}
+    path = npz_bomb(tmp_path / "a.npz", **shapes)
+    tracemalloc.start()
+    try:
+        assert "holds more than 1424 MB" in refusal(path)
+        assert tracemalloc.get_traced_memory()[1] < 1e8
+    finally:
+        tracemalloc.stop()
+
+
+def test_an_odd_archive(tmp_path: Path):
+    some().save(tmp_path / "a.npz")
+    whole = (tmp_path / "a.npz").read_bytes()
+    entry = whole.find(b"PK\x01\x02")
+    for at, name in ((8, "encrypted"), (10, "compression is not one")):
+        data = bytearray(whole)
+        while entry >= 0:
+            data[entry + at] |= 1
+            entry = data.find(b"PK\x01\x02", entry + 1)
+        entry = whole.find(b"PK\x01\x02")
+        (tmp_path / "a.npz").write_bytes(data)
+        assert name in refusal(tmp_path / "a.npz")
+
+
+def test_an_archive_that_misses_something_says_what(tmp_path: Path):
+    np.savez(tmp_path / "a.npz", time_s=np.zeros(3), stopped="")
+    assert "it holds no position_m, velocity_m_per_s, force_n" in refusal(tmp_path / "a.npz")
+    some().save(tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as held:
+        np.savez(tmp_path / "b.npz", **{name: held[name] for name in held if name != "stopped"})
+    assert "it holds no stopped" in refusal(tmp_path / "b.npz")
+
+
+@pytest.mark.parametrize("dtype", [complex, "U1", "M8[s]"])
+def test_ticks_are_numbers(tmp_path: Path, dtype: object):
+    some().save(tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as held:
+        np.savez(tmp_path / "b.npz", **{**held, "late_s": np.zeros(5, dtype)})
+    assert "late_s holds" in refusal(tmp_path / "b.npz")
+
+
+def test_what_else_is_in_an_archive_is_not_read(tmp_path: Path):
+    some().save(tmp_path / "a.npz")
+    with np.load(tmp_path / "a.npz") as held:
+        np.savez(tmp_path / "b.npz", **held, more=np.array([{}], object))
+    assert same(Recording.load(tmp_path / "b.npz"), some())
+
+
+@pytest.mark.parametrize("bits", ["nan", "inf", "1e300", "-3e9"])
+@pytest.mark.parametrize("place", [14, 15])
+def test_flags_and_buttons_are_bits(tmp_path: Path, bits: str, place: int):
+    row = ["0"] * 17
+    row[place] = bits
+    (tmp_path / "a.csv").write_text(f"{header(tmp_path / 'b.csv')}\n{','.join(row)}\n")
+    assert f"its {TICK_COLUMNS[place]} do not all fit into 32 bits" in refusal(tmp_path / "a.csv")
+
+
+def test_a_long_text_in_place_of_a_number_is_not_repeated(tmp_path: Path):
+    (tmp_path / "a.csv").write_text(header(tmp_path / "b.csv") + "\n" + "x\x1b" * 10**6 + ",0" * 16 + "\n")
+    assert "could not convert string to float" in refusal(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+@given(data=st.data())
+def test_any_damage_is_one_error_or_a_recording(tmp_path_factory, suffix: str, data):
+    path = tmp_path_factory.mktemp("damaged") / f"a{suffix}"
+    some(about=ABOUT).save(path)
+    damaged = bytearray(path.read_bytes())
+    for place in data.draw(st.lists(st.integers(0, len(damaged) - 1), min_size=1, max_size=4)):
+        damaged[place] = data.draw(st.integers(0, 255))
+    path.write_bytes(damaged)
+    try:
+        assert Recording.load(path).flags.dtype == np.int64
+    except OutputError as error:
+        assert str(error).startswith(f"{path}: ")
+        assert str(error).isprintable()
+
+
+@pytest.mark.parametrize("name", ["stroke", "stroke.parquet", "stroke.npz.txt"])
+def test_names_it_cannot_have(tmp_path: Path, name: str):
+    with pytest.raises(OutputError, match=r"\.nc, \.npz or \.csv"):
+        check_record_path(tmp_path / name)
+    with pytest.raises(OutputError, match=r"\.nc, \.npz or \.csv"):
+        some().save(tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_place_that_cannot_be_written(tmp_path: Path):
+    (tmp_path / "file").touch()
+    with pytest.raises(OutputError, match="cannot be written"):
+        some().save(tmp_path / "file" / "stroke.npz")
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+@pytest.mark.parametrize("damage", [lambda b: b"", lambda b: b[:-200], lambda b: b"\xff" * 99, lambda b: b"a,b\n"])
+def test_damaged_files(tmp_path: Path, suffix: str, damage: Callable[[bytes], bytes]):
+    path = tmp_path / f"stroke{suffix}"
+    some().save(path)
+    path.write_bytes(damage(path.read_bytes()))
+    with pytest.raises(OutputError, match="is not a recording, or a damaged one"):
+        Recording.load(path)
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz"])
+def test_any_cut_is_seen(tmp_path: Path, suffix: str):
+    some(2).save(tmp_path / f"whole{suffix}")
+    data = (tmp_path / f"whole{suffix}").read_bytes()
+    path = tmp_path / f"cut{suffix}"
+    for length in range(0, len(data), 7):
+        path.write_bytes(data[:length])
+        with pytest.raises(OutputError, match="is not a recording, or a damaged one"):
+            Recording.load(path)
+
+
+def test_files_that_are_something_else(tmp_path: Path):
+    from scipy.io import netcdf_file
+
+    np.savez(tmp_path / "other.npz", picture=np.zeros(3))
+    np.save(tmp_path / "array.npy", np.zeros(3))
+    (tmp_path / "array.npy").rename(tmp_path / "array.npz")
+    with netcdf_file(tmp_path / "other.nc", "w") as file:
+        file.createDimension("x", 3)
+        file.createVariable("time_s", "d", ("x",))[:] = 0
+    for name in ("other.npz", "array.npz", "other.nc"):
+        with pytest.raises(OutputError, match="is not a recording"):
+            Recording.load(tmp_path / name)
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+def test_files_that_are_not_there(tmp_path: Path, suffix: str):
+    (tmp_path / f"folder{suffix}").mkdir()
+    for path in (tmp_path / f"none{suffix}", tmp_path / f"folder{suffix}"):
+        with pytest.raises(OutputError, match="cannot be read"):
+            Recording.load(path)

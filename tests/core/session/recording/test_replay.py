@@ -1,0 +1,69 @@
+"""Recordings felt again: the states as they were, through any law."""
+
+import numpy as np
+import pytest
+
+from tangible_core.data import Force, HapticState, HapticSurface, TickFlag
+from tangible_core.plugins.interfaces import PlainTouch
+from tangible_core.servo import Safety
+from tangible_core.session import Recording, replay, run_simulated, unaltered_forces
+from tangible_devices.mock import Mock
+from tangible_render.penalty import Penalty
+from tangible_render.proxy import Proxy
+
+SURFACE = HapticSurface.from_heights(np.random.default_rng(0).uniform(0.004, 0.006, (16, 16)))
+LAW = Proxy(damping_n_s_per_m=3.0, static_friction=0.5, dynamic_friction=0.3)
+
+
+class Viscous(PlainTouch):
+    """A law in Python: against the velocity, while a button is held."""
+
+    def force(self, state: HapticState) -> Force:
+        vx, vy, vz = state.velocity_m_per_s
+        return Force(-vx, -vy, -vz) if state.buttons & 2 else Force(0.0, 0.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def felt() -> Recording:
+    free = Safety(ramp_s=0, max_step_n=10, passivity="off")
+    return run_simulated(LAW.touch(SURFACE), Mock(speed_m_per_s=0.2, tremor_m=1e-4), 1.0, limits=free)
+
+
+def test_through_its_own_law_a_recording_is_the_same(felt: Recording):
+    """Friction and damping too: the velocities are those that were recorded, not steps between positions."""
+    again = replay(LAW.touch(SURFACE), felt)
+    assert np.array_equal(again.rows[:, :14], felt.rows[:, :14], equal_nan=True)
+    assert np.array_equal(again.flags[1:], felt.flags[1:])  # force faded in at the first tick, from none
+
+
+def test_through_another_law_only_force_proxy_and_flags_differ(felt: Recording):
+    again = replay(Penalty(stiffness_n_per_m=300).touch(SURFACE), felt)
+    assert np.array_equal(again.rows[:, :8], felt.rows[:, :8])
+    assert np.isnan(again.proxy_m).all()
+    touch = Penalty(stiffness_n_per_m=300).touch(SURFACE)
+    assert np.array_equal(again.force_n, [touch.force(HapticState(tuple(at))) for at in felt.position_m.tolist()])
+    assert np.array_equal(again.flags == TickFlag.TOUCHING, again.force_n.any(axis=1))
+
+
+def test_a_law_in_python_sees_velocities_and_buttons():
+    rows = np.random.default_rng(0).normal(size=(8, 17))
+    rows[:, 14:16] = np.arange(16).reshape(8, 2)
+    again = replay(Viscous(), Recording(rows, "the cable is out"))
+    held = (again.buttons & 2) > 0
+    assert np.array_equal(again.force_n, -rows[:, 5:8] * held[:, None])
+    assert np.array_equal(again.flags, TickFlag.TOUCHING * held)  # not what was recorded
+    assert np.isnan(again.proxy_m).all()
+    assert again.stopped == "the cable is out"
+
+
+def test_nothing_is_replayed_to_nothing():
+    assert replay(LAW.touch(SURFACE), Recording(np.empty((0, 17)))).rows.shape == (0, 17)
+    assert replay(Viscous(), Recording(np.empty((0, 17)))).rows.shape == (0, 17)
+
+
+@pytest.mark.parametrize("flag", list(TickFlag))
+def test_only_forces_that_are_the_laws_own_are_compared(flag: TickFlag):
+    rows = np.ones((2, 17))
+    rows[:, 14], rows[:, 16] = (0, flag), np.nan
+    own = np.isfinite(unaltered_forces(Recording(rows))).all(axis=1)
+    assert own.tolist() == [True, flag in (TickFlag.TOUCHING, TickFlag.OVERRUN, TickFlag.SWAPPED)]

@@ -1,0 +1,78 @@
+"""Where the guard changes most of what is felt, the summary of a session says so, and what to do."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from command_line import tangible
+from level_ground import GROUND
+from tangible_core import Pipeline
+from tangible_core.data import Force, HapticState, ServoReport
+from tangible_core.session import guard_summary, run_simulated
+from tangible_devices.mock import Mock
+from tangible_render.proxy import Proxy
+
+STIFF = "scene: {height: level.npy}\nwant: touch\nrender: {use: proxy, stiffness_n_per_m: 5000}\ndevice: {use: mock}\n"
+SOFTENED = "100 % of the ticks in contact the force was scaled down, because the force law is stiffer"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A pipeline whose law is too stiff for its device."""
+    np.save(tmp_path / "level.npy", np.zeros((8, 8)))
+    (tmp_path / "p.yaml").write_text(STIFF)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("flagged", "said"),
+    [
+        ({}, ""),
+        ({"TOUCHING": 1000, "RAMPING": 1000, "OVERRUN": 1000}, ""),
+        ({"TOUCHING": 1000, "STIFFNESS_LIMITED": 500}, ""),
+        ({"TOUCHING": 1000, "STIFFNESS_LIMITED": 501}, "In 50 % of the ticks in contact the force was scaled down"),
+        (
+            {"TOUCHING": 10, "FORCE_LIMITED": 6, "SLEW_LIMITED": 9},
+            "In 90 % of the ticks in contact the force was delayed",
+        ),
+        ({"TOUCHING": 10, "FORCE_LIMITED": 9}, "In 90 % of the ticks in contact the force exceeded the greatest"),
+        ({"TOUCHING": 10, "DAMPED": 9}, "In 90 % of the ticks in contact the hand was damped"),
+        ({"TOUCHING": 10, "NOT_FINITE": 30}, "In 75 % of the ticks in contact the force was set to zero"),
+        ({"STALE": 5}, "In 100 % of the ticks in contact the force was set to zero, because no new position came"),
+    ],
+)
+def test_a_sentence_where_most_ticks_were_changed(flagged: dict[str, int], said: str):
+    found = guard_summary(flagged)
+    assert found[: len(said)] == said
+    assert bool(found) == bool(said)
+
+
+def test_a_recording_says_it():
+    softened = run_simulated(Proxy(stiffness_n_per_m=5000.0).touch(GROUND), Mock(), 1.0)
+    assert SOFTENED in repr(softened)
+    assert repr(softened).startswith("Recording of 0.999 s: 1000 ticks, peak force ")
+    held = run_simulated(Proxy(stiffness_n_per_m=1600.0).touch(GROUND), Mock(), 1.0)
+    assert "\n" not in repr(held)
+
+
+@pytest.mark.slow
+def test_a_run_says_it(folder: Path):
+    done = tangible("run", "p.yaml", "--seconds", 0.5, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert SOFTENED in done.stdout
+    assert SOFTENED in (folder / "out/p/outcomes.json").read_text()
+
+
+@pytest.mark.parametrize("more", [(), ("--json",)])
+def test_feeling_says_it(folder: Path, more: tuple[str, ...], monkeypatch: pytest.MonkeyPatch):
+    def feel(self: Pipeline, *_: object, on_report, on_start, **__: object) -> None:
+        flagged = {"TOUCHING": 90, "STIFFNESS_LIMITED": 90}
+        on_start(type("Servo", (), {"how": "made up", "start_s": 0.0}))
+        on_report(
+            ServoReport(100, 0.1, HapticState((0, 0, 0)), Force(0, 0, 0), 1.0, 0.0, "the time is over", flagged=flagged)
+        )
+
+    monkeypatch.setattr(Pipeline, "feel", feel)
+    done = tangible("feel", "p.yaml", *more, cwd=folder)
+    assert SOFTENED in done.stdout.replace("\n", " ")

@@ -1,0 +1,166 @@
+"""Scenes in turn on one device that may go and come back: no force is left, nothing is counted twice or lost."""
+
+import signal
+from pathlib import Path
+from threading import Event
+
+import numpy as np
+import pytest
+
+from ctrl_c import hearing
+from loop_devices import Circling, Failing
+from tangible_core import HapticSurface, load_method
+from tangible_core.data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport, TickFlag
+from tangible_core.errors import DeviceError
+from tangible_core.plugins.interfaces import PlainTouch, Touch
+from tangible_core.servo import OVER, Safety
+from tangible_core.session import INTERRUPTED, STOPPED, Slot, kiosk, run_kiosk
+
+AT_ONCE = Safety(ramp_s=0, max_step_n=10, stale_s=1.0, passivity="off")  # late ticks change nothing
+pytestmark = pytest.mark.usefixtures("patient")
+TIME_S, PROXY_Z_M, FORCE_Z_N, FLAGS = (TICK_COLUMNS.index(name) for name in ("time_s", "proxy_z_m", "fz_n", "flags"))
+
+
+def proxy(height_m: float = 0.002) -> Touch:
+    surface = HapticSurface.from_heights(np.full((16, 16), height_m, np.float32))
+    return load_method("render", "proxy")(stiffness_n_per_m=200.0).touch(surface)
+
+
+@pytest.fixture
+def soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A device is looked for again without a pause."""
+    monkeypatch.setattr(kiosk, "FIRST_PAUSE_S", 0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
+def test_each_is_felt_in_its_turn_with_its_own_limits_and_the_first_again() -> None:
+    kept: list[np.ndarray] = []
+    stop = Event()
+
+    def keep(rows: np.ndarray) -> None:
+        kept.append(rows)
+        if sum(int((each[:, FLAGS].astype(int) & TickFlag.SWAPPED != 0).sum()) for each in kept) == 2:
+            stop.set()
+
+    turns = [Slot(proxy(0.002), AT_ONCE), Slot(proxy(0.003), AT_ONCE.model_copy(update={"max_force_n": 0.3}))]
+    last = run_kiosk(turns, Circling(), 60.0, each_s=0.2, keep=keep, stop=stop)
+    rows = np.concatenate(kept)
+    assert (last.stopped, last.ticks) == (STOPPED, len(rows))
+    first, second = np.flatnonzero(rows[:, FLAGS].astype(int) & TickFlag.SWAPPED)
+    assert rows[first, TIME_S] >= 0.2 and rows[second, TIME_S] - rows[first, TIME_S] >= 0.2
+    scenes = rows[:first], rows[first:second], rows[second:]
+    found = [(np.median(each[:, PROXY_Z_M]), each[:, FORCE_Z_N].max()) for each in scenes]
+    np.testing.assert_allclose(found, [(0.002, 0.4), (0.003, 0.3), (0.002, 0.4)], atol=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("soon")
+def test_a_device_that_goes_is_waited_for_without_force(tmp_path: Path) -> None:
+    """It answers 99 times each time it is opened."""
+    force = tmp_path / "force"
+    kept: list[np.ndarray] = []
+    said: list[str] = []
+    left: list[float] = []
+    reports: list[ServoReport] = []
+    stop = Event()
+
+    def wait(text: str) -> None:
+        said.append(text)
+        if text.startswith("no force"):
+            left.append(float(force.read_text()))
+        if len(left) == 2:
+            stop.set()
+
+    device = Failing(record=str(force))
+    last = run_kiosk(
+        [Slot(proxy(), AT_ONCE)], device, keep=kept.append, on_report=reports.append, on_wait=wait, stop=stop
+    )
+    gone = "no force; waiting for the device: the failing device does not answer; plug it in"
+    assert said == [gone, "the device is back; the session goes on", gone]
+    assert left == [0, 0]
+    assert (last, last.stopped, last.ticks, last.contact_share) == (reports[-1], STOPPED, 198, 1.0)
+    rows = np.concatenate(kept)
+    stale = rows[:, FLAGS].astype(int) & TickFlag.STALE != 0
+    assert np.flatnonzero(stale).tolist() == [99, 199]
+    assert (rows[:, FORCE_Z_N] > 0).tolist() == (~stale).tolist()
+    assert (np.diff(rows[:, TIME_S]) > 0).all()
+    assert last.time_s == rows[-2, TIME_S] > 0.3  # a new loop takes as long to start
+    assert last.work_j == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("soon")
+@pytest.mark.usefixtures("loop_in_thread")
+def test_a_device_that_is_not_there_yet(tmp_path: Path) -> None:
+    said: list[str] = []
+    device = Failing(fault="none", opens="second", record=str(tmp_path / "force"))
+    last = run_kiosk([Slot(proxy(), AT_ONCE)], device, 0.1, on_wait=said.append)
+    assert (last.stopped, last.ticks, len(said)) == (OVER, 100, 2)
+    assert "in use by another program" in said[0]
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
+def test_time_goes_on_without_a_device() -> None:
+    last = run_kiosk([Slot(proxy(), AT_ONCE)], Failing(), 0.5, on_wait=lambda _: None)
+    assert (last.stopped, last.ticks) == (OVER, 99)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
+def test_without_the_word_to_wait_it_ends_with_its_device() -> None:
+    last = run_kiosk([Slot(proxy(), AT_ONCE)], Failing())
+    assert (last.stopped, last.ticks) == ("the failing device does not answer; plug it in", 99)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
+def test_a_fault_of_a_plugin_is_not_waited_for(tmp_path: Path) -> None:
+    record = tmp_path / "force"
+    with pytest.raises(ZeroDivisionError, match="the driver's own fault"):
+        run_kiosk([Slot(proxy(), AT_ONCE)], Failing(fault="bug", record=str(record)), on_wait=pytest.fail)
+    assert float(record.read_text()) == 0
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
+def test_a_scene_that_cannot_be_sent_ends_it(tmp_path: Path) -> None:
+    class Local(PlainTouch):
+        """Of a function: no other process finds it."""
+
+        def force(self, state: HapticState) -> Force:
+            return NO_FORCE
+
+    record = tmp_path / "force"
+    device = Failing(fault="none", record=str(record))
+    with pytest.raises(DeviceError, match="cannot be sent to the force loop"):
+        run_kiosk([Slot(proxy(), AT_ONCE), Slot(Local(), AT_ONCE)], device, each_s=0.05, on_wait=pytest.fail)
+    assert float(record.read_text()) == 0
+
+
+@pytest.mark.slow
+def test_ctrl_c_while_it_waits() -> None:
+    reports: list[ServoReport] = []
+    with hearing():
+        last = run_kiosk(
+            [Slot(proxy(), AT_ONCE)],
+            Failing(),
+            5.0,
+            on_report=reports.append,
+            on_wait=lambda _: signal.raise_signal(signal.SIGINT),
+        )
+    assert (last, last.stopped, last.ticks) == (reports[-1], INTERRUPTED, 99)
+
+
+def test_a_reason_is_told_once_and_looked_into_less_and_less(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kiosk, "FIRST_PAUSE_S", 1e-3)
+    monkeypatch.setattr(kiosk, "LONGEST_PAUSE_S", 3e-3)
+    said: list[str] = []
+    session = kiosk._Kiosk([], Circling(), None, 1.0, None, None, None, said.append)
+    pauses: list[float] = []
+    for why in ("it is out", "it is out", "it is in use"):
+        pauses.append(session._pause_s)
+        assert session._wait(why) == ""
+    assert [each.partition("device: ")[2] for each in said] == ["it is out", "it is in use"]
+    assert pauses == [1e-3, 2e-3, 3e-3]

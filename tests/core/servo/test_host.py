@@ -54,7 +54,7 @@ class TestTicks:
             (Failing(fault="none"), "the tick is in Python"),
         ],
     )
-    def test_each_loop_feels_the_surface(self, device, how: str) -> None:
+    def test_each_kind_of_loop_renders_the_surface(self, device, how: str) -> None:
         with Servo(proxy(stiffness_n_per_m=SOFT_N_PER_M), device, AT_ONCE, seconds=0.3) as servo:
             assert how in servo.how
             assert servo.start_s > 0
@@ -71,7 +71,7 @@ class TestTicks:
         assert due_s == pytest.approx(0.001 * periods, abs=1e-9)
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_ticks_are_those_of_the_law_and_its_guard(self) -> None:
+    def test_ticks_match_the_law_and_its_guard(self) -> None:
         """What the loop gave, replayed by the same law here, where nothing was limited."""
         heights = np.random.default_rng(0).uniform(0.002, 0.0024, (32, 32)).astype(np.float32)
         touch = proxy(HapticSurface.from_heights(heights), stiffness_n_per_m=SOFT_N_PER_M)
@@ -84,7 +84,7 @@ class TestTicks:
         np.testing.assert_allclose(rows[free][:, FORCE], touch.path(rows[:, 2:5])[free], atol=1e-9)
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_it_goes_on_until_it_is_stopped(self) -> None:
+    def test_servo_without_end_runs_until_stopped(self) -> None:
         with Servo(proxy(), Circling()) as servo:
             until(lambda: servo.report().ticks > 50)
             assert servo.running
@@ -93,7 +93,7 @@ class TestTicks:
             assert servo.stop("again").stopped == "enough"
 
     @pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf")])
-    def test_a_time_that_is_none(self, seconds: float) -> None:
+    def test_servo_time_that_is_invalid_is_refused(self, seconds: float) -> None:
         with pytest.raises(ConfigError, match="seconds"):
             Servo(proxy(), Circling(), seconds=seconds)
 
@@ -101,7 +101,7 @@ class TestTicks:
 @pytest.mark.usefixtures("loop_in_thread")
 class TestSwap:
     @pytest.mark.parametrize("device", [Circling(z_m=0.0), Circling(z_m=0.0, exchanges=True), Failing(fault="none")])
-    def test_another_scene_from_one_tick_to_the_next(self, device) -> None:
+    def test_swap_takes_effect_from_one_tick_to_the_next(self, device) -> None:
         high = HapticSurface.from_heights(np.full((48, 64), 0.003, np.float32))
         with Servo(proxy(stiffness_n_per_m=100.0), device, AT_ONCE) as servo:
             until(lambda: servo.report().ticks > 100)
@@ -117,7 +117,7 @@ class TestSwap:
         assert rows[swapped:, 13].max() == pytest.approx(0.05)
 
     @pytest.mark.parametrize("device", [Circling(z_m=0.0), Circling(z_m=0.0, exchanges=True), Failing(fault="none")])
-    def test_another_scene_fades_in(self, device) -> None:
+    def test_swapped_scene_fades_in(self, device) -> None:
         """By the clock of the ticks: late ones have a greater share."""
         fading = Safety(ramp_s=0.1, stale_s=1.0, max_step_n=10, passivity="off")
         with Servo(proxy(stiffness_n_per_m=100.0), device, fading) as servo:
@@ -136,7 +136,7 @@ class TestSwap:
         assert whole > 0.05
         np.testing.assert_allclose(rows[swapped:, FORCE][:, 2], np.minimum(share, 1) * whole, rtol=1e-4)
 
-    def test_another_law(self) -> None:
+    def test_swapped_law_renders_the_surface(self) -> None:
         with Servo(proxy(), Circling()) as servo:
             assert "the tick is in Python" not in servo.how
             servo.swap(FaultyTouch())
@@ -146,7 +146,7 @@ class TestSwap:
             there = servo.report().ticks
             until(lambda: servo.report().ticks > there + 20)
 
-    def test_after_the_end(self) -> None:
+    def test_swap_after_the_end_is_an_error(self) -> None:
         with Servo(proxy(), Circling(), seconds=0.01) as servo:
             until(lambda: not servo.running)
             with pytest.raises(DeviceError, match="has ended"):
@@ -164,7 +164,7 @@ class TestNoForceIsLeft:
         ("fault", "stopped"), [("unplugged", "does not answer"), ("none", OVER), ("nan", OVER), ("hangs", OVER)]
     )
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_whatever_the_device_does(self, fault, stopped: str, tmp_path: Path) -> None:
+    def test_any_device_fault_leaves_no_force(self, fault, stopped: str, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with Servo(proxy(), Failing(fault=fault, record=str(record)), AT_ONCE, seconds=1.0) as servo:
             until(lambda: not servo.running)
@@ -177,7 +177,7 @@ class TestNoForceIsLeft:
             np.testing.assert_array_equal(rows[bad, FORCE], 0)
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_a_fault_of_the_driver_is_raised_here(self, tmp_path: Path) -> None:
+    def test_driver_error_is_raised_in_the_host(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with (
             pytest.raises(ZeroDivisionError, match="the driver's own fault"),
@@ -187,13 +187,13 @@ class TestNoForceIsLeft:
         assert held(record) == 0
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_a_device_that_cannot_be_opened(self) -> None:
+    def test_device_that_cannot_be_opened_is_an_error(self) -> None:
         before = set(shared_folder().glob(f"tangible-{os.getpid()}-*"))
         with pytest.raises(DeviceError, match="in use by another program"), Servo(proxy(), Failing(opens="never")):
             pytest.fail("it was opened")
         assert set(shared_folder().glob(f"tangible-{os.getpid()}-*")) == before
 
-    def test_a_killed_loop(self, tmp_path: Path) -> None:
+    def test_killed_loop_leaves_no_force(self, tmp_path: Path) -> None:
         """Nobody can run in a process that is killed: the host opens the device once more and lets go."""
         record = tmp_path / "force"
         with Servo(proxy(), Failing(fault="none", record=str(record), simulated=False), AT_ONCE) as servo:
@@ -204,7 +204,7 @@ class TestNoForceIsLeft:
             assert held(record) == 0
 
     @pytest.mark.parametrize("killed_by", [signal.SIGKILL, signal.SIGINT])
-    def test_a_host_that_is_killed(self, tmp_path: Path, killed_by: signal.Signals) -> None:
+    def test_killed_host_leaves_no_force(self, tmp_path: Path, killed_by: signal.Signals) -> None:
         record = tmp_path / "force"
         script = [*HEARING, sys.executable, "-c", HOST.format(record=str(record))]
         host = subprocess.Popen(script, stderr=subprocess.DEVNULL, start_new_session=True)

@@ -33,7 +33,7 @@ def touch() -> Touch:
 
 
 @pytest.mark.slow
-def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tmp_path: Path) -> None:
+def test_session_records_every_tick_and_reports_ten_times_a_second(touch: Touch, tmp_path: Path) -> None:
     reports: list[ServoReport] = []
     began_s: list[float] = []
     kept_at: list[int] = []
@@ -62,16 +62,14 @@ def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tm
 @pytest.mark.parametrize("name", ["hand.npz", "hand.csv"])
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_other_files_are_made_of_it_at_the_end(touch: Touch, tmp_path: Path, name: str) -> None:
+def test_keeping_converts_other_suffixes_at_the_end(touch: Touch, tmp_path: Path, name: str) -> None:
     with keeping(tmp_path / name, About("circling", "proxy", "")) as writer:
         run_in_real_time(touch, Circling(), 0.2, Safety(), lambda _: None, writer.append)
     assert len(Recording.load(tmp_path / name).rows) == 200
     assert [each.name for each in tmp_path.iterdir()] == [name]
 
 
-def test_what_grew_stays_where_no_other_file_could_be_made_of_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_keeping_leaves_the_nc_file_if_the_conversion_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise OutputError("no room; free some space")
 
@@ -82,7 +80,7 @@ def test_what_grew_stays_where_no_other_file_could_be_made_of_it(
 
 
 @pytest.mark.usefixtures("unchecked_shapes")
-def test_ticks_that_were_overwritten_are_told_and_the_others_kept(caplog: pytest.LogCaptureFixture) -> None:
+def test_drain_logs_overwritten_ticks_and_keeps_the_others(caplog: pytest.LogCaptureFixture) -> None:
     """Of every five, a ring that is too small for so slow a host still has the last three."""
     firsts: list[int] = []
 
@@ -116,7 +114,7 @@ def looped(touch: Touch) -> Iterator[Servo]:
     servo.ring.remove()
 
 
-def test_a_keeper_begins_where_it_is_told_and_hands_on_each_tick_once(looped: Servo) -> None:
+def test_drain_starts_at_its_first_tick_and_passes_each_tick_once(looped: Servo) -> None:
     kept: list[np.ndarray] = []
     written(looped.ring, 100)
     drain = RingDrain(looped, kept.append, looped.ring.count)
@@ -130,7 +128,7 @@ def test_a_keeper_begins_where_it_is_told_and_hands_on_each_tick_once(looped: Se
     assert [rows[:, 0].tolist() for rows in kept] == [[100], list(range(101, 131))]
 
 
-def test_a_full_disk_is_told_and_the_loop_goes_on(looped: Servo, tmp_path: Path) -> None:
+def test_drain_on_full_disk_raises_and_the_loop_goes_on(looped: Servo, tmp_path: Path) -> None:
     with keeping(tmp_path / "hand.nc", About("none", "none", "")) as writer:
         drain = RingDrain(looped, writer.append)
         written(looped.ring, 10)
@@ -147,7 +145,7 @@ def test_a_full_disk_is_told_and_the_loop_goes_on(looped: Servo, tmp_path: Path)
     assert Recording.load(tmp_path / "again.csv").time_s.tolist() == [55, 56, 57, 58, 59]
 
 
-def test_what_could_not_be_kept_is_handed_on_again(looped: Servo) -> None:
+def test_drain_passes_unrecorded_ticks_again(looped: Servo) -> None:
     kept: list[np.ndarray] = []
     full = [OutputError("no room")]
 
@@ -167,7 +165,7 @@ def test_what_could_not_be_kept_is_handed_on_again(looped: Servo) -> None:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_a_full_disk_ends_it_with_no_force(touch: Touch, tmp_path: Path) -> None:
+def test_session_on_full_disk_ends_without_force(touch: Touch, tmp_path: Path) -> None:
     force = tmp_path / "force"
     device = Failing(fault="none", record=str(force))
     with (
@@ -188,7 +186,7 @@ def test_a_full_disk_ends_it_with_no_force(touch: Touch, tmp_path: Path) -> None
 
 
 @pytest.mark.slow
-def test_ctrl_c(touch: Touch, tmp_path: Path) -> None:
+def test_session_on_ctrl_c_ends_without_force_and_keeps_its_ticks(touch: Touch, tmp_path: Path) -> None:
     force = tmp_path / "force"
     reports: list[ServoReport] = []
     with keeping(tmp_path / "hand.nc", About("failing", "proxy", "")) as writer:

@@ -184,7 +184,7 @@ def felt(
 
 
 @LOOPS
-def test_a_late_tick_is_an_overrun_and_those_that_it_missed_are_skipped(how: str, made_up: Clock, ring: Ring):
+def test_late_tick_is_an_overrun_and_missed_ticks_are_skipped(how: str, made_up: Clock, ring: Ring):
     """The sixth tick is 3.5 periods late: three were missed, and the next one is half a period later, in step."""
     made_up.over[5] = 7 * PERIOD // 2
     rows = felt(ring, how, 12)
@@ -201,7 +201,7 @@ def test_a_late_tick_is_an_overrun_and_those_that_it_missed_are_skipped(how: str
 
 @LOOPS
 @pytest.mark.parametrize(("late_ns", "overrun"), [(PERIOD - 1, False), (PERIOD, True)])
-def test_a_period_late_is_an_overrun(how: str, late_ns: int, overrun: bool, made_up: Clock, ring: Ring):
+def test_tick_one_period_late_is_an_overrun(how: str, late_ns: int, overrun: bool, made_up: Clock, ring: Ring):
     made_up.over[3] = late_ns
     rows = felt(ring, how, 6)
     assert bool(int(rows[3, FLAGS]) & TickFlag.OVERRUN) == overrun
@@ -209,7 +209,7 @@ def test_a_period_late_is_an_overrun(how: str, late_ns: int, overrun: bool, made
 
 
 @LOOPS
-def test_a_position_that_comes_too_late_gives_no_force(how: str, made_up: Clock, ring: Ring):
+def test_position_that_is_too_late_gives_no_force(how: str, made_up: Clock, ring: Ring):
     """30 ms between two ticks, where 20 are allowed: zero, and the force fades in again."""
     made_up.over[20] = 30 * PERIOD
     rows = felt(ring, how, 40, Safety(ramp_s=0.004, max_step_n=10))
@@ -221,7 +221,7 @@ def test_a_position_that_comes_too_late_gives_no_force(how: str, made_up: Clock,
 
 
 @LOOPS
-def test_the_guard_is_told_each_period(how: str, made_up: Clock, ring: Ring):
+def test_guard_gets_each_measured_period(how: str, made_up: Clock, ring: Ring):
     """A force that fades in over 10 ms is half of itself after five, however many ticks they had."""
     made_up.over[2] = 2 * PERIOD
     rows = felt(ring, how, 12, Safety(ramp_s=0.01, max_step_n=10, passivity="off"))
@@ -232,7 +232,7 @@ def test_the_guard_is_told_each_period(how: str, made_up: Clock, ring: Ring):
 
 @pytest.mark.parametrize("how", ["exchanges", "python"])
 @pytest.mark.parametrize("safety", [Safety(), Safety(ramp_s=0, coupling="auto", passivity="strict", delay_ticks=2)])
-def test_each_loop_gives_the_same_ticks(how: str, safety: Safety, made_up: Clock, ring: Ring):
+def test_each_kind_of_loop_has_the_same_ticks(how: str, safety: Safety, made_up: Clock, ring: Ring):
     made_up.over = {7: 300_000, 13: 3 * PERIOD, 30: 25 * PERIOD}
     whole = felt(ring, "whole", 100, safety)
     made_up.now, made_up.wakes = START, []
@@ -245,7 +245,7 @@ def test_each_loop_gives_the_same_ticks(how: str, safety: Safety, made_up: Clock
 
 
 @pytest.mark.parametrize("how", ["whole", "exchanges"])
-def test_without_a_fresh_position_the_force_is_held_until_it_is_stale(how: str, made_up: Clock, ring: Ring):
+def test_force_without_fresh_position_is_held_until_stale(how: str, made_up: Clock, ring: Ring):
     """The tip of the ninth read is the last for 30 ms: its force stays for 20, and then is none."""
     tip = Sinking(how == "exchanges", 10, 40)
     rows = felt(ring, how, 50, Safety(ramp_s=0, max_step_n=10, stale_s=0.0205), tip)
@@ -258,7 +258,7 @@ def test_without_a_fresh_position_the_force_is_held_until_it_is_stale(how: str, 
 
 
 @LOOPS
-def test_who_may_spin_wakes_early_and_waits_for_the_time_awake(how: str, made_up: Clock, ring: Ring):
+def test_loop_that_may_spin_wakes_early_and_spins(how: str, made_up: Clock, ring: Ring):
     made_up.read_ns = 500
     ring.header[LEAD_NS] = 50_000
     rows = felt(ring, how, 5, real_time=True)
@@ -268,7 +268,7 @@ def test_who_may_spin_wakes_early_and_waits_for_the_time_awake(how: str, made_up
     assert ((rows[:, 1] >= 0) & (rows[:, 1] <= 1e-6)).all()
 
 
-def test_a_sleep_that_a_signal_ends_is_slept_on(made_up: Clock, ring: Ring):
+def test_sleep_ended_by_a_signal_is_resumed(made_up: Clock, ring: Ring):
     made_up.read_ns, made_up.over = 1, {2: -600_000}
     rows = felt(ring, "whole", 5)
     assert len(made_up.wakes) == 6
@@ -277,7 +277,7 @@ def test_a_sleep_that_a_signal_ends_is_slept_on(made_up: Clock, ring: Ring):
     np.testing.assert_allclose(rows[:, 0], np.arange(5) * 1e-3, atol=1e-6)
 
 
-def test_what_a_swap_needs_is_compiled_before_a_tick_waits_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_kernels_of_a_swap_are_compiled_before_the_first_tick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Compiled between two ticks, it is a standstill on a slow machine."""
     restarted: list[np.ndarray] = []
     monkeypatch.setattr(guard, "restart", restarted.append)

@@ -48,7 +48,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> Asked:
     return made_up
 
 
-def test_without_rights_the_shortest_slack_and_slice_are_asked_for_and_the_niceness_stays(asked: Asked):
+def test_request_without_rights_sets_shortest_slack_and_slice_and_keeps_niceness(asked: Asked):
     real_time, said = priority.request()
     assert not real_time
     assert said == (
@@ -62,21 +62,21 @@ def test_without_rights_the_shortest_slack_and_slice_are_asked_for_and_the_nicen
 
 
 @pytest.mark.parametrize("policy", [3, 5, 0x40000000])
-def test_who_chose_another_class_stays_in_it(policy: int, asked: Asked, monkeypatch: pytest.MonkeyPatch):
+def test_thread_of_another_class_stays_in_it(policy: int, asked: Asked, monkeypatch: pytest.MonkeyPatch):
     """SCHED_BATCH, SCHED_IDLE, and what its children are not to inherit."""
     monkeypatch.setattr(priority.os, "sched_getscheduler", lambda _: policy)
     priority.shorten_slice()
     assert asked.calls == []
 
 
-def test_a_processor_whose_call_is_not_known_is_asked_for_nothing(asked: Asked, monkeypatch: pytest.MonkeyPatch):
+def test_unknown_processor_makes_no_system_call(asked: Asked, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(platform, "machine", lambda: "s390x")
     priority.shorten_slice()
     assert asked.calls == []
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="another system grants nothing")
-def test_the_thread_keeps_its_class_and_niceness():
+def test_thread_keeps_its_class_and_niceness():
     """Of the kernel itself, whether it knows slices or not."""
     seen: list[tuple[int, int]] = []
 

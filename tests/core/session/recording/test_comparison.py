@@ -26,7 +26,7 @@ def pressed(stiffness_n_per_m: float, friction_n: float = 0.0, ticks: int = 2001
     )
 
 
-def test_springs_of_other_stiffness_felt_at_other_speeds():
+def test_comparison_of_springs_at_different_speeds_is_exact():
     """F = k d: the forces differ by (k2 - k1) d, whose root mean square over a sine is its height / sqrt(2)."""
     found = compare_recordings(pressed(1000), pressed(600, ticks=901, away_m=1e-4))
     assert found["error_n"] == pytest.approx(400 * DEEP_M / math.sqrt(2), rel=0.01)
@@ -41,7 +41,7 @@ def test_springs_of_other_stiffness_felt_at_other_speeds():
     assert (found["first_seconds"], found["second_ticks"]) == (2.0, 901)
 
 
-def test_a_way_back_is_compared_with_the_way_back():
+def test_comparison_pairs_ticks_of_the_same_direction():
     """Friction turns with the direction: compared with the way there, it would differ by twice its force."""
     found = compare_recordings(pressed(0, 0.3), pressed(0, 0.3, ticks=1501))
     assert found["error_n"] == pytest.approx(0, abs=0.05)
@@ -49,7 +49,7 @@ def test_a_way_back_is_compared_with_the_way_back():
     assert compare_recordings(pressed(0, 0.3), pressed(0, 0.1))["error_n"] == pytest.approx(0.2, rel=0.02)
 
 
-def test_what_was_never_touched_by_the_other_is_left_out():
+def test_comparison_omits_places_without_a_partner():
     apart = compare_recordings(pressed(1000), pressed(600, away_m=0.01))
     assert (apart["compared"], apart["compared_share"]) == (0, 0.0)
     assert math.isnan(apart["error_n"]) and math.isnan(apart["apart_m"])
@@ -58,7 +58,7 @@ def test_what_was_never_touched_by_the_other_is_left_out():
     assert compare_recordings(pressed(1000), half)["compared_share"] == pytest.approx(0.5, abs=0.02)
 
 
-def test_nothing_unknown_places_and_a_long_one():
+def test_comparison_of_empty_unknown_and_long_recordings_works():
     empty, one = Recording(np.empty((0, 17))), pressed(1000)
     assert compare_recordings(empty, one)["compared"] == compare_recordings(one, empty)["compared"] == 0
     lost = one.rows.copy()

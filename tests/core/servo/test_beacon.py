@@ -1,4 +1,4 @@
-"""A beacon: a gentle pull to a part, conservative, at most 1 N, released by any button, and nothing where it is off."""
+"""A beacon: a gentle pull to a part, conservative, at most 1 N, released by any button, and without effect when off."""
 
 import math
 import pickle
@@ -43,6 +43,7 @@ from tangible_core.session import (
     run_simulated,
 )
 from tangible_devices import Mock
+from waiting import until
 
 WIDTH_M, LENGTH_M = 0.08, 0.06
 NAMES = ("ground", "disc", "", "disc ", "arc")
@@ -51,7 +52,7 @@ kernels = cast(Any, beacon_kernels)
 
 
 def in_parts() -> HapticSurface:
-    """80 x 60 mm, level: a disc of 5 mm, a bar of one cell's width, a single cell, an arc around most of the middle."""
+    """Return a level surface of 80 x 60 mm: a disc of 5 mm, a bar one cell wide, a single cell, and an arc."""
     rows, columns = 120, 160
     y, x = np.mgrid[:rows, :columns]
     x_m, y_m = ((x + 0.5) / columns - 0.5) * WIDTH_M, (0.5 - (y + 0.5) / rows) * LENGTH_M
@@ -73,7 +74,7 @@ def potential(memory: BeaconMemory, places_m: np.ndarray) -> np.ndarray:
 
 
 def pulls(memory: BeaconMemory, states: np.ndarray, buttons: int = 0, ticks: int = 1) -> np.ndarray:
-    """The force left in a guard's memory at states x, y, vx, vy, after so many ticks at each; faded in or not."""
+    """Return the pull in a guard's memory at states x, y, vx, vy, after a number of ticks at each."""
     kept = np.zeros(layout.MEMORY)
     found = []
     for x, y, vx, vy in states.tolist():
@@ -92,7 +93,7 @@ def faded_in(part: int) -> BeaconMemory:
 class TestPull:
     @pytest.mark.parametrize("part", PARTS)
     def test_pull_is_the_gradient_of_the_potential_and_within_its_bound(self, part: int):
-        """At rest and at 3 m/s, over the picture and far beside it."""
+        """At rest and at 3 m/s, over the picture and far outside."""
         random = np.random.default_rng(part)
         places = random.uniform(-0.1, 0.1, (1500, 2))
         still_n = pulls(faded_in(part), np.hstack([places, 0 * places]))
@@ -184,7 +185,7 @@ class TestFadingAndRelease:
         assert pulls(memory, at, button, ticks=3).any(), "a button that is held is not pressed"
 
     def test_beacon_is_released_by_the_named_buttons_alone(self):
-        """The bits above are the page's own, and change with every message."""
+        """The bits above belong to the page, and change with every message."""
         memory = BeaconMemory.ready()
         memory.field = np.zeros(1 << 20, np.float32)
         memory.put(beacon_to(SURFACE, 1), 0xFF)
@@ -229,7 +230,7 @@ def loop_of(beacon: Beacon | None, limits: Safety) -> tuple[GuardedForce, np.nda
 
 
 def drift(allowed: GuardedForce, seconds: float, at: np.ndarray, mass_kg: float = 0.3, b: float = 0.0) -> np.ndarray:
-    """A hand that only the force moves: position, velocity, force, flags, a row a tick; exact under a held force."""
+    """Return a row a tick of a hand that only the force moves: position, velocity, force, flags; exactly integrated."""
     place, speed, rows = np.array(at, float), np.zeros(3), []
     for _ in range(round(seconds / T)):
         force, flags = allowed(HapticState((place[0], place[1], place[2]), (speed[0], speed[1], speed[2])), T)
@@ -254,7 +255,7 @@ class TestBeaconInGuard:
         assert np.hypot(rows[:, 6], rows[:, 7]).max() <= MOST_N and not rows[:, 8].any(), "neither lifted nor pressed"
 
     def test_pull_is_not_counted_as_debt_by_the_guard(self):
-        """A hand that is pulled is not braked, owes nothing at the end, and a law that gives is braked as without."""
+        """A pulled hand is not damped and owes nothing at the end; a law that gives energy is damped as ever."""
         allowed, memory, _ = loop_of(beacon_to(SURFACE, 1), Safety(ramp_s=0))
         rows = drift(allowed, 4.0, np.array([-0.03, -0.02, 0.01]), b=2.0)
         assert not (rows[:, 9].astype(int) & TickFlag.DAMPED).any()
@@ -262,7 +263,7 @@ class TestBeaconInGuard:
         assert abs(memory[layout.ENERGY_J]) < 2e-3
 
     def test_pull_on_a_wall_leaves_the_force_along_z(self):
-        """Lateral alone; and the wall's flag tells of the wall, also in the air."""
+        """The pull is lateral, and TOUCHING is about the wall alone, also in the air."""
         states = [(-0.03, -0.02, 0.004 - 0.003 * math.sin(0.01 * i)) for i in range(900)]
         (with_it, *_), (without, *_) = (loop_of(b, Safety(ramp_s=0)) for b in (beacon_to(SURFACE, 1), None))
         found = [(with_it(HapticState(s), T), without(HapticState(s), T)) for s in states]
@@ -276,14 +277,14 @@ class TestBeaconInGuard:
         random = np.random.default_rng(4)
         path = np.cumsum(random.normal(0, 2e-4, (1500, 3)), axis=0) + np.array([0, 0, 0.002])
 
-        def felt(with_one: bool) -> np.ndarray:
+        def forces(with_one: bool) -> np.ndarray:
             touch = load_method("render", law)().touch(SURFACE) if law else Wall()
             settings, memory = Safety().arrays(SPEC, 800.0)
             pull = BeaconMemory.ready().arrays if with_one else None
             allowed = guard_touch(touch, settings, memory, pull)
             return np.array([[*force, flags] for force, flags in (allowed(HapticState(tuple(p)), T) for p in path)])
 
-        assert felt(True).tobytes() == felt(False).tobytes()
+        assert forces(True).tobytes() == forces(False).tobytes()
 
     def test_broken_state_with_beacon_gives_zero_force(self):
         allowed, *_ = loop_of(beacon_to(SURFACE, 1), Safety(ramp_s=0))
@@ -336,16 +337,9 @@ IN_TIME_S = 60.0
 AT_ONCE = Safety(ramp_s=0, stale_s=1.0, passivity="off")  # a late tick takes no force away
 
 
-def until(condition: Callable[[], Any]) -> None:
-    end = time.monotonic() + IN_TIME_S
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.005)
-
-
 @pytest.fixture
 def pointer() -> Iterator[tuple[Any, Callable[..., Any]]]:
-    """A device that tests move and press, and what moves it once it is open."""
+    """A device that tests move and press, and the function that moves it once it is open."""
     from tangible_devices.pointer import PointerClient
 
     channel, clients = f"beacon-{time.monotonic_ns()}", []
@@ -435,12 +429,12 @@ def test_beacon_of_each_kiosk_scene_pulls_until_a_button_is_pressed():
 
 
 class TestSessionsAndRecordings:
-    def felt(self, beacon: Beacon | None) -> Recording:
+    def record(self, beacon: Beacon | None) -> Recording:
         touch = load_method("render", "penalty")().touch(SURFACE)
         return run_simulated(touch, Mock(path="press"), 1.5, None, Safety(ramp_s=0), beacon=beacon)
 
     def test_recording_has_the_ticks_and_the_part_of_a_beacon(self, tmp_path: Path):
-        felt, alone = self.felt(beacon_to(SURFACE, 4)), self.felt(None)
+        felt, alone = self.record(beacon_to(SURFACE, 4)), self.record(None)
         for suffix in (".nc", ".npz", ".csv"):
             felt.save(tmp_path / f"a{suffix}")
             kept = Recording.load(tmp_path / f"a{suffix}")
@@ -451,7 +445,7 @@ class TestSessionsAndRecordings:
     def test_beacon_ticks_are_left_out_of_replays_and_of_touched_parts(self):
         from tangible_core.session import compare_replay, replay
 
-        felt = self.felt(beacon_to(SURFACE, 4))
+        felt = self.record(beacon_to(SURFACE, 4))
         again = replay(load_method("render", "penalty")().touch(SURFACE), felt)
         assert compare_replay(felt, again)["compared"] == 0
         in_air = felt.rows.copy()

@@ -1,4 +1,4 @@
-"""What goes wrong around a force loop: each fault ends with no force, in a time that is bounded, and is said."""
+"""Faults around a force loop: each one leaves no force, in bounded time, and is reported."""
 
 import copyreg
 import gc
@@ -30,6 +30,7 @@ from tangible_core.servo.framing import Start, StartReply, Swap, SwapReply, rece
 from tangible_core.servo.parcel import pack
 from tangible_core.servo.ring import COUNT, LAST, PERIOD_NS, STOP, SWAP, Ring, shared_folder
 from tangible_core.servo.ticks import loop, priority
+from waiting import until
 
 pytestmark = pytest.mark.usefixtures("own_memory")
 
@@ -44,15 +45,8 @@ def proxy(height_m: float = 0.002) -> Touch:
     return load_method("render", "proxy")().touch(level)
 
 
-def until(condition: Callable[[], object], seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.005)
-
-
-def held(path: Path) -> float:
-    """What the device holds; not a number where it was never open."""
+def held_force(path: Path) -> float:
+    """Return the force that the device holds; NaN if it was never open."""
     text = path.read_text() if path.exists() else ""
     return float(text) if text else float("nan")
 
@@ -109,13 +103,13 @@ class TestInterruptedStart:
                 servo.stop()
                 assert interrupt.ticks == -1
             assert ticks(servo) - max(interrupt.ticks, 0) <= MOST_TICKS_AFTER or ran_through, line
-            assert not held(record) > 0, line
+            assert not held_force(record) > 0, line
             assert left_behind() == before, line
         assert line > 25
 
     @pytest.mark.parametrize("delay_s", [0.05, 0.3, 0.6, 0.9])
     def test_ctrl_c_during_the_start_ends_both_processes(self, tmp_path: Path, delay_s: float) -> None:
-        """As the keyboard sends it, also where the program was started with SIGINT ignored."""
+        """As by the keyboard, even if the program was started with SIGINT ignored."""
         record, ready = tmp_path / "force", tmp_path / "ready"
         script = HOST.format(record=str(record), ready=str(ready), fault="none", at=0)
         program = subprocess.Popen(
@@ -127,7 +121,7 @@ class TestInterruptedStart:
         _, said = program.communicate(timeout=60)
         assert said.count("Traceback") == 1, said  # the host's; the loop's process says nothing
         assert said.rstrip().endswith("KeyboardInterrupt")
-        until(lambda: not held(record) > 0)
+        until(lambda: not held_force(record) > 0)
 
     def test_start_that_takes_too_long_is_abandoned(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(supervisor, "COMPILING_S", 1.0)
@@ -167,11 +161,11 @@ Path({ready!r}).touch()
 with Servo(FaultyTouch({fault!r}, {at}), device, Safety(ramp_s=0, max_step_n=10)):
     time.sleep(60)
 """
-"""A program with a session: killed, or interrupted from the keyboard."""
+"""A program with a session, to be killed, or interrupted from the keyboard."""
 
 
 class TestStandstill:
-    """A loop that does not tick has 0.2 s; then its process is ended and the device opened once more to let go."""
+    """A loop without ticks has 0.2 s; then its process is killed and the device opened once more to release it."""
 
     def feel(self, record: Path, law: Touch, fault: Any = "none") -> Servo:
         return Servo(law, Failing(fault=fault, record=str(record), simulated=False), AT_ONCE)
@@ -186,21 +180,21 @@ class TestStandstill:
             assert servo.report().stopped == supervisor.STOOD_STILL
             assert servo.device_lost
             assert servo.report().peak_force_n > 0
-            assert held(record) == 0
+            assert held_force(record) == 0
             assert servo.report().ticks == 99
 
     def test_suspended_process_is_killed(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with self.feel(record, FaultyTouch()) as servo:
-            until(lambda: held(record) > 0)
+            until(lambda: held_force(record) > 0)
             os.kill(servo.process_id, signal.SIGSTOP)
             until(lambda: not servo.running)
             assert servo.report().stopped == supervisor.STOOD_STILL
-            assert held(record) == 0
+            assert held_force(record) == 0
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_standstill_bound_counts_checks_and_grows_with_the_period(self, tmp_path: Path) -> None:
-        """Ticks are 0.3 s apart: no standstill."""
+        """Ticks 0.3 s apart are not a standstill."""
         with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE, seconds=1.5, period_s=0.3) as servo:
             until(lambda: not servo.running)
             assert servo.report().ticks == 5
@@ -208,7 +202,7 @@ class TestStandstill:
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_law_that_compiles_on_first_use_is_not_a_standstill(self) -> None:
-        """That happens before the first tick, and is no standstill."""
+        """The law compiles before the first tick."""
         with Servo(FaultyTouch("begins slowly"), Failing(fault="none"), AT_ONCE, seconds=0.2) as servo:
             until(lambda: not servo.running)
             assert servo.report().stopped == "the time is over"
@@ -220,39 +214,39 @@ class TestStandstill:
         record = tmp_path / "force"
         device = Failing(fault="none", record=str(record), simulated=False, opens="once")
         with Servo(FaultyTouch(), device, AT_ONCE) as servo:
-            until(lambda: held(record) > 0)
+            until(lambda: held_force(record) > 0)
             os.kill(servo.process_id, signal.SIGSTOP)
             until(lambda: not servo.running)
         assert "may still hold its last force; switch it off" in caplog.text
 
     def test_law_that_blocks_without_host_leaves_no_force(self, tmp_path: Path) -> None:
-        """Nobody watches then: the loop's own process lets go."""
+        """Without a host to watch it, the loop's own process releases the device."""
         record = tmp_path / "force"
         script = HOST.format(record=str(record), ready=str(tmp_path / "ready"), fault="blocks", at=3000)
         program = subprocess.Popen([sys.executable, "-c", script], stderr=subprocess.DEVNULL)
-        until(lambda: held(record) > 0)
+        until(lambda: held_force(record) > 0)
         program.send_signal(signal.SIGSTOP)  # nobody watches from now on, and the law blocks in its 3000th tick
         (path,) = shared_folder().glob(f"tangible-{program.pid}-*.ring")
         ring = Ring.attach(path)
         until(lambda: ring.count == 2999)
-        assert held(record) > 0
+        assert held_force(record) > 0
         program.kill()
         program.wait()
-        until(lambda: held(record) == 0)
+        until(lambda: held_force(record) == 0)
 
     @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGQUIT"])
     def test_terminal_signals_to_the_loop_leave_no_force(self, tmp_path: Path, name: str) -> None:
         record, number = tmp_path / "force", getattr(signal, name)
-        with answered(number, signal.SIG_DFL), self.feel(record, FaultyTouch()) as servo:
-            until(lambda: held(record) > 0)
+        with handle_signal(number, signal.SIG_DFL), self.feel(record, FaultyTouch()) as servo:
+            until(lambda: held_force(record) > 0)
             os.kill(servo.process_id, number)
             until(lambda: not servo.running)
             assert servo.report().stopped == "the process received a signal to end"
-            assert held(record) == 0
+            assert held_force(record) == 0
 
     def test_signal_ignored_by_the_program_does_not_end_the_loop(self, tmp_path: Path) -> None:
         """Under nohup, when the terminal is closed."""
-        with answered(signal.SIGHUP, signal.SIG_IGN), self.feel(tmp_path / "force", FaultyTouch()) as servo:
+        with handle_signal(signal.SIGHUP, signal.SIG_IGN), self.feel(tmp_path / "force", FaultyTouch()) as servo:
             os.kill(servo.process_id, signal.SIGHUP)
             there = servo.report().ticks
             until(lambda: servo.report().ticks > there + 50)
@@ -262,22 +256,22 @@ class TestStandstill:
         with self.feel(record, FaultyTouch("blocks")) as servo:
             until(lambda: servo.report().ticks == 99)  # the hundredth never ends
         assert servo.report().peak_force_n > 0
-        assert held(record) == 0
+        assert held_force(record) == 0
 
     @pytest.mark.skipif(not hasattr(signal, "SIGTSTP"), reason="this system has no Ctrl-Z")
     def test_ctrl_z_ends_the_loop_without_force(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with self.feel(record, FaultyTouch()) as servo:
-            until(lambda: held(record) > 0)
+            until(lambda: held_force(record) > 0)
             os.kill(servo.process_id, signal.SIGTSTP)
             until(lambda: not servo.running)
             assert "paused from the keyboard" in servo.report().stopped
-            assert held(record) == 0
+            assert held_force(record) == 0
 
 
 @contextmanager
-def answered(number: int, how: signal.Handlers) -> Iterator[None]:
-    """A signal is answered so by this process, and by those that it starts."""
+def handle_signal(number: int, how: signal.Handlers) -> Iterator[None]:
+    """Set the handler of a signal in this process and in those that it starts."""
     before = signal.signal(number, how)
     try:
         yield
@@ -299,7 +293,7 @@ class TestPluginErrors:
             Servo(FaultyTouch("odd error"), Failing(fault="none", record=str(record)), AT_ONCE) as servo,
         ):
             until(lambda: not servo.running)
-        assert held(record) == 0
+        assert held_force(record) == 0
 
     @pytest.mark.parametrize(
         ("law", "fault", "name"),
@@ -312,10 +306,10 @@ class TestPluginErrors:
             Servo(law, Failing(fault=fault, record=str(record)), AT_ONCE) as servo,
         ):
             until(lambda: not servo.running)
-        assert held(record) == 0
+        assert held_force(record) == 0
 
     def test_message_that_cannot_be_read_ends_the_loop(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        """Whatever the host fails to hear: the loop is stopped, and the failure told."""
+        """If the host cannot read a message, the loop is stopped and the error raised."""
 
         def deaf(_: object) -> object:
             raise EOFError("half a message")
@@ -327,7 +321,7 @@ class TestPluginErrors:
 
 @pytest.mark.parametrize("kept", [0, 4, 8, -1])
 def test_receive_of_half_a_message_is_none(kept: int) -> None:
-    """As a process leaves it that was killed while it wrote."""
+    """Such as by a process that was killed while it wrote."""
     whole = io.BytesIO()
     send(whole, StartReply("how"))
     assert receive(io.BytesIO(whole.getvalue())) == StartReply("how")
@@ -349,7 +343,7 @@ class TestSwaps:
 
     @pytest.mark.parametrize("device", [Circling(), Circling(exchanges=True), Failing(fault="none")])
     def test_hundreds_of_swaps_leave_no_descriptors_or_memory(self, device) -> None:
-        """Descriptors, mappings and memory of the loop's process; its threads still hear."""
+        """Checks descriptors, mappings and memory of the loop's process, and that its threads still respond."""
         scenes = [proxy(), proxy(0.003)]
         with Servo(scenes[0], device, AT_ONCE) as servo:
 
@@ -390,7 +384,7 @@ class TestSwaps:
 
 
 def usage(process: int) -> tuple[int, int, int]:
-    """Descriptors, mappings, and KiB of memory of its own."""
+    """Return the process's number of descriptors and mappings, and its own memory, KiB."""
     of = Path(f"/proc/{process}")
     status = of.joinpath("status").read_text()
     anonymous = int(status.partition("RssAnon:")[2].split()[0])
@@ -398,7 +392,7 @@ def usage(process: int) -> tuple[int, int, int]:
 
 
 class Session:
-    """The loop's side of a session in a thread of this process, spoken to through pipes as a host does."""
+    """The loop's side of a session in a thread of this process, with the pipes of a host."""
 
     def __init__(self, device: Any) -> None:
         self.others = set(threading.enumerate())
@@ -435,14 +429,14 @@ ENDS: list[Callable[[Session], None]] = [
 
 @pytest.fixture
 def in_this_process(monkeypatch: pytest.MonkeyPatch):
-    """Neither real-time rights nor locked memory are asked for, and what is collected stays so."""
+    """Request no real-time rights and no locked memory, and leave the garbage collector alone."""
     monkeypatch.setattr(priority, "request", lambda: (False, "nothing asked"))
     yield
     gc.unfreeze()
 
 
 def test_swap_keeps_the_word_stop() -> None:
-    """At the moment that thousands of swaps seldom meet: the word came after the loop last looked at it."""
+    """At a moment that is rare in thousands of swaps: STOP is set after the loop last read it."""
     ring = Ring.create(64)
     ring.header[STOP], ring.header[SWAP] = 1, 1
     loop.take_over(ring)
@@ -454,7 +448,7 @@ def test_swap_keeps_the_word_stop() -> None:
 @pytest.mark.parametrize("most", [800, pytest.param(5000, marks=pytest.mark.nightly)])
 @pytest.mark.parametrize("device", [Circling(), Circling(exchanges=True)])
 def test_stop_during_thousands_of_swaps_is_not_lost(device, most: int, in_this_process: None) -> None:
-    """In sessions that are ended in one of three ways at a random moment."""
+    """Sessions are ended in one of three ways at a random moment."""
     rng, swaps, sessions, scene, sent = random.Random(0), 0, 0, proxy(), list[Path]()
     while swaps < most:
         session = Session(device)

@@ -1,4 +1,4 @@
-"""A surface that moves while it is felt: shown from here, felt there, in the same memory."""
+"""A moving surface: shown by one process and read by the loop's, in the same memory."""
 
 import os
 import signal
@@ -21,19 +21,13 @@ from tangible_core.servo import Packed, Ring, Safety, Servo, null_touch, pack_to
 from tangible_core.servo.guard.layout import GIVEN_J
 from tangible_core.servo.ring import shared_folder
 from tangible_core.session import run_simulated
+from waiting import until
 
 pytestmark = pytest.mark.usefixtures("own_memory", "patient")
 
 AT_ONCE = Safety(ramp_s=0, stale_s=1.0)  # a late tick takes no force away
 FRAME = TICK_COLUMNS.index("frame")
 DEVICES = [Circling(z_m=0.008), Circling(z_m=0.008, exchanges=True), Failing(fault="none")]
-
-
-def until(condition, seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.005)
 
 
 def proxy() -> Touch:
@@ -48,7 +42,7 @@ def left_behind() -> set[Path]:
 class TestShow:
     @pytest.mark.parametrize("device", DEVICES)
     def test_shown_frames_move_the_surface_of_the_loop(self, device) -> None:
-        """By each of the three loops; the ticks tell which frame it was, and the guard what the surface gave."""
+        """For each kind of loop; ticks have the frame, and the guard counts the surface's work."""
         film, depth_m = MovingPlane(0.01, stiffness_n_per_m=100.0), 0.002 if isinstance(device, Circling) else 0.011
         with Servo(film, device, AT_ONCE) as servo:
             until(lambda: servo.report().force.z == pytest.approx(100 * depth_m))  # not one that still grows
@@ -67,7 +61,7 @@ class TestShow:
     def test_show_without_film_is_refused(self) -> None:
         film = MovingPlane()
         with Servo(proxy(), Circling(), AT_ONCE) as servo:
-            with pytest.raises(DeviceError, match="stands still and shows no frame; feel the film"):
+            with pytest.raises(DeviceError, match="stands still and shows no frame; start with a film"):
                 servo.show(level(0.011), 1)
             until(lambda: servo.ring.count)
             assert servo.film is servo.report().frame is None
@@ -101,7 +95,7 @@ class TestShow:
 @pytest.mark.usefixtures("loop_in_thread")
 class TestPacked:
     def test_packed_film_is_shown_by_its_packer(self) -> None:
-        """Also when another process feels it, which is given a name and a number alone."""
+        """Even if another process starts the loop, with the file's name and the stiffness alone."""
         made = pack_touch(MovingPlane(0.01), Circling().spec())
         handed_on = Packed(str(made.parcel), made.stiffness_n_per_m)
         with Servo(null_touch(), Circling(z_m=0.009), AT_ONCE) as servo:
@@ -133,7 +127,7 @@ class TestPacked:
 
 
 def usage(process: int | str) -> np.ndarray:
-    """Descriptors, mappings, and KiB of memory of its own."""
+    """Return the process's number of descriptors and mappings, and its own memory, KiB."""
     of = Path(f"/proc/{process}")
     status = of.joinpath("status").read_text()
     anonymous = int(status.partition("RssAnon:")[2].split()[0])
@@ -180,7 +174,7 @@ class TestFaults:
     def test_host_killed_during_a_film_leaves_no_force(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         program = subprocess.Popen([sys.executable, "-c", HOST.format(path=sys.path, record=str(record))])
-        until(lambda: record.exists() and float(record.read_text() or 0) > 0, 60)
+        until(lambda: record.exists() and float(record.read_text() or 0) > 0)
         time.sleep(0.1)
         program.kill()
         program.wait()

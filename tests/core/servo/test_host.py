@@ -1,10 +1,9 @@
-"""The force loop in its process: that it ticks, how it is watched, and that it leaves no force, however it ends."""
+"""The force loop in its process: its ticks, its swaps, and that it leaves no force, however it ends."""
 
 import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -19,13 +18,14 @@ from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import OVER, Safety, Servo
 from tangible_core.servo.ring import shared_folder
+from waiting import until
 
 FLAGS = TICK_COLUMNS.index("flags")
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
 LEVEL = HapticSurface.from_heights(np.full((32, 32), 0.002, np.float32))
 AT_ONCE = Safety(ramp_s=0, stale_s=1.0)  # a late tick takes no force away
 SOFT_N_PER_M = 50.0
-"""Held stably on a clock that stands still for half a second, too: no force is made softer for that."""
+"""Stiffness that is stable even if the clock stands still for half a second, so that no force is scaled down."""
 
 pytestmark = pytest.mark.usefixtures("patient")
 
@@ -36,13 +36,6 @@ def proxy(surface: HapticSurface = LEVEL, **options: float) -> Touch:
 
 def ticks(servo: Servo) -> np.ndarray:
     return servo.ring.since(0)[0]
-
-
-def until(condition, seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.01)
 
 
 class TestTicks:
@@ -72,7 +65,7 @@ class TestTicks:
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_ticks_match_the_law_and_its_guard(self) -> None:
-        """What the loop gave, replayed by the same law here, where nothing was limited."""
+        """Compares the loop's forces that were not limited with those of the same law here."""
         heights = np.random.default_rng(0).uniform(0.002, 0.0024, (32, 32)).astype(np.float32)
         touch = proxy(HapticSurface.from_heights(heights), stiffness_n_per_m=SOFT_N_PER_M)
         safety = AT_ONCE.model_copy(update={"passivity": "off"})
@@ -136,7 +129,7 @@ class TestSwap:
         assert whole > 0.05
         np.testing.assert_allclose(rows[swapped:, FORCE][:, 2], np.minimum(share, 1) * whole, rtol=1e-4)
 
-    def test_swapped_law_renders_the_surface(self) -> None:
+    def test_swapped_law_changes_the_kind_of_loop(self) -> None:
         with Servo(proxy(), Circling()) as servo:
             assert "the tick is in Python" not in servo.how
             servo.swap(FaultyTouch())
@@ -153,8 +146,8 @@ class TestSwap:
                 servo.swap(proxy())
 
 
-def held(path: Path) -> float:
-    """What the device holds; nothing that is half written."""
+def held_force(path: Path) -> float:
+    """Return the force that the device holds; NaN if it was not written yet."""
     text = path.read_text() if path.exists() else ""
     return float(text) if text else float("nan")
 
@@ -169,7 +162,7 @@ class TestNoForceIsLeft:
         with Servo(proxy(), Failing(fault=fault, record=str(record)), AT_ONCE, seconds=1.0) as servo:
             until(lambda: not servo.running)
             assert stopped in servo.report().stopped
-            assert held(record) == 0
+            assert held_force(record) == 0
             rows = ticks(servo)
         assert rows[:, FORCE].any(), "the device held one before"
         if fault == "nan":
@@ -184,7 +177,7 @@ class TestNoForceIsLeft:
             Servo(proxy(), Failing(fault="bug", record=str(record)), AT_ONCE) as servo,
         ):
             until(lambda: not servo.running)
-        assert held(record) == 0
+        assert held_force(record) == 0
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_device_that_cannot_be_opened_is_an_error(self) -> None:
@@ -194,14 +187,14 @@ class TestNoForceIsLeft:
         assert set(shared_folder().glob(f"tangible-{os.getpid()}-*")) == before
 
     def test_killed_loop_leaves_no_force(self, tmp_path: Path) -> None:
-        """Nobody can run in a process that is killed: the host opens the device once more and lets go."""
+        """A killed process cannot clean up: the host opens the device once more to release it."""
         record = tmp_path / "force"
         with Servo(proxy(), Failing(fault="none", record=str(record), simulated=False), AT_ONCE) as servo:
-            until(lambda: held(record) > 0)
+            until(lambda: held_force(record) > 0)
             os.kill(servo.process_id, signal.SIGKILL)
             until(lambda: not servo.running)
             assert "died" in servo.report().stopped
-            assert held(record) == 0
+            assert held_force(record) == 0
 
     @pytest.mark.parametrize("killed_by", [signal.SIGKILL, signal.SIGINT])
     def test_killed_host_leaves_no_force(self, tmp_path: Path, killed_by: signal.Signals) -> None:
@@ -209,12 +202,12 @@ class TestNoForceIsLeft:
         script = [*HEARING, sys.executable, "-c", HOST.format(record=str(record))]
         host = subprocess.Popen(script, stderr=subprocess.DEVNULL, start_new_session=True)
         try:
-            until(lambda: held(record) > 0)
+            until(lambda: held_force(record) > 0)
             if killed_by == signal.SIGINT:
                 os.killpg(host.pid, killed_by)  # as the keyboard does: host and loop both
             else:
                 os.kill(host.pid, killed_by)
-            until(lambda: held(record) == 0)
+            until(lambda: held_force(record) == 0)
             host.wait(60)
         finally:
             host.kill()

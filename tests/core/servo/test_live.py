@@ -97,8 +97,8 @@ def test_drain_logs_overwritten_ticks_and_keeps_the_others(caplog: pytest.LogCap
     assert caplog.text.count("2 ticks were overwritten before they could be recorded") == 2
 
 
-def written(ring: Ring, count: int) -> None:
-    """So many ticks more, of which the first number is the tick's own."""
+def write_ticks(ring: Ring, count: int) -> None:
+    """Write more ticks, whose first value is the number of the tick."""
     for number in range(ring.count, ring.count + count):
         row = np.zeros(17)
         row[0] = number
@@ -106,46 +106,46 @@ def written(ring: Ring, count: int) -> None:
 
 
 @pytest.fixture
-def looped(touch: Touch) -> Iterator[Servo]:
-    """As much of a loop as a drain sees."""
+def loop_part(touch: Touch) -> Iterator[Servo]:
+    """The part of a loop that a drain uses."""
     servo = Servo(touch, Circling())
     servo._ring = Ring.create(64)
     yield servo
     servo.ring.remove()
 
 
-def test_drain_starts_at_its_first_tick_and_passes_each_tick_once(looped: Servo) -> None:
+def test_drain_starts_at_its_first_tick_and_passes_each_tick_once(loop_part: Servo) -> None:
     kept: list[np.ndarray] = []
-    written(looped.ring, 100)
-    drain = RingDrain(looped, kept.append, looped.ring.count)
+    write_ticks(loop_part.ring, 100)
+    drain = RingDrain(loop_part, kept.append, loop_part.ring.count)
     drain.look()
     assert kept == [], "of what was before, nothing"
     for count in (1, 0, 30):
-        written(looped.ring, count)
+        write_ticks(loop_part.ring, count)
         drain.look()
-    looped.ring.remove()  # the loop has ended
+    loop_part.ring.remove()  # the loop has ended
     drain.look()
     assert [rows[:, 0].tolist() for rows in kept] == [[100], list(range(101, 131))]
 
 
-def test_drain_on_full_disk_raises_and_the_loop_goes_on(looped: Servo, tmp_path: Path) -> None:
+def test_drain_on_full_disk_raises_and_the_loop_goes_on(loop_part: Servo, tmp_path: Path) -> None:
     with keeping(tmp_path / "hand.nc", About("none", "none", "")) as writer:
-        drain = RingDrain(looped, writer.append)
-        written(looped.ring, 10)
+        drain = RingDrain(loop_part, writer.append)
+        write_ticks(loop_part.ring, 10)
         drain.look()
-        written(looped.ring, 50)
+        write_ticks(loop_part.ring, 50)
         with files_up_to((tmp_path / "hand.nc").stat().st_size + 1000), pytest.raises(OutputError, match="free some"):
             drain.look()
-    assert not looped.ring.header[STOP]
+    assert not loop_part.ring.header[STOP]
     whole = Recording.load(tmp_path / "hand.nc")
     assert whole.time_s.tolist() == list(range(10))
     assert whole.stopped.startswith("the recording ends early")
     with keeping(tmp_path / "again.csv", About("none", "none", "")) as writer:  # begun in the middle of a life
-        RingDrain(looped, writer.append, 55).look()
+        RingDrain(loop_part, writer.append, 55).look()
     assert Recording.load(tmp_path / "again.csv").time_s.tolist() == [55, 56, 57, 58, 59]
 
 
-def test_drain_passes_unrecorded_ticks_again(looped: Servo) -> None:
+def test_drain_passes_unrecorded_ticks_again(loop_part: Servo) -> None:
     kept: list[np.ndarray] = []
     full = [OutputError("no room")]
 
@@ -154,11 +154,11 @@ def test_drain_passes_unrecorded_ticks_again(looped: Servo) -> None:
             raise full.pop()
         kept.append(rows)
 
-    drain = RingDrain(looped, keep)
-    written(looped.ring, 5)
+    drain = RingDrain(loop_part, keep)
+    write_ticks(loop_part.ring, 5)
     with pytest.raises(OutputError, match="no room"):
         drain.look()
-    written(looped.ring, 5)
+    write_ticks(loop_part.ring, 5)
     drain.look()
     assert [rows[:, 0].tolist() for rows in kept] == [list(range(10))]
 

@@ -1,4 +1,4 @@
-"""A touch that one process makes and another hands on unread, and the touch of no force that a loop begins with."""
+"""Packed touches, which one process makes and another passes on unread; and the null touch."""
 
 import json
 import os
@@ -32,14 +32,14 @@ def stiff() -> Touch:
 
 
 class Silent(PlainTouch):
-    """A spring that does not say how stiff it is."""
+    """A spring that does not state its stiffness."""
 
     def force(self, state: HapticState) -> Force:
         return Force(0.0, 0.0, max(0.0, -7000 * state.position_m[2]))
 
 
 class Unsendable(PlainTouch):
-    """Of a law that holds what no other process can have."""
+    """A touch with a member that cannot be sent to another process."""
 
     stiffness_n_per_m = 0.0
 

@@ -1,4 +1,4 @@
-"""What is said of a loop: one report, whichever loop it is."""
+"""Reports of a loop: the same for every kind of loop."""
 
 import numpy as np
 

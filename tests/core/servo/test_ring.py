@@ -1,4 +1,4 @@
-"""The ring that a force loop shares: its layout, what a reader gets of it, and what becomes of the file."""
+"""The ring of a force loop: its layout, its readers, and its file."""
 
 import os
 import threading
@@ -38,7 +38,7 @@ def small():
 
 
 def put(into: Ring, *numbers: int) -> None:
-    """Ticks of which every number is the tick's own; the flags are none."""
+    """Write ticks whose values are all the number of the tick, without flags."""
     for number in numbers:
         row = np.full(len(TICK_COLUMNS), float(number))
         row[cycle.FLAGS] = 0
@@ -90,7 +90,7 @@ class TestReading:
         assert following == 16
 
     def test_ring_that_is_not_full_has_no_made_up_ticks(self, small: Ring) -> None:
-        """The mark of a slot that is being written is no number of a tick."""
+        """The mark of a slot that is being written is not the number of a tick."""
         put(small, *range(15))
         small.stamps[15] = -1
         assert small.since(-1)[0][:, 0].tolist() == list(range(15))
@@ -259,7 +259,7 @@ class TestFile:
             Ring.create()
 
     def test_shared_folder_can_be_configured(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-        """For two runs of tests side by side, one of which sweeps away what it should not."""
+        """So that two runs of tests at once do not delete each other's files."""
         monkeypatch.setenv("TANGIBLE_SHARED_DIR", str(tmp_path))
         made = Ring.create(16).path, parcel.pack([1])
         assert {path.parent for path in made} == {tmp_path}
@@ -278,7 +278,7 @@ class TestFile:
             mine.unlink()
 
     def test_files_of_others_and_odd_files_are_not_deleted(self, tmp_path: Path, monkeypatch) -> None:
-        """Names that are none of ours, a folder, a link, a file that cannot be removed, and one of another user."""
+        """Files of other names, a folder, a link, a file that cannot be deleted, and a file of another user."""
         monkeypatch.setattr(ring, "shared_folder", lambda: tmp_path)
         odd = [
             "tangible-²-x.ring",

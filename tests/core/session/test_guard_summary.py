@@ -1,4 +1,4 @@
-"""Where the guard changes most of what is felt, the summary of a session says so, and what to do."""
+"""The summary of a session if the guard changes most of its forces, with the cure."""
 
 from pathlib import Path
 

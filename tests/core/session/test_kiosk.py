@@ -1,4 +1,4 @@
-"""Scenes in turn on one device that may go and come back: no force is left, nothing is counted twice or lost."""
+"""A kiosk whose device may be unplugged and return: no force is left, and no tick is lost or counted twice."""
 
 import signal
 from pathlib import Path
@@ -27,8 +27,8 @@ def proxy(height_m: float = 0.002) -> Touch:
 
 
 @pytest.fixture
-def soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A device is looked for again without a pause."""
+def no_pause(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Search for a device again without a pause."""
     monkeypatch.setattr(kiosk, "FIRST_PAUSE_S", 0.01)
 
 
@@ -55,7 +55,7 @@ def test_kiosk_rotates_scenes_with_their_own_limits() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("soon")
+@pytest.mark.usefixtures("no_pause")
 def test_kiosk_waits_for_a_lost_device_without_force(tmp_path: Path) -> None:
     """It answers 99 times each time it is opened."""
     force = tmp_path / "force"
@@ -90,7 +90,7 @@ def test_kiosk_waits_for_a_lost_device_without_force(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("soon")
+@pytest.mark.usefixtures("no_pause")
 @pytest.mark.usefixtures("loop_in_thread")
 def test_kiosk_waits_for_a_device_that_is_absent_at_first(tmp_path: Path) -> None:
     said: list[str] = []
@@ -127,7 +127,7 @@ def test_kiosk_raises_a_plugin_error_at_once(tmp_path: Path) -> None:
 @pytest.mark.usefixtures("loop_in_thread")
 def test_kiosk_ends_on_a_scene_that_cannot_be_sent(tmp_path: Path) -> None:
     class Local(PlainTouch):
-        """Of a function: no other process finds it."""
+        """A touch of a local class, which no other process can import."""
 
         def force(self, state: HapticState) -> Force:
             return NO_FORCE

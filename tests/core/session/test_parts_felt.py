@@ -1,4 +1,4 @@
-"""Which part of a picture the tip is on: by its place, its name, and in what a recording says of itself."""
+"""The part under the tip: by place and by name, in reports and in recordings."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -34,7 +34,7 @@ NAMES = ("sky", "", "Gräser [hoch]")
 
 
 def in_parts(labels: np.ndarray = LABELS, names: tuple[str, ...] | None = NAMES) -> HapticSurface:
-    """80 x 40 mm, 5 mm high: upper left, upper right, and all of the lower half."""
+    """Return a surface of 80 x 40 mm, 5 mm high, with parts upper left, upper right, and the lower half."""
     relief = Relief(np.full(labels.shape, 0.005, np.float32), (0.08, 0.04))
     return HapticSurface(relief, labels, None, names)
 
@@ -58,7 +58,7 @@ def test_part_under_a_tip_is_named(x_mm: float, y_mm: float, called: str):
 
 
 def made_of(*materials: str, names: tuple[str, ...] | None = NAMES) -> HapticSurface:
-    """`in_parts`, each of a material."""
+    """Return the surface of `in_parts`, each part of a material."""
     found = tuple(Material(name, 500.0, 0.0, 0.0, 0.0) for name in materials)
     return replace(in_parts(names=names), materials=found)
 

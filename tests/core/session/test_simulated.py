@@ -1,4 +1,4 @@
-"""The loop of touch and device: what it records, how it ends, and that it ends with no force."""
+"""Sessions in simulated time: their recordings, and that every end leaves no force."""
 
 import logging
 import math
@@ -21,11 +21,11 @@ from tangible_render.proxy import Proxy
 
 PUSH = Force(0.0, 0.0, 2.0)
 FREE = Safety(ramp_s=0, max_step_n=10, passivity="off")
-"""Limits that let all through but what is too strong or not finite."""
+"""Limits that pass every force but those that are too strong or not finite."""
 
 
 class Says(PlainTouch):
-    """A touch that answers what a function of the tick says."""
+    """A touch whose force is a function of the tick."""
 
     stiffness_n_per_m = 0.0
 
@@ -38,7 +38,7 @@ class Says(PlainTouch):
 
 
 class Scripted(Link):
-    """A device that rises by a millimetre a tick, and fails or stands still where it is told to."""
+    """A device that rises by a millimetre a tick, and fails or stands still at a given tick."""
 
     def __init__(self, fails_at: int | None = None, stamps: Callable[[int], float] = lambda tick: 5 + tick * 0.001):
         super().__init__("the scripted device", 8.0)
@@ -69,7 +69,7 @@ LINKS: list[Link | DeviceError] = []
 
 
 class Bench(HapticDevice):
-    """Opens the link that the test has laid out."""
+    """A device that opens the link of the test."""
 
     def spec(self) -> DeviceSpec:
         return DeviceSpec(8.0, 3000.0, 20.0, (0.08, 0.08, 0.08), 1e-6)

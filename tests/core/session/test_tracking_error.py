@@ -1,4 +1,4 @@
-"""Whether a hand followed its path: what is said of those that were held, and of those that were not."""
+"""The tracking error of hands that were held, and of hands that were not."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What may leave of a force: exact answers tick by tick, and no input that breaks a promise."""
+"""The guard of a force: exact results tick by tick, and limits that hold for any input."""
 
 import math
 
@@ -16,13 +16,13 @@ from tangible_core.servo.ticks.python_tick import guard_touch
 
 SPEC = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
 BARE = {"ramp_s": 0, "passivity": "off"}
-"""Nothing but what is asked for."""
+"""Safety without any limit but those of a test."""
 AT_ONCE = {"ramp_s": 0, "max_step_n": 10}
 NAN = math.nan
 
 
 def ticks(safety: Safety, forces, stiffness: float = 0.0, period_s: float = 0.001, velocity=(0.0, 0.0, 0.0)):
-    """What leaves of forces on a hand that rests, the flags, and the memory."""
+    """Return the guarded forces on a hand at rest, their flags, and the memory."""
     settings, memory = safety.arrays(SPEC, stiffness)
     left = [guard(settings, memory, period_s, 0.0, 0.0, 0.0, *velocity, *force) for force in forces]
     return np.array([each[:3] for each in left]), [TickFlag(each[3]) for each in left], memory
@@ -147,7 +147,7 @@ def stopped(memory: np.ndarray, settings: np.ndarray) -> None:
 class TestMemoryAfterStop:
     @pytest.mark.parametrize("delay", [0, 1, 3, MOST_DELAY])
     def test_delayed_forces_are_cleared_by_stop(self, delay: int):
-        """What was to arrive after the stop does no work then."""
+        """A force that would have arrived after the stop does no work."""
         settings, memory = Safety(passivity="strict", delay_ticks=delay, **AT_ONCE).arrays(SPEC, 0.0)
         for _ in range(2 * MOST_DELAY + 2):
             guard(settings, memory, 0.001, *[0.0] * 6, 1.0, 1.0, 1.0)
@@ -273,7 +273,7 @@ class TestStiffnessLimit:
         )
 
     def test_gain_after_one_long_tick_is_exact(self):
-        """The mean of T is 1 + 2 / 128 ms, that of its square 1 + 8 / 128 ms^2: 2294 N/m are held, of 2390."""
+        """The mean of T is 1 + 2 / 128 ms, that of its square 1 + 8 / 128 ms^2: 2294 N/m are stable, of 2390."""
         settings, memory = Safety(**BARE).arrays(SPEC, 2390.0)
         held = 2.4 * (0.001 + 0.002 / 128) / (1e-6 + 8e-6 / 128)
         assert guard(settings, memory, 0.003, *[0.0] * 6, 0.0, 0.0, 0.4)[2] == pytest.approx(0.4 * held / 2390)
@@ -289,8 +289,8 @@ class TestStiffnessLimit:
 
 
 class TestPassivity:
-    def guarded(self, moves, **options):
-        """Energies after each (x, law's force along x), for a velocity that is not told; so nothing is braked."""
+    def energies(self, moves, **options):
+        """Yield the energy after each (x, law's force along x), with velocity zero, so that nothing is damped."""
         settings, memory = Safety(**AT_ONCE, **options).arrays(SPEC, 0.0)
         for x, fx in moves:
             guard(settings, memory, 0.001, x, 0.0, 0.0, 0.0, 0.0, 0.0, fx, 0.0, 0.0)
@@ -302,7 +302,7 @@ class TestPassivity:
         x, fx = np.cumsum(random.uniform(-1e-3, 1e-3, 50)), random.uniform(0.1, 1, 50)
         held = np.concatenate([np.zeros(1 + delay), fx])[:50]
         work = np.cumsum(held * np.diff(x, prepend=x[0]))
-        found = list(self.guarded(zip(x, fx, strict=True), passivity="strict", delay_ticks=delay))
+        found = list(self.energies(zip(x, fx, strict=True), passivity="strict", delay_ticks=delay))
         np.testing.assert_allclose(found, -work, atol=1e-15)
 
     @pytest.mark.parametrize("delay", [0, 2])
@@ -328,7 +328,7 @@ class TestPassivity:
 
     @pytest.mark.parametrize("axis", [0, 1, 2])
     def test_energy_credit_lasts_while_the_force_falls(self, axis: int):
-        """0.5 N over 1 mm; then the law has let go, and the force falls to none one tick later."""
+        """0.5 N over 1 mm; then the law's force ends, and the sent force is zero one tick later."""
         settings, memory = Safety(passivity="strict", ramp_s=0, max_step_n=0.5).arrays(SPEC, 0.0)
         along, found = np.eye(3)[axis], []
         for way, push in ((0.0, 1.0), (-0.001, 0.0), (-0.001, 0.0)):
@@ -363,21 +363,21 @@ class TestPassivity:
         assert left[:3] == pytest.approx(np.array([0.0, -7.5, 8.0]) * 8 / math.hypot(7.5, 8))
 
     def test_handle_damping_counts_up_to_the_margin(self):
-        *_, energy = self.guarded([(0.0, 1e-9), (0.002, 1e-9)], stiffness_margin=0.5)
+        *_, energy = self.energies([(0.0, 1e-9), (0.002, 1e-9)], stiffness_margin=0.5)
         assert energy == pytest.approx(0.5 * 1.5 * 2.0**2 * 0.001, rel=1e-6)
 
     def test_energy_credit_ends_in_free_air_but_debt_stays(self):
-        gained = list(self.guarded([(0.0, 1.0), (-0.001, 0.0), (-0.001, 0.0)], passivity="strict"))
+        gained = list(self.energies([(0.0, 1.0), (-0.001, 0.0), (-0.001, 0.0)], passivity="strict"))
         assert gained == pytest.approx([0.0, 1e-3, 0.0])
-        owed = list(self.guarded([(0.0, 1.0), (0.001, 0.0), (0.001, 0.0)], passivity="strict"))
+        owed = list(self.energies([(0.0, 1.0), (0.001, 0.0), (0.001, 0.0)], passivity="strict"))
         assert owed == pytest.approx([0.0, -1e-3, -1e-3])
 
     def test_energy_debt_is_at_most_the_greatest_force_over_a_millimetre(self):
         moves = [(0.005 * i, 8.0) for i in range(10)]
-        assert list(self.guarded(moves, passivity="strict"))[-1] == pytest.approx(-0.008)
+        assert list(self.energies(moves, passivity="strict"))[-1] == pytest.approx(-0.008)
 
     def test_jump_of_the_sensor_is_not_work(self):
-        assert list(self.guarded([(0.0, 1.0), (0.011, 1.0)], passivity="strict")) == [0.0, 0.0]
+        assert list(self.energies([(0.0, 1.0), (0.011, 1.0)], passivity="strict")) == [0.0, 0.0]
 
     @pytest.mark.parametrize(("owed_j", "damping"), [(1e-6, 0.1), (1e-5, 1.0), (1e-3, 7.5)])
     def test_brake_follows_the_formula_up_to_five_times_the_device_damping(self, owed_j: float, damping: float):
@@ -464,7 +464,7 @@ class TestCoupling:
 
     @pytest.mark.parametrize("axis", [0, 1, 2])
     def test_tool_force_that_overflows_is_zero(self, axis: int):
-        """A heavy tool goes on as it went, while the device is told to go the other way: their difference overflows."""
+        """A heavy tool keeps its velocity while the device's is opposite: their difference overflows."""
         safety = Safety(coupling=Coupling(stiffness_n_per_m=1000, damping_n_s_per_m=1.5), **BARE)
         settings, memory = safety.arrays(SPEC, 1e5)
         for speed in (-1e308, 1e308):
@@ -476,7 +476,7 @@ class TestCoupling:
     @pytest.mark.parametrize("axis", [0, 1, 2])
     @pytest.mark.parametrize(("way_m", "follows"), [(0.016, True), (0.021, False), (-1.0, False)])
     def test_tool_follows_a_device_that_jumps(self, axis: int, way_m: float, follows: bool):
-        """As a pointer that is let go of: 8 N at 1000 N/m is a leash of 8 mm, and no hand goes 10 mm in a tick."""
+        """Such as a released pointer: 8 N at 1000 N/m is a leash of 8 mm, and no hand moves 10 mm in a tick."""
         safety = Safety(coupling=Coupling(stiffness_n_per_m=1000, damping_n_s_per_m=0.4), **BARE)
         settings, memory = safety.arrays(SPEC, 500.0)
         couple(settings, memory, 0.001, *[0.0] * 6)
@@ -538,7 +538,7 @@ def test_force_of_any_input_keeps_the_limits(
 
 
 def _kept(last: np.ndarray, left: tuple[float, float, float, int], step_n: float) -> np.ndarray:
-    """The force, after it kept every promise."""
+    """Return the force, after checking it against every limit."""
     force, flags = np.array(left[:3]), TickFlag(left[3])
     assert np.isfinite(force).all()
     assert np.linalg.norm(force) <= SPEC.max_force_n * (1 + 1e-12)

@@ -32,7 +32,7 @@ def tick(arrays, place: Sequence[float], velocity: Sequence[float], force: Seque
 class TestObserver:
     @AXES
     def test_work_is_observed_along_each_axis(self, axis: int):
-        """Twice, as the place that was kept is where the next way begins."""
+        """Two steps, as each starts at the stored place."""
         arrays = STRICT.arrays(SPEC, 0.0)
         for step in range(3):
             tick(arrays, along(axis, 0.001 * step), REST, (0.5, 0.25, 0.125))

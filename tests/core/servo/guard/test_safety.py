@@ -1,4 +1,4 @@
-"""The options of a force loop, the stiffness limits, and what of them a guard reads."""
+"""The options of a force loop, its stiffness limits, and the arrays of its guard."""
 
 from pathlib import Path
 
@@ -90,7 +90,7 @@ class TestArrays:
         assert memory[layout.GAIN] == gain(settings, 0.001)
 
     def test_gain_of_fast_loop_respects_the_device_stiffness(self):
-        """At 4 kHz its damping would hold 9600 N/m; its own word is 3000."""
+        """At 4 kHz the device's damping allows 9600 N/m, but its stated limit is 3000."""
         settings, memory = Safety(ramp_s=0, passivity="off").arrays(FALCON, 5000.0)
         assert gain(settings, 0.00025) == pytest.approx(3000 / 5000)
         for _ in range(4000):
@@ -107,7 +107,7 @@ class TestArrays:
     @pytest.mark.parametrize("law", [800.0, 0.0])
     @pytest.mark.parametrize("delay", [0, 1])
     def test_automatic_coupling_is_half_the_stable_stiffness(self, law: float, delay: int):
-        """And a quarter of the damping. A law behind it is in series; one that says nothing may be as stiff as any."""
+        """And a quarter of the damping. The law is in series with it; a law of unknown stiffness may have any."""
         held, times = 2400 / (1 + 2 * delay), 1 + 2 * delay
         settings, _ = Safety(coupling="auto", delay_ticks=delay).arrays(FALCON, law)
         assert settings[layout.COUPLING] == pytest.approx(held / 2)
@@ -125,7 +125,7 @@ class TestArrays:
 
     @pytest.mark.parametrize(("law", "behind", "felt"), [(800.0, 800.0, 1 / (1 / 900 + 1 / 800)), (0.0, 2400.0, 900.0)])
     def test_custom_coupling_is_used_as_given(self, law: float, behind: float, felt: float):
-        """A law that says nothing may be as stiff as the device holds; the tool is heavy enough for that."""
+        """A law of unknown stiffness may be as stiff as the device allows; the tool is heavy enough for that."""
         coupling = Coupling(stiffness_n_per_m=900, damping_n_s_per_m=0.2)
         settings, _ = Safety(coupling=coupling).arrays(FALCON, law)
         names = [layout.COUPLING, layout.COUPLING_DAMPING, layout.COUPLING_LAW]

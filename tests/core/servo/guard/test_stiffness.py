@@ -1,4 +1,4 @@
-"""How stiff a law is that does not say so: felt before the device is opened, so that the guard can soften it."""
+"""The stiffness of laws that do not state it: measured before the device is opened, so that the guard can limit it."""
 
 import importlib
 import math
@@ -24,6 +24,7 @@ from tangible_core.servo.guard.stiffness import DEPTHS_M, HALVINGS, LAYERS, PLAC
 from tangible_core.session import run_simulated
 from tangible_core.testing.synthetic.scenes import plane, ramp
 from tangible_devices.mock import Mock
+from waiting import until
 
 SPEC = DeviceSpec(8.0, 3000.0, 20.0, (0.08, 0.08, 0.08), 1e-6)
 AT_ONCE = Safety(ramp_s=0, max_step_n=10, passivity="off")
@@ -43,7 +44,7 @@ class Plain(PlainTouch):
 
 
 class Law(PlainTouch):
-    """A force of the position, and how often it was asked for."""
+    """A force by position, and the number of calls."""
 
     def __init__(self, law: Callable[[float, float, float], tuple[float, float, float]]) -> None:
         self.law, self.asked = law, 0
@@ -54,7 +55,7 @@ class Law(PlainTouch):
 
 
 def level(push_n: Callable[[float], float], height_m: float = LEVEL_M) -> Law:
-    """Pushes straight up by a function of the depth under level ground."""
+    """Return a law that pushes up by a function of the depth under level ground."""
     return Law(lambda x, y, z: (0.0, 0.0, push_n(height_m - z) if z < height_m else 0.0))
 
 
@@ -64,7 +65,7 @@ def spring(k: float, height_m: float = LEVEL_M) -> Law:
 
 @pytest.fixture
 def plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """A law of somebody's, in plain Python, in a module that the loop's process finds too."""
+    """A third party's law in plain Python, in a module that the loop's process can import."""
     tmp_path.joinpath("plain_law.py").write_text(PLAIN)
     monkeypatch.syspath_prepend(tmp_path)
     yield importlib.import_module("plain_law").Plain
@@ -86,7 +87,7 @@ class TestLimitOfUnstatedStiffness:
             until(lambda: servo.report().ticks > 100)
             hard = servo.ring.since(0)[0]
             servo.swap(plain(50.0))
-            until(lambda: felt(servo) == pytest.approx((50 * 0.0005, False), rel=1e-6))
+            until(lambda: last_force(servo) == pytest.approx((50 * 0.0005, False), rel=1e-6))
         felt_n, flags = hard[:, FZ], hard[:, FLAGS].astype(int)
         assert 0 < felt_n.max() <= 2401 * 0.0005
         assert (flags[felt_n > 0] & TickFlag.STIFFNESS_LIMITED).all()
@@ -99,17 +100,10 @@ class TestLimitOfUnstatedStiffness:
         assert touch.asked == len(recording.rows)
 
 
-def felt(servo: Servo) -> tuple[float, bool]:
-    """Force of the last tick, and whether it was softened."""
+def last_force(servo: Servo) -> tuple[float, bool]:
+    """Return the force of the last tick, and whether it was scaled down."""
     last = servo.ring.since(0)[0][-1]
     return float(last[FZ]), bool(int(last[FLAGS]) & TickFlag.STIFFNESS_LIMITED)
-
-
-def until(condition: Callable[[], bool]) -> None:
-    end = time.monotonic() + 60
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.01)
 
 
 class TestStatedStiffness:
@@ -147,18 +141,18 @@ class TestMeasuredStiffness:
         assert found.how == f"Law does not state its stiffness; {k:.4g} N/m was measured"
 
     def test_steep_ground_raises_the_stiffness(self) -> None:
-        """k (1 + g^2) along itself."""
+        """The stiffness along the force is k (1 + g^2)."""
         slope = load_method("render", "penalty-gradient")(stiffness_n_per_m=500.0).touch(ramp((0.6, 0.8), 0.06).surface)
         slope.stiffness_n_per_m = None
         assert stiffness_of(slope, SPEC).n_per_m == pytest.approx(1000, rel=0.01)
 
     def test_wall_is_measured_sideways(self) -> None:
-        """Pushed up softly, and held back along x and y by a spring that no depth tells of."""
+        """A constant force up, and a stiff spring along x that does not depend on the depth."""
         law = Law(lambda x, y, z: (-3000.0 * x, 0.0, 2.0) if z < LEVEL_M else NO_FORCE)
         assert stiffness_of(law, SPEC).n_per_m == pytest.approx(3000, rel=1e-6)
 
     def test_stiffening_law_is_measured_up_to_the_device_force(self) -> None:
-        """F = c d^2 at the deepest place whose force is one that the device can give."""
+        """F = c d^2, whose slope counts at the deepest place with a force that the device can give."""
         c = 1e6
         assert stiffness_of(level(lambda depth: c * depth**2), SPEC).n_per_m == pytest.approx(
             2 * c * (DEPTHS_M[2] + STEP_M / 2), rel=0.02

@@ -1,4 +1,4 @@
-"""A simulated handle on springs: where it is stable by itself, that a guard keeps it so, and what energy it gets."""
+"""A simulated handle on springs: its stability with and without guard, and the energy that it receives."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ DAMPING = 2.0
 SPEC = DeviceSpec(100.0, 1e7, DAMPING, (0.08, 0.08, 0.08), 1e-6)
 FALLING = np.array([0.0, 0.0, 0.002, 0.0, 0.0, -0.05])
 AT_ONCE = {"ramp_s": 0, "max_step_n": 10}
-"""The ramp and the slew limit left out, so that a law is what it says."""
+"""Options without ramp and slew limit, so that the force is the law's own."""
 DELAYS = pytest.mark.parametrize("delay", [0, 1, 2])
 PERIODS = pytest.mark.parametrize("period_s", [0.00025, 0.001, 0.004])
 

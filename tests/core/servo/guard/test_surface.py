@@ -1,4 +1,4 @@
-"""The energy account of a surface that moves: what it does on the hand is its own work, and no more than it may do."""
+"""The energy account of a moving surface: its work on the hand is bounded, and is not charged to the loop."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ STRICT = Safety(passivity="strict", ramp_s=0, max_step_n=10)
 
 
 class Felt:
-    """A plane under a hand that is led, tick by tick."""
+    """A plane under a hand on a given path, tick by tick."""
 
     def __init__(self, safety: Safety = STRICT, stiffness_n_per_m: float = STIFF) -> None:
         self.film = MovingPlane(0.01, stiffness_n_per_m)
@@ -30,7 +30,7 @@ class Felt:
         self.work_j, self.damped, self.time_s = 0.0, 0, 0.0
 
     def tick(self, hand_m: float, rises_m: float = 0.0) -> float:
-        """The plane rises by so much, with the hand at this height then."""
+        """Do a tick in which the plane rises, with the hand at this height."""
         plane = self.film.plane
         plane[GOAL_M], plane[STEP_M] = plane[AT_M] + rises_m, abs(rises_m)
         speed = 0.0 if self._at_m is None else (hand_m - self._at_m) / 0.001
@@ -77,7 +77,7 @@ class TestSurfaceWork:
             assert felt.energy_j == pytest.approx(pressed_j - STIFF * 0.002 * way_m / 2)
 
     def test_energy_released_by_a_sinking_surface_is_not_a_debt(self):
-        """It was lost, and the surface owes nothing, nor does the loop."""
+        """That energy is lost to the hand: neither the surface nor the loop owes it."""
         felt = Felt()
         for i in range(21):
             felt.tick(0.0101 - 1e-4 * i)
@@ -88,7 +88,7 @@ class TestSurfaceWork:
         assert felt.energy_j == pressed_j
 
     def test_ratchet_is_damped_once_the_surface_work_is_used_up(self):
-        """A hand that is lifted with force and comes down without takes 6 mJ a round, until it is braked on its way."""
+        """A hand that is lifted with force and comes down without gains 6 mJ a round, until it is damped."""
         felt, hand_m, way_m, most_j = Felt(), 0.0101, 5e-5, 0.02
         felt.settings[at.SURFACE_W], felt.settings[at.MOST_SURFACE_J], felt.memory[at.MAY_GIVE_J] = 0.0, most_j, most_j
         ways = [(-1, 0)] * 42 + ([(1, 1)] * 100 + [(0, -1)] * 38 + [(-1, -1)] * 62 + [(-1, 0)] * 38) * 10
@@ -156,7 +156,7 @@ HARD = {"stiffness_n_per_m": 20_000.0, "damping_n_s_per_m": 0.5}
 
 class TestCoupling:
     def test_surface_works_by_the_law_force_on_the_tool(self):
-        """Under a hand at rest: its work is in the two springs, the law's and the coupling's."""
+        """The work on a hand at rest is stored in the springs of the law and of the coupling."""
         felt = Felt(Safety(passivity="strict", ramp_s=0, max_step_n=10, coupling="auto"))
         for _ in range(500):
             felt.tick(0.009)
@@ -197,7 +197,7 @@ class TestCoupling:
 def damped_share(
     film: MovingPlane, rate_hz: float, coupling, seconds: float, from_s: float, hand_n_s_per_m: float = 6.0
 ) -> float:
-    """On a plane that goes up and down by 3 mm at this rate, under a hand that circles on it at 20 mm/s."""
+    """Return the share of damped ticks of a circling hand on a plane that moves up and down by 3 mm at this rate."""
     hand = {"damping_n_s_per_m": hand_n_s_per_m}
     path = {"path": "circle", "size_m": (0.02, 0.02), "z_m": 0.006, "speed_m_per_s": 0.02}
     mock = load_method("device", "mock").model_validate({"hand": hand, **path})

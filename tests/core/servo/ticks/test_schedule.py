@@ -1,4 +1,4 @@
-"""When ticks are due: late ones are counted and not made up for, and the lead follows the machine's own lateness."""
+"""The schedule of ticks: missed ones are counted, not made up for, and the lead follows the machine's lateness."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ COMPILED = pytest.mark.parametrize("begin_tick", [schedule.begin_tick, cycle.beg
 
 
 def header(lead_ns: int = 0, spins: bool = False) -> np.ndarray:
-    """Of a loop whose first tick is due."""
+    """Return the header of a loop whose first tick is due."""
     words = np.zeros(64, np.int64)
     words[[PERIOD_NS, NEXT_NS, LEAD_NS, SPINS]] = PERIOD, FIRST, lead_ns, spins
     return words

@@ -10,19 +10,12 @@ from tangible_core.data import NO_FORCE, HapticState, ServoReport
 from tangible_core.errors import BrokenMethod, PictureError
 from tangible_core.session.film import ByClock, FrameMaker, Player, Reliefs
 from tangible_core.session.film.player import STOPPING_S
+from waiting import until
 
 BOX = np.full((8, 12), 20.0)
 BOX[2:5, 3:7] = 80
 SOON_S = 20.0
-"""What a loaded machine does in a blink."""
-
-
-def until(true):
-    """Wait for something that a thread does soon."""
-    ends_s = time.monotonic() + SOON_S
-    while not true():
-        assert time.monotonic() < ends_s, "it did not come"
-        time.sleep(0.002)
+"""Longest wait for a thread on a loaded machine."""
 
 
 class Slow(Seen):
@@ -111,7 +104,7 @@ def test_player_opens_a_missing_source_again(caplog, monkeypatch):
 
 
 class Faulty(FrameMaker):
-    """Makes nothing of any frame."""
+    """A maker that raises an error for every frame."""
 
     def __init__(self, error):
         self._error = error

@@ -18,7 +18,7 @@ NEARER[4:8, 8:11] = 120
 
 
 def heights(*pictures):
-    """Of the frames of a film."""
+    """Return the heights of the frames of a film."""
     with Reliefs(lambda: GivenFrames(greys(*pictures)), NearnessOfGrey()) as reliefs:
         return [each.relief.height_m for each in reliefs]
 

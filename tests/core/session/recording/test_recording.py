@@ -1,4 +1,4 @@
-"""What was felt, in memory and in its files."""
+"""Recordings in memory and in their files."""
 
 import csv
 import os
@@ -64,7 +64,7 @@ def test_csv_keeps_every_digit_of_the_ticks(tmp_path: Path, count: int):
 
 
 def test_csv_is_read_by_its_column_names(tmp_path: Path):
-    """Ten columns were all, once; nothing was known of the others."""
+    """Old files have ten columns; the others are unknown."""
     names = [name for name in TICK_COLUMNS if not name.startswith(("proxy", "late", "flags", "buttons", "frame"))]
     (tmp_path / "old.csv").write_text(
         "\ufeff" + ",".join(["note", *reversed(names)]) + "\n" + "9,9,8,7,6,5,4,3,2,1,0\n" * 2
@@ -95,7 +95,7 @@ def test_old_file_without_frames_is_read(tmp_path: Path, suffix: str):
 
 
 def test_frame_in_nc_file_is_read_by_other_programs(tmp_path: Path):
-    """Numbers that float32 does not hold, and whatever else may stand there."""
+    """Frame numbers beyond float32, and invalid ones."""
     rows = some().rows.copy()
     rows[:, 16] = 0, 2**24 + 1, np.nan, np.inf, -7
     Recording(rows).save(tmp_path / "stroke.nc")

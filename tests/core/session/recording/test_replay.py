@@ -1,4 +1,4 @@
-"""Recordings felt again: the states as they were, through any law."""
+"""Replay: recorded states through any law."""
 
 import numpy as np
 import pytest
@@ -24,24 +24,24 @@ class Viscous(PlainTouch):
 
 
 @pytest.fixture(scope="module")
-def felt() -> Recording:
+def stroke() -> Recording:
     free = Safety(ramp_s=0, max_step_n=10, passivity="off")
     return run_simulated(LAW.touch(SURFACE), Mock(speed_m_per_s=0.2, tremor_m=1e-4), 1.0, limits=free)
 
 
-def test_replay_with_the_same_law_is_identical(felt: Recording):
+def test_replay_with_the_same_law_is_identical(stroke: Recording):
     """Friction and damping too: the velocities are those that were recorded, not steps between positions."""
-    again = replay(LAW.touch(SURFACE), felt)
-    assert np.array_equal(again.rows[:, :14], felt.rows[:, :14], equal_nan=True)
-    assert np.array_equal(again.flags[1:], felt.flags[1:])  # force faded in at the first tick, from none
+    again = replay(LAW.touch(SURFACE), stroke)
+    assert np.array_equal(again.rows[:, :14], stroke.rows[:, :14], equal_nan=True)
+    assert np.array_equal(again.flags[1:], stroke.flags[1:])  # force faded in at the first tick, from none
 
 
-def test_replay_with_another_law_changes_force_proxy_and_flags(felt: Recording):
-    again = replay(Penalty(stiffness_n_per_m=300).touch(SURFACE), felt)
-    assert np.array_equal(again.rows[:, :8], felt.rows[:, :8])
+def test_replay_with_another_law_changes_force_proxy_and_flags(stroke: Recording):
+    again = replay(Penalty(stiffness_n_per_m=300).touch(SURFACE), stroke)
+    assert np.array_equal(again.rows[:, :8], stroke.rows[:, :8])
     assert np.isnan(again.proxy_m).all()
     touch = Penalty(stiffness_n_per_m=300).touch(SURFACE)
-    assert np.array_equal(again.force_n, [touch.force(HapticState(tuple(at))) for at in felt.position_m.tolist()])
+    assert np.array_equal(again.force_n, [touch.force(HapticState(tuple(at))) for at in stroke.position_m.tolist()])
     assert np.array_equal(again.flags == TickFlag.TOUCHING, again.force_n.any(axis=1))
 
 

@@ -1,4 +1,4 @@
-"""Recordings that grow: what is appended can be read at once, by anyone, and after any end of the program."""
+"""Growing recordings: appended ticks can be read at once, by other programs too, and after any end of the program."""
 
 import random
 import subprocess
@@ -22,7 +22,7 @@ ROWS = np.arange(17 * 50, dtype=float).reshape(50, 17)
 
 
 def start(code: str, *words: object) -> subprocess.Popen[str]:
-    """A program that writes, with the file as its first word."""
+    """Start a program that writes a recording, with these words as its arguments."""
     head = "import sys, numpy as np; from pathlib import Path; from tangible_core.session import Writer\n"
     command = [sys.executable, "-c", head + textwrap.dedent(code), *map(str, words)]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -64,7 +64,7 @@ def test_file_has_the_information_about_the_session(tmp_path: Path):
 
 
 def test_header_has_the_offset_of_each_variable():
-    """scipy believes the first one, and then the sizes; other readers believe all. A variable ends with it."""
+    """scipy uses the first offset and then the sizes; other readers use all offsets."""
     head = tick_file.header(About())
     following = [head.rindex(netcdf.integer(len(name)) + name.encode()) for name in TICK_COLUMNS[1:]] + [len(head)]
     begins = [int.from_bytes(head[at - 8 : at], "big") for at in following]
@@ -72,7 +72,7 @@ def test_header_has_the_offset_of_each_variable():
 
 
 def test_tick_takes_96_bytes_with_little_loss(tmp_path: Path):
-    """What a law is given is exact, after ten days too; proxies are within 4 nm, forces within 0.3 uN."""
+    """Inputs of a law are exact, even after ten days; proxies are within 4 nm, forces within 0.3 uN."""
     rows = np.random.default_rng(0).uniform(-1, 1, (1000, 17)) * ([0.01, 1e-3] + [0.125] * 9 + [8] * 3 + [0, 0, 0])
     rows[:, 0] += 864_000
     path = tmp_path / "stroke.nc"
@@ -138,7 +138,7 @@ def test_second_writer_of_a_file_is_refused(tmp_path: Path):
 
 
 def test_killed_writer_loses_no_appended_tick(tmp_path: Path):
-    """Each tick carries its number; the program says a number once its tick is appended."""
+    """Each tick has its number; the program prints a number once its tick is appended."""
     path = tmp_path / "stroke.nc"
     code = """
         with Writer(Path(sys.argv[1])) as writer:

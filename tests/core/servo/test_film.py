@@ -100,7 +100,7 @@ class TestPacked:
         handed_on = Packed(str(made.parcel), made.stiffness_n_per_m)
         with Servo(null_touch(), Circling(z_m=0.009), AT_ONCE) as servo:
             servo.swap(handed_on)
-            with pytest.raises(DeviceError, match="feel the film"):
+            with pytest.raises(DeviceError, match="start with a film"):
                 servo.show(level(0.012), 1)
             assert made.film is not None
             made.film.show(level(0.012), 3)

@@ -1,7 +1,7 @@
 """Tangible Images: turn pictures into something one can feel.
 
-The names below are those that users of pipelines need; `tangible_core.plugins` has those for authors of plugins. Each
-is imported when first used, so that `tangible --help` does not wait for numpy.
+The names below are for users of pipelines; `tangible_core.plugins` has those for authors of plugins. Each is imported
+on first use, so that `tangible --help` does not wait for numpy.
 """
 
 from typing import TYPE_CHECKING
@@ -40,7 +40,7 @@ _OLD = {
         "Plan", "Segmenter", "Skippable", "Touch", "Work", "hookimpl",
     ],
 }  # fmt: skip
-"""Names that stood here before `tangible_core.plugins` had them; they stay for one release."""
+"""Names that moved to `tangible_core.plugins`; they stay here for one release."""
 
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,

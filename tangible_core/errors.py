@@ -1,4 +1,4 @@
-"""Everything a user can cause, each with the words to put it right."""
+"""The errors that a user can cause; each message includes the cure."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
@@ -10,17 +10,17 @@ from traceback import walk_tb
 from typing import Any, NamedTuple
 
 MOST_QUOTED = 80
-"""Characters of a name or a value that a message quotes."""
+"""The most characters of a name or a value that a message quotes."""
 MOST_IN_LINE = 1000
-"""Characters of a line of a message, whatever stands in it."""
+"""The most characters of a line of a message."""
 MOST_LINES = 40
-"""Complaints that are printed; of the others, how many they are."""
+"""The most complaints that are printed; the others are counted."""
 
 
 class TangibleError(Exception):
-    """Base of all errors raised on purpose: the message names the thing, the place and the cure.
+    """The base of all errors raised on purpose: the message names the thing, the place and the cure.
 
-    Each argument is a complaint and one line of the message, whatever of a file or a name stands in it: see `shown`.
+    Each argument is a complaint and becomes one line of the message, made printable by `shown`.
     """
 
     def __str__(self) -> str:
@@ -31,29 +31,32 @@ class TangibleError(Exception):
 
 
 class Complaint(NamedTuple):
-    """One thing that is wrong in a configuration, for a program that shows it beside the field."""
+    """A mistake in a configuration, for a program that shows it next to the field."""
 
     location: tuple[str | int, ...]
     """Keys and indices from the top of the file; () for the file as a whole."""
     text: str
-    """One line, without its place."""
+    """The complaint in one line, without its place."""
     line: int | None = None
-    """Of the text, from 1; None where it does not stand there."""
+    """The line in the file, from 1; None if the mistake is not in the file."""
     column: int | None = None
 
 
 class ConfigError(TangibleError):
-    """What is wrong in a configuration: one complaint a line, each with its place."""
+    """Mistakes in a configuration: one complaint a line, each with its place."""
 
     def __init__(self, *sentences: object, complaints: Iterable[Complaint] = ()) -> None:
-        """complaints: the same for a program; those that have no place of their own need none."""
+        """Keep the sentences of the message, and the same complaints as records for programs.
+
+        complaints: by default, the sentences without a place.
+        """
         super().__init__(*sentences)
-        found = tuple(complaints) or tuple(Complaint((), str(each)) for each in sentences)
-        self.complaints = tuple(each._replace(text=shown(each.text, MOST_IN_LINE)) for each in found)
+        records = tuple(complaints) or tuple(Complaint((), str(each)) for each in sentences)
+        self.complaints = tuple(each._replace(text=shown(each.text, MOST_IN_LINE)) for each in records)
 
 
 class UnknownMethod(TangibleError):
-    """No installed method has this name."""
+    """A name that no installed method has."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         names, name = sorted(set(known)), str(name)
@@ -62,15 +65,15 @@ class UnknownMethod(TangibleError):
 
 
 class BrokenMethod(TangibleError):
-    """A method is installed but cannot be used; the rest goes on without it."""
+    """An installed method that cannot be used; the rest of the program works without it."""
 
 
 class PictureError(TangibleError):
-    """A picture or a map that cannot be read or does not hold what it should."""
+    """A picture or a map that cannot be read or has the wrong content."""
 
 
 class GeometryError(TangibleError):
-    """Numbers that describe no camera or no surface."""
+    """Numbers that do not describe a camera or a surface."""
 
 
 class MaterialError(TangibleError):
@@ -78,23 +81,23 @@ class MaterialError(TangibleError):
 
 
 class BrailleError(TangibleError):
-    """A text that cannot be written in braille, or not where it should stand."""
+    """A text that cannot be written in braille, or does not fit its place."""
 
 
 class DeviceError(TangibleError):
-    """A device that is not there, is in use, or stopped answering."""
+    """A device that is missing, is in use, or stopped answering."""
 
 
 class DeviceAbsent(DeviceError):
-    """No such device is connected, or what it is reached by is not installed: nothing can be asked of it."""
+    """A device that is not connected, or whose driver is not installed: nothing about it can be checked."""
 
 
 class ModelAbsent(TangibleError):
-    """A trained network that a method needs is not there: nothing can be asked of it."""
+    """A missing trained network that a method needs: nothing about it can be checked."""
 
 
 class BatchError(TangibleError):
-    """Rows that make no scenes, or a farm that cannot be worked on."""
+    """Rows that do not describe scenes, or a cluster that cannot be used."""
 
 
 class OutputError(TangibleError):
@@ -109,15 +112,15 @@ class Stopped(TangibleError):
 
 
 class ResultsError(TangibleError):
-    """Files of measurements that are damaged, or that cannot be compared."""
+    """Files of measurements that are damaged or cannot be compared."""
 
 
 class ArgumentError(TangibleError, TypeError):
-    """An argument of the wrong type that nothing can be made of."""
+    """An argument of the wrong type that cannot be converted."""
 
 
 def wrong_argument(name: str, value: object, wanted: str) -> ArgumentError:
-    """What to raise where an argument cannot be used: its name, what it is and what it should be.
+    """Return the error for an argument that cannot be used: its name, its value and what it must be.
 
     >>> wrong_argument("seconds", "long", "a number")
     ArgumentError("seconds: is the str 'long'; it must be a number")
@@ -126,7 +129,7 @@ def wrong_argument(name: str, value: object, wanted: str) -> ArgumentError:
 
 
 def what_is(value: object) -> str:
-    """A value of the wrong type in words: its type, and the value itself where that is short.
+    """Return a value of the wrong type in words: its type, and the value itself if it is short.
 
     >>> what_is(7), what_is(None), what_is(slice(2))
     ('the int 7', 'None', 'a slice')
@@ -145,7 +148,7 @@ _SHOWN = (str, bytes, int, float, complex, tuple, list, dict, set)
 
 
 def check_positive(name: str, value: float) -> None:
-    """Raises: ConfigError for a number that is not positive and finite, ArgumentError for what is no number.
+    """Raise a ConfigError for a number that is not positive and finite, an ArgumentError for any other value.
 
     >>> check_positive("seconds", 0.5)
     """
@@ -155,8 +158,8 @@ def check_positive(name: str, value: float) -> None:
         raise ConfigError(f"{name}: is {value}; it must be positive and finite")
 
 
-def exited(error: SystemExit) -> BrokenMethod:
-    """What to say where a plugin called `sys.exit`: the program is not a plugin's to end, nor is its exit code."""
+def exit_error(error: SystemExit) -> BrokenMethod:
+    """Return the error for a plugin that called `sys.exit`: a plugin must not end the program."""
     modules = [str(frame.f_globals.get("__name__")) for frame, _ in walk_tb(error.__traceback__)]
     name = next((name for name in reversed(modules) if name.partition(".")[0] not in stdlib_module_names), "a plugin")
     return BrokenMethod(
@@ -165,8 +168,7 @@ def exited(error: SystemExit) -> BrokenMethod:
 
 
 def shown(text: str, most: int = MOST_QUOTED) -> str:
-    """Somebody else's text as a message may hold it: one line, nothing that a terminal obeys, the middle of a long one
-    left out.
+    """Return foreign text in a form that a message may hold: one printable line, without the middle of a long text.
 
     >>> shown("two\\nlines"), shown("x" * 1000, 20)
     ('two\\\\nlines', 'xxxxxxx ... xxxxxxxx')
@@ -178,12 +180,12 @@ def shown(text: str, most: int = MOST_QUOTED) -> str:
 
 
 def _without_middle(text: str, most: int) -> str:
-    kept = most - len(" ... ")
-    return text if len(text) <= most else f"{text[: kept // 2]} ... {text[-(kept - kept // 2) :]}"
+    length = most - len(" ... ")
+    return text if len(text) <= most else f"{text[: length // 2]} ... {text[-(length - length // 2) :]}"
 
 
 def quoted(value: Any) -> str:
-    """Somebody else's value as a message may quote it: its `repr`, cut where it is long or deep.
+    """Return a foreign value in a form that a message may quote: its `repr`, cut if it is long or deep.
 
     >>> quoted("ice"), quoted(list(range(10**6)))
     ("'ice'", '[0, 1, 2, 3, 4, 5, ...]')
@@ -192,7 +194,7 @@ def quoted(value: Any) -> str:
 
 
 class _ShortRepr(Repr):
-    """By what a value is, not by the name of its class, so that a parser's own mappings are cut like any."""
+    """A short repr by the base type of a value, so that a parser's own mappings are cut like any other."""
 
     def repr1(self, x: Any, level: int) -> str:
         if isinstance(x, dict):
@@ -201,7 +203,7 @@ class _ShortRepr(Repr):
             return self.repr_list(x, level)  # pyright: ignore[reportUnknownArgumentType]
         if isinstance(x, str):
             return self.repr_str(x, level)
-        if isinstance(x, int) and x.bit_length() > 8 * MOST_QUOTED:  # Python writes no number of over 4,300 digits
+        if isinstance(x, int) and x.bit_length() > 8 * MOST_QUOTED:  # Python prints no more than 4,300 digits
             return f"a number of {x.bit_length()} bits"
         return super().repr1(x, level)
 
@@ -212,7 +214,7 @@ _REPR.maxlevel = 3
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """A hint to append to a complaint, empty when nothing is close.
+    """Return a hint to append to a complaint; "" if no word is close.
 
     >>> did_you_mean("stifness", ["stiffness", "damping"])
     " (did you mean 'stiffness'?)"

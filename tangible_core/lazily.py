@@ -1,4 +1,4 @@
-"""Names of a package that are imported when they are first used, so that listing and `--help` import nothing."""
+"""Lazy import of a package's names on first use, so that listing and `--help` import nothing."""
 
 from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
@@ -11,7 +11,7 @@ def lazily(
 ) -> tuple[list[str], Callable[[str], Any]]:
     """Return `__all__` and `__getattr__` of a package whose names come from these modules in it.
 
-    old: names that are found as well, and are not in `__all__`.
+    old: further names that can be imported but are not in `__all__`.
 
     >>> lazily("tangible_core", {"errors": ["TangibleError"]})[1]("TangibleError").__name__
     'TangibleError'

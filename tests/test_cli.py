@@ -113,7 +113,7 @@ def test_feel_with_hardly_any_matches_asks_first(folder: Path, monkeypatch: pyte
     words = ("feel", "p.yaml", "--seconds", 0.2)
     said = mistake(*words, cwd=folder)
     assert "hardly anything matches in the two pictures: a depth was found for " in said
-    assert said.endswith("in the two pictures; put it right as the warning says, or feel it all the same with --yes")
+    assert said.endswith("in the two pictures; correct it as the warning says, or feel it anyway with --yes")
     answers, asked = [False, True], []
 
     def confirm(text: str, err: bool) -> bool:
@@ -376,8 +376,8 @@ def test_ctrl_c_while_a_run_feels_exits_with_130_and_reports_what_is_kept(
     monkeypatch.setattr(runs, "run_simulated", felt)
     done = tangible("run", "p.yaml", "--seconds", 600, cwd=folder)
     assert done.returncode == 130, done.stderr
-    assert "feeling ended after 0.1 s: interrupted from the keyboard" in done.stderr
-    assert "; recording.npz holds these" in done.stderr
+    assert "stopped after 0.1 s (interrupted from the keyboard)" in done.stderr
+    assert "recording.npz has those 0.1 s" in done.stderr
     assert done.stderr.splitlines()[-1] == "interrupted; what was finished is kept"
     assert Recording.load(folder / "out/p/recording.npz").stopped == INTERRUPTED
     assert (folder / "out/p/sheet.png").exists()

@@ -1,4 +1,4 @@
-"""The command line: a file a command. Commands parse and print; what they do, a program can call as well."""
+"""The command line. Commands parse and print, and call functions that programs can call as well."""
 
 from .app import main
 

@@ -1,4 +1,4 @@
-"""`tangible ...`: its commands, what is said of a mistake, and the exit code."""
+"""The command `tangible`: its subcommands, the messages for mistakes, and the exit code."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import ConfigError, TangibleError, exited
+from ..errors import ConfigError, TangibleError, exit_error
 from ..plugins import hooks
 from ..plugins.registry import default_registry
-from ..runtime import ending, standard_output
-from . import verbosity
-from .command_table import COMMANDS, Lazy
+from ..runtime import signals, standard_output
+from .command_table import COMMANDS, LazyGroup
 from .options import DONE, FAILED, INTERRUPTED, MISTAKE
+from .verbosity import parse_verbosity
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 ENDED_BY = 128
-"""With the number of a signal: the exit code of a program that one has ended, as shells have it."""
+"""The exit code of a program that a signal has ended, less the signal's number, as in shells."""
 
 app = typer.Typer(
     name="tangible",
-    cls=Lazy,
+    cls=LazyGroup,
     help="Turn pictures into something one can feel: `tangible demo` shows all of it.",
     epilog="Anywhere: --log-level [LOGGER=]LEVEL (debug, info, warning, error; for all or one logger); "
-    "-q, --quiet (nothing but what was asked for, warnings and errors).",
+    "-q, --quiet (only requested output, warnings and errors).",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
@@ -36,7 +36,7 @@ app = typer.Typer(
 )
 
 
-def _say_version(wanted: bool) -> bool:
+def _print_version(wanted: bool) -> bool:
     if wanted:
         from importlib.metadata import version
 
@@ -48,21 +48,21 @@ def _say_version(wanted: bool) -> bool:
 @app.callback()
 def options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_say_version, is_eager=True, help="Say which version this is.")
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
     ] = False,
 ) -> None:
-    """What stands before a command."""
+    """Accept the options that stand before a command."""
 
 
 def main() -> None:
-    """Entry point: one clear message for a user's mistake, and an exit code that says whose it is."""
-    with ending.as_ctrl_c():
+    """Run the command line: one clear message for a user's mistake, and an exit code that tells whose fault it is."""
+    with signals.end_as_ctrl_c():
         try:
-            code = _guarded(_run_and_leave)
-        except KeyboardInterrupt:  # while the last words were said
+            code = _exit_code(_run_and_leave)
+        except KeyboardInterrupt:  # during the last message
             code = INTERRUPTED
-        asked = ending.asked_by()
-    sys.exit(code if asked is None else ENDED_BY + asked)
+        signal = signals.received_signal()
+    sys.exit(code if signal is None else ENDED_BY + signal)
 
 
 def _run_and_leave() -> int:
@@ -74,7 +74,7 @@ def _run_and_leave() -> int:
 
 
 def _check_folder() -> None:
-    """Raises: ConfigError if there is no current folder: nothing that is relative to it could be found."""
+    """Raise a ConfigError if the current folder does not exist: relative paths would lead nowhere."""
     try:
         os.getcwd()  # noqa: PTH109 - pathlib is not needed for it
     except FileNotFoundError as error:
@@ -82,69 +82,71 @@ def _check_folder() -> None:
 
 
 def _run_app() -> int:
-    with standard_output.kept():
-        words = verbosity.heed(sys.argv[1:])
+    with standard_output.protect():
+        words = parse_verbosity(sys.argv[1:])
         hooks.tell(default_registry().plugins, "tangible_commands", app=app)
     try:
-        code = app(words, standalone_mode=False, default_map=_no_help())
+        code = app(words, standalone_mode=False, default_map=_without_help())
     except OSError as error:
         if not isinstance(error, BrokenPipeError) and _in_typer(error):
             raise standard_output.give_up(error) from error
         raise
     except SystemExit as error:
-        if _in_typer(error):  # of completion, which is said or installed
+        if _in_typer(error):  # after it printed or installed completion
             return int(error.code or DONE)
         if isinstance(error.__context__, BrokenPipeError):  # typer's own answer to a reader that went away
             raise error.__context__ from None
-        raise exited(error) from error
-    if code == INTERRUPTED:  # typer answers Ctrl-C itself, without a word
+        raise exit_error(error) from error
+    if code == INTERRUPTED:  # typer answers Ctrl-C itself, without a message
         raise KeyboardInterrupt
     return code if isinstance(code, int) else DONE
 
 
 def _in_typer(error: BaseException) -> bool:
-    """Whether it was raised by typer, such as where it writes the words of `--help`."""
+    """Return True if typer raised the error, such as where it prints `--help`."""
     *_, (frame, _) = walk_tb(error.__traceback__)
     return str(frame.f_globals.get("__name__")).partition(".")[0] == "typer"
 
 
-def _no_help() -> dict[str, object]:
-    """Say outright what is off: to make None a bool, typer would import pydantic, a third of the whole start."""
+def _without_help() -> dict[str, object]:
+    """Return False for typer's own flags: to convert None, typer would import pydantic, a third of the start."""
     names = [each.name or getattr(each.callback, "__name__", "") for each in app.registered_commands]
     off = dict.fromkeys(("help", "install_completion", "show_completion"), False)
     return {**off, **{name: {"help": False} for name in (*COMMANDS, *names)}}
 
 
-def _guarded(work: Callable[[], int]) -> int:
+def _exit_code(work: Callable[[], int]) -> int:
+    """Do the work, report its errors, and return the exit code."""
     try:
         return work()
     except TangibleError as error:
-        return _said(str(error), MISTAKE)
+        return _report(str(error), MISTAKE)
     except (KeyboardInterrupt, typer.Abort):
-        asked = ending.asked_by()
-        return _said(f"{f'ended by {asked.name}' if asked else 'interrupted'}; what was finished is kept", INTERRUPTED)
+        signal = signals.received_signal()
+        cause = f"ended by {signal.name}" if signal else "interrupted"
+        return _report(f"{cause}; what was finished is kept", INTERRUPTED)
     except BrokenPipeError:  # the reader went away: `tangible plugins | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
     except typer.Exit as ended:
         return ended.exit_code
     except BaseException as error:  # noqa: BLE001 - whatever a plugin raises
-        return _unforeseen(error)
+        return _report_unexpected(error)
 
 
-def _unforeseen(error: BaseException) -> int:
-    """A fault that is nobody's mistake at the keyboard, or what typer has to say of the words of the call."""
+def _report_unexpected(error: BaseException) -> int:
+    """Report typer's error about the words of the call, or a fault of the program or a plugin."""
     if (show := getattr(error, "show", None)) is not None:
-        return _said(show, MISTAKE)
+        return _report(show, MISTAKE)
     from ..plugins import failures
 
-    return _said(failures.sentence(error), FAILED if failures.place_of(error) is None else MISTAKE)
+    return _report(failures.sentence(error), FAILED if failures.place_of(error) is None else MISTAKE)
 
 
-def _said(what: str | Callable[[], None], code: int) -> int:
-    """Say it on standard error, which may be full or gone, and return the code."""
+def _report(message: str | Callable[[], None], code: int) -> int:
+    """Print a message on standard error, which may be full or closed, and return the exit code."""
     try:
-        what() if callable(what) else typer.echo(what, err=True)
+        message() if callable(message) else typer.echo(message, err=True)
     except OSError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
     return code

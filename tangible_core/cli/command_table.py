@@ -1,4 +1,4 @@
-"""Every command: where it is, and what its help says in a line. A command's module is imported when it is called."""
+"""The table of commands: the place of each, and its summary. A command's module is imported when it is called."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ COMMANDS = {
         f"{ROOM}.legible:legible", "Check whether fingers can read it, on paper, print, pins or a device."
     ),
     "feel": Command(f"{ROOM}.feel:feel", "Feel the surface on the configured device, in real time."),
-    "replay": Command(f"{ROOM}.replay:replay", "Feel a recording again with another law."),
+    "replay": Command(f"{ROOM}.replay:replay", "Re-run a recorded hand path with another force law."),
     "plugins": Command(f"{ROOM}.plugins:app", "List the installed methods and devices; show one of them."),
     "check": Command(f"{ROOM}.plugins:check", "Test an installed method with the conformance kit."),
     "devices": Command(f"{ROOM}.devices:app", "List devices; examine, home or calibrate one."),
-    "cache": Command(f"{ROOM}.cache:app", "Say how much is kept of earlier results; clear it."),
+    "cache": Command(f"{ROOM}.cache:app", "Print the size of the cache of results; clear it."),
     "schema": Command(f"{ROOM}.schema:schema", "Print the JSON Schema of pipeline files."),
 }
 
@@ -55,33 +55,33 @@ def add(name: str, place: str, summary: str) -> None:
     COMMANDS.setdefault(name, Command(place, summary))
 
 
-class Lazy(TyperGroup):
-    """The group of all commands; what is only listed is not imported."""
+class LazyGroup(TyperGroup):
+    """The group of all commands; listing them imports none."""
 
-    def __init__(self, **told: Any) -> None:
-        super().__init__(**told)
-        self.commands: MutableMapping[str, Any] = _Known(dict(self.commands))
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self.commands: MutableMapping[str, Any] = _Commands(dict(self.commands))
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """Names, in the order of the help."""
+        """Return the names, in the order of the help."""
         return list(self.commands)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """Summaries, whole, however narrow the terminal is."""
+        """Write the summaries in full, however narrow the terminal is."""
         rows = [(name, _summary(name, self.commands)) for name in self.commands]
         with formatter.section("Commands"):
             formatter.write_dl(rows)
 
 
-class _Known(MutableMapping[str, Any]):
-    """Commands by name; those of this room are made when one asks for them."""
+class _Commands(MutableMapping[str, Any]):
+    """Commands by name; those of COMMANDS are imported on access."""
 
     def __init__(self, others: dict[str, Any]) -> None:
         self.others = others
-        """What plugins add; none of them takes the place of one of ours."""
+        """The commands that plugins registered themselves; none replaces a command of COMMANDS."""
 
     def __getitem__(self, name: str) -> Any:
-        return made(name) if name in COMMANDS else self.others[name]
+        return load(name) if name in COMMANDS else self.others[name]
 
     def __setitem__(self, name: str, command: Any) -> None:
         self.others[name] = command
@@ -97,43 +97,43 @@ class _Known(MutableMapping[str, Any]):
 
 
 @cache
-def made(name: str) -> Any:
-    """One of COMMANDS, imported."""
+def load(name: str) -> Any:
+    """Import one of COMMANDS."""
     module, _, attribute = COMMANDS[name].place.partition(":")
-    found = getattr(import_module(module), attribute)
-    app = found if isinstance(found, typer.Typer) else typer.Typer(rich_markup_mode=None, add_completion=False)
-    if app is not found:
-        app.command(name)(found)
-    for each in _within(app):
-        each.callback = each.callback and standard_output.kept()(_at_home(each.callback))
+    command = getattr(import_module(module), attribute)
+    app = command if isinstance(command, typer.Typer) else typer.Typer(rich_markup_mode=None, add_completion=False)
+    if app is not command:
+        app.command(name)(command)
+    for each in _all_commands(app):
+        each.callback = each.callback and standard_output.protect()(_expand_homes(each.callback))
     return typer.main.get_command(app)
 
 
-def _at_home(command: Callable[..., Any]) -> Callable[..., Any]:
-    """What a shell leaves of `~`, as in --out=~/maps, is a home here too."""
+def _expand_homes(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Wrap a command so that `~` is a home folder also where a shell leaves it, as in --out=~/maps."""
 
     @wraps(command)
-    def called(**options: Any) -> Any:
-        return command(**{name: _expanded(value) for name, value in options.items()})
+    def run(**options: Any) -> Any:
+        return command(**{name: _expand_home(value) for name, value in options.items()})
 
-    return called
+    return run
 
 
-def _expanded(value: Any) -> Any:
+def _expand_home(value: Any) -> Any:
     if isinstance(value, list):
-        return [_expanded(each) for each in cast("list[Any]", value)]
+        return [_expand_home(each) for each in cast("list[Any]", value)]
     return as_path(value) if isinstance(value, Path) else value
 
 
-def _within(typed: typer.Typer) -> Iterator[CommandInfo | TyperInfo]:
-    """Every command, and what is called before one."""
-    yield from typed.registered_commands
-    yield from filter(None, [typed.registered_callback])
-    for group in typed.registered_groups:
-        if group.typer_instance:
-            yield from _within(group.typer_instance)
+def _all_commands(group: typer.Typer) -> Iterator[CommandInfo | TyperInfo]:
+    """Yield every command of a group, and the callback that runs before each."""
+    yield from group.registered_commands
+    yield from filter(None, [group.registered_callback])
+    for each in group.registered_groups:
+        if each.typer_instance:
+            yield from _all_commands(each.typer_instance)
 
 
 def _summary(name: str, commands: MutableMapping[str, Any]) -> str:
-    said = COMMANDS[name].summary if name in COMMANDS else (commands[name].help or "").partition("\n")[0]
-    return said.removesuffix(".")
+    text = COMMANDS[name].summary if name in COMMANDS else (commands[name].help or "").partition("\n")[0]
+    return text.removesuffix(".")

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from ..errors import ConfigError
 from . import completing
 
 DONE, FAILED, MISTAKE, INTERRUPTED = 0, 1, 2, 130
@@ -13,7 +14,7 @@ Config = Annotated[
     Path,
     typer.Argument(help="Pipeline file (YAML), or a picture.", show_default=False, autocompletion=completing.scenes),
 ]
-Felt = Annotated[
+ConfigOrPictures = Annotated[
     list[Path],
     typer.Argument(
         metavar="FILE...",
@@ -30,5 +31,12 @@ Sets = Annotated[
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 NoCache = Annotated[bool, typer.Option("--no-cache", help="Neither read nor write the cache of results.")]
-Yes = Annotated[bool, typer.Option("--yes", "-y", help="Feel also what is hardly worth it, without being asked.")]
+Yes = Annotated[bool, typer.Option("--yes", "-y", help="Skip the confirmation when the depth map is unreliable.")]
 Record = Annotated[Path | None, typer.Option(help="Save every tick to this file (.nc, .npz or .csv).")]
+
+
+def is_listing(group: str, subcommand: str | None, as_json: bool) -> bool:
+    """Return True if a group is called without a subcommand. Raises: ConfigError for --json before a subcommand."""
+    if subcommand and as_json:
+        raise ConfigError(f"{group}: write --json after {subcommand!r}")
+    return not subcommand

@@ -1,4 +1,4 @@
-"""What a command found out, in a plain sentence, above the tables, which say the same in the field's words."""
+"""Summaries of results, one plain sentence each, which commands print above their tables."""
 
 from __future__ import annotations
 
@@ -14,95 +14,93 @@ if TYPE_CHECKING:
     from ..testing import CheckResult
 
 
-def made(run: Run) -> str:
-    """What a run made, how large it is, and what a hand felt."""
+def run_summary(run: Run) -> str:
+    """Return what a run made, the size of the surface, and the forces on a simulated hand."""
     products = [name for name, value in run.products.items() if value is not None]
-    felt = "touch" in products
-    said = f"{run.scene} can now be felt" if felt else f"{run.scene} is done: {_are_made(products)}"
+    if "touch" in products:
+        text = f"{run.scene} can now be felt"
+    elif products:
+        text = f"{run.scene} is done: its {_and(products)} {'is' if len(products) == 1 else 'are'} made"
+    else:
+        text = f"{run.scene} is done: nothing of it had to be made"
     if (surface := run.products.get("surface")) is not None:
         width_m, length_m = surface.extent_m
         height_m = float(surface.height_m.max())
-        said += f", as a surface of {1e3 * width_m:.0f} x {1e3 * length_m:.0f} mm, {1e3 * height_m:.3g} mm high"
+        text += f", as a surface of {1e3 * width_m:.0f} x {1e3 * length_m:.0f} mm, {1e3 * height_m:.3g} mm high"
     if (force := run.figures.get("force")) is not None:
-        said += f". A simulated hand felt it for {force['seconds']:.1f} s, with forces of up to "
-        said += f"{force['peak_force_n']:.1f} N"
-    return f"{said}."
+        text += f". A simulated hand felt it for {force['seconds']:.1f} s, with forces of up to "
+        text += f"{force['peak_force_n']:.1f} N"
+    return f"{text}."
 
 
-def _are_made(products: Sequence[str]) -> str:
-    if not products:
-        return "nothing of it had to be made"
-    return f"its {_and(products)} {'is' if len(products) == 1 else 'are'} made"
-
-
-def exported(scene: str, done: Export) -> str:
-    """What a scene was written as, what could not be, and what fingers will not read of it."""
+def export_summary(scene: str, done: Export) -> str:
+    """Return what a scene was exported as, which exports failed, and what fingers cannot read of them."""
     written = [each.name for each in done.exports if each.files]
-    left = [each.name for each in done.exports if not each.files]
-    said = f"{scene} is written as {_and(written)}." if written else f"Nothing of {scene} was written."
-    if written and left:
-        said += f" {_and(left)} could not be written."
-    unread = [each for each in done.exports if each.files and each.legible is not None and not each.legible.readable]
-    return " ".join([said, *(f"{each.name}: {each.legible.sentence}" for each in unread if each.legible)])
+    failed = [each.name for each in done.exports if not each.files]
+    text = f"{scene} is written as {_and(written)}." if written else f"Nothing of {scene} was written."
+    if written and failed:
+        text += f" {_and(failed)} could not be written."
+    illegible = [each for each in done.exports if each.files and each.legible is not None and not each.legible.readable]
+    return " ".join([text, *(f"{each.name}: {each.legible.sentence}" for each in illegible if each.legible)])
 
 
-def divided(name: str, parts: int) -> str:
-    """Into how many parts a picture is divided."""
+def parts_summary(name: str, parts: int) -> str:
+    """Return the number of parts of a picture."""
     return f"{name} is one part." if parts == 1 else f"{name} is divided into {parts} parts."
 
 
-def planned(steps: Sequence[Outcome]) -> str:
-    """How much of a plan is still to be run."""
+def plan_summary(steps: Sequence[Outcome]) -> str:
+    """Return which products of a plan have yet to be made."""
     to_run = [each.product for each in steps if each.outcome == "ran"]
-    kept = sum(each.outcome == "cached" for each in steps)
+    cached = sum(each.outcome == "cached" for each in steps)
     if not to_run:
-        return "Nothing is left to run: all of it is kept from earlier runs, or comes with the scene."
-    said = f"`run` would make {_and(to_run)}"
-    if kept:
-        said += f", and take {kept} {'result' if kept == 1 else 'results'} of earlier runs as they are"
-    return f"{said}. Nothing is run now."
+        return "Nothing is left to run: all products are cached from earlier runs, or come with the scene."
+    text = f"`run` would make {_and(to_run)}"
+    if cached:
+        text += f", and take {cached} {'result' if cached == 1 else 'results'} of earlier runs from the cache"
+    return f"{text}. Nothing is run now."
 
 
-def felt(device: str, figures: Mapping[str, Any]) -> str:
-    """How long a device was felt, how hard, and whether the machine kept time."""
+def touch_summary(device: str, figures: Mapping[str, Any]) -> str:
+    """Return how long and with which forces a device was felt, and whether the loop was on time."""
     missed = figures["overruns"]
     due = figures["ticks"] + missed
-    in_time = "every tick came in time" if not missed else f"the loop was late, and left out {missed} of {due} ticks"
+    on_time = "every tick came in time" if not missed else f"the loop was late, and left out {missed} of {due} ticks"
     return (
         f"{device} was felt for {figures['seconds']:.1f} s, {100 * figures['contact_share']:.0f} % of it in contact, "
-        f"with forces of up to {figures['peak_force_n']:.1f} N; {in_time}."
+        f"with forces of up to {figures['peak_force_n']:.1f} N; {on_time}."
     )
 
 
-def checked(name: str, results: Sequence[CheckResult]) -> str:
-    """Whether a method keeps what its kind promises."""
+def check_summary(name: str, results: Sequence[CheckResult]) -> str:
+    """Return the number of conformance checks that a method passes or fails."""
     broken = sum(not each.as_declared for each in results)
     if not broken:
-        return f"{name} does what a method of its kind must: none of {len(results)} checks speaks against it."
-    return f"{name} does not do what a method of its kind must: {broken} of {len(results)} checks speak against it."
+        return f"{name} passes all {len(results)} conformance checks."
+    return f"{name} fails {broken} of {len(results)} conformance checks."
 
 
-def diagnosed(name: str | None, verdicts: Sequence[str]) -> str:
-    """Whether anything keeps a device, or any of all, from working."""
+def doctor_summary(name: str | None, verdicts: Sequence[str]) -> str:
+    """Return the number of problems that keep a device, or any device, from working."""
     failed, unasked = verdicts.count("failed"), verdicts.count("not asked")
     if failed:
-        return f"{_number(failed, 'check')} failed; the cure is said beside it."
-    found = f"Nothing was found that keeps {name or 'a device'} from working"
-    return f"{found}, but {_number(unasked, 'question')} could not be asked." if unasked else f"{found}."
+        return f"{_number(failed, 'check')} failed; each has its cure below."
+    text = f"Nothing was found that keeps {name or 'a device'} from working"
+    return f"{text}, but {_number(unasked, 'check')} could not be made." if unasked else f"{text}."
 
 
-def stressed(figures: Mapping[str, Any]) -> str:
-    """How often a device can be read and written, and how often a force loop does."""
+def stress_summary(figures: Mapping[str, Any]) -> str:
+    """Return the rate at which a device can be read and written, next to that of a force loop."""
     rate = f"{figures['device']} can be read and written {figures['rate_hz']:.0f} times a second"
     return f"{rate}; a force loop does so 1000 times."
 
 
-def _number(count: int, what: str) -> str:
-    return f"{count} {what}{'' if count == 1 else 's'}"
+def _number(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def replayed(law: str, figures: Mapping[str, float]) -> str:
-    """How far the forces of another law are from those that were recorded."""
+def replay_summary(law: str, figures: Mapping[str, float]) -> str:
+    """Return how far the forces of another force law are from the recorded ones."""
     if not (figures["compared"] and isfinite(figures["error_percent"])):
         return f"Nothing was felt in this recording that the forces of {law} could be compared with."
     return (
@@ -112,7 +110,7 @@ def replayed(law: str, figures: Mapping[str, float]) -> str:
 
 
 def approximately(seconds: float) -> str:
-    """Say a time that is a guess.
+    """Return an estimated time in words.
 
     >>> approximately(0.4), approximately(42), approximately(150), approximately(9000)
     ('a few seconds', 'about 40 s', 'about 2 min', 'about 2 h 30 min')
@@ -125,12 +123,12 @@ def approximately(seconds: float) -> str:
     return f"about {minutes} min" if minutes < 90 else f"about {minutes // 60} h {10 * round(minutes % 60 / 10)} min"
 
 
-def connected(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Which devices can be felt now."""
+def devices_summary(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return which devices can be felt now."""
     real = [row["name"] for row in rows if row["units"]]
     simulated = [row["name"] for row in rows if row["simulated"]]
-    there = f"{_and(real)} {'is' if len(real) == 1 else 'are'} connected" if real else "No real device is connected"
-    return f"{there}; {_and(simulated)} need none." if simulated else f"{there}."
+    text = f"{_and(real)} {'is' if len(real) == 1 else 'are'} connected" if real else "No real device is connected"
+    return f"{text}; {_and(simulated)} need none." if simulated else f"{text}."
 
 
 def _and(words: Sequence[str]) -> str:

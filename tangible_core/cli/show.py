@@ -1,9 +1,10 @@
-"""How results look on a terminal, and as JSON."""
+"""The form of results on a terminal, and as JSON."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -18,20 +19,21 @@ from ..runtime.standard_output import stream
 
 if TYPE_CHECKING:
     from ..data import Outcome
+    from ..preflight import Verdict
     from ..session import PartFelt
 
 COLOURS = {"given": "blue", "ran": "green", "cached": "cyan", "skipped": "dim", "failed": "red", "refused": "red"}
 
 
 def print_json(value: Any) -> None:
-    """JSON on standard output; NaN becomes null."""
+    """Print JSON on standard output; NaN becomes null."""
     from ..files.json_text import as_json
 
     print(as_json(value), file=stream())
 
 
 def console(**options: Any) -> Console:
-    """Of the program's own standard output, as wide as the terminal where that is one."""
+    """Return a console on the program's own standard output, as wide as the terminal if it is one."""
     own = stream()
     if own is not None and own.isatty() and "COLUMNS" not in os.environ:
         options["width"] = os.get_terminal_size(own.fileno()).columns or None
@@ -39,111 +41,125 @@ def console(**options: Any) -> Console:
 
 
 def flush() -> None:
-    """Let the results come before what is said next on standard error."""
+    """Write out the results before a message follows on standard error."""
     if (own := stream()) is not None:
         own.flush()
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None) -> None:
-    """A table without frames, or one entry a row where the terminal is too narrow; numbers are the caller's to format.
+    """Print a table without frames, or one entry a row if the terminal is too narrow.
 
-    No text is lost, however narrow it is: a word that is too long goes on in the next line.
+    Cells are text with rich's marks. No text is lost: a word that is too long continues in the next line.
     """
-    shown = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="bold")
+    grid = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="bold")
     for heading in headings:
-        shown.add_column(heading, overflow="fold")
+        grid.add_column(heading, overflow="fold")
     cells = [tuple(row) for row in rows]
     for row in cells:
-        shown.add_row(*row)
-    drawn = console()
-    if not is_narrow(drawn, shown):
-        drawn.print(shown)
+        grid.add_row(*row)
+    terminal = console()
+    if not is_narrow(terminal, grid):
+        terminal.print(grid)
         return
     if title:
-        drawn.print(f"{title}\n")
-    entries(drawn, headings, cells)
+        terminal.print(f"{title}\n")
+    entries(terminal, headings, cells)
 
 
-def is_narrow(drawn: Console, shown: Table) -> bool:
-    """Whether a table would break words, or crowd most of its text into a column of a few letters."""
-    wanted = Measurement.get(drawn, drawn.options.update(max_width=WIDEST), shown)
-    return wanted.minimum > drawn.width or wanted.maximum > MOST_FOLDS * drawn.width
+def is_narrow(terminal: Console, grid: Table) -> bool:
+    """Return True if a table would break words, or squeeze most of its text into a few letters a line."""
+    wanted = Measurement.get(terminal, terminal.options.update(max_width=WIDEST), grid)
+    return wanted.minimum > terminal.width or wanted.maximum > MOST_FOLDS * terminal.width
 
 
 WIDEST = 1000
 MOST_FOLDS = 3
-"""A table is at most so many times as wide as the terminal, were nothing folded."""
+"""The largest ratio of a table's unfolded width to that of the terminal."""
 
 
-def entries(drawn: Console, headings: Sequence[str], rows: Iterable[Sequence[str | Text]]) -> None:
-    """Each row as lines of `heading: cell` below its first cell."""
+def entries(terminal: Console, headings: Sequence[str], rows: Iterable[Sequence[str | Text]]) -> None:
+    """Print each row as lines of `heading: cell` below its first cell."""
     for first, *others in rows:
-        drawn.print(first, style="bold", highlight=False)
+        terminal.print(first, style="bold", highlight=False)
         for heading, cell in zip(headings[1:], others, strict=True):
             if cell:
-                said = Text.from_markup(cell) if isinstance(cell, str) else cell
-                drawn.print(Padding(Text.assemble(f"{heading}: " if heading else "", said), (0, 0, 0, 2)))
+                text = Text.from_markup(cell) if isinstance(cell, str) else cell
+                terminal.print(Padding(Text.assemble(f"{heading}: " if heading else "", text), (0, 0, 0, 2)))
 
 
 def entry(head: str, text: str) -> None:
-    """A name, and what is to be said of it, indented; as they stand, without marks."""
-    drawn = console(highlight=False)
-    drawn.print(Text(head, style="bold"))
-    drawn.print(Padding(Text(text), (0, 0, 0, 4)))
+    """Print a name and an indented text below it, both without marks."""
+    terminal = console(highlight=False)
+    terminal.print(Text(head, style="bold"))
+    terminal.print(Padding(Text(text), (0, 0, 0, 4)))
 
 
-def outcomes(found: Iterable[Outcome], title: str | None = None, ran: str = "ran") -> None:
-    """What became of each product, and why; `ran` is the word for those that ran, or are to."""
-    rows = [
-        (
-            each.product,
-            each.method,
-            f"[{COLOURS[each.outcome]}]{ran if each.outcome == 'ran' else each.outcome}[/]",
-            escape(each.why),
-            f"{each.seconds:.3f}" if each.seconds else "",
-        )
-        for each in found
+def outcomes(rows: Iterable[Outcome], title: str | None = None, ran: str = "ran") -> None:
+    """Print the outcome of each product, and the reason; ran: the word for products that ran, or will run."""
+    from ..data.outcome import HEADINGS
+
+    cells = [
+        (product, method, f"[{COLOURS[each.outcome]}]{word}[/]", escape(why), seconds)
+        for each in rows
+        for product, method, word, why, seconds in [each.row(ran)]
     ]
-    table(("product", "method", "outcome", "why", "seconds"), rows, title)
+    table(HEADINGS, cells, title)
 
 
-def parts_felt(found: Sequence[PartFelt]) -> None:
-    """Which parts were touched, how long and how hard; nothing where there are none."""
-    if found:
+def parts_felt(parts: Sequence[PartFelt]) -> None:
+    """Print which parts were touched, for how long and with which force; nothing if there are none."""
+    if parts:
         say("")
         cells = [
-            (
-                str(each.number),
-                escape(each.name),
-                escape(each.material),
-                f"{100 * each.share:.0f}",
-                f"{each.peak_force_n:.2f}",
-            )
-            for each in found
-        ]
+            (str(each.number), escape(each.name), escape(each.material), f"{100 * each.share:.0f}",
+             f"{each.peak_force_n:.2f}")
+            for each in parts
+        ]  # fmt: skip
         table(("part", "name", "material", "% of the contact", "peak N"), cells)
 
 
-def as_rows(found: Iterable[Outcome]) -> list[dict[str, Any]]:
-    """Outcomes as plain values."""
-    return [asdict(each) for each in found]
+def verdicts(heading: str, rows: Sequence[Verdict], colours: Mapping[str, str], widths: tuple[int, int]) -> None:
+    """Print verdicts with their cures below a heading, and the number of verdicts of each grade.
+
+    colours: grade -> rich's style. widths: of the columns of grades and of checks.
+    """
+    say(f"{heading}\n")
+    for verdict in rows:
+        say(verdict_line(verdict, colours, widths))
+    grades = Counter(each.verdict for each in rows)
+    say("\n" + ", ".join(f"{grades[grade]} {grade}" for grade in colours))
+
+
+def verdict_line(verdict: Verdict, colours: Mapping[str, str], widths: tuple[int, int]) -> str:
+    """Return a verdict as text with rich's marks, its cure on a line of its own."""
+    from ..preflight import relation
+
+    grade, check = widths
+    text = "; ".join(filter(None, (f"{verdict.of}: {relation(verdict)}", verdict.note, verdict.source)))
+    cure = f"\n{'':>{grade + check + 2}}cure: {verdict.cure}" if verdict.cure else ""
+    return f"[{colours[verdict.verdict]}]{verdict.verdict:<{grade}}[/] {verdict.check:<{check}} {escape(text + cure)}"
+
+
+def as_rows(rows: Iterable[Outcome]) -> list[dict[str, Any]]:
+    """Return outcomes as plain values."""
+    return [asdict(each) for each in rows]
 
 
 def sentence(text: str) -> None:
-    """What the lines below say, in plain words; folded between words."""
+    """Print a summary of the lines below it, folded between words."""
     console(highlight=False).print(text, "", markup=False, sep="\n")
 
 
 def say(text: str) -> None:
-    """A line of text, with rich's marks."""
+    """Print a line of text with rich's marks."""
     console(highlight=False, soft_wrap=True).print(text)
 
 
 def plain(text: str) -> None:
-    """A text as it stands, to be copied: no marks, no folding."""
+    """Print a text that can be copied: without marks or folding."""
     console(highlight=False, soft_wrap=True).print(text, markup=False)
 
 
 def note(text: str) -> None:
-    """A line of text for people, beside the results: on standard error."""
+    """Print a line for people on standard error, apart from the results."""
     Console(stderr=True, highlight=False, soft_wrap=True).print(text, markup=False)

@@ -1,4 +1,4 @@
-"""How much the program says: `--quiet`, `--log-level`, and how what is logged looks."""
+"""Verbosity: `--quiet`, `--log-level`, and the form of log messages."""
 
 from __future__ import annotations
 
@@ -9,30 +9,30 @@ from ..errors import ConfigError, quoted, shown
 from ..plugins.registry import default_registry
 
 NOTICES = "tangible_core.compiled.compiling"
-"""What is logged as information, and yet is for everybody: why the first run takes longer."""
+"""The logger whose information is shown to everybody: the reason why a first run takes longer."""
 
 _quiet = [False]
 
 
-def heed(words: list[str]) -> list[str]:
-    """Obey --log-level and --quiet wherever they stand, and hand on the rest.
+def parse_verbosity(words: list[str]) -> list[str]:
+    """Apply --log-level and --quiet wherever they stand among the words, and return the other words.
 
-    As an option of typer's, one with a value would cost every command the import of pydantic.
-    Raises: ConfigError for a level that is none.
+    As an option of typer, --log-level would cost every command the import of pydantic.
+    Raises: ConfigError for an unknown level.
     """
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--log-level", action="append", default=[])
     parser.add_argument("-q", "--quiet", action="store_true")
-    known, rest = parser.parse_known_args(words)
-    _set_logging(known.log_level, known.quiet)
-    _quiet[0] = known.quiet
-    if known.quiet and (plugins := default_registry().plugins).has_plugin("tangible-images/progress"):
+    options, rest = parser.parse_known_args(words)
+    _set_logging(options.log_level, options.quiet)
+    _quiet[0] = options.quiet
+    if options.quiet and (plugins := default_registry().plugins).has_plugin("tangible-images/progress"):
         plugins.unregister(name="tangible-images/progress")
     return rest
 
 
 def is_quiet() -> bool:
-    """Whether nothing is said of what went well: only what was asked for, warnings and errors."""
+    """Return True if only requested output, warnings and errors are printed."""
     return _quiet[0]
 
 
@@ -52,8 +52,8 @@ def _set_logging(levels: list[str], quiet: bool) -> None:
 
 
 class _Plain(logging.Formatter):
-    """For who asked for no log: a sentence, and before it whether it is a warning or an error."""
+    """The format without --log-level: the message, after its level if it is a warning or an error."""
 
     def format(self, record: logging.LogRecord) -> str:
-        said = super().format(record)
-        return said if record.levelno <= logging.INFO else f"{record.levelname.lower()}: {said}"
+        text = super().format(record)
+        return text if record.levelno <= logging.INFO else f"{record.levelname.lower()}: {text}"

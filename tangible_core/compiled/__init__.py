@@ -1,1 +1,1 @@
-"""Compilation: how kernels are compiled, called by address, and run on threads."""
+"""Kernels compiled by numba: compilation, loading, threads, and touches made of kernels."""

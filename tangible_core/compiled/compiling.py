@@ -1,6 +1,6 @@
-"""How kernels are compiled, and a word while they are, which takes seconds, once a machine.
+"""Options for compiling kernels, and a notice while they are compiled, which takes seconds, once on a machine.
 
-A room of kernels imports this module.
+Every room of kernels imports this module.
 """
 
 import gc
@@ -12,45 +12,43 @@ from typing import Any, cast
 from numba.core import event
 from numba.extending import overload, register_jitable
 
-from .beside import kernels_are_compiled
+from .background import start_waiting
 from .loading import load_kernels_alone
 
 log = logging.getLogger(__name__)
 BYTECODE = {"depth": 36_000, "texture": 3_700, "render": 10_600, "core": 14_000}
-"""Bytes of bytecode that a first `tangible demo` compiles of each family: its time is in proportion to them."""
+"""The bytes of bytecode that a first `tangible demo` compiles, by family: the time is proportional to them."""
 
 KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
-"""Options of a kernel that is given all its arrays and makes none: it counts no references to them, each of which is an
-atomic operation, twice an array and call. Nobody calls one by C's convention, so that no way in for it is compiled."""
-
-
+"""The options of a kernel that allocates no arrays: it does not count references, which would be two atomic operations
+for each array and call; it has no entry point for C, because nothing uses that."""
 INNER: dict[str, Any] = {**KERNEL, "cache": False, "no_cpython_wrapper": True}
-"""The same for a function that only kernels call."""
+"""The options of a function that only kernels call."""
 
 
 def inner(**options: Any) -> Any:
-    """Of a function that only kernels call: it is compiled with them, without what Python would call it through.
+    """Decorate a function that only kernels call: it is compiled with them, without an entry point for Python.
 
-    That is half of what a small kernel takes to compile. Called from Python, it runs as plain Python.
+    This halves the compile time of a small kernel. Called from Python, the function runs as plain Python.
     """
     return register_jitable(**{**INNER, **options})
 
 
 def inner_by_type(choose: Callable[..., Callable[..., Any]]) -> Any:
-    """As `inner`, of a function that is another one for other types: `choose` is given numba's, and gives it."""
+    """Decorate a function like `inner` whose implementation `choose` selects by numba's types of the arguments."""
 
-    def chosen(called: Callable[..., Any]) -> Any:
-        overload(called, jit_options=cast(Any, INNER), strict=False)(choose)
-        return called
+    def decorate(function: Callable[..., Any]) -> Any:
+        overload(function, jit_options=cast(Any, INNER), strict=False)(choose)
+        return function
 
-    return chosen
+    return decorate
 
 
 class _CompileNotice(event.Listener):
-    """Reports once a process and family of plugins that kernels are being compiled, and how long that takes here.
+    """A listener that logs once for each family of plugins that kernels are compiled, and the time this takes here.
 
-    The first function that is compiled is measured: of the family's default methods all takes as long for each byte
-    of bytecode, within a fifth.
+    The time follows from the first compiled function: a family's default methods need the same time for each byte of
+    bytecode, within a fifth.
     """
 
     def __init__(self) -> None:
@@ -59,9 +57,9 @@ class _CompileNotice(event.Listener):
 
     def on_start(self, event: Any) -> None:
         if _function(event).__module__.startswith("tangible_"):
-            kernels_are_compiled()
+            start_waiting()
         if not self.reported:
-            event.data["dispatcher"].targetctx.refresh()  # numba prepares itself once, which is not the function's time
+            event.data["dispatcher"].targetctx.refresh()  # numba prepares itself once; do not measure it
         self._starts_s.append(perf_counter())
 
     def on_end(self, event: Any) -> None:
@@ -77,32 +75,32 @@ class _CompileNotice(event.Listener):
 
 
 def _function(event: Any) -> Any:
-    """The Python function that an event of numba's is about."""
+    """Return the Python function of a compile event."""
     return event.data["dispatcher"].py_func
 
 
-class _Unswept(event.Listener):
-    """Holds Python's garbage collector off while a kernel is compiled, a fifteenth of the time of which it would take.
+class _GarbageCollectionPause(event.Listener):
+    """A listener that pauses garbage collection while a kernel is compiled, which saves a fifteenth of the time.
 
-    Within the lock that numba compiles under, so that there is one at a time.
+    numba holds a lock while it compiles, so that only one compilation runs at a time.
     """
 
     def __init__(self) -> None:
-        self._within = 0
-        self._swept = False
+        self._depth = 0
+        self._was_enabled = False
 
     def on_start(self, event: Any) -> None:
-        if not self._within:
-            self._swept = gc.isenabled()
+        if not self._depth:
+            self._was_enabled = gc.isenabled()
             gc.disable()
-        self._within += 1
+        self._depth += 1
 
     def on_end(self, event: Any) -> None:
-        self._within -= 1
-        if not self._within and self._swept:
+        self._depth -= 1
+        if not self._depth and self._was_enabled:
             gc.enable()
 
 
 load_kernels_alone()
-for _listener in (_CompileNotice(), _Unswept()):
+for _listener in (_CompileNotice(), _GarbageCollectionPause()):
     event.register("numba:compile", _listener)  # pyright: ignore[reportUnknownMemberType]

@@ -1,8 +1,7 @@
 """Exponential, logarithm and hyperbolic tangent in single precision: the same bits on every processor.
 
-They are made of sums and products alone. NumPy has code of its own for them where AVX2 or AVX-512 is, numba calls
-Intel's library where that is installed, and all differ in the last bit. Imports numba: what uses this module imports it
-inside its verb.
+They use only sums and products. NumPy has special code for AVX2 and AVX-512, numba calls Intel's library if that is
+installed, and their results differ in the last bit. Imports numba: import this module inside a verb.
 
 Source: Moshier, Cephes mathematical library, expf, logf and tanhf: polynomials on a short interval.
 """
@@ -41,8 +40,8 @@ _NEAR, _ZERO = np.float32(0.625), np.float32(0)
 
 @njit(**KERNEL)
 def exponential(x):
-    """e^x of a float32; what lies under -87 counts as that, what lies over 88 as that."""
-    x = _LEAST if x < _LEAST else x  # as min and max would, which are not vectorised
+    """Return e^x of a float32; x is clamped to -87..88."""
+    x = _LEAST if x < _LEAST else x  # min and max would not be vectorised
     x = _MOST if x > _MOST else x
     turns = np.floor(x * _LOG2_E + _HALF)
     r = (x - turns * _LN2) - turns * _LN2_REST
@@ -53,7 +52,7 @@ def exponential(x):
 
 @njit(**KERNEL)
 def logarithm(x):
-    """The natural logarithm of a float32 that is positive, finite and no denormal."""
+    """Return the natural logarithm of a float32 that is positive, finite and not denormal."""
     bits = np.float32(x).view(np.int32)
     power = np.float32((bits >> 23) - 126)
     part = np.int32((bits & 0x007FFFFF) | 0x3F000000).view(np.float32)  # 0.5 <= part < 1
@@ -70,7 +69,7 @@ def logarithm(x):
 
 @njit(**KERNEL)
 def hyperbolic_tangent(x):
-    """tanh x of a float32."""
+    """Return tanh x of a float32."""
     size = abs(x)
     square = x * x
     near = ((((_T4 * square + _T3) * square + _T2) * square + _T1) * square + _T0) * square * x + x
@@ -79,40 +78,40 @@ def hyperbolic_tangent(x):
 
 
 def exponentials(values: np.ndarray) -> np.ndarray:
-    """e^x of every value, as `exponential`: float32 of the same shape."""
-    return _of_every(_exponentials, values)
+    """Return e^x of every value, as `exponential`: float32 of the same shape."""
+    return _apply(_exponentials, values)
 
 
 def logarithms(values: np.ndarray) -> np.ndarray:
-    """The logarithm of every value, as `logarithm`: float32 of the same shape."""
-    return _of_every(_logarithms, values)
+    """Return the logarithm of every value, as `logarithm`: float32 of the same shape."""
+    return _apply(_logarithms, values)
 
 
 def hyperbolic_tangents(values: np.ndarray) -> np.ndarray:
-    """tanh x of every value, as `hyperbolic_tangent`: float32 of the same shape."""
-    return _of_every(_hyperbolic_tangents, values)
+    """Return tanh x of every value, as `hyperbolic_tangent`: float32 of the same shape."""
+    return _apply(_hyperbolic_tangents, values)
 
 
-def _of_every(kernel: Any, values: np.ndarray) -> np.ndarray:
+def _apply(kernel: Any, values: np.ndarray) -> np.ndarray:
     flat = np.ascontiguousarray(values, np.float32).reshape(-1)
-    found = np.empty_like(flat)
-    kernel(flat, found)
-    return found.reshape(values.shape)
+    results = np.empty_like(flat)
+    kernel(flat, results)
+    return results.reshape(values.shape)
 
 
 @njit(**KERNEL)
-def _exponentials(values, found):
+def _exponentials(values, results):
     for i in range(values.size):
-        found[i] = exponential(values[i])
+        results[i] = exponential(values[i])
 
 
 @njit(**KERNEL)
-def _logarithms(values, found):
+def _logarithms(values, results):
     for i in range(values.size):
-        found[i] = logarithm(values[i])
+        results[i] = logarithm(values[i])
 
 
 @njit(**KERNEL)
-def _hyperbolic_tangents(values, found):
+def _hyperbolic_tangents(values, results):
     for i in range(values.size):
-        found[i] = hyperbolic_tangent(values[i])
+        results[i] = hyperbolic_tangent(values[i])

@@ -1,6 +1,6 @@
-"""What calls a law again and again, compiled. Imports numba: what uses this module imports it inside its verb."""
+"""Compiled loops that call the kernel of a force law. Imports numba: import this module inside a verb."""
 
-# ruff: noqa: ANN001, ANN201 -- the types are those that numba infers
+# ruff: noqa: ANN001, ANN201 -- numba infers the types
 # pyright: basic
 
 from collections.abc import Callable
@@ -18,19 +18,19 @@ from .compiling import KERNEL
 
 
 class KernelType(types.FunctionType):
-    """Of an `Address`, for numba: all kernels of one signature are one type."""
+    """The type of an `Address` for numba: all kernels of one signature have the same type."""
 
 
 @final
 class Address:
-    """A kernel as an argument of another: by its address, so that the caller is compiled once for all kernels alike.
+    """A kernel passed to another kernel by its address, so that the caller is compiled once for all similar kernels.
 
-    A kernel given as it is would be compiled into the caller, anew in every process: numba's disk cache does not know
-    it again. The address is that of numba's own convention of calling: by C's, each call copies all arguments twice.
+    A kernel passed directly would be compiled into the caller, anew in every process: numba's disk cache does not
+    recognise it. The address follows numba's calling convention: by that of C, each call copies all arguments twice.
     """
 
     def __init__(self, kernel: Callable[..., Any], signature: Any = None) -> None:
-        """signature: which, of a kernel that was given none when it was defined (see `signature`)."""
+        """Take the address of a kernel; signature: for a kernel that was defined without one (see `signature`)."""
         self._kernel: Any = kernel
         if signature is None:
             (signature,) = self._kernel.nopython_signatures
@@ -52,16 +52,16 @@ def _type_of(address: Address, _context: Any) -> KernelType:
 
 @unbox(KernelType)
 def _unbox(kind: Any, address: Any, c: Any) -> NativeValue:
-    made = cgutils.create_struct_proxy(kind)(c.context, c.builder)
+    proxy = cgutils.create_struct_proxy(kind)(c.context, c.builder)
     number = c.pyapi.object_getattr_string(address, "address")
-    made.c_addr = made.py_addr = cgutils.get_null_value(c.context.get_value_type(types.voidptr))
-    made.jit_addr = c.pyapi.long_as_voidptr(number)
+    proxy.c_addr = proxy.py_addr = cgutils.get_null_value(c.context.get_value_type(types.voidptr))
+    proxy.jit_addr = c.pyapi.long_as_voidptr(number)
     c.pyapi.decref(number)
-    return NativeValue(made._getvalue())
+    return NativeValue(proxy._getvalue())
 
 
 def signature(kernel: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-    """That of a kernel for such arguments; one that was given none is compiled for them, or found on disk."""
+    """Return the signature of a kernel for such arguments; without one it is compiled for them, or loaded from disk."""
     of_types: Any = typeof(kernel)
     return of_types.get_call_type(cpu_target.typing_context, tuple(map(typeof, arguments)), {})
 
@@ -74,7 +74,7 @@ def _revive(module: str, name: str, signature: Any) -> Address:
 
 @njit(**KERNEL)
 def step_velocity(positions_m, period_s, i):
-    """Velocity that brought the path to position i, one period after the one before it.
+    """Return the velocity with which the path reached position i, one period after the position before it.
 
     0 at the first position, and where it is not finite.
     """
@@ -88,7 +88,7 @@ def step_velocity(positions_m, period_s, i):
 
 @njit(**KERNEL)
 def along(fixed, tick, positions_m, period_s, force_n):
-    """The law's force for every position of a path. (An address that comes first is warned of by numba.)"""
+    """Compute the force for every position of a path. (numba warns if an address is the first argument.)"""
     for i in range(positions_m.shape[0]):
         x, y, z = positions_m[i, 0], positions_m[i, 1], positions_m[i, 2]
         vx, vy, vz = step_velocity(positions_m, period_s, i)
@@ -97,7 +97,7 @@ def along(fixed, tick, positions_m, period_s, force_n):
 
 @njit(**KERNEL)
 def over_states(tick, fixed, memory, states, proxy_m, force_n):
-    """The law's proxy, NaN where there is none, and force for states (x, y, z, vx, vy, vz), one after another."""
+    """Compute the proxy (NaN without one) and the force for states (x, y, z, vx, vy, vz), one after another."""
     for i in range(states.shape[0]):
         x, y, z, vx, vy, vz = states[i, 0], states[i, 1], states[i, 2], states[i, 3], states[i, 4], states[i, 5]
         force_n[i, 0], force_n[i, 1], force_n[i, 2] = tick(*fixed, x, y, z, vx, vy, vz)

@@ -1,9 +1,10 @@
-"""Loading of compiled kernels without what numba needs only to compile.
+"""Loading of compiled kernels without the parts of numba that are needed only to compile.
 
 Before numba loads a function from its disk cache, it imports 72 modules of its own and SciPy's linear algebra, and
 registers thousands of implementations: half a second, more than the import of numba. The function is machine code
-by then, and needs none of it unless it uses numba's runtime: memory, strings, hashes. A kernel of ours does not
-(`_nrt=False`), so that a process which compiles nothing is spared. The first compilation does all of it by itself.
+by then, and needs none of that unless it uses numba's runtime: memory, strings, hashes. Our kernels do not
+(`_nrt=False`), so that a process which compiles nothing saves this time. The first compilation does all of it by
+itself.
 """
 
 from typing import Any
@@ -19,7 +20,7 @@ class KernelCache(FunctionCache):
     """The disk cache of a kernel that does not use numba's runtime."""
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """The compiled kernel for this signature, or None where the disk has none."""
+        """Load the compiled kernel for this signature; None if it is not on the disk."""
         cache: Any = self
         with cache._guard_against_spurious_io_errors():
             return cache._load_overload(sig, target_context)
@@ -32,5 +33,5 @@ def _enable_kernel_caching(dispatcher: Any) -> None:
 
 
 def load_kernels_alone() -> None:
-    """From now on, give each kernel that is defined with `_nrt=False` and `cache=True` this cache."""
+    """Give each kernel that is defined from now on with `_nrt=False` and `cache=True` this cache."""
     _dispatchers.enable_caching = _enable_kernel_caching

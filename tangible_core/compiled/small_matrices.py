@@ -1,7 +1,7 @@
 """Symmetric matrices of up to a hundred rows, in float64. Compiled by numba.
 
-LAPACK wakes threads for them, which cost more than they save: ten times, where other threads are at work; and its last
-bits are those of the processor.
+LAPACK wakes threads for such matrices, which cost up to ten times what they save next to other working threads, and
+its last bits depend on the processor.
 """
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- numba takes the types from the call
@@ -10,45 +10,45 @@ bits are those of the processor.
 import numpy as np
 from numba import njit
 
-from . import compiling as compiling  # says so while the kernels are compiled
+from . import compiling as compiling  # for its notice while kernels are compiled
 
 ROUNDS = 50
-"""Of QL for one eigenvalue, at most; two or three are the rule."""
+"""The most QL steps for one eigenvalue; two or three are usual."""
 CLEAN = 1e-15
-"""Beside the diagonal, what is less than this share of the values on it is nothing."""
+"""The share of the neighbouring diagonal values below which an off-diagonal value counts as zero."""
 
 
 @njit(cache=True, nogil=True)
 def eigen(matrix):
-    """Eigenvalues, the largest first, and eigenvectors, one a row: Householder's reflections, then implicit QL.
+    """Return eigenvalues, largest first, and eigenvectors as rows, by Householder reflections and implicit QL.
 
     Source: Golub & Van Loan, Matrix Computations, 4th ed., sec. 8.3.
     """
-    diagonal, beside, vectors = _tridiagonal(matrix)
+    diagonal, off, vectors = _tridiagonal(matrix)
     for first in range(len(diagonal)):
         for _ in range(ROUNDS):
             last = first
             while last + 1 < len(diagonal):
-                if abs(beside[last]) <= CLEAN * (abs(diagonal[last]) + abs(diagonal[last + 1])):
+                if abs(off[last]) <= CLEAN * (abs(diagonal[last]) + abs(diagonal[last + 1])):
                     break
                 last += 1
             if last == first:
                 break
-            _ql_step(diagonal, beside, vectors, first, last)
+            _ql_step(diagonal, off, vectors, first, last)
     order = np.argsort(-diagonal)
     return diagonal[order], vectors[order]
 
 
 @njit(cache=True, nogil=True)
 def _tridiagonal(matrix):
-    """The diagonal of V matrix V', what is beside it (one 0 more), and the rows V; sums run along rows."""
+    """Return the diagonal of V matrix V', the off-diagonal (with one more 0), and V; sums run along rows."""
     size = len(matrix)
-    rest, vectors, beside = matrix.astype(np.float64), np.eye(size), np.zeros(size)
+    rest, vectors, off = matrix.astype(np.float64), np.eye(size), np.zeros(size)
     for k in range(size - 2):
         mirror = rest[k, k + 1 :].copy()
         length = np.sqrt(_dot(mirror, mirror))
-        beside[k] = -length if mirror[0] >= 0 else length
-        mirror[0] -= beside[k]
+        off[k] = -length if mirror[0] >= 0 else length
+        mirror[0] -= off[k]
         square = _dot(mirror, mirror)
         if square == 0:
             continue
@@ -63,24 +63,24 @@ def _tridiagonal(matrix):
             _add(rest[k + 1 + i, k + 1 :], -turned[i], mirror)
             _add(vectors[k + 1 + i], -2 / square * mirror[i], mixed)
     if size > 1:
-        beside[size - 2] = rest[size - 2, size - 1]
-    return np.diag(rest).copy(), beside, vectors
+        off[size - 2] = rest[size - 2, size - 1]
+    return np.diag(rest).copy(), off, vectors
 
 
 @njit(cache=True, nogil=True)
-def _ql_step(diagonal, beside, vectors, first, last):
-    """One implicit step on rows first..last, shifted by the eigenvalue of their first two that is nearest."""
-    slant = (diagonal[first + 1] - diagonal[first]) / (2 * beside[first])
+def _ql_step(diagonal, off, vectors, first, last):
+    """Do one implicit QL step on rows first..last, shifted by the nearest eigenvalue of their first two rows."""
+    slant = (diagonal[first + 1] - diagonal[first]) / (2 * off[first])
     root = np.sqrt(slant * slant + 1)
-    bulge = diagonal[last] - diagonal[first] + beside[first] / (slant + (root if slant >= 0 else -root))
+    bulge = diagonal[last] - diagonal[first] + off[first] / (slant + (root if slant >= 0 else -root))
     s, c, shift = 1.0, 1.0, 0.0
     for i in range(last - 1, first - 1, -1):
-        away, near = s * beside[i], c * beside[i]
+        away, near = s * off[i], c * off[i]
         length = np.sqrt(away * away + bulge * bulge)
-        beside[i + 1] = length
+        off[i + 1] = length
         if length == 0:  # the matrix falls apart here
             diagonal[i + 1] -= shift
-            beside[last] = 0
+            off[last] = 0
             return
         s, c = away / length, bulge / length
         own = diagonal[i + 1] - shift
@@ -88,13 +88,13 @@ def _ql_step(diagonal, beside, vectors, first, last):
         shift = s * change
         diagonal[i + 1] = own + shift
         bulge = c * change - near
-        _turn(vectors[i], vectors[i + 1], s, c)
+        _rotate(vectors[i], vectors[i + 1], s, c)
     diagonal[first] -= shift
-    beside[first], beside[last] = bulge, 0
+    off[first], off[last] = bulge, 0
 
 
 @njit(cache=True, nogil=True)
-def _turn(one, other, s, c):
+def _rotate(one, other, s, c):
     for i in range(one.size):
         a, b = one[i], other[i]
         one[i] = c * a - s * b
@@ -116,8 +116,8 @@ def _dot(one, other):
 
 
 @njit(cache=True, nogil=True)
-def factored(matrix):
-    """L of L L' = matrix, Cholesky's lower factor; a direction of no extent is given next to none."""
+def cholesky(matrix):
+    """Return the lower Cholesky factor L of matrix = L L'; pivots are at least 1e-12."""
     size = len(matrix)
     factor = np.zeros((size, size))
     for i in range(size):
@@ -130,25 +130,25 @@ def factored(matrix):
 
 
 @njit(cache=True, nogil=True)
-def whitened(factor, rows):
-    """L^-1 x of every row x."""
-    found = rows.copy()
-    for row in found:
+def whiten(factor, rows):
+    """Return L^-1 x for every row x."""
+    result = rows.copy()
+    for row in result:
         for i in range(row.size):
             for m in range(i):
                 row[i] -= factor[i, m] * row[m]
             row[i] /= factor[i, i]
-    return found
+    return result
 
 
 @njit(cache=True, nogil=True)
-def solved(matrix, rows):
-    """matrix^-1 x of every row x; the matrix is positive definite."""
-    factor = factored(matrix)
-    found = whitened(factor, rows)
-    for row in found:
+def solve(matrix, rows):
+    """Return matrix^-1 x for every row x; the matrix must be positive definite."""
+    factor = cholesky(matrix)
+    result = whiten(factor, rows)
+    for row in result:
         for i in range(row.size - 1, -1, -1):
             row[i] /= factor[i, i]
             for m in range(i):
                 row[m] -= factor[i, m] * row[i]
-    return found
+    return result

@@ -1,6 +1,6 @@
 """Threads for kernels that release the GIL.
 
-No OpenMP: its idle threads spin and take the processor from whoever works.
+Without OpenMP, whose idle threads spin and take the processor from working ones.
 """
 
 import os
@@ -15,22 +15,22 @@ from typing import Any, TypeVar
 
 from ..runtime.stopping import check_stopped
 from ..runtime.threads import processors, thread_limit
-from . import compiling as compiling  # says so while the kernels are compiled
+from . import compiling as compiling  # for its notice while kernels are compiled
 
 T = TypeVar("T")
 
 
 def thread_count() -> int:
-    """How many threads to work on: one a processor, within the limit of `runtime.threads`."""
+    """Return the number of working threads: one for each processor, within the limit of `runtime.threads`."""
     return min(processors(), thread_limit() or processors())
 
 
 def run_all(jobs: Iterable[Callable[[], Any]]) -> None:
     """Run every job and wait; the calling thread does the first. A job must not call `run_all` itself.
 
-    There are no more jobs than `thread_count` says: each gets a thread.
-    Raises: Stopped before any job if the caller's work shall end; a job sees that as well as its caller does. What the
-    calling thread raises, such as an interrupt, comes before what it brings about in the others.
+    Pass at most `thread_count` jobs: each gets a thread.
+    Raises: Stopped before any job if the caller's work shall end; a job can check that as well. An error of the calling
+    thread, such as an interrupt, takes precedence over errors that it causes in other threads.
     """
     check_stopped()
     first, *rest = jobs
@@ -44,25 +44,25 @@ def run_all(jobs: Iterable[Callable[[], Any]]) -> None:
 
 
 def in_blocks(length: int, work: Callable[[int, int], Any], at_least: int = 16) -> None:
-    """work(start, stop) on about equal parts of range(length), one a thread, none much shorter than `at_least`."""
+    """Run work(start, stop) on nearly equal parts of range(length), one a thread, of about `at_least` or more."""
     parts = max(1, min(thread_count(), length // at_least))
     edges = [i * length // parts for i in range(parts + 1)]
     run_all([lambda a=a, b=b: work(a, b) for a, b in pairwise(edges)])
 
 
 def in_turns(tasks: list[T], work: Callable[[Iterable[T]], Any], most: int | None = None) -> None:
-    """work(share) in up to `most` threads, which take the tasks in their order, each the next when it is done with one.
+    """Run work(share) in up to `most` threads; each share takes the next task in order whenever it has finished one.
 
     Raises: Stopped between two tasks if the caller's work shall end.
     """
     parts = min(thread_count(), len(tasks), len(tasks) if most is None else most)
     if parts:
         left = deque(tasks)
-        run_all([lambda: work(_taken(left)) for _ in range(parts)])
+        run_all([lambda: work(_take(left)) for _ in range(parts)])
 
 
-def _taken(left: deque[T]) -> Iterator[T]:
-    """What nobody else takes of it; other threads may empty it between a look and the taking."""
+def _take(left: deque[T]) -> Iterator[T]:
+    """Yield tasks until none is left; another thread may take the last one between the check and the removal."""
     with suppress(IndexError):
         while left:
             check_stopped()
@@ -71,5 +71,5 @@ def _taken(left: deque[T]) -> Iterator[T]:
 
 @cache
 def _pool(process: int) -> ThreadPoolExecutor:
-    """A pool a process: threads do not survive a fork."""
+    """Return the pool of a process: threads do not survive a fork."""
     return ThreadPoolExecutor(processors(), thread_name_prefix="tangible")

@@ -11,7 +11,7 @@ import pluggy
 
 from ..errors import did_you_mean, shown
 from ..runtime.failure_log import where_kept
-from ..runtime.slowness import said_if_slow
+from ..runtime.slowness import warn_if_slow
 from .naming import origin
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def manager() -> pluggy.PluginManager:
     plugins.add_hookspecs(Specs)
     for point in entry_points(group="tangible.hooks"):
         try:
-            with said_if_slow(log, f"importing hooks {point.name} ({point.value})"):
+            with warn_if_slow(log, f"importing hooks {point.name} ({point.value})"):
                 module = point.load()
             plugins.register(module, name=f"{origin(point.dist).name}/{point.name}")
         except (Exception, SystemExit) as error:

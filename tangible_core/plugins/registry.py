@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 from ..errors import BrokenMethod, UnknownMethod, did_you_mean, shown
 from ..runtime.failure_log import where_kept
-from ..runtime.slowness import said_if_slow
+from ..runtime.slowness import warn_if_slow
 from . import hooks
 from .naming import KIND_NAMES as KIND_NAMES
 from .naming import origin
@@ -108,7 +108,7 @@ class Registry:
 
         each = self.find(kind, name)
         try:
-            with said_if_slow(log, f"importing {kind} method {name} ({each.target}, from {each.origin})"):
+            with warn_if_slow(log, f"importing {kind} method {name} ({each.target}, from {each.origin})"):
                 cls: Any = each.point.load()
         except (Exception, SystemExit) as error:
             raise BrokenMethod(

@@ -1,11 +1,10 @@
-"""What a result or a compiled kernel depends on: its code, and the versions of the libraries below.
+"""The dependencies of a result or a compiled kernel: its code, and the versions of the libraries below it.
 
-One digest, that of a `closure.Closure`, decides whether a cached result, a measured row and a compiled kernel are still
-what the code says. Nothing that is looked at is imported, and `tangible_core` imports no more of this room than
-`watching`.
+One digest, of a `closure.Closure`, decides whether a cached result, a measured row and a compiled kernel still fit the
+code. The code is read and not imported, and `tangible_core` imports only `watching` of this room.
 """
 
 import time
 
-BEGUN_NS = time.time_ns()
-"""When this process began, near enough: a file that was changed later may not be what runs."""
+STARTED_NS = time.time_ns()
+"""The approximate start of this process: a file that changed later may not be the code that runs."""

@@ -11,41 +11,40 @@ from pathlib import Path
 from types import FunctionType
 from typing import NamedTuple
 
-from . import BEGUN_NS, versions
-from .imports import Import, bound, imports
-from .places import HOME, Place, followed, place
+from . import STARTED_NS, versions
+from .imports import Import, definitions, imports
+from .places import HOME, Place, is_read, place
 
-_OF_THIS_PROCESS = f"{os.getpid()} {BEGUN_NS}"
+_OF_THIS_PROCESS = f"{os.getpid()} {STARTED_NS}"
 
 
 @dataclass(frozen=True)
 class Closure:
-    """What some code depends on."""
+    """The dependencies of some code."""
 
     digest: str
-    """SHA-256 of the sources and the versions, shortened."""
+    """The SHA-256 of the sources and the versions, shortened."""
     modules: tuple[str, ...]
-    """Whose source it is of."""
+    """The modules whose source is in the digest."""
     versions: Mapping[str, str]
-    """Of Python, and of what is imported and not read."""
+    """The versions of Python and of imported libraries whose source is not read."""
     settled: bool
-    """Whether all files are older than this process. Where one is not, what runs may be what it said before: the digest
-    is then one that no other process has."""
+    """True if all files are older than this process. If one is not, the running code may be its earlier text, and the
+    digest is unique to this process."""
 
 
 def closure(*modules: str, alone: tuple[str, ...] = ()) -> Closure:
-    """That of modules by name, and of the mere text of those in `alone`.
+    """Return the closure of modules by name; of those in `alone`, only the text counts and not their imports.
 
-    The source of a package is read if it is the modules' own or `tangible_core`, has plugins, or lies outside of the
-    folders where packages are installed; of any other the version counts. Imports are found in the text: nothing runs,
-    those inside of functions count, and a module that is imported by a computed name does not. Files are read once a
-    process.
+    The source of a package is read if it is the modules' own or `tangible_core`, has plugins, or lies outside the
+    folders for installed packages; of any other package the version counts. Imports are found in the text: nothing
+    runs, imports inside functions count, and imports by a computed name do not. Files are read once in a process.
     """
-    return _closure(tuple(found for name in modules if (found := place(name))), alone)
+    return _closure(tuple(start for name in modules if (start := place(name))), alone)
 
 
 def closure_of_function(function: FunctionType) -> Closure | None:
-    """That of the module which a function is from; None for one that is in no file, as in a notebook."""
+    """Return the closure of a function's module; None for a function without a file, as in a notebook."""
     file = function.__code__.co_filename
     name, package = (str(function.__globals__.get(each) or "") for each in ("__name__", "__package__"))
     return _closure((Place(name, file, package),), ()) if Path(file).is_file() else None
@@ -55,24 +54,24 @@ def closure_of_function(function: FunctionType) -> Closure | None:
 def _closure(start: tuple[Place, ...], alone: tuple[str, ...]) -> Closure:
     walk = _Walk({each.top for each in start})
     walk.through(start)
-    texts = {each.name: _text(each) for each in (*walk.done, *walk.beside, *map(place, alone)) if each is not None}
-    said = versions.of_imported(walk.libraries)
+    texts = {each.name: _text(each) for each in (*walk.done, *walk.packages, *map(place, alone)) if each is not None}
+    libraries = versions.of_imported(walk.libraries)
     settled = all(text.settled for text in texts.values())
-    state = hashlib.sha256(repr((sorted(said.items()), "" if settled else _OF_THIS_PROCESS)).encode())
+    state = hashlib.sha256(repr((sorted(libraries.items()), "" if settled else _OF_THIS_PROCESS)).encode())
     for name in sorted(texts):
         state.update(f"\0{name}\0{len(texts[name].content)}\0".encode() + texts[name].content)
-    return Closure(state.hexdigest()[:24], tuple(sorted(texts)), said, settled)
+    return Closure(state.hexdigest()[:24], tuple(sorted(texts)), libraries, settled)
 
 
 @dataclass
 class _Walk:
-    """From module to module, along the imports."""
+    """A walk from module to module along the imports."""
 
     own: set[str]
-    """Top packages that are read wherever they lie."""
+    """The top packages that are read wherever they lie."""
     done: set[Place] = field(default_factory=set[Place])
-    beside: set[Place] = field(default_factory=set[Place])
-    """Packages that only hand on names: their text counts, and not what they import for others."""
+    packages: set[Place] = field(default_factory=set[Place])
+    """The packages that only re-export names: their text counts, and not their imports of other names."""
     libraries: set[str] = field(default_factory=set[str])
 
     def through(self, start: Iterable[Place]) -> None:
@@ -81,48 +80,48 @@ class _Walk:
             here = waiting.pop()
             if here not in self.done:
                 self.done.add(here)
-                waiting += [found for each in _text(here).imports for found in self._reached(each, here)]
+                waiting += [module for each in _text(here).imports for module in self._resolve(each, here)]
 
-    def _reached(self, each: Import, here: Place) -> Iterator[Place]:
-        """The modules that an import runs, down to the one that it names."""
+    def _resolve(self, each: Import, here: Place) -> Iterator[Place]:
+        """Yield the modules that an import runs, down to the one that it names."""
         module = _absolute(each, here)
         top = module.partition(".")[0]
-        if top not in self.own and not followed(top):
+        if top not in self.own and not is_read(top):
             self.libraries.add(top)
             return
         below = place(f"{module}.{each.name}") if each.name else None
         yield from self._above(f"{module}.{each.name}" if below else module)
         if below:
             yield below
-        elif found := place(module):
-            yield from self._handed_on(found, each.name)
+        elif target := place(module):
+            yield from self._origin(target, each.name)
 
-    def _handed_on(self, found: Place, name: str) -> Iterator[Place]:
-        """Where a module has a name from, if that is all; else the module itself."""
-        homes = [each for each in _text(found).imports if each.bound == name]
-        if name in ("", "*") or not homes or not _hands_on(found) or name in _made(found):
-            yield found
+    def _origin(self, module: Place, name: str) -> Iterator[Place]:
+        """Yield the modules from which a package re-exports a name; the module itself if it does more than that."""
+        sources = [each for each in _text(module).imports if each.bound == name]
+        if name in ("", "*") or not sources or not _only_reexports(module) or name in _definitions(module):
+            yield module
             return
-        self.beside.add(found)
-        for home in homes:
-            yield from self._reached(home, found)
+        self.packages.add(module)
+        for source in sources:
+            yield from self._resolve(source, module)
 
     def _above(self, module: str) -> Iterator[Place]:
-        """The packages that a module lies in, which are run before it."""
+        """Yield the packages around a module, which run before it."""
         while module := module.rpartition(".")[0]:
             package = place(module)
-            if package and _hands_on(package):
-                self.beside.add(package)
+            if package and _only_reexports(package):
+                self.packages.add(package)
             elif package:
                 yield package
 
 
-def _hands_on(package: Place) -> bool:
-    """Whether a package's own file only hands on names, so that its other imports do nothing to a module in it.
+def _only_reexports(package: Place) -> bool:
+    """Return True if a package's own file only re-exports names, so that its imports do not affect modules in it.
 
-    So it is in Tangible Images, and so it is said by a package that imports each of its names when it is asked for.
+    This holds for Tangible Images, and for a package with `__getattr__`, which imports its names on first use.
     """
-    return package.is_package and (package.top == HOME or "__getattr__" in _made(package))
+    return package.is_package and (package.top == HOME or "__getattr__" in _definitions(package))
 
 
 def _absolute(each: Import, here: Place) -> str:
@@ -130,7 +129,7 @@ def _absolute(each: Import, here: Place) -> str:
         return each.module
     try:
         return resolve_name("." * each.level + each.module, here.package)
-    except ImportError:  # beyond the top package: it would not run either
+    except ImportError:  # beyond the top package: the import would fail as well
         return here.package
 
 
@@ -141,26 +140,26 @@ class _Text(NamedTuple):
 
 
 @cache
-def _made(package: Place) -> frozenset[str]:
-    """The names that a package's file makes itself."""
+def _definitions(package: Place) -> frozenset[str]:
+    """Return the names that a package's own file defines."""
     try:
-        return bound(_text(package).content)
-    except (SyntaxError, ValueError):  # it would not run either
+        return definitions(_text(package).content)
+    except (SyntaxError, ValueError):  # it cannot be imported either
         return frozenset()
 
 
 @cache
 def _text(here: Place) -> _Text:
-    """What a module's file says, read once a process."""
+    """Read a module's file, once in a process."""
     try:
         state, content = Path(here.file).stat(), Path(here.file).read_bytes()
-    except OSError:  # in an archive, or gone: what runs is not known
+    except OSError:  # in an archive, or gone: the running code is not known
         return _Text()
     changed_ns = max(state.st_mtime_ns, 0 if sys.platform == "win32" else state.st_ctime_ns)
-    settled = changed_ns < BEGUN_NS
+    settled = changed_ns < STARTED_NS
     if not here.file.endswith(".py"):
         return _Text(content, settled=settled)
     try:
         return _Text(content, tuple(imports(content)), settled)
-    except (SyntaxError, ValueError):  # it would not run either
+    except (SyntaxError, ValueError):  # it cannot be imported either
         return _Text(content, settled=settled)

@@ -1,9 +1,10 @@
-"""numba's disk cache, told what a kernel depends on.
+"""numba's disk cache, extended by the dependencies of a kernel.
 
-By itself it looks at the file that a kernel is in, and not at the modules which that file imports: yet their constants
-and kernels are compiled in. Told, it names a file by the digest of the kernel's import closure too, so that a kernel is
-found only where all of its sources are the same; whoever reads while another process writes finds nothing or the right
-one. This holds for every kernel with `cache=True`, anyone's, that is defined after `tangible_core` was imported.
+By itself, numba checks the file of a kernel and not the modules which that file imports, although their constants and
+kernels are compiled in. Here the name of a cache file includes the digest of the kernel's import closure, so that a
+kernel is loaded only if all of its sources are the same; a reader next to a writing process finds nothing or the right
+kernel. This holds for every kernel with `cache=True`, of any package, that is defined after `tangible_core` is
+imported.
 """
 
 import logging
@@ -17,38 +18,38 @@ from .closure import closure_of_function
 log = logging.getLogger(__name__)
 
 KEPT = 4
-"""Closures of a kernel whose compiled code stays: two branches or environments on one folder do not undo each other."""
+"""The number of closures of a kernel whose code is kept, so that branches and environments can share a folder."""
 
 
-def tell(caching: Any) -> None:
-    """Let each cache of `numba.core.caching`, in whichever folder, look at closures.
+def extend(caching: Any) -> None:
+    """Make each cache of `numba.core.caching`, in whichever folder, check closures.
 
-    A kernel whose closure is not known, or changed since this process began, is compiled anew and not kept.
+    A kernel whose closure is unknown, or changed since this process began, is compiled anew and not saved.
     """
-    made, saved = caching.Cache.__init__, caching.Cache.save_overload
+    numba_init, numba_save = caching.Cache.__init__, caching.Cache.save_overload
 
-    def make(self: Any, py_func: Any) -> None:
-        made(self, py_func)
-        found = closure_of_function(py_func)
-        if found is None or not found.settled:
+    def init(self: Any, py_func: Any) -> None:
+        numba_init(self, py_func)
+        closure = closure_of_function(py_func)
+        if closure is None or not closure.settled:
             self.disable()
             return
         try:
-            name = f"{self._impl.filename_base}-{found.digest}"
+            name = f"{self._impl.filename_base}-{closure.digest}"
             self._cache_file = type(self._cache_file)(self.cache_path, name, self._impl.locator.get_source_stamp())
         except (AttributeError, TypeError) as error:
             self.disable()
             log.warning("this version of numba is unknown, so kernels are compiled in every process: %s", error)
 
     def save(self: Any, sig: Any, data: Any) -> None:
-        saved(self, sig, data)
+        numba_save(self, sig, data)
         _prune(Path(self.cache_path), self._impl.filename_base)
 
-    caching.Cache.__init__, caching.Cache.save_overload = make, save
+    caching.Cache.__init__, caching.Cache.save_overload = init, save
 
 
 def _prune(folder: Path, kernel: str) -> None:
-    with suppress(OSError):  # another process drops them at the same time
+    with suppress(OSError):  # another process may delete them at the same time
         indices = sorted(folder.glob(f"{escape(kernel)}-*.nbi"), key=lambda each: -each.stat().st_mtime_ns)
         for index in indices[KEPT:]:
             for each in folder.glob(f"{escape(index.stem)}.*"):

@@ -1,4 +1,4 @@
-"""Where the source of a module lies, and whether it is read or counts by the version of its distribution."""
+"""The location of a module's source, and the choice between its text and its distribution's version."""
 
 import sys
 from functools import cache
@@ -10,13 +10,13 @@ from typing import NamedTuple
 from . import versions
 
 INSTALLED = {"site-packages", "dist-packages"}
-"""Folders in whose packages nobody works."""
+"""The folders of installed packages, whose source does not change between versions."""
 
 HOME = __name__.partition(".")[0]
 
 
 class Place(NamedTuple):
-    """A module, its file, and the package that its relative imports start from."""
+    """A module, its file, and the package where its relative imports start."""
 
     name: str
     file: str
@@ -24,18 +24,18 @@ class Place(NamedTuple):
 
     @property
     def is_package(self) -> bool:
-        """Whether there are modules below it."""
+        """True for a package."""
         return self.name == self.package
 
     @property
     def top(self) -> str:
-        """The package that it is part of, or itself."""
+        """The top package of the module, or the module itself."""
         return (self.package or self.name).partition(".")[0]
 
 
 @cache
 def place(name: str) -> Place | None:
-    """The module of this name: as it was imported, or else as it would be; None for a name that is no module."""
+    """Return the module of this name, as it was or would be imported; None if it is not a module."""
     module = sys.modules.get(name)
     file, package = (getattr(module, each, None) for each in ("__file__", "__package__"))
     if isinstance(file, str):
@@ -47,8 +47,8 @@ def place(name: str) -> Place | None:
 
 
 @cache
-def followed(top: str) -> bool:
-    """Whether the source of a top package is read: it belongs to Tangible Images, or may be under work."""
+def is_read(top: str) -> bool:
+    """Return True if the source of a top package is read: that of Tangible Images, and code that may be edited."""
     if top in sys.stdlib_module_names or top in versions.LIBRARIES:
         return False
     if top == HOME:
@@ -60,12 +60,12 @@ def followed(top: str) -> bool:
 
 @cache
 def _spec(name: str) -> ModuleSpec | None:
-    """How a module would be imported. Unlike `find_spec`, imports no package above it."""
+    """Find how a module would be imported; unlike `find_spec`, without importing the packages above it."""
     above = name.rpartition(".")[0]
     if not above:
         try:
             return util.find_spec(name)
-        except ValueError:  # a module that does not say where it is from, such as `__main__`
+        except ValueError:  # a module without a spec, such as `__main__`
             return None
     parent = _spec(above)
     if parent is None or parent.submodule_search_locations is None:

@@ -1,4 +1,4 @@
-"""Code that is in no file, such as a class in a notebook's cell: told by its source and by all that it names."""
+"""Digest of code without a file, such as a class in a notebook's cell, by its source and everything it refers to."""
 
 import ast
 import inspect
@@ -12,48 +12,48 @@ from typing import Any
 
 from . import versions
 from .closure import closure
-from .places import followed
+from .places import is_read
 
 PLAIN = (type(None), bool, int, float, complex, str, bytes)
 
 
 def source_digest(cls: type) -> str | None:
-    """Of a class by its source, by the functions, classes and plain values that it names, and by what these name.
+    """Return a digest of a class: its source, and recursively the functions, classes and plain values it refers to.
 
-    What comes from a module counts as everywhere: by the module's closure, or by the version of its library. None where
-    something cannot be told: source that nobody kept, or an array or an object of the notebook that is named.
+    Objects of modules count by the module's closure, or by the version of its library. None if a part cannot be
+    digested: a source that was not kept, or an array or an object of the notebook.
     """
     try:
-        found = sorted(set(_told(cls.__qualname__, cls, set())))
-    except (_UntoldError, OSError, TypeError, SyntaxError):
+        contents = sorted(set(_contents(cls.__qualname__, cls, set())))
+    except (_UnknownContentError, OSError, TypeError, SyntaxError):
         return None
-    return sha256(repr(found).encode()).hexdigest()[:24]
+    return sha256(repr(contents).encode()).hexdigest()[:24]
 
 
-class _UntoldError(Exception):
-    """Something that is named, and whose content nobody can tell."""
+class _UnknownContentError(Exception):
+    """A reference to an object whose content cannot be digested."""
 
 
-def _told(name: str, thing: Any, known: set[int]) -> Iterator[tuple[str, str]]:
-    """Names and contents of a thing, and of all that it leads to."""
-    if id(thing) in known:
+def _contents(name: str, thing: Any, seen: set[int]) -> Iterator[tuple[str, str]]:
+    """Yield the name and content of an object, and of everything that it refers to."""
+    if id(thing) in seen:
         return
-    known.add(id(thing))
-    thing = getattr(thing, "py_func", thing)  # what numba compiles
+    seen.add(id(thing))
+    thing = getattr(thing, "py_func", thing)  # of a kernel of numba
     if isinstance(thing, PLAIN):
         yield name, repr(thing)
     elif isinstance(thing, ModuleType):
         yield name, f"{thing.__name__} {_of_module(thing.__name__)}"
     elif not isinstance(module := getattr(thing, "__module__", None), str):
-        raise _UntoldError(name)
+        raise _UnknownContentError(name)
     elif _is_library(module) or closure(module).modules:
         yield name, f"{_of_module(module)} {getattr(thing, '__qualname__', thing)}"
     elif isinstance(thing, type | FunctionType):
         yield name, _source(thing)
-        for inner, value in _named(thing):
-            yield from _told(inner, value, known)
+        for inner, value in _references(thing):
+            yield from _contents(inner, value, seen)
     else:
-        raise _UntoldError(name)
+        raise _UnknownContentError(name)
 
 
 def _is_library(module: str) -> bool:
@@ -62,23 +62,23 @@ def _is_library(module: str) -> bool:
 
 def _of_module(name: str) -> str:
     top = name.partition(".")[0]
-    return closure(name).digest if followed(top) else repr(versions.of_imported([top]))
+    return closure(name).digest if is_read(top) else repr(versions.of_imported([top]))
 
 
-def _named(thing: type | FunctionType) -> Iterator[tuple[str, Any]]:
-    """What a class or a function of a notebook names of its module, and a class's bases."""
+def _references(thing: type | FunctionType) -> Iterator[tuple[str, Any]]:
+    """Yield the names of its module that a class or a function of a notebook refers to, and a class's bases."""
     functions = [thing] if isinstance(thing, FunctionType) else list(_functions(thing))
     if {name for each in functions for name in each.__code__.co_freevars} - {"__class__"}:
-        raise _UntoldError(thing.__qualname__)  # it was made in a function, and knows what that knew
+        raise _UnknownContentError(thing.__qualname__)  # it was defined in a function, and uses its variables
     if isinstance(thing, type):
         yield from ((base.__qualname__, base) for base in thing.__bases__)
-    there = vars(sys.modules[thing.__module__])
+    namespace = vars(sys.modules[thing.__module__])
     code = compile(textwrap.dedent(_source(thing)), "<source>", "exec")
-    yield from ((name, there[name]) for name in sorted(set(_names(code))) if name in there)
+    yield from ((name, namespace[name]) for name in sorted(set(_names(code))) if name in namespace)
 
 
 def _source(thing: type | FunctionType) -> str:
-    """Its text. Raises: OSError if nobody kept it."""
+    """Return the text of a class or a function. Raises: OSError if it was not kept."""
     if isinstance(thing, FunctionType):
         return inspect.getsource(thing)
     text = _cell(thing)
@@ -93,10 +93,10 @@ def _source(thing: type | FunctionType) -> str:
 
 
 def _cell(cls: type) -> str:
-    """The text that a class stands in, by one of its functions: a class itself does not say its file."""
+    """Return the text around a class, by the file of one of its functions: a class has no file."""
     for function in _functions(cls):
         return "".join(linecache.getlines(function.__code__.co_filename))
-    raise OSError(f"{cls.__name__} has no function to tell by where it stands")
+    raise OSError(f"{cls.__name__} has no function by which its source could be found")
 
 
 def _functions(cls: type) -> Iterator[FunctionType]:

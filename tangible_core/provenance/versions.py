@@ -1,4 +1,4 @@
-"""Versions of what code stands on, and the one list of libraries that change results."""
+"""Versions of the libraries below the code, and the list of libraries that change results."""
 
 import re
 import sys
@@ -19,33 +19,33 @@ LIBRARIES: Mapping[str, tuple[str, ...]] = {
     "torch": ("torch",),
     "kornia": ("kornia", "torch"),
 }
-"""What computes results, by the name that is imported: the distributions that it may come in, and those below it."""
+"""The libraries that compute results: import name -> the distributions that it may come in, and those below it."""
 
 _OTHERS: Mapping[str, tuple[str, ...]] = {"ruamel": ("ruamel.yaml",), "usb": ("pyusb",)}
-"""More that are not named as they are imported; looking one up takes a fifth of a second."""
+"""Further distributions named unlike their import; looking one up takes a fifth of a second."""
 
 _VERSION = re.compile(r"^Version:\s*(\S+)", re.MULTILINE)
 
 
 def versions(*more: str) -> dict[str, str]:
-    """Version of Python, of Tangible Images, of LIBRARIES, and of more distributions; of those that are installed."""
+    """Return the versions of Python, Tangible Images, LIBRARIES and more distributions, as far as installed."""
     return _of(["tangible-images", *(name for names in LIBRARIES.values() for name in names), *more])
 
 
 def of_imported(tops: Iterable[str]) -> dict[str, str]:
-    """Version of Python, and of what these top packages come in. One that is not in any list counts as well."""
+    """Return the versions of Python and of the distributions of these top packages, listed here or not."""
     return _of([name for top in sorted(tops) for name in _distributions(top)])
 
 
 def is_plugin(top: str) -> bool:
-    """Whether a package comes in a distribution that has plugins of Tangible Images."""
-    found = (metadata.distribution(name) for name in _distributions(top) if _version(name))
-    return any(point.group.startswith("tangible.") for each in found for point in each.entry_points)
+    """Return True if the distribution of a package has plugins of Tangible Images."""
+    installed = (metadata.distribution(name) for name in _distributions(top) if _version(name))
+    return any(point.group.startswith("tangible.") for each in installed for point in each.entry_points)
 
 
 def _of(distributions: Iterable[str]) -> dict[str, str]:
-    found = {"python": ".".join(map(str, sys.version_info[:3]))}
-    return found | {name: its for name in dict.fromkeys(distributions) if (its := _version(name))}
+    python = {"python": ".".join(map(str, sys.version_info[:3]))}
+    return python | {name: version for name in dict.fromkeys(distributions) if (version := _version(name))}
 
 
 @cache
@@ -61,10 +61,10 @@ def _distributions(top: str) -> tuple[str, ...]:
 
 @cache
 def _version(distribution: str) -> str | None:
-    """As `importlib.metadata.version`, without reading the whole description as an e-mail: in a tenth of the time."""
+    """Return a version as `importlib.metadata.version`, without parsing the whole e-mail: in a tenth of the time."""
     try:
         text = metadata.distribution(distribution).read_text("METADATA")
     except metadata.PackageNotFoundError:
         return None
-    found = _VERSION.search(text or "")
-    return found[1] if found else metadata.version(distribution)
+    match = _VERSION.search(text or "")
+    return match[1] if match else metadata.version(distribution)

@@ -1,4 +1,4 @@
-"""Waits for numba to be imported, and has its cache told what kernels depend on."""
+"""A hook that extends numba's cache as soon as numba is imported (see `numba_cache`)."""
 
 import sys
 from collections.abc import Callable, Sequence
@@ -9,9 +9,9 @@ CACHING = "numba.core.caching"
 
 
 def watch_numba() -> None:
-    """See to it that numba's cache knows what kernels depend on: now, or as soon as numba is imported."""
+    """Extend numba's cache by the dependencies of kernels, now or as soon as numba is imported."""
     if CACHING in sys.modules:
-        _tell(sys.modules[CACHING])
+        _extend(sys.modules[CACHING])
     elif not any(isinstance(each, _Watch) for each in sys.meta_path):
         sys.meta_path.insert(0, _Watch())
 
@@ -22,7 +22,7 @@ class _Watch:
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """What the other finders say of numba's cache, which is told once it has run; of anything else nothing."""
+        """Find numba's cache by the other finders, to be extended after its import; None for any other module."""
         if fullname != CACHING:
             return None
         from importlib.util import find_spec
@@ -30,19 +30,19 @@ class _Watch:
         sys.meta_path.remove(self)
         spec = find_spec(fullname)
         if spec and spec.loader:
-            vars(spec.loader)["exec_module"] = _then_told(spec.loader.exec_module)
+            vars(spec.loader)["exec_module"] = _then_extend(spec.loader.exec_module)
         return spec
 
 
-def _then_told(run: Callable[[ModuleType], None]) -> Callable[[ModuleType], None]:
-    def run_and_tell(module: ModuleType) -> None:
+def _then_extend(run: Callable[[ModuleType], None]) -> Callable[[ModuleType], None]:
+    def run_and_extend(module: ModuleType) -> None:
         run(module)
-        _tell(module)
+        _extend(module)
 
-    return run_and_tell
+    return run_and_extend
 
 
-def _tell(caching: ModuleType) -> None:
-    from .numba_cache import tell
+def _extend(caching: ModuleType) -> None:
+    from .numba_cache import extend
 
-    tell(caching)
+    extend(caching)

@@ -1,1 +1,1 @@
-"""What surrounds our code: child processes, standard output, OpenCV, torch."""
+"""The surroundings of the program: child processes, signals, standard output, threads, OpenCV, torch."""

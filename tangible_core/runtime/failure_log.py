@@ -1,4 +1,4 @@
-"""Tracebacks, kept in a file: a person is told one sentence, and where the file is for whoever repairs it."""
+"""The log of tracebacks: the user gets one sentence with the path of this file, for the person who repairs it."""
 
 import os
 import shlex
@@ -11,20 +11,20 @@ from ..errors import OutputError
 
 NAME, OLDER = "failures.log", "failures.old.log"
 MOST_BYTES = 1_000_000
-"""Of the file: one that is larger becomes the older one, and a new one is begun."""
+"""The size from which the log is rotated to the older file."""
 
 
 def log_folder() -> Path:
-    """$TANGIBLE_LOG_DIR, or the user's folder of logs."""
+    """Return $TANGIBLE_LOG_DIR, or the user's folder for logs."""
     if named := os.environ.get("TANGIBLE_LOG_DIR"):
-        return Path(os.path.expanduser(named))  # noqa: PTH111 - which leaves a home that nobody has as it is
+        return Path(os.path.expanduser(named))  # noqa: PTH111 - pathlib raises for an unknown home
     from platformdirs import user_log_path
 
     return user_log_path("tangible-images")
 
 
 def keep(error: BaseException) -> Path:
-    """Append an error's traceback, when it happened and in which command; returns the file.
+    """Append an error's traceback with the time and the command, and return the file.
 
     Raises: OutputError if it cannot be written.
     """
@@ -43,7 +43,7 @@ def keep(error: BaseException) -> Path:
 
 
 def where_kept(error: BaseException) -> str:
-    """Keep a traceback, and say where it is: the end of a sentence.
+    """Keep a traceback, and return where it is, as the end of a sentence.
 
     >>> where_kept(ValueError()).startswith("the traceback is in ")
     True

@@ -1,4 +1,4 @@
-"""OpenCV with one arithmetic on every processor."""
+"""OpenCV with the same arithmetic on every processor, with limited threads, and without messages."""
 
 import os
 from collections.abc import Generator
@@ -12,21 +12,21 @@ _LOCK = Lock()
 _users = 0
 _limits: list[int] = []
 _before = (True, 1)
-"""Whether OpenCV was optimised, and its threads, before the first of them came."""
-_silent, _loud = 0, 0
-"""How many want it to be silent, and the level of its log before the first of them came."""
+"""OpenCV's own setting (is it optimised, number of threads) before the first block."""
+_silent, _log_level = 0, 0
+"""The number of blocks that want OpenCV silent, and its log level before the first of them."""
 _QUIET = "-8"  # AV_LOG_QUIET
 
 
 @contextmanager
 def plain_opencv() -> Generator[None]:
-    """OpenCV without the code that it chooses by the processor, its own and Intel's IPP.
+    """Run OpenCV in this block without code for special processors, its own and Intel's IPP.
 
-    With that code the last bits of floating-point filters, of interpolation and of SIFT differ between processors that
-    fuse multiplication and addition and those that do not, between vector widths, and from run to run with the place of
-    an array in memory. OpenCV's own code is switched for the whole process, until the last thread has left. IPP is
-    switched for one thread alone: so this stands where the call is, inside a thread's own work, and OpenCV has no
-    threads meanwhile, of which some would use IPP and others not. A Gaussian takes 15 % longer.
+    With that code the last bits of floating-point filters, of interpolation and of SIFT differ between processors with
+    and without fused multiplication and addition, between vector widths, and between runs by the address of an array.
+    OpenCV's own code is switched for the whole process, until the last thread has left its block. IPP is switched for
+    one thread only: so the block must be inside the thread that calls OpenCV, and OpenCV has no threads of its own
+    meanwhile, some of which would use IPP. A Gaussian takes 15 % longer.
     """
     global _users
     import cv2
@@ -48,7 +48,7 @@ def plain_opencv() -> Generator[None]:
 
 @contextmanager
 def opencv_at_most(threads: int) -> Generator[None]:
-    """OpenCV with no more threads than these, for the whole process."""
+    """Limit the threads of OpenCV in this block, for the whole process."""
     import cv2
 
     with _LOCK:
@@ -65,19 +65,19 @@ def opencv_at_most(threads: int) -> Generator[None]:
 
 @contextmanager
 def silent_opencv() -> Generator[None]:
-    """OpenCV, and FFmpeg in it, without a word on standard error, for the whole process until the last one has left.
+    """Silence OpenCV, and FFmpeg in it, on standard error, for the whole process until the last block has ended.
 
-    FFmpeg reads how much it may say once, when the first video is opened; who has set it (OPENCV_FFMPEG_LOGLEVEL) to
-    look for a fault is heard.
+    FFmpeg reads its log level once, when the first video is opened; a level that the user has set
+    (OPENCV_FFMPEG_LOGLEVEL) is kept.
     """
-    global _silent, _loud
+    global _silent, _log_level
     import cv2
 
     logging: Any = cv2.utils.logging
     with _LOCK:
         if not _silent:
             os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", _QUIET)
-            _loud = logging.getLogLevel()
+            _log_level = logging.getLogLevel()
             logging.setLogLevel(logging.LOG_LEVEL_SILENT)
         _silent += 1
     try:
@@ -86,7 +86,7 @@ def silent_opencv() -> Generator[None]:
         with _LOCK:
             _silent -= 1
             if not _silent:
-                logging.setLogLevel(_loud)
+                logging.setLogLevel(_log_level)
 
 
 limiters.append(opencv_at_most)
@@ -99,7 +99,7 @@ def _remember(cv2: Any) -> None:
 
 
 def _switch(cv2: Any) -> None:
-    """To what all who are in a block need together."""
+    """Set OpenCV to the strictest setting of all open blocks."""
     optimised, threads = _before
     cv2.setUseOptimized(optimised and not _users)
     cv2.setNumThreads(1 if _users else min([threads, *_limits]))

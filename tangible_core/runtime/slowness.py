@@ -1,4 +1,4 @@
-"""Work that may hang: what it is, said to a person once it has taken long."""
+"""A warning for work that takes long and may hang."""
 
 import logging
 import threading
@@ -6,11 +6,12 @@ from collections.abc import Generator
 from contextlib import contextmanager
 
 LONG_S = 5.0
+"""The time until the warning, s."""
 
 
 @contextmanager
-def said_if_slow(log: logging.Logger, what: str) -> Generator[None]:
-    """While this is open for longer than `LONG_S`, a warning says so, and how to end it."""
+def warn_if_slow(log: logging.Logger, what: str) -> Generator[None]:
+    """Log a warning, with the way to end the work, if this block takes longer than `LONG_S`."""
     timer = threading.Timer(LONG_S, log.warning, ["%s has taken %g s so far and goes on; Ctrl-C ends it", what, LONG_S])
     timer.daemon = True
     timer.start()

@@ -1,6 +1,6 @@
-"""Standard output belongs to the program: while one of its commands runs, what plugins print goes to standard error.
+"""Protection of standard output: while a command runs, output of plugins goes to standard error.
 
-Not only `print`: a library in C writes to file 1, and so does a process that a plugin starts.
+This includes libraries in C, which write to file 1, and processes that a plugin starts.
 """
 
 import io
@@ -14,34 +14,34 @@ from ..errors import OutputError
 
 OUT, ERR = 1, 2
 _own: list[TextIO] = []
-"""Where the program writes while `kept` is open."""
+"""The program's own stream while `protect` is open."""
 
 
 def stream() -> TextIO | None:
-    """Where the program's own results go; None where there is no standard output at all."""
+    """Return the stream for the program's own results; None if there is no standard output."""
     return _own[-1] if _own else sys.stdout
 
 
 @contextmanager
-def kept() -> Generator[None]:
-    """While this is open, only `stream()` leads to standard output; all else goes to standard error.
+def protect() -> Generator[None]:
+    """Lead only `stream()` to standard output in this block, and all else to standard error.
 
-    Where `sys.stdout` is not the process's own, as in a notebook, it alone is changed. A reader that goes away is no
-    error: what comes later is written to nowhere. Raises: OutputError if what is written does not fit.
+    If `sys.stdout` is not the process's own, as in a notebook, only it is changed. A reader that goes away is not an
+    error: later output is discarded. Raises: OutputError if the output cannot be written.
     """
     if _own:
         yield
         return
-    _fill()
+    _fill_closed()
     with ExitStack() as undo:
-        _own.append(_aside(sys.stdout, undo) if _is_file_1(sys.stdout) else _instead(sys.stdout, undo))
+        _own.append(_move_aside(sys.stdout, undo) if _is_file_1(sys.stdout) else _replace(sys.stdout, undo))
         undo.callback(_own.clear)
         yield
         _own[-1].flush()
 
 
 def leave() -> None:
-    """The program has said all: what libraries in C hold back, they write when the process ends, to standard error."""
+    """End the program's output: buffers that C libraries flush at exit go to standard error."""
     if _is_file_1(sys.stdout):
         try:
             sys.stdout.flush()
@@ -51,12 +51,12 @@ def leave() -> None:
 
 
 def give_up(error: OSError) -> OutputError:
-    """After an error of `sys.stdout` itself: what it still holds goes nowhere, and this is to be said."""
+    """Discard the rest of a failing `sys.stdout`, and return the error to raise."""
     _lead_nowhere(OUT)
-    return OutputError(_refused(error))
+    return OutputError(_refusal(error))
 
 
-def _refused(error: OSError) -> str:
+def _refusal(error: OSError) -> str:
     return f"standard output cannot be written: {error.strerror}"
 
 
@@ -68,7 +68,7 @@ def _lead_nowhere(number: int) -> None:
 
 @final
 class _Output(io.RawIOBase):
-    """A file by its number, for a reader that may go away."""
+    """A file by its number whose reader may go away."""
 
     def __init__(self, number: int) -> None:
         self._number = number
@@ -89,7 +89,7 @@ class _Output(io.RawIOBase):
             _lead_nowhere(self._number)
             return memoryview(data).nbytes
         except OSError as error:
-            raise OutputError(_refused(error)) from error
+            raise OutputError(_refusal(error)) from error
 
     def close(self) -> None:
         if not self.closed:
@@ -97,8 +97,8 @@ class _Output(io.RawIOBase):
             os.close(self._number)
 
 
-def _aside(stdout: io.TextIOWrapper, undo: ExitStack) -> TextIO:
-    """Standard output by another number, and standard error in its place, until it is undone."""
+def _move_aside(stdout: io.TextIOWrapper, undo: ExitStack) -> TextIO:
+    """Move standard output to another number and put standard error in its place, until undone."""
     stdout.flush()
     raw = _Output(os.dup(OUT))
     by_lines, at_once = stdout.line_buffering, stdout.write_through
@@ -106,7 +106,7 @@ def _aside(stdout: io.TextIOWrapper, undo: ExitStack) -> TextIO:
     own = io.TextIOWrapper(binary, stdout.encoding, stdout.errors, line_buffering=by_lines, write_through=at_once)
     undo.callback(_close, own)
     undo.callback(os.dup2, raw.fileno(), OUT)
-    undo.callback(stdout.reconfigure, line_buffering=by_lines)  # and what plugins wrote is flushed
+    undo.callback(stdout.reconfigure, line_buffering=by_lines)  # this flushes the output of plugins
     stdout.reconfigure(line_buffering=True)
     os.dup2(ERR, OUT)
     return own
@@ -119,20 +119,20 @@ def _is_file_1(stdout: TextIO | None) -> TypeGuard[io.TextIOWrapper]:
         return False
 
 
-def _instead(stdout: TextIO | None, undo: ExitStack) -> TextIO:
-    """Whatever stands for standard output, and `sys.stderr` in its place."""
+def _replace(stdout: TextIO | None, undo: ExitStack) -> TextIO:
+    """Put `sys.stderr` in the place of a `sys.stdout` that is not file 1, until undone; return that stream."""
     undo.callback(setattr, sys, "stdout", stdout)
     sys.stdout = sys.stderr
     return undo.enter_context(open(os.devnull, "w")) if stdout is None else stdout  # noqa: PTH123
 
 
-def _fill() -> None:
-    """Lead standard streams that are closed to nowhere: a file that is opened next would have their number."""
+def _fill_closed() -> None:
+    """Open the null device for closed standard streams: else the next opened file would get their number."""
     while (number := os.open(os.devnull, os.O_RDWR)) <= ERR:
         pass
     os.close(number)
 
 
 def _close(own: TextIO) -> None:
-    with suppress(OutputError):  # said already, when it was flushed
+    with suppress(OutputError):  # reported already, when it was flushed
         own.close()

@@ -1,4 +1,4 @@
-"""Stopping long work from another thread: it looks, between its parts, whether it shall go on."""
+"""Stopping of long work from another thread: the work checks between its parts whether to go on."""
 
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -7,12 +7,12 @@ from threading import Event
 
 from ..errors import Stopped
 
-_asked: ContextVar[Event | None] = ContextVar("tangible_stop", default=None)
+_stop: ContextVar[Event | None] = ContextVar("tangible_stop", default=None)
 
 
 @contextmanager
 def stoppable(stop: Event | None) -> Generator[None]:
-    """Work in this block ends with `Stopped`, soon after the event is set; None leaves an event of a block around it.
+    """End work in this block with `Stopped` soon after the event is set; None keeps the event of an outer block.
 
     >>> stop = Event()
     >>> stop.set()
@@ -21,20 +21,20 @@ def stoppable(stop: Event | None) -> Generator[None]:
     Traceback (most recent call last):
     tangible_core.errors.Stopped: stopped by the program that asked for it; what was finished is kept
     """
-    token = _asked.set(_asked.get() if stop is None else stop)
+    token = _stop.set(_stop.get() if stop is None else stop)
     try:
         yield
     finally:
-        _asked.reset(token)
+        _stop.reset(token)
 
 
 def stop_asked() -> bool:
-    """Whether the work that this is part of shall end."""
-    stop = _asked.get()
+    """Return True if the current work shall end."""
+    stop = _stop.get()
     return stop is not None and stop.is_set()
 
 
 def check_stopped() -> None:
-    """For long work, between its parts. Raises: Stopped if it shall end."""
+    """Raise `Stopped` if the current work shall end; long work calls this between its parts."""
     if stop_asked():
         raise Stopped

@@ -1,4 +1,4 @@
-"""The optional torch extra: its import, or the words to install it, and the device to compute on."""
+"""The optional torch extra: its import, the way to install it, and the device to compute on."""
 
 import sys
 from collections.abc import Generator
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
     import torch
 
 TorchDevice = Literal["auto", "cpu", "cuda"]
-"""Where to compute; `auto` takes a GPU when there is one."""
+"""The device to compute on; `auto` takes a GPU if there is one."""
 _own_threads = 0
-"""Torch's threads before a limit was put on it as it was imported."""
+"""Torch's own number of threads, if it was limited when it was imported."""
 
 
 def need(name: str) -> ModuleType:
-    """The module `torch` or `kornia`, or one of theirs.
+    """Import `torch` or `kornia`, or a module of theirs.
 
-    Raises: BrokenMethod saying how to install them.
+    Raises: BrokenMethod with the way to install them.
     """
     global _own_threads
     fresh = "torch" not in sys.modules
@@ -40,7 +40,7 @@ def need(name: str) -> ModuleType:
 
 @contextmanager
 def torch_at_most(threads: int) -> Generator[None]:
-    """Torch with no more threads than these; if it is imported within the block, from then on."""
+    """Limit the threads of torch in this block; if it is imported within the block, from then on."""
     torch = sys.modules.get("torch")
     before = torch.get_num_threads() if torch else None
     if torch and before:
@@ -56,7 +56,7 @@ limiters.append(torch_at_most)
 
 
 def pick_device(wanted: TorchDevice) -> "torch.device":
-    """Raises: BrokenMethod if torch is missing, or a GPU is asked for and there is none."""
+    """Return the device to compute on. Raises: BrokenMethod without torch, or without the requested GPU."""
     torch = need("torch")
     if wanted == "cuda" and not torch.cuda.is_available():
         raise BrokenMethod("torch_device is 'cuda', but torch finds no such GPU here; use 'auto' or 'cpu'")

@@ -10,7 +10,7 @@ from typing import IO, Any, NamedTuple
 
 import numpy as np
 
-from ..errors import BrokenMethod, TangibleError, exited
+from ..errors import BrokenMethod, TangibleError, exit_error
 from ..plugins.failures import remember_place, sentence
 from ..plugins.interfaces import HapticDevice
 from ..runtime.child_process import dumps
@@ -67,7 +67,7 @@ class End(NamedTuple):
 def sendable(error: BaseException) -> Exception:
     """Return the error if it can be pickled as it is, or else a `BrokenMethod` with its origin, name and text."""
     if isinstance(error, SystemExit):
-        return exited(error)
+        return exit_error(error)
     try:
         if not isinstance(error, TangibleError):
             remember_place(error, "".join(traceback.format_exception(error)))

@@ -1,4 +1,4 @@
-"""What messages may hold of somebody else's text."""
+"""Messages with foreign text: printable and short."""
 
 import pickle
 
@@ -22,46 +22,46 @@ from tangible_core.errors import (
 
 
 @given(st.lists(st.text(st.characters(), max_size=2000), max_size=50))
-def test_whatever_stands_in_a_complaint_it_is_one_line_of_print(complaints: list[str]):
+def test_complaint_of_any_text_is_one_printable_line(complaints: list[str]):
     lines = str(TangibleError(*complaints)).split("\n")
     assert all(line.isprintable() and len(line) <= MOST_IN_LINE for line in lines)
     assert len(lines) == min(max(1, len(complaints)), MOST_LINES + (len(complaints) > MOST_LINES))
 
 
-def test_plain_complaints_stay_as_they_are():
+def test_complaint_of_plain_text_is_unchanged():
     assert str(ConfigError("a.yaml:1:1: wörong", "a.yaml:2:1: again")) == "a.yaml:1:1: wörong\na.yaml:2:1: again"
 
 
-def test_of_many_complaints_the_first_are_shown_and_the_rest_counted():
+def test_message_of_many_complaints_shows_the_first_and_counts_the_rest():
     lines = str(ConfigError(*map(str, range(MOST_LINES + 7)))).splitlines()
     assert lines == [*map(str, range(MOST_LINES)), "and 7 more"]
 
 
-def test_what_a_terminal_obeys_is_written_out():
+def test_control_characters_are_escaped():
     assert str(TangibleError("a\x1b[31m\r\nb\u2028\u202e\udcff")) == r"a\x1b[31m\r\nb\u2028\u202e\udcff"
 
 
-def test_of_a_long_line_both_ends_are_kept():
+def test_long_line_keeps_both_ends():
     line = str(TangibleError("the place: " + "x" * 10_000 + "; the cure"))
     assert len(line) == MOST_IN_LINE
     assert line.startswith("the place: xxx")
     assert line.endswith("xxx; the cure")
 
 
-def test_what_is_escaped_is_no_longer_than_what_is_not():
+def test_escaped_text_keeps_the_maximum_length():
     assert len(shown("\U000e0001" * 70)) == MOST_QUOTED
 
 
-def test_an_error_says_the_same_in_another_process():
+def test_pickled_error_has_the_same_message():
     error = ConfigError("a\x1b", "b")
     assert str(pickle.loads(pickle.dumps(error))) == str(error)
 
 
-def test_places_of_complaints_go_along_and_are_lines_of_print():
+def test_pickled_config_error_keeps_printable_complaints_with_places():
     error = ConfigError("p.yaml:3:1: a\x1b", complaints=[Complaint(("render", "use"), "a\x1b" * 999, 3, 1)])
-    (found,) = pickle.loads(pickle.dumps(error)).complaints
-    assert (found.location, found.line, found.column) == (("render", "use"), 3, 1)
-    assert found.text.isprintable() and len(found.text) <= MOST_IN_LINE
+    (complaint,) = pickle.loads(pickle.dumps(error)).complaints
+    assert (complaint.location, complaint.line, complaint.column) == (("render", "use"), 3, 1)
+    assert complaint.text.isprintable() and len(complaint.text) <= MOST_IN_LINE
     assert ConfigError("no place").complaints == (Complaint((), "no place"),)
 
 
@@ -69,11 +69,11 @@ LONG = ("x" * 10**6, 10**5000, -(10**5000), [[[[1] * 99] * 99] * 99] * 99, {"k":
 
 
 @pytest.mark.parametrize("value", LONG, ids=lambda each: type(each).__name__)
-def test_a_value_is_quoted_in_few_words(value: object):
+def test_quoted_value_of_any_size_is_short(value: object):
     assert len(quoted(value)) <= MOST_QUOTED
 
 
-def test_a_parsers_own_values_are_quoted_as_what_they_are():
+def test_quoted_values_of_a_parser_look_like_plain_ones():
     from ruamel.yaml import YAML
 
     tree = YAML(typ="rt").load("{a: [1, 2.5, 'x', 0x1F], b: {c: yes}}")
@@ -83,21 +83,21 @@ def test_a_parsers_own_values_are_quoted_as_what_they_are():
     assert quoted(YAML(typ="rt").load(f"[{', '.join('x' * 500)}]")) == "['x', 'x', 'x', 'x', 'x', 'x', ...]"
 
 
-def test_a_long_word_is_near_to_none():
+def test_long_word_gets_no_hint():
     assert did_you_mean("x" * 1000, ["x" * 1000]) == ""
     assert "'dep\\x1bth'" in did_you_mean("depth", ["dep\x1bth"])
 
 
-def test_a_method_of_a_long_name_is_unknown():
+def test_unknown_method_of_a_long_name_gives_a_short_message():
     assert len(str(UnknownMethod("depth", "x" * 10_000, ["zncc"]))) < 200
 
 
 @pytest.mark.parametrize("value", [0, -1.0, float("nan"), float("inf"), -float("inf")])
-def test_a_number_that_is_not_positive_and_finite(value: float):
+def test_check_positive_refuses_other_numbers(value: float):
     with pytest.raises(ConfigError, match=f"^seconds: is {value}; it must be positive and finite$"):
         check_positive("seconds", value)
 
 
 @pytest.mark.parametrize("value", [5e-324, 1, 1.7e308])
-def test_a_number_that_is(value: float):
+def test_check_positive_accepts_positive_finite_numbers(value: float):
     check_positive("seconds", value)

@@ -1,4 +1,4 @@
-"""The three pictures that were drawn over by hand, as exporters are given them; and files of theirs as pixels."""
+"""Works of the three pictures with parts drawn by hand, for exporters; and exported files as pixels."""
 
 import subprocess
 from functools import cache
@@ -17,13 +17,13 @@ PICTURES = ("astronaut", "coffee", "motorcycle")
 
 @cache
 def simplified(name: str, width_m: float) -> PartMap:
-    """As the pipeline makes them."""
+    """Return the simplified parts, as the pipeline makes them."""
     made = drawn(name)
     return simplify(made.parts, width_m, SimplifyChoice(), made.names)
 
 
 def work_of(name: str, exporter: Exporter) -> Work:
-    """With the products that this exporter needs, made for its width."""
+    """Return a work with the products that this exporter needs, made for its width."""
     made = drawn(name)
     rows, columns = made.parts.labels.shape
     width_m = exporter.picture_width_m(columns / rows)
@@ -37,29 +37,29 @@ def work_of(name: str, exporter: Exporter) -> Work:
 
 
 def labels_work(labels: np.ndarray, names: tuple[str, ...] = (), title: str = "Map", language: str = "en") -> Work:
-    """Of a map of labels, each a part."""
+    """Return a work of a map of labels, each a part."""
     parts = PartMap(np.asarray(labels, np.int32), tuple(range(int(labels.max()) + 1)))
     return Work(title, language, {"simplified": parts}, None, names)
 
 
 def pixels(svg: Path, per_inch: float) -> np.ndarray:
-    """An SVG of millimetres as grey levels, drawn by librsvg."""
+    """Return an SVG in millimetres as grey levels, drawn by librsvg."""
     words = ["rsvg-convert", "-d", f"{per_inch}", "-p", f"{per_inch}", "-b", "white", str(svg)]
-    return _decoded(subprocess.run(words, check=True, capture_output=True).stdout)[..., 0]
+    return _decode(subprocess.run(words, check=True, capture_output=True).stdout)[..., 0]
 
 
 def alpha(svg: Path, columns: int, rows: int) -> np.ndarray:
-    """An SVG without a ground at one pixel a unit, drawn by librsvg: how opaque each is."""
+    """Return the alpha of an SVG at one pixel a unit, drawn by librsvg."""
     words = ["rsvg-convert", "-w", f"{columns}", "-h", f"{rows}", str(svg)]
-    return _decoded(subprocess.run(words, check=True, capture_output=True).stdout)[..., 3]
+    return _decode(subprocess.run(words, check=True, capture_output=True).stdout)[..., 3]
 
 
 def pdf_pixels(pdf: Path, page: int, per_inch: float) -> np.ndarray:
-    """A page of a PDF as grey levels, drawn by poppler."""
+    """Return a page of a PDF as grey levels, drawn by poppler."""
     words = ["pdftoppm", "-r", f"{per_inch}", "-f", f"{page}", "-l", f"{page}", "-gray", "-png", str(pdf)]
-    return _decoded(subprocess.run(words, check=True, capture_output=True).stdout)[..., 0]
+    return _decode(subprocess.run(words, check=True, capture_output=True).stdout)[..., 0]
 
 
-def _decoded(png: bytes) -> np.ndarray:
+def _decode(png: bytes) -> np.ndarray:
     picture = cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_UNCHANGED)
     return picture[..., None] if picture.ndim == 2 else picture

@@ -1,4 +1,4 @@
-"""Simulated Falcons for the tests, on lines as bad as they like."""
+"""Simulated Falcons for the tests, on lines with faults."""
 
 from collections.abc import Callable
 from functools import partial
@@ -22,7 +22,7 @@ from tangible_devices.paths import press, walk
 
 
 class StillHand:
-    """Holds the grip where it is."""
+    """A hand that holds the grip still."""
 
     buttons = 0
 
@@ -31,7 +31,7 @@ class StillHand:
 
 
 class Line:
-    """What happens to the bytes from the processor: damage to the one at this place, once unless `again`."""
+    """The faults of a line: damage to the byte at this place from the processor, once unless `again`; late replies."""
 
     def __init__(
         self,
@@ -46,14 +46,14 @@ class Line:
         self.damage, self.at, self.again, self.late_reply = damage, at, again, late_reply
         self.swallowed, self.leading_zero, self.payload_bytes = swallowed, leading_zero, payload_bytes
         self.resets = 0
-        self._said = 0
+        self._sent_bytes = 0
 
-    def spoil(self, said: int, data: bytes) -> bytes:
+    def spoil(self, sent: int, data: bytes) -> bytes:
         if data.endswith(b"\x0aD,\x0d"):
             self.resets += 1
-            self._said = 0
-        at = self.at - self._said
-        self._said += len(data)
+            self._sent_bytes = 0
+        at = self.at - self._sent_bytes
+        self._sent_bytes += len(data)
         if not self.damage or not 0 <= at < len(data):
             return data
         changed = {"flip": bytes([data[at] ^ 0x10]), "drop": b"", "double": data[at : at + 1] * 2}[self.damage]
@@ -65,23 +65,23 @@ class Line:
 
 
 def bus_of(line: Line) -> Bus:
-    """A bus with one Falcon on this line, held still."""
+    """Return a bus with one Falcon on this line, held still."""
     processor = Processor(Body(StillHand(), np.array([0.3, 1.0, 0.4, 300.0, 6.0])), line.swallowed, line.leading_zero)
     return Bus([Unit(Chip(processor, SimulatedClock(), line.spoil, line.delay, line.payload_bytes))])
 
 
 def opener_of(bus: Bus) -> Callable[[], Port]:
-    """Opens its first Falcon."""
+    """Return a function that opens the first Falcon of a bus."""
     return partial(open_port, None, 0, bus)
 
 
 def held_bus(serials: tuple[str, ...] = ("SIM0001",), faults: tuple[Fault, ...] = ()) -> tuple[Bus, SimulatedClock]:
-    """A bus with Falcons, each held by a hand that homes it, and its clock."""
+    """Return a bus with Falcons, each held by a hand that homes it, and its clock."""
     clock = SimulatedClock()
     stroke = walk(press((0.05, 0.035), 2, -0.005, 0.02), 0.08, 0.001)
     return Bus([simulated_falcon(clock, stroke, 0.02, VirtualHand(), serial) for serial in serials], faults), clock
 
 
 def open_on(bus: Bus, clock: SimulatedClock, **options: Any) -> FalconLink:
-    """The driver on this bus."""
+    """Open the first Falcon of a bus by the driver, with these options."""
     return open_falcon(Falcon(**options).settings(), synthetic_image(), bus, clock)

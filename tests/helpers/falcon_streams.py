@@ -1,4 +1,4 @@
-"""Damaged streams of a Falcon's answers, and what the driver makes of them; compiled, as there are many."""
+"""Damaged streams of a Falcon's answers, and the positions that the driver reads from them; compiled for speed."""
 
 # ruff: noqa: NPY002 -- numba knows the legacy generator, which is quicker to seed
 
@@ -11,13 +11,13 @@ from tangible_devices.falcon.kernels import framing, packet, tick
 
 receive, read, encode, counts_of = framing.receive, tick.read, packet.encode, packet.decode
 SENT, WHOLE = 9, 2
-"""Answers in a stream, and how many at its beginning and at its end are whole."""
+"""Number of answers in a stream, and of whole ones at its beginning and at its end."""
 LOST, GAINED, SWAPPED, NOISE = 1, 2, 4, 8
-"""Kinds of damage, as bits: bytes that are missing, that are too many, that are others, that are all there is."""
+"""Kinds of damage, as bits: lost bytes, additional bytes, wrong bytes, noise alone."""
 
 
 def buffers(samples: int = 16) -> tick.Buffers:
-    """Those of a link with the default calibration."""
+    """Return the buffers of a link with the default calibration."""
     return tick.Buffers(
         answer=np.zeros(16, np.uint8),
         packet=np.zeros(16, np.uint8),
@@ -30,8 +30,8 @@ def buffers(samples: int = 16) -> tick.Buffers:
 
 
 @njit(cache=True)
-def damaged(stream, size, kinds, damage, out):
-    """Copy the stream with some bytes lost, gained or swapped; (size, how much of the damage was done)."""
+def damage_bytes(stream, size, kinds, damage, out):
+    """Copy the stream with some bytes lost, gained or swapped; return (size, number of damages)."""
     done, length = 0, 0
     for i in range(size):
         if kinds & 7 and np.random.random() < damage:
@@ -52,7 +52,7 @@ def damaged(stream, size, kinds, damage, out):
 
 @njit(cache=True)
 def feed(data, size, begun, fixed, state, true, sent, found):
-    """Data in IN transfers of random sizes; found: positions, those never sent, the worst of these in counts."""
+    """Feed data in IN transfers of random sizes; found: positions, those never sent, the worst error in counts."""
     chunk = np.zeros(64, np.uint8)
     at = 0
     while at < size:
@@ -71,7 +71,7 @@ def feed(data, size, begun, fixed, state, true, sent, found):
 
 @njit(cache=True)
 def fuzz(streams, kinds, damage, seed, fixed):
-    """(positions taken, positions that were never sent, the worst of these in counts, streams not resumed in time).
+    """Return (positions, positions never sent, the worst error in counts, streams without recovery in time).
 
     A stream is two whole answers, some damaged ones and two whole ones, the last of which must be taken.
     """
@@ -94,7 +94,7 @@ def fuzz(streams, kinds, damage, seed, fixed):
                     one[i] = np.random.randint(0, 256)
                 size = np.random.randint(0, 17)
             else:
-                size, _done = damaged(stream, 16, 0 if whole else kinds, damage, one)
+                size, _done = damage_bytes(stream, 16, 0 if whole else kinds, damage, one)
             fixed[3][tick.NOW] += 0.001
             feed(one, size, begun, fixed, state, true, k + 1, found)
         row = fixed[4][fixed[2][tick.HEAD]]

@@ -1,4 +1,4 @@
-"""A Haply service that is not there: the same messages, for tests and for trying things out."""
+"""A mock of Haply's service, with the same messages."""
 
 import json
 import math
@@ -14,11 +14,11 @@ from websockets.sync.server import ServerConnection, serve
 from tangible_core.data import NO_FORCE, Force, Vector
 
 Motion = Callable[[float], tuple[Vector, Vector]]
-"""Position and velocity at a time in seconds."""
+"""A function that gives position and velocity at a time in seconds."""
 
 
 def circling(time_s: float) -> tuple[Vector, Vector]:
-    """A circle of 2 cm around (0, -0.14, 0.12), once a second."""
+    """Move on a circle of 2 cm around (0, -0.14, 0.12), once a second."""
     turn, rate, radius = 2 * math.pi * time_s, 2 * math.pi, 0.02
     x, y = radius * math.cos(turn), radius * math.sin(turn)
     return (x, y - 0.14, 0.12), (-rate * y, rate * x, 0.0)
@@ -26,7 +26,7 @@ def circling(time_s: float) -> tuple[Vector, Vector]:
 
 @final
 class MockService:
-    """Serves on a free port of this machine, as a context manager; every arm makes the same motion.
+    """A service on a free port of this machine, as a context manager; every arm makes the same motion.
 
     A full snapshot on connecting, then one state for each message. A force lapses when no other one has come for
     lapse_s, and when its session ends.
@@ -40,9 +40,9 @@ class MockService:
         self.tells_velocity = True
         self.button = False
         self.mute = False
-        """Takes messages and answers none, as a service that hangs."""
+        """True to leave messages without an answer, as a service that hangs."""
         self.messages: list[Any] = []
-        """Every message that came."""
+        """All messages received."""
         self._forces: dict[str, tuple[float, Force]] = {}
         self._lock = Lock()
         self._server = serve(self._talk, "127.0.0.1", 0, compression=None, ping_interval=None, close_timeout=1)
@@ -50,11 +50,11 @@ class MockService:
 
     @property
     def uri(self) -> str:
-        """Where it listens."""
+        """Address of the service."""
         return f"ws://127.0.0.1:{self._server.socket.getsockname()[1]}"
 
     def force(self, device_id: str = "049D") -> Force:
-        """What an arm's motors do now."""
+        """Return the force of an arm's motors."""
         with self._lock:
             since, force = self._forces.get(device_id, (0.0, NO_FORCE))
         return force if time.monotonic() - since <= self.lapse_s else NO_FORCE

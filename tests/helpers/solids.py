@@ -19,32 +19,32 @@ FORMATS: dict[str, type[Exporter]] = {"stl": Stl, "3mf": ThreeMF, "glb": Glb}
 
 
 class Mesh(NamedTuple):
-    """In millimetres, x to the right, y to the back, z up; from the lower left corner of the plate on."""
+    """A mesh in millimetres, x to the right, y to the back, z up; from the lower left corner of the plate on."""
 
     vertices: np.ndarray
     triangles: np.ndarray
 
 
 def work(heights_m: Any, width_m: float = 0.02, title: str = "", **more: Any) -> Work:
-    """A relief of square cells, to be exported."""
+    """Return a work with a relief of square cells."""
     heights = np.ascontiguousarray(heights_m, np.float32)
     relief = Relief(heights, (width_m, width_m * heights.shape[0] / heights.shape[1]))
     return Work(title, more.pop("language", "en"), {"relief": relief}, **more)
 
 
 def bare(cls: type[Exporter], **options: Any) -> Exporter:
-    """The picture alone, without a rim."""
+    """Return an exporter of the picture alone, without a rim."""
     return cls.model_validate({"rim_m": 0.0, "braille": False, "corner_mark": False, **options})
 
 
 def write_and_read(exporter: Exporter, work: Work, folder: Path) -> Mesh:
-    """The solid of the one file that is write_and_read."""
+    """Write the one file of a work, and read its solid."""
     (path,) = exporter.write(work, folder / "solid")
     return read(path)
 
 
 def read(path: Path) -> Mesh:
-    """By the ending of the file: STL by its specification, 3MF by lib3mf, GLB by trimesh."""
+    """Read a solid by the ending of its file: STL by its specification, 3MF by lib3mf, GLB by trimesh."""
     return _READERS[path.suffix](path)
 
 
@@ -70,7 +70,7 @@ def _3mf(path: Path) -> Mesh:
 
 
 def read_3mf(path: Path) -> tuple[Any, list[Any]]:
-    """The model and its meshes, read by lib3mf as strictly as it does; it warns of nothing."""
+    """Return the model and its meshes, read by lib3mf in strict mode without warnings."""
     model = lib3mf.get_wrapper().CreateModel()
     reader = model.QueryReader("3mf")
     reader.SetStrictModeActive(True)
@@ -90,7 +90,7 @@ def _glb(path: Path) -> Mesh:
 
 
 def read_glb(path: Path) -> trimesh.Trimesh:
-    """The one mesh of a GLB, as it stands there."""
+    """Return the one mesh of a GLB unchanged."""
     scene = trimesh.load(io.BytesIO(path.read_bytes()), file_type="glb", process=False)
     (mesh,) = scene.geometry.values()
     return mesh
@@ -100,7 +100,7 @@ _READERS: Mapping[str, Callable[[Path], Mesh]] = {".stl": _stl, ".3mf": _3mf, ".
 
 
 def is_closed(mesh: Mesh) -> bool:
-    """Each edge is there once, and once the other way round; and no triangle has two corners at one place."""
+    """Tell whether each edge occurs once in each direction, and no triangle has two equal corners."""
     welded, which = np.unique(np.round(mesh.vertices, 4), axis=0, return_inverse=True)
     triangles = which.reshape(-1)[mesh.triangles]
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
@@ -109,13 +109,13 @@ def is_closed(mesh: Mesh) -> bool:
 
 
 def volume(mesh: Mesh) -> float:
-    """By the divergence theorem: positive where triangles face outwards."""
+    """Return the volume by the divergence theorem: positive if triangles face outwards."""
     a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
     return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
 
 
 def from_above(mesh: Mesh, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """The highest point over each place (y, x); both in ascending order; NaN where there is nothing."""
+    """Return the highest point over each place (y, x); both in ascending order; NaN where there is nothing."""
     heights = np.full((len(y), len(x)), np.nan)
     corners = mesh.vertices[mesh.triangles]
     facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
@@ -137,14 +137,14 @@ def _places(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def nodes(work: Work, rim_mm: float = 0.0, below_mm: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Where the cells' centres of the relief lie on the plate, in millimetres: x from the left, y from the front."""
+    """Return the places of the relief's cells on the plate, in millimetres: x from the left, y from the front."""
     rows, columns = work.relief.height_m.shape
     across, down = (1000 * pitch for pitch in work.relief.pitch_m)
     return rim_mm + (np.arange(columns) + 0.5) * across, below_mm + (np.arange(rows) + 0.5) * down
 
 
 def rough(rows: int = 40, columns: int = 56) -> np.ndarray:
-    """Hills, a step and a cliff at the edge, in metres; nothing in it is symmetric, and its lowest point is 0."""
+    """Return hills, a step and a cliff at the edge, in metres, without symmetry; the lowest point is 0."""
     y, x = np.mgrid[:rows, :columns] / columns
     heights = 0.003 + 0.002 * np.sin(9 * x + 4 * y * y) * np.cos(7 * y)
     heights[rows // 3 : rows // 2, columns // 2 :] += 0.002
@@ -156,7 +156,7 @@ LETTER_F = np.array([[1, 1, 1, 1], [1, 0, 0, 0], [1, 1, 1, 0], [1, 0, 0, 0], [1,
 
 
 def seen_from_above(mesh) -> Image.Image:
-    """A picture of a solid from above, lit from the upper left, by the heights that its file has."""
+    """Return a picture of a solid from above, lit from the upper left."""
     width, length, _ = mesh.vertices.max(axis=0)
     heights = from_above(
         mesh, np.arange(SEEN_STEP_MM / 2, width, SEEN_STEP_MM), np.arange(SEEN_STEP_MM / 2, length, SEEN_STEP_MM)

@@ -1,1 +1,1 @@
-"""The commands, a file each; `check` is with `plugins`."""
+"""The commands, a file each; `check` is in `plugins`."""

@@ -1,4 +1,4 @@
-"""`tangible cache`: where earlier results are kept, how much they take, and how to clear them."""
+"""The command `cache`: the folder and size of cached results, and how to clear them."""
 
 from __future__ import annotations
 
@@ -7,31 +7,31 @@ from typing import Annotated
 import typer
 
 from ...errors import ConfigError
-from ..options import Json
+from ..options import Json, is_listing
 
 app = typer.Typer(name="cache", rich_markup_mode=None, add_completion=False)
 
 
 @app.callback(invoke_without_command=True)
 def cache(context: typer.Context, as_json: Json = False) -> None:
-    """Say how much is kept of earlier results; clear it.
+    """Print the size of the cache of results; clear it.
 
-    A run takes from there what has not changed. Nothing in it is needed: what is gone is made again.
+    A run takes unchanged results from the cache. Nothing in it is needed: results that are gone are computed again.
     """
-    if context.invoked_subcommand is not None:
-        if as_json:
-            raise ConfigError(f"cache: write --json after {context.invoked_subcommand!r}")
+    if not is_listing("cache", context.invoked_subcommand, as_json):
         return
     from ...pipeline.engine.cache import Cache
     from .. import show
 
-    kept = Cache()
-    count, size = kept.size()
+    results = Cache()
+    count, size = results.size()
     if as_json:
-        show.print_json({"folder": kept.folder, "entries": count, "bytes": size, "max_bytes": kept.max_bytes})
+        show.print_json({"folder": results.folder, "entries": count, "bytes": size, "max_bytes": results.max_bytes})
         return
-    show.say(f"{_results(count)} of earlier runs take {_megabytes(size)} of at most {_megabytes(kept.max_bytes)}, in")
-    show.plain(str(kept.folder))
+    show.say(
+        f"{_results(count)} of earlier runs take {_megabytes(size)} of at most {_megabytes(results.max_bytes)}, in"
+    )
+    show.plain(str(results.folder))
 
 
 @app.command()
@@ -39,30 +39,30 @@ def clear(
     yes: Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Delete all that is kept of earlier results.
+    """Delete all cached results.
 
     On a terminal it asks first; without one, --yes is needed.
     """
     from ...pipeline.engine.cache import Cache
     from .. import show
 
-    kept = Cache()
-    count, size = kept.size()
+    results = Cache()
+    count, size = results.size()
     if count and not yes:
-        _ask(f"Delete {_results(count)} ({_megabytes(size)}) in {kept.folder}?")
-    gone, freed = kept.clear()
+        _ask(f"Delete {_results(count)} ({_megabytes(size)}) in {results.folder}?")
+    gone, freed = results.clear()
     if as_json:
-        show.print_json({"folder": kept.folder, "entries": gone, "bytes": freed})
+        show.print_json({"folder": results.folder, "entries": gone, "bytes": freed})
     else:
         show.say(f"{_results(gone)} deleted, {_megabytes(freed)} freed")
 
 
 def _ask(question: str) -> None:
-    """Raises: ConfigError if nobody can answer, Abort if the answer is no."""
+    """Ask a question. Raises: ConfigError without a terminal, Exit if the answer is no."""
     import sys
 
     if sys.stdin is None or not sys.stdin.isatty():
-        raise ConfigError("cache clear: nobody is there to be asked; --yes deletes without asking")
+        raise ConfigError("cache clear: there is no terminal to ask on; --yes deletes without asking")
     if not typer.confirm(question, err=True):
         raise typer.Exit
 

@@ -1,4 +1,4 @@
-"""`tangible devices ...`: what is installed and connected, what is wrong with it, homing and calibration."""
+"""The command `devices`: list, diagnose, home, calibrate and measure devices."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import typer
 
 from ...errors import ConfigError
 from .. import completing
-from ..options import FAILED, Json
+from ..options import FAILED, Json, is_listing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,9 +31,7 @@ app = typer.Typer(name="devices", rich_markup_mode=None, add_completion=False)
 @app.callback(invoke_without_command=True)
 def devices(context: typer.Context, as_json: Json = False) -> None:
     """List devices; examine, home or calibrate one."""
-    if context.invoked_subcommand is not None:
-        if as_json:
-            raise ConfigError(f"devices: write --json after {context.invoked_subcommand!r}")
+    if not is_listing("devices", context.invoked_subcommand, as_json):
         return
     from dataclasses import asdict
 
@@ -47,7 +45,7 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
     if as_json:
         show.print_json(rows)
         return
-    show.sentence(sentences.connected(rows))
+    show.sentence(sentences.devices_summary(rows))
     cells = [(row["name"], *map(escape, cell)) for row in rows for cell in _cells(row)]
     show.table(("device", "connected", "serial", "where", "to do"), cells)
 
@@ -61,9 +59,9 @@ def doctor(
     sets: DeviceSets = None,
     as_json: Json = False,
 ) -> None:
-    """Say what keeps a device from working, and the cure.
+    """Find what keeps a device from working, and the cure.
 
-    Permissions, drivers, firmware. Exit 1 if a check fails; of a device that is named, what cannot be asked has failed.
+    Checks permissions, drivers, firmware. Exit 1 if a check fails, or if one of a named device cannot be made.
     """
     from dataclasses import asdict
 
@@ -73,13 +71,13 @@ def doctor(
     if name is None and sets:
         raise ConfigError("--set: name the device that has this option")
     names = [name] if name else [each.name for each in default_registry().listings if each.kind == "device"]
-    found = {each: _findings(each, sets or [], named=name is not None) for each in names}
-    verdicts = [each.verdict for findings in found.values() for each in findings]
+    results = {each: _findings(each, sets or [], named=name is not None) for each in names}
+    verdicts = [each.verdict for findings in results.values() for each in findings]
     if as_json:
-        show.print_json({each: [asdict(finding) for finding in findings] for each, findings in found.items()})
+        show.print_json({each: [asdict(finding) for finding in findings] for each, findings in results.items()})
     else:
-        show.sentence(sentences.diagnosed(name, verdicts))
-        _tell(found)
+        show.sentence(sentences.doctor_summary(name, verdicts))
+        _print_findings(results)
     if "failed" in verdicts or (name and "not asked" in verdicts):
         raise typer.Exit(FAILED)
 
@@ -97,14 +95,14 @@ def home(name: Device, sets: DeviceSets = None) -> None:
 def calibrate(name: Device, sets: DeviceSets = None) -> None:
     """Measure one device with your help.
 
-    What was measured is kept for its serial number.
+    The calibration is saved under its serial number.
     """
     from ...mapping.device_calibrations import save_calibration
     from .. import show
 
     serial, values = _adjustable(name, sets or []).calibrate(_ask)
     path = save_calibration(name, serial, values)
-    show.table(("of this unit", "value"), [(key, str(value)) for key, value in values.model_dump(mode="json").items()])
+    show.table(("calibration", "value"), [(key, str(value)) for key, value in values.model_dump(mode="json").items()])
     show.plain(f"\nsaved in {path}")
 
 
@@ -112,7 +110,7 @@ def calibrate(name: Device, sets: DeviceSets = None) -> None:
 def stress(
     name: Device,
     sets: DeviceSets = None,
-    seconds: Annotated[float, typer.Option(help="How long, s.")] = 5.0,
+    seconds: Annotated[float, typer.Option(help="Duration, s.")] = 5.0,
     as_json: Json = False,
 ) -> None:
     """Measure how fast a device can be read and written.
@@ -125,13 +123,13 @@ def stress(
     from .. import sentences, show
 
     if not 0 < seconds <= 3600:
-        raise ConfigError(f"--seconds {seconds}: is above 0, and at most an hour")
+        raise ConfigError(f"--seconds {seconds}: must be above 0 and at most 3600")
     figures = {"device": name, **stress_device(make_device(default_registry(), name, sets or []), seconds)}
     if as_json:
         show.print_json(figures)
     else:
         texts = [(key, f"{value:.1f}" if isinstance(value, float) else str(value)) for key, value in figures.items()]
-        show.sentence(sentences.stressed(figures))
+        show.sentence(sentences.stress_summary(figures))
         show.table(("figure", "value"), texts)
 
 
@@ -148,7 +146,7 @@ def _adjustable(name: str, sets: Sequence[str]) -> Adjustable:
 
 
 def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
-    """What is shown of a device: a line a unit, or one that says why there is none."""
+    """Return a row for each unit of a device, or one with the reason why there is none."""
     from ...data import Unit
 
     units = [Unit(**unit) for unit in row["units"]]
@@ -171,18 +169,18 @@ def _findings(name: str, sets: Sequence[str], named: bool) -> Sequence[Finding]:
         return [Finding("plugin", "failed", str(error))]
 
 
-def _tell(found: dict[str, Sequence[Finding]]) -> None:
+def _print_findings(results: dict[str, Sequence[Finding]]) -> None:
     from rich.markup import escape
 
     from .. import show
 
     rows = [
         (name, each.check, f"[{COLOURS[each.verdict]}]{each.verdict}[/]", escape(each.says))
-        for name, findings in found.items()
+        for name, findings in results.items()
         for each in findings
     ]
-    show.table(("device", "check", "verdict", "says"), rows)
-    for name, findings in found.items():
+    show.table(("device", "check", "verdict", "finding"), rows)
+    for name, findings in results.items():
         for each in findings:
             if each.verdict == "failed" and each.cure:
                 show.say(f"\n[bold]{name}, {escape(each.check)}[/]")

@@ -1,4 +1,4 @@
-"""`export`: what was made of a picture, as files for printers, swell paper, pin displays and readers."""
+"""The command `export`: products as files for printers, swell paper, pin displays and readers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .. import completing
-from ..options import FAILED, MISTAKE, Felt, Json, NoCache, Sets
+from ..options import FAILED, MISTAKE, ConfigOrPictures, Json, NoCache, Sets
 from ..verbosity import is_quiet
 from .run import default_place, open_pipeline
 
@@ -19,31 +19,31 @@ if TYPE_CHECKING:
 
 
 CSV = "csv"
-"""What a recording is written as: no exporter's name."""
+"""The format in which a recording is written; not the name of an exporter."""
 
 
 def export(
-    config: Felt,
+    config: ConfigOrPictures,
     to: Annotated[
         list[str] | None,
         typer.Option(
             "--to",
             metavar="NAMES",
-            help="Exporters, with commas between them, as `tangible plugins` lists them [default: those of the file].",
+            help="Exporters, separated by commas, as `tangible plugins` lists them [default: those of the file].",
             show_default=False,
             autocompletion=completing.exporters,
         ),
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the files [default: out/NAME].")] = None,
     sets: Sets = None,
-    force: Annotated[bool, typer.Option("--force", help="Write over files that no export of this left.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite files that no export of this wrote.")] = False,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
     """Write files for others: a printer, swell paper, pins, a reader.
 
-    `--set export.NAME.OPTION=VALUE` sets an option of an exporter. A recording (.nc, .npz) is written with `--to csv`.
-    Exit 2 if something cannot be written of this, 1 if an exporter failed; the others write all the same.
+    `--set export.NAME.OPTION=VALUE` sets an option of an exporter. `--to csv` writes a recording (.nc, .npz) as text.
+    Exit 2 if an exporter cannot write this, 1 if one failed; the others still write their files.
     """
     from .. import show
 
@@ -66,12 +66,12 @@ def export(
 
 
 def _as_csv(files: Sequence[Path], folder: Path, force: bool) -> Path:
-    """A recording as text, a tick a line. Raises: ConfigError for several; OutputError for what is no recording."""
+    """Write a recording as text, one tick a line. Raises: ConfigError for several; OutputError if it is not one."""
     from ...errors import ConfigError, OutputError
     from ...session import Recording
 
     if len(files) > 1:
-        raise ConfigError(f"{', '.join(map(str, files))}: name one recording, which is written as CSV")
+        raise ConfigError(f"{', '.join(map(str, files))}: name one recording to write as CSV")
     place = folder / f"{files[0].stem}.{CSV}"
     if place.exists() and not force:
         raise OutputError(f"{place}: is there already; --out FOLDER writes to another folder, --force writes over it")
@@ -89,15 +89,15 @@ def _print_recording(place: Path, as_json: bool) -> None:
 
 
 def _code(exports: Sequence[Exported]) -> int:
-    """Whose mistake it is, if one was made."""
-    became = {each.outcome.outcome for each in exports}
-    return FAILED if "failed" in became else MISTAKE if "refused" in became else 0
+    """Return the exit code: 1 if an exporter failed, 2 if one refused."""
+    outcomes = {each.outcome.outcome for each in exports}
+    return FAILED if "failed" in outcomes else MISTAKE if "refused" in outcomes else 0
 
 
 def _print(scene: str, done: Export) -> None:
     from .. import sentences, show
 
-    show.sentence(sentences.exported(scene, done))
+    show.sentence(sentences.export_summary(scene, done))
     show.outcomes(done.outcomes)
     if files := [path for paths in done.files.values() for path in paths]:
         show.say("\n[bold]written[/]")

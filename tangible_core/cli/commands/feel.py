@@ -1,4 +1,4 @@
-"""`feel`: a pipeline's surface on its device, in real time; or those of several, in turn."""
+"""The command `feel`: the surface of a pipeline on its device in real time, or of several pipelines in turn."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ if TYPE_CHECKING:
 
 SECONDS = 8.0
 ALONE_S = 1.5
-"""A hand has so long to come before it is said that there is none."""
+"""The time to wait for a hand, s, before a warning."""
 
 
 def feel(
     configs: Annotated[list[Path], typer.Argument(metavar="CONFIG", help="Pipeline files (YAML).", show_default=False)],
     sets: Sets = None,
     seconds: Annotated[
-        float | None, typer.Option(help="How long, s; inf: without end.  [default: 8; of several files, one round]")
+        float | None, typer.Option(help="Duration, s; inf: without end.  [default: 8; for several files, one round]")
     ] = None,
-    each: Annotated[float, typer.Option(help="How long each of several files, s.")] = 60.0,
-    wait: Annotated[bool, typer.Option("--wait", help="Wait for a device that is not there, or goes.")] = False,
+    each: Annotated[float, typer.Option(help="Duration of each of several files, s.")] = 60.0,
+    wait: Annotated[bool, typer.Option("--wait", help="Wait for a device that is missing or is unplugged.")] = False,
     beacon: Annotated[
         str | None,
-        typer.Option(metavar="PART", help="Pull the hand gently to this part, by name or number; a button lets go."),
+        typer.Option(metavar="PART", help="Pull the hand gently to this part, by name or number; a button ends it."),
     ] = None,
     record: Record = None,
     as_json: Json = False,
@@ -42,8 +42,8 @@ def feel(
 ) -> None:
     """Feel the surface on the configured device, in real time.
 
-    Several files are felt in turn, each with the device of the first; none may have another one. Where hardly anything
-    matched in a pair of pictures, it asks first.
+    Several files are felt in turn on the device of the first; none may have another device. If the depth map is
+    unreliable, the command asks first.
     """
     import math
     import time
@@ -60,59 +60,58 @@ def feel(
     device = device_of(pipeline)
     until_s = (each * len(configs) if then else SECONDS) if seconds is None else seconds
     for one in (pipeline, *then):
-        ask_first(one, yes)
-        if one.scene.video is not None and one.segments is not None:
+        confirm_doubts(one, yes)
+        if one.scene.frames is not None and one.segments is not None:
             show.note(f"{one.scene.name}: parts and materials stay where they are in the first frame")
     loop: dict[str, Any] = {}
     looks = session.TickSampler()
     reports: list[ServoReport] = []
 
-    def started(servo: Servo) -> None:
+    def note_start(servo: Servo) -> None:
         loop.setdefault("how", servo.how)
         loop.setdefault("start_s", servo.start_s)
         loop.setdefault("first_tick_unix_s", time.time())
 
-    def heard(report: ServoReport) -> None:
+    def take_report(report: ServoReport) -> None:
         if reports and reports[0].time_s < ALONE_S <= report.time_s:
-            _say_if_alone(pipeline.config.device and pipeline.config.device.method)
+            _warn_if_alone(pipeline.config.device and pipeline.config.device.method)
         reports[:] = [report]
 
     pipeline.feel(
         seconds=None if until_s == math.inf else until_s,
         record=record,
         keep=looks.keep,
-        on_report=heard,
-        on_start=started,
+        on_report=take_report,
+        on_start=note_start,
         then=then,
         each_s=each,
         on_wait=show.note if wait else None,
         beacon=beacon,
     )
     (report,) = reports
-    felt = session.figures(report)
+    figures = session.figures(report)
     hand = None if then or wait else Feeling(pipeline).track(looks.recording())
     parts = () if then else Feeling(pipeline).parts_felt(looks.recording())
     pulled = session.beacons_felt(looks.recording(), pipeline.surface)
     if as_json:
-        figures = {"device": device.name, "spec": asdict(device.method.spec()), **felt}
-        outcomes = show.as_rows(pipeline.outcomes)
-        said = {"guard": session.guard_summary(report.flagged), "hand": hand and hand._asdict()}
-        said |= {"part": report.part, "material": report.material, "parts": [each._asdict() for each in parts]}
-        said |= {"beacon": report.beacon, "beacons": [each._asdict() for each in pulled]}
-        file = {"file": record and str(record)}
-        show.print_json({"outcomes": outcomes, "loop": loop, "figures": figures, **said, **file})
+        document: dict[str, Any] = {"outcomes": show.as_rows(pipeline.outcomes), "loop": loop}
+        document["figures"] = {"device": device.name, "spec": asdict(device.method.spec()), **figures}
+        document |= {"guard": session.guard_summary(report.flagged), "hand": hand and hand._asdict()}
+        document |= {"part": report.part, "material": report.material, "parts": [each._asdict() for each in parts]}
+        document |= {"beacon": report.beacon, "beacons": [each._asdict() for each in pulled]}
+        show.print_json({**document, "file": record and str(record)})
     elif not is_quiet():
-        show.sentence(sentences.felt(device.name, felt))
+        show.sentence(sentences.touch_summary(device.name, figures))
         show.outcomes(pipeline.outcomes)
         if loop:
-            show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was asked for\n")
-        show.table(("figure", "value"), [(name, _text(value)) for name, value in felt.items()])
+            show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was requested\n")
+        show.table(("figure", "value"), [(name, _text(value)) for name, value in figures.items()])
         show.parts_felt(parts)
         for beacon_felt in pulled:
             show.plain(f"\n{beacon_felt}.")
-        for said in (session.guard_summary(report.flagged), hand and hand.says):
-            if said:
-                show.plain(f"\n{said}")
+        for text in (session.guard_summary(report.flagged), hand and hand.says):
+            if text:
+                show.plain(f"\n{text}")
     if report.stopped in (session.INTERRUPTED, TERMINATED):
         raise KeyboardInterrupt
     if report.stopped != OVER:
@@ -120,7 +119,7 @@ def feel(
         raise session.failure(report.ticks, report.stopped)
 
 
-def _say_if_alone(device: HapticDevice | None) -> None:
+def _warn_if_alone(device: HapticDevice | None) -> None:
     from ...plugins.interfaces import Attended
     from .. import show
 
@@ -132,10 +131,10 @@ def _text(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def ask_first(pipeline: Pipeline, yes: bool) -> None:
-    """Make the touch, and go on if it is worth feeling, or if the user, asked at a terminal or by `--yes`, wants it.
+def confirm_doubts(pipeline: Pipeline, yes: bool) -> None:
+    """Make the touch; if its notes doubt that it is worth feeling, ask at the terminal, unless `--yes` was given.
 
-    Raises: Exit with 1 if the user does not; PictureError where nobody can be asked; TangibleError as `Pipeline.make`.
+    Raises: Exit with 1 if the user declines; PictureError without a terminal; TangibleError as `Pipeline.make`.
     """
     from ...errors import PictureError
 
@@ -144,6 +143,6 @@ def ask_first(pipeline: Pipeline, yes: bool) -> None:
     if yes or not doubts:
         return
     if sys.stdin is None or not sys.stdin.isatty():
-        raise PictureError(f"{doubts}; put it right as the warning says, or feel it all the same with --yes")
-    if not typer.confirm(f"{doubts[:1].upper()}{doubts[1:]}. Feel it all the same?", err=True):
+        raise PictureError(f"{doubts}; correct it as the warning says, or feel it anyway with --yes")
+    if not typer.confirm(f"{doubts[:1].upper()}{doubts[1:]}. Feel it anyway?", err=True):
         raise typer.Exit(FAILED)

@@ -1,4 +1,4 @@
-"""`legible`: whether fingers can read it."""
+"""The command `legible`: tests whether fingers can read a picture."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from .run import open_pipeline
 
 if TYPE_CHECKING:
     from ...legibility import Legibility
-    from ...preflight import Verdict
 
 COLOURS = {"ok": "green", "warn": "yellow", "illegible": "bold red"}
+WIDTHS = 9, 15
+"""The columns of grades and of checks, characters."""
 
 
 class ReadOn(StrEnum):
-    """What a finger reads."""
+    """The media that fingers read."""
 
     swell = "swell"
     print = "print"
@@ -29,16 +30,16 @@ class ReadOn(StrEnum):
 def legible(
     config: Config,
     medium: Annotated[
-        ReadOn, typer.Option("--for", help="What it is read on: swell paper, a printed solid, pins or a force device.")
+        ReadOn, typer.Option("--for", help="Medium: swell paper, a printed solid, pins or a force device.")
     ],
     sets: Sets = None,
-    width_m: Annotated[float | None, typer.Option("--width-m", help="Width of the whole there, m.")] = None,
+    width_m: Annotated[float | None, typer.Option("--width-m", help="Width of the picture on the medium, m.")] = None,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
     """Check whether fingers can read it, on paper, print, pins or a device.
 
-    Says by the rules of tactile graphics what is ok, what is not and where, and its cure. Writes nothing. Exit 1 if
+    Prints by the rules of tactile graphics what is ok, what is not and where, and its cure. Writes nothing. Exit 1 if
     something is illegible.
     """
     from ...pipeline.feeling import Feeling
@@ -61,21 +62,7 @@ def _print(scene: str, medium: str, width_m: float, verdicts: Legibility, as_jso
     if as_json:
         show.print_json({"scene": scene, "medium": medium, "width_m": width_m, **verdicts.as_data()})
         return
-    said = next(profile.text for name, profile in PROFILES.items() if name == medium)
+    where = next(profile.text for name, profile in PROFILES.items() if name == medium)
     sentence = f"[{COLOURS[verdicts.grade]}]{escape(verdicts.sentence)}[/]"
-    show.say(f"{escape(scene)}, {quantity(width_m, 'm')} wide, on {said}: {sentence}\n")
-    for verdict in verdicts:
-        show.say(line(verdict))
-    counts = {grade: sum(each.verdict == grade for each in verdicts) for grade in COLOURS}
-    show.say("\n" + ", ".join(f"{n} {name}" for name, n in counts.items()))
-
-
-def line(verdict: Verdict) -> str:
-    """A verdict as text, its cure on a line of its own, with rich's marks."""
-    from rich.markup import escape
-
-    from ...preflight import relation
-
-    said = "; ".join(filter(None, (f"{verdict.of}: {relation(verdict)}", verdict.note, verdict.source)))
-    cure = f"\n{'':>26}cure: {verdict.cure}" if verdict.cure else ""
-    return f"[{COLOURS[verdict.verdict]}]{verdict.verdict:<9}[/] {verdict.check:<15} {escape(said + cure)}"
+    heading = f"{escape(scene)}, {quantity(width_m, 'm')} wide, on {where}: {sentence}"
+    show.verdicts(heading, verdicts, COLOURS, WIDTHS)

@@ -1,4 +1,4 @@
-"""`tangible plugins`: what is installed, read from metadata and source text; `show` says all of one method."""
+"""The commands `plugins` (list methods, show one) and `check` (run the conformance kit on one)."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ...errors import ConfigError
 from ...plugins.registry import KIND_NAMES
 from .. import completing
-from ..options import FAILED, Json
+from ..options import FAILED, Json, is_listing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,11 +27,9 @@ app = typer.Typer(name="plugins", rich_markup_mode=None, add_completion=False)
 def plugins(context: typer.Context, as_json: Json = False) -> None:
     """List the installed methods and devices; show one of them.
 
-    One line each, for eyes and for grep; none of them is imported.
+    One line each, for people and for grep; none of them is imported.
     """
-    if context.invoked_subcommand is not None:
-        if as_json:
-            raise ConfigError(f"plugins: write --json after {context.invoked_subcommand!r}")
+    if not is_listing("plugins", context.invoked_subcommand, as_json):
         return
     import json
 
@@ -43,9 +40,9 @@ def plugins(context: typer.Context, as_json: Json = False) -> None:
     if as_json:
         print(json.dumps(rows, indent=2, ensure_ascii=False), file=stream())
         return
-    shown = [{column: column for column in COLUMNS}, *rows]
-    widths = [max(len(row[column]) for row in shown) for column in COLUMNS[:-1]]
-    for row in shown:
+    lines = [{column: column for column in COLUMNS}, *rows]
+    widths = [max(len(row[column]) for row in lines) for column in COLUMNS[:-1]]
+    for row in lines:
         cells = (row[column].ljust(width) for column, width in zip(COLUMNS, widths, strict=False))
         print(*cells, row["summary"], sep="  ", file=stream())
 
@@ -66,7 +63,7 @@ def show_one(
     ],
     as_json: Json = False,
 ) -> None:
-    """Say everything of one method or device.
+    """Show one method or device.
 
     What it does and by which source; each option with its unit, bounds and default; how fast and how exact it was.
     """
@@ -80,18 +77,18 @@ def show_one(
     registry = default_registry()
     listing, cls = registry.find(kind, name), registry.load(kind, name)
     text, options = inspect.getdoc(cls) or "", options_of(cls)
-    found = measured().get(kind) if listing.distribution == OURS else None
+    measurements = measured().get(kind) if listing.distribution == OURS else None
     if as_json:
-        figures = None if found is None else _figures(found, listing.name)
-        said = {column: getattr(listing, column) for column in (*COLUMNS, "target")}
-        show.print_json({**said, "text": text, "options": [each._asdict() for each in options], "measured": figures})
+        figures = None if measurements is None else _figures(measurements, listing.name)
+        head = {column: getattr(listing, column) for column in (*COLUMNS, "target")}
+        show.print_json({**head, "text": text, "options": [each._asdict() for each in options], "measured": figures})
         return
     show.plain(f"{listing.name} is {WORDS[kind]} of {listing.origin}.\n\n{text}\n")
     show.say("[bold]options[/]" if options else "It has no options.")
     for each in options:
         bounds = ", ".join(filter(None, (each.unit, each.values)))
         show.entry(f"{each.name} = {each.default or 'null'}   ({bounds})", each.meaning)
-    show.plain(f"\n{_measured_in_words(listing, found)}")
+    show.plain(f"\n{_speed_and_accuracy(listing, measurements)}")
     show.plain(f"Its source: {inspect.getsourcefile(cls)}")
 
 
@@ -105,30 +102,30 @@ WORDS = {
 }
 
 
-def _figures(found: Measured, name: str) -> dict[str, Any]:
-    figures = dict(zip(found.columns, found.methods.get(name, ()), strict=False))
-    said = {"scene": found.scene, "machine": found.machine, "day": found.day, "versions": found.versions}
-    return {**said, "figures": figures, "failed": found.failed.get(name)}
+def _figures(measured: Measured, name: str) -> dict[str, Any]:
+    figures = dict(zip(measured.columns, measured.methods.get(name, ()), strict=False))
+    where = {"scene": measured.scene, "machine": measured.machine, "day": measured.day, "versions": measured.versions}
+    return {**where, "figures": figures, "failed": measured.failed.get(name)}
 
 
-def _measured_in_words(listing: Listing, found: Measured | None) -> str:
-    """How fast and how exact it was, and where."""
+def _speed_and_accuracy(listing: Listing, measured: Measured | None) -> str:
+    """Return how fast and how exact a method was, on which scene and machine."""
     from ...metrics.measured import in_words
 
     if listing.kind == "device":
         return f"`tangible devices stress {listing.name}` measures how fast it can be read and written."
     if listing.kind == "export":
-        return "How long it takes is said with each export."
-    if found is None or listing.name not in (*found.methods, *found.failed):
+        return "Each export prints how long it took."
+    if measured is None or listing.name not in (*measured.methods, *measured.failed):
         file = f"configs/compare-{listing.kind}.yaml"
-        return f"No figures of it come with the program: `tangible compare` measures it, with a file such as {file}."
-    where = f"On {found.scene}, with its defaults, on {in_words(found.machine)} ({found.day})"
-    if why := found.failed.get(listing.name):
+        return f"The program has no figures of it: `tangible compare` measures it, with a file such as {file}."
+    where = f"On {measured.scene}, with its defaults, on {in_words(measured.machine)} ({measured.day})"
+    if why := measured.failed.get(listing.name):
         return f"{where}, it has no figures: {why}."
-    values = zip(found.columns, found.methods[listing.name], strict=True)
-    told = ", ".join(f"{column} {value:g}" for column, value in values if value is not None)
-    best = next(iter(found.methods))
-    return f"{where}: {told}. The most exact of {len(found.methods)} is {best}."
+    values = zip(measured.columns, measured.methods[listing.name], strict=True)
+    figures = ", ".join(f"{column} {value:g}" for column, value in values if value is not None)
+    best = next(iter(measured.methods))
+    return f"{where}: {figures}. The most exact of {len(measured.methods)} is {best}."
 
 
 def check(
@@ -156,8 +153,10 @@ def check(
     if as_json:
         show.print_json([each._asdict() for each in results])
     else:
-        rows = [(each.name, GRADES[each.passed, bool(each.expected_failure)], escape(_said(each))) for each in results]
-        show.sentence(sentences.checked(f"{kind} method {name}", results))
+        rows = [
+            (each.name, GRADES[each.passed, bool(each.expected_failure)], escape(_message(each))) for each in results
+        ]
+        show.sentence(sentences.check_summary(f"{kind} method {name}", results))
         show.table(("check", "result", "message"), rows)
         show.say(f"\n{_count(results)}")
     if not all(each.as_declared for each in results):
@@ -170,10 +169,10 @@ GRADES = {
     (False, True): "[yellow]fails as declared[/]",
     (True, True): "[red]PASSED, declared to fail[/]",
 }
-"""By whether it passed, and whether it was declared to fail."""
+"""(passed, declared to fail) -> the word for the result."""
 
 
-def _said(result: CheckResult) -> str:
+def _message(result: CheckResult) -> str:
     return (
         f"{result.expected_failure} ({result.message})"
         if result.expected_failure and not result.passed

@@ -1,4 +1,4 @@
-"""`preflight`: what is to be known before a motor moves."""
+"""The command `preflight`: checks before a motor moves."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ from .run import device_of, open_pipeline
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ...preflight import Flight, Hand, Loop, Preflight, Verdict
+    from ...preflight import Flight, Hand, Loop, Preflight
 
 COLOURS = {"ok": "green", "warn": "yellow", "unsafe": "bold red"}
+WIDTHS = 6, 12
+"""The columns of grades and of checks, characters."""
 
 
 def preflight(
@@ -24,7 +26,7 @@ def preflight(
     fix: Annotated[
         Path | None, typer.Option("--fix", metavar="OUT.yaml", help="Write a pipeline file that passes.")
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="With --fix, write over a file that is there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="With --fix, overwrite an existing file.")] = False,
     seconds: Annotated[float, typer.Option(help="How long to measure this machine's timing, s.")] = 2.0,
     rate: Annotated[float, typer.Option(help="Rate of the force loop, Hz.")] = 1000.0,
     speed: Annotated[float, typer.Option(help="Speed of the hand's stroke, m/s.")] = 0.12,
@@ -34,8 +36,8 @@ def preflight(
 ) -> None:
     """Check, before a motor moves, what is safe.
 
-    Says what is ok, what is not, and its cure. Opens no device. Exit 1 if something is unsafe. With --fix, the cures
-    are tried, and a file with what is needed of them is written; if that is not enough, none is, and the exit is 1.
+    Prints what is ok, what is not, and its cure. Opens no device. Exit 1 if something is unsafe. With --fix, the cures
+    are tried, and a file with the necessary ones is written; if they are not enough, no file is, and the exit is 1.
     """
     from ...errors import OutputError
     from ...pipeline.feeling import Feeling
@@ -48,18 +50,18 @@ def preflight(
     device = device_of(pipeline)
     if fix is None:
         flight = Feeling(pipeline).flight(hand=hand, loop=loop)
-        verdicts, more = judge(flight), {}
+        verdicts, fixed = judge(flight), {}
     else:
-        flight, verdicts, more = _fixed(config, sets or [], hand, loop, fix, not no_cache)
-    _print(pipeline.scene.name, device.name, flight, verdicts, more, as_json)
+        flight, verdicts, fixed = _fix(config, sets or [], hand, loop, fix, not no_cache)
+    _print(pipeline.scene.name, device.name, flight, verdicts, fixed, as_json)
     if not verdicts.safe:
         raise typer.Exit(FAILED)
 
 
-def _fixed(
+def _fix(
     config: Path, sets: Sequence[str], hand: Hand, loop: Loop, out: Path, cached: bool
 ) -> tuple[Flight, Preflight, dict[str, Any]]:
-    """What is so after the cures, which are written where they are enough; with what there is to say of them."""
+    """Try the cures and write the file if they are enough; return the state after them, and the file and changes."""
     from ...files.writing import write_text
     from ...pipeline.fixing import fix
 
@@ -70,7 +72,7 @@ def _fixed(
 
 
 def _print(
-    scene: str, device: str, flight: Flight, verdicts: Preflight, more: Mapping[str, Any], as_json: bool
+    scene: str, device: str, flight: Flight, verdicts: Preflight, fixed: Mapping[str, Any], as_json: bool
 ) -> None:
     from dataclasses import asdict
 
@@ -79,31 +81,16 @@ def _print(
     from .. import show
 
     if as_json:
-        said = {"scene": scene, "device": device, "sentence": verdicts.sentence, "grade": verdicts.grade}
+        head = {"scene": scene, "device": device, "sentence": verdicts.sentence, "grade": verdicts.grade}
         rows = [{**asdict(each), "changes": {change.key: change.value for change in each.changes}} for each in verdicts]
-        show.print_json({**said, **more, **_figures(flight), "verdicts": rows})
+        show.print_json({**head, **fixed, **_figures(flight), "verdicts": rows})
         return
     sentence = f"[{COLOURS[verdicts.grade]}]{escape(verdicts.sentence)}[/]"
-    show.say(f"{escape(scene)} on {escape(device)}: {sentence}\n")
-    for verdict in verdicts:
-        show.say(line(verdict))
-    counts = {grade: sum(each.verdict == grade for each in verdicts) for grade in COLOURS}
-    show.say("\n" + ", ".join(f"{n} {name}" for name, n in counts.items()))
-    if more:
-        changed = "; ".join(f"{key}: {value}" for key, value in more["changes"].items()) or "nothing had to change"
-        written = f"written to {more['file']}" if more["file"] else "tried, which is not enough; nothing was written"
-        show.plain(f"{changed}: {written}")
-
-
-def line(verdict: Verdict) -> str:
-    """A verdict as text, its cure on a line of its own, with rich's marks."""
-    from rich.markup import escape
-
-    from ...preflight import relation
-
-    said = "; ".join(filter(None, (f"{verdict.of}: {relation(verdict)}", verdict.note, verdict.source)))
-    cure = f"\n{'':>20}cure: {verdict.cure}" if verdict.cure else ""
-    return f"[{COLOURS[verdict.verdict]}]{verdict.verdict:<6}[/] {verdict.check:<12} {escape(said + cure)}"
+    show.verdicts(f"{escape(scene)} on {escape(device)}: {sentence}", verdicts, COLOURS, WIDTHS)
+    if fixed:
+        changes = "; ".join(f"{key}: {value}" for key, value in fixed["changes"].items()) or "nothing had to change"
+        file = fixed["file"]
+        show.plain(f"{changes}: {f'written to {file}' if file else 'tried, but not enough; nothing was written'}")
 
 
 def _figures(flight: Flight) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""`replay`: a recording through a pipeline's renderer."""
+"""The command `replay`: the hand path of a recording with another force law."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 
 
 def replay(
-    recording: Annotated[Path, typer.Argument(help="What was felt (.nc, .npz or .csv).", show_default=False)],
+    recording: Annotated[Path, typer.Argument(help="Recording (.nc, .npz or .csv).", show_default=False)],
     config: Config,
     sets: Sets = None,
     record: Record = None,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
-    """Feel a recording again with another law.
+    """Re-run a recorded hand path with another force law.
 
-    The recorded states go through the pipeline's renderer, and the forces are compared.
+    The recorded states go through the pipeline's force law, and the forces are compared.
     """
     from dataclasses import replace
     from time import perf_counter
@@ -39,7 +39,7 @@ def replay(
     before = session.Recording.load(recording)
     pipeline = open_pipeline(config, sets or [], not no_cache)
     feeling = Feeling(pipeline)
-    feeling.replay(replace(before, rows=before.rows[:0]))  # what is compiled on first use is not timed
+    feeling.replay(replace(before, rows=before.rows[:0]))  # compilation on first use is not timed
     start = perf_counter()
     after = feeling.replay(before)
     seconds = perf_counter() - start
@@ -49,23 +49,23 @@ def replay(
     law = pipeline.config.render
     parts = feeling.parts_felt(after)
     pulled = session.beacons_felt(before, pipeline.surface)
-    _print(before, figures, parts, pulled, record, as_json, law.name if law else "the law")
+    _print(before, figures, parts, pulled, record, as_json, law.name if law else "the force law")
 
 
 MEANINGS = {
     "ticks": "",
-    "compared": "all but those whose recorded force was limited, faded in, damped, with a beacon or none for a fault",
+    "compared": "all but those whose recorded force was limited, faded in, damped, faulty, or with a beacon",
     "error_n": "root mean square, over ticks in contact",
     "error_percent": "of the recorded force",
     "direction_deg": "mean angle",
-    "jnd": "median, in differences that are just noticed: 7 % or 18 degrees",
+    "jnd": "median, in just noticeable differences: 7 % or 18 degrees",
     "noticed_percent": "of ticks in contact",
     "worst_error_n": "",
     "recorded_peak_force_n": "",
-    "peak_force_n": "of the law itself, which nothing limits here",
+    "peak_force_n": "of the force law itself, without a limit",
     "recorded_contact_share": "",
     "contact_share": "",
-    "ns_per_tick": "called from Python, where the law is not compiled",
+    "ns_per_tick": "called from Python if the force law is not compiled",
 }
 
 
@@ -83,18 +83,18 @@ def _print(
     from .. import sentences, show
 
     if as_json:
-        said: dict[str, Any] = {"device": before.about.device, "renderer": before.about.renderer}
-        said |= {"started": before.about.started, "stopped": before.stopped}
-        said["parts"] = session.names_of(before.about.parts)
-        said["beacons"] = [each._asdict() for each in pulled]
-        said["materials"] = session.names_of(before.about.materials)
-        felt = [each._asdict() for each in parts]
-        show.print_json({"recorded": said, "figures": figures, "parts": felt, "file": record and str(record)})
+        recorded: dict[str, Any] = {"device": before.about.device, "renderer": before.about.renderer}
+        recorded |= {"started": before.about.started, "stopped": before.stopped}
+        recorded["parts"] = session.names_of(before.about.parts)
+        recorded["beacons"] = [each._asdict() for each in pulled]
+        recorded["materials"] = session.names_of(before.about.materials)
+        touched = [each._asdict() for each in parts]
+        show.print_json({"recorded": recorded, "figures": figures, "parts": touched, "file": record and str(record)})
         return
     if before.stopped:
         show.note(f"the recording ended early: {shown(before.stopped, MOST_IN_LINE)}")
-    show.sentence(sentences.replayed(law, figures))
+    show.sentence(sentences.replay_summary(law, figures))
     show.table(("figure", "value", ""), [(name, f"{value:.6g}", MEANINGS[name]) for name, value in figures.items()])
     show.parts_felt(parts)
     for each in pulled:
-        show.plain(f"\n{each}. Its ticks are not compared: the law alone is replayed.")
+        show.plain(f"\n{each}. Its ticks are not compared: only the force law is replayed.")

@@ -1,4 +1,4 @@
-"""`demo`, `run`, `plan`: a pipeline from file to report."""
+"""The commands `demo`, `run` and `plan`: a pipeline from file to report."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from ..options import Felt, Json, NoCache, Sets
+from ..options import ConfigOrPictures, Json, NoCache, Sets
 from ..verbosity import is_quiet
 
 if TYPE_CHECKING:
@@ -46,13 +46,13 @@ def demo(
     out = out or default_place(DEMO)
     done = pipeline.run(out, seconds=seconds)
     _print(done, as_json)
-    _say_if_ended_early(done)
+    _check_complete(done)
     if not (as_json or is_quiet()):
         show.say(NEXT.format(config=out / "config.yaml"))
 
 
 DEMO = Path("tangible demo/demo.yaml")
-"""What the built-in example is called, as if it were a file: nobody's own demo.yaml is taken for it."""
+"""The name of the built-in example, as a file that cannot be mistaken for a user's own demo.yaml."""
 
 NEXT = """
 Next:
@@ -64,11 +64,11 @@ Next:
 
 
 def run(
-    config: Felt,
+    config: ConfigOrPictures,
     sets: Sets = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/NAME].")] = None,
     seconds: Seconds = 8.0,
-    sheet: Annotated[Literal["png", "svg", "pdf"], typer.Option(help="What the sheet is drawn as.")] = "png",
+    sheet: Annotated[Literal["png", "svg", "pdf"], typer.Option(help="Format of the sheet.")] = "png",
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
@@ -79,10 +79,10 @@ def run(
     pipeline = open_pipeline(config, sets or [], not no_cache)
     done = pipeline.run(out or default_place(config[0]), seconds=seconds, sheet=sheet)
     _print(done, as_json)
-    _say_if_ended_early(done)
+    _check_complete(done)
 
 
-def plan(config: Felt, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
+def plan(config: ConfigOrPictures, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
     """Say what `run` would do, and why; run nothing.
 
     Exit 2 if `run` would refuse.
@@ -95,7 +95,7 @@ def plan(config: Felt, sets: Sets = None, as_json: Json = False, no_cache: NoCac
         show.print_json(show.as_rows(plan.steps))
     else:
         if not plan.refusal:
-            show.sentence(sentences.planned(plan.steps))
+            show.sentence(sentences.plan_summary(plan.steps))
         show.outcomes(plan.steps, ran="to run")
     if plan.refusal:
         show.flush()
@@ -103,7 +103,7 @@ def plan(config: Felt, sets: Sets = None, as_json: Json = False, no_cache: NoCac
 
 
 def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bool) -> Pipeline:
-    """The pipeline of a file, or of pictures that have none; with or without the user's cache."""
+    """Open the pipeline of a file, or of pictures without one; cached: with the user's cache."""
     from ...errors import ConfigError
     from ...pipeline.pipeline import load_pipeline
     from ...pipeline.starter import are_pictures, pipeline_of
@@ -114,9 +114,7 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
         pipeline = pipeline_of(files, sets)
         if not is_quiet():
             command = shlex.join(["tangible", "new", *map(str, files)])
-            show.note(
-                f"no pipeline file is named, so values that suit the picture are taken: `{command}` writes them down"
-            )
+            show.note(f"without a pipeline file, values that suit the picture are used: `{command}` writes them down")
     elif len(files) > 1:
         raise ConfigError(f"{', '.join(map(str, files))}: name one pipeline file, one picture, or left and right")
     else:
@@ -127,7 +125,7 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
 
 
 def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
-    """The configured device with its name. Raises: ConfigError if there is none."""
+    """Return the configured device with its name. Raises: ConfigError if there is none."""
     from dataclasses import replace
 
     device, felt = pipeline.config.device, pipeline.config.felt_device
@@ -137,14 +135,14 @@ def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:
 
 
 def default_place(source: Path) -> Path:
-    """Where results go that nobody named a folder for."""
+    """Return the folder for results if the user named none."""
     from ...pipeline.output.run_folder import default_folder, default_name
     from .. import show
 
     folder = default_folder(source)
     if folder.name != (first := default_name(source)):
         show.note(
-            f"{folder.parent / first} holds other results, and keeps them; these go to {folder} (`--out` chooses)"
+            f"{folder.parent / first} holds other results, and is left as it is; these go to {folder} (`--out` chooses)"
         )
     return folder
 
@@ -157,7 +155,7 @@ def _print(run: Run, as_json: bool) -> None:
         return
     if is_quiet():
         return
-    show.sentence(sentences.made(run))
+    show.sentence(sentences.run_summary(run))
     show.outcomes(run.outcomes, f"[bold]{run.scene}[/]")
     for name, values in run.figures.items():
         title, lines = LINES[name]
@@ -169,16 +167,18 @@ def _print(run: Run, as_json: bool) -> None:
         show.plain(f"  {path}")
 
 
-def _say_if_ended_early(run: Run) -> None:
-    """Raises: KeyboardInterrupt if it was Ctrl-C that ended the feeling."""
+def _check_complete(run: Run) -> None:
+    """Report a simulated touch that stopped early. Raises: KeyboardInterrupt if Ctrl-C stopped it."""
     from ...session import INTERRUPTED
     from .. import show
 
     if run.recording is None or not run.recording.stopped:
         return
-    felt_s, why = run.recording.figures()["seconds"], run.recording.stopped
+    seconds, why = run.recording.figures()["seconds"], run.recording.stopped
     show.flush()
-    show.note(f"feeling ended after {felt_s:.1f} s: {why}; recording.npz holds these, and all else was made whole")
+    show.note(
+        f"stopped after {seconds:.1f} s ({why}); recording.npz has those {seconds:.1f} s, all other files are complete"
+    )
     if why == INTERRUPTED:
         raise KeyboardInterrupt
 
@@ -197,17 +197,17 @@ def _material_lines(figures: Mapping[Any, Any]) -> list[str]:
 
 
 def _part_lines(figures: Mapping[Any, Any]) -> list[str]:
-    """What is called how, how high it is, and why; a part without a name by its number alone."""
+    """Return a line for each part: its number, name, height and material, and the reason."""
     return [
-        f"{number}: {', '.join(_said_of(each))}" + (f" ({each['why']})" if each["why"] else "")
+        f"{number}: {', '.join(_properties(each))}" + (f" ({each['why']})" if each["why"] else "")
         for number, each in figures.items()
     ]
 
 
-def _said_of(part: Mapping[Any, Any]) -> list[str]:
+def _properties(part: Mapping[Any, Any]) -> list[str]:
     height_m = part["height_m"]
-    said = (part["name"], "" if height_m is None else f"{1000 * height_m:.3g} mm high", part["material"])
-    return [each for each in said if each]
+    properties = (part["name"], "" if height_m is None else f"{1000 * height_m:.3g} mm high", part["material"])
+    return [each for each in properties if each]
 
 
 def _force_lines(figures: Mapping[Any, Any]) -> list[str]:

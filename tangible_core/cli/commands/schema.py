@@ -1,4 +1,4 @@
-"""`schema`: what a pipeline file, or a file of materials, may say."""
+"""The command `schema`: the schema of pipeline files and of material files."""
 
 from typing import Annotated
 
@@ -22,8 +22,8 @@ def schema(
     if materials:
         print_json(materials_schema())
         return
-    found = json_schema(distribution=None if installed else "tangible-images")
+    schema = json_schema(distribution=None if installed else "tangible-images")
     if markdown:
-        print(as_markdown(found), end="", file=stream())
+        print(as_markdown(schema), end="", file=stream())
     else:
-        print_json(found)
+        print_json(schema)

@@ -9,7 +9,7 @@ from threading import Event
 from time import perf_counter
 from typing import Any
 
-from ...compiled.beside import Beside
+from ...compiled.background import BackgroundCompiler
 from ...data import Note, Outcome, Outcomes, Plan, Record
 from ...data.products import PRODUCTS
 from ...errors import TangibleError, UnknownMethod
@@ -43,7 +43,7 @@ class Engine:
         self.cache = cache
         self.threads = threads
         """The most threads at once, on which no result depends; None for the limit of `TANGIBLE_THREADS`, if any."""
-        self.beside: Beside | None = None
+        self.beside: BackgroundCompiler | None = None
         """A process that compiles in the background; a stage waits for what is compiled for it."""
         self.begun: set[str] = set()
         """The products whose making has begun."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...compiled.beside import Beside, Work
+from ...compiled.background import BackgroundCompiler, Work
 from ...data import DisparityMap, SegmentMap, Views
 from ...plugins.registry import default_registry
 from ...scene.scene import Scene
@@ -26,9 +26,9 @@ SECONDS = 0.02
 """The length of the simulated session, s: some ticks are enough to compile its loop."""
 
 
-def warm_up(engine: Engine, want: str) -> Beside:
+def warm_up(engine: Engine, want: str) -> BackgroundCompiler:
     """Return a block in which the engine makes this product, while its later kernels are compiled in the background."""
-    return Beside(lambda: _work(engine, want))
+    return BackgroundCompiler(lambda: _work(engine, want))
 
 
 def _work(engine: Engine, want: str) -> Work | None:

@@ -14,7 +14,7 @@ from typing import Any, cast, final
 from ...data import Note, Outcome, Outcomes, Record, Work
 from ...data.outcome import HEADINGS, OutcomeKind, html_table, text_table
 from ...data.products import EXPORTABLE
-from ...errors import BrokenMethod, ConfigError, Stopped, TangibleError, exited, quoted, wrong_argument
+from ...errors import BrokenMethod, ConfigError, Stopped, TangibleError, exit_error, quoted, wrong_argument
 from ...legibility import Legibility
 from ...plugins import failures, hooks
 from ...plugins.interfaces import Exporter
@@ -287,7 +287,7 @@ def stem_of(config: PipelineConfig, scene: Scene) -> str:
 def _fault(error: BaseException, folder: Path) -> tuple[OutcomeKind, str]:
     """What became of an exporter that raised this, and the words for it."""
     if isinstance(error, SystemExit):
-        return "failed", str(exited(error))
+        return "failed", str(exit_error(error))
     if isinstance(error, TangibleError):
         return "failed" if isinstance(error, BrokenMethod) else "refused", str(error)
     if isinstance(error, OSError) and error.errno in NO_ROOM:

@@ -1,4 +1,4 @@
-"""`tangible devices`: every answer of a device as a user sees it, and the exit codes."""
+"""`tangible devices`: the output for every state of a device, and the exit codes."""
 
 import json
 from contextlib import nullcontext
@@ -19,7 +19,7 @@ from tangible_core.session.stress import stress_device
 from tangible_devices.mock import Mock
 
 ALONE = SimpleNamespace(invoked_subcommand=None)
-"""A context without a command after the group."""
+"""A context without a subcommand."""
 ARM = '''
 from typing import Literal
 
@@ -38,7 +38,7 @@ class Arm(HapticDevice, Serviceable, Adjustable):
     """An arm for tests."""
 
     state: Literal["right", "wrong", "gone", "broken"] = "right"
-    """How it is."""
+    """The state of the arm."""
 
     def spec(self):
         return DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.1, 0.1), 1e-5)
@@ -88,14 +88,14 @@ def answer(monkeypatch: pytest.MonkeyPatch, *texts: str) -> None:
 
 
 class TestList:
-    def test_what_is_installed_and_what_is_connected(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+    def test_list_as_json_has_all_installed_devices(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
         command.devices(ALONE, as_json=True)
         arm, lost = json.loads(capsys.readouterr().out)
         assert (arm["name"], arm["origin"], arm["simulated"], arm["problem"]) == ("arm", "arms 1.0", False, "")
         assert arm["units"][0] == {"name": "Arm", "serial": "A1", "place": "bus 1", "problem": ""}
         assert lost["units"] == [] and "cannot be loaded" in lost["problem"]
 
-    def test_a_line_a_unit(
+    def test_list_has_a_line_for_each_unit(
         self, registry: Registry, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
     ):
         monkeypatch.setenv("COLUMNS", "600")
@@ -105,14 +105,14 @@ class TestList:
         assert lines[0].split() == ["arm", "Arm", "A1", "bus", "1"]
         assert lines[1].split() == ["arm", "Arm", "A2", "bus", "2", "is", "[busy]"]
 
-    def test_a_program_is_told_the_same_and_nothing_is_opened(self, registry: Registry):
+    def test_list_for_a_program_opens_no_device(self, registry: Registry):
         arm, lost = installed_devices(registry)
         assert (arm.name, arm.usable, [unit.problem for unit in arm.units]) == ("arm", True, ["", "is [busy]"])
         assert (lost.usable, lost.simulated, lost.units) == (False, None, ())
         assert not replace(arm, units=arm.units[1:]).usable
         assert replace(arm, units=(), simulated=True).usable
 
-    def test_a_bus_that_fails_is_said(
+    def test_list_reports_a_failing_bus(
         self, registry: Registry, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
     ):
         monkeypatch.setattr(registry.load("device", "arm").model_fields["state"], "default", "broken")
@@ -126,47 +126,47 @@ class TestDoctor:
         ("state", "named", "passed"),
         [("right", True, True), ("wrong", True, False), ("gone", True, False), ("right", False, False)],
     )
-    def test_its_verdict(self, registry: Registry, state: str, named: bool, passed: bool):
-        """A plugin that cannot be loaded has failed; and so has what is not there, where it is asked for."""
+    def test_doctor_exits_with_1_if_a_check_fails(self, registry: Registry, state: str, named: bool, passed: bool):
+        """A plugin that cannot be loaded has failed; so has a missing device that is named."""
         with nullcontext() if passed else pytest.raises(typer.Exit):
             command.doctor("arm" if named else None, [f"state={state}"] if named else [])
 
-    def test_what_it_found_for_a_program(self, registry: Registry):
+    def test_doctor_for_a_program_returns_verdicts(self, registry: Registry):
         assert [each.verdict for each in examine_device(registry, "arm", ["state=wrong"])] == ["fine", "failed"]
         assert [each.verdict for each in examine_device(registry, "arm", ["state=gone"])] == ["not asked"]
 
-    def test_the_cure_can_be_copied_as_it_stands(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+    def test_doctor_prints_the_cure_as_it_stands(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
         with pytest.raises(typer.Exit):
             command.doctor("arm", ["state=wrong"])
         assert 'SUBSYSTEM=="usb", MODE="0660" [copy this]' in capsys.readouterr().out.splitlines()
 
-    def test_for_a_program(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+    def test_doctor_as_json_has_check_and_verdict(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
         with pytest.raises(typer.Exit):
             command.doctor("arm", ["state=wrong"], as_json=True)
         [_, permission] = json.loads(capsys.readouterr().out)["arm"]
         assert permission["check"] == "permission"
         assert permission["verdict"] == "failed"
 
-    def test_all_of_them(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+    def test_doctor_without_a_name_examines_all_devices(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
         with pytest.raises(typer.Exit):
             command.doctor(as_json=True)
-        found = json.loads(capsys.readouterr().out)
-        assert list(found) == ["arm", "lost"]
-        assert found["lost"][0]["verdict"] == "failed"
+        results = json.loads(capsys.readouterr().out)
+        assert list(results) == ["arm", "lost"]
+        assert results["lost"][0]["verdict"] == "failed"
 
-    def test_options_belong_to_one_device(self, registry: Registry):
+    def test_doctor_with_options_and_no_device_is_refused(self, registry: Registry):
         with pytest.raises(ConfigError, match="name the device"):
             command.doctor(None, ["state=wrong"])
 
 
 class TestSettingUp:
-    def test_homing_is_guided(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
+    def test_home_guides_the_hand(self, registry: Registry, capsys: pytest.CaptureFixture[str]):
         command.home("arm", [])
-        told = capsys.readouterr()
-        assert told.err == "pull the grip out\n"
-        assert told.out == "arm is homed\n"
+        output = capsys.readouterr()
+        assert output.err == "pull the grip out\n"
+        assert output.out == "arm is homed\n"
 
-    def test_a_calibration_is_kept_by_serial_number(
+    def test_calibrate_saves_by_serial_number(
         self, registry: Registry, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
     ):
         answer(monkeypatch, " 34.5 ")
@@ -175,26 +175,26 @@ class TestSettingUp:
         assert json.loads(path.read_text()) == {"offset_deg": 34.5}
         assert capsys.readouterr().out.splitlines()[-1] == f"saved in {path}"
 
-    def test_without_an_answer_nothing_is_saved(self, registry: Registry, monkeypatch: pytest.MonkeyPatch):
+    def test_calibrate_without_an_answer_saves_nothing(self, registry: Registry, monkeypatch: pytest.MonkeyPatch):
         answer(monkeypatch)
         with pytest.raises(ConfigError, match="nothing was saved"):
             command.calibrate("arm", [])
         assert not calibration_path("arm", "A1").exists()
 
-    def test_most_devices_need_neither(self):
+    def test_home_and_calibrate_of_a_device_without_them_are_refused(self):
         for verb in (command.home, command.calibrate):
             with pytest.raises(DeviceError, match="nothing to home"):
                 verb("mock", [])
 
 
 class TestStress:
-    def test_its_figures(self):
+    def test_stress_returns_rate_and_percentiles(self):
         figures = stress_device(Mock(), 0.05)
         assert figures["cycles"] > 100
         assert figures["rate_hz"] * 0.05 == pytest.approx(figures["cycles"], rel=0.5)
         assert 0 < figures["p50_us"] <= figures["p99_us"] <= figures["p99_9_us"] <= figures["max_us"]
 
-    def test_no_force_is_written(self, monkeypatch: pytest.MonkeyPatch):
+    def test_stress_writes_only_zero_forces(self, monkeypatch: pytest.MonkeyPatch):
         forces = []
         real = Mock(path="press")
         link = real.open()
@@ -205,13 +205,13 @@ class TestStress:
         assert set(forces) == {(0.0, 0.0, 0.0)}
 
     @pytest.mark.parametrize("seconds", [0, -1, float("nan"), 1e9])
-    def test_times_that_are_none(self, seconds: float):
+    def test_stress_with_impossible_seconds_is_refused(self, seconds: float):
         with pytest.raises(ConfigError, match="--seconds"):
             command.stress("mock", seconds=seconds)
 
 
 @pytest.mark.parametrize(
-    ("words", "code", "said"),
+    ("words", "code", "message"),
     [
         (["devices"], 0, "mock"),
         (["devices", "--json"], 0, '"simulated": true'),
@@ -225,7 +225,7 @@ class TestStress:
         (["devices", "--json", "doctor"], 2, "write --json after 'doctor'"),
     ],
 )
-def test_exit_codes(words: list[str], code: int, said: str):
+def test_devices_command_has_the_expected_exit_code(words: list[str], code: int, message: str):
     ran = tangible(*words, cwd=Path())
-    assert said in ran.stdout + ran.stderr
+    assert message in ran.stdout + ran.stderr
     assert ran.returncode == code

@@ -1,4 +1,4 @@
-"""Whatever a plugin does, a person is told one sentence; the traceback is in a file that it names."""
+"""Failures of plugins: one sentence for the user, and the traceback in a file that the sentence names."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,7 +19,7 @@ from tangible_core.data import Force
 
 
 class Depth(DepthEstimator):
-    '''Fails as it is told.'''
+    '''A method that fails as its option says.'''
     fault: str = "raises"
 
     def estimate(self, views):
@@ -29,7 +29,7 @@ class Depth(DepthEstimator):
 
 
 class Texture(Segmenter):
-    '''Calls what fails.'''
+    '''A method whose helper fails.'''
 
     def segment(self, picture):
         return helper()
@@ -52,7 +52,7 @@ class LawTouch(PlainTouch):
 
 
 class Law(ForceRenderer):
-    '''Gives what its option says.'''
+    '''A law that returns what its option says.'''
     fault: str = "raises"
 
     def touch(self, surface):
@@ -60,7 +60,7 @@ class Law(ForceRenderer):
 
 
 class Device(HapticDevice):
-    '''Knows nothing of itself.'''
+    '''A device without a spec.'''
     fault: str = "raises"
 
     def spec(self):
@@ -80,7 +80,7 @@ POINTS = {
 
 @pytest.fixture
 def folder(tmp_path: Path, install) -> Iterator[Path]:
-    """A picture, and a world of one distribution whose plugins all fail."""
+    """Return a folder with a picture; the one installed distribution has only plugins that fail."""
     install("acme", POINTS, acme=ACME)
     np.save(tmp_path / "a.npy", np.arange(24, dtype=np.uint8).reshape(4, 6))
     tmp_path.joinpath("p.yaml").write_text("scene: {photo: a.npy}\nwant: disparity\ndepth: {use: depth}\n")
@@ -90,8 +90,8 @@ def folder(tmp_path: Path, install) -> Iterator[Path]:
     default_registry.cache_clear()
 
 
-def failed(done: Done, code: int = 2) -> str:
-    """The one line that is said, beside that kernels are compiled."""
+def failure(done: Done, code: int = 2) -> str:
+    """Return the only line on standard error, apart from the notice that kernels are compiled."""
     assert done.returncode == code, done.stderr
     assert done.stdout == ""
     (line,) = (line for line in done.stderr.splitlines() if "compiling" not in line)
@@ -99,7 +99,7 @@ def failed(done: Done, code: int = 2) -> str:
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["p.yaml"], r"depth method depth (acme 1.0) failed in estimate: KeyError: 'no\nkey'"),
         (
@@ -118,15 +118,15 @@ def failed(done: Done, code: int = 2) -> str:
     ],
     ids=["depth", "texture", "law", "device"],
 )
-def test_a_plugin_that_raises(folder: Path, log_dir: Path, words: list[str], said: str):
+def test_plugin_that_raises_gives_one_sentence_and_a_log(folder: Path, log_dir: Path, words: list[str], message: str):
     log = log_dir / "failures.log"
-    assert failed(tangible("run", *words, "--seconds", "0.1", cwd=folder)) == f"{said}; the traceback is in {log}"
+    assert failure(tangible("run", *words, "--seconds", "0.1", cwd=folder)) == f"{message}; the traceback is in {log}"
     assert "Traceback" in log.read_text()
     assert "acme.py" in log.read_text()
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["p.yaml", "depth.fault=an array"], "depth (acme 1.0): estimate gave an array of float64 (2, 3); it must"),
         (["p.yaml", "depth.fault=nothing"], "depth (acme 1.0): estimate gave None; it must give a DisparityMap"),
@@ -136,57 +136,57 @@ def test_a_plugin_that_raises(folder: Path, log_dir: Path, words: list[str], sai
         (["h.yaml", "want=touch", "device={use: device, fault: x}"], "device (acme 1.0): spec gave None; it must give"),
     ],
 )  # fmt: skip
-def test_a_plugin_that_gives_the_wrong_thing(folder: Path, words: list[str], said: str):
+def test_plugin_that_returns_a_wrong_type_is_named_in_one_sentence(folder: Path, words: list[str], message: str):
     path, *sets = words
     options = [word for each in sets for word in ("--set", each)]
-    assert said in failed(tangible("run", path, *options, "--seconds", "0.1", cwd=folder))
+    assert message in failure(tangible("run", path, *options, "--seconds", "0.1", cwd=folder))
 
 
-def test_three_numbers_are_a_force(folder: Path):
+def test_force_law_returning_three_numbers_is_accepted(folder: Path):
     words = ("--set", "want=touch", "--set", "render.fault=three", "--seconds", "0.1")
     assert tangible("run", "h.yaml", *words, cwd=folder).returncode == 0
 
 
-def test_a_law_that_raises_in_the_process_of_the_force_loop(folder: Path, log_dir: Path):
-    said = failed(tangible("feel", "h.yaml", "--seconds", "60", cwd=folder))
-    assert said.startswith("render method law (acme 1.0) failed in force: KeyError: 'raises'; the traceback is in")
+def test_force_law_raising_in_the_loop_process_is_reported_with_its_traceback(folder: Path, log_dir: Path):
+    message = failure(tangible("feel", "h.yaml", "--seconds", "60", cwd=folder))
+    assert message.startswith("render method law (acme 1.0) failed in force: KeyError: 'raises'; the traceback is in")
     _, _, there = (log_dir / "failures.log").read_text().partition("In the process that it came from")
     assert 'acme.py", line' in there
 
 
-def test_a_device_that_fails_costs_its_own_row(folder: Path):
-    listed = tangible("devices", "--json", cwd=folder)
-    assert listed.returncode == 0, listed.stderr
-    assert "device method device (acme 1.0) failed in spec: OSError: no such wire" in listed.stdout
-    assert '"simulated": true' in listed.stdout
+def test_device_that_fails_spoils_only_its_own_row(folder: Path):
+    listing = tangible("devices", "--json", cwd=folder)
+    assert listing.returncode == 0, listing.stderr
+    assert "device method device (acme 1.0) failed in spec: OSError: no such wire" in listing.stdout
+    assert '"simulated": true' in listing.stdout
     examined = tangible("devices", "doctor", "device", "--json", cwd=folder)
     assert examined.returncode == 1
     assert "failed in spec: OSError: no such wire" in examined.stdout
 
 
-def test_a_plugin_that_cannot_be_imported(folder: Path, install, log_dir: Path):
+def test_plugin_that_cannot_be_imported_gives_one_sentence(folder: Path, install, log_dir: Path):
     install("broken", {"tangible.depth": {"broken": "broken:Depth"}}, broken="1 / 0")
-    said = failed(tangible("run", "p.yaml", "--set", "depth=broken", cwd=folder))
-    assert "depth method 'broken' (broken:Depth, from broken 1.0) cannot be loaded: ZeroDivisionError" in said
-    assert said.endswith(f"the traceback is in {log_dir / 'failures.log'}")
+    message = failure(tangible("run", "p.yaml", "--set", "depth=broken", cwd=folder))
+    assert "depth method 'broken' (broken:Depth, from broken 1.0) cannot be loaded: ZeroDivisionError" in message
+    assert message.endswith(f"the traceback is in {log_dir / 'failures.log'}")
 
 
-def test_a_fault_of_our_own_is_one_line_too(folder: Path, log_dir: Path, monkeypatch: pytest.MonkeyPatch):
+def test_fault_of_the_program_gives_one_line_and_code_1(folder: Path, log_dir: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("tangible_core.cli.commands.run.open_pipeline", lambda *_: [][0])
-    said = failed(tangible("plan", "p.yaml", cwd=folder), code=1)
-    assert said.startswith("tangible itself failed: IndexError: list index out of range; please report it: ")
+    message = failure(tangible("plan", "p.yaml", cwd=folder), code=1)
+    assert message.startswith("tangible itself failed: IndexError: list index out of range; please report it: ")
     assert "Traceback" in (log_dir / "failures.log").read_text()
 
 
-def test_a_log_that_cannot_be_written(folder: Path, monkeypatch: pytest.MonkeyPatch):
+def test_failure_log_that_cannot_be_written_is_mentioned(folder: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("TANGIBLE_LOG_DIR", str(folder / "p.yaml"))
-    said = failed(tangible("run", "p.yaml", cwd=folder))
-    assert "KeyError" in said and said.endswith("--log-level debug shows it")
-    shown = tangible("run", "p.yaml", "--log-level", "tangible_core.plugins.failures=debug", cwd=folder)
-    assert "Traceback" in shown.stderr
+    message = failure(tangible("run", "p.yaml", cwd=folder))
+    assert "KeyError" in message and message.endswith("--log-level debug shows it")
+    logged = tangible("run", "p.yaml", "--log-level", "tangible_core.plugins.failures=debug", cwd=folder)
+    assert "Traceback" in logged.stderr
 
 
-def test_a_log_that_grew_large_begins_anew(folder: Path, log_dir: Path, monkeypatch: pytest.MonkeyPatch):
+def test_failure_log_that_grew_large_is_rotated(folder: Path, log_dir: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("tangible_core.runtime.failure_log.MOST_BYTES", 10)
     for _ in range(3):
         tangible("run", "p.yaml", cwd=folder)
@@ -194,7 +194,7 @@ def test_a_log_that_grew_large_begins_anew(folder: Path, log_dir: Path, monkeypa
     assert all(path.read_text().count("tangible run p.yaml") == 1 for path in log_dir.iterdir())
 
 
-def test_a_current_folder_that_was_deleted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_deleted_current_folder_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     gone = tmp_path / "gone"
     gone.mkdir()
     monkeypatch.chdir(gone)
@@ -206,7 +206,7 @@ def test_a_current_folder_that_was_deleted(tmp_path: Path, monkeypatch: pytest.M
 class TestHomes:
     @pytest.fixture(autouse=True)
     def home(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-        """A home beside the current folder."""
+        """Create a home next to the current folder."""
         home = folder / "home"
         home.mkdir()
         folder.joinpath("a.npy").rename(home / "a.npy")
@@ -214,7 +214,7 @@ class TestHomes:
         monkeypatch.setenv("HOME", str(home))
         return home
 
-    def test_in_a_file_and_on_the_command_line(self, folder: Path, home: Path):
+    def test_home_in_a_file_and_on_the_command_line_is_expanded(self, folder: Path, home: Path):
         text = "scene: {height: ~/a.npy}\nwant: surface\n"
         home.joinpath("p.yaml").write_text(text)
         done = tangible("run", "~/p.yaml", "--out=~/out", cwd=folder)
@@ -222,11 +222,11 @@ class TestHomes:
         assert (home / "out" / "surface.npz").exists()
         assert not (folder / "~").exists()
         library = home / "mine.yaml"
-        assert failed(tangible("materials", "--library=~/mine.yaml", cwd=folder)).startswith(f"{library}: there is no")
+        assert failure(tangible("materials", "--library=~/mine.yaml", cwd=folder)).startswith(f"{library}: there is no")
         done = tangible("plan", "~/p.yaml", "--set", "scene={photo: ~/a.npy}", "--set", "depth=depth", cwd=folder)
         assert done.returncode == 0, done.stderr
 
-    def test_of_somebody_whom_nobody_knows(self, folder: Path):
-        said = "~nobody-here/a.npy: no user here is named 'nobody-here', and `~` names a home"
+    def test_home_of_an_unknown_user_is_refused(self, folder: Path):
+        message = "~nobody-here/a.npy: no user here is named 'nobody-here', and `~` names a home"
         for words in (("plan", "~nobody-here/a.npy"), ("plan", "p.yaml", "--set", "scene.photo=~nobody-here/a.npy")):
-            assert failed(tangible(*words, cwd=folder)).endswith(said)
+            assert failure(tangible(*words, cwd=folder)).endswith(message)

@@ -1,4 +1,4 @@
-"""`tangible feel` as it stands in an exhibition: several files in turn, without end, until it is asked to end."""
+"""`tangible feel` in an exhibition: several files in turn, without end, until a signal stops it."""
 
 import json
 import os
@@ -36,21 +36,21 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.mark.slow
-def test_files_in_turn_and_a_recording_that_is_never_in_memory(folder: Path):
+def test_feel_in_turn_streams_its_recording_to_disk(folder: Path):
     words = ("a.yaml", "b.yaml", "--each", 1, "--record", "hand.nc", "--json")
     with patch.object(Recording, "load", pytest.fail):
         done = tangible("feel", *words, cwd=folder)
     assert done.returncode == 0, done.stderr
-    kept = Recording.load(folder / "hand.nc")
-    assert len(kept.rows) == json.loads(done.stdout)["figures"]["ticks"] == 2000
-    (second,) = np.flatnonzero(kept.flags & TickFlag.SWAPPED)
-    assert kept.time_s[second] >= 1
-    one, two = kept.about.configuration.split("---\n")
+    recording = Recording.load(folder / "hand.nc")
+    assert len(recording.rows) == json.loads(done.stdout)["figures"]["ticks"] == 2000
+    (second,) = np.flatnonzero(recording.flags & TickFlag.SWAPPED)
+    assert recording.time_s[second] >= 1
+    one, two = recording.about.configuration.split("---\n")
     assert ("a.npy" in one, "b.npy" in two) == (True, True)
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (("a.yaml", "c.yaml", "--seconds", 0.5), "c.yaml: has another `device:` or `mapping:` than a.yaml"),
         (("a.yaml", "b.yaml", "--set", "scene.height=none.npy"), "none.npy"),
@@ -58,25 +58,25 @@ def test_files_in_turn_and_a_recording_that_is_never_in_memory(folder: Path):
         (("a.yaml", "--seconds", "inf", "--record", "hand.npz"), "recorded as .nc"),
     ],
 )
-def test_what_cannot_be_felt_in_turn(folder: Path, words: tuple[object, ...], said: str):
+def test_feel_in_turn_of_unsuitable_files_is_refused(folder: Path, words: tuple[object, ...], message: str):
     done = tangible("feel", *words, cwd=folder)
     assert (done.returncode, done.stdout) == (2, "")
-    assert said in done.stderr
+    assert message in done.stderr
     assert not list(folder.glob("hand*"))
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_a_pointer_that_nobody_moves_says_so_once(folder: Path):
+def test_feel_with_an_unmoved_pointer_warns_once(folder: Path):
     done = tangible("feel", "c.yaml", "--seconds", 2, cwd=folder)
     assert done.returncode == 0, done.stderr
     assert done.stderr.count("start `tangible pointer` in another terminal") == 1
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("asked_by", "group"), [(signal.SIGTERM, False), (signal.SIGHUP, True)])
-def test_it_goes_on_until_it_is_asked_to_end(folder: Path, asked_by: signal.Signals, group: bool):
-    """The program alone, as `kill` does, and with its loop's process, as systemd and a closed terminal do."""
+@pytest.mark.parametrize(("number", "group"), [(signal.SIGTERM, False), (signal.SIGHUP, True)])
+def test_endless_feel_stops_at_a_signal_with_a_complete_recording(folder: Path, number: signal.Signals, group: bool):
+    """The signal goes to the program alone, as by `kill`, or to its loop as well, as by systemd or a terminal."""
     words = ["feel", "a.yaml", "b.yaml", "--each", "0.2", "--seconds", "inf", "--wait", "--record", "hand.nc"]
     program = subprocess.Popen(
         [*HEARING, TANGIBLE, *words],
@@ -91,21 +91,21 @@ def test_it_goes_on_until_it_is_asked_to_end(folder: Path, asked_by: signal.Sign
         while not grown.exists() or grown.stat().st_size < 60_000:
             assert program.poll() is None and time.monotonic() < end
             time.sleep(0.05)
-        (os.killpg if group else os.kill)(program.pid, asked_by)
+        (os.killpg if group else os.kill)(program.pid, number)
         out, errors = program.communicate(timeout=60)
     finally:
         program.kill()
-    assert program.returncode == 128 + asked_by, errors
+    assert program.returncode == 128 + number, errors
     assert "Traceback" not in errors
     assert "contact_share" in out
-    kept = Recording.load(grown)
-    assert kept.stopped in (INTERRUPTED, "the process received a signal to end")
-    assert (len(kept.rows) > 500, (np.diff(kept.time_s) > 0).all()) == (True, True)
+    recording = Recording.load(grown)
+    assert recording.stopped in (INTERRUPTED, "the process received a signal to end")
+    assert (len(recording.rows) > 500, (np.diff(recording.time_s) > 0).all()) == (True, True)
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_a_video_is_played_and_told_of(tmp_path: Path):
+def test_feel_of_a_video_plays_it_and_reports_its_frames(tmp_path: Path):
     import cv2
 
     from films import layered

@@ -1,4 +1,4 @@
-"""What `--help` says fits a narrow terminal, whole."""
+"""The output of `--help` on a narrow terminal, and the imports it needs."""
 
 import subprocess
 import sys
@@ -10,7 +10,7 @@ from command_line import tangible
 
 
 @pytest.mark.parametrize("words", [[], ["devices"], ["materials"]])
-def test_no_summary_is_cut_off(words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_help_on_eighty_columns_cuts_no_summary(words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("COLUMNS", "80")
     lines = tangible(*words, "--help", cwd=tmp_path).stdout.splitlines()
     assert len(lines) > 5
@@ -19,7 +19,7 @@ def test_no_summary_is_cut_off(words: list[str], tmp_path: Path, monkeypatch: py
 
 
 def test_help_imports_neither_numpy_nor_the_pipeline():
-    """It is there at once, whatever packages add commands."""
+    """It appears at once, whatever packages add commands."""
     code = (
         "import sys; sys.argv[1:] = ['--help']\nfrom tangible_core.cli import main\ntry: main()\nfinally: "
         "print([name for name in sys.modules if name in ('numpy', 'tangible_core.pipeline')], file=sys.stderr)"

@@ -1,4 +1,4 @@
-"""What is reported when kernels are compiled."""
+"""The notice that kernels are compiled."""
 
 import logging
 from types import SimpleNamespace
@@ -10,7 +10,7 @@ from tangible_core.compiled.compiling import BYTECODE, _CompileNotice
 
 
 class Clock:
-    """A clock that is moved by hand, in seconds."""
+    """A clock that tests advance, in seconds."""
 
     def __init__(self) -> None:
         self.now_s = 100.0
@@ -20,7 +20,7 @@ class Clock:
 
 
 def compile_event(module: str, size: int) -> SimpleNamespace:
-    """Of a function of this module with so many bytes of bytecode, as numba has it."""
+    """Return numba's event for a function of a module with `size` bytes of bytecode."""
     function = SimpleNamespace(__module__=module, __code__=SimpleNamespace(co_code=bytes(size)))
     targetctx = SimpleNamespace(refresh=lambda: None)
     return SimpleNamespace(data={"dispatcher": SimpleNamespace(py_func=function, targetctx=targetctx)})
@@ -33,7 +33,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     return clock
 
 
-def test_compiling_is_reported_once_a_family_and_never_of_other_packages(caplog, clock: Clock):
+def test_compile_notice_is_logged_once_for_each_of_our_families(caplog, clock: Clock):
     notice = _CompileNotice()
     with caplog.at_level(logging.INFO):
         for module in (
@@ -46,7 +46,7 @@ def test_compiling_is_reported_once_a_family_and_never_of_other_packages(caplog,
             notice.on_start(event)
             clock.now_s += 0.5
             notice.on_end(event)
-    assert {record.levelname for record in caplog.records} == {"INFO"}, "it is routine, and no warning"
+    assert {record.levelname for record in caplog.records} == {"INFO"}, "it is routine, not a warning"
     assert [record.message for record in caplog.records] == [
         f"compiling the render kernels for this processor, about {round(0.5e-3 * BYTECODE['render'])} s; "
         "later runs find them on disk",
@@ -54,7 +54,7 @@ def test_compiling_is_reported_once_a_family_and_never_of_other_packages(caplog,
     ]
 
 
-def test_compile_notice_is_measured_by_the_first_function_that_is_finished(caplog, clock: Clock):
+def test_compile_notice_is_measured_by_the_first_finished_function(caplog, clock: Clock):
     notice, kernel, within = (
         _CompileNotice(),
         compile_event("tangible_depth.a", 5000),

@@ -1,4 +1,4 @@
-"""Loading of compiled kernels from the disk, without what numba needs only to compile."""
+"""Loading of compiled kernels from the disk, without the parts of numba for compiling."""
 
 import os
 import subprocess
@@ -27,7 +27,7 @@ def halve(values):
 def ones(count):
     return np.ones(count)
 """
-"""Two kernels of ours, and a function that uses numba's runtime, as it makes an array."""
+"""Two kernels of ours, and a function that allocates an array and so uses numba's runtime."""
 USE = """
 import sys
 import numpy as np
@@ -42,7 +42,7 @@ values = np.array([3.0])
 
 @pytest.fixture
 def use(tmp_path: Path):
-    """Run code that uses the kernels in a process of its own; its words."""
+    """Return a function that runs code with the kernels in a new process and returns its words."""
     (tmp_path / "acme_kernels.py").write_text(KERNELS)
     own = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "compiled")}
 

@@ -1,4 +1,4 @@
-"""Work shared among threads."""
+"""Sharing of work among threads."""
 
 from collections.abc import Iterable
 from threading import Barrier, Event, get_ident
@@ -9,7 +9,7 @@ from tangible_core.compiled.threads import in_blocks, in_turns, run_all
 
 
 @pytest.mark.parametrize(("most", "shares"), [(None, 5), (3, 3), (1, 1), (9, 5)])
-def test_turns_cover_every_task_once_in_no_more_shares_than_asked_for(most, shares, monkeypatch):
+def test_in_turns_covers_every_task_once_within_the_requested_shares(most, shares, monkeypatch):
     monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 5)
     seen = []
     in_turns(list(range(17)), seen.append, most)
@@ -17,7 +17,7 @@ def test_turns_cover_every_task_once_in_no_more_shares_than_asked_for(most, shar
     assert sorted(task for share in seen for task in share) == list(range(17))
 
 
-def test_a_long_task_holds_no_other_back(monkeypatch):
+def test_in_turns_does_not_wait_for_a_long_task(monkeypatch):
     monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 2)
     others = Barrier(2, timeout=10)
     left = iter((2, 1, 0))
@@ -30,7 +30,7 @@ def test_a_long_task_holds_no_other_back(monkeypatch):
     in_turns(["long", "short", "short", "short"], work)
 
 
-def test_an_interrupt_is_not_replaced_by_what_it_brings_about_in_other_threads():
+def test_run_all_raises_the_interrupt_before_errors_it_causes():
     interrupted, ended = Event(), Event()
 
     def interrupt() -> None:
@@ -49,12 +49,12 @@ def test_an_interrupt_is_not_replaced_by_what_it_brings_about_in_other_threads()
         run_all([lambda: None, fail])
 
 
-def test_no_task_is_no_work():
+def test_in_turns_without_tasks_calls_no_work():
     in_turns([], lambda share: pytest.fail("there is nothing to do"))
 
 
 @pytest.mark.parametrize("length", [0, 1, 15, 16, 100])
-def test_blocks_cover_a_range_once(length, monkeypatch):
+def test_in_blocks_covers_a_range_once(length, monkeypatch):
     monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 3)
     seen = []
     in_blocks(length, lambda start, stop: seen.append((start, stop, get_ident())))

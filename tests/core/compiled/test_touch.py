@@ -1,4 +1,4 @@
-"""Touches made of kernels: how they travel to another process, and how they are called."""
+"""Touches made of kernels: pickling for another process, and calls."""
 
 import pickle
 import subprocess
@@ -24,14 +24,14 @@ def _touch(name: str) -> CompiledTouch:
 
 
 @pytest.mark.parametrize("name", ["proxy", "penalty", "tangible-mask", "with-materials"])
-class TestTravel:
-    def test_it_feels_the_same_in_another_process(self, name: str) -> None:
+class TestPickling:
+    def test_pickled_touch_gives_the_same_forces(self, name: str) -> None:
         touch = _touch(name)
         other = pickle.loads(pickle.dumps(touch))
         np.testing.assert_array_equal(other.path(PATH), touch.path(PATH))
         assert other.stiffness_n_per_m == touch.stiffness_n_per_m
 
-    def test_its_arrays_need_not_be_copied(self, name: str) -> None:
+    def test_pickled_touch_keeps_its_arrays_out_of_band(self, name: str) -> None:
         buffers: list[pickle.PickleBuffer] = []
         touch = _touch(name)
         small = pickle.dumps(touch, protocol=5, buffer_callback=buffers.append)
@@ -40,7 +40,7 @@ class TestTravel:
         np.testing.assert_array_equal(other.path(PATH), touch.path(PATH))
 
 
-def test_the_memory_stays_what_the_law_writes_to() -> None:
+def test_pickled_touch_memory_is_still_a_fixed_argument() -> None:
     touch = pickle.loads(pickle.dumps(_touch("proxy")))
     touch.path(PATH)
     x, y, z = touch.memory[:3]
@@ -50,7 +50,7 @@ def test_the_memory_stays_what_the_law_writes_to() -> None:
     assert np.isnan(touch.memory[2])
 
 
-def test_an_address_has_its_kernels_signature() -> None:
+def test_address_has_the_signature_of_its_kernel() -> None:
     touch = _touch("proxy")
     assert [str(Address(touch.tick).signature)] == [str(each) for each in touch.tick.nopython_signatures]
 
@@ -66,15 +66,15 @@ print(felt.any(), *(len(kernel.stats.cache_misses) for kernel in (touch.tick, ke
 """
 
 
-def test_what_is_compiled_for_one_law_is_found_again_by_another_process() -> None:
-    said = [
+def test_kernel_compiled_for_a_nested_law_is_loaded_by_another_process() -> None:
+    outputs = [
         subprocess.run([sys.executable, "-c", LAW_AROUND_A_LAW], capture_output=True, text=True, check=True).stdout
         for _ in range(2)
     ]
-    assert said[1].split() == ["True", "0", "0"]
+    assert outputs[1].split() == ["True", "0", "0"]
 
 
-def test_each_kernel_of_one_definition_has_an_address_of_its_own() -> None:
+def test_address_differs_for_kernels_of_one_definition() -> None:
     laws = [
         load_method("render", "with-materials")(law=law, material="ice").touch(
             HapticSurface.from_heights(np.ones((8, 8)))

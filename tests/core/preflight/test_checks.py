@@ -90,7 +90,7 @@ class TestStiffness:
 
     def test_soft_law_is_a_warning(self):
         soft, *_ = law_stiffness(fly(level(), stiffness_n_per_m=0.26))
-        assert (soft.verdict, soft.says) == ("warn", "the law is so soft that a hand goes through the surface")
+        assert (soft.verdict, soft.says) == ("warn", "the force law is so soft that a hand goes through the surface")
 
     @pytest.mark.parametrize(
         ("changes", "limit"),
@@ -269,7 +269,11 @@ class TestSlopes:
         [
             ("proxy", True, "`safety.coupling: auto`"),
             ("proxy", False, "`materials.fit: device`; or `safety.coupling: auto`"),
-            ("penalty", True, "`safety.coupling: auto`; or a law that slopes do not stiffen, `render.use: proxy`"),
+            (
+                "penalty",
+                True,
+                "`safety.coupling: auto`; or a force law that slopes do not stiffen, `render.use: proxy`",
+            ),
         ],
     )
     def test_cures_already_applied_are_left_out(self, law: str, fitted: bool, cure: str):
@@ -475,12 +479,12 @@ class TestJitter:
         cost = TickCost(np.full(100, call_s), 1e-6)
         [found] = tick_cost(fly(level(), cost=cost, simulated=simulated))
         assert found.verdict == verdict
-        assert verdict == "ok" or found.cure == "a lighter law (`render.use`), or stop other work on this machine"
+        assert verdict == "ok" or found.cure == "a lighter force law (`render.use`), or stop other work on this machine"
 
     def test_tick_of_a_python_law_is_not_called_compiled(self):
         [found] = tick_cost(fly(level(), cost=TickCost(np.full(100, 6e-4), 6e-4, compiled=False)))
         assert "compiled" not in found.note
-        assert found.cure.startswith("a law of compiled kernels instead of Python")
+        assert found.cure.startswith("a force law of compiled kernels instead of Python")
 
 
 def test_page_names_every_check():

@@ -11,7 +11,8 @@ import pytest
 
 from command_line import tangible
 from tangible_core import load_pipeline
-from tangible_core.cli.commands.preflight import line, preflight
+from tangible_core.cli.commands.preflight import COLOURS, WIDTHS, preflight
+from tangible_core.cli.show import verdict_line
 from tangible_core.data import HapticState
 from tangible_core.errors import BrokenMethod, ConfigError
 from tangible_core.preflight import Hand, Loop, Verdict
@@ -120,7 +121,8 @@ def test_preflight_device_is_never_opened(folder: Path, monkeypatch: pytest.Monk
 
 
 def test_preflight_cure_is_below_its_verdict_with_plain_brackets():
-    shown = line(Verdict("slope", "a[b]", "warn", 0.125, "share", "<=", 0.01, "why [1]", "note", "do `x: [1]`"))
+    verdict = Verdict("slope", "a[b]", "warn", 0.125, "share", "<=", 0.01, "why [1]", "note", "do `x: [1]`")
+    shown = verdict_line(verdict, COLOURS, WIDTHS)
     assert shown.splitlines() == [
         "[yellow]warn  [/] slope        a\\[b]: 12.5 % > 1 %; note; why [1]",
         f"{'':20}cure: do `x: [1]`",

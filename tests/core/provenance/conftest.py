@@ -1,4 +1,4 @@
-"""Packages that are made up, and a provenance that has seen nothing yet."""
+"""Made-up packages, and a provenance with empty caches."""
 
 import sys
 import textwrap
@@ -13,7 +13,7 @@ Write = Callable[..., Path]
 
 
 def forget() -> None:
-    """As in a new process."""
+    """Empty the caches, as in a new process."""
     for module in (closure, places, versions):
         for each in vars(module).values():
             if hasattr(each, "cache_clear"):
@@ -22,7 +22,7 @@ def forget() -> None:
 
 @pytest.fixture
 def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Write]:
-    """`write("lib/site-packages", **{"acme/kernels.py": text})`: files below a folder that modules are found in."""
+    """`write("lib/site-packages", **{"acme/kernels.py": text})`: write files below a folder on the search path."""
 
     def write(folder: str, **files: str) -> Path:
         for name, text in files.items():

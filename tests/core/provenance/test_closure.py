@@ -1,4 +1,4 @@
-"""What some code depends on: whose edits change its digest, and whose do not."""
+"""The dependencies of code: edits that change its digest, and edits that do not."""
 
 import os
 import sys
@@ -51,8 +51,8 @@ METHOD = {
     ],
 )
 @pytest.mark.parametrize("folder", ["work", INSTALLED])
-def test_code_counts_as_far_as_it_is_imported(write: Write, folder: str, changed: str, same: bool):
-    """One's own package wherever it lies; another's where somebody may work on it."""
+def test_digest_changes_with_imported_modules_only(write: Write, folder: str, changed: str, same: bool):
+    """The own package counts wherever it lies; another package where it may be edited."""
     site = write(folder, **METHOD)
     before = digest("acme.method")
     (site / changed).write_text((site / changed).read_text() + "\n")
@@ -60,7 +60,7 @@ def test_code_counts_as_far_as_it_is_imported(write: Write, folder: str, changed
     assert (digest("acme.method") == before) is (same or of_others_and_installed)
 
 
-def test_of_what_is_installed_the_version_counts(write: Write):
+def test_digest_changes_with_the_version_of_an_installed_package(write: Write):
     site = write(
         INSTALLED,
         **METHOD,
@@ -72,7 +72,7 @@ def test_of_what_is_installed_the_version_counts(write: Write):
     assert digest("acme.method") != before
 
 
-def test_the_source_of_another_s_plugin_counts_where_it_is_installed(write: Write):
+def test_digest_changes_with_the_source_of_an_installed_plugin(write: Write):
     site = write(
         INSTALLED,
         **METHOD,
@@ -86,21 +86,21 @@ def test_the_source_of_another_s_plugin_counts_where_it_is_installed(write: Writ
     assert digest("acme.method") != before
 
 
-def test_of_tangible_images_that_is_read_what_is_used(write: Write):
+def test_closure_reads_only_the_used_modules_of_tangible_images(write: Write):
     write(INSTALLED, **METHOD)
     modules = closure("acme.method").modules
     assert {"acme.kernel", "tangible_core", "tangible_core.data"} <= set(modules)
     assert "tangible_core.pipeline.engine.engine" not in modules
 
 
-def test_tangible_images_is_read_where_it_is_installed(write: Write, monkeypatch: pytest.MonkeyPatch):
+def test_closure_reads_an_installed_tangible_images(write: Write, monkeypatch: pytest.MonkeyPatch):
     write(INSTALLED, **METHOD)
     monkeypatch.setattr(places, "INSTALLED", {*places.INSTALLED, Path(places.__file__).parts[-4]})
     assert "tangible_core.data" in closure("acme.method").modules
 
 
 @pytest.mark.parametrize("package", ["", "def __getattr__(name): ...\n"])
-def test_a_package_that_hands_on_each_name_when_it_is_asked_for_is_not_read_for_the_others(write: Write, package: str):
+def test_closure_of_a_name_of_a_lazy_package_leaves_out_its_other_names(write: Write, package: str):
     write(
         "work",
         **{
@@ -129,14 +129,14 @@ def test_a_package_that_hands_on_each_name_when_it_is_asked_for_is_not_read_for_
         assert closure(name).modules == tuple(sorted((*(handed_on if package else of_all), name)))
 
 
-def test_only_versions_of_what_is_imported_count(write: Write):
+def test_closure_has_the_versions_of_imported_libraries_only(write: Write):
     write("work", **{"none.py": "", "plain.py": "import json, numpy", "deep.py": "import plain, kornia"})
     assert set(closure("none").versions) == {"python"}
     assert set(closure("plain").versions) == {"python", "numpy"}
     assert set(closure("deep").versions) == {"python", "numpy", "kornia", "torch"}
 
 
-def test_a_version_is_part_of_the_digest(write: Write, monkeypatch: pytest.MonkeyPatch):
+def test_digest_changes_with_a_version(write: Write, monkeypatch: pytest.MonkeyPatch):
     write("work", **{"plain.py": "import cv2"})
     before = digest("plain")
     forget()
@@ -144,7 +144,7 @@ def test_a_version_is_part_of_the_digest(write: Write, monkeypatch: pytest.Monke
     assert closure("plain").digest != before
 
 
-def test_of_modules_alone_the_text_counts_and_not_what_they_import(write: Write):
+def test_closure_of_a_module_alone_leaves_out_its_imports(write: Write):
     site = write("work", **{"a.py": "", "b.py": "import c", "c.py": ""})
     before = closure("a", alone=("b",)).digest
     assert closure("a", alone=("b",)).modules == ("a", "b")
@@ -154,7 +154,7 @@ def test_of_modules_alone_the_text_counts_and_not_what_they_import(write: Write)
         assert (closure("a", alone=("b",)).digest == before) is same
 
 
-def test_a_compiled_module_counts_and_text_that_is_no_python_is_read_as_far_as_it_goes(write: Write):
+def test_closure_includes_compiled_modules_and_invalid_sources(write: Write):
     site = write(
         "work",
         **{"a.py": "import fast, torn", "fast.abi3.so": "1", "torn.py": "import ("},
@@ -168,11 +168,11 @@ def test_a_compiled_module_counts_and_text_that_is_no_python_is_read_as_far_as_i
     assert digest("a") != before
 
 
-def test_names_that_are_no_modules_cost_nothing():
+def test_closure_of_a_name_that_is_not_a_module_is_empty():
     assert closure("sys").modules == closure("nowhere.at.all").modules == ()
 
 
-def test_a_module_that_is_loaded_is_read_where_it_was_loaded_from(write: Write, tmp_path: Path):
+def test_closure_reads_a_loaded_module_from_its_own_file(write: Write, tmp_path: Path):
     write("first", **{"twice.py": "A = 1"})
     import_module("twice")
     before = digest("twice")
@@ -182,8 +182,8 @@ def test_a_module_that_is_loaded_is_read_where_it_was_loaded_from(write: Write, 
     assert digest("twice") != before
 
 
-def test_a_module_that_no_finder_finds_is_read_once_it_is_loaded(write: Write, monkeypatch: pytest.MonkeyPatch):
-    """As a script is, and a test."""
+def test_closure_reads_a_loaded_module_that_no_finder_finds(write: Write, monkeypatch: pytest.MonkeyPatch):
+    """Scripts and tests are such modules."""
     site = write("work", **{"helper.py": ""})
     loaded = ModuleType("loaded_by_hand")
     loaded.__file__ = str(site / "by_hand.py")
@@ -192,13 +192,13 @@ def test_a_module_that_no_finder_finds_is_read_once_it_is_loaded(write: Write, m
     assert closure("loaded_by_hand").modules == ("helper", "loaded_by_hand")
 
 
-def test_a_file_that_changed_since_the_process_began_gives_a_digest_that_no_other_process_has(
+def test_digest_with_a_file_changed_since_the_start_is_unique_to_the_process(
     write: Write, monkeypatch: pytest.MonkeyPatch
 ):
     site = write("work", **{"a.py": "import b", "b.py": ""})
     assert not closure("a").settled
     forget()
-    monkeypatch.setattr(closures, "BEGUN_NS", (site / "b.py").stat().st_ctime_ns + 1)
+    monkeypatch.setattr(closures, "STARTED_NS", (site / "b.py").stat().st_ctime_ns + 1)
     settled = closure("a")
     assert settled.settled
     os.utime(site / "b.py", (0, 0))  # as an installer does with files of old
@@ -210,9 +210,9 @@ def test_a_file_that_changed_since_the_process_began_gives_a_digest_that_no_othe
     assert len({before, closure("a").digest, settled.digest}) == 3
 
 
-def test_of_a_function_that_is_in_no_file_it_is_not_known():
-    exec("def f(): pass", made := {"__name__": "made"})
-    assert closure_of_function(made["f"]) is None
-    found = closure_of_function(test_names_that_are_no_modules_cost_nothing)
-    assert found is not None
-    assert {"tangible_core.provenance.closure"} <= set(found.modules)
+def test_closure_of_a_function_without_a_file_is_none():
+    exec("def f(): pass", namespace := {"__name__": "made"})
+    assert closure_of_function(namespace["f"]) is None
+    closure = closure_of_function(test_closure_of_a_name_that_is_not_a_module_is_empty)
+    assert closure is not None
+    assert {"tangible_core.provenance.closure"} <= set(closure.modules)

@@ -1,4 +1,4 @@
-"""What a text imports, however it is written."""
+"""The imports of a text in every form."""
 
 import ast
 from pathlib import Path
@@ -6,13 +6,13 @@ from pathlib import Path
 import pytest
 
 from tangible_core.provenance import imports as reading
-from tangible_core.provenance.imports import Import, bound, imports
+from tangible_core.provenance.imports import Import, definitions, imports
 
 ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize(
-    ("text", "found"),
+    ("text", "expected"),
     [
         ("import a, b.c as d", [Import("a"), Import("b.c")]),
         ("from a.b import c as d, e", [Import("a.b", "c", "d"), Import("a.b", "e", "e")]),
@@ -34,13 +34,13 @@ ROOT = Path(__file__).parents[3]
         ("important = 1; import_module(name)", []),
     ],
 )
-def test_every_way_of_writing_an_import_is_found(text: str, found: list[Import]):
-    assert [each for each in imports(text.encode()) if each.module != "x"] == found
+def test_import_is_found_in_every_form(text: str, expected: list[Import]):
+    assert [each for each in imports(text.encode()) if each.module != "x"] == expected
 
 
 @pytest.mark.slow
-def test_the_short_way_finds_all_that_the_long_one_does():
-    """Each module of Tangible Images, a hundred or so of which are read at the start of the loop."""
+def test_imports_of_every_module_equal_those_of_a_full_parse():
+    """About a hundred of these modules are read at the start of a force loop."""
     for path in (file for folder in ("tangible_core", "plugins", "tests") for file in (ROOT / folder).rglob("*.py")):
         source = path.read_bytes()
         whole = {each for node in ast.walk(ast.parse(source)) for each in _each(node)}
@@ -48,9 +48,9 @@ def test_the_short_way_finds_all_that_the_long_one_does():
 
 
 def _each(node: ast.AST) -> list[Import]:
-    return reading._each(node) if isinstance(node, ast.Import | ast.ImportFrom) else []
+    return reading._imports_of(node) if isinstance(node, ast.Import | ast.ImportFrom) else []
 
 
-def test_names_that_a_text_makes_itself():
+def test_definitions_are_found_at_any_depth():
     text = b"from a import b\ndef f(): c = 1\nclass D: pass\nasync def g(): pass\nb.x = e\nfor h in b: pass\n"
-    assert bound(text) == {"f", "c", "D", "g", "h"}
+    assert definitions(text) == {"f", "c", "D", "g", "h"}

@@ -1,4 +1,4 @@
-"""Kernels of anyone's: what was compiled before is used if all of its sources are the same, and never else."""
+"""Kernels of any package: compiled code is reused if all of its sources are the same, and never otherwise."""
 
 import os
 import subprocess
@@ -13,7 +13,7 @@ from types import SimpleNamespace
 import pytest
 
 from tangible_core.provenance import numba_cache
-from tangible_core.provenance.numba_cache import KEPT, tell
+from tangible_core.provenance.numba_cache import KEPT, extend
 
 ACME = {
     "__init__": "",
@@ -36,7 +36,7 @@ ACME = {
     "layout": "GAIN = 3.0\n",
     "neighbour": "",
 }
-FELT = "import tangible_core; from acme.kernels import law; print(law(1.0), len(law.stats.cache_misses))"
+CALL = "import tangible_core; from acme.kernels import law; print(law(1.0), len(law.stats.cache_misses))"
 FORKING = """
 import os, sys
 import numba, numba.core.caching
@@ -49,11 +49,11 @@ for line in sys.stdin:
         os._exit(0)
     os.wait()
 """
-"""A process that has imported numba alone, and compiled with it; each line of code runs in one that begins then."""
+"""A process that has imported numba and compiled with it; it runs each line of code in a new fork."""
 
 
 class Acme:
-    """A package that knows nothing of Tangible Images, and what another process feels of its law."""
+    """A package without knowledge of Tangible Images, whose kernel other processes call."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder / "acme"
@@ -69,8 +69,8 @@ class Acme:
     def edit(self, module: str, text: str) -> None:
         (self.folder / f"{module}.py").write_text(text)
 
-    def felt(self, code: str = FELT) -> list[str]:
-        """By a process that imports all there is itself."""
+    def run(self, code: str = CALL) -> list[str]:
+        """Run code in a process that imports everything itself; return its words."""
         return subprocess.check_output([sys.executable, "-c", code], text=True, **self._world).split()
 
     @cached_property
@@ -78,8 +78,8 @@ class Acme:
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "bufsize": 1}
         return subprocess.Popen([sys.executable, "-c", FORKING], **pipes, **self._world)
 
-    def felt_soon(self, code: str = FELT) -> list[str]:
-        """By a process that had imported numba before it began."""
+    def run_soon(self, code: str = CALL) -> list[str]:
+        """Run code in a fork of a process that had imported numba; return its words."""
         assert self._forking.stdin
         assert self._forking.stdout
         self._forking.stdin.write(code + "\n")
@@ -96,57 +96,57 @@ def acme(tmp_path: Path) -> Iterator[Acme]:
         yield acme
 
 
-def test_what_a_kernel_imports_is_obeyed_and_what_it_does_not_import_costs_nothing(acme: Acme):
-    assert acme.felt() == ["6.0", "1"]
-    assert acme.felt() == ["6.0", "0"]
+def test_kernel_is_recompiled_after_an_edit_of_its_imports_only(acme: Acme):
+    assert acme.run() == ["6.0", "1"]
+    assert acme.run() == ["6.0", "0"]
     acme.edit("neighbour", "GAIN = 5.0")
-    assert acme.felt() == ["6.0", "0"]
+    assert acme.run() == ["6.0", "0"]
     acme.edit("layout", "GAIN = 4.0\n")
-    assert acme.felt() == ["8.0", "1"]
+    assert acme.run() == ["8.0", "1"]
     acme.edit("helper", ACME["helper"].replace("1.0", "2.0").replace("\n        ", "\n"))
-    assert acme.felt() == ["12.0", "1"]
+    assert acme.run() == ["12.0", "1"]
 
 
-def test_what_was_before_an_edit_is_found_when_it_is_undone_as_far_as_it_is_kept(acme: Acme):
+def test_kernel_of_an_undone_edit_is_loaded_within_the_kept_number(acme: Acme):
     gains = [float(gain) for gain in range(3, 3 + KEPT)]
     for gain in gains:
         acme.edit("layout", f"GAIN = {gain}\n")
-        assert acme.felt_soon() == [str(2 * gain), "1"]
+        assert acme.run_soon() == [str(2 * gain), "1"]
     acme.edit("layout", f"GAIN = {gains[0]}\n")
-    assert acme.felt_soon() == [str(2 * gains[0]), "0"]
+    assert acme.run_soon() == [str(2 * gains[0]), "0"]
     for name in ("100.0", "101.0"):
         acme.edit("layout", f"GAIN = {name}\n")
-        acme.felt_soon()
-    assert acme.felt_soon() == ["202.0", "0"]
+        acme.run_soon()
+    assert acme.run_soon() == ["202.0", "0"]
     for suffix in ("nbi", "nbc"):
         assert len(list((acme.folder / "__pycache__").glob(f"kernels.law-*.{suffix}"))) == KEPT
 
 
-def test_where_the_package_cannot_be_written_to_the_user_s_folder_is_told_too(acme: Acme):
+def test_kernel_of_a_read_only_package_is_cached_in_the_users_folder(acme: Acme):
     (acme.folder / "__pycache__").write_text("no folder")
-    assert [acme.felt_soon(), acme.felt_soon()] == [["6.0", "1"], ["6.0", "0"]]
+    assert [acme.run_soon(), acme.run_soon()] == [["6.0", "1"], ["6.0", "0"]]
     acme.edit("layout", "GAIN = 4.0\n")
-    assert acme.felt_soon() == ["8.0", "1"]
+    assert acme.run_soon() == ["8.0", "1"]
     assert list(acme.users.rglob("kernels.law-*.nbi"))
 
 
-def test_numba_may_be_imported_first(acme: Acme):
-    first = f"import numba; {FELT}"
-    assert [acme.felt(first), acme.felt()] == [["6.0", "1"], ["6.0", "0"]]
+def test_kernel_is_recompiled_also_if_numba_was_imported_first(acme: Acme):
+    first = f"import numba; {CALL}"
+    assert [acme.run(first), acme.run()] == [["6.0", "1"], ["6.0", "0"]]
     acme.edit("layout", "GAIN = 4.0\n")
-    assert acme.felt(first) == ["8.0", "1"]
+    assert acme.run(first) == ["8.0", "1"]
 
 
-def test_what_an_old_process_compiles_after_an_edit_is_not_what_a_new_one_finds(acme: Acme):
-    """The constants that it has imported are those of before, and the text that it could look at is not."""
+def test_kernel_compiled_by_an_old_process_after_an_edit_is_not_saved(acme: Acme):
+    """Its constants are from before the edit, and the text that it could read is from after it."""
     edited = "import tangible_core, time; from acme import layout; time.sleep(0.05)"
     edit = "open('acme/layout.py', 'w').write('GAIN = 4.0')"
-    assert acme.felt_soon(f"{edited}; {edit}; {FELT}") == ["6.0", "1"]
+    assert acme.run_soon(f"{edited}; {edit}; {CALL}") == ["6.0", "1"]
     assert not list((acme.folder / "__pycache__").glob("kernels.law-*"))
-    assert acme.felt_soon() == ["8.0", "1"]
+    assert acme.run_soon() == ["8.0", "1"]
 
 
-def test_other_kinds_of_numba_s_caches_are_told_too(acme: Acme):
+def test_vectorized_kernels_are_recompiled_after_an_edit(acme: Acme):
     text = "import numba\nfrom . import layout\n@numba.{}(cache=True)\ndef law(x{}): {}\n"
     call = "import numpy as np, tangible_core; from acme import kernels; y = np.zeros(1); print(kernels.law(y, y)[0])"
     made = {
@@ -157,10 +157,10 @@ def test_other_kinds_of_numba_s_caches_are_told_too(acme: Acme):
         acme.edit("kernels", source.replace("X(", decorator))
         for gain in ("3.0", "4.0"):
             acme.edit("layout", f"GAIN = {gain}\n")
-            assert acme.felt_soon(call) == [gain]
+            assert acme.run_soon(call) == [gain]
 
 
-def test_a_numba_that_is_not_known_keeps_nothing_and_it_is_said(caplog: pytest.LogCaptureFixture, monkeypatch):
+def test_unknown_numba_version_disables_the_cache_with_a_warning(caplog: pytest.LogCaptureFixture, monkeypatch):
     class Cache:
         def __init__(self, py_func) -> None:
             self.kept = True
@@ -170,8 +170,8 @@ def test_a_numba_that_is_not_known_keeps_nothing_and_it_is_said(caplog: pytest.L
 
         def save_overload(self, sig, data) -> None: ...
 
-    found = SimpleNamespace(settled=True, digest="d")
-    monkeypatch.setattr(numba_cache, "closure_of_function", lambda function: found)
-    tell(SimpleNamespace(Cache=Cache))
-    assert not Cache(tell).kept
+    closure = SimpleNamespace(settled=True, digest="d")
+    monkeypatch.setattr(numba_cache, "closure_of_function", lambda function: closure)
+    extend(SimpleNamespace(Cache=Cache))
+    assert not Cache(extend).kept
     assert "this version of numba is unknown" in caplog.text

@@ -1,4 +1,4 @@
-"""The digest of code that is in no file: another one for every change that can change a result."""
+"""The digest of code without a file: it differs after every change that can change a result."""
 
 import linecache
 import sys
@@ -43,7 +43,7 @@ def _no_cell_left(monkeypatch: pytest.MonkeyPatch):
 
 
 def run(text: str, kept: bool = True) -> type:
-    """The class of a cell, as a notebook runs it: in a module without a file, its lines known by a made-up name."""
+    """Return the class of a cell, run as in a notebook: without a file, with a made-up name for its lines."""
     module, name = sys.modules["cell"], f"<cell {next(CELLS)}>"
     if kept:
         linecache.cache[name] = len(text), None, text.splitlines(True), name
@@ -51,7 +51,7 @@ def run(text: str, kept: bool = True) -> type:
     return module.Mine
 
 
-def test_the_same_cell_has_the_same_digest():
+def test_digest_of_the_same_cell_is_the_same():
     assert source_digest(run(CELL)) == source_digest(run(CELL)) is not None
 
 
@@ -67,12 +67,12 @@ def test_the_same_cell_has_the_same_digest():
         ("import math", "import cmath as math"),
     ],
 )
-def test_what_it_names_counts(before: str, after: str):
+def test_digest_changes_with_everything_the_class_refers_to(before: str, after: str):
     assert before in CELL
     assert source_digest(run(CELL)) != source_digest(run(CELL.replace(before, after))) is not None
 
 
-def test_what_it_does_not_name_does_not_count():
+def test_digest_ignores_what_the_class_does_not_refer_to():
     assert source_digest(run(CELL)) == source_digest(run(CELL + "\nOTHER = 5\ndef spare(): pass\n"))
 
 
@@ -83,11 +83,11 @@ def test_what_it_does_not_name_does_not_count():
         "\n".join(["def make(k):", *("    " + line for line in CELL.splitlines()), "    return Mine", "Mine = make(1)"])
         .replace("helper(self.k)", "k"),
     ],
-    ids=["an array", "what a function around it knew"],
+    ids=["an array", "a variable of a function around it"],
 )  # fmt: skip
-def test_what_cannot_be_told_has_none(text: str):
+def test_digest_of_a_class_with_unknown_content_is_none(text: str):
     assert source_digest(run(text)) is None
 
 
-def test_nor_has_a_source_that_nobody_kept():
+def test_digest_of_a_class_without_kept_source_is_none():
     assert source_digest(run(CELL, kept=False)) is None

@@ -1,4 +1,4 @@
-"""The guard itself, compiled once and then edited: no force leaves by the layout of another day."""
+"""The guard, compiled once and then edited: no force is limited by an old layout."""
 
 import os
 import re
@@ -21,8 +21,8 @@ print(tangible_core.__file__, max(left), len(guard.stats.cache_misses))
 """
 
 
-def pushed(packages: Path) -> tuple[float, int]:
-    """The greatest force that left of 300 N on a device of 8 N, and how many times the guard was compiled."""
+def push(packages: Path) -> tuple[float, int]:
+    """Return the greatest output force for 300 N on a device of 8 N, and the number of compilations of the guard."""
     environment = {**os.environ, "PYTHONPATH": str(packages), "NUMBA_CACHE_DIR": ""}
     done = subprocess.run(
         [sys.executable, "-P", "-c", PUSHED_FOR_A_SECOND], capture_output=True, text=True, check=True, env=environment
@@ -32,15 +32,15 @@ def pushed(packages: Path) -> tuple[float, int]:
     return float(force_n), int(compiled)
 
 
-def test_an_edit_of_the_layout_alone_is_obeyed_by_the_guard(tmp_path: Path):
+def test_guard_is_recompiled_after_an_edit_of_its_layout(tmp_path: Path):
     shutil.copytree(
         Path(tangible_core.__file__).parent, tmp_path / "tangible_core", ignore=shutil.ignore_patterns("__pycache__")
     )
-    assert pushed(tmp_path) == (8.0, 1)
+    assert push(tmp_path) == (8.0, 1)
     layout = tmp_path / "tangible_core" / "servo" / "guard" / "layout.py"
     names = layout.read_text()
     exchanged = {"MAX_FORCE_N": "MAX_STIFFNESS", "MAX_STIFFNESS": "MAX_FORCE_N"}
     layout.write_text("".join(exchanged.get(word, word) for word in re.split(r"\b", names)))
-    assert pushed(tmp_path) == (8.0, 1)
+    assert push(tmp_path) == (8.0, 1)
     (tmp_path / "tangible_core" / "pipeline" / "engine.py").write_text("")
-    assert pushed(tmp_path) == (8.0, 0)
+    assert push(tmp_path) == (8.0, 0)

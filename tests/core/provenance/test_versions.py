@@ -1,4 +1,4 @@
-"""Versions of what results depend on."""
+"""Versions of the libraries that results depend on."""
 
 import subprocess
 import sys
@@ -12,7 +12,7 @@ from tangible_core.provenance.versions import LIBRARIES, of_imported, versions
 NAMED = {name for names in LIBRARIES.values() for name in names if not name.startswith("opencv")}
 
 
-def test_versions_name_what_is_installed():
+def test_versions_has_installed_distributions_only():
     found = versions("pytest", "no-such-distribution")
     assert found["pytest"] == pytest.__version__
     assert "no-such-distribution" not in found
@@ -32,16 +32,16 @@ def test_versions_name_what_is_installed():
         ("numba", {"numba", "llvmlite", "numpy"}),
     ],
 )
-def test_a_library_is_known_by_the_name_that_is_imported(top: str, distributions: set[str]):
+def test_versions_of_an_import_name_has_its_distributions(top: str, distributions: set[str]):
     assert set(of_imported([top])) == {"python"} | distributions
 
 
-def test_python_s_own_version_counts(monkeypatch: pytest.MonkeyPatch):
+def test_versions_has_that_of_python(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(reading.sys, "version_info", (3, 99, 0))
     assert of_imported([]) == {"python": "3.99.0"}
 
 
-def test_a_plan_imports_no_library_to_know_its_version():
+def test_plan_imports_no_library_for_its_version():
     code = (
         "import sys; from tangible_core import load_pipeline;"
         "pipe = load_pipeline('configs/demo.yaml', ['depth.use=kornia-zncc', 'texture.use=kornia-gabor']); pipe.plan();"

@@ -1,4 +1,4 @@
-"""Processes that are started run the code that this one runs: nothing of the current folder, no other file's class."""
+"""Child processes run the code of this process: nothing of the current folder, and no class of another file."""
 
 import importlib.util
 import json
@@ -48,7 +48,7 @@ FELT = pathlib.Path(__file__).with_suffix(f".{os.getpid()}.felt")
 
 
 class Law(ForceRenderer):
-    """Leaves a file beside its own when it is felt."""
+    """A force law that leaves a file next to its own when it is called."""
 
     def touch(self, surface):
         return LawTouch()
@@ -61,7 +61,7 @@ class LawTouch(PlainTouch):
 
 
 class Tip(HapticDevice):
-    """Is never opened."""
+    """A device that is never opened."""
 
     def spec(self):
         return SPEC
@@ -71,7 +71,7 @@ class Tip(HapticDevice):
 
 
 class Flat(DepthEstimator):
-    """Knows no depth."""
+    """A depth method that returns zeros."""
 
     def estimate(self, views):
         return DisparityMap(np.zeros(views.shape, np.float32))
@@ -81,7 +81,7 @@ def tick(x, y, z, vx, vy, vz):
     return 0.0, 0.0, 0.0
 
 
-tick.py_func = tick  # what of a kernel is asked for when it travels
+tick.py_func = tick  # a kernel is pickled by this attribute
 
 
 def kernel():
@@ -91,15 +91,15 @@ def kernel():
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """The folder in which a user works."""
+    """Return the folder in which a user works."""
     work = tmp_path / "work"
     work.mkdir()
     np.save(work / "level.npy", np.full((8, 8), 0.5))
     return work
 
 
-def traps(folder: Path) -> Path:
-    """Put files with the names of modules into it, which say when they are run; where they say it."""
+def set_traps(folder: Path) -> Path:
+    """Add files with the names of modules that leave a mark when they are run; return the path of the mark."""
     marker = folder / "ran.txt"
     for name in ("numba", "numpy", "pickle", "importlib", "tangible_core"):
         folder.joinpath(f"{name}.py").write_text(TRAP.format(marker=str(marker)))
@@ -111,37 +111,37 @@ def tangible(*words: str, cwd: Path, **variables: str) -> subprocess.CompletedPr
     return subprocess.run([TANGIBLE, *words], cwd=cwd, env=env, capture_output=True, text=True, timeout=240)
 
 
-def installed(folder: Path) -> Path:
-    """A distribution `acme` with one law."""
+def install_acme(folder: Path) -> Path:
+    """Install a distribution `acme` with one force law and one depth method."""
     points = {"tangible.render": {"acme": "acme:Law"}, "tangible.depth": {"acme": "acme:Flat"}}
     return distribution(folder, "acme", points, acme=ACME)
 
 
 class TestTheCurrentFolder:
-    def test_feel_runs_nothing_of_it(self, folder: Path) -> None:
+    def test_feel_runs_nothing_of_the_current_folder(self, folder: Path) -> None:
         folder.joinpath("p.yaml").write_text(FEEL + "render: {use: proxy}\ndevice: {use: mock}\n")
-        marker = traps(folder)
+        marker = set_traps(folder)
         done = tangible("feel", "p.yaml", "--seconds", "0.05", "--json", cwd=folder)
         assert done.returncode == 0, done.stderr
         assert json.loads(done.stdout)["figures"]["ticks"] == 50
         assert not marker.exists()
 
-    def test_compare_runs_nothing_of_it(self, folder: Path) -> None:
+    def test_compare_runs_nothing_of_the_current_folder(self, folder: Path) -> None:
         folder.joinpath("c.yaml").write_text(COMPARE.format("zncc"))
-        marker = traps(folder)
+        marker = set_traps(folder)
         done = tangible("compare", "c.yaml", "--json", cwd=folder)
         assert done.returncode == 0, done.stderr
         assert [each["error"] for each in json.loads(done.stdout)["cells"]] == [None]
         assert not marker.exists()
 
-    def test_the_kit_runs_nothing_of_it(self, folder: Path) -> None:
-        marker = traps(folder)
+    def test_check_runs_nothing_of_the_current_folder(self, folder: Path) -> None:
+        marker = set_traps(folder)
         done = tangible("check", "device", "mock", cwd=folder)
         assert done.returncode == 0, done.stdout + done.stderr
         assert not marker.exists()
 
-    def test_the_installed_plugin_is_felt_and_not_its_source(self, folder: Path, tmp_path: Path) -> None:
-        site = installed(tmp_path / "site")
+    def test_feel_uses_the_installed_plugin_and_not_a_file_of_its_name(self, folder: Path, tmp_path: Path) -> None:
+        site = install_acme(tmp_path / "site")
         folder.joinpath("acme.py").write_text(ACME)
         folder.joinpath("p.yaml").write_text(FEEL + "render: {use: acme}\ndevice: {use: mock}\n")
         done = tangible("feel", "p.yaml", "--seconds", "0.05", cwd=folder, PYTHONPATH=str(site))
@@ -156,11 +156,11 @@ class TestSearchPath:
         monkeypatch.chdir(folder)
         monkeypatch.setattr(sys, "path", ["", "lib", "/opt/lib"])
 
-    def test_relative_entries_are_made_absolute_and_the_empty_one_is_left_out(self, folder: Path) -> None:
+    def test_search_path_is_absolute_without_the_empty_entry(self, folder: Path) -> None:
         assert search_path() == [str(folder / "lib"), "/opt/lib"]
 
     @pytest.mark.parametrize("file", ["beside.py", "beside/__init__.py", "beside/inner.py"])
-    def test_the_empty_one_is_the_current_folder_for_who_imported_from_there(
+    def test_search_path_has_the_current_folder_if_a_module_came_from_it(
         self, folder: Path, file: str, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         folder.joinpath(file).parent.mkdir(exist_ok=True)
@@ -171,7 +171,9 @@ class TestSearchPath:
         assert search_path() == [str(folder), str(folder / "lib"), "/opt/lib"]
         monkeypatch.delitem(sys.modules, "beside")
 
-    def test_a_folder_that_is_gone(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_search_path_in_a_deleted_folder_leaves_out_the_empty_entry(
+        self, folder: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
         monkeypatch.setattr(sys, "path", ["", "/opt/lib"])
         folder.joinpath("level.npy").unlink()
         folder.rmdir()
@@ -179,41 +181,39 @@ class TestSearchPath:
 
 
 class TestCommand:
-    def test_it_takes_the_path_over_before_anything_is_imported(
-        self, folder: Path, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
+    def test_command_sets_the_path_before_any_import(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         path = [*map(str, map(Path.absolute, map(Path, sys.path))), str(folder / 'it\'s "mine" \udce4')]
         monkeypatch.setattr(sys, "path", path)
-        said = subprocess.run(
+        done = subprocess.run(
             python("import json; print(json.dumps([sys.path, sys.flags.safe_path]))"), capture_output=True, check=True
         )
-        assert json.loads(said.stdout) == [path, True]
+        assert json.loads(done.stdout) == [path, True]
 
     @pytest.mark.parametrize("flags", [[], ["-E"], ["-s"], ["-I"], ["-S"]])
-    def test_what_python_was_told_to_leave_out_is_left_out(self, flags: list[str]) -> None:
-        """A Python with these flags asks for the words, and here they are looked at."""
+    def test_command_has_the_flags_of_this_python(self, flags: list[str]) -> None:
+        """The command is built in a Python with these flags, and checked here."""
         code = f"import sys; sys.path[:] = {sys.path!r}; from tangible_core.runtime.child_process import command; "
         code += "print(*command('x')[1:-2])"
-        said = subprocess.run([sys.executable, *flags, "-c", code], capture_output=True, text=True, check=True)
-        assert said.stdout.split()[0] == "-P"
-        assert set(said.stdout.split()) >= {"-P", *flags}
+        done = subprocess.run([sys.executable, *flags, "-c", code], capture_output=True, text=True, check=True)
+        assert done.stdout.split()[0] == "-P"
+        assert set(done.stdout.split()) >= {"-P", *flags}
 
-    def test_it_calls_main(self) -> None:
-        said = subprocess.run(command("this_is_missing"), capture_output=True, text=True)
-        assert "No module named 'this_is_missing'" in said.stderr
+    def test_command_calls_main_of_the_module(self) -> None:
+        done = subprocess.run(command("this_is_missing"), capture_output=True, text=True)
+        assert "No module named 'this_is_missing'" in done.stderr
 
 
 class TestOrigins:
     @pytest.fixture
     def site(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-        """Where a child finds `acme`."""
-        site = installed(tmp_path / "site")
+        """Return the folder where a child finds `acme`."""
+        site = install_acme(tmp_path / "site")
         monkeypatch.syspath_prepend(site)
         return site
 
     @pytest.fixture
     def elsewhere(self, site: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-        """`acme`, as this program has it: of another folder."""
+        """Return the module `acme` as this process has it, from another folder."""
         path = site.parent / "elsewhere" / "acme.py"
         path.parent.mkdir()
         path.write_text(ACME)
@@ -224,44 +224,49 @@ class TestOrigins:
         spec.loader.exec_module(module)
         return module
 
-    def refused(self, name: str, site: Path, error: object) -> None:
+    def check_refusal(self, name: str, site: Path, error: object) -> None:
         other = site.parent / "elsewhere" / "acme.py"
         assert str(error) == (
-            f"{name} of {other} cannot be had in the process that was started for it: there it is {site / 'acme.py'}; "
-            "have one acme only, where both find it"
+            f"{name} of {other} cannot be imported by the process that was started for it: "
+            f"there the module is {site / 'acme.py'}; "
+            "install one acme only, where both processes find it"
         )
         assert not list(site.glob("*.felt"))
 
-    def test_a_law_of_another_file(self, site: Path, elsewhere: Any) -> None:
+    def test_force_law_of_another_file_is_refused(self, site: Path, elsewhere: Any) -> None:
         touch, device = elsewhere.Law().touch(SURFACE), load_method("device", "mock")()
         with pytest.raises(BrokenMethod) as raised, Servo(touch, device):
             pytest.fail("it was felt")
-        self.refused("LawTouch", site, raised.value)
+        self.check_refusal("LawTouch", site, raised.value)
 
-    def test_a_device_of_another_file(self, site: Path, elsewhere: Any) -> None:
+    def test_device_of_another_file_is_refused(self, site: Path, elsewhere: Any) -> None:
         with (
             pytest.raises(BrokenMethod) as raised,
             Servo(load_method("render", "proxy")().touch(SURFACE), elsewhere.Tip()),
         ):
             pytest.fail("it was opened")
-        self.refused("Tip", site, raised.value)
+        self.check_refusal("Tip", site, raised.value)
 
-    def test_a_method_of_another_file_is_not_compared(self, site: Path, elsewhere: Any, tmp_path: Path) -> None:
+    def test_compared_method_of_another_file_is_refused(self, site: Path, elsewhere: Any, tmp_path: Path) -> None:
         comparison = parse_comparison(COMPARE.format("acme"), Path("c.yaml"), Registry())
         outlook = look(measurements(comparison), tmp_path / "r.jsonl")
         [row] = run(outlook, tmp_path / "r.jsonl", 60, lambda *_: None, lambda *_: None).values()
         assert row.error is not None and row.error.startswith("BrokenMethod: ")
-        self.refused("Flat", site, row.error.removeprefix("BrokenMethod: "))
+        self.check_refusal("Flat", site, row.error.removeprefix("BrokenMethod: "))
 
-    def test_a_kernel_of_another_file(self, site: Path, elsewhere: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_kernel_of_another_file_is_refused(
+        self, site: Path, elsewhere: Any, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
         sent = dumps(elsewhere.kernel())
         monkeypatch.delitem(sys.modules, "acme")
         with pytest.raises(BrokenMethod) as raised:
             pickle.loads(sent)
-        self.refused("tick", site, raised.value)
+        self.check_refusal("tick", site, raised.value)
         monkeypatch.delitem(sys.modules, "acme")
 
-    def test_the_same_file_by_another_path(self, site: Path, elsewhere: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_class_of_the_same_file_by_a_link_is_accepted(
+        self, site: Path, elsewhere: Any, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
         other = site.parent / "elsewhere"
         other.joinpath("acme.py").unlink()
         other.joinpath("acme.py").symlink_to(site / "acme.py")
@@ -270,14 +275,18 @@ class TestOrigins:
         assert type(pickle.loads(sent)).__name__ == "Law"
         monkeypatch.delitem(sys.modules, "acme")
 
-    def test_what_is_not_there_at_all(self, site: Path, elsewhere: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_class_of_a_missing_module_is_refused_with_the_cure(
+        self, site: Path, elsewhere: Any, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
         sent = dumps(elsewhere.Law())
         monkeypatch.delitem(sys.modules, "acme")
         monkeypatch.setattr(sys, "path", [])
-        with pytest.raises(BrokenMethod, match="No module named 'acme'; have one acme only, where both find it"):
+        with pytest.raises(
+            BrokenMethod, match="No module named 'acme'; install one acme only, where both processes find it"
+        ):
             pickle.loads(sent)
 
-    def test_what_pickle_cannot_send_is_for_pickle_to_say(self) -> None:
+    def test_local_object_raises_the_error_of_pickle(self) -> None:
         class Local:
             pass
 
@@ -286,13 +295,13 @@ class TestOrigins:
                 dumps(thing)
 
     @pytest.mark.parametrize("as_file", [True, False])
-    def test_a_law_of_a_notebook_or_a_script(self, as_file: bool, tmp_path: Path) -> None:
+    def test_force_law_of_a_notebook_or_a_script_is_refused_with_the_cure(self, as_file: bool, tmp_path: Path) -> None:
         script = tmp_path / "script.py"
         script.write_text(ACME.replace("__file__", "'felt'") + FEELS_ITS_OWN)
         words = [str(script)] if as_file else ["-c", script.read_text()]
-        said = subprocess.run([sys.executable, *words], cwd=tmp_path, capture_output=True, text=True)
-        assert said.stdout.startswith("BrokenMethod LawTouch of "), said.stderr
-        assert "has to move to a module, a file of its own" in said.stdout
+        done = subprocess.run([sys.executable, *words], cwd=tmp_path, capture_output=True, text=True)
+        assert done.stdout.startswith("BrokenMethod LawTouch of "), done.stderr
+        assert "move definitions of a notebook or a script to a module" in done.stdout
 
 
 FEELS_ITS_OWN = """

@@ -1,4 +1,4 @@
-"""OpenCV's switches, and that they are put back."""
+"""OpenCV's switches, and their reset."""
 
 from threading import Barrier, Thread
 
@@ -9,25 +9,25 @@ from tangible_core.runtime.opencv import plain_opencv
 
 
 @pytest.fixture(autouse=True)
-def as_it_was():
+def check_reset():
     before = cv2.useOptimized(), cv2.getNumThreads(), cv2.ipp.useIPP()
     yield
     assert (cv2.useOptimized(), cv2.getNumThreads(), cv2.ipp.useIPP()) == before
 
 
-def test_opencv_is_plain_inside_and_as_before_afterwards():
+def test_plain_opencv_switches_back_after_the_block():
     with plain_opencv():
         assert not cv2.useOptimized()
         assert not cv2.ipp.useIPP()
         assert cv2.getNumThreads() == 1
 
 
-def test_what_fails_inside_leaves_no_switch_behind():
+def test_plain_opencv_switches_back_after_an_error():
     with pytest.raises(ZeroDivisionError), plain_opencv():
         _ = 1 / 0
 
 
-def test_it_stays_plain_until_the_last_has_left():
+def test_plain_opencv_nested_stays_until_the_outer_block_ends():
     with plain_opencv():
         with plain_opencv():
             pass
@@ -35,7 +35,7 @@ def test_it_stays_plain_until_the_last_has_left():
         assert not cv2.ipp.useIPP()
 
 
-def test_who_has_switched_optimising_off_finds_it_off():
+def test_plain_opencv_leaves_optimising_off_if_it_was_off():
     cv2.setUseOptimized(False)
     try:
         with plain_opencv():
@@ -45,7 +45,7 @@ def test_who_has_switched_optimising_off_finds_it_off():
         cv2.setUseOptimized(True)
 
 
-def test_threads_that_overlap_are_plain_to_their_end():
+def test_plain_opencv_in_overlapping_threads_stays_until_the_last_ends():
     entered, left = Barrier(2, timeout=10), Barrier(2, timeout=10)
     seen = []
 

@@ -1,4 +1,4 @@
-"""What takes long is said while it goes on, and what does not is not."""
+"""The warning for slow work."""
 
 import logging
 import threading
@@ -7,23 +7,23 @@ import time
 import pytest
 
 from tangible_core.runtime import slowness
-from tangible_core.runtime.slowness import said_if_slow
+from tangible_core.runtime.slowness import warn_if_slow
 
 log = logging.getLogger("slow")
 
 
-def test_what_takes_long_is_said_meanwhile(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch):
+def test_slow_work_is_reported_while_it_runs(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(slowness, "LONG_S", 0.01)
     until = time.monotonic() + 60
-    with said_if_slow(log, "importing acme"):
+    with warn_if_slow(log, "importing acme"):
         while not caplog.messages and time.monotonic() < until:
             time.sleep(0.005)
     assert caplog.messages == ["importing acme has taken 0.01 s so far and goes on; Ctrl-C ends it"]
 
 
-def test_what_is_quick_is_not_and_leaves_no_timer(caplog: pytest.LogCaptureFixture):
+def test_quick_work_is_not_reported_and_leaves_no_timer(caplog: pytest.LogCaptureFixture):
     before = threading.active_count()
-    with said_if_slow(log, "importing acme"):
+    with warn_if_slow(log, "importing acme"):
         pass
     assert threading.active_count() <= before + 1  # the timer ends by itself
     assert not caplog.messages

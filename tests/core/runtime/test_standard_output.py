@@ -1,4 +1,4 @@
-"""Standard output is the program's: whatever a plugin prints, in whatever way, goes to standard error."""
+"""Standard output is for the program alone: whatever a plugin prints, in any way, goes to standard error."""
 
 import fcntl
 import io
@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from distributions import distribution
-from tangible_core.runtime.standard_output import kept, stream
+from tangible_core.runtime.standard_output import protect, stream
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 NOISY = '''
@@ -41,7 +41,7 @@ noise("at import")
 
 
 class Noisy(DepthEstimator):
-    """Talks all the time."""
+    """A method that prints all the time."""
 
     def estimate(self, views):
         noise("in estimate")
@@ -59,7 +59,7 @@ def tangible_commands(app):
 
     @app.command()
     def hello():
-        print("hello from a command of somebody else's")
+        print("hello from a plugin's command")
 '''
 WAYS = ("print", "write", "file 1", "C", "process")
 PIPELINE = """\
@@ -79,7 +79,7 @@ calls: 1
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder to work in, with a plugin installed that talks."""
+    """Return a folder to work in; a noisy plugin is installed."""
     import numpy as np
 
     from pictures import write_png
@@ -114,40 +114,42 @@ class TestPlugins:
         ],
         ids=lambda words: words[0] if isinstance(words, list) else "",
     )
-    def test_json_is_all_that_is_on_standard_output(self, folder: Path, words: list[str], where: set[str]) -> None:
+    def test_standard_output_holds_only_json_with_a_noisy_plugin(
+        self, folder: Path, words: list[str], where: set[str]
+    ) -> None:
         done = tangible(folder, *words)
         json.loads(done.stdout)
-        said = {
+        noise = {
             line
             for line in done.stderr.splitlines()
             if line.split(" ")[0] in ("print", "write", "file", "C", "process")
         }
-        assert said == {f"{way} {place}" for way in WAYS for place in where}
+        assert noise == {f"{way} {place}" for way in WAYS for place in where}
 
     @pytest.mark.parametrize("words", [["plan", "none.yaml"], ["check", "depth", "nosy"], ["plugins", "--jsn"]])
-    def test_nothing_is_on_standard_output_after_a_mistake(self, folder: Path, words: list[str]) -> None:
+    def test_standard_output_is_empty_after_a_mistake(self, folder: Path, words: list[str]) -> None:
         done = tangible(folder, *words)
         assert (done.returncode, done.stdout) == (2, "")
         assert "C at import" in done.stderr
 
-    def test_what_is_for_people_is_the_programs_alone_too(self, folder: Path) -> None:
+    def test_standard_output_for_people_holds_only_the_programs_text(self, folder: Path) -> None:
         done = tangible(folder, "run", "p.yaml", "--no-cache")
         assert done.returncode == 0, done.stderr
         assert "".join(done.stdout.split()).startswith(str(folder / "left.png"))  # a long path is broken
         assert not any(way in done.stdout for way in ("print ", "write ", "file 1", "C at", "C in", "process "))
 
-    def test_help_and_the_commands_of_others_write_as_they_like(self, folder: Path) -> None:
-        assert tangible(folder, "hello").stdout.splitlines()[-1] == "hello from a command of somebody else's"
+    def test_standard_output_is_open_to_help_and_commands_of_plugins(self, folder: Path) -> None:
+        assert tangible(folder, "hello").stdout.splitlines()[-1] == "hello from a plugin's command"
         for words in (["--help"], ["run", "--help"], ["devices", "doctor", "--help"]):
             done = tangible(folder, *words)
             assert "Usage: tangible" in done.stdout
             assert "print at import" in done.stderr
 
 
-class TestTheStreams:
+class TestStreams:
     @pytest.mark.parametrize("words", [["plugins"], ["plugins", "--json"], ["materials"]])
     @pytest.mark.parametrize("lines", [0, 1])
-    def test_a_reader_that_goes_away_is_no_error(self, folder: Path, words: list[str], lines: int) -> None:
+    def test_reader_that_goes_away_is_not_an_error(self, folder: Path, words: list[str], lines: int) -> None:
         done = subprocess.run(
             f"set -o pipefail; {TANGIBLE} {' '.join(words)} | head -{lines}",
             shell=True, executable="/bin/bash", cwd=folder, capture_output=True, text=True, env=quiet(),
@@ -157,19 +159,19 @@ class TestTheStreams:
 
     @pytest.mark.parametrize("unbuffered", ["", "1"])
     @pytest.mark.parametrize("words", [["plugins", "--json"], ["--help"]])
-    def test_a_full_disk_is_said_in_one_line(self, folder: Path, words: list[str], unbuffered: str) -> None:
+    def test_full_disk_is_reported_in_one_line(self, folder: Path, words: list[str], unbuffered: str) -> None:
         with Path("/dev/full").open("w") as full:
             done = tangible(folder, *words, stdout=full, env={**quiet(), "PYTHONUNBUFFERED": unbuffered})
         assert done.returncode == 2
         assert done.stderr == "standard output cannot be written: No space left on device\n"
 
     @pytest.mark.parametrize("words", [["plan", "none.yaml"], ["plan", "--no-such-option"]])
-    def test_a_mistake_that_cannot_be_told_is_one_all_the_same(self, folder: Path, words: list[str]) -> None:
+    def test_mistake_with_a_full_standard_error_still_exits_with_2(self, folder: Path, words: list[str]) -> None:
         with Path("/dev/full").open("w") as full:
             assert tangible(folder, *words, stderr=full, env=quiet()).returncode == 2
 
     @pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-"])
-    def test_streams_that_are_closed(self, folder: Path, closed: str) -> None:
+    def test_closed_streams_do_not_stop_a_run(self, folder: Path, closed: str) -> None:
         done = subprocess.run(
             f"{TANGIBLE} run p.yaml --no-cache --json {closed}", shell=True, cwd=folder, capture_output=True, text=True
         )
@@ -177,16 +179,16 @@ class TestTheStreams:
         if ">&-" not in closed.split():
             json.loads(done.stdout)
 
-    def test_a_mistake_is_told_after_what_was_shown(self, folder: Path) -> None:
-        """On one stream, in the order in which it happened."""
+    def test_message_of_a_mistake_comes_after_the_output(self, folder: Path) -> None:
+        """Both go to one stream, in the order in which they happened."""
         done = tangible(folder, "check", "depth", "nosy", stderr=subprocess.STDOUT, env=quiet())
         assert done.returncode == 2
         assert done.stdout.startswith("no depth method is named 'nosy'")
 
-    def test_encoding_and_its_errors_are_those_of_standard_output(self, folder: Path) -> None:
+    def test_stream_has_the_encoding_of_standard_output(self, folder: Path) -> None:
         code = (
-            "from tangible_core.runtime.standard_output import kept, stream\n"
-            "with kept(): print('\\u03bc', file=stream())"
+            "from tangible_core.runtime.standard_output import protect, stream\n"
+            "with protect(): print('\\u03bc', file=stream())"
         )
         env = {**quiet(), "PYTHONIOENCODING": "ascii:backslashreplace"}
         assert (
@@ -194,7 +196,7 @@ class TestTheStreams:
             == b"\\u03bc\n"
         )
 
-    def test_a_terminal_keeps_its_colours_and_its_width(self, folder: Path) -> None:
+    def test_terminal_output_has_its_colours_and_width(self, folder: Path) -> None:
         """132 columns, with standard input and error elsewhere."""
         folder.joinpath("wide.yaml").write_text(PIPELINE.replace("noisy", "semi-global"))
         host, terminal = pty.openpty()
@@ -222,46 +224,48 @@ def read(terminal: int) -> bytes:
 
 
 def quiet() -> dict[str, str]:
-    """Without the plugin that talks."""
+    """Return the environment without the noisy plugin."""
     return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
 
 
-class TestKept:
-    def test_in_a_process_whose_standard_output_is_not_its_own(self, monkeypatch: pytest.MonkeyPatch) -> None:
+class TestProtect:
+    def test_protect_of_a_replaced_stdout_redirects_print(self, monkeypatch: pytest.MonkeyPatch) -> None:
         out, err = io.StringIO(), io.StringIO()
         monkeypatch.setattr(sys, "stdout", out)
         monkeypatch.setattr(sys, "stderr", err)
-        with kept(), kept():
+        with protect(), protect():
             print("a plugin")
             print("the program", file=stream())
         print("afterwards")
         assert (out.getvalue(), err.getvalue()) == ("the program\nafterwards\n", "a plugin\n")
         assert stream() is out
 
-    def test_it_is_undone_after_an_error(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_protect_is_undone_after_an_error(self, monkeypatch: pytest.MonkeyPatch) -> None:
         out = io.StringIO()
         monkeypatch.setattr(sys, "stdout", out)
-        with pytest.raises(ZeroDivisionError), kept():
+        with pytest.raises(ZeroDivisionError), protect():
             raise ZeroDivisionError
         assert sys.stdout is out and stream() is out
 
-    def test_without_any(self, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def test_protect_without_standard_output_redirects_print(
+        self, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    ) -> None:
         monkeypatch.setattr(sys, "stdout", None)
-        with kept():
+        with protect():
             print("a plugin")
             print("the program", file=stream())
         assert sys.stdout is None
         assert capsys.readouterr().err == "a plugin\n"
 
-    def test_everything_is_as_it_was(self) -> None:
-        """In a process of its own: file 1 is its."""
+    def test_protect_restores_streams_and_files(self) -> None:
+        """Run in a child process, which owns its file 1."""
         code = """
 import os, sys
-from tangible_core.runtime.standard_output import kept, stream
+from tangible_core.runtime.standard_output import protect, stream
 before = sys.stdout, sys.stdout.line_buffering, len(os.listdir("/proc/self/fd"))
 print("first")
 for _ in range(3):
-    with kept():
+    with protect():
         print("a plugin"); os.write(1, b"a library\\n"); print("the program", file=stream())
 print("last"); sys.stdout.flush(); os.write(1, b"file 1\\n")
 assert (sys.stdout, sys.stdout.line_buffering, len(os.listdir("/proc/self/fd"))) == before

@@ -36,7 +36,7 @@ class Asking(Segmenter):
 SEEN: list[tuple[int, int]] = []
 
 
-def test_a_block_limits_kernels_and_opencv_and_leaves_them_as_they_were(eight):
+def test_thread_limit_holds_for_kernels_and_opencv_until_the_block_ends(eight):
     with limited_threads(3):
         assert (thread_count(), cv2.getNumThreads()) == (3, 3)
         with plain_opencv():
@@ -49,7 +49,7 @@ def test_a_block_limits_kernels_and_opencv_and_leaves_them_as_they_were(eight):
         assert (thread_count(), cv2.getNumThreads()) == (8, 6)
 
 
-def test_no_more_work_at_once_than_the_limit(eight):
+def test_thread_limit_bounds_the_work_at_one_time(eight):
     meeting = Barrier(3)
 
     def meet(*_: object) -> None:
@@ -65,7 +65,7 @@ def test_no_more_work_at_once_than_the_limit(eight):
         in_blocks(64, meet)
 
 
-def test_the_environment_limits_a_method_that_is_called_by_itself(eight, monkeypatch: pytest.MonkeyPatch):
+def test_thread_limit_of_the_environment_holds_for_a_single_method(eight, monkeypatch: pytest.MonkeyPatch):
     SEEN.clear()
     monkeypatch.setenv("TANGIBLE_THREADS", "2")
     Asking().segment(np.zeros((4, 4), np.float32))
@@ -74,10 +74,10 @@ def test_the_environment_limits_a_method_that_is_called_by_itself(eight, monkeyp
     assert SEEN == [(2, 2), (8, 6)]
 
 
-def test_a_pipeline_has_a_limit_of_its_own(eight, monkeypatch: pytest.MonkeyPatch):
+def test_thread_limit_of_a_pipeline_overrides_the_environment(eight, monkeypatch: pytest.MonkeyPatch):
     SEEN.clear()
     monkeypatch.setenv("TANGIBLE_THREADS", "5")
-    scene = Scene.of(photo=np.zeros((8, 8), np.float32))
+    scene = Scene.photo(np.zeros((8, 8), np.float32))
     pipeline = Pipeline(scene, texture=Asking(), cached=False, threads=3)
     assert pipeline.threads == pipeline.changed(pipeline.config).threads == 3
     pipeline.make("segments")
@@ -85,17 +85,17 @@ def test_a_pipeline_has_a_limit_of_its_own(eight, monkeypatch: pytest.MonkeyPatc
     assert SEEN == [(3, 3), (5, 5)]
 
 
-@pytest.mark.parametrize("said", ["none", "0", "-1", "1.5", "²"])
-def test_a_variable_that_is_no_number_is_one_line(said: str, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setenv("TANGIBLE_THREADS", said)
+@pytest.mark.parametrize("text", ["none", "0", "-1", "1.5", "²"])
+def test_thread_variable_that_is_not_a_number_is_refused(text: str, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("TANGIBLE_THREADS", text)
     with pytest.raises(ConfigError, match=r"TANGIBLE_THREADS: is .* a whole number of threads from 1"):
         thread_count()
 
 
-@pytest.mark.parametrize("said", [0, -1, 1.5, True, "2"])
-def test_an_option_that_is_no_number_is_one_line(said: object):
+@pytest.mark.parametrize("value", [0, -1, 1.5, True, "2"])
+def test_thread_option_that_is_not_a_number_is_refused(value: object):
     with pytest.raises(ArgumentError, match=r"threads: is .* a whole number from 1"):
-        check_threads(said)
+        check_threads(value)
 
 
 TORCH = """
@@ -112,10 +112,10 @@ print(inside, outside, again, torch.get_num_threads())
 
 
 @pytest.mark.slow
-def test_torch_obeys_it_whenever_it_is_imported():
-    """Torch takes its own number from the environment, and no more than there are processors."""
-    told = {**os.environ, "OMP_NUM_THREADS": "2", "MKL_NUM_THREADS": "2"}
-    told.pop("TANGIBLE_THREADS", None)
-    said = subprocess.run([sys.executable, "-c", TORCH], env=told, capture_output=True, text=True, timeout=120)
+def test_thread_limit_holds_for_torch_whenever_it_is_imported():
+    """Torch takes its number of threads from the environment, up to the number of processors."""
+    variables = {**os.environ, "OMP_NUM_THREADS": "2", "MKL_NUM_THREADS": "2"}
+    variables.pop("TANGIBLE_THREADS", None)
+    done = subprocess.run([sys.executable, "-c", TORCH], env=variables, capture_output=True, text=True, timeout=120)
     own = str(min(2, processors()))
-    assert said.stdout.split() == ["1", own, "1", own], said.stderr
+    assert done.stdout.split() == ["1", own, "1", own], done.stderr

@@ -324,7 +324,7 @@ def test_beacon_by_name_reaches_recording_and_replay(folder: Path):
     assert (number, name) == (1, "vase") and share > 0.9
     assert np.isin(Recording.load(folder / "hand.nc").beacon, (1, -1)).all()
     again = tangible("replay", "hand.nc", "still.yaml", cwd=folder)
-    assert "A beacon pulled to vase for " in well(again).stdout and "the law alone is replayed" in again.stdout
+    assert "A beacon pulled to vase for " in well(again).stdout and "only the force law is replayed" in again.stdout
     alone = Pipeline.from_yaml(file).feel(seconds=0.2, in_real_time=False, beacon=1)
     assert (alone.beacon == 1).all()
     wrong = tangible("feel", "still.yaml", "--beacon", "vas", cwd=folder)

@@ -91,7 +91,7 @@ def _divide(
         return
     if is_quiet():
         return
-    show.sentence(sentences.divided(" and ".join(each.name for each in pictures), len(found.listed)))
+    show.sentence(sentences.parts_summary(" and ".join(each.name for each in pictures), len(found.listed)))
     _print(found.listed)
     for path in files:
         show.plain(f"written: {path}")
@@ -130,7 +130,7 @@ def _list(
         rows = [{**each._asdict(), "was": was and was.number} for each, was in _with_earlier(found, done.before)]
         show.print_json({"title": done.title, "parts": rows, "files": [str(each) for each in done.written]})
     elif not is_quiet():
-        show.sentence(sentences.divided(done.title, len(found)))
+        show.sentence(sentences.parts_summary(done.title, len(found)))
         _print(found, done.before if done.moved else None)
         for each in done.written:
             show.plain(f"written: {each}")

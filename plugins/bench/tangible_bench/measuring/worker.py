@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 from tangible_core.data import Kind
 from tangible_core.errors import TangibleError
 from tangible_core.plugins.registry import load_method
-from tangible_core.runtime.child_process import Place, imported
+from tangible_core.runtime.child_process import Place, import_from
 from tangible_core.runtime.failure_log import where_kept
 
 from ..memory import start_peak
@@ -116,7 +116,7 @@ def main() -> None:
 def answer(place: Place, job: Job) -> dict[str, Any]:
     """Return the fields of the job's row, with `error` if anything fails. place: where to import its method from."""
     try:
-        imported(*place)
+        import_from(*place)
         return asdict(measure(job))
     except Exception as error:  # noqa: BLE001 - a method's failure is a result
         rest = "" if isinstance(error, TangibleError) else f"; {where_kept(error)}"

@@ -34,7 +34,7 @@ def least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, s
     by processor and from run to run, and these bits decide when this fit stops.
     Source: Nocedal & Wright, Numerical Optimization, 2nd ed., sec. 10.3.
     """
-    from tangible_core.compiled.small_matrices import solved
+    from tangible_core.compiled.small_matrices import solve
 
     values, found, damping = start, cost(start), 1e-2
     for _ in range(_ROUNDS):
@@ -42,7 +42,7 @@ def least_squares(cost: Callable[[np.ndarray], np.ndarray], start: np.ndarray, s
         slopes = np.stack(both, axis=1) / (2 * _STEP)
         normal, down = np.einsum("ni,nj->ij", slopes, slopes), np.einsum("ni,n->i", slopes, found)
         for _ in range(_TRIES):
-            move = -solved(normal + damping * np.trace(normal) / len(start) * np.eye(len(start)), down[None])[0]
+            move = -solve(normal + damping * np.trace(normal) / len(start) * np.eye(len(start)), down[None])[0]
             then = cost(values + scale * move)
             gain, expected = np.square(found).sum() - np.square(then).sum(), -(down * move).sum()
             if gain > 0 and gain >= _LEAST_GAIN * expected:

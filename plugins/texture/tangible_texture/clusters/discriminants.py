@@ -41,22 +41,22 @@ def scatters(planes: Float32[np.ndarray, "d n"], weights: Float32[np.ndarray, "k
 
 def evidence(planes: Float32[np.ndarray, "d n"], fit: Scatters) -> Float32[np.ndarray, "k n"]:
     """Compute each cell's log likelihood of each class, Gaussians of one width, up to a common term."""
-    from tangible_core.compiled.small_matrices import solved
+    from tangible_core.compiled.small_matrices import solve
 
     from .planes import combine_planes
 
-    towards = solved(fit.within, fit.means)
+    towards = solve(fit.within, fit.means)
     heights = 0.5 * (fit.means * towards).sum(axis=1)
     return combine_planes(towards, planes) - heights.astype(np.float32)[:, None]
 
 
 def discriminant_axes(fit: Scatters, most: int) -> Float64[np.ndarray, "m d"]:
     """Return the directions in which classes differ most, at most `most`, scaled to unit scatter within classes."""
-    from tangible_core.compiled.small_matrices import eigen, solved
+    from tangible_core.compiled.small_matrices import eigen, solve
 
     centre = np.einsum("k,kd->d", fit.shares, fit.means)
     apart = np.sqrt(fit.shares)[:, None] * (fit.means - centre)
-    towards = solved(fit.within, apart)
+    towards = solve(fit.within, apart)
     strengths, vectors = eigen(np.einsum("kd,jd->kj", apart, towards))
     kept = np.flatnonzero(strengths > 1e-9)[:most]
     return np.einsum("ak,kd->ad", vectors[kept] / np.sqrt(strengths[kept])[:, None], towards)

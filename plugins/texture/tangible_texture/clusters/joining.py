@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float32, Float64, Int32
 from numba import njit
 
-from tangible_core.compiled.small_matrices import factored, whitened
+from tangible_core.compiled.small_matrices import cholesky, whiten
 
 from .discriminants import discriminant_axes
 from .dividing import one_hot
@@ -113,7 +113,7 @@ def _distances(means, scatters, ridge):
     distances = np.zeros((count, count))
     for one in range(count):
         for other in range(one):
-            factor = factored((scatters[one] + scatters[other]) / 2 + ridge * np.eye(size))
-            distances[one, other] = np.square(whitened(factor, means[one : one + 1] - means[other : other + 1])).sum()
+            factor = cholesky((scatters[one] + scatters[other]) / 2 + ridge * np.eye(size))
+            distances[one, other] = np.square(whiten(factor, means[one : one + 1] - means[other : other + 1])).sum()
             distances[other, one] = distances[one, other]
     return distances

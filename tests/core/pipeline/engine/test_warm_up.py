@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tangible_core import Pipeline, Scene, Workspace
-from tangible_core.compiled.beside import kernels_are_compiled
+from tangible_core.compiled.background import start_waiting
 from tangible_core.pipeline.engine import warm_up as module
 from tangible_core.pipeline.engine.warm_up import FELT, _work, run_stages
 from tangible_core.plugins import DepthEstimator
@@ -65,7 +65,7 @@ def test_the_rehearsal_of_the_demo_compiles_all_that_comes_after_its_depth():
 
 def pipeline(**methods) -> Pipeline:
     given = {"depth": Luminance(), "texture": Gradient(segments=4), "render": Penalty(), "device": Mock()} | methods
-    return Pipeline(Scene.of(photo=PICTURE), workspace=Workspace(width_m=0.04), cached=False, **given)
+    return Pipeline(Scene.photo(PICTURE), workspace=Workspace(width_m=0.04), cached=False, **given)
 
 
 class TestWork:
@@ -91,12 +91,12 @@ class TestWork:
         assert _work(pipeline(texture=None).engine, "surface") is None
 
     def test_what_the_scene_brings_is_not(self):
-        scene = Scene.of(photo=PICTURE, segments=(PICTURE > 40).astype(np.uint8))
+        scene = Scene.photo(PICTURE, segments=(PICTURE > 40).astype(np.uint8))
         work = _work(Pipeline(scene, depth=Luminance(), texture=Gradient(), cached=False).engine, "segments")
         assert work is None
 
     def test_a_scene_without_a_picture_is_not(self):
-        scene = Scene.of(height=np.eye(8))
+        scene = Scene.heights(np.eye(8))
         assert _work(Pipeline(scene, render=Penalty(), cached=False).engine, "touch") is None
 
     def test_one_processor_has_no_room_beside(self, monkeypatch: pytest.MonkeyPatch):
@@ -119,7 +119,7 @@ class Loud(DepthEstimator):
     """Says that kernels are compiled, as if they were, and finds what `luminance` does."""
 
     def estimate(self, views):
-        kernels_are_compiled()
+        start_waiting()
         return Luminance().estimate(views)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tangible_core.compiled.small_matrices import eigen, solved
+from tangible_core.compiled.small_matrices import eigen, solve
 from tangible_texture.clusters import planes as matrices
 from tangible_texture.clusters.discriminants import discriminant_axes, evidence, principal_axes, scatters
 from tangible_texture.clusters.dividing import divide, one_hot
@@ -32,7 +32,7 @@ def test_eigenvalues_and_solutions_match_lapack(random: np.random.Generator, siz
     np.testing.assert_allclose(values, np.linalg.eigvalsh(matrix)[::-1], rtol=1e-8, atol=1e-10)
     np.testing.assert_allclose(vectors @ matrix @ vectors.T, np.diag(values), atol=1e-8)
     rows = random.standard_normal((3, size))
-    np.testing.assert_allclose(solved(matrix, rows), np.linalg.solve(matrix, rows.T).T, rtol=1e-6, atol=1e-8)
+    np.testing.assert_allclose(solve(matrix, rows), np.linalg.solve(matrix, rows.T).T, rtol=1e-6, atol=1e-8)
 
 
 @pytest.mark.parametrize("diagonal", [[0, 0, 0], [2, 2, 2, 2], [5, 0, 3, 0, 0], [1e-30, 1, 1e30]])

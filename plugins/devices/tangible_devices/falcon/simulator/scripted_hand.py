@@ -18,7 +18,7 @@ PAUSE_TICKS = 1000
 
 @final
 class ScriptedHand:
-    """A hand that goes to the start of the stroke once the device is homed, follows it, and presses down weakly."""
+    """A hand that follows the stroke once the device is homed, and presses with limited strength."""
 
     def __init__(
         self,

@@ -1,0 +1,141 @@
+"""A background process that compiles kernels while this process compiles others.
+
+numba compiles one kernel at a time in a process. The background process fills numba's disk cache with kernels that will
+be needed later, and reports each one that is ready. It is started when a kernel is compiled here, so not if all kernels
+are on disk, and it never outlives this process. This module does not import numba.
+"""
+
+import logging
+import os
+import pickle
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from types import TracebackType
+from typing import IO, Any, NamedTuple, Self, final
+
+from ..runtime.child_process import command, dumps
+from ..runtime.stopping import check_stopped
+
+log = logging.getLogger(__name__)
+LOOK_EVERY_S = 0.1
+"""The period, s, at which a waiting thread checks whether it shall stop."""
+
+
+class Work(NamedTuple):
+    """The work of the background process."""
+
+    names: frozenset[str]
+    """The names that can be waited for."""
+    function: Callable[..., Iterator[str]]
+    """A function of a module that yields each name once its kernels are compiled."""
+    arguments: tuple[Any, ...]
+
+
+_waiting: "list[BackgroundCompiler]" = []
+
+
+def start_waiting() -> None:
+    """Start the waiting background compilers; called when a kernel is compiled in this process."""
+    for each in tuple(_waiting):
+        each.begin()
+
+
+@final
+class BackgroundCompiler:
+    """A block with a process that compiles in the background, from the first kernel compiled in it to its end.
+
+    Only time depends on it: if the process cannot be started, or fails, kernels are compiled here.
+    """
+
+    def __init__(self, work: Callable[[], Work | None]) -> None:
+        """Prepare the block; work: called when the process starts, returns None if there is nothing to do."""
+        self._work: Callable[[], Work | None] | None = work
+        self._child: subprocess.Popen[bytes] | None = None
+        self._due: frozenset[str] = frozenset()
+        """The names that the process has yet to compile."""
+        self._lock, self._progress = threading.Lock(), threading.Condition()
+        self._listener: threading.Thread | None = None
+
+    def __enter__(self) -> Self:
+        _waiting.append(self)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        _waiting.remove(self)
+        with self._lock:
+            self._work = None
+            child = self._child
+        if child is not None:
+            child.kill()
+            child.wait()
+            if self._listener is not None:
+                self._listener.join()
+            with suppress(OSError):  # unsent data are not needed
+                _pipe(child.stdin).close()
+            _pipe(child.stdout).close()
+
+    def begin(self) -> None:
+        """Start the process, once, if there is work for it."""
+        with self._lock:
+            make, self._work = self._work, None
+            if make is None:
+                return
+            try:
+                if (work := make()) is None:
+                    return
+                data = dumps((work.function, work.arguments))
+                self._child = subprocess.Popen(
+                    command(__name__), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+                )
+            except Exception as error:  # noqa: BLE001 - any fault of a plugin only costs the background process
+                log.debug("nothing is compiled in the background: %s", error)
+                return
+            self._due = work.names
+            self._listener = threading.Thread(target=self._listen, args=(self._child, data), daemon=True)
+            self._listener.start()
+
+    def wait(self, what: str) -> None:
+        """Wait until the process has compiled this; return at once if it is not running or does not compile this.
+
+        Raises: Stopped if the current work shall end.
+        """
+        with self._progress:
+            while what in self._due:
+                self._progress.wait(LOOK_EVERY_S)
+                check_stopped()
+
+    def _listen(self, child: "subprocess.Popen[bytes]", data: bytes) -> None:
+        with suppress(OSError, ValueError):  # the process has ended
+            _pipe(child.stdin).write(data)
+            _pipe(child.stdin).flush()
+        for line in _pipe(child.stdout):
+            with self._progress:
+                self._due -= {line.decode(errors="replace").strip()}
+                self._progress.notify_all()
+        with self._progress:
+            self._due = frozenset()
+            self._progress.notify_all()
+
+
+def _pipe(pipe: IO[bytes] | None) -> IO[bytes]:
+    assert pipe is not None
+    return pipe
+
+
+def main() -> None:
+    """Do the work that arrives on standard input, in the background process, and end when that is closed."""
+    work, arguments = pickle.load(sys.stdin.buffer)
+    threading.Thread(target=_exit_with_parent, daemon=True).start()
+    for ready in work(*arguments):
+        sys.stdout.write(f"{ready}\n")
+        sys.stdout.flush()
+
+
+def _exit_with_parent() -> None:
+    sys.stdin.buffer.read()
+    os._exit(0)

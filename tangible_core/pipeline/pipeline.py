@@ -48,7 +48,7 @@ class Pipeline:
     does not need it, and `outcomes` has the reason. The cache has the results of earlier runs with equal inputs.
 
     >>> import numpy as np
-    >>> pipeline = Pipeline(Scene.of(height=np.eye(8)), workspace=Workspace(width_m=0.04), cached=False)
+    >>> pipeline = Pipeline(Scene.heights(np.eye(8)), workspace=Workspace(width_m=0.04), cached=False)
     >>> pipeline.surface.extent_m
     (0.04, 0.04)
     """
@@ -85,7 +85,7 @@ class Pipeline:
         Raises: ConfigError with every complaint about these; ArgumentError for an unknown key.
         """
         if not isinstance(scene, cast(Any, Scene)):
-            raise wrong_argument("scene", scene, "a Scene, such as Scene.of(photo=...) makes")
+            raise wrong_argument("scene", scene, "a Scene, such as Scene.photo(...) makes")
         registry = default_registry()
         config = config_of(
             scene,

@@ -49,7 +49,7 @@ class Slow(DepthEstimator):
 
 def test_pipeline_plans_makes_runs_and_feels(tmp_path: Path):
     left, right = pair()
-    scene = Scene.of(left=left, right=right, calibration=Calibration(994.978, 0.193, 31.086))
+    scene = Scene.pair(left, right, calibration=Calibration(994.978, 0.193, 31.086))
     pipeline = Pipeline(
         scene,
         depth=SemiGlobal(),
@@ -81,28 +81,28 @@ class TestScene:
     def test_scene_of_files_equals_that_of_arrays(self, tmp_path: Path):
         left, right = pair()
         np.save(tmp_path / "left.npy", left)
-        of_files = Scene.of(left=tmp_path / "left.npy", right=right)
+        of_files = Scene.pair(left=tmp_path / "left.npy", right=right)
         assert of_files.views is not None
-        of_arrays = Scene.of(left=left, right=right).views
+        of_arrays = Scene.pair(left, right).views
         assert of_arrays is not None
         assert of_files.views.digest() == of_arrays.digest()
 
     def test_scene_is_not_changed_by_later_changes_of_arrays(self):
         left, right = pair()
-        scene = Scene.of(left=left, right=right)
+        scene = Scene.pair(left, right)
         before = scene.views.left.copy() if scene.views else None
         left[:] = 0
         assert scene.views is not None
         np.testing.assert_array_equal(scene.views.left, before)
 
     def test_scene_of_heights_has_their_relief(self):
-        scene = Scene.of(height=[[0, 1], [2, 3]], relief_m=0.006)
+        scene = Scene.heights([[0, 1], [2, 3]], relief_m=0.006)
         assert Pipeline(scene, cached=False).surface.height_m.max() == np.float32(0.006)
 
     def test_scene_of_custom_labels_and_disparity_is_made_of_them(self):
         left, right = pair()
         labels = np.repeat([[7, 9]], SHAPE[0], axis=0).repeat(SHAPE[1] // 2, axis=1)
-        scene = Scene.of(left=left, right=right, disparity=np.ones(SHAPE), segments=labels)
+        scene = Scene.pair(left, right, disparity=np.ones(SHAPE), segments=labels)
         pipeline = Pipeline(scene, materials={0: "ice", 1: "sand"}, cached=False)
         assert pipeline.segments is not None and pipeline.segments.count == 2
         assert pipeline.materials is not None
@@ -138,30 +138,30 @@ class TestScene:
     )
     def test_scene_of_an_invalid_picture_is_refused(self, photo: object, said: str):
         with pytest.raises(PictureError, match=said):
-            Scene.of(photo=photo)  # pyright: ignore[reportArgumentType]
+            Scene.photo(photo)  # pyright: ignore[reportArgumentType]
 
     def test_scene_with_nan_is_masked_on_request(self):
         photo = np.ones((4, 4), np.float32)
         photo[0, 0] = np.nan
-        scene = Scene.of(photo=photo, non_finite="mask")
+        scene = Scene.photo(photo, non_finite="mask")
         assert scene.known is not None and not scene.known[0, 0] and scene.known.sum() == 15
 
     def test_scene_of_different_sizes_is_refused(self):
         with pytest.raises(PictureError, match="all parts of a scene must be of one size"):
-            Scene.of(left=np.zeros((4, 4)), right=np.zeros((4, 5)))
+            Scene.pair(left=np.zeros((4, 4)), right=np.zeros((4, 5)))
 
 
 class TestMethods:
     def test_method_of_a_custom_class_is_used(self):
         left, right = pair()
-        pipeline = Pipeline(Scene.of(left=left, right=right), depth=Flat())
+        pipeline = Pipeline(Scene.pair(left, right), depth=Flat())
         assert pipeline.disparity is not None and (pipeline.disparity.disparity_px == 3).all()
         assert pipeline.config.depth is not None and pipeline.config.depth.name == "Flat"
 
     def test_method_with_other_options_is_not_answered_from_the_cache(self):
         left, right = pair()
         for value in (3.0, 4.0, 3.0):
-            found = Pipeline(Scene.of(left=left, right=right), depth=Flat(value_px=value)).disparity
+            found = Pipeline(Scene.pair(left, right), depth=Flat(value_px=value)).disparity
             assert found is not None and (found.disparity_px == value).all()
 
     def test_method_of_a_custom_class_is_in_no_file(self, tmp_path: Path):
@@ -211,7 +211,7 @@ class TestThereAndBack:
         for name, picture in (("left", left), ("right", right)):
             np.save(tmp_path / f"{name}.npy", picture)
         cameras = Calibration(900.0, 0.1, 2.0)
-        scene = Scene.of(left=tmp_path / "left.npy", right=tmp_path / "right.npy", calibration=cameras)
+        scene = Scene.pair(left=tmp_path / "left.npy", right=tmp_path / "right.npy", calibration=cameras)
         pipeline = Pipeline(
             scene,
             depth=Zncc(window_px=5, max_disparity_px=8),
@@ -236,10 +236,10 @@ class TestThereAndBack:
 
     def test_file_of_a_scene_of_arrays_is_refused(self, tmp_path: Path):
         with pytest.raises(ConfigError, match="scene: is made of arrays"):
-            Pipeline(Scene.of(height=np.eye(4))).to_yaml(tmp_path / "mine.yaml")
+            Pipeline(Scene.heights(np.eye(4))).to_yaml(tmp_path / "mine.yaml")
 
     def test_run_without_a_configuration_file_writes_the_reason(self, tmp_path: Path):
-        run = Pipeline(Scene.of(height=np.eye(4)), cached=False).run(tmp_path)
+        run = Pipeline(Scene.heights(np.eye(4)), cached=False).run(tmp_path)
         assert "scene: is made of arrays" in (tmp_path / "config.txt").read_text()
         assert tmp_path / "config.txt" in run.files
 
@@ -247,7 +247,7 @@ class TestThereAndBack:
 class TestWatching:
     def test_progress_has_the_start_and_outcome_of_each_stage(self):
         heard: list[StageEvent] = []
-        Pipeline(Scene.of(height=np.eye(4)), cached=False).make("surface", progress=heard.append)
+        Pipeline(Scene.heights(np.eye(4)), cached=False).make("surface", progress=heard.append)
         assert [(each.product, each.outcome and each.outcome.outcome) for each in heard] == [
             ("relief", "given"),
             ("segments", "skipped"),
@@ -259,14 +259,14 @@ class TestWatching:
     def test_stop_between_stages_raises_stopped(self):
         left, right = pair()
         stop = threading.Event()
-        pipeline = Pipeline(Scene.of(left=left, right=right), depth=Flat(), cached=False)
+        pipeline = Pipeline(Scene.pair(left, right), depth=Flat(), cached=False)
         with pytest.raises(Stopped, match="stopped by the program"):
             pipeline.make("surface", progress=lambda stage: stop.set(), stop=stop)
         assert pipeline.surface.height_m.shape == SHAPE
 
     def test_stop_within_a_long_stage_raises_stopped(self):
         left, right = pair()
-        stop, pipeline = threading.Event(), Pipeline(Scene.of(left=left, right=right), depth=Slow(), cached=False)
+        stop, pipeline = threading.Event(), Pipeline(Scene.pair(left, right), depth=Slow(), cached=False)
         threading.Timer(0.2, stop.set).start()
         with pytest.raises(Stopped):
             pipeline.make("disparity", stop=stop)
@@ -276,7 +276,7 @@ class TestWatching:
     @pytest.mark.usefixtures("loop_in_thread")
     def test_stop_in_a_session_ends_it(self, in_real_time: bool):
         stop = threading.Event()
-        pipeline = Pipeline(Scene.of(height=np.ones((8, 8))), render=Penalty(), cached=False)
+        pipeline = Pipeline(Scene.heights(np.ones((8, 8))), render=Penalty(), cached=False)
         found = pipeline.feel(
             Mock(path="circle"), 600, in_real_time=in_real_time, on_report=lambda _: stop.set(), stop=stop
         )
@@ -289,7 +289,7 @@ class TestFeeling:
     @pytest.fixture
     def pipeline(self) -> Pipeline:
         device = Mock(hand=None, path="circle", z_m=0.0015)
-        return Pipeline(Scene.of(height=np.arange(64.0).reshape(8, 8)), render=Penalty(), device=device, cached=False)
+        return Pipeline(Scene.heights(np.arange(64.0).reshape(8, 8)), render=Penalty(), device=device, cached=False)
 
     def test_simulated_session_is_recorded_and_reported(self, pipeline: Pipeline):
         found = pipeline.feel(seconds=0.25, in_real_time=False)
@@ -333,7 +333,7 @@ class TestFeeling:
 @pytest.fixture(scope="module")
 def sample_pipeline() -> Pipeline:
     left, right = pair()
-    scene, texture = Scene.of(left=left, right=right), Histogram(segments=2)
+    scene, texture = Scene.pair(left, right), Histogram(segments=2)
     return Pipeline(scene, depth=Flat(), texture=texture, render=Penalty(), cached=False)
 
 

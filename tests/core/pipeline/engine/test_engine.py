@@ -224,7 +224,7 @@ def test_outcome_of_a_cached_product_repeats_its_notes(folder: Path, caplog: pyt
 def test_outcome_of_views_has_the_notes_on_their_files(folder: Path, monkeypatch: pytest.MonkeyPatch):
     def read(*_: object) -> Scene:
         note(logging.getLogger("tests"), "the first of 3 frames is taken", logging.WARNING)
-        return Scene.of(photo=np.zeros((4, 4)))
+        return Scene.photo(np.zeros((4, 4)))
 
     monkeypatch.setattr(Scene, "read", read)
     pipe = pipeline(folder)

@@ -37,7 +37,7 @@ def film_pipeline(walk):
     """A pipeline on it."""
 
     def make(**changed):
-        scene = Scene.of(video=walk, layout="side-by-side", fps=20, repeat=False)
+        scene = Scene.video(walk, layout="side-by-side", fps=20, repeat=False)
         methods = {"depth": SemiGlobal(resolution="half", max_disparity_px=32), "render": Proxy()}
         return Pipeline(scene, **methods | changed, cached=False)
 
@@ -54,7 +54,7 @@ def test_first_frame_equals_the_relief_of_the_still(film_pipeline):
 def test_each_frame_equals_the_still_of_its_disparity_and_range(film_pipeline, walk):
     """A later frame is a still with the range of the first frame, as nothing is averaged."""
     pipeline = film_pipeline()
-    later = Pipeline(Scene.of(stereo=walk / "004.png", layout="side-by-side"), depth=pipeline.config.depth.method)
+    later = Pipeline(Scene.pair(walk / "004.png", layout="side-by-side"), depth=pipeline.config.depth.method)
     spans = nearness_range(pipeline.disparity, None)
     maker = PipelineFrames(pipeline.config, pipeline.scene)
     first = maker.begin(pipeline.views)
@@ -80,7 +80,7 @@ def test_exchanged_views_stay_exchanged_in_later_frames(walk, tmp_path):
     for path in walk.iterdir():
         left, right = np.split(cv2.imread(str(path)), 2, axis=1)
         cv2.imwrite(str(tmp_path / path.name), np.hstack([right, left]))
-    scene = Scene.of(video=tmp_path, layout="side-by-side", fps=20, repeat=False)
+    scene = Scene.video(tmp_path, layout="side-by-side", fps=20, repeat=False)
     pipeline = Pipeline(scene, depth=SemiGlobal(resolution="half"), workspace={"smooth_m": 0}, cached=False)
     with pipeline.reliefs as reliefs:
         film = [each.relief.height_m for each in reliefs]
@@ -117,7 +117,7 @@ def test_film_in_real_time_is_recorded(film_pipeline, tmp_path):
 
 @pytest.mark.usefixtures("loop_in_thread")
 def test_films_and_stills_in_turn_start_each_film_again(film_pipeline, walk):
-    still = Pipeline(Scene.of(photo=walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
+    still = Pipeline(Scene.photo(walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
     reports = []
     recording = film_pipeline().feel(Mock(path="circle"), 2.4, then=[still], each_s=0.6, on_report=reports.append)
     frames = recording.frame
@@ -149,7 +149,7 @@ def test_film_of_a_relief_of_parts_is_refused(film_pipeline):
 
 
 def test_film_of_a_still_scene_is_refused(walk):
-    still = Pipeline(Scene.of(photo=walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
+    still = Pipeline(Scene.photo(walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
     with pytest.raises(ConfigError, match="does not move"):
         _ = still.reliefs
     with pytest.raises(ConfigError, match="does not move"):

@@ -65,7 +65,7 @@ def test_warm_up_of_the_demo_compiles_every_kernel_after_depth():
 
 def pipeline(**methods) -> Pipeline:
     given = {"depth": Luminance(), "texture": Gradient(segments=4), "render": Penalty(), "device": Mock()} | methods
-    return Pipeline(Scene.of(photo=PICTURE), workspace=Workspace(width_m=0.04), cached=False, **given)
+    return Pipeline(Scene.photo(PICTURE), workspace=Workspace(width_m=0.04), cached=False, **given)
 
 
 class TestWork:
@@ -91,12 +91,12 @@ class TestWork:
         assert _work(pipeline(texture=None).engine, "surface") is None
 
     def test_work_leaves_out_products_of_the_scene(self):
-        scene = Scene.of(photo=PICTURE, segments=(PICTURE > 40).astype(np.uint8))
+        scene = Scene.photo(PICTURE, segments=(PICTURE > 40).astype(np.uint8))
         work = _work(Pipeline(scene, depth=Luminance(), texture=Gradient(), cached=False).engine, "segments")
         assert work is None
 
     def test_work_of_a_scene_without_a_picture_is_none(self):
-        scene = Scene.of(height=np.eye(8))
+        scene = Scene.heights(np.eye(8))
         assert _work(Pipeline(scene, render=Penalty(), cached=False).engine, "touch") is None
 
     def test_work_on_one_processor_is_none(self, monkeypatch: pytest.MonkeyPatch):

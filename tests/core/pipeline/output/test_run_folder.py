@@ -31,7 +31,7 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def run(out: Path, want: Product = "touch", heights: np.ndarray = HEIGHTS):
-    return Pipeline(Scene.of(height=heights), render=Penalty(), cached=False).run(out, want, seconds=0.01)
+    return Pipeline(Scene.heights(heights), render=Penalty(), cached=False).run(out, want, seconds=0.01)
 
 
 def names(folder: Path) -> set[str]:
@@ -122,7 +122,7 @@ def test_failed_run_keeps_the_earlier_results(tmp_path: Path):
     run(tmp_path)
     before = digests(tmp_path)
     with pytest.raises(Exception, match="seconds"):
-        Pipeline(Scene.of(height=HEIGHTS), render=Penalty(), device=Mock(), cached=False).run(tmp_path, seconds=-1)
+        Pipeline(Scene.heights(HEIGHTS), render=Penalty(), device=Mock(), cached=False).run(tmp_path, seconds=-1)
     assert digests(tmp_path) == before
 
 

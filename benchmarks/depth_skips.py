@@ -8,7 +8,7 @@ import numpy as np
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.metrics import disparity_errors
-from tangible_core.scene.scaling import enlarge_disparity, felt_factor, reduce_views
+from tangible_core.scene.scaling import felt_factor, in_pixels_of, on_grid, reduce_views
 from tangible_depth.opencv_sgbm import OpenCVSGBM
 from tangible_depth.rectify.rectification import rectify
 from tangible_depth.semi_global import SemiGlobal
@@ -118,7 +118,8 @@ def skips(scene: KnownScene) -> Iterator[Skip]:
 
 def _felt(views: Views, finest_m: float) -> DisparityMap:
     factor = felt_factor(views.shape[1], 0.01, finest_m)
-    return enlarge_disparity(SemiGlobal().estimate(reduce_views(views, factor)), views.shape)
+    disparity = SemiGlobal().estimate(reduce_views(views, factor))
+    return on_grid(in_pixels_of(disparity, views.shape[1]), views.shape)
 
 
 def _rectified(views: Views, tolerance_px: float) -> DisparityMap:

@@ -99,7 +99,7 @@ def _works() -> dict[str, Work]:
     rough = size.model_copy(update={"smooth_m": 0.0})
     astronaut = drawn_parts.drawn("astronaut")
     layered = Layering(astronaut.parts, WIDTH_M, HeightChoice(by="given"), astronaut.picture)
-    portrait = Pipeline(Scene.of(photo=astronaut.picture), depth=Luminance(), workspace=Workspace(width_m=WIDTH_M))
+    portrait = Pipeline(Scene.photo(astronaut.picture), depth=Luminance(), workspace=Workspace(width_m=WIDTH_M))
     reliefs = {
         "motorcycle, stereo": (Pipeline(stereo, depth=SemiGlobal(), workspace=size).relief, stereo.views.left),
         "motorcycle, not smoothed": (Pipeline(stereo, depth=SemiGlobal(), workspace=rough).relief, stereo.views.left),

@@ -72,7 +72,7 @@ def _pipeline(folder: Path, size: tuple[int, int], fps: float, **scene: Any) -> 
     path = folder / f"{size[0]}-{fps:g}.avi"
     if not path.exists():
         _write(path, size, fps)
-    made = Scene.of(video=path, layout="side-by-side", **scene)
+    made = Scene.video(path, layout="side-by-side", **scene)
     return Pipeline(made, depth=SemiGlobal(resolution="half"), render=Proxy(), cached=False)
 
 

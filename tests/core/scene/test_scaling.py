@@ -2,7 +2,11 @@ import numpy as np
 import pytest
 
 from tangible_core.data import Calibration, DisparityMap, SegmentMap, Views
-from tangible_core.scene.scaling import enlarge_disparity, enlarged_segments, felt_factor, reduce_views
+from tangible_core.scene.scaling import enlarged_segments, felt_factor, in_pixels_of, on_grid, reduce_views
+
+
+def enlarge_disparity(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
+    return on_grid(in_pixels_of(disparity, shape[1]), shape)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,150 @@
+"""The pictures of the page in the docs: always made and looked at, and with TANGIBLE_UI_PICTURES=1 written there."""
+
+import io
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from drawn_parts import drawn
+from page_files import ROOT
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+DOCS = ROOT / "docs"
+MOST_BYTES = 150_000
+COLOURS = 200
+"""Of a palette: the photograph is small, and the rest has few."""
+PICTURES: dict[str, dict[str, Any]] = {
+    "ui": {"viewport": {"width": 1440, "height": 900}, "color_scheme": "light"},
+    "ui-dark": {"viewport": {"width": 1440, "height": 900}, "color_scheme": "dark"},
+    "ui-phone": {"viewport": {"width": 390, "height": 844}, "color_scheme": "light", "locale": "de-DE"},
+}
+
+
+HERE = """() => {
+  const [text, path] = ["yaml-text", "yaml-path"].map((id) => document.getElementById(id));
+  const folder = path.value.replace(/[^/]*$/, "");
+  for (const each of [text, path]) each.value = each.value.replaceAll(folder, "");
+}"""
+
+
+@pytest.fixture
+def url(opened: Callable[..., str]) -> str:
+    return opened("builtin/motorcycle")
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_screenshot_of_the_page(open_page: Callable[..., Any], url: str, tmp_path: Path, name: str):
+    page = open_page(url, **PICTURES[name])
+    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
+    if name == "ui-dark":
+        page.locator("#view input[value=materials]").check()
+    touch(page)
+    picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    page.mouse.up()
+    keep(picture, tmp_path, name)
+
+
+def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_path: Path):
+    """With what it says once something is felt; a long one is cut."""
+    page = open_page(url, viewport={"width": 1440, "height": 1100}, color_scheme="light")
+    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
+    page.evaluate("document.querySelectorAll('details.panel').forEach((each) => (each.open = false))")
+    names = page.evaluate("[...document.querySelectorAll('#left > .panel, #right > .panel')].map(({ id }) => id)")
+    assert len(names) > 15
+    for name in names:
+        panel = page.locator(f"#{name}")
+        panel.evaluate("(each) => (each.open = true)")
+        prepare(page, name)
+        box = panel.bounding_box()
+        cut = {"x": box["x"], "y": box["y"], "width": box["width"], "height": min(box["height"], 640)}
+        picture = Image.open(io.BytesIO(page.screenshot(clip=cut))).convert("RGB")
+        keep(picture, tmp_path, f"ui/{name}")
+        if name == "legible":
+            marked = io.BytesIO(page.locator("main").screenshot())
+            keep(Image.open(marked).convert("RGB"), tmp_path, "ui/legible-marks")
+        panel.evaluate("(each) => (each.open = false)")
+
+
+def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: Callable[..., Any], tmp_path: Path):
+    """A photograph with parts that were drawn by hand; and one that is proposed."""
+    astronaut = drawn("astronaut")
+    Image.fromarray(astronaut.picture).save(tmp_path / "astronaut.png")
+    Image.fromarray(astronaut.parts.labels.astype(np.uint8)).save(tmp_path / "parts.png")
+    names = [name if astronaut.names.count(name) == 1 else f"{name} {n}" for n, name in enumerate(astronaut.names)]
+    parts = [f"  {n}: {{name: {name}, height_m: {astronaut.heights_m[n]}}}\n" for n, name in enumerate(names)]
+    text = "scene: {photo: astronaut.png, segments: parts.png}\nworkspace: {width_m: 0.1, relief_m: 0.0064}\n"
+    text += f"render: {{use: penalty, stiffness_n_per_m: 400}}\nheights: {{by: given}}\nparts:\n{''.join(parts)}"
+    (tmp_path / "astronaut.yaml").write_text(text)
+    page = open_page(opened(tmp_path / "astronaut.yaml"), viewport={"width": 1180, "height": 720}, color_scheme="light")
+    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
+    page.locator("#parts-edit").click()
+    page.locator("#parts-list [role=option]", has_text="helmet").first.click()
+    page.wait_for_timeout(500)
+    keep(Image.open(io.BytesIO(page.screenshot())).convert("RGB"), tmp_path, "ui/parts-editor")
+
+    page.keyboard.press("p")
+    page.keyboard.press("t")
+    box = page.locator("#parts-picture").bounding_box()
+    scale = min(box["width"], box["height"]) / 512
+    left, top = box["x"] + (box["width"] - 512 * scale) / 2, box["y"] + (box["height"] - 512 * scale) / 2
+    page.mouse.move(left + 110 * scale, top + 350 * scale)
+    page.mouse.down()
+    page.mouse.move(left + 185 * scale, top + 390 * scale, steps=8)
+    page.mouse.up()
+    page.get_by_role("button", name="Accept").wait_for()
+    page.wait_for_timeout(500)
+    stage = page.locator("#parts-editor > .stage").bounding_box()
+    picture = Image.open(io.BytesIO(page.screenshot(clip=stage))).convert("RGB")
+    keep(picture.resize((picture.width * 3 // 4, picture.height * 3 // 4)), tmp_path, "ui/parts-proposal")
+
+
+def prepare(page: "Page", name: str) -> None:
+    """Bring a panel to where it has something to say."""
+    if name == "methods":
+        page.wait_for_selector("#section-render", state="attached")
+        page.evaluate("document.querySelector('#section-render').open = true")
+    elif name == "preflight":
+        page.locator("#preflight-check").click()
+        page.wait_for_function("() => document.querySelector('#preflight').textContent.includes('Judged for')")
+    elif name == "legible":
+        page.locator("#legible-check").click()
+        page.wait_for_selector("#legible .sentence")
+    elif name == "export":
+        for each in ("3D print (STL)", "Swell paper (SVG, PDF)"):
+            page.get_by_label(each).check()
+        page.locator("#export-run").click()
+        page.wait_for_selector("#export .outcome")
+    elif name == "description":
+        page.wait_for_selector("#description li")
+    elif name == "yaml":  # without the place of this machine where the test runs
+        page.evaluate(HERE)
+    elif name == "materials":
+        page.wait_for_function("() => document.querySelector('#materials select, #materials td')")
+    page.wait_for_timeout(300)  # until marks have turned
+
+
+def keep(picture: Image.Image, folder: Path, name: str) -> None:
+    """Write it, small, where it is asked for; something is on it."""
+    assert np.asarray(picture).std() > 5
+    path = (DOCS if os.environ.get("TANGIBLE_UI_PICTURES") else folder) / f"{name}.png"
+    path.parent.mkdir(exist_ok=True)
+    picture.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(path, optimize=True)
+    assert path.stat().st_size < MOST_BYTES
+
+
+def touch(page: "Page") -> None:
+    """Press the hand onto the surface, so that there is a force to be seen."""
+    box = page.locator("#terrain").bounding_box()
+    assert box
+    page.mouse.move(box["x"] + 0.45 * box["width"], box["y"] + 0.5 * box["height"])
+    page.mouse.down()
+    for step in range(20):
+        page.mouse.move(box["x"] + (0.45 + 0.001 * step) * box["width"], box["y"] + 0.5 * box["height"])
+        page.wait_for_timeout(50)

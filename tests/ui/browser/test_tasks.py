@@ -1,0 +1,134 @@
+"""The main tasks of the page that no other test does, by the keyboard alone: judge, record, compare, open again.
+
+That a first visit and an option's way from its form to the file need no mouse is tested in `test_accessibility` and
+`test_forms_in_browser`.
+"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from browser_tabs import OpenPage
+from sessions import small_scene
+from waiting import until
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+
+@pytest.fixture
+def page(opened, open_page: OpenPage, tmp_path: Path) -> "Page":
+    page = open_page(opened(small_scene(tmp_path)))
+    until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
+    return page
+
+
+def press(page: "Page", panel: str, name: str) -> None:
+    """Open a panel and press one of its buttons."""
+    heading = page.locator(f"#{panel} > summary")
+    if page.locator(f"#{panel}").get_attribute("open") is None:
+        heading.press("Enter")
+    page.locator(f"#{panel}").get_by_role("button", name=name, exact=True).first.press("Enter")
+
+
+def says(page: "Page", panel: str, text: str) -> None:
+    until(lambda: text in page.locator(f"#{panel}").inner_text())
+
+
+def test_depth_and_texture_are_run_separately(page: "Page") -> None:
+    for name in ("Run depth", "Run texture"):
+        press(page, "methods", name)
+        until(lambda: page.locator("#status").get_attribute("data-state") in ("idle", "felt"))
+    until(lambda: page.locator("#view input[value=segments]").count() == 1)
+    press(page, "methods", "Make and feel")
+    until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
+
+
+def test_preflight_cure_corrects_the_document(page: "Page") -> None:
+    page.locator("#yaml > summary").press("Enter")
+    before = page.locator("#yaml-text").input_value()
+    page.locator("#yaml-text").fill(
+        before.replace("texture: {use: gabor, segments: 3}\n", "").replace("_m: 400}", "_m: 40000}")
+    )
+    until(lambda: "Not applied yet" in page.locator("#yaml-state").inner_text())
+    until(lambda: "No errors" in page.locator("#yaml-state").inner_text())
+    press(page, "preflight", "Check now")
+    until(lambda: page.locator("#preflight button", has_text="stiffness_n_per_m").count() > 0)
+    page.locator("#preflight button", has_text="stiffness_n_per_m").first.press("Enter")
+    until(lambda: "40000" not in page.locator("#yaml-text").input_value())
+
+
+def test_stroke_is_recorded_played_and_replayed_with_another_law(page: "Page") -> None:
+    press(page, "records", "Record touch")
+    until(lambda: "Recording: " in page.locator("#records").inner_text())
+    surface = page.locator("#terrain")
+    surface.focus()
+    surface.press("Home")
+    surface.press(" ")
+    page.locator("#data-cursor").evaluate("(each) => (each.open = true)")
+    until(lambda: "Collision" in page.locator("#data-cursor").inner_text())
+    until(lambda: "yes" in page.locator("#data-cursor").inner_text())
+    page.wait_for_timeout(500)
+    surface.press(" ")
+    press(page, "records", "Stop recording")
+    says(page, "records", "Recorded: ")
+    until(lambda: page.locator("#records-list option").count() == 1)
+    page.locator("#records-list").press("ArrowDown")
+    press(page, "records", "Show")
+    place = page.locator("#records-place")
+    until(place.is_visible)
+    place.press("End")
+    until(lambda: float(place.input_value()) > 0.4)
+    press(page, "records", "Play")
+    press(page, "records", "Back to the live surface")
+    until(lambda: not place.is_visible())
+    page.locator("#records-list").press("ArrowDown")
+    press(page, "records", "Replay with the current force law")
+    until(lambda: page.locator("#records-list option").count() == 2)
+    says(page, "records", "worst error n")
+
+
+def test_two_laws_are_compared_openly_and_blindly(page: "Page") -> None:
+    page.locator("#laws > summary").press("Enter")
+    until(lambda: page.locator("#laws-other option").count() > 3)
+    page.locator("#laws-options").fill("{stiffness_n_per_m: 200}")
+    page.locator("#laws-other").press("p")
+    press(page, "laws", "Compare")
+    says(page, "laws", "You feel a: ")
+    page.locator("#laws button", has_text="b: ").press("Enter")
+    says(page, "laws", "You feel b: ")
+    press(page, "laws", "Start a blind test")
+    says(page, "laws", "Trial 1")
+    press(page, "laws", "Feel 2")
+    says(page, "laws", "you feel 2")
+    press(page, "laws", "Choose 2")
+    says(page, "laws", "Trial 2")
+    press(page, "laws", "End the test and reveal the laws")
+    says(page, "laws", "chosen 1 times")
+    press(page, "laws", "End the comparison")
+    until(page.locator("#laws-other").is_visible)
+
+
+def test_enlarged_region_is_saved_and_opens_the_same(page: "Page", tmp_path: Path) -> None:
+    page.locator("#terrain").focus()
+    page.keyboard.press("z")
+    page.locator("#yaml > summary").press("Enter")
+    text = page.locator("#yaml-text")
+    until(lambda: "region_m" in text.input_value())
+    zoomed = text.input_value()
+    page.locator("#yaml-path").fill(str(tmp_path / "zoomed.yaml"))
+    press(page, "yaml", "Save")
+    until((tmp_path / "zoomed.yaml").is_file)
+    page.locator("#terrain").focus()
+    page.keyboard.press("Shift+Z")
+    until(lambda: "region_m" not in text.input_value())
+    folder = page.locator("#open details", has_text="Folder of this computer")
+    folder.locator("summary").press("Enter")
+    page.locator("#open-folder").fill(str(tmp_path))
+    page.locator("#open-folder").press("Enter")
+    entry = page.locator("#open-entries option[value='zoomed.yaml']")
+    until(lambda: entry.count() == 1)
+    page.locator("#open-entries").select_option("zoomed.yaml")
+    page.locator("#open-entries").press("Enter")
+    until(lambda: text.input_value() == zoomed)

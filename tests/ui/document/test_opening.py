@@ -1,0 +1,184 @@
+"""Files that pages send or name: taken whole, within bounds, and opened for what they are."""
+
+import asyncio
+import errno
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tangible_core import load_pipeline
+from tangible_core.errors import ConfigError
+from tangible_core.pipeline.config.editing import read_values
+from tangible_core.session import Recording
+from tangible_core.session.recording.tick_file import About
+from tangible_ui.state.uploads import MOST_FILES, UploadStore
+from tangible_ui.worker.jobs import document as opening
+from tangible_ui.worker.state import WorkerState
+from videos import greys
+
+
+@pytest.fixture
+def worker_state(tmp_path: Path) -> WorkerState:
+    return WorkerState(tmp_path, lambda event, **told: None)
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> UploadStore:
+    return UploadStore(tmp_path / "kept", tmp_path / "incoming")
+
+
+async def body(*parts: bytes, then: Exception | None = None) -> AsyncIterator[bytes]:
+    for part in parts:
+        yield part
+    if then is not None:
+        raise then
+
+
+def put(store: UploadStore, batch: str, name: str, *parts: bytes, then: Exception | None = None) -> None:
+    asyncio.run(store.put(batch, name, body(*parts, then=then)))
+
+
+def picture(path: Path, columns: int = 8) -> Path:
+    Image.fromarray(np.arange(6 * columns, dtype=np.uint8).reshape(6, columns)).save(path)
+    return path
+
+
+class TestUploadStore:
+    def test_batch_is_stored_once_by_its_content(self, store: UploadStore) -> None:
+        def kept() -> list[Path]:
+            batch = store.batch()
+            put(store, batch, "b.png", b"right", b" hand")
+            put(store, batch, "a.png", b"left")
+            return store.keep(batch)
+
+        first = kept()
+        assert [path.name for path in first] == ["a.png", "b.png"]
+        assert first[1].read_bytes() == b"right hand"
+        assert kept() == first
+
+    def test_batch_of_other_content_gets_another_folder(self, store: UploadStore) -> None:
+        places = set[Path]()
+        for contents in (b"one", b"two"):
+            batch = store.batch()
+            put(store, batch, "a.png", contents)
+            places.add(store.keep(batch)[0])
+        assert len(places) == 2
+
+    @pytest.mark.parametrize("name", ["", ".", "..", "../a.png", "a/b.png", "a\\b.png", "a\0b", "a\nb", "x" * 200, " "])
+    def test_upload_name_that_leads_elsewhere_is_refused(self, store: UploadStore, name: str, tmp_path: Path) -> None:
+        batch = store.batch()
+        with pytest.raises(ConfigError, match="cannot be kept"):
+            put(store, batch, name, b"x")
+        assert not [path for path in tmp_path.rglob("*") if path.is_file()]
+
+    @pytest.mark.parametrize("batch", ["", "..", "0" * 16, "../kept"])
+    def test_upload_to_an_unknown_batch_is_refused(self, store: UploadStore, batch: str) -> None:
+        with pytest.raises(ConfigError, match="send them again"):
+            put(store, batch, "a.png", b"x")
+
+    def test_upload_that_breaks_off_leaves_nothing(self, store: UploadStore, tmp_path: Path) -> None:
+        batch = store.batch()
+        with pytest.raises(RuntimeError):
+            put(store, batch, "a.png", b"half", then=RuntimeError("gone"))
+        assert not [path for path in tmp_path.rglob("*") if path.is_file()]
+
+    def test_upload_to_a_full_disk_is_reported(self, store: UploadStore, tmp_path: Path) -> None:
+        batch = store.batch()
+        with pytest.raises(ConfigError, match="free some space"):
+            put(store, batch, "a.png", b"half", then=OSError(errno.ENOSPC, "No space left on device"))
+        assert not [path for path in tmp_path.rglob("*") if path.is_file()]
+
+    def test_upload_bounds_are_kept(self, store: UploadStore, monkeypatch: pytest.MonkeyPatch) -> None:
+        batch = store.batch()
+        for number in range(MOST_FILES):
+            put(store, batch, f"{number}.png", b"x")
+        put(store, batch, "0.png", b"again")
+        with pytest.raises(ConfigError, match="at once"):
+            put(store, batch, "more.png", b"x")
+        monkeypatch.setattr("tangible_ui.state.uploads.MOST_BYTES", 10)
+        with pytest.raises(ConfigError, match="holds more than"):
+            put(store, batch, "0.png", b"x" * 6, b"x" * 6)
+
+
+class TestBegin:
+    def test_picture_opens_with_a_new_pipeline(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        found = opening.begin(worker_state, [picture(tmp_path / "cat.png")])
+        assert "photo:" in found["text"]
+        assert found["path"].name == "cat.yaml"
+
+    def test_video_opens_with_a_new_pipeline(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        path = greys(tmp_path / "walk.avi", 3)
+        assert read_values(opening.begin(worker_state, [path])["text"], path)["scene"] == {"video": str(path)}
+        assert {"name": "walk.avi", "kind": "video"} in opening.folder(worker_state, tmp_path)["entries"]
+
+    def test_two_pictures_open_as_a_pair_and_can_be_exchanged(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        found = opening.begin(worker_state, [picture(tmp_path / "l.png"), picture(tmp_path / "r.png")])
+        scene = read_values(found["text"], found["path"])["scene"]
+        assert (scene["left"].endswith("l.png"), scene["right"].endswith("r.png")) == (True, True)
+        exchanged = opening.exchange(worker_state, found["text"], found["path"])
+        assert read_values(exchanged, found["path"])["scene"] == {"left": scene["right"], "right": scene["left"]}
+
+    def test_exchange_without_a_pair_is_refused(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        with pytest.raises(ConfigError, match="not a pair"):
+            opening.exchange(worker_state, "scene: builtin/brick\n", tmp_path / "a.yaml")
+
+    def test_pipeline_file_with_its_pictures_opens_as_the_file(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        (tmp_path / "mine.yaml").write_text("scene: {photo: cat.png}\n")
+        found = opening.begin(worker_state, [picture(tmp_path / "cat.png"), tmp_path / "mine.yaml"])
+        assert found == {"text": "scene: {photo: cat.png}\n", "path": tmp_path / "mine.yaml"}
+
+    @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+    def test_recording_opens_as_its_path(self, worker_state: WorkerState, tmp_path: Path, suffix: str) -> None:
+        path = tmp_path / f"felt{suffix}"
+        Recording(np.zeros((3, 17)), "", About("mock", "penalty", "scene: x")).save(path)
+        assert opening.begin(worker_state, [path]) == {"recording": str(path)}
+
+    def test_array_opens_as_a_height_map(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        np.savez(tmp_path / "hill.npz", height=np.eye(4))
+        np.save(tmp_path / "hill.npy", np.eye(4))
+        assert "height:" in opening.begin(worker_state, [tmp_path / "hill.npy"])["text"]
+        assert "recording" not in opening.begin(worker_state, [tmp_path / "hill.npz"])
+
+    def test_unknown_kind_of_file_is_refused(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        (tmp_path / "note.docx").write_text("x")
+        with pytest.raises(ConfigError, match=r"note.docx: is not a picture"):
+            opening.begin(worker_state, [tmp_path / "note.docx"])
+
+    def test_missing_file_is_reported(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        with pytest.raises(ConfigError, match="there is no such file"):
+            opening.begin(worker_state, [tmp_path / "mine.yaml"])
+
+
+class TestSave:
+    def test_document_saved_elsewhere_names_the_same_files(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        picture(tmp_path / "cat.png")
+        text = "# mine\nscene: {photo: cat.png}  # the cat\n"
+        out = tmp_path / "other" / "mine.yaml"
+        opening.save(worker_state, text, tmp_path / "mine.yaml", out)
+        assert load_pipeline(out).scene.views is not None
+        assert out.read_text().startswith("# mine\n")
+        assert "# the cat" in out.read_text()
+
+    def test_document_saved_in_place_is_its_text(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        text = "scene:   builtin/brick # as it was written\n"
+        opening.save(worker_state, text, tmp_path / "mine.yaml", tmp_path / "mine.yaml")
+        assert (tmp_path / "mine.yaml").read_text() == text
+
+
+def test_folder_lists_what_can_be_opened(worker_state: WorkerState, tmp_path: Path) -> None:
+    for name in ("b.PNG", "a.yaml", ".hidden.png", "note.txt", "felt.nc", "hill.npy"):
+        (tmp_path / name).touch()
+    (tmp_path / "more").mkdir()
+    found = opening.folder(worker_state, tmp_path)
+    assert [(each["name"], each["kind"]) for each in found["entries"]] == [
+        ("a.yaml", "pipeline"),
+        ("b.PNG", "picture"),
+        ("felt.nc", "recording"),
+        ("hill.npy", "heights"),
+        ("more", "folder"),
+    ]
+    with pytest.raises(ConfigError, match="name a folder"):
+        opening.folder(worker_state, tmp_path / "missing")

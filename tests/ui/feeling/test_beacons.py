@@ -1,0 +1,139 @@
+"""A beacon on the page: asked for by the number of a part, told of to all tabs, and released by a button."""
+
+import asyncio
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sessions import TEXT, SmallSession, small_scene
+from tangible_core import load_method
+from tangible_core.data import HapticSurface, Relief, TickFlag
+from tangible_core.errors import ConfigError, DeviceError
+from tangible_core.mapping import WorkspaceMapping
+from tangible_core.servo import Beacon, Safety, beacon_to, pack_touch
+from tangible_core.servo.ring import shared_folder
+from tangible_ui.feeling.feeling import Feeling, LoopInput
+from tangible_ui.framing import STATE_FRAME
+from tangible_ui.requests import REQUESTS
+from tangible_ui.requests.document import take
+from tangible_ui.requests.making import make
+from tangible_ui.serving.serve import watch
+from tangible_ui.state.texts import Text
+from waiting import happened, until
+
+IN_PARTS = TEXT.replace("want: touch", "want: touch\nparts: {0: {name: wall}}")
+
+
+def test_beacon_requested_by_a_tab_is_announced_to_all_tabs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file, before = small_scene(tmp_path), set(shared_folder().glob("*.parcel"))
+    pulled: list[Beacon | None] = []
+    runs = [False]
+    monkeypatch.setattr(Feeling, "running", property(lambda _: runs[0]))
+    monkeypatch.setattr(Feeling, "pull_to", lambda _, beacon: pulled.append(beacon))
+
+    async def asked() -> None:
+        session = SmallSession(tmp_path, monkeypatch)
+        ask = REQUESTS["beacon"]
+        with pytest.raises(DeviceError, match="nothing is felt"):
+            await ask(session.session, session.tab, part=0)
+        runs[0] = True
+        await take(session.session, Text(IN_PARTS, file))
+        with pytest.raises(ConfigError, match="not made yet"):
+            await ask(session.session, session.tab, part=0)
+        await make(session.session, session.tab, "surface")
+        assert await ask(session.session, session.tab, part=0) == {"part": 0, "name": "wall"}
+        told = session.tab.last("beacon")
+        assert (told["part"], told["name"], told["why"]) == (0, "wall", "asked")
+        assert pulled[-1] is not None and pulled[-1].part == 0
+        with pytest.raises(ConfigError, match="there is no part 999"):
+            await ask(session.session, session.tab, part=999)
+        assert await ask(session.session, session.tab, part=None) == {"part": None, "name": ""}
+        assert pulled[-1] is None and session.tab.last("beacon")["part"] is None
+        assert [each["event"] for each in session.session.history].count("beacon") == 1, (
+            "who comes later hears the last"
+        )
+        session.session.worker.close()
+
+    asyncio.run(asked())
+    assert set(shared_folder().glob("*.parcel")) <= before, "nothing is left of what was handed on"
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("loop_in_thread")
+def test_beacon_ends_by_a_button_a_scene_and_a_stop() -> None:
+    labels = np.zeros((32, 32), np.int32)
+    labels[10:14, 24:28] = 3000
+    names = tuple("" for _ in range(3001))
+    surface = HapticSurface(Relief(np.full((32, 32), 0.002, np.float32), (0.08, 0.08)), labels, None, names)
+    feeling, beacon = Feeling("ui-beacon"), beacon_to(surface, 3000)
+    options = {name: value for name, value in feeling.own_device.items() if name != "use"}
+    device = load_method("device", "pointer")(**options)
+
+    def felt() -> LoopInput:
+        touch = pack_touch(load_method("render", "proxy")().touch(surface), device.spec())
+        return LoopInput(touch, "proxy", "it", device, True, WorkspaceMapping(), Safety(ramp_s=0, passivity="off"))
+
+    tag = [0]
+
+    def pulls(button: int = 0) -> bool:
+        """After the hand was moved on, as a page does all the time: the tags above its buttons are no buttons."""
+        tag[0] += 1
+        feeling.hand.point((-0.03, -0.03, 0.02), button, tag[0])
+        assert feeling.servo is not None
+        row = feeling.servo.ring.latest()
+        return row is not None and abs(row[2] + 0.03) < 1e-3 and float(np.hypot(row[11], row[12])) > 0.5
+
+    try:
+        with pytest.raises(DeviceError, match="nothing is felt"):
+            feeling.pull_to(beacon)
+        feeling.feel(felt())
+        assert not pulls() and feeling.beacon_over() == ""
+        feeling.pull_to(beacon)
+        until(pulls)
+        assert feeling.beacon_over() == ""
+        frame = feeling.frame(1, 0)
+        assert frame is not None and STATE_FRAME.unpack(frame)[2] == TickFlag.BEACON
+        until(lambda: pulls(1))  # pressed down, it is pulled on
+        until(lambda: not pulls(4))
+        until(lambda: feeling.beacon_over() == "button")
+        assert feeling.beacon_over() == "", "it is said once"
+        feeling.pull_to(beacon)
+        until(lambda: pulls(4))
+        feeling.feel(felt())
+        assert feeling.beacon_over() == "scene"
+        feeling.pull_to(beacon)
+        until(pulls)
+        feeling.pull_to(None)
+        until(lambda: not pulls())
+        assert feeling.beacon_over() == "", "who let go of it knows"
+        feeling.pull_to(beacon)
+        feeling.cut()()
+        assert feeling.beacon_over() == "ended"
+    finally:
+        feeling.stop()
+
+
+def test_beacon_that_ends_is_announced_with_the_reason() -> None:
+    """What watches over the loop asks a hundred times a second, and says each end once."""
+    told: list[dict[str, Any]] = []
+    ends = iter(["", "button", "", "ended"])
+    feeling = SimpleNamespace(
+        hand=SimpleNamespace(keep=lambda: None), beacon_over=lambda: next(ends, ""), loop_end=lambda: None
+    )
+    session: Any = SimpleNamespace(
+        feeling=feeling,
+        laws=SimpleNamespace(follow=lambda _: None),
+        tell=lambda event, **said: told.append({"event": event, **said}),
+    )
+
+    async def watched() -> None:
+        task = asyncio.ensure_future(watch(session))
+        await happened(lambda: len(told) >= 2)
+        task.cancel()
+
+    asyncio.run(watched())
+    off = {"event": "beacon", "part": None, "name": ""}
+    assert told == [{**off, "why": "button"}, {**off, "why": "ended"}]

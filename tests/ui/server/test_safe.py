@@ -1,0 +1,364 @@
+"""Who is let in to the page's server, and that nobody keeps it from its work."""
+
+import asyncio
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+import pytest
+from starlette.routing import Mount, Route, WebSocketRoute
+from websockets.exceptions import InvalidStatus
+
+from page_server import KEY, PageServer
+from tangible_core.files.reading import MOST_BYTES
+from tangible_ui.address import new_key
+from tangible_ui.framing import ACK, ACK_FRAME, POINTER, POINTER_FRAME
+from tangible_ui.serving import routes, serve
+from tangible_ui.serving.access import HEADERS
+from tangible_ui.serving.connection import AT_ONCE_BYTES
+from tangible_ui.serving.live import IDLE_SPACING_S, IN_FLIGHT, MOST_ASKS
+from tangible_ui.serving.routes import WRONG_KEY
+from waiting import LONGEST_S, until
+
+NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16, "folder": "export-1"}
+
+
+@pytest.fixture
+def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[PageServer]:
+    static = tmp_path / "static"
+    static.mkdir()
+    (static / "index.html").write_text("<title>t</title>")
+    (static / "app.js").write_text("1")
+    monkeypatch.setattr(routes, "static", lambda: static)
+    monkeypatch.setattr(serve, "PING_S", 600.0)  # a page that answers no ping is cut off for that alone
+    with PageServer(tmp_path, monkeypatch) as page:
+        yield page
+
+
+def keyed(path: str) -> str:
+    return f"{path}?token={KEY}"
+
+
+class TestWhoIsLetIn:
+    def test_routes_but_the_built_page_need_the_key(self, page: PageServer) -> None:
+        """Of all that there are: a new one cannot forget it."""
+        seen = set()
+        for route in routes.routes(lambda: page.session, KEY):
+            if isinstance(route, WebSocketRoute | Mount):
+                seen.add(route.path)
+                continue
+            assert isinstance(route, Route), f"{route}: is not looked at here"
+            for method in route.methods or ():
+                for key in ("", "?token=", "?token=wrong", f"?token={KEY}x", "?token=%00", f"?token={KEY}&token=x"):
+                    answer = page.ask(route.path.format(**NAMES) + key, method)
+                    assert answer.status == 403, (route.path, method, key)
+                    assert "the address it printed" in answer.text or method == "HEAD"
+        assert seen == {"/live", ""}
+        for key in ("", "wrong"):
+            with page.tab(key) as tab:
+                assert tab.closed() == WRONG_KEY
+
+    def test_key_is_long_and_new_each_time(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.delenv("TANGIBLE_UI_TOKEN", raising=False)
+        keys = {new_key() for _ in range(50)}
+        assert len(keys) == 50
+        assert all(len(key) * 6 >= 128 for key in keys)
+
+    @pytest.mark.parametrize("host", ["evil.example", "127.0.0.1", "127.0.0.1:1", "", None])
+    def test_host_of_another_name_is_refused(self, page: PageServer, host: str | None) -> None:
+        for path in ("/", keyed("/scene/abc/a.f32")):
+            answer = page.ask(path, host=host)
+            assert answer.status in (400, 403)
+            assert answer.status == 400 or answer.headers["content-security-policy"]  # h11 itself refuses no host
+        with handshake(page, host or "x") as raw:
+            assert raw.recv(100).startswith(b"HTTP/1.1 403")
+
+    @pytest.mark.parametrize("origin", [None, "null", "http://evil.example", "https://{host}", "http://{host}.evil"])
+    def test_origin_of_another_page_is_refused(self, page: PageServer, origin: str | None) -> None:
+        said = origin and origin.format(host=page.host)
+        for method, path in (("PUT", f"/upload/{NAMES['batch']}/a.png"), ("POST", "/stop")):
+            assert page.ask(keyed(path), method, b"x", origin=said).text == "another page may not do that"
+        with pytest.raises(InvalidStatus, match="403"):
+            page.tab(origin=said)
+
+    @pytest.mark.parametrize(
+        ("path", "status", "cached"),
+        [
+            ("/", 200, "no-cache"),
+            ("/app.js", 200, "no-cache"),
+            ("/nothing", 404, "no-store"),
+            (keyed("/scene/abc/a.f32"), 200, routes.FOREVER),
+            (keyed("/scene/abc/b.f32"), 404, "no-store"),
+            (keyed("/fails"), 500, "no-store"),
+            ("/scene/abc/a.f32", 403, "no-store"),
+        ],
+    )
+    def test_answers_have_the_strict_headers(
+        self, page: PageServer, path: str, status: int, cached: str, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        (page.folder / "abc").mkdir()
+        (page.folder / "abc" / "a.f32").write_bytes(b"1")
+        if status == 500:
+            monkeypatch.setattr(page.session, "folder", None)
+            path = keyed("/scene/abc/a.f32")
+        answer = page.ask(path)
+        assert answer.status == status
+        assert {name: answer.headers.get_all(name) for name in HEADERS} == {
+            name: [text] for name, text in HEADERS.items()
+        }
+        assert answer.headers.get_all("cache-control") == [cached]
+        assert "server" not in answer.headers
+
+    def test_page_that_was_built_again_is_served(self, page: PageServer, tmp_path: Path) -> None:
+        tag = page.ask("/app.js").headers["etag"]
+        assert page.ask("/app.js", if_none_match=tag).status == 304
+        (tmp_path / "static" / "app.js").write_text("22")
+        assert page.ask("/app.js", if_none_match=tag).text == "22"
+
+    @pytest.mark.parametrize(
+        "path",
+        [
+            "/scene/../secret", "/scene/%2e%2e/secret", "/scene/abc/..%2f..%2fsecret", "/scene/abc%2f../x",
+            "/scene/link/secret", "/scene/abc/%00", f"/scene/abc/{'x' * 5000}", "/scene/abc/", "/scene/incoming/x",
+            "/export/abc/%2e%2e", "/export/export-1/..%2f..%2fsecret", "/export/export-link/secret",
+            "/export/export-1/", "/export/../secret", "/export/abc/a.stl", "/export/export-1/%00",
+            f"/export/export-{'x' * 5000}/a",
+            "/scene//secret", "/../secret", "/%2e%2e/secret", "/..%2fsecret", "//secret", "/scene", "/scene/",
+        ],
+    )  # fmt: skip
+    def test_path_that_leads_elsewhere_is_not_found(self, page: PageServer, tmp_path: Path, path: str) -> None:
+        (tmp_path / "secret").write_text("secret")
+        (page.folder / "abc").mkdir()
+        (page.folder / "abc" / "a.stl").write_text("of no export")
+        (page.folder / "export-1").mkdir()
+        for name in ("link", "export-link"):
+            (page.folder / name).symlink_to(tmp_path)
+        assert page.ask(keyed(path)).status == 404
+
+    @pytest.mark.parametrize("name", ["a.stl", "a.html", "ä b.svg"])
+    def test_exported_file_is_downloaded_and_never_shown(self, page: PageServer, name: str) -> None:
+        """A page that an exporter wrote would otherwise be one of this address, with its key."""
+        (page.folder / "export-1").mkdir()
+        (page.folder / "export-1" / name).write_text("<script>")
+        answer = page.ask(keyed(f"/export/export-1/{quote(name)}"))
+        assert (answer.status, answer.text) == (200, "<script>")
+        assert answer.headers["content-disposition"].startswith("attachment; filename")
+        assert answer.headers["cache-control"] == "no-store"
+        assert page.ask(f"/export/export-1/{quote(name)}").status == 403
+        assert page.ask(keyed(f"/scene/export-1/{quote(name)}")).status == 404
+
+    def test_other_http_methods_are_refused(self, page: PageServer) -> None:
+        for method in ("POST", "DELETE", "PUT", "OPTIONS", "TRACE"):
+            assert page.ask(keyed("/scene/abc/a"), method).status == 405
+            assert page.ask("/", method).status == 405
+        assert page.ask(keyed("/stop")).status == 404
+
+    def test_upload_that_is_too_large_is_refused_before_it_is_sent(self, page: PageServer) -> None:
+        answer = page.ask(keyed(f"/upload/{NAMES['batch']}/a.png"), "PUT", content_length=str(MOST_BYTES + 1))
+        assert (answer.status, "holds more than" in answer.text) == (413, True)
+
+    def test_header_without_end_is_not_read(self, page: PageServer) -> None:
+        with socket.create_connection(("127.0.0.1", page.port)) as raw:
+            raw.settimeout(LONGEST_S)
+            raw.sendall(b"GET / HTTP/1.1\r\nx: ")
+            said = b""
+            try:
+                for _ in range(100):
+                    raw.sendall(b"x" * 4096)
+                while more := raw.recv(4096):
+                    said += more
+            except ConnectionError:
+                pass
+        assert page.ask("/").status == 200
+
+
+def handshake(page: PageServer, host: str) -> socket.socket:
+    """What a browser sends to open a websocket, and nothing is read."""
+    raw = socket.create_connection(("127.0.0.1", page.port), timeout=LONGEST_S)
+    raw.sendall(
+        f"GET {keyed('/live')} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nUpgrade: websocket\r\n"
+        f"Connection: Upgrade\r\nSec-WebSocket-Key: {'A' * 22}==\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
+    )
+    return raw
+
+
+def ack(seq: int) -> bytes:
+    return ACK_FRAME.pack(ACK, seq)
+
+
+def pointer(*at: float) -> bytes:
+    return POINTER_FRAME.pack(POINTER, 1, 7, 0.0, *at)
+
+
+@contextmanager
+def flood(*work: Callable[[], Any]) -> Iterator[None]:
+    """Do each piece of work again and again, in a thread of its own, until the block ends."""
+    over = threading.Event()
+
+    def again(piece: Callable[[], Any]) -> None:
+        while not over.is_set():
+            piece()
+
+    threads = [threading.Thread(target=again, args=(piece,)) for piece in work]
+    for each in threads:
+        each.start()
+    try:
+        yield
+    finally:
+        over.set()
+        for each in threads:
+            each.join()
+
+
+class TestFloods:
+    def test_ten_tabs_share_the_server_fairly(self, page: PageServer) -> None:
+        tabs = [page.tab() for _ in range(10)]
+        counts = [0] * 10
+
+        def draw(k: int) -> None:
+            if isinstance(tabs[k].socket.recv(LONGEST_S), bytes):
+                counts[k] += 1
+                tabs[k].socket.send(ack(counts[k]))
+
+        with flood(*(partial(draw, k) for k in range(10))):
+            until(lambda: min(counts) >= 10, f"a tab gets no states: {counts}")
+            page.done(lambda: None)
+            assert min(counts) > 0.3 * max(counts)
+        for tab in tabs:
+            tab.close()
+
+    def test_tab_that_draws_nothing_is_sent_two_states(self, page: PageServer) -> None:
+        with page.tab() as tab:
+            sent = partial(_frames, tab)
+            until(lambda: sent() == IN_FLIGHT)
+            assert sent() == IN_FLIGHT
+            tab.socket.send(ack(1))
+            until(lambda: sent() == IN_FLIGHT + 1)
+            assert sent() == IN_FLIGHT + 1
+            tab.socket.send(ack(4_000_000_000))  # of none that was sent
+            until(lambda: sent() == 2 * IN_FLIGHT + 1)
+            assert sent() == 2 * IN_FLIGHT + 1
+
+    def test_states_without_force_are_few(self, page: PageServer) -> None:
+        with page.tab() as tab:
+            begun_s, count = time.monotonic(), 0
+            while count < 10:
+                if isinstance(tab.socket.recv(LONGEST_S), bytes):
+                    count += 1
+                    tab.socket.send(ack(count))
+        assert time.monotonic() - begun_s > 8 * IDLE_SPACING_S
+
+    def test_tab_that_reads_nothing_is_cut_off(self, page: PageServer) -> None:
+        raw = handshake(page, page.host)
+        with page.tab() as other:
+            until(lambda: page.done(lambda: len(page.session.tabs)) == 2)
+            said = 0
+            while page.done(lambda: len(page.session.tabs)) == 2:
+                said += 1
+                assert said < 100  # megabytes
+                page.done(lambda: page.session.tell("log", text="x" * 1_000_000))
+                other.until(event="log")
+        raw.close()
+
+    def test_browser_that_answers_no_ping_is_removed(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(serve, "PING_S", 0.1)
+        monkeypatch.setattr(routes, "static", lambda: tmp_path)
+        with PageServer(tmp_path, monkeypatch) as page, handshake(page, page.host) as raw:
+            assert raw.recv(4) == b"HTTP"
+
+            def is_gone() -> bool:
+                page.done(lambda: page.session.tell("log", text="x" * 1000))
+                return page.done(lambda: not page.session.tabs)
+
+            until(is_gone)
+
+    def test_flood_of_pointers_keeps_the_hand_moving(self, page: PageServer) -> None:
+        pointers = b"".join(masked(pointer(0.01, 0.0, k * 1e-6)) for k in range(500))
+        with page.tab() as tab:
+            tab.until(event="holding", holding=True)
+            with flood(lambda: tab.socket.socket.sendall(pointers)):
+                for _ in range(20):
+                    until(lambda: page.done(lambda: page.session.feeling.hand.holding))
+            assert page.done(lambda: {each.transport.max_size for each in page.server.server_state.connections}) == {
+                AT_ONCE_BYTES
+            }
+
+    def test_tab_without_the_hand_moves_nothing(self, page: PageServer) -> None:
+        with page.tab() as first, page.tab() as second:
+            first.until(event="holding", holding=True)
+            second.until(event="holding", holding=False)
+            second.socket.send(pointer(0.01, 0, 0))
+            second.ask("nothing")
+            second.until(event="refused")
+            assert not page.done(lambda: page.session.feeling.hand.holding)
+            second.ask("hold")
+            first.until(event="holding", holding=False)
+            second.socket.send(pointer(0.01, 0, 0))
+            second.ask("nothing")
+            second.until(event="refused")
+            assert page.done(lambda: page.session.feeling.hand.holding)
+            first.socket.send(b"\x04")  # and cannot let go of another's
+            first.ask("nothing")
+            first.until(event="refused")
+            assert page.done(lambda: page.session.feeling.hand.holding)
+
+    @pytest.mark.parametrize("at", [(float("nan"), 0, 0), (0, float("inf"), 0), (0, 0, -float("inf")), (1e30, 0, 0)])
+    def test_pointer_to_an_impossible_place_is_ignored(self, page: PageServer, at: tuple[float, float, float]) -> None:
+        with page.tab() as tab:
+            tab.until(event="holding", holding=True)
+            tab.socket.send(pointer(*at))
+            tab.ask("nothing")
+            tab.until(event="refused")
+            assert not page.done(lambda: page.session.feeling.hand.holding)
+
+    def test_requests_are_bounded_and_stop_is_not(self, page: PageServer) -> None:
+        worker: Any = page.session.worker
+        page.done(lambda: setattr(worker, "wait", asyncio.Event()))
+        with page.tab() as tab:
+            for _ in range(MOST_ASKS):
+                tab.ask("examples")
+            refused = tab.ask("examples")
+            assert "not done yet" in tab.until(event="refused", number=refused)["text"]
+            stop = tab.ask("stop")
+            tab.until(event="loop", running=False)
+            tab.until(event="answer", number=stop)
+            page.done(worker.wait.set)
+            tab.until(event="answer", number=MOST_ASKS)
+            tab.until(event="answer", number=tab.ask("examples"))
+
+    def test_page_with_a_hanging_websocket_can_stop(self, page: PageServer) -> None:
+        with page.tab() as tab:
+            assert page.ask(keyed("/stop"), "POST", b"").status == 204
+            tab.until(event="loop", running=False, stopped=True)
+            assert page.session.feeling.stopped
+
+    def test_unfinished_connections_stop_nobody(self, page: PageServer) -> None:
+        with page.tab() as tab:
+            tab.until(event="holding", holding=True)
+            slow = [socket.create_connection(("127.0.0.1", page.port)) for _ in range(300)]
+            for each in slow:
+                each.sendall(b"GET / HT")
+            tab.socket.send(pointer(0.01, 0, 0))
+            tab.ask("nothing")
+            tab.until(event="refused")
+            assert page.done(lambda: page.session.feeling.hand.holding)
+            for each in slow:
+                each.close()
+        until(lambda: page.ask("/").status == 200)
+
+
+def _frames(tab: Any) -> int:
+    """The states that a tab was sent, after it has listened for a while."""
+    tab.next(0.3)
+    return tab.frames
+
+
+def masked(body: bytes) -> bytes:
+    """A binary frame of a client, with a mask of zeros."""
+    return bytes([0x82, 0x80 | len(body), 0, 0, 0, 0]) + body

@@ -1,0 +1,333 @@
+"""Whatever ends, a tab, a loop, the worker or the server: no force, one word, and nothing that is left behind."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
+
+from page_server import TestTab
+from tangible_core.data import TICK_COLUMNS
+from tangible_core.servo.ring import Ring
+from tangible_ui.framing import POINTER, POINTER_FRAME
+from ui_server import START, UiServer
+from waiting import LONGEST_S, until
+
+pytestmark = pytest.mark.slow
+LEVEL = """\
+scene: {height: level.npy}
+render: {use: penalty, stiffness_n_per_m: 500}
+safety: {ramp_s: 0}
+"""
+HEARING = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);"
+    "signal.signal(signal.SIGHUP, signal.SIG_DFL); "
+)
+"""Whatever runs the tests may ignore Ctrl-C, and nohup ignores the end of a terminal."""
+FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
+AT_ONCE_S = 20.0
+"""Bound on the last force, s, for a machine that may stand still; docs/safety.md has what was measured."""
+DIRS = ("CACHE", "RUNTIME", "CONFIG", "LOG", "DATA", "SHARED")
+FORBIDDEN = ("numba", "cv2", "torch", "scipy")
+
+
+class Home:
+    """Folders of a user's own, and servers that have them."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.temporary = folder / "tmp"
+        self._open = ExitStack()
+        for each in (*(folder / name.lower() for name in DIRS), self.temporary):
+            each.mkdir()
+        np.save(folder / "level.npy", np.zeros((24, 32), np.float32))
+        (folder / "level.yaml").write_text(LEVEL)
+
+    @property
+    def env(self) -> dict[str, str]:
+        own = {f"TANGIBLE_{name}_DIR": str(self.folder / name.lower()) for name in DIRS}
+        return {**own, "TMPDIR": str(self.temporary)}
+
+    def server(self, *words: object, start: str = HEARING + START) -> UiServer:
+        return self._open.enter_context(UiServer(*words, cwd=self.folder, env=self.env, start=start))
+
+    def left(self) -> list[str]:
+        """Files of servers."""
+        folders = [self.folder / "shared", self.folder / "runtime", self.temporary]
+        return [
+            str(path) for folder in folders for path in folder.iterdir() if "ui-" in path.name or "ring" in path.name
+        ]
+
+    def close(self) -> None:
+        self._open.close()
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
+    home = Home(tmp_path_factory.mktemp("home"))
+    yield home
+    home.close()
+
+
+class Press:
+    """A page whose hand presses a millimetre into level ground, and what the loop's ring says of it."""
+
+    def __init__(self, home: Home, server: UiServer) -> None:
+        host = server.url.split("/")[2]
+        url = server.url.replace("http", "ws").replace("/?", "/live?")
+        self.tab = TestTab(connect(url, origin=f"http://{host}", max_size=None, proxy=None))  # type: ignore[arg-type]
+        self._home, self._on, self._quiet = home, True, False
+        hello = self.tab.until(event="hello")
+        if "touch" not in [each["event"] for each in hello["history"]]:
+            self.tab.until(event="touch")
+        self.attach()
+        self._thread = threading.Thread(target=self._move, daemon=True)
+        self._thread.start()
+
+    def attach(self) -> None:
+        """To the loop that runs now."""
+        rings = sorted((self._home.folder / "shared").glob("*.ring"), key=lambda path: path.stat().st_mtime)
+        self.ring = Ring.attach(rings[-1])
+
+    def _move(self) -> None:
+        while self._on:
+            if not self._quiet:
+                with suppress(ConnectionClosed):
+                    self.tab.socket.send(POINTER_FRAME.pack(POINTER, 1, 7, 0.0, 0.0, 0.0, -0.001))
+            time.sleep(0.01)
+
+    def press(self) -> None:
+        self._quiet = False
+        until(lambda: (row := self.ring.latest()) is not None and row[FORCE][2] > 0.3, "nothing is felt")
+
+    def fall_silent(self) -> None:
+        self._quiet = True
+
+    def let_go_s(self, fault: Callable[[], Any]) -> float:
+        """After so long there was no force any more."""
+        self.press()
+        at_s = time.monotonic() - self.ring.start_ns / 1e9
+        fault()
+        until(self._is_over, "there is still a force")
+        rows, _ = self.ring.since(0)
+        times, forces = rows[:, 0], np.abs(rows[:, FORCE]).max(axis=1)
+        felt = times[forces > 0]
+        return float(felt[-1] - at_s) if len(felt) else 0.0
+
+    def _is_over(self) -> bool:
+        row, count = self.ring.latest(), self.ring.count
+        time.sleep(0.05)
+        return (row is not None and not row[FORCE].any()) or self.ring.count == count
+
+    def close(self) -> None:
+        self._on = False
+        self._thread.join()
+        with suppress(Exception):
+            self.tab.close()
+
+
+def group_is_empty(server: UiServer) -> bool:
+    """Whether neither the server nor anything that it started is there."""
+    try:
+        os.killpg(server.process.pid, 0)
+    except ProcessLookupError:
+        return True
+    return False
+
+
+def children(server: UiServer, name: str) -> list[int]:
+    found = subprocess.run(
+        ["pgrep", "-g", str(server.process.pid), "-f", name], capture_output=True, text=True, check=False
+    )
+    return [int(word) for word in found.stdout.split()]
+
+
+def test_force_ends_with_the_tab_the_loop_and_a_frozen_server(home: Home) -> None:
+    """The page and its parts, one after the other on one server, which goes on."""
+    server = home.server("level.yaml")
+    press = Press(home, server)
+    found: dict[str, float] = {}
+    found["released"] = press.let_go_s(lambda: (press.fall_silent(), press.tab.socket.send(b"\x04")))
+    found["silent, as when frozen, slow or cut off"] = press.let_go_s(press.fall_silent)
+    found["socket without a last word"] = press.let_go_s(lambda: (press.fall_silent(), press.tab.socket.socket.close()))
+    press.close()
+
+    press = Press(home, server)
+    found["closed"] = press.let_go_s(lambda: (press.fall_silent(), press.tab.close()))
+    press.close()
+
+    press = Press(home, server)
+    [worker] = children(server, "tangible_ui.worker")
+    press.press()
+    os.kill(worker, signal.SIGKILL)
+    press.tab.until(event="maker")
+    press.press()  # what is felt goes on
+    found["server stands still"] = press.let_go_s(lambda: os.kill(server.process.pid, signal.SIGSTOP))
+    os.kill(server.process.pid, signal.SIGCONT)
+
+    found["stop"] = press.let_go_s(lambda: press.tab.ask("stop"))
+    assert press.tab.until(event="loop", running=False)["stopped"]
+    number = press.tab.ask("feel")
+    press.tab.until(event="answer", number=number)
+    press.attach()
+    [loop] = children(server, "servo.child")
+    found["loop killed"] = press.let_go_s(lambda: os.kill(loop, signal.SIGKILL))
+    assert press.tab.until(event="loop", running=False)["why"]
+    press.close()
+    assert max(found.values()) < AT_ONCE_S, found
+    assert server.stop() == 128 + signal.SIGTERM
+    until(lambda: group_is_empty(server), "a process is left")
+    assert not home.left()
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_server_ended_by_a_signal_leaves_no_force_and_no_file(home: Home, name: str) -> None:
+    server, number = home.server("level.yaml"), getattr(signal, name)
+    press = Press(home, server)
+    let_go_s = press.let_go_s(lambda: server.process.send_signal(number))
+    assert server.process.wait(LONGEST_S) == 128 + number
+    press.close()
+    assert let_go_s < AT_ONCE_S
+    until(lambda: group_is_empty(server), "a process is left")
+    server.kill()  # all that it printed is then read
+    assert not home.left()
+    words = "interrupted" if name == "SIGINT" else f"ended by {name}"
+    assert server.lines[1:] == [f"{words}; what was finished is kept"]
+
+
+def test_server_that_is_killed_leaves_no_force_and_its_draft_is_offered(home: Home) -> None:
+    """The next one clears away what it left, and offers what was not saved; a recording can be read."""
+    server = home.server("level.yaml")
+    press = Press(home, server)
+    press.press()
+    path = press.tab.until(event="answer", number=press.tab.ask("record"))["value"]
+    edited = LEVEL + "# mine\n"
+    press.tab.until(event="answer", number=press.tab.ask("edit", text=edited))
+    until(lambda: list((home.folder / "data" / "unsaved").glob("*.json")), "it is not kept")
+    kept = press.ring.count
+    until(lambda: press.ring.count > kept + 300, "nothing is recorded")
+    let_go_s = press.let_go_s(lambda: server.process.send_signal(signal.SIGKILL))
+    press.close()
+    server.process.wait(LONGEST_S)
+    assert let_go_s < AT_ONCE_S
+    until(lambda: group_is_empty(server), "a process is left")
+    assert home.left()
+
+    server = home.server("level.yaml")
+    press = Press(home, server)
+    assert str(server.process.pid) in " ".join(home.left())
+    assert all(str(server.process.pid) in each for each in home.left())
+    found = press.tab.until(event="answer", number=press.tab.ask("show_record", path=path))["value"]
+    assert found["rows"] > 50
+    number = press.tab.ask("restore")
+    assert press.tab.until(event="document")["text"] == edited
+    press.tab.until(event="answer", number=number)
+    press.close()
+    server.stop()
+    assert not home.left()
+
+
+def test_two_servers_run_at_the_same_time(home: Home) -> None:
+    first, second = home.server("level.yaml"), home.server("level.yaml")
+    presses = [Press(home, first), Press(home, second)]
+    for each in presses:
+        each.close()
+    assert first.stop() == second.stop() == 128 + signal.SIGTERM
+    assert not home.left()
+
+
+def test_server_imports_nothing_that_computes_and_prints_its_key_once(home: Home) -> None:
+    """And whatever goes wrong with a request or with an ask, nothing of it is lost, and no key is printed."""
+    looks = f"import atexit, sys; atexit.register(lambda: print('has', [n for n in {FORBIDDEN} if n in sys.modules])); "
+    server = home.server("level.yaml", "--log-level", "debug", start=HEARING + looks + START)
+    press = Press(home, server)
+    press.tab.until(event="answer", number=press.tab.ask("devices"))
+    press.close()
+    assert server.stop() == 128 + signal.SIGTERM
+    assert "has []" in server.lines
+    key = server.url.rpartition("=")[2]
+    assert [line for line in server.lines if key in line] == [server.url]
+    assert not [line for line in server.lines if "never retrieved" in line or "Traceback" in line]
+
+
+@pytest.mark.parametrize(
+    ("env", "words", "says"),
+    [
+        ({"TMPDIR": "/nonexistent"}, [], ""),
+        ({}, ["--port", "{port}"], "--port {port}: Address already in use; 0 takes a free one"),
+        ({"HOME": "/nonexistent"}, [], ""),
+        ({"TANGIBLE_DATA_DIR": "{file}"}, [], ""),
+        ({"TANGIBLE_RUNTIME_DIR": "{file}"}, [], "{file}"),
+    ],
+)
+def test_server_starts_with_missing_folders_or_reports_one_sentence(
+    home: Home, env: dict[str, str], words: list[str], says: str
+) -> None:
+    """It starts all the same, or says one sentence."""
+    import socket
+
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        told = {"port": str(taken.getsockname()[1]), "file": str(home.folder / "level.yaml")}
+        env = {**home.env, **{name: value.format(**told) for name, value in env.items()}}
+        command = [
+            sys.executable,
+            "-c",
+            START,
+            "ui",
+            "level.yaml",
+            "--no-browser",
+            *(each.format(**told) for each in words),
+        ]
+        with subprocess.Popen(
+            command,
+            cwd=home.folder,
+            env={**os.environ, **env},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        ) as process:
+            assert process.stdout and process.stderr
+            first = process.stdout.readline()
+            if not says:
+                assert first.startswith("http://127.0.0.1:")
+                process.terminate()
+            out, err = process.communicate(timeout=LONGEST_S)
+    if says:
+        assert process.returncode == 2
+        assert not out and len(err.splitlines()) == 1
+        assert says.format(**told) in err
+    else:
+        assert process.returncode == 128 + signal.SIGTERM
+        assert "Traceback" not in err
+
+
+def test_worker_ends_with_its_pipe_during_a_job(home: Home) -> None:
+    """It ends with its pipe, whatever it computes."""
+    from tangible_core.runtime.child_process import command
+    from tangible_core.servo.framing import send
+    from tangible_ui.worker.messages import JobRequest
+
+    folder = home.folder / "drawn"
+    folder.mkdir()
+    env = {**os.environ, **home.env}
+    with subprocess.Popen(
+        command("tangible_ui.worker.process"), stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=env, cwd=home.folder
+    ) as worker:
+        assert worker.stdin and worker.stdout
+        send(worker.stdin, folder)
+        told = {"text": "scene: builtin/motorcycle\n", "path": home.folder / "m.yaml", "sets": [], "want": "surface"}
+        send(worker.stdin, JobRequest(1, "make", {"number": 1, **told}))
+        assert worker.stdout.read(8)  # it has begun
+        assert worker.poll() is None
+        worker.stdin.close()
+        assert worker.wait(LONGEST_S) == 0

@@ -1,0 +1,216 @@
+"""Handing on: files that pages fetch, whether fingers can read it, and the surface in words."""
+
+import asyncio
+import threading
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any
+from zipfile import ZipFile
+
+import numpy as np
+import pytest
+import trimesh
+
+from sessions import TEXT, SmallSession, small_scene, striped_scene
+from tangible_core.errors import ConfigError, TangibleError
+from tangible_core.pipeline.output.export_folder import LISTED
+from tangible_export.stl import Stl
+from tangible_ui.requests import REQUESTS
+from tangible_ui.worker.jobs.export import KEPT
+from waiting import LONGEST_S
+
+Ask = Callable[..., Coroutine[Any, Any, Any]]
+STL = {"use": "stl", "longer_side_m": 0.06}
+
+
+@pytest.fixture
+def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Runs a test with a session on which the small scene is opened and felt."""
+
+    def run(
+        check: Callable[[SmallSession, Ask], Coroutine[Any, Any, None]], scene: Callable[[Path], Path] = small_scene
+    ) -> None:
+        async def all_of_it() -> None:
+            small = SmallSession(tmp_path, monkeypatch)
+
+            async def ask(name: str, **told: Any) -> Any:
+                return await REQUESTS[name](small.session, small.tab, **told)
+
+            await ask("begin", files=[str(scene(tmp_path))])
+            await small.tab.until("touch")
+            await check(small, ask)
+
+        asyncio.run(all_of_it())
+
+    return run
+
+
+def folders(small: SmallSession) -> list[Path]:
+    return sorted(small.session.folder.glob("export-*"))
+
+
+class TestExport:
+    def test_export_writes_the_document_on_the_screen_and_tells_every_tab(self, small: Any) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
+            await ask("edit", text=TEXT.replace("relief_m: 0.004", "relief_m: 0.001"))  # and it is not saved
+            found = await ask("export", exports=[STL])
+            told = small.tab.last("exported")
+            assert {key: told[key] for key in found} == found
+            assert (told["digest"], small.tab.last("made")["want"]) == (small.session.digest, "export")
+            (only,) = found["exports"]
+            assert (only["name"], only["outcome"]) == ("stl", "ran")
+            assert only["legible"]["sentence"]
+            (file,) = only["files"]
+            path = small.session.folder / found["folder"] / file["name"]
+            assert (path.name, path.stat().st_size) == ("mine.stl", file["bytes"])
+            solid: Any = trimesh.load(path)
+            assert solid.is_volume
+            base_mm, braille_mm = 1.5, 0.5
+            assert base_mm < solid.extents[2] < base_mm + 1.0 + braille_mm + 0.2, "the file's relief is 4 mm"
+
+        small(check)
+
+    def test_exporter_that_fails_leaves_the_others(self, small: Any, monkeypatch) -> None:
+        def fail(self: Stl, work: Any, stem: Path) -> Any:
+            raise TangibleError("the relief has no height; raise workspace.relief_m")
+
+        async def check(small: SmallSession, ask: Ask) -> None:
+            monkeypatch.setattr(Stl, "write", fail)
+            found = await ask("export", exports=[STL, "3mf"])
+            wrong, fine = found["exports"]
+            assert (wrong["outcome"], wrong["files"]) == ("refused", [])
+            assert wrong["why"] == "the relief has no height; raise workspace.relief_m"
+            assert [each["name"] for each in fine["files"]] == ["mine.3mf"]
+
+        small(check)
+
+    @pytest.mark.parametrize(
+        ("exports", "says"),
+        [
+            ([{"use": "stl", "base_m": -1}], "base_m"),
+            ([{"use": "stone"}], "stone"),
+            ([{"base_m": 0.001}], "export"),
+            ([], "exporter"),
+        ],
+    )
+    def test_invalid_export_is_refused_and_leaves_no_folder(self, small: Any, exports: list[Any], says: str) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
+            with pytest.raises(ConfigError, match=says):
+                await ask("export", exports=exports)
+            assert small.tab.last("made")["outcome"] == "failed"
+            assert folders(small) == []
+
+        small(check)
+
+    def test_stopped_export_returns_none_and_leaves_no_files(self, small: Any, monkeypatch) -> None:
+        begun, go_on = threading.Event(), threading.Event()
+        write = Stl.write
+
+        def waits(self: Stl, work: Any, stem: Path) -> Any:
+            begun.set()
+            assert go_on.wait(LONGEST_S)
+            return write(self, work, stem)
+
+        async def check(small: SmallSession, ask: Ask) -> None:
+            monkeypatch.setattr(Stl, "write", waits)
+            asked = asyncio.ensure_future(ask("export", exports=[STL]))
+            await asyncio.to_thread(begun.wait, LONGEST_S)
+            await ask("stop_making")
+            assert await asked is None
+            assert small.tab.last("made")["outcome"] == "stopped"
+            assert "exported" not in small.tab.names()
+            go_on.set()
+
+        small(check)
+
+    def test_export_folders_beyond_the_limit_are_removed(self, small: Any) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
+            kept = [(await ask("export", exports=[STL]))["folder"] for _ in range(KEPT + 2)]
+            assert sorted(kept[-KEPT:]) == [each.name for each in folders(small)]
+
+        small(check)
+
+    def test_zip_contains_all_files(self, small: Any) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
+            found = await ask("export", exports=[STL, "3mf"])
+            name = await ask("export_zip", folder=found["folder"])
+            assert name == await ask("export_zip", folder=found["folder"]), "it is there already"
+            at = small.session.folder / found["folder"]
+            assert name == "mine.zip"
+            with ZipFile(at / name) as packed:
+                assert packed.testzip() is None
+                assert {each: packed.read(each) for each in packed.namelist()} == {
+                    each: (at / each).read_bytes() for each in ("mine.3mf", "mine.stl")
+                }
+            assert {each.name for each in at.iterdir()} == {"mine.3mf", "mine.stl", "mine.zip", LISTED}
+
+        small(check)
+
+    @pytest.mark.parametrize("folder", ["", "..", "export-0000000000000000", "export-x/../../secret", "drawn"])
+    def test_zip_of_another_folder_is_refused(self, small: Any, folder: str) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
+            with pytest.raises(ConfigError, match="export them again"):
+                await ask("export_zip", folder=folder)
+
+        small(check)
+
+
+class TestLegible:
+    def test_legibility_verdicts_pass_after_their_cure(self, small: Any) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
+            found = await ask("legible", medium="swell")
+            assert small.tab.last("legible")["verdicts"] == found["verdicts"]
+            assert (found["medium"], found["width_m"], found["grade"]) == ("swell", 0.08, "illegible")
+            (gap,) = (each for each in found["verdicts"] if each["check"] == "gap")
+            (place,) = gap["at"]
+            assert place[0] == pytest.approx(41 / 80, abs=0.02)
+            cures = {each["key"]: each["value"] for each in gap["changes"] if each["key"].startswith("simplify")}
+            assert cures and "simplify" not in small.session.text
+            await ask("set", changes=cures)
+            assert "simplify:" in small.session.text
+            again = await ask("legible", medium="swell")
+            assert (again["grade"], again["digest"]) == ("ok", small.session.digest)
+            await ask("undo")
+            assert "simplify" not in small.session.text
+
+        small(check, striped_scene)
+
+    def test_legibility_is_judged_at_the_requested_width(self, small: Any) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
+            found = await ask("legible", medium="swell", width_m=0.4)
+            assert (found["width_m"], found["grade"]) == (0.4, "ok"), "the stripe is 1 cm wide then"
+            with pytest.raises(ConfigError):
+                await ask("legible", medium="swell", width_m=-1.0)
+
+        small(check, striped_scene)
+
+    def test_view_and_touch_use_simplified_parts_if_the_file_has_simplify(self, small: Any) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
+            before = small.tab.last("scene")["labels"]
+            await ask("set", changes={"simplify": {}})
+            await ask("make", want="touch")
+            seen = small.worker.state.described[1]
+            assert before == 3 and set(np.unique(seen.labels)) == {0, 2}, "the stripe is gone, and numbers stay"
+
+        small(check, striped_scene)
+
+
+class TestDescription:
+    def test_description_is_in_the_requested_language(self, small: Any) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
+            said = {each: await ask("description", language=each) for each in ("en", "de", "fr")}
+            assert len({each["text"] for each in said.values()}) == 3
+            for language, each in said.items():
+                assert each["digest"] == small.tab.last("scene")["digest"]
+                assert each["parts"] and all(part["says"] for part in each["parts"])
+                assert f'<html lang="{language}">' in each["html"]
+                assert each["parts"][0]["label"] in each["text"]
+
+        small(check)
+
+    def test_description_without_a_surface_is_none(self, tmp_path: Path, monkeypatch) -> None:
+        async def check() -> None:
+            small = SmallSession(tmp_path, monkeypatch)
+            assert await REQUESTS["description"](small.session, small.tab, language="en") is None
+
+        asyncio.run(check())

@@ -1,0 +1,169 @@
+"""What is felt is kept while the loop goes on, and shown, compared and felt again as it was."""
+
+import asyncio
+import errno
+import os
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tangible_core import HapticSurface, load_method
+from tangible_core.data import TICK_COLUMNS
+from tangible_core.errors import OutputError
+from tangible_core.servo import Servo
+from tangible_core.session import About, Recording, Writer
+from tangible_ui.feeling.recorder import BY_HAND, Recorder
+from tangible_ui.requests.records import record
+from tangible_ui.worker.jobs import records
+from tangible_ui.worker.state import WorkerState
+from waiting import LONGEST_S, until
+
+
+@pytest.fixture
+def worker_state(tmp_path: Path) -> WorkerState:
+    return WorkerState(tmp_path, lambda event, **told: None)
+
+
+@pytest.fixture
+def servo(loop_in_thread: None) -> Any:
+    surface = HapticSurface.from_heights(np.zeros((8, 8), np.float32))
+    touch = load_method("render", "penalty")().touch(surface)
+    with Servo(touch, load_method("device", "mock")(), seconds=LONGEST_S) as running:
+        yield running
+
+
+def some(ticks: int, force_n: float = 1.0) -> Recording:
+    rows = np.zeros((ticks, len(TICK_COLUMNS)))
+    rows[:, 0] = 1e6 + np.arange(ticks) / 1000
+    rows[:, 2] = np.linspace(-0.01, 0.01, ticks)
+    rows[:, 4] = -0.001
+    rows[:, 13] = force_n
+    return Recording(rows, "", About("mock", "penalty", "scene: builtin/brick\n"))
+
+
+def felt(servo: Servo, ticks: int) -> None:
+    """Wait for this many ticks more."""
+    before = servo.ring.count
+    until(lambda: servo.ring.count >= before + ticks)
+
+
+class TestRecorder:
+    def test_recorder_keeps_every_tick_once(self, servo: Servo, tmp_path: Path) -> None:
+        ended: list[tuple[Path, int, str]] = []
+        recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: ended.append(told))
+        felt(servo, 1)
+        first_s = servo.ring.since(servo.ring.count - 1)[0][-1, 0]
+        felt(servo, 300)
+        recorder.stop()
+        found = Recording.load(tmp_path / "a.nc")
+        assert ended == [(tmp_path / "a.nc", len(found.rows), BY_HAND)]
+        assert found.stopped == ""
+        assert len(found.rows) >= 250
+        steps = np.diff(found.time_s)
+        assert steps.min() > 0
+        assert servo.running
+        assert found.time_s[0] <= first_s
+
+    def test_recorder_ends_with_its_loop(self, servo: Servo, tmp_path: Path) -> None:
+        recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: None)
+        felt(servo, 100)
+        servo.stop("the device was pulled out")
+        recorder._thread.join(LONGEST_S)  # pyright: ignore[reportPrivateUsage]
+        found = Recording.load(tmp_path / "a.nc")
+        assert found.stopped == "the device was pulled out"
+        assert len(found.rows) >= 50
+
+    def test_recorder_on_a_full_disk_ends_and_the_loop_goes_on(
+        self, servo: Servo, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        ended: list[str] = []
+        recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda path, ticks, why: ended.append(why))
+
+        def full(writer: Writer, data: bytes, at: int) -> None:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        monkeypatch.setattr(Writer, "_put", full)
+        recorder._thread.join(LONGEST_S)  # pyright: ignore[reportPrivateUsage]
+        assert len(ended) == 1
+        assert "free some space" in ended[0]
+        assert servo.running
+
+    def test_recorder_of_a_file_in_use_is_refused(self, servo: Servo, tmp_path: Path) -> None:
+        recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: None)
+        with pytest.raises(OutputError, match="another program"):
+            Recorder(servo, tmp_path / "a.nc", About(), lambda *told: None)
+        recorder.stop()
+
+
+class TestShown:
+    def test_shown_recording_of_an_old_clock_keeps_its_times(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        some(50).save(tmp_path / "a.nc")
+        shown = records.show_record(worker_state, tmp_path / "a.nc")
+        rows = np.fromfile(tmp_path / shown["digest"] / "ticks.f32", "<f4").reshape(shown["rows"], shown["columns"])
+        assert np.allclose(rows[:, 0], np.arange(50) / 1000, atol=1e-6)
+        assert np.allclose(rows[:, 2], some(50).position_m[:, 0], atol=1e-8)
+        assert (shown["every"], shown["law"], shown["stopped"]) == (1, "penalty", "")
+
+    def test_shown_recording_that_is_long_is_thinned(
+        self, worker_state: WorkerState, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(records, "MOST_ROWS", 20)
+        some(50).save(tmp_path / "a.nc")
+        shown = records.show_record(worker_state, tmp_path / "a.nc")
+        assert (shown["rows"], shown["every"]) == (17, 3)
+
+    def test_shown_recording_may_be_empty(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        some(0).save(tmp_path / "a.nc")
+        assert records.show_record(worker_state, tmp_path / "a.nc")["rows"] == 0
+
+    def test_list_of_recordings_has_the_newest_first_and_unreadable_ones(
+        self, worker_state: WorkerState, tmp_path: Path
+    ) -> None:
+        some(5).save(tmp_path / "old.nc")
+        os.utime(tmp_path / "old.nc", (0, 0))
+        (tmp_path / "broken.nc").write_bytes(b"CDF nothing")
+        found = records.records(worker_state, tmp_path)
+        assert [each["name"] for each in found] == ["broken.nc", "old.nc"]
+        assert found[0]["trouble"]
+        assert found[1]["figures"]["ticks"] == 5
+        assert records.records(worker_state, tmp_path / "missing") == []
+
+
+def test_recording_of_the_page_has_the_names_of_parts_and_materials(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    kept: list[About] = []
+    monkeypatch.setattr("tangible_ui.requests.records.Recorder", lambda servo, path, about, ended: kept.append(about))
+    monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path))
+    felt = SimpleNamespace(law="penalty", device_name="mouse", materials='{"1": "wood"}')
+    feeling = SimpleNamespace(servo=SimpleNamespace(running=True), felt=felt)
+    text = "scene: {photo: a.png, segments: parts.png}\nparts: {1: {name: wall}}\n"
+    session: Any = SimpleNamespace(feeling=feeling, recorder=None, text=text, tell=lambda *said, **told: None)
+    asyncio.run(record(session, None))
+    assert [(each.device, each.configuration, each.parts) for each in kept] == [("mouse", text, '{"1": "wall"}')]
+    assert [each.materials for each in kept] == ['{"1": "wood"}']
+
+
+def test_two_recordings_are_compared_place_by_place(worker_state: WorkerState, tmp_path: Path) -> None:
+    some(50, 1.0).save(tmp_path / "a.nc")
+    some(80, 1.5).save(tmp_path / "b.nc")
+    found = records.compare_records(worker_state, tmp_path / "a.nc", tmp_path / "b.nc")
+    assert found["error_n"] == pytest.approx(0.5)
+    assert (found["first_peak_force_n"], found["second_peak_force_n"]) == (1.0, 1.5)
+
+
+def test_replay_with_another_law_uses_the_same_states(worker_state: WorkerState, tmp_path: Path) -> None:
+    np.save(tmp_path / "flat.npy", np.zeros((8, 8)))
+    text = (
+        "scene: {height: flat.npy}\nwant: touch\nrender: {use: penalty, stiffness_n_per_m: 500}\n"
+        "workspace: {relief_m: 0.001, smooth_m: 0}\n"
+    )
+    some(50).save(tmp_path / "a.nc")
+    shown = records.try_law(worker_state, tmp_path / "a.nc", text, tmp_path / "p.yaml", [], tmp_path)
+    after = Recording.load(shown["path"])
+    assert Path(shown["path"]).name == "a with penalty.nc"
+    assert np.allclose(after.force_n[1:-1, 2], 0.5, atol=0.05)
+    assert shown["compared"]["worst_error_n"] == pytest.approx(0.5, abs=0.05)

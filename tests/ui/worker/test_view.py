@@ -1,0 +1,311 @@
+"""What pages fetch of a surface: the numbers that are felt, at every level of detail."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tangible_core import load_method
+from tangible_core.data import Material, Relief
+from tangible_core.errors import GeometryError, OutputError
+from tangible_core.metrics import absolute_error
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.scene.scene import Scene
+from tangible_render.haptic_textures import compile_textures
+from tangible_render.haptic_textures.heights import texture_height
+from tangible_ui.serving.routes import read_window
+from tangible_ui.worker.jobs import making
+from tangible_ui.worker.jobs import surface as textures
+from tangible_ui.worker.state import WorkerState
+from tangible_ui.worker.view import levels
+from tangible_ui.worker.view.files import ABOUT, KEPT, _put, show
+from tangible_ui.worker.view.surface_view import Layer, SurfaceView, is_there, view_of
+
+RANDOM = np.random.default_rng(3)
+WOOD = Material("wood", 800.0, 1.0, 0.4, 0.3, roughness_m=3e-5, grain_m=6e-4, texture="stochastic", seed=4)
+ICE = Material("ice", 900.0, 1.0, 0.05, 0.03, texture="smooth")
+
+
+def seen(height_m: np.ndarray, **more) -> SurfaceView:
+    rows, columns = height_m.shape
+    relief = Relief(height_m.astype(np.float32), (0.08, 0.08 * rows / columns))
+    plain = SurfaceView("made", "surface", relief, None, (), None, {})
+    return replace(plain, **more)
+
+
+def made(kind: str, name: str):
+    return load_method(kind, name)()
+
+
+def of_photo(picture: np.ndarray) -> Pipeline:
+    methods = {kind: made(kind, name) for kind, name in (("depth", "luminance"), ("texture", "gradient"))}
+    return Pipeline(Scene.photo(picture), **methods, cached=False)
+
+
+def array(folder: Path, about: dict, name: str, kind: str, level: int = 0) -> np.ndarray:
+    shape = about["levels"][level]["rows"], about["levels"][level]["columns"]
+    return np.frombuffer((folder / about["digest"] / name).read_bytes(), kind).reshape(shape)
+
+
+def blocks(values: np.ndarray, step: int) -> np.ndarray:
+    rows, columns = (range(0, side, step) for side in values.shape)
+    return np.array([[values[j : j + step, i : i + step].mean(dtype=np.float64) for i in columns] for j in rows])
+
+
+class TestLevels:
+    def test_level_of_values_is_the_mean_of_the_finest(self):
+        values = RANDOM.random((37, 50)).astype(np.float32)
+        for level, found in enumerate(levels.means(values, 5)):
+            np.testing.assert_allclose(found, blocks(values, 2**level), rtol=1e-6)
+            assert found.dtype == np.float32
+
+    @pytest.mark.parametrize(
+        ("shape", "count"), [((1, 1), 1), ((480, 640), 1), ((4200, 4300), 4), ((1, 70_000), 6), ((600, 601), 2)]
+    )
+    def test_coarsest_level_is_small_and_no_smaller_than_needed(self, shape: tuple[int, int], count: int):
+        assert levels.count(shape) == count
+
+    def test_level_of_labels_is_the_middle_one_of_each_block(self):
+        labels = RANDOM.integers(0, 9, (13, 21)).astype(np.int32)
+        coarse = levels.middles(labels, 3)[2]
+        assert coarse.shape == (4, 6)
+        assert coarse[1, 2] == labels[6, 10]
+        assert coarse[3, 5] == labels[12, 20]
+
+
+class TestShow:
+    def test_finest_level_is_the_surface_and_a_coarser_one_its_mean(self, tmp_path: Path):
+        height_m = 0.02 * RANDOM.random((700, 900)).astype(np.float32)
+        labels = RANDOM.integers(0, 3, (700, 900)).astype(np.int32)
+        about = show(seen(height_m, labels=labels, materials=(WOOD, ICE, WOOD)), tmp_path)
+        assert [each["step"] for each in about["levels"]] == [1, 2]
+        np.testing.assert_array_equal(array(tmp_path, about, "height-0.f32", "<f4"), height_m)
+        np.testing.assert_allclose(array(tmp_path, about, "height-1.f32", "<f4", 1), blocks(height_m, 2), rtol=1e-6)
+        np.testing.assert_array_equal(array(tmp_path, about, "labels-0.u", "<u2"), labels)
+        assert about["labels"] == 3
+        assert [each["name"] for each in about["materials"]] == ["wood", "ice"]
+        kinds = np.frombuffer((tmp_path / about["digest"] / "materials.u16").read_bytes(), "<u2")
+        assert kinds.tolist() == [0, 1, 0]
+
+    def test_same_view_is_written_once(self, tmp_path: Path):
+        plain = seen(np.zeros((3, 4)))
+        layer = Layer.of(np.ones((3, 4)), "px")
+        others = [
+            seen(np.ones((3, 4))),
+            replace(plain, labels=np.zeros((3, 4), np.int32)),
+            replace(plain, picture=np.zeros((3, 4), np.uint8)),
+            replace(plain, layers={"disparity": layer}),
+            replace(plain, layers={"error": layer}),
+            replace(plain, shows="relief"),
+        ]
+        assert len({each.digest for each in [plain, *others]}) == 7
+        first = show(plain, tmp_path)
+        before = (tmp_path / plain.digest / "height-0.f32").stat().st_mtime_ns
+        assert show(seen(np.zeros((3, 4))), tmp_path) == first
+        assert (tmp_path / plain.digest / "height-0.f32").stat().st_mtime_ns == before
+
+    def test_newest_views_are_kept(self, tmp_path: Path):
+        all_seen = [seen(np.full((2, 2), 1e-3 * each)) for each in range(KEPT + 2)]
+        for each in all_seen:
+            show(each, tmp_path)
+        assert {path.name for path in tmp_path.iterdir()} == {each.digest for each in all_seen[-KEPT:]}
+
+    def test_full_disk_leaves_nothing_and_is_reported(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+        def full(path: Path, data: object) -> int:
+            raise OSError(28, "No space left on device")
+
+        monkeypatch.setattr(Path, "write_bytes", full)
+        with pytest.raises(OutputError, match="free some space"):
+            show(seen(np.zeros((3, 4))), tmp_path)
+        assert list(tmp_path.iterdir()) == []
+
+    @pytest.mark.parametrize("shape", [(1, 1), (1, 70_000), (5, 1)])
+    def test_smallest_views_are_written(self, tmp_path: Path, shape: tuple[int, int]):
+        about = show(seen(np.full(shape, 0.001), picture=np.zeros(shape, bool)), tmp_path)
+        coarsest = len(about["levels"]) - 1
+        assert np.allclose(array(tmp_path, about, f"height-{coarsest}.f32", "<f4", coarsest), 0.001)
+        assert (tmp_path / about["digest"] / "photo.jpg").is_file()
+
+    def test_view_with_many_labels_and_few_materials_is_written(self, tmp_path: Path):
+        labels = np.arange(65_000, dtype=np.int32).reshape(250, 260)
+        about = show(seen(np.zeros((250, 260)), labels=labels, materials=(WOOD, ICE) * 32_500), tmp_path)
+        assert len(json.dumps(about)) < 3000
+        assert about["labels"] == 65_000
+        np.testing.assert_array_equal(array(tmp_path, about, "labels-0.u", "<u2"), labels)
+        more = show(seen(np.zeros((250, 260)), labels=labels + 5000), tmp_path)
+        np.testing.assert_array_equal(array(tmp_path, more, "labels-0.u", "<u4"), labels + 5000)
+
+    def test_large_picture_is_written_twice(self, tmp_path: Path):
+        about = show(seen(np.zeros((2, 3)), picture=np.zeros((1000, 1500), np.uint8)), tmp_path)
+        folder = tmp_path / about["digest"]
+        assert about["fine_photo"] == (1500, 1000)
+        assert (folder / "photo-fine.jpg").is_file()
+        assert (folder / "photo.jpg").stat().st_size < (folder / "photo-fine.jpg").stat().st_size
+
+    def test_same_view_written_by_two_threads_is_there(self, tmp_path: Path):
+        for name in ("sooner", "later", "torn", "another"):
+            (tmp_path / name).mkdir()
+            (tmp_path / name / ("height-0.f32" if name == "torn" else ABOUT)).write_text(name)
+        _put(tmp_path / "later", tmp_path / "sooner")
+        assert (tmp_path / "sooner" / ABOUT).read_text() == "sooner"
+        with pytest.raises(OSError, match="not empty"):
+            _put(tmp_path / "another", tmp_path / "torn")
+
+
+class TestLayer:
+    def test_layer_spans_most_of_its_values(self):
+        values = np.linspace(0, 100, 2001, dtype=np.float32).reshape(3, 667)
+        values[0, 0] = np.nan
+        layer = Layer.of(values, "px")
+        assert (layer.low, layer.high) == pytest.approx((0.55, 99.5), abs=0.02)
+        np.testing.assert_array_equal(layer.values, values)
+
+    def test_layer_that_is_large_is_reduced_and_an_empty_one_works(self):
+        assert Layer.of(np.ones((2000, 2000)), "px").values.shape == (1000, 1000)
+        nothing = Layer.of(np.full((2, 2), np.nan), "px")
+        assert (nothing.low, nothing.high) == (0, 0)
+
+
+@pytest.fixture(scope="module")
+def pair() -> Scene:
+    """A square before a ground, whose disparity is known."""
+    picture = (255 * np.random.default_rng(5).random((48, 64))).astype(np.uint8)
+    disparity = np.full((48, 64), 3.0, np.float32)
+    disparity[16:32, 24:44] = 6.0
+    return Scene.pair(left=picture, right=np.roll(picture, -3, 1), disparity=disparity, truth=disparity + 0.5)
+
+
+class TestSee:
+    def test_layer_has_its_unit_and_span(self, pair: Scene):
+        pipeline = Pipeline(pair, render=made("render", "proxy"), cached=False)
+        found = view_of(pipeline, "surface")
+        assert found.shows == "surface"
+        assert set(found.layers) == {"disparity", "confidence", "error"}
+        np.testing.assert_array_equal(found.layers["disparity"].values, pair.disparity.disparity_px)
+        error_px = absolute_error(pair.disparity.disparity_px, pair.truth)
+        np.testing.assert_array_equal(found.layers["error"].values, error_px.astype(np.float32))
+        np.testing.assert_array_equal(found.relief.height_m, pipeline.surface.height_m)
+
+    def test_segments_are_viewed_flat_without_a_depth(self):
+        picture = np.zeros((40, 60), np.uint8)
+        picture[:, 30:] = np.random.default_rng(1).integers(0, 255, (40, 30))
+        pipeline = of_photo(picture)
+        pipeline.make("segments")
+        found = view_of(pipeline, "segments")
+        assert found.shows == "segments"
+        assert found.relief.height_m.max() == 0
+        assert not is_there(pipeline, "relief")
+        np.testing.assert_array_equal(found.labels, pipeline.segments.labels)
+
+    def test_segments_are_viewed_over_the_relief(self):
+        picture = np.random.default_rng(1).integers(0, 255, (40, 60)).astype(np.uint8)
+        pipeline = of_photo(picture)
+        pipeline.make("relief")
+        pipeline.make("segments")
+        assert view_of(pipeline, "segments").relief.height_m.max() > 0
+
+    def test_depth_is_viewed_as_a_relief(self, pair: Scene):
+        pipeline = Pipeline(pair, cached=False)
+        pipeline.make("disparity")
+        found = view_of(pipeline, "disparity")
+        assert found.shows == "relief"
+        assert found.relief.height_m.max() == pytest.approx(0.01, rel=0.2)
+        assert not is_there(pipeline, "touch")
+
+    def test_materials_of_a_view_are_limited_to_the_device(self):
+        segments = np.repeat([[0, 1]], 8, 0).repeat(8, 1).astype(np.int32)
+        scene = Scene.heights(np.zeros((8, 16)), segments=segments)
+        by, law = {"by": {0: "brick", 1: "ice"}}, made("render", "proxy")
+        bare = view_of(Pipeline(scene, materials=by, render=law, cached=False), "surface").materials
+        device = made("device", "mock")
+        held = view_of(Pipeline(scene, materials=by, render=law, device=device, cached=False), "surface").materials
+        assert [each.name for each in held] == [each.name for each in bare]
+        assert held[0].roughness_m < bare[0].roughness_m
+
+
+def test_every_product_can_be_requested_and_is_shown_once(tmp_path: Path):
+    told: list[tuple[str, dict]] = []
+    worker_state = WorkerState(tmp_path, lambda event, **more: told.append((event, more)))
+    text = "scene: builtin/brick\ndepth: {use: luminance}\ntexture: {use: histogram}\nrender: {use: penalty}\n"
+    for want in ("segments", "materials", "disparity", "relief", "surface", "surface"):
+        assert making.make(worker_state, 1, text, tmp_path / "p.yaml", [], want) is None
+    shown = [more["shows"] for event, more in told if event == "scene"]
+    assert shown == ["segments", "relief", "surface"]
+
+
+class TestTexture:
+    @pytest.fixture
+    def worker_state(self, tmp_path: Path) -> WorkerState:
+        return WorkerState(tmp_path, lambda event, **told: None)
+
+    @pytest.fixture
+    def digest(self, worker_state: WorkerState) -> str:
+        labels = np.repeat([[0, 1]], 30, 0).repeat(20, 1).astype(np.int32)
+        return show(seen(np.zeros((30, 40)), labels=labels, materials=(WOOD, ICE)), worker_state.folder)["digest"]
+
+    def test_texture_patch_is_what_a_law_renders(self, worker_state: WorkerState, digest: str):
+        found = textures.texture_patch(worker_state, digest, -0.004, 0.011, 0.01, 25)
+        heights = np.fromfile(worker_state.folder / digest / found["file"], "<f4").reshape(25, 25)
+        table = compile_textures((WOOD, ICE))
+        for row, column in [(0, 0), (12, 3), (24, 9), (7, 20), (24, 24)]:
+            x, y = -0.004 + ((column + 0.5) / 25 - 0.5) * 0.01, 0.011 - ((row + 0.5) / 25 - 0.5) * 0.01
+            wanted = texture_height(table, int(x >= 0), x, y, 0.0, 0.0, 1e-3)[0]
+            assert heights[row, column] == pytest.approx(wanted, abs=1e-10)
+        assert np.abs(heights[:, :20]).max() > 1e-5
+        assert not heights[:, 23:].any()
+
+    def test_texture_patch_is_flat_beyond_the_rim_and_without_materials(self, worker_state: WorkerState, digest: str):
+        found = textures.texture_patch(worker_state, digest, -0.04, 0.03, 0.01, 8)
+        heights = np.fromfile(worker_state.folder / digest / found["file"], "<f4").reshape(8, 8)
+        assert not heights[:4].any() and not heights[:, :4].any() and heights[4:, 4:].any()
+        bare = show(seen(np.zeros((3, 4))), worker_state.folder)["digest"]
+        found = textures.texture_patch(worker_state, bare, 0.0, 0.0, 0.01, 8)
+        assert not np.fromfile(worker_state.folder / bare / found["file"], "<f4").any()
+
+    def test_texture_patches_beyond_the_limit_are_removed(self, worker_state: WorkerState, digest: str):
+        for each in range(20):
+            textures.texture_patch(worker_state, digest, 1e-3 * each, 0.0, 0.01, 4)
+        assert len(list((worker_state.folder / digest).glob("texture-*"))) == textures.KEPT
+
+    @pytest.mark.parametrize("wrong", [{"digest": "../x"}, {"digest": "0" * 32}, {"side_m": 0.0}, {"pixels": 10**6}])
+    def test_texture_patch_that_is_invalid_is_refused(self, worker_state: WorkerState, digest: str, wrong: dict):
+        told = {"digest": digest, "x_m": 0.0, "y_m": 0.0, "side_m": 0.01, "pixels": 4, **wrong}
+        with pytest.raises(GeometryError):
+            textures.texture_patch(worker_state, **told)
+
+
+ASKED = {"row": 2, "rows": 3, "column": 5, "columns": 4, "of": 11, "bytes": 2}
+
+
+class TestWindow:
+    @pytest.fixture
+    def path(self, tmp_path: Path) -> Path:
+        path = tmp_path / "labels"
+        path.write_bytes(np.arange(7 * 11, dtype="<u2").tobytes())
+        return path
+
+    def test_window_is_the_rectangle(self, path: Path):
+        found = np.frombuffer(read_window(path, ASKED), "<u2").reshape(3, 4)
+        np.testing.assert_array_equal(found, np.arange(77).reshape(7, 11)[2:5, 5:9])
+
+    @pytest.mark.parametrize(
+        "wrong", [{"row": 5}, {"column": 8}, {"row": -1}, {"column": -1}, {"rows": 0}, {"bytes": 0}, {"of": 10**9}]
+    )
+    def test_window_beyond_the_file_is_refused(self, path: Path, wrong: dict):
+        with pytest.raises(ValueError, match="no such window"):
+            read_window(path, ASKED | wrong)
+
+
+def test_parts_that_were_simplified_away_are_not_shown():
+    labels = np.zeros((60, 80), np.int32)
+    labels[10:40, 10:40], labels[20:24, 60:64] = 1, 2
+    scene = Scene.photo(labels.astype(np.uint8), segments=labels)
+    said = {"parts": {0: "ground", 1: "box"}, "heights": "given", "cached": False}
+    for more, there in (({}, [0, 1, 2]), ({"simplify": {}}, [0, 1])):
+        pipeline = Pipeline(scene, **said, **more)
+        pipeline.make("surface")
+        found = view_of(pipeline, "relief")
+        assert found.labels is not None and np.unique(found.labels).tolist() == there
+        assert found.names == ("ground", "box", "")

@@ -286,12 +286,12 @@ class Feeling:
         on = self
         if self.given is None and ours.device is None and theirs.device is not None:
             on = Feeling(self.pipeline, theirs.device.method)
-        reliefs = None if self.engine.scene.video is None else lambda: self.reliefs
+        reliefs = None if self.engine.scene.frames is None else lambda: self.reliefs
         return Slot(on._touch_or_film(), ours.safety, self.pipeline.make("surface"), self._beacon(beacon), reliefs)
 
     def _touch_or_film(self) -> Touch | Film:
         """Return what a loop feels: of a video, a film."""
-        return self.touch if self.engine.scene.video is None else self.film()
+        return self.touch if self.engine.scene.frames is None else self.film()
 
     def _beacon(self, part: str | int | None) -> Beacon | None:
         """Return the beacon to a part, by its name or number. Raises: ConfigError for an unknown part."""

@@ -66,7 +66,7 @@ class Pipeline:
     need it, and `outcomes` says why. What was made before, with the same methods and inputs, comes from the cache.
 
     >>> import numpy as np
-    >>> pipeline = Pipeline(Scene.of(height=np.eye(8)), workspace=Workspace(width_m=0.04), cached=False)
+    >>> pipeline = Pipeline(Scene.heights(np.eye(8)), workspace=Workspace(width_m=0.04), cached=False)
     >>> pipeline.surface.extent_m
     (0.04, 0.04)
     """
@@ -103,7 +103,7 @@ class Pipeline:
         Raises: ConfigError with every complaint about these; ArgumentError for what is not a key.
         """
         if not isinstance(scene, cast(Any, Scene)):
-            raise wrong_argument("scene", scene, "a Scene, such as Scene.of(photo=...) makes")
+            raise wrong_argument("scene", scene, "a Scene, such as Scene.photo(...) makes")
         registry = default_registry()
         config = config_of(
             scene,

@@ -20,6 +20,7 @@ from ..scene.formats.decoding import PICTURES as PICTURES
 from ..scene.formats.decoding import VIDEOS as VIDEOS
 from ..scene.formats.height_maps import read_heights_metadata
 from ..scene.scene import Scene
+from ..scene.scene_files import SceneFiles
 from .config.parsing import parse_config
 from .engine.cache import Cache
 from .pipeline import Pipeline
@@ -65,11 +66,12 @@ def starter(pictures: Sequence[Path], file: Path) -> Starter:
             f"{len(pictures)} pictures: name one, or left and right; of more, each is a pipeline of its own"
         )
     parts = _parts(pictures)
-    scene = Scene.of(**parts) if parts else Scene.builtin(str(pictures[0]))
+    absolute = {part: path.absolute() for part, path in parts.items()}
+    scene = Scene.read(SceneFiles.model_validate(absolute), Path()) if parts else Scene.builtin(str(pictures[0]))
     kind: Kind = "heights" if scene.views is None else "pair" if scene.views.right is not None else "photo"
     named = ", ".join(f"{part}: {_path_in_yaml(path, file.parent)}" for part, path in parts.items())
     said = {"scene": f"{{{named}}}" if parts else scene.name, "name": " and ".join(path.name for path in pictures)}
-    if scene.video is not None:
+    if scene.frames is not None:
         said["name"] += ", its first frame"
         said["scene"] += "   # with layout: side-by-side, if each frame holds the two views of a pair"
     template = kind if scene.measured is None else "measured"

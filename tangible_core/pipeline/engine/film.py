@@ -76,7 +76,7 @@ class PipelineFrames(FrameMaker):
 
 def reliefs_of(config: PipelineConfig, scene: Scene) -> Reliefs:
     """Return the frames of a video scene as reliefs. Raises: ConfigError for a scene that does not move."""
-    if scene.video is None:
+    if scene.frames is None:
         raise ConfigError(f"the scene {scene.name} does not move; give it a `video:`")
     if config.heights is not None:
         raise config.error_at(
@@ -86,7 +86,7 @@ def reliefs_of(config: PipelineConfig, scene: Scene) -> Reliefs:
                 "out, or take one frame as a `photo:`",
             )
         )
-    return Reliefs(scene.video.open, PipelineFrames(config, scene))
+    return Reliefs(scene.frames.open, PipelineFrames(config, scene))
 
 
 def film_of(engine: Engine, device: HapticDevice | None, period_s: float) -> Film:
@@ -97,13 +97,13 @@ def film_of(engine: Engine, device: HapticDevice | None, period_s: float) -> Fil
     config, scene = engine.config, engine.scene
     law = _filming(config, engine.registry)
     reliefs_of(config, scene)
-    assert scene.video is not None
+    assert scene.frames is not None
     surface = engine.make("surface")
     if device is not None:
         surface, limits = fit_to_device(surface, config, device)
         if limits:
             note(log, limits)
-    return law.film(surface, period_s, 1 / scene.video.fps)
+    return law.film(surface, period_s, 1 / scene.frames.fps)
 
 
 def _filming(config: PipelineConfig, registry: Registry) -> Filming:

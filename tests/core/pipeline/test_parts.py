@@ -73,7 +73,7 @@ class Heights(ForceRenderer):
 
 
 def scene(labels: np.ndarray | None = LABELS, picture: np.ndarray = PICTURE) -> Scene:
-    return Scene.of(photo=picture, segments=labels)
+    return Scene.photo(picture, segments=labels)
 
 
 def pipeline(labels: np.ndarray | None = LABELS, cached: bool = False, **parts: Any) -> Pipeline:
@@ -170,7 +170,7 @@ class TestHeights:
         picture = np.dstack([PICTURE] * 3 + [np.ones_like(PICTURE)])
         picture[20:35, 20:45, 3] = 0
         made = Pipeline(
-            Scene.of(photo=picture, segments=LABELS), heights="guess", materials={"default": "sand"}, cached=False
+            Scene.photo(picture, segments=LABELS), heights="guess", materials={"default": "sand"}, cached=False
         )
         surface = made.surface
         assert made.part_heights is not None and surface.labels is not None and surface.materials is not None
@@ -192,7 +192,7 @@ class TestWhatIsNotNeeded:
         assert said(made)["disparity"] == "skipped"
 
     def test_nor_of_a_pair(self):
-        pair = Scene.of(left=PICTURE, right=np.roll(PICTURE, 2, axis=1), segments=LABELS)
+        pair = Scene.pair(left=PICTURE, right=np.roll(PICTURE, 2, axis=1), segments=LABELS)
         Pipeline(pair, heights="guess", depth=Ramp(), cached=False).make("surface")
         assert ran == []
 
@@ -329,7 +329,7 @@ class TestMaterials:
             pipeline(parts={}, materials={7: "ice"}, depth=Ramp()).make("materials")
 
     def test_on_a_map_of_heights(self):
-        heights = Scene.of(height=PICTURE, segments=LABELS)
+        heights = Scene.heights(PICTURE, segments=LABELS)
         made = Pipeline(
             heights, parts={1: {"name": "lake", "material": "water"}}, materials={"by": "rules"}, cached=False
         )
@@ -425,7 +425,7 @@ class TestComplaints:
 
     def test_a_map_of_heights_has_its_heights(self):
         with pytest.raises(ConfigError, match="heights: the scene is a map of heights, which are felt as they are"):
-            Pipeline(Scene.of(height=PICTURE, segments=LABELS), heights="given")
+            Pipeline(Scene.heights(PICTURE, segments=LABELS), heights="given")
 
     def test_a_label_picture_of_another_size(self):
         with pytest.raises(
@@ -600,7 +600,7 @@ class TestWritten:
 
     def test_a_pipeline_of_objects_is_the_one_of_its_file(self, folder: Path, tmp_path: Path):
         made = Pipeline(
-            Scene.of(photo=folder / "photo.npy", segments=folder / "labels.npy"),
+            Scene.photo(folder / "photo.npy", segments=folder / "labels.npy"),
             parts={0: "wall", 3: PartChoice(name="chest", height_m=0.003)},
             heights=HeightChoice(by="given", round_m=0.002),
             title="Boxes",

@@ -49,7 +49,7 @@ class Slow(DepthEstimator):
 
 def test_the_whole_of_it(tmp_path: Path):
     left, right = pair()
-    scene = Scene.of(left=left, right=right, calibration=Calibration(994.978, 0.193, 31.086))
+    scene = Scene.pair(left, right, calibration=Calibration(994.978, 0.193, 31.086))
     pipeline = Pipeline(
         scene,
         depth=SemiGlobal(),
@@ -81,28 +81,28 @@ class TestScene:
     def test_files_and_arrays_are_the_same(self, tmp_path: Path):
         left, right = pair()
         np.save(tmp_path / "left.npy", left)
-        of_files = Scene.of(left=tmp_path / "left.npy", right=right)
+        of_files = Scene.pair(left=tmp_path / "left.npy", right=right)
         assert of_files.views is not None
-        of_arrays = Scene.of(left=left, right=right).views
+        of_arrays = Scene.pair(left, right).views
         assert of_arrays is not None
         assert of_files.views.digest() == of_arrays.digest()
 
     def test_what_was_given_may_change_afterwards(self):
         left, right = pair()
-        scene = Scene.of(left=left, right=right)
+        scene = Scene.pair(left, right)
         before = scene.views.left.copy() if scene.views else None
         left[:] = 0
         assert scene.views is not None
         np.testing.assert_array_equal(scene.views.left, before)
 
     def test_heights(self):
-        scene = Scene.of(height=[[0, 1], [2, 3]], relief_m=0.006)
+        scene = Scene.heights([[0, 1], [2, 3]], relief_m=0.006)
         assert Pipeline(scene, cached=False).surface.height_m.max() == np.float32(0.006)
 
     def test_labels_and_a_disparity_of_ones_own(self):
         left, right = pair()
         labels = np.repeat([[7, 9]], SHAPE[0], axis=0).repeat(SHAPE[1] // 2, axis=1)
-        scene = Scene.of(left=left, right=right, disparity=np.ones(SHAPE), segments=labels)
+        scene = Scene.pair(left, right, disparity=np.ones(SHAPE), segments=labels)
         pipeline = Pipeline(scene, materials={0: "ice", 1: "sand"}, cached=False)
         assert pipeline.segments is not None and pipeline.segments.count == 2
         assert pipeline.materials is not None
@@ -120,7 +120,7 @@ class TestScene:
         [
             ({}, "a scene is either left and right, or photo, or height, or video; this one gives nothing"),
             ({"left": np.zeros(SHAPE)}, "this one gives left"),
-            ({"photo": np.zeros(SHAPE), "relief_m": 0.01}, "relief_m needs height beside it"),
+            ({"photo": np.zeros(SHAPE), "relief_m": 0.01}, "relief_m needs height"),
         ],
     )
     def test_parts_that_make_no_scene(self, parts: dict, said: str):
@@ -138,30 +138,30 @@ class TestScene:
     )
     def test_what_is_no_picture(self, photo: object, said: str):
         with pytest.raises(PictureError, match=said):
-            Scene.of(photo=photo)  # pyright: ignore[reportArgumentType]
+            Scene.photo(photo)  # pyright: ignore[reportArgumentType]
 
     def test_nan_may_be_masked(self):
         photo = np.ones((4, 4), np.float32)
         photo[0, 0] = np.nan
-        scene = Scene.of(photo=photo, non_finite="mask")
+        scene = Scene.photo(photo, non_finite="mask")
         assert scene.known is not None and not scene.known[0, 0] and scene.known.sum() == 15
 
     def test_sizes_that_differ(self):
         with pytest.raises(PictureError, match="all parts of a scene must be of one size"):
-            Scene.of(left=np.zeros((4, 4)), right=np.zeros((4, 5)))
+            Scene.pair(left=np.zeros((4, 4)), right=np.zeros((4, 5)))
 
 
 class TestMethods:
     def test_a_class_of_ones_own(self):
         left, right = pair()
-        pipeline = Pipeline(Scene.of(left=left, right=right), depth=Flat())
+        pipeline = Pipeline(Scene.pair(left, right), depth=Flat())
         assert pipeline.disparity is not None and (pipeline.disparity.disparity_px == 3).all()
         assert pipeline.config.depth is not None and pipeline.config.depth.name == "Flat"
 
     def test_no_result_of_other_options_is_taken_for_it(self):
         left, right = pair()
         for value in (3.0, 4.0, 3.0):
-            found = Pipeline(Scene.of(left=left, right=right), depth=Flat(value_px=value)).disparity
+            found = Pipeline(Scene.pair(left, right), depth=Flat(value_px=value)).disparity
             assert found is not None and (found.disparity_px == value).all()
 
     def test_a_file_cannot_name_it(self, tmp_path: Path):
@@ -211,7 +211,7 @@ class TestThereAndBack:
         for name, picture in (("left", left), ("right", right)):
             np.save(tmp_path / f"{name}.npy", picture)
         cameras = Calibration(900.0, 0.1, 2.0)
-        scene = Scene.of(left=tmp_path / "left.npy", right=tmp_path / "right.npy", calibration=cameras)
+        scene = Scene.pair(left=tmp_path / "left.npy", right=tmp_path / "right.npy", calibration=cameras)
         pipeline = Pipeline(
             scene,
             depth=Zncc(window_px=5, max_disparity_px=8),
@@ -236,10 +236,10 @@ class TestThereAndBack:
 
     def test_arrays_are_in_no_file(self, tmp_path: Path):
         with pytest.raises(ConfigError, match="scene: is made of arrays"):
-            Pipeline(Scene.of(height=np.eye(4))).to_yaml(tmp_path / "mine.yaml")
+            Pipeline(Scene.heights(np.eye(4))).to_yaml(tmp_path / "mine.yaml")
 
     def test_a_run_of_what_no_file_can_say_says_why(self, tmp_path: Path):
-        run = Pipeline(Scene.of(height=np.eye(4)), cached=False).run(tmp_path)
+        run = Pipeline(Scene.heights(np.eye(4)), cached=False).run(tmp_path)
         assert "scene: is made of arrays" in (tmp_path / "config.txt").read_text()
         assert tmp_path / "config.txt" in run.files
 
@@ -247,7 +247,7 @@ class TestThereAndBack:
 class TestWatching:
     def test_progress(self):
         heard: list[StageEvent] = []
-        Pipeline(Scene.of(height=np.eye(4)), cached=False).make("surface", progress=heard.append)
+        Pipeline(Scene.heights(np.eye(4)), cached=False).make("surface", progress=heard.append)
         assert [(each.product, each.outcome and each.outcome.outcome) for each in heard] == [
             ("relief", "given"),
             ("segments", "skipped"),
@@ -259,14 +259,14 @@ class TestWatching:
     def test_stopped_between_stages(self):
         left, right = pair()
         stop = threading.Event()
-        pipeline = Pipeline(Scene.of(left=left, right=right), depth=Flat(), cached=False)
+        pipeline = Pipeline(Scene.pair(left, right), depth=Flat(), cached=False)
         with pytest.raises(Stopped, match="stopped by the program"):
             pipeline.make("surface", progress=lambda stage: stop.set(), stop=stop)
         assert pipeline.surface.height_m.shape == SHAPE
 
     def test_stopped_inside_of_a_long_one(self):
         left, right = pair()
-        stop, pipeline = threading.Event(), Pipeline(Scene.of(left=left, right=right), depth=Slow(), cached=False)
+        stop, pipeline = threading.Event(), Pipeline(Scene.pair(left, right), depth=Slow(), cached=False)
         threading.Timer(0.2, stop.set).start()
         with pytest.raises(Stopped):
             pipeline.make("disparity", stop=stop)
@@ -276,7 +276,7 @@ class TestWatching:
     @pytest.mark.usefixtures("loop_in_thread")
     def test_stopped_while_it_is_felt(self, in_real_time: bool):
         stop = threading.Event()
-        pipeline = Pipeline(Scene.of(height=np.ones((8, 8))), render=Penalty(), cached=False)
+        pipeline = Pipeline(Scene.heights(np.ones((8, 8))), render=Penalty(), cached=False)
         found = pipeline.feel(
             Mock(path="circle"), 600, in_real_time=in_real_time, on_report=lambda _: stop.set(), stop=stop
         )
@@ -289,7 +289,7 @@ class TestFeeling:
     @pytest.fixture
     def pipeline(self) -> Pipeline:
         device = Mock(hand=None, path="circle", z_m=0.0015)
-        return Pipeline(Scene.of(height=np.arange(64.0).reshape(8, 8)), render=Penalty(), device=device, cached=False)
+        return Pipeline(Scene.heights(np.arange(64.0).reshape(8, 8)), render=Penalty(), device=device, cached=False)
 
     def test_simulated(self, pipeline: Pipeline):
         found = pipeline.feel(seconds=0.25, in_real_time=False)
@@ -333,7 +333,7 @@ class TestFeeling:
 @pytest.fixture(scope="module")
 def shown() -> Pipeline:
     left, right = pair()
-    scene, texture = Scene.of(left=left, right=right), Histogram(segments=2)
+    scene, texture = Scene.pair(left, right), Histogram(segments=2)
     return Pipeline(scene, depth=Flat(), texture=texture, render=Penalty(), cached=False)
 
 

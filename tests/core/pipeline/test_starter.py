@@ -84,7 +84,7 @@ def test_a_video_makes_a_scene_of_its_first_frame(folder: Path):
     made = starter([Path("walk.avi")], folder / "p.yaml")
     config = parse_config(made.text, folder / "p.yaml", default_registry())
     assert isinstance(config.scene, SceneFiles) and config.scene.video == folder / "walk.avi"
-    assert made.scene.video is not None and are_pictures([Path("WALK.MP4")])
+    assert made.scene.frames is not None and are_pictures([Path("WALK.MP4")])
     assert (
         "walk.avi, its first frame: one picture, 160 x 120 pixels" in made.text and "layout: side-by-side" in made.text
     )

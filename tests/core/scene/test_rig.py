@@ -248,8 +248,8 @@ class TestScene:
 
     def test_rig_from_a_file_equals_rig_from_arrays(self, folder: Path):
         left, right = (np.load(folder / f"{name}.npy") for name in ("left", "right"))
-        of_files = Scene.of(left=folder / "left.npy", right=folder / "right.npy", rig=folder / "rig.yml")
-        of_arrays = Scene.of(left=left, right=right, rig=rig(lens="radial"))
+        of_files = Scene.pair(left=folder / "left.npy", right=folder / "right.npy", rig=folder / "rig.yml")
+        of_arrays = Scene.pair(left, right, rig=rig(lens="radial"))
         assert of_files.views is not None and of_arrays.views is not None
         np.testing.assert_allclose(of_files.views.left, of_arrays.views.left, atol=1e-6)
         assert of_files.views.calibration is not None
@@ -267,7 +267,7 @@ class TestScene:
     def test_rig_for_another_picture_size_raises(self, folder: Path):
         (folder / "rig.yml").write_text(KALIBR.format(model="none", coefficients=[]).replace("[120, 90]", "[752, 480]"))
         with pytest.raises(PictureError, match=r"left\.npy is not 752 x 480"):
-            Scene.of(left=folder / "left.npy", right=folder / "right.npy", rig=folder / "rig.yml")
+            Scene.pair(left=folder / "left.npy", right=folder / "right.npy", rig=folder / "rig.yml")
 
     @pytest.mark.parametrize(
         ("options", "message"),
@@ -278,8 +278,8 @@ class TestScene:
     )
     def test_rig_with_incompatible_options_raises(self, folder: Path, options: dict, message: str):
         with pytest.raises(ConfigError, match=message):
-            Scene.of(left=BLANK, right=BLANK, rig=folder / "rig.yml", **options)
+            Scene.pair(left=BLANK, right=BLANK, rig=folder / "rig.yml", **options)
 
     def test_rig_without_a_pair_raises(self, folder: Path):
         with pytest.raises(ConfigError, match="rig needs left"):
-            Scene.of(photo=BLANK, rig=folder / "rig.yml")
+            Scene.photo(BLANK, rig=folder / "rig.yml")

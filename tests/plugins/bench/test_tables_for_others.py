@@ -1,4 +1,4 @@
-"""How long a comparison will take, a first look at it, and its results as CSV and for LaTeX."""
+"""The forecast of a comparison, its short form, and its results as CSV and for LaTeX."""
 
 import csv
 import io
@@ -31,7 +31,7 @@ def comparison(registry: Registry, folder: Path) -> Comparison:
     return parse_comparison(TEXT, folder / "c.yaml", registry)
 
 
-def test_a_first_look_is_a_sixth_of_the_work_in_a_folder_of_its_own(registry: Registry, tmp_path: Path):
+def test_shortened_comparison_is_a_sixth_of_the_work_in_its_own_folder(registry: Registry, tmp_path: Path):
     whole = comparison(registry, tmp_path)
     short = shorten(whole)
     assert (short.protocol.repeats, short.protocol.calls, short.damages) == (1, 1, (Damage(),))
@@ -39,7 +39,7 @@ def test_a_first_look_is_a_sixth_of_the_work_in_a_folder_of_its_own(registry: Re
     assert len(measurements(short)) * 6 == len(measurements(whole))
 
 
-def test_the_time_is_guessed_and_corrected_by_what_was_measured(tmp_path: Path):
+def test_forecast_is_corrected_by_finished_measurements(tmp_path: Path):
     text = "compare: depth\nmethods: [semi-global, report]\nscenes: [{synthetic: steps}]\nrepeats: 2\n"
     waiting = look(
         measurements(parse_comparison(text, tmp_path / "c.yaml", default_registry())), tmp_path / "x"
@@ -57,7 +57,7 @@ def test_the_time_is_guessed_and_corrected_by_what_was_measured(tmp_path: Path):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("cells_here")
-def test_every_figure_is_written_for_other_programs(registry: Registry, tmp_path: Path):
+def test_comparison_writes_every_figure_as_csv_and_latex(registry: Registry, tmp_path: Path):
     found = compare(shorten(comparison(registry, tmp_path)))
     assert {"table.csv", "table.tex", "results.jsonl"} <= {path.name for path in found.files}
     lines = list(csv.DictReader(io.StringIO((tmp_path / "out-quick" / "table.csv").read_text())))

@@ -226,7 +226,7 @@ def test_what_a_method_noticed_is_told_again_with_what_comes_from_the_cache(
 def test_what_was_noticed_in_reading_the_scene_is_told_with_the_views(folder: Path, monkeypatch: pytest.MonkeyPatch):
     def read(*_: object) -> Scene:
         note(logging.getLogger("tests"), "the first of 3 frames is taken", logging.WARNING)
-        return Scene.of(photo=np.zeros((4, 4)))
+        return Scene.photo(np.zeros((4, 4)))
 
     monkeypatch.setattr(Scene, "read", read)
     pipe = pipeline(folder)

@@ -37,7 +37,7 @@ def filmed(walk):
     """A pipeline on it."""
 
     def made(**changed):
-        scene = Scene.of(video=walk, layout="side-by-side", fps=20, repeat=False)
+        scene = Scene.video(walk, layout="side-by-side", fps=20, repeat=False)
         methods = {"depth": SemiGlobal(resolution="half", max_disparity_px=32), "render": Proxy()}
         return Pipeline(scene, **methods | changed, cached=False)
 
@@ -54,7 +54,7 @@ def test_the_first_frame_is_the_relief_of_the_still(filmed):
 def test_each_frame_is_what_the_still_makes_of_its_disparity_and_range(filmed, walk):
     """Where nothing is averaged: a still of a later frame, its range that of the first."""
     pipeline = filmed()
-    later = Pipeline(Scene.of(stereo=walk / "004.png", layout="side-by-side"), depth=pipeline.config.depth.method)
+    later = Pipeline(Scene.pair(walk / "004.png", layout="side-by-side"), depth=pipeline.config.depth.method)
     spans = nearness_range(pipeline.disparity, None)
     maker = PipelineFrames(pipeline.config, pipeline.scene)
     first = maker.begin(pipeline.views)
@@ -80,7 +80,7 @@ def test_exchanged_views_stay_exchanged(walk, tmp_path):
     for path in walk.iterdir():
         left, right = np.split(cv2.imread(str(path)), 2, axis=1)
         cv2.imwrite(str(tmp_path / path.name), np.hstack([right, left]))
-    scene = Scene.of(video=tmp_path, layout="side-by-side", fps=20, repeat=False)
+    scene = Scene.video(tmp_path, layout="side-by-side", fps=20, repeat=False)
     pipeline = Pipeline(scene, depth=SemiGlobal(resolution="half"), workspace={"smooth_m": 0}, cached=False)
     with pipeline.reliefs as reliefs:
         film = [each.relief.height_m for each in reliefs]
@@ -117,7 +117,7 @@ def test_it_is_felt_in_real_time_and_recorded(filmed, tmp_path):
 
 @pytest.mark.usefixtures("loop_in_thread")
 def test_films_and_stills_are_felt_in_turn_and_a_film_begins_anew(filmed, walk):
-    still = Pipeline(Scene.of(photo=walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
+    still = Pipeline(Scene.photo(walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
     reports = []
     recording = filmed().feel(Mock(path="circle"), 2.4, then=[still], each_s=0.6, on_report=reports.append)
     frames = recording.frame
@@ -149,7 +149,7 @@ def test_a_relief_of_parts_is_refused(filmed):
 
 
 def test_a_scene_that_stands_still_is_no_film(walk):
-    still = Pipeline(Scene.of(photo=walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
+    still = Pipeline(Scene.photo(walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
     with pytest.raises(ConfigError, match="does not move"):
         _ = still.reliefs
     with pytest.raises(ConfigError, match="does not move"):

@@ -65,7 +65,7 @@ def test_the_rehearsal_of_the_demo_compiles_all_that_comes_after_its_depth():
 
 def pipeline(**methods) -> Pipeline:
     given = {"depth": Luminance(), "texture": Gradient(segments=4), "render": Penalty(), "device": Mock()} | methods
-    return Pipeline(Scene.of(photo=PICTURE), workspace=Workspace(width_m=0.04), cached=False, **given)
+    return Pipeline(Scene.photo(PICTURE), workspace=Workspace(width_m=0.04), cached=False, **given)
 
 
 class TestWork:
@@ -91,12 +91,12 @@ class TestWork:
         assert _work(pipeline(texture=None).engine, "surface") is None
 
     def test_what_the_scene_brings_is_not(self):
-        scene = Scene.of(photo=PICTURE, segments=(PICTURE > 40).astype(np.uint8))
+        scene = Scene.photo(PICTURE, segments=(PICTURE > 40).astype(np.uint8))
         work = _work(Pipeline(scene, depth=Luminance(), texture=Gradient(), cached=False).engine, "segments")
         assert work is None
 
     def test_a_scene_without_a_picture_is_not(self):
-        scene = Scene.of(height=np.eye(8))
+        scene = Scene.heights(np.eye(8))
         assert _work(Pipeline(scene, render=Penalty(), cached=False).engine, "touch") is None
 
     def test_one_processor_has_no_room_beside(self, monkeypatch: pytest.MonkeyPatch):

@@ -27,7 +27,7 @@ from tangible_core.plugins.registry import default_registry
 
 LABELS = np.kron(np.int32([[0, 1, 1], [0, 2, 2]]), np.ones((24, 24), np.int32))
 PHOTO = (LABELS * 90).astype(np.uint8)
-LABELLED = Scene.of(photo=PHOTO, segments=LABELS, name="still life")
+LABELLED = Scene.photo(PHOTO, segments=LABELS, name="still life")
 SAID: Any = {"parts": {0: "wall", 1: {"name": "box", "height_m": 0.004}, 2: {"height_m": 0.002}}, "heights": "given"}
 
 
@@ -112,7 +112,7 @@ class TestWhatAnExporterGets:
 
     def test_without_a_title_it_is_called_after_its_scene(self, tmp_path: Path):
         np.save(tmp_path / "old harbour.v2.npy", np.eye(8))
-        Pipeline(Scene.of(height=tmp_path / "old harbour.v2.npy"), cached=False).export(tmp_path / "out", [Report()])
+        Pipeline(Scene.heights(tmp_path / "old harbour.v2.npy"), cached=False).export(tmp_path / "out", [Report()])
         assert report_of(tmp_path / "out")["title"] == "old harbour.v2"
         assert (tmp_path / "out/old harbour-v2.report").is_file()
 
@@ -127,7 +127,7 @@ class TestWhatAnExporterGets:
     def test_what_is_found_in_the_picture_does_not_depend_on_the_width(self, tmp_path: Path):
         """Else the numbers of parts, by which names are given, would be those of other parts."""
         Counted.seen.clear()
-        scene = Scene.of(photo=PHOTO)
+        scene = Scene.photo(PHOTO)
         said = {**SAID, "workspace": {"width_m": 0.0096, "finest_m": 3e-4}}
         done = Pipeline(scene, texture=Counted(), cached=False, **said).export(
             tmp_path, [Report(width_m=0.16), Report(width_m=0.001), Report()]
@@ -139,10 +139,10 @@ class TestWhatAnExporterGets:
     def test_no_more_is_made_than_is_needed(self, tmp_path: Path):
         """A print of a photo by its brightness needs no texture, and is not judged by parts either."""
         Counted.seen.clear()
-        photo = Pipeline(Scene.of(photo=PHOTO), depth=Flat(), texture=Counted(), cached=False)
+        photo = Pipeline(Scene.photo(PHOTO), depth=Flat(), texture=Counted(), cached=False)
         (one,) = photo.export(tmp_path, [SolidOnly()]).exports
         assert [each.product for each in one.made if each.outcome == "ran"] == ["disparity", "relief"]
-        heights = Pipeline(Scene.of(height=np.eye(8)), texture=Counted(), cached=False)
+        heights = Pipeline(Scene.heights(np.eye(8)), texture=Counted(), cached=False)
         (one,) = heights.export(tmp_path, [SolidOnly()]).exports
         assert {each.product: each.outcome for each in one.made} == {"relief": "given"}
         assert Counted.seen == []
@@ -156,7 +156,7 @@ class TestWhatAnExporterGets:
         (one,) = pipeline(**SAID).export(tmp_path, [Parts()]).exports
         assert one.files[0].read_text() == "3 ('wall', 'box', '')"
         (one,) = (
-            Pipeline(Scene.of(height=np.eye(8)), cached=False)
+            Pipeline(Scene.heights(np.eye(8)), cached=False)
             .export(tmp_path, [Does(do=lambda stem: written(stem.with_suffix(".txt")))])
             .exports
         )
@@ -167,7 +167,7 @@ class TestWhatAnExporterGets:
             def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
                 return written(stem.with_suffix(".txt"), str(work.simplified))
 
-        (one,) = Pipeline(Scene.of(height=np.eye(8)), cached=False).export(tmp_path, [Parts()]).exports
+        (one,) = Pipeline(Scene.heights(np.eye(8)), cached=False).export(tmp_path, [Parts()]).exports
         assert one.files[0].read_text() == "None"
         assert one.legible.sentence == "Illegible, because the picture is not divided into parts."
 
@@ -195,7 +195,7 @@ class TestSimplify:
         labels = np.zeros((60, 80), np.int32)
         labels[10:40, 10:40], labels[20:24, 60:64] = 1, 2
         said = {"parts": {0: "ground", 1: {"height_m": 0.004}, 2: {"height_m": 0.003}}, "heights": "given"}
-        scene = Scene.of(photo=labels.astype(np.uint8), segments=labels)
+        scene = Scene.photo(labels.astype(np.uint8), segments=labels)
         plain, simple = (Pipeline(scene, cached=False, **said, **more) for more in ({}, {"simplify": {}}))
         assert np.unique(plain.surface.labels).tolist() == [0, 1, 2]
         assert np.unique(simple.surface.labels).tolist() == [0, 1]
@@ -215,12 +215,12 @@ class TestSimplify:
 
     def test_it_needs_parts(self):
         with pytest.raises(ConfigError, match=r"simplify: parts are pieces of segments, and the scene has none"):
-            Pipeline(Scene.of(photo=PHOTO), simplify={}, cached=False).make("simplified")
+            Pipeline(Scene.photo(PHOTO), simplify={}, cached=False).make("simplified")
 
     def test_what_is_said_of_parts_is_checked_though_they_come_from_the_cache(self, tmp_path: Path):
         def made(height_m: float) -> Pipeline:
             said = {**SAID, "parts": {1: {"height_m": height_m}}}
-            found = Pipeline(Scene.of(photo=PHOTO), texture=Counted(), simplify={}, cached=False, **said)
+            found = Pipeline(Scene.photo(PHOTO), texture=Counted(), simplify={}, cached=False, **said)
             found.engine.cache = Cache(tmp_path)
             return found
 

@@ -31,7 +31,7 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def run(out: Path, want: Product = "touch", heights: np.ndarray = HEIGHTS):
-    return Pipeline(Scene.of(height=heights), render=Penalty(), cached=False).run(out, want, seconds=0.01)
+    return Pipeline(Scene.heights(heights), render=Penalty(), cached=False).run(out, want, seconds=0.01)
 
 
 def names(folder: Path) -> set[str]:
@@ -124,7 +124,7 @@ def test_a_run_that_fails_leaves_the_results_of_before(tmp_path: Path):
     run(tmp_path)
     before = digests(tmp_path)
     with pytest.raises(Exception, match="seconds"):
-        Pipeline(Scene.of(height=HEIGHTS), render=Penalty(), device=Mock(), cached=False).run(tmp_path, seconds=-1)
+        Pipeline(Scene.heights(HEIGHTS), render=Penalty(), device=Mock(), cached=False).run(tmp_path, seconds=-1)
     assert digests(tmp_path) == before
 
 

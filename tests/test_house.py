@@ -252,7 +252,15 @@ def test_dependencies_have_their_reasons():
 
 @pytest.mark.parametrize(
     "house",
-    ["plugins/authoring", "plugins/depth", "plugins/devices", "plugins/export", "plugins/render", "plugins/texture"],
+    [
+        "plugins/authoring",
+        "plugins/depth",
+        "plugins/devices",
+        "plugins/export",
+        "plugins/render",
+        "plugins/texture",
+        "plugins/ui/tangible_ui",
+    ],
 )
 def test_docstrings_open_with_a_verb_or_a_noun(house):
     """The rest of the house follows; `python -m benchmarks.house_words --list` names what is left."""
@@ -261,7 +269,9 @@ def test_docstrings_open_with_a_verb_or_a_noun(house):
     assert share(words.openers, words.docstrings) < 5, words.openers
 
 
-@pytest.mark.parametrize("house", ["plugins/authoring", "plugins/depth", "plugins/export", "plugins/texture"])
+@pytest.mark.parametrize(
+    "house", ["plugins/authoring", "plugins/depth", "plugins/export", "plugins/texture", "plugins/ui/tangible_ui"]
+)
 def test_functions_are_not_named_by_a_bare_participle(house):
     words = count_words([ROOT / house])
     assert words.functions > 30

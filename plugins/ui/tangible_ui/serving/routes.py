@@ -1,4 +1,4 @@
-"""Routes of the server: the page, the arrays it draws, and its websocket; for whoever has the key."""
+"""Routes of the server: the page, the arrays it draws, and its websocket; all but the page need the key."""
 
 import asyncio
 import secrets

@@ -28,7 +28,7 @@ from .routes import application
 
 EXAMPLE = Path("builtin/motorcycle")
 MOST_CONNECTIONS = 256
-"""Maximum number of connections at once; more are told to come again later, and the others are served on."""
+"""Maximum number of connections at once; further ones are refused for now."""
 MOST_MESSAGE_BYTES = 2**20
 """Size limit of a message, bytes; pipeline files are smaller."""
 THREADS = 32

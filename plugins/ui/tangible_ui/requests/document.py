@@ -23,7 +23,7 @@ async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bo
     if "text" not in found:
         return found
     text, path = found["text"], found["path"]
-    if session.sets:  # of the command line: the text says them from now on
+    if session.sets:  # changes of the command line become part of the text
         text, session.sets = await session.worker.quick("overridden", text=text, path=path, sets=session.sets), []
     session.drafts.remember_opened(text)
     async with session.texts.lock:

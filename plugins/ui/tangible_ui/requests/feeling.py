@@ -28,7 +28,7 @@ async def hold(session: Session, tab: Tab) -> None:
 @request()
 async def stop(session: Session, tab: Tab | None) -> None:
     """Take all force away at once, until `feel`, whatever else is made meanwhile."""
-    wait_until_gone = session.feeling.cut()  # before anything is waited for
+    wait_until_gone = session.feeling.cut()  # before any wait
     session.tell("loop", running=False, why="stopped", stopped=True)
     session.begin(asyncio.to_thread(wait_until_gone))
 

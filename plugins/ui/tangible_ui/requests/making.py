@@ -40,7 +40,7 @@ async def foresee(session: Session, apply: bool = False) -> None:
     digest = session.digest
     plan = await session.worker.quick("plan", **session.document(session.felt_sets()), want="touch")
     if session.digest != digest:
-        return  # of a text that was edited again: that edit has its own
+        return  # the text was edited again, and that edit sends its own plan
     session.tell("plan", **plan)
     if apply and session.long_jobs.running:
         session.long_jobs.apply_after = True

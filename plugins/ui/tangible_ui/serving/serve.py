@@ -138,7 +138,7 @@ class Served:
         session.begin(drafts.offer(session))
         session.begin(document.begin(session, None, [str(each) for each in self._files]))
         session.begin(_start(session))
-        gc.freeze()  # what was imported is never looked through again
+        gc.freeze()  # the collector skips what was imported
         try:
             yield
         finally:

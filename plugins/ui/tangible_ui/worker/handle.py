@@ -51,11 +51,6 @@ class Worker:
         self._lock = threading.Lock()
         self._start()
 
-    @property
-    def busy(self) -> bool:
-        """True while somebody waits for a job."""
-        return bool(self._waiting)
-
     async def ask(self, job: str, **told: Any) -> Any:
         """Do a job, and return its result.
 

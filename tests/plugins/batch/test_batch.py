@@ -98,7 +98,7 @@ class TestScenes:
 
         self.run(archive.parent, "--set", "workspace.width_m=0.06")
         found = read_record(tmp_path / "out/mine-batch/scenes/p2/relief.npz")
-        scene = Scene.of(photo=archive / "p2.png")
+        scene = Scene.photo(archive / "p2.png")
         from tangible_depth import Luminance
 
         same = Pipeline(scene, depth=Luminance(), workspace={"width_m": 0.06}, cached=False).relief

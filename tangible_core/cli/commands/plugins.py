@@ -62,7 +62,7 @@ def show_one(kind: Kind, name: Name, as_json: Json = False) -> None:
     """
     import inspect
 
-    from ...metrics.measured import measured
+    from ...metrics.measured import load_measured
     from ...pipeline.config.markdown import options_of
     from ...plugins.registry import default_registry
     from .. import show
@@ -70,7 +70,7 @@ def show_one(kind: Kind, name: Name, as_json: Json = False) -> None:
     registry = default_registry()
     listing, cls = registry.find(kind, name), registry.load(kind, name)
     text, options = inspect.getdoc(cls) or "", options_of(cls)
-    measurements = measured().get(kind) if listing.distribution == OURS else None
+    measurements = load_measured().get(kind) if listing.distribution == OURS else None
     if as_json:
         figures = None if measurements is None else _figures(measurements, listing.name)
         head = {column: getattr(listing, column) for column in (*COLUMNS, "target")}

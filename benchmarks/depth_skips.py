@@ -8,7 +8,7 @@ import numpy as np
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.metrics import disparity_errors
-from tangible_core.scene.scaling import enlarge_disparity, felt_factor, reduce_views
+from tangible_core.scene.scaling import felt_factor, in_pixels_of, on_grid, reduce_views
 from tangible_depth.opencv_sgbm import OpenCVSGBM
 from tangible_depth.rectify.rectification import rectify
 from tangible_depth.semi_global import SemiGlobal
@@ -29,7 +29,7 @@ class Skip(NamedTuple):
 
 
 def rows() -> list[str]:
-    """A row a skip, on the builtin pair."""
+    """Return a row a skip, on the builtin pair."""
     return table(
         ("left out", "switch", "time of all of it, ms", "time saved", "bad2 with all of it", "error added, points"),
         [_row(each) for each in skips(real()["motorcycle"])],
@@ -118,7 +118,8 @@ def skips(scene: KnownScene) -> Iterator[Skip]:
 
 def _felt(views: Views, finest_m: float) -> DisparityMap:
     factor = felt_factor(views.shape[1], 0.01, finest_m)
-    return enlarge_disparity(SemiGlobal().estimate(reduce_views(views, factor)), views.shape)
+    disparity = SemiGlobal().estimate(reduce_views(views, factor))
+    return on_grid(in_pixels_of(disparity, views.shape[1]), views.shape)
 
 
 def _rectified(views: Views, tolerance_px: float) -> DisparityMap:
@@ -127,7 +128,7 @@ def _rectified(views: Views, tolerance_px: float) -> DisparityMap:
 
 
 def _half_flat(scene: KnownScene) -> tuple[Views, np.ndarray]:
-    """The pair with grey paper over the lower half, of which nothing is known."""
+    """Return the pair with grey paper over the lower half, of which nothing is known."""
     middle = scene.grey.left.shape[0] // 2
     left, right = (np.where(np.arange(len(each))[:, None] < middle, each, np.uint8(128)) for each in scene.grey)
     truth_px = scene.pair.truth_px.copy()
@@ -136,7 +137,7 @@ def _half_flat(scene: KnownScene) -> tuple[Views, np.ndarray]:
 
 
 def _each_channel(views: Views) -> DisparityMap:
-    """What colour could give: three matchings, the middle value of each pixel."""
+    """Match each of the three channels, and return the middle value of each pixel."""
     assert views.right is not None
     left, right = views.left, views.right
     channels = [SemiGlobal().estimate(Views(left[..., i], right[..., i])).disparity_px for i in range(3)]

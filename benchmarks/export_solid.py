@@ -32,7 +32,7 @@ REPAIRS = ("Degenerate", "Edges fixed", "Facets removed", "Facets added", "Facet
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a bound is missed."""
+    """Return the section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a bound is missed."""
     logging.getLogger("tangible_export").addHandler(logging.NullHandler())  # what it says of each solid
     rows, figures = part("pictures", _pictures)
     figures += part(f"{HUGE} x {HUGE}", lambda: list(_huge()))
@@ -99,7 +99,7 @@ def _works() -> dict[str, Work]:
     rough = size.model_copy(update={"smooth_m": 0.0})
     astronaut = drawn_parts.drawn("astronaut")
     layered = Layering(astronaut.parts, WIDTH_M, HeightChoice(by="given"), astronaut.picture)
-    portrait = Pipeline(Scene.of(photo=astronaut.picture), depth=Luminance(), workspace=Workspace(width_m=WIDTH_M))
+    portrait = Pipeline(Scene.photo(astronaut.picture), depth=Luminance(), workspace=Workspace(width_m=WIDTH_M))
     reliefs = {
         "motorcycle, stereo": (Pipeline(stereo, depth=SemiGlobal(), workspace=size).relief, stereo.views.left),
         "motorcycle, not smoothed": (Pipeline(stereo, depth=SemiGlobal(), workspace=rough).relief, stereo.views.left),
@@ -110,7 +110,7 @@ def _works() -> dict[str, Work]:
 
 
 def _huge() -> Iterator[Figure]:
-    """The motorcycle with so many nodes, and grain of 0.1 mm on it."""
+    """Yield the motorcycle with so many nodes, and grain of 0.1 mm on it."""
     heights = cv2.resize(_works()["motorcycle, stereo"].relief.height_m, (HUGE, HUGE), interpolation=cv2.INTER_CUBIC)
     wave = np.sin(np.arange(HUGE, dtype=np.float32) * np.float32(2 * np.pi / 51))
     heights += np.float32(5e-5) * wave * wave[:, None]

@@ -25,7 +25,7 @@ from tangible_devices import Mock
 from tangible_render import GreyLevel, Proxy
 from tangible_texture import Gradient
 
-scene = Scene.builtin("motorcycle")  # or Scene.of(left=..., right=..., calibration=...): arrays or paths
+scene = Scene.builtin("motorcycle")  # or Scene.pair(left=..., right=..., calibration=...): arrays or paths
 pipeline = Pipeline(
     scene,
     depth=SemiGlobal(),

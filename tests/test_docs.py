@@ -161,7 +161,7 @@ def test_video_page_plays_its_examples(tmp_path: Path):
     names = {"walk": tmp_path, "height_m": heights[0], "waves": heights}
     exec(feeling, names)
     assert np.isfinite(names["recording"].frame).all() and names["recording"].frame.max() >= 4, "it repeats"
-    once = Scene.of(video=tmp_path, layout="side-by-side", repeat=False)
+    once = Scene.video(tmp_path, layout="side-by-side", repeat=False)
     names["pipeline"] = Pipeline(once, depth=SemiGlobal(), render=Proxy())
     exec(frames, names)
     assert names["number"] == 3

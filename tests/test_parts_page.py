@@ -66,7 +66,7 @@ def test_photograph_becomes_a_relief_of_named_parts(
     assert pipeline.surface.names == tuple(pipeline.config.part_names.values())
     assert pipeline.surface.labels is not None and pipeline.surface.names[pipeline.surface.labels[440, 385]] == "helmet"
     bright = Pipeline(
-        Scene.of(photo=astronaut.picture), depth=Luminance(), workspace=Workspace(width_m=0.08, relief_m=0.006)
+        Scene.photo(astronaut.picture), depth=Luminance(), workspace=Workspace(width_m=0.08, relief_m=0.006)
     )
     keep("relief", beside(bright, pipeline))
 

@@ -15,7 +15,7 @@ from .device import Force, HapticState
 
 NUMBERS = "buif"
 """The kinds of NumPy types that hold numbers."""
-READERS = "; Scene.of and numpy.load read files"
+READERS = "; Scene and numpy.load read files"
 
 
 def as_array(name: str, value: object, dtype: str | None = None) -> np.ndarray:

@@ -65,24 +65,30 @@ class Profile(NamedTuple):
 
 
 def _gap(source: str, ours: bool = False, worse: Grade = "illegible") -> Rule:
-    return Rule("gap", "a part is nowhere narrower than", 0.0032, "m", ">=", source, ours, worse)
+    return Rule("gap", "smallest width of a part", 0.0032, "m", ">=", source, ours, worse)
 
 
 def _part(source: str, ours: bool = False, worse: Grade = "illegible") -> Rule:
-    return Rule("part", "a part holds a disc of a diameter of", 0.0064, "m", ">=", source, ours, worse)
+    return Rule("part", "diameter of the largest disc in a part", 0.0064, "m", ">=", source, ours, worse)
 
 
-_SHAPE = Rule("shape", "the longer side of a part that is to be recognised", 0.0127, "m", ">=", APH, worse="warn")
-_TEXTURES = Rule("textures", "textures that are to be told apart", 5, "textures", "<=", WIKI)
+_SHAPE = Rule("shape", "longer side of a part, for its shape to be recognised", 0.0127, "m", ">=", APH, worse="warn")
+_TEXTURES = Rule("textures", "textures to tell apart", 5, "textures", "<=", WIKI)
 _PARTS = Rule("parts", "parts of the picture", 2, "parts", ">=", "one part has no border to feel", True)
-_STEP = Rule("step", "height from a part to the one beside it", 0.0005, "m", ">=", f"{ROUND_TABLE}: felt")
+_STEP = Rule("step", "step of height between neighbouring parts", 0.0005, "m", ">=", f"{ROUND_TABLE}: felt")
 _IMPORTANT = Rule(
-    "named step", "the same, where both have a name", 0.001, "m", ">=", f"{ROUND_TABLE}: important", worse="warn"
+    "named step",
+    "the same step, if both parts have a name",
+    0.001,
+    "m",
+    ">=",
+    f"{ROUND_TABLE}: important",
+    worse="warn",
 )
 _HEIGHT = Rule("height", "height of the relief", 0.0005, "m", ">=", f"{ROUND_TABLE}: felt")
 _UNFELT = Rule(
     "unfelt borders",
-    "length of borders without a step that is felt",
+    "share of the borders' length without a noticeable step",
     0.2,
     "share",
     "<=",
@@ -91,11 +97,11 @@ _UNFELT = Rule(
     "warn",
 )
 _BRAILLE = (
-    Rule("braille dot", "diameter of a dot of braille", DOT_DIAMETER_M, "m", ">=", NLS),
-    Rule("braille height", "height of a dot of braille", DOT_HEIGHT_M, "m", ">=", NLS),
-    Rule("braille dots", "from dot to dot in a cell of braille", DOT_PITCH_M, "m", ">=", NLS),
-    Rule("braille cells", "from cell to cell of braille", CELL_PITCH_M, "m", ">=", NLS),
-    Rule("braille lines", "from line to line of braille", LINE_PITCH_M, "m", ">=", NLS),
+    Rule("braille dot", "diameter of a braille dot", DOT_DIAMETER_M, "m", ">=", NLS),
+    Rule("braille height", "height of a braille dot", DOT_HEIGHT_M, "m", ">=", NLS),
+    Rule("braille dots", "distance from dot to dot in a braille cell", DOT_PITCH_M, "m", ">=", NLS),
+    Rule("braille cells", "distance from braille cell to cell", CELL_PITCH_M, "m", ">=", NLS),
+    Rule("braille lines", "distance from braille line to line", LINE_PITCH_M, "m", ">=", NLS),
 )
 
 
@@ -117,7 +123,7 @@ PROFILES: dict[Medium, Profile] = {
     ),
     "print": _profile(
         "print",
-        "a solid that was printed",
+        "a 3-D print",
         _PARTS,
         _HEIGHT,
         _gap(f"as on swell paper; {ROUND_TABLE}: 2 mm in a double line, 5 mm between lines", ours=True),
@@ -133,11 +139,11 @@ PROFILES: dict[Medium, Profile] = {
     ),
     "pins": _profile(
         "pins",
-        "pins that rise",
+        "a pin display",
         _PARTS,
-        Rule("pins", "pins that a part has", 4, "pins", ">=", "two by two are the least that is no line", True),
-        Rule("kept borders", "length of borders that lie within a pin of one that is shown", 0.99, "share", ">=",
-             "what stands between two parts must be there", True),
+        Rule("pins", "pins of a part", 4, "pins", ">=", "two by two are the fewest that are not a line", True),
+        Rule("kept borders", "share of the borders' length within a pin of a border shown", 0.99, "share", ">=",
+             "parts that are separate must feel separate", True),
     ),
     "force": _profile(
         "force",

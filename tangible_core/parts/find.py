@@ -7,6 +7,7 @@ from jaxtyping import Int
 
 from ..data import SegmentMap
 from ..data.views import PartMap
+from ..scene.scaling import middle_pixels
 
 
 def find_parts(segments: SegmentMap) -> PartMap:
@@ -34,8 +35,7 @@ def reduced_parts(parts: PartMap, shape: tuple[int, int]) -> PartMap:
     whole = parts.labels
     if whole.shape == shape:
         return parts
-    rows, columns = (np.arange(new) * old // new + old // new // 2 for new, old in zip(shape, whole.shape, strict=True))
-    labels = whole[np.ix_(rows, columns)]
+    labels = middle_pixels(whole, shape)
     lost = np.flatnonzero(np.bincount(labels.reshape(-1), minlength=parts.count) == 0)
     lost = lost[part_sizes(parts)[lost] > 0] if lost.size else lost
     row, column = np.divmod(_first_pixels(parts)[lost], whole.shape[1])

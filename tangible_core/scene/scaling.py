@@ -65,12 +65,17 @@ def reduced_segments(segments: SegmentMap, shape: tuple[int, int]) -> SegmentMap
     whole = segments.labels
     if whole.shape == shape:
         return segments
-    rows, columns = (np.arange(new) * old // new + old // new // 2 for new, old in zip(shape, whole.shape, strict=True))
-    labels = whole[np.ix_(rows, columns)]
+    labels = middle_pixels(whole, shape)
     for lost in np.setdiff1d(np.arange(segments.count), labels):
         row, column = np.argwhere(whole == lost)[0]
         labels[row * shape[0] // whole.shape[0], column * shape[1] // whole.shape[1]] = lost
     return SegmentMap(labels, _mean(segments.confidence, *shape))
+
+
+def middle_pixels(labels: Int32[np.ndarray, "h w"], shape: tuple[int, int]) -> Int32[np.ndarray, "r c"]:
+    """Reduce labels to a coarser grid of (r, c), by the middle pixel of each cell."""
+    steps = zip(shape, labels.shape, strict=True)
+    return labels[np.ix_(*(np.arange(new) * old // new + old // new // 2 for new, old in steps))]
 
 
 def in_pixels_of(disparity: DisparityMap, columns: int) -> DisparityMap:
@@ -86,11 +91,6 @@ def on_grid(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
     if disparity.disparity_px.shape == shape:
         return disparity
     return DisparityMap(_resize(disparity.disparity_px, shape), _resize(disparity.confidence, shape), disparity.unit)
-
-
-def enlarge_disparity(disparity: DisparityMap, shape: tuple[int, int]) -> DisparityMap:
-    """Convert disparity of reduced views to the grid and the pixels of views of (h, w), linearly."""
-    return on_grid(in_pixels_of(disparity, shape[1]), shape)
 
 
 def enlarged_segments(segments: SegmentMap, shape: tuple[int, int]) -> SegmentMap:

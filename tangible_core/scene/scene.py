@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from jaxtyping import Bool, Float32
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from ..data import Calibration, DisparityMap, Record, Relief, SegmentMap, Views
 from ..errors import ConfigError, PictureError
 from .formats.height_maps import MeasuredSize
+from .formats.pairs import Layout
 from .formats.pictures import NonFinite, TruthScale
 from .geometry import Holes, fill_rows, scale_heights
 from .rig import StereoRig
@@ -22,13 +23,16 @@ from .scene_source import SceneSource, scene_name, source_of_arguments
 from .video.files import Video
 
 File = str | PathLike[str]
+Picture = File | ArrayLike
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A scene: its pictures or heights, and the products that it provides. Make one with `of` or `builtin`.
+    """A scene: its pictures or heights, and the products that it provides.
 
-    >>> Scene.of(height=np.zeros((4, 6)), relief_m=0.01).views is None
+    Make one with `pair`, `photo`, `heights`, `video` or `builtin`.
+
+    >>> Scene.heights(np.zeros((4, 6)), relief_m=0.01).views is None
     True
     """
 
@@ -50,60 +54,130 @@ class Scene:
     """Mask of the known pixels of the left view or the photo; None if all are known."""
     shown: Bool[np.ndarray, "h w"] | None = None
     """Mask of the opaque pixels of the left view or the photo, None if all are; the others become flat ground."""
-    video: Video | None = None
-    """The video, whose first frame the views are."""
+    frames: Video | None = None
+    """The frames of a video, of which the views are the first."""
     notes: tuple[str, ...] = ()
     """Remarks on the files."""
     files: str | SceneFiles | None = None
     """The builtin name, or the files with absolute paths, from which it was read; None if a part was an array."""
 
     @classmethod
-    def of(
+    def pair(
         cls,
+        left: Picture,
+        right: Picture | None = None,
         *,
-        left: File | ArrayLike | None = None,
-        right: File | ArrayLike | None = None,
-        stereo: File | ArrayLike | None = None,
-        photo: File | ArrayLike | None = None,
-        video: File | int | None = None,
-        height: File | ArrayLike | None = None,
-        disparity: File | ArrayLike | None = None,
-        segments: File | ArrayLike | None = None,
-        truth: File | ArrayLike | None = None,
+        layout: Layout | None = None,
+        calibration: Calibration | None = None,
+        rig: StereoRig | File | None = None,
+        disparity: Picture | None = None,
+        segments: Picture | None = None,
+        truth: Picture | None = None,
+        truth_scale: TruthScale | None = None,
+        crop: Sequence[int] | None = None,
+        non_finite: NonFinite = "error",
+        name: str = "",
+    ) -> Self:
+        """Make a scene of a rectified pair, or of a raw one with its `rig`; without `right`, both views are in `left`.
+
+        The options are those of `SceneFiles`.
+        Pictures are files or arrays, (h, w) or (h, w, 3|4), uint8, uint16, bool or float (white is 1), all of one size.
+        Raises: ConfigError for parts that do not make a scene, PictureError for a part that cannot be read or is not a
+        picture, ArgumentError for an argument of a wrong type.
+        """
+        views: dict[str, Any] = {"stereo": left} if right is None else {"left": left, "right": right}
+        return cls._load(
+            **views, layout=layout, calibration=calibration, rig=rig, disparity=disparity,
+            segments=segments, truth=truth, truth_scale=truth_scale, crop=crop, non_finite=non_finite, name=name,
+        )  # fmt: skip
+
+    @classmethod
+    def photo(
+        cls,
+        photo: Picture,
+        *,
+        disparity: Picture | None = None,
+        segments: Picture | None = None,
+        truth: Picture | None = None,
         truth_scale: TruthScale | None = None,
         calibration: Calibration | None = None,
-        rig: "StereoRig | File | None" = None,
-        relief_m: float | None = None,
-        layout: VideoLayout | None = None,
-        fps: float | None = None,
-        repeat: bool = True,
         photo_depth: bool = True,
         crop: Sequence[int] | None = None,
         rotate: int = 0,
         invert: bool = False,
-        nodata: float | Sequence[float] | None = None,
         clip: Sequence[float] | None = None,
         non_finite: NonFinite = "error",
         name: str = "",
     ) -> Self:
-        """Make a scene of files and arrays: left and right, or a photo, or heights, or a video, which is a file, a
-        folder or the number of a camera; the meanings are those of `SceneFiles`.
+        """Make a scene of one picture. Transparent pixels of a fourth channel do not belong to it.
 
-        Transparent pixels of a picture with a fourth channel do not belong to the scene.
-        Pictures are (h, w) or (h, w, 3|4), uint8, uint16, bool or float (white is 1). All are of one size.
-        Raises: ConfigError for parts that do not make a scene, PictureError for a part that cannot be read or is not a
-        picture, ArgumentError for an argument of a wrong type.
+        The options are those of `SceneFiles`; pictures and errors are those of `pair`.
         """
-        parts = {
-            "left": left, "right": right, "stereo": stereo, "photo": photo, "video": video, "height": height,
-            "disparity": disparity, "segments": segments, "truth": truth,
-        }  # fmt: skip
-        options = {
-            "relief_m": relief_m, "truth_scale": truth_scale, "layout": layout, "photo_depth": photo_depth,
-            "fps": fps, "repeat": repeat, "crop": crop, "rotate": rotate, "invert": invert, "nodata": nodata,
-            "clip": clip, "non_finite": non_finite,
-        }  # fmt: skip
-        return cls(**source_of_arguments(parts, options, calibration, rig, name).load())
+        return cls._load(
+            photo=photo, disparity=disparity, segments=segments, truth=truth, truth_scale=truth_scale,
+            calibration=calibration, photo_depth=photo_depth, crop=crop, rotate=rotate, invert=invert, clip=clip,
+            non_finite=non_finite, name=name,
+        )  # fmt: skip
+
+    @classmethod
+    def heights(
+        cls,
+        heights: Picture,
+        *,
+        relief_m: float | None = None,
+        nodata: float | Sequence[float] | None = None,
+        segments: Picture | None = None,
+        crop: Sequence[int] | None = None,
+        rotate: int = 0,
+        invert: bool = False,
+        clip: Sequence[float] | None = None,
+        name: str = "",
+    ) -> Self:
+        """Make a scene of a height map (h, w) in any unit, NaN where unknown: a file or an array.
+
+        The options are those of `SceneFiles`, the errors those of `pair`.
+        """
+        return cls._load(
+            height=heights, relief_m=relief_m, nodata=nodata, segments=segments, crop=crop, rotate=rotate,
+            invert=invert, clip=clip, name=name,
+        )  # fmt: skip
+
+    @classmethod
+    def video(
+        cls,
+        video: File | int,
+        *,
+        layout: VideoLayout | None = None,
+        fps: float | None = None,
+        repeat: bool = True,
+        calibration: Calibration | None = None,
+        rig: StereoRig | File | None = None,
+        segments: Picture | None = None,
+        crop: Sequence[int] | None = None,
+        rotate: int = 0,
+        invert: bool = False,
+        name: str = "",
+    ) -> Self:
+        """Make a scene of a video: a file, a folder of pictures, or the number of a camera.
+
+        The options are those of `SceneFiles`, the errors those of `pair`.
+        """
+        return cls._load(
+            video=video, layout=layout, fps=fps, repeat=repeat, calibration=calibration, rig=rig,
+            segments=segments, crop=crop, rotate=rotate, invert=invert, name=name,
+        )  # fmt: skip
+
+    @classmethod
+    def of(cls, **arguments: Any) -> Self:
+        """Make a scene of any kind: an alias of `pair`, `photo`, `heights` and `video` that stays for one release.
+
+        The keywords are those of these four and the keys of `SceneFiles`.
+        """
+        return cls._load(**arguments)
+
+    @classmethod
+    def _load(cls, **arguments: Any) -> Self:
+        return cls(**source_of_arguments(arguments).load())
 
     @classmethod
     def builtin(cls, name: str) -> Self:

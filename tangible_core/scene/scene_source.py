@@ -30,6 +30,7 @@ from .video.files import parts_of, read_video, still
 log = logging.getLogger(__name__)
 
 _PICTURES = {"left", "right", "photo", "stereo"}
+_PARTS = ("left", "right", "stereo", "photo", "video", "height", "disparity", "segments", "truth")
 _PHONE_DEPTH = "phone depth"
 
 
@@ -96,20 +97,22 @@ class SceneSource:
         return fields | {
             "name": self.name,
             "relief_m": files.relief_m,
-            "video": first and first.video,
+            "frames": first and first.video,
             "notes": tuple(notes),
             "files": self.origin,
         }
 
 
-def source_of_arguments(
-    parts: Mapping[str, Any], options: Mapping[str, Any], calibration: Calibration | None, rig: Any, name: str
-) -> SceneSource:
-    """Return the source for the arguments of `Scene.of`: parts are files or arrays, options those of `SceneFiles`.
+def source_of_arguments(arguments: Mapping[str, Any]) -> SceneSource:
+    """Return the source for the arguments of a `Scene`: files, arrays and options by their key in `SceneFiles`; also
+    `calibration`, `rig` and `name`.
 
     Raises: ArgumentError for an argument of a wrong type, ConfigError for parts that do not make a scene.
     """
-    video: Any = parts["video"]
+    options = {key: value for key, value in arguments.items() if key not in (*_PARTS, "calibration", "rig", "name")}
+    parts = {part: arguments.get(part) for part in _PARTS}
+    calibration, rig, name = arguments.get("calibration"), arguments.get("rig"), arguments.get("name", "")
+    video = parts["video"]
     if not isinstance(cast(object, video), str | PathLike | int | None):
         raise wrong_argument("video", video, "the path of a file or a folder, or the number of a camera")
     if not isinstance(cast(object, calibration), Calibration | None):

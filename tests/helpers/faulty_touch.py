@@ -1,4 +1,4 @@
-"""A law in plain Python for trying a force loop: it pushes steadily, and does something wrong in one of its ticks."""
+"""A force law in plain Python for tests of a force loop: it pushes steadily, and has a fault in one of its ticks."""
 
 import os
 import sys
@@ -14,7 +14,7 @@ Fault = Literal["none", "blocks", "exits", "odd error", "does not arrive", "begi
 
 
 class OddError(Exception):
-    """An error that pickles and cannot be unpickled, as many libraries have them."""
+    """An error that can be pickled but not unpickled, as in many libraries."""
 
     def __init__(self, what: str, where: str) -> None:
         super().__init__(f"{what} in {where}")
@@ -22,10 +22,10 @@ class OddError(Exception):
 
 @final
 class FaultyTouch(PlainTouch):
-    """1 N upwards below the height of 0, until a tick in which the law blocks, ends the program or raises.
+    """A force of 1 N upwards below the height 0, until a tick in which the force law blocks, exits or raises.
 
-    One that "does not arrive" can be sent to another process, and not be made there. One that "begins slowly" takes
-    half a second when it is asked first, as what compiles itself does; one that "knows itself" is part of a circle.
+    The fault "does not arrive": it can be pickled but not unpickled. "begins slowly": its first call takes half a
+    second, as if it were compiled then. "knows itself": it refers to itself.
     """
 
     stiffness_n_per_m = 0.0
@@ -34,17 +34,17 @@ class FaultyTouch(PlainTouch):
         self._fault: Fault = fault
         self._at = at
         self._ticks = 0
-        self._asked = False
+        self._called = False
         self._itself = (self, np.ones(100_000)) if fault == "knows itself" else None
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (_lost if self._fault == "does not arrive" else FaultyTouch), (self._fault, self._at)
+        return (_raise_lost if self._fault == "does not arrive" else FaultyTouch), (self._fault, self._at)
 
     def force(self, state: HapticState) -> Force:
-        """Raises: OddError, or SystemExit, where that is the fault."""
-        if self._fault == "begins slowly" and not self._asked:
+        """Return the force. Raises: OddError or SystemExit, if that is the fault."""
+        if self._fault == "begins slowly" and not self._called:
             time.sleep(0.5)
-        self._asked = True
+        self._called = True
         if state.position_m[2] >= 0:
             return NO_FORCE
         self._ticks += 1
@@ -61,5 +61,5 @@ class FaultyTouch(PlainTouch):
             raise OddError("a fault", "the law")
 
 
-def _lost(*_: object) -> NoReturn:
+def _raise_lost(*_: object) -> NoReturn:
     raise LookupError(f"the law's data is not in process {os.getpid()}")

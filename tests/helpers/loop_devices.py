@@ -1,4 +1,4 @@
-"""Devices for trying a force loop: one that is all kernels, and one that fails in the ways that devices do."""
+"""Devices for tests of a force loop: a compiled one, and one that fails in the ways that devices do."""
 
 import os
 import sys
@@ -19,27 +19,27 @@ SPEC = DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.1, 0.1), 1e-6, simulated=True)
 
 
 class Circling(HapticDevice):
-    """A tip on a level circle, one step a read; kernels alone, so that a loop on it needs no Python."""
+    """A tip on a level circle, one step a read; only kernels, so that a loop on it needs no Python."""
 
     radius_m: float = 0.02
     z_m: float = 0.0
     steps: Annotated[int, Field(ge=1)] = 1000
     """Reads in one turn."""
     exchanges: bool = False
-    """Whether Python has to be called once a tick, as for a device on a wire."""
+    """Call Python once a tick, as for a device on a wire."""
 
     def spec(self) -> DeviceSpec:
-        """A Novint Falcon's."""
+        """Return the specification of a device like the Novint Falcon."""
         return SPEC
 
     def open(self) -> Link:
-        """A new tip, on the circle's right."""
+        """Return a new tip, on the circle's right."""
         return CirclingLink(self)
 
 
 @final
 class CirclingLink(CompiledLink):
-    """A tip on its way."""
+    """A tip on its way around the circle."""
 
     def __init__(self, options: Circling) -> None:
         super().__init__("the circling device", SPEC.max_force_n)
@@ -57,14 +57,14 @@ class CirclingLink(CompiledLink):
 
     @property
     def exchanges(self) -> bool:
-        """As the options say."""
+        """The option `exchanges`."""
         return self._exchanges
 
     def _exchange(self) -> None:
-        """There is no wire."""
+        """Do nothing, as there is no wire."""
 
     def _read(self) -> HapticState:
-        """The next step."""
+        """Return the next step."""
         state = np.zeros(7)
         self.kernels().read(*self._fixed, state)
         x, y, z = state[:3].tolist()
@@ -76,35 +76,34 @@ class CirclingLink(CompiledLink):
 
     @property
     def applied(self) -> Force:
-        """What was written last."""
+        """The force written last."""
         return Force(*self._fixed[3].tolist())
 
     def _release(self) -> None:
-        """Nothing is held."""
+        """Do nothing, as nothing is held."""
 
 
 class Failing(HapticDevice):
     """A tip at rest in the surface, on a device that does something wrong at one of its reads."""
 
     at: int = 100
-    """Which read."""
+    """Number of the read with the fault."""
     fault: Literal["unplugged", "bug", "nan", "hangs", "blocks", "exits", "none"] = "unplugged"
-    """It stops answering; its driver raises; it says NaN once; it takes 50 ms; it never answers; its driver ends the
-    program."""
+    """Fault: no answer any more; an exception of the driver; NaN once; 50 ms; no answer ever; an exit of the driver."""
     opens: Literal["always", "once", "second", "never", "late"] = "always"
-    """How often it can be opened: `once` if there is no record yet, and then it does not answer; `second` only if there
-    is one, which is there from then on; `late` never answers."""
+    """Times it can be opened: `once` without a record, and then it does not answer; `second` only with a record, which
+    the first attempt writes; `late` never answers."""
     record: str = ""
-    """File that the force held is written to, whenever it changes: to see what is left behind."""
+    """File that the force held is written to whenever it changes, to see which force is left."""
     simulated: bool = True
-    """What its specification says: a device that is not is asked again to let go, should its loop be killed."""
+    """Field of the specification: a real device is asked again to let go if its loop is killed."""
 
     def spec(self) -> DeviceSpec:
-        """A Novint Falcon's."""
+        """Return the specification of a device like the Novint Falcon."""
         return replace(SPEC, simulated=self.simulated)
 
     def open(self) -> Link:
-        """Raises: DeviceError if it cannot be opened."""
+        """Open the device. Raises: DeviceError if it cannot be opened."""
         if self.opens == "late" or (self.opens == "once" and os.path.exists(self.record)):  # noqa: PTH110
             time.sleep(3600)
         if self.opens == "never" or (self.opens == "second" and not os.path.exists(self.record)):  # noqa: PTH110
@@ -122,10 +121,10 @@ class FailingLink(Link):
         self._options = options
         self._reads = 0
         self._applied = NO_FORCE
-        self._say()
+        self._write_record()
 
     def _read(self) -> HapticState:
-        """A millimetre under the base plane, all the time."""
+        """Return a millimetre under the base plane, all the time."""
         self._reads += 1
         z = -0.001
         if self._reads == self._options.at:
@@ -154,17 +153,17 @@ class FailingLink(Link):
         """Hold this force."""
         if force != self._applied:
             self._applied = force
-            self._say()
+            self._write_record()
 
-    def _say(self) -> None:
+    def _write_record(self) -> None:
         if self._options.record:
             with open(self._options.record, "w", encoding="ascii") as file:  # noqa: PTH123 - a string, in a tick
                 file.write(f"{self._applied.z}")
 
     @property
     def applied(self) -> Force:
-        """What was written last."""
+        """The force written last."""
         return self._applied
 
     def _release(self) -> None:
-        """Nothing is held."""
+        """Do nothing, as nothing is held."""

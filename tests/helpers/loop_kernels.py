@@ -1,4 +1,4 @@
-"""The kernels of `Circling`. Imports numba: what uses this module imports it inside its verb."""
+"""The kernels of `Circling`. Imports numba: `loop_devices` imports it late."""
 
 
 # pyright: basic
@@ -12,7 +12,7 @@ FIXED = (float64[:, ::1], float64, int64[::1], float64[::1])
 
 @njit(int64(*FIXED, float64[::1]), **KERNEL)
 def read(wheel_m, z_m, steps, force_n, state):
-    """The next place on the circle."""
+    """Write the next place on the circle to `state`."""
     place = wheel_m[steps[0] % wheel_m.shape[0]]
     steps[0] += 1
     state[0], state[1], state[2] = place[0], place[1], z_m

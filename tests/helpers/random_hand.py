@@ -1,4 +1,4 @@
-"""Millions of ticks of a hand and a device that do whatever they can: what a law did at its worst."""
+"""Millions of ticks of a random hand and a failing device, and the worst responses of a force law."""
 
 from typing import Any, NamedTuple, cast
 
@@ -8,26 +8,26 @@ from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import HapticSurface
 
 MARGIN_M = 0.002
-"""How far under the base plane and over the highest place the hand goes."""
+"""Distance to which the hand goes under the base plane and over the highest place."""
 
 
 class Worst(NamedTuple):
-    """Of all ticks."""
+    """The worst responses of all ticks."""
 
     not_finite: int
-    """Forces that were not finite."""
+    """Number of forces that were not finite."""
     pushed_when_broken: int
-    """Forces other than zero for a state that was not finite."""
+    """Number of forces other than zero for a state that was not finite."""
     greatest_n: float
     gained_j: float
-    """The most that a tick gave: energy that a spring holds, |F|^2 / 2 k, over what it held and the hand put in.
+    """Largest energy gained in a tick: that of a spring, |F|^2 / 2 k, minus its previous one and the hand's work.
 
-    What sampling alone gives, k |step|^2 / 2, is taken off. Ticks after a leap or a broken state do not count.
+    The gain of sampling alone, k |step|^2 / 2, is subtracted. Ticks after a leap or a broken state do not count.
     """
     lost: int
-    """Ticks that were more than a micrometre off the ball, from 20 ticks after a leap on."""
+    """Number of ticks more than a micrometre off the ball, from 20 ticks after a leap on."""
     touched: int
-    """Ticks in contact."""
+    """Number of ticks in contact."""
 
 
 def fuzz(
@@ -38,19 +38,19 @@ def fuzz(
     stiffness_n_per_m: float = 800.0,
     ball_m: tuple[float, float] = (0.0, 0.0),
 ) -> Worst:
-    """What a touch did over a walk at up to 0.5 m/s, 0.05 mm/s at least, over the surface, its sides and its bottom.
+    """Move a random hand at 0.05 mm/s to 0.5 m/s over a surface, its sides and bottom; return the worst responses.
 
-    Once in 2000 ticks the hand is put down elsewhere, once in 1000 a number of the state is NaN or infinite, and the
-    velocity is that of a clock that jitters fivefold. ball_m: radius and z of the centre of a ball that the surface is.
-    Compiled on the first use of a law on a machine.
+    Once in 2000 ticks the hand leaps, once in 1000 a number of the state is NaN or infinite, and the velocity is that
+    of a clock that jitters fivefold. ball_m: radius and z of the centre of a ball, if the surface is one.
+    Compiled on the first use of a force law on a machine.
     """
     import random_hand_kernels
 
-    found, half_m = np.zeros(6), np.array(surface.extent_m) / 2
+    worst, half_m = np.zeros(6), np.array(surface.extent_m) / 2
     low_m, high_m = float(surface.height_m.min()) - MARGIN_M, float(surface.height_m.max()) + MARGIN_M
     cast(Any, random_hand_kernels).walk(
         touch.fixed, touch.address(), ticks, seed, half_m, low_m, high_m, stiffness_n_per_m, ball_m,
-        np.zeros((5, 6)), found,
+        np.zeros((5, 6)), worst,
     )  # fmt: skip
-    not_finite, pushed, greatest_n, gained_j, lost, touched = found.tolist()
+    not_finite, pushed, greatest_n, gained_j, lost, touched = worst.tolist()
     return Worst(int(not_finite), int(pushed), greatest_n, gained_j, int(lost), int(touched))

@@ -1,4 +1,4 @@
-"""A hand that does whatever a hand and a failing device can do, compiled. Imports numba: `random_hand` does it late."""
+"""A random hand on a failing device, compiled. Imports numba: `random_hand` imports it late."""
 
 
 # ruff: noqa: NPY002 -- a generator would have to be handed in
@@ -15,18 +15,17 @@ PERIOD_S = 0.001
 FASTEST_M = 0.0005
 """A tick's step at 0.5 m/s."""
 LEAP, BREAK, TURN = 1 / 2000, 1 / 1000, 1 / 300
-"""How often a tick the hand is put down elsewhere, the state is broken, and another speed begins."""
+"""Probabilities a tick of a leap of the hand, of a broken state, and of another speed."""
 SETTLED = 20
-"""Ticks after a leap, from which on a track must be found again."""
+"""Ticks after a leap from which on the nearest point must be found again."""
 NOT_FINITE, BROKEN_PUSHED, GREATEST_N, GAIN_J, LOST, TOUCHED = range(6)
 
 
 @njit(**KERNEL)
 def walk(fixed, law, ticks, seed, half_m, low_m, high_m, stiffness, ball, work, found):
-    """found: forces that are not finite, forces for broken states, the greatest force, the most that a tick gained,
-    ticks off the ball's track, and ticks in contact.
+    """Move the hand and fill `found`, in the order of NOT_FINITE to TOUCHED.
 
-    half_m: half the width and length; ball: its radius and its centre's z, radius 0 where there is none; work: (5, 6).
+    half_m: half the width and length; ball: its radius and its centre's z, radius 0 without a ball; work: (5, 6).
     """
     np.random.seed(seed)
     hand, speed, step, was, state = work[0], work[1], work[2], work[3], work[4]
@@ -67,10 +66,10 @@ def _dot(ax, ay, az, bx, by, bz):
 
 @njit(**KERNEL)
 def _gain(was, step, size, stiffness):
-    """What a spring that was the force before holds more than the hand put in over the step, which it felt held.
+    """Return the energy that a spring gained over a step beyond the hand's work, under the force held in that step.
 
-    A spring whose far end rests while the hand moves holds k |step|^2 / 2 more than that, and no more than this is a
-    servo's sampling.
+    A spring whose far end rests while the hand moves gains k |step|^2 / 2 by the servo's sampling alone, which is
+    subtracted.
     """
     before = _dot(was[0], was[1], was[2], was[0], was[1], was[2])
     given = _dot(was[0], was[1], was[2], step[0], step[1], step[2])
@@ -80,7 +79,7 @@ def _gain(was, step, size, stiffness):
 
 @njit(**KERNEL)
 def _move(hand, speed, step, fastest, half_m, low_m, high_m):
-    """A smooth wander, thrown back at the borders: a little over the sides, and between low_m and high_m."""
+    """Move the hand smoothly; it stops at the borders, a little over the sides, and between low_m and high_m."""
     for i in range(3):
         speed[i] = 0.97 * speed[i] + 0.06 * fastest * (2.0 * np.random.random() - 1.0)
         low, high = (low_m, high_m) if i == 2 else (-1.05 * half_m[i], 1.05 * half_m[i])
@@ -92,7 +91,7 @@ def _move(hand, speed, step, fastest, half_m, low_m, high_m):
 
 @njit(**KERNEL)
 def _feel(fixed, law, hand, step, broken, state):
-    """The force; the velocity is that of a clock that jitters fivefold either way."""
+    """Return the force; the velocity is that of a clock that jitters fivefold either way."""
     rate = 5.0 ** (2.0 * np.random.random() - 1.0) / PERIOD_S
     for i in range(3):
         state[i], state[3 + i] = hand[i], rate * step[i]
@@ -105,7 +104,7 @@ def _feel(fixed, law, hand, step, broken, state):
 
 @njit(**KERNEL)
 def _off(hand, half_m, fx, fy, fz, stiffness, ball):
-    """Whether the force is off the spring to the ball by more than a micrometre's worth, well inside the surface."""
+    """Test whether the force differs from the spring to the ball by more than a micrometre, well inside the surface."""
     up = hand[2] - ball[1]
     away = math.sqrt(hand[0] * hand[0] + hand[1] * hand[1] + up * up)
     depth = ball[0] - away

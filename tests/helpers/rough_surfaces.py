@@ -8,7 +8,7 @@ from tangible_core.testing.synthetic.reliefs import ridge, waves
 
 
 def rough_surfaces(count: int = 128) -> dict[str, HapticSurface]:
-    """By name; 80 mm wide, count x count cells, the same in every run."""
+    """Return surfaces by name, 80 mm wide, of count x count cells, the same in every run."""
     random, index = np.random.default_rng(3), np.arange(count)
     noise = random.uniform(0, 1, (count, count))
     spikes, walls = np.zeros((2, count, count))
@@ -16,7 +16,7 @@ def rough_surfaces(count: int = 128) -> dict[str, HapticSurface]:
     walls[:, count // 3] = walls[count // 2] = 0.008
     heights: dict[str, Float64[np.ndarray, "h w"]] = {
         "checker": (index[:, None] * 16 // count + index[None] * 16 // count) % 2 * 0.004,
-        "8-bit noise": np.rint(_softened(noise) * 255) / 255 * 0.004,
+        "8-bit noise": np.rint(_smooth(noise) * 255) / 255 * 0.004,
         "white noise": noise * 0.004,
         "spikes": spikes,
         "walls": walls,
@@ -25,6 +25,6 @@ def rough_surfaces(count: int = 128) -> dict[str, HapticSurface]:
     return {name: HapticSurface.from_heights(each) for name, each in heights.items()} | known
 
 
-def _softened(noise: Float64[np.ndarray, "h w"]) -> Float64[np.ndarray, "h w"]:
-    """Means of three neighbours, wrapped around."""
+def _smooth(noise: Float64[np.ndarray, "h w"]) -> Float64[np.ndarray, "h w"]:
+    """Return the means of three neighbours, wrapped around."""
     return (noise + np.roll(noise, 1, axis=0) + np.roll(noise, 1, axis=1)) / 3

@@ -61,7 +61,7 @@ def feel(
     until_s = (each * len(configs) if then else SECONDS) if seconds is None else seconds
     for one in (pipeline, *then):
         confirm_doubts(one, yes)
-        if one.scene.video is not None and one.segments is not None:
+        if one.scene.frames is not None and one.segments is not None:
             show.note(f"{one.scene.name}: parts and materials stay where they are in the first frame")
     loop: dict[str, Any] = {}
     looks = session.TickSampler()

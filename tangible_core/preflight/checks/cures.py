@@ -31,7 +31,7 @@ def soften(flight: Flight, most_n_per_m: float) -> Cure:
         return soften_materials(flight, stiffer, most_n_per_m)
     if "stiffness_n_per_m" in type(flight.law).model_fields and most_n_per_m >= SOFTEST_N_PER_M:
         return [Change("render.stiffness_n_per_m", under(most_n_per_m), "at most")]
-    return "a softer law, `render.use: ...`"
+    return "a softer force law, `render.use: ...`"
 
 
 def soften_materials(flight: Flight, materials: Iterable[Material], most_n_per_m: float) -> Cure:

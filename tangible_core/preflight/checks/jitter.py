@@ -35,7 +35,7 @@ def lateness(flight: Flight) -> Iterator[Verdict]:
     yield check_bound(
         *("jitter", "stiffness it leaves", stiffness, "<=", bound, "N/m", f"{PASSIVE}, T + p99.9"),
         worse=_worse(flight),
-        says="the machine is too late for so stiff a law",
+        says="the machine is too late for so stiff a force law",
         cure=cure if flight.spec.simulated else join_cures(f"{cure}; or ", soften(flight, bound)),
     )
 
@@ -43,17 +43,17 @@ def lateness(flight: Flight) -> Iterator[Verdict]:
 def tick_cost(flight: Flight) -> Iterator[Verdict]:
     """Check the duration of a tick of the force law, p99, against half a period; unsafe if most take a whole one."""
     period_s, p50, p99 = flight.period_s, flight.cost.at(50), flight.cost.at(99)
-    how, lighter = "in Python", "a law of compiled kernels instead of Python"
+    how, lighter = "in Python", "a force law of compiled kernels instead of Python"
     if flight.cost.compiled:
         how, lighter = (
             f"called from Python, {1e6 * flight.cost.kernel_s:.2f} us compiled",
-            "a lighter law (`render.use`)",
+            "a lighter force law (`render.use`)",
         )
     yield check_bound(
         *("tick", "the law, p99", p99, "<=", HALF * period_s, "s", "half a period"),
         worse=_worse(flight) if p50 > period_s else "warn",
         note=f"p50 {1e6 * p50:.1f} us {how}",
-        says="the law takes too long to compute",
+        says="the force law takes too long to compute",
         cure=f"{lighter}, or {CALMER}",
     )
 

@@ -60,7 +60,7 @@ def _less_stiff(flight: Flight, limit: float, most: float) -> Cure:
         softer = level * limit / most
         ways += [soften(flight, softer)] if softer >= SOFTEST_N_PER_M else _rounder(flight, limit / level)
     if flight.law_name != PROXY:
-        ways.append(f"a law that slopes do not stiffen, `render.use: {PROXY}`")
+        ways.append(f"a force law that slopes do not stiffen, `render.use: {PROXY}`")
     if not ways:
         ways.append([flatten(flight, limit / most)])
     return join_cures(ways[0], *(part for way in ways[1:] for part in ("; or ", way)))

@@ -9,8 +9,8 @@ from ..flight import PASSIVE, Ceiling, Flight
 from ..verdict import FEW, Change, Cure, Verdict, check_bound, under
 from .cures import COUPLE, FIT, SOFTEST_N_PER_M, soften, soften_materials
 
-STIFFER = "stiffer than the device holds"
-TOO_STIFF = f"the law is {STIFFER}"
+STIFFER = "stiffer than the device renders stably"
+TOO_STIFF = f"the force law is {STIFFER}"
 CLEAN_N_PER_M = 900.0
 CLEAN = "Choi & Tan 2004: textures are clean up to 0.3 to 0.9 N/mm"
 STEP_SHARE = 0.07
@@ -26,8 +26,8 @@ def law_stiffness(flight: Flight) -> Iterator[Verdict]:
     if felt < SOFTEST_N_PER_M:
         yield check_bound(
             *("stiffness", "the law", felt, ">=", SOFTEST_N_PER_M, "N/m", "a hand that explores with 1 N sinks 20 mm"),
-            says="the law is so soft that a hand goes through the surface",
-            cure="a stiffer law, such as by `render.stiffness_n_per_m`",
+            says="the force law is so soft that a hand goes through the surface",
+            cure="a stiffer force law, such as by `render.stiffness_n_per_m`",
         )
     for ceiling in flight.ceilings:
         cure = soften(flight, ceiling.most_n_per_m)
@@ -53,11 +53,12 @@ def material_stiffness(flight: Flight) -> Iterator[Verdict]:
 def _under_ceiling(of: str, stiffness: float, ceiling: Ceiling, cure: Cure) -> Verdict:
     """Check a stiffness against a limit: above the guard's share it is softened, above the limit it may buzz."""
     limit, share, source = ceiling
+    name = "the force law" if of == "the law" else of
     return check_bound(
         *("stiffness", of, stiffness, "<=", ceiling.most_n_per_m, "N/m", source),
         worse="unsafe" if not stiffness <= limit else "warn",
         note="" if share == 1 else f"{100 * share:g} % of {limit:.4g} N/m",
-        says=f"{of} is {'so stiff that it is softened' if stiffness <= limit else STIFFER}",
+        says=f"{name} is {'so stiff that it is softened' if stiffness <= limit else STIFFER}",
         cure=cure,
     )
 
@@ -77,7 +78,7 @@ def law_damping(flight: Flight) -> Iterator[Verdict]:
     yield check_bound(
         *("damping", "the law", damping, "<=", most, "N s/m", PASSIVE),
         note=f"b = {flight.damping_n_s_per_m:.3g} N s/m",
-        says="the law is damped more than the device can render",
+        says="the force law is damped more than the device can render",
         cure=_less_damping(flight, damping, most),
     )
 

@@ -24,7 +24,7 @@ from .readers import FileFrames, FolderFrames
 
 @dataclass(frozen=True, eq=False)
 class Video:
-    """A sequence of pictures, each a photo or a pair. `Scene.of` and `Scene.read` make it."""
+    """A sequence of pictures, each a photo or a pair. `Scene.video` and `Scene.read` make it."""
 
     source: Path | int
     """A file, a folder of pictures, or the number of a camera."""

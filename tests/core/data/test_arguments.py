@@ -32,7 +32,7 @@ FLAT = np.zeros((2, 2), np.float32)
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Views("l.png"), "left: is the str 'l.png'; it must be an array of numbers; Scene.of and numpy.load"),
+        (lambda: Views("l.png"), "left: is the str 'l.png'; it must be an array of numbers; Scene and numpy.load"),
         (lambda: Views(GREY, Path("r.png")), "right: is a PosixPath; it must be an array of numbers"),
         (lambda: Views(GREY, calibration=(900, 0.1)), r"calibration: is the tuple \(900, 0.1\); it must be a"),
         (lambda: Views([[1], [2, 3]]), r"left: is the list \[\[1\], \[2, 3\]\]; it must be an array of numbers"),
@@ -49,9 +49,9 @@ FLAT = np.zeros((2, 2), np.float32)
         (lambda: Material("ice", "100", 0, 0, 0), "material 'ice': stiffness_n_per_m: is the str '100'; it"),
         (lambda: Recording.load(7), "path: is the int 7; it must be a path"),
         (lambda: Recording("x"), "rows: is the str 'x'; it must be an array of numbers"),
-        (lambda: Scene.of(photo=[[1], [2, 3]]), "photo: is the list"),
-        (lambda: Scene.of(left=GREY, right=GREY, calibration=900), "calibration: is the int 900; it must be a"),
-        (lambda: Scene.of(left=GREY, right=GREY, rig=7), "rig: is the int 7; it must be a StereoRig, or"),
+        (lambda: Scene.photo([[1], [2, 3]]), "photo: is the list"),
+        (lambda: Scene.pair(left=GREY, right=GREY, calibration=900), "calibration: is the int 900; it must be a"),
+        (lambda: Scene.pair(left=GREY, right=GREY, rig=7), "rig: is the int 7; it must be a StereoRig, or"),
     ],
 )  # fmt: skip
 def test_wrong_argument_gives_one_sentence_with_its_name(make: Callable[[], Any], message: str):

@@ -71,7 +71,7 @@ class TestPipelines:
         with pytest.raises(ArgumentError, match=r"scene: is the str .x\.png.; it must be a Scene, such as"):
             Pipeline("x.png")
         law, device = load_method("render", "penalty")(), load_method("device", "mock")()
-        pipeline = Pipeline(Scene.of(height=np.eye(4)), render=law, device=device, cached=False)
+        pipeline = Pipeline(Scene.heights(np.eye(4)), render=law, device=device, cached=False)
         for feel in (pipeline.feel, pipeline.preflight):
             with pytest.raises(ConfigError, match="device: takes a HapticDevice, such as an object of one, not 'mock'"):
                 feel("mock")

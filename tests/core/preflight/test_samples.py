@@ -86,7 +86,7 @@ def photograph(rows: int, columns: int) -> np.ndarray:
 def test_photograph_with_the_roughest_materials_passes_preflight(size: tuple[int, int]):
     rows, columns = size
     quarters = (np.arange(rows)[:, None] * 2 // rows * 2 + np.arange(columns) * 2 // columns).astype(np.int32)
-    scene = Scene.of(photo=photograph(rows, columns), segments=quarters)
+    scene = Scene.photo(photograph(rows, columns), segments=quarters)
     by = {0: "brick", 1: "carpet", 2: "glass", 3: "stone"}
     pipeline = Pipeline(scene, depth=Luminance(), materials=by, render=Proxy(), cached=False)
     for device in DEVICES:

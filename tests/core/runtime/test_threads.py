@@ -77,7 +77,7 @@ def test_thread_limit_of_the_environment_holds_for_a_single_method(eight, monkey
 def test_thread_limit_of_a_pipeline_overrides_the_environment(eight, monkeypatch: pytest.MonkeyPatch):
     SEEN.clear()
     monkeypatch.setenv("TANGIBLE_THREADS", "5")
-    scene = Scene.of(photo=np.zeros((8, 8), np.float32))
+    scene = Scene.photo(np.zeros((8, 8), np.float32))
     pipeline = Pipeline(scene, texture=Asking(), cached=False, threads=3)
     assert pipeline.threads == pipeline.changed(pipeline.config).threads == 3
     pipeline.make("segments")

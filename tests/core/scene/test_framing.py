@@ -17,9 +17,9 @@ PHOTO = np.arange(36, dtype=np.uint8).reshape(3, 4, 3)
 
 class TestHeights:
     def of(self, heights=HEIGHTS, **options) -> np.ndarray:
-        found = Scene.of(height=heights, **options).height
-        assert found is not None
-        return found
+        framed = Scene.heights(heights, **options).height
+        assert framed is not None
+        return framed
 
     def test_crop_counts_from_the_upper_left_corner(self):
         assert self.of(crop=[1, 0, 3, 2]).tolist() == [[1, 2, 3], [5, 6, 7]]
@@ -30,16 +30,16 @@ class TestHeights:
         assert self.of(crop=[1, 0, 2, 1], rotate=180).tolist() == [[2, 1]]
 
     def test_invert_exchanges_high_and_low(self):
-        relief = Pipeline(Scene.of(height=HEIGHTS, invert=True), cached=False).relief.height_m
+        relief = Pipeline(Scene.heights(HEIGHTS, invert=True), cached=False).relief.height_m
         assert (relief[0, 0], relief[2, 3]) == (np.float32(0.02), 0)
 
     @pytest.mark.parametrize("nodata", [-9999, [-9999, 1e20], -9999.0])
     def test_nodata_values_become_unknown(self, nodata):
         torn = HEIGHTS.copy()
         torn[1, 1] = -9999
-        found = self.of(torn, nodata=nodata)
-        assert np.isnan(found).tolist() == (torn == -9999).tolist()
-        assert np.nanmin(found) == 0
+        framed = self.of(torn, nodata=nodata)
+        assert np.isnan(framed).tolist() == (torn == -9999).tolist()
+        assert np.nanmin(framed) == 0
 
     def test_nodata_values_are_compared_in_32_bits(self):
         lowest = float(np.finfo(np.float32).min)
@@ -48,9 +48,9 @@ class TestHeights:
     def test_clip_cuts_spikes(self):
         spiked = np.linspace(0, 1, 1000).reshape(20, 50)
         spiked[3, 3] = 1e6
-        found = self.of(spiked, clip=[1, 99])
-        assert found.max() == pytest.approx(0.99, abs=0.005)
-        assert found.min() == pytest.approx(0.01, abs=0.005)
+        framed = self.of(spiked, clip=[1, 99])
+        assert framed.max() == pytest.approx(0.99, abs=0.005)
+        assert framed.min() == pytest.approx(0.01, abs=0.005)
 
     def test_transparent_heights_are_unknown(self):
         grey = np.repeat(HEIGHTS.astype(np.uint8)[..., None], 4, axis=2)
@@ -61,7 +61,7 @@ class TestHeights:
 
 class TestPhotos:
     def of(self, photo=PHOTO, **options) -> np.ndarray:
-        views = Scene.of(photo=photo, **options).views
+        views = Scene.photo(photo, **options).views
         assert views is not None
         return views.left
 
@@ -70,7 +70,7 @@ class TestPhotos:
 
     def test_labels_and_disparity_are_cropped_and_rotated_with_the_photo(self):
         labels = np.uint8([[0, 0, 0, 0], [0, 0, 7, 9], [0, 0, 7, 9]])
-        scene = Scene.of(photo=PHOTO, segments=labels, disparity=HEIGHTS, crop=[2, 1, 2, 2], rotate=90)
+        scene = Scene.photo(PHOTO, segments=labels, disparity=HEIGHTS, crop=[2, 1, 2, 2], rotate=90)
         assert scene.segments is not None and scene.disparity is not None
         assert scene.segments.labels.tolist() == [[1, 1], [2, 2]]
         assert scene.disparity.disparity_px.tolist() == [[10, 6], [11, 7]]
@@ -85,15 +85,15 @@ class TestPhotos:
         ],
     )
     def test_invert_exchanges_light_and_dark(self, photo, inverted):
-        found = self.of(photo, invert=True)
-        assert found.tolist() == inverted
-        assert found.dtype == photo.dtype
+        framed = self.of(photo, invert=True)
+        assert framed.tolist() == inverted
+        assert framed.dtype == photo.dtype
 
     def test_clip_limits_brightness_to_percentiles(self):
         photo = np.linspace(50, 150, 1000).astype(np.uint8).reshape(20, 50)
         photo[0, 0], photo[5, 5] = 0, 255
-        found = self.of(photo, clip=[5, 95])
-        assert (found.min(), found.max()) == (54, 145)
+        framed = self.of(photo, clip=[5, 95])
+        assert (framed.min(), framed.max()) == (54, 145)
 
     def test_clip_ignores_transparent_pixels(self):
         photo = np.full((10, 10, 4), 100, np.uint8)
@@ -118,7 +118,7 @@ class TestTransparency:
     def test_transparent_area_becomes_flat_ground_of_plain_material(self, cut_out: np.ndarray):
         hidden = cut_out[..., 3] == 0
         pipeline = Pipeline(
-            Scene.of(photo=cut_out), depth=Luminance(), texture=Gradient(smallest_px=20), cached=False,
+            Scene.photo(cut_out), depth=Luminance(), texture=Gradient(smallest_px=20), cached=False,
             workspace=Workspace(width_m=0.05, relief_m=0.02, smooth_m=0),
         )  # fmt: skip
         surface = pipeline.surface
@@ -136,7 +136,7 @@ class TestTransparency:
 
     def test_ground_takes_the_material_named_for_it(self, cut_out: np.ndarray):
         parts = {"depth": Luminance(), "texture": Gradient(smallest_px=20), "cached": False}
-        surface = Pipeline(Scene.of(photo=cut_out), **parts, materials={2: "ice"}).surface
+        surface = Pipeline(Scene.photo(cut_out), **parts, materials={2: "ice"}).surface
         assert [each.name for each in surface.materials] == ["plain", "plain", "ice"]
 
     def test_cache_key_depends_on_the_outline(self):
@@ -146,20 +146,20 @@ class TestTransparency:
             photo[4:, :, :3] = 0.2
             photo[0, clear, 3], photo[0, torn, 0] = 0, np.nan
         pipelines = [
-            Pipeline(Scene.of(photo=each, non_finite="mask"), texture=Gradient(), cached=False) for each in photos
+            Pipeline(Scene.photo(each, non_finite="mask"), texture=Gradient(), cached=False) for each in photos
         ]
         assert pipelines[0].views.digest() == pipelines[1].views.digest()
         assert pipelines[0].engine.key("segments") != pipelines[1].engine.key("segments")
 
     def test_opaque_picture_loses_its_fourth_channel_only(self):
         rgba = np.dstack([PHOTO, np.full(PHOTO.shape[:2], 128, np.uint8)])
-        scene = Scene.of(photo=rgba)
+        scene = Scene.photo(rgba)
         np.testing.assert_array_equal(scene.views.left, PHOTO)
         assert scene.shown is None and scene.known is None
 
     def test_transparent_picture_is_refused(self):
         with pytest.raises(PictureError, match="all of the picture is transparent; there is nothing to feel"):
-            Scene.of(photo=np.zeros((3, 3, 4), np.uint8))
+            Scene.photo(np.zeros((3, 3, 4), np.uint8))
 
 
 @pytest.mark.parametrize(
@@ -171,7 +171,7 @@ class TestTransparency:
 )
 def test_crop_beyond_the_picture_is_refused(parts, message):
     with pytest.raises(PictureError, match=message):
-        Scene.of(height=HEIGHTS, **parts)
+        Scene.heights(HEIGHTS, **parts)
 
 
 @pytest.mark.parametrize(
@@ -193,7 +193,7 @@ def test_wrong_options_are_refused(parts, message):
 
 
 def test_masked_heights_are_unknown():
-    scene = Scene.of(height=np.ma.masked_equal(HEIGHTS, HEIGHTS[0, 1]))
+    scene = Scene.heights(np.ma.masked_equal(HEIGHTS, HEIGHTS[0, 1]))
     assert scene.height is not None
     np.testing.assert_array_equal(np.isnan(scene.height), HEIGHTS[0, 1] == HEIGHTS)
 
@@ -218,5 +218,5 @@ def test_crop_applies_to_the_upright_picture(tmp_path: Path):
     exif = Image.Exif()
     exif[0x0112] = 6
     Image.fromarray(PHOTO).save(tmp_path / "p.png", exif=exif)
-    found = Scene.of(photo=tmp_path / "p.png", crop=[0, 0, 3, 1]).views
-    np.testing.assert_array_equal(found.left, np.rot90(PHOTO, -1)[:1])
+    framed = Scene.photo(tmp_path / "p.png", crop=[0, 0, 3, 1]).views
+    np.testing.assert_array_equal(framed.left, np.rot90(PHOTO, -1)[:1])

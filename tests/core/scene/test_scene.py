@@ -241,12 +241,42 @@ def test_truth_is_decoded_by_its_scale(as_file: bool, tmp_path: Path):
         put(tmp_path / f"{name}.png", values)
     grey_of, packed_of = ((tmp_path / f"{name}.png" if as_file else given[name]) for name in given)
     view = np.zeros((1, 3), np.uint8)
-    scene = Scene.of(left=view, right=view, truth=grey_of, truth_scale=256)
+    scene = Scene.pair(left=view, right=view, truth=grey_of, truth_scale=256)
     np.testing.assert_array_equal(scene.truth, [[np.nan, 1, 2.5]])
-    np.testing.assert_array_equal(Scene.of(left=view, right=view, truth=grey_of).truth, grey)
-    scene = Scene.of(left=view, right=view, truth=packed_of, truth_scale="sintel")
+    np.testing.assert_array_equal(Scene.pair(left=view, right=view, truth=grey_of).truth, grey)
+    scene = Scene.pair(left=view, right=view, truth=packed_of, truth_scale="sintel")
     np.testing.assert_array_equal(scene.truth, [[0, 4.5, 8 + 64 / 16384]])
     with pytest.raises(PictureError, match="three channels of 8 bits, not"):
-        Scene.of(left=view, right=view, truth=grey_of, truth_scale="sintel")
+        Scene.pair(left=view, right=view, truth=grey_of, truth_scale="sintel")
     with pytest.raises(ConfigError, match="truth_scale needs truth"):
-        Scene.of(left=view, right=view, truth_scale=4)
+        Scene.pair(left=view, right=view, truth_scale=4)
+
+
+# The constructors
+
+
+@pytest.mark.parametrize(
+    ("scene", "arguments"),
+    [
+        (Scene.pair(PICTURE, PICTURE[::-1], name="two"), {"left": PICTURE, "right": PICTURE[::-1], "name": "two"}),
+        (Scene.pair(PICTURE, layout="top-bottom"), {"stereo": PICTURE, "layout": "top-bottom"}),
+        (Scene.photo(PICTURE, rotate=90), {"photo": PICTURE, "rotate": 90}),
+        (Scene.heights(PICTURE[..., 0], relief_m=0.01), {"height": PICTURE[..., 0], "relief_m": 0.01}),
+    ],
+)
+def test_scene_of_a_kind_equals_its_alias(scene, arguments):
+    alias = Scene.of(**arguments)
+    assert (scene.name, scene.relief_m) == (alias.name, alias.relief_m)
+    assert {name: each.digest() for name, each in scene.brings(**SIZE).items()} == {
+        name: each.digest() for name, each in alias.brings(**SIZE).items()
+    }
+
+
+def test_scene_of_a_pair_in_one_picture_has_two_views():
+    assert Scene.pair(PICTURE, layout="side-by-side").views.right.shape[:2] == (4, 3)
+    assert Scene.pair(PICTURE, PICTURE).views.right.shape[:2] == (4, 6)
+
+
+def test_scene_with_an_unknown_keyword_is_refused():
+    with pytest.raises(ConfigError, match=r"scene\.colour: Extra inputs are not permitted"):
+        Scene.of(photo=PICTURE, colour="red")

@@ -37,7 +37,7 @@ class TestSeveralPictures:
         options = {"lossless": True} if kind == "WEBP" else {}
         first, *others = (Image.fromarray(each) for each in (LEFT, RIGHT, RIGHT // 2))
         first.save(path, format=kind, save_all=True, append_images=others, **options)
-        scene = Scene.of(photo=path)
+        scene = Scene.photo(path)
         np.testing.assert_array_equal(scene.views.left, LEFT)
         assert scene.notes == (f"several.{kind.lower()} holds 3 pictures, of which the first is taken",)
 
@@ -47,11 +47,11 @@ class TestSeveralPictures:
         tags[254] = 1
         small.encoderinfo = {"tiffinfo": tags}
         page.save(tmp_path / "pyramid.tif", save_all=True, append_images=[small])
-        assert Scene.of(photo=tmp_path / "pyramid.tif").notes == ()
+        assert Scene.photo(tmp_path / "pyramid.tif").notes == ()
 
     def test_file_of_one_picture_gives_no_note(self, tmp_path: Path):
         Image.fromarray(LEFT).save(tmp_path / "one.png")
-        assert Scene.of(photo=tmp_path / "one.png").notes == ()
+        assert Scene.photo(tmp_path / "one.png").notes == ()
 
 
 class TestPairs:
@@ -67,7 +67,7 @@ class TestPairs:
     def test_halves_of_a_picture_are_the_views(self, tmp_path: Path, layout, whole):
         Image.fromarray(whole).save(tmp_path / "both.png")
         for given in (whole, tmp_path / "both.png"):
-            views = Scene.of(stereo=given, layout=layout).views
+            views = Scene.pair(given, layout=layout).views
             np.testing.assert_array_equal(views.left, LEFT)
             np.testing.assert_array_equal(views.right, RIGHT)
 
@@ -83,16 +83,16 @@ class TestPairs:
     def test_jps_file_states_the_order_of_its_halves(self, tmp_path: Path, state: bytes, order):
         data = jpeg(np.hstack([np.kron(each, np.ones((16, 16, 1), np.uint8)) for each in order]))
         (tmp_path / "pair.jps").write_bytes(data[:2] + (segment(state, 0xE3) if state else b"") + data[2:])
-        views = Scene.of(stereo=tmp_path / "pair.jps").views
+        views = Scene.pair(tmp_path / "pair.jps").views
         assert np.abs(views.left[8::16, 8::16].astype(int) - LEFT).max() < 12
         assert np.abs(views.right[8::16, 8::16].astype(int) - RIGHT).max() < 12
 
     def test_mpo_file_gives_two_views_or_one_photo(self, tmp_path: Path):
         shades = [np.full((32, 48, 3), each, np.uint8) for each in (40, 200)]
         write_mpo(tmp_path / "pair.mpo", shades, 0x020002)
-        views = Scene.of(stereo=tmp_path / "pair.mpo").views
+        views = Scene.pair(tmp_path / "pair.mpo").views
         assert (views.left[0, 0, 0], views.right[0, 0, 0]) == (40, 200)
-        photo = Scene.of(photo=tmp_path / "pair.mpo")
+        photo = Scene.photo(tmp_path / "pair.mpo")
         assert photo.views.left[0, 0, 0] == 40
         assert photo.notes == (
             "pair.mpo holds 2 pictures, of which the first is taken; for both views write `stereo:`",
@@ -100,17 +100,17 @@ class TestPairs:
 
     def test_thumbnail_is_neither_view_nor_note(self, tmp_path: Path):
         write_mpo(tmp_path / "phone.jpg", [np.full((32, 48, 3), each, np.uint8) for each in (40, 200)], 0x010001)
-        assert Scene.of(photo=tmp_path / "phone.jpg").notes == ()
-        assert Scene.of(stereo=tmp_path / "phone.jpg").views.shape == (32, 24)
+        assert Scene.photo(tmp_path / "phone.jpg").notes == ()
+        assert Scene.pair(tmp_path / "phone.jpg").views.shape == (32, 24)
 
     def test_both_views_are_cropped_alike(self):
-        views = Scene.of(stereo=np.hstack([LEFT, RIGHT]), crop=[1, 2, 3, 4]).views
+        views = Scene.pair(np.hstack([LEFT, RIGHT]), crop=[1, 2, 3, 4]).views
         np.testing.assert_array_equal(views.left, LEFT[2:6, 1:4])
         np.testing.assert_array_equal(views.right, RIGHT[2:6, 1:4])
 
     def test_column_without_halves_is_refused(self):
         with pytest.raises(PictureError, match="1 x 6 pixels have no two halves; give left and right"):
-            Scene.of(stereo=LEFT[:, :1])
+            Scene.pair(LEFT[:, :1])
 
 
 def write_mpo(path: Path, pictures: list[np.ndarray], kind: int) -> None:
@@ -174,7 +174,7 @@ class TestPhoneDepth:
     @pytest.mark.parametrize("write", [gdepth, dynamic, iphone])
     def test_phone_depth_becomes_the_disparity_of_the_scene(self, tmp_path: Path, write):
         (tmp_path / "portrait.jpg").write_bytes(write(jpeg(RAMP)))
-        scene = Scene.of(photo=tmp_path / "portrait.jpg")
+        scene = Scene.photo(tmp_path / "portrait.jpg")
         assert scene.disparity is not None and scene.disparity.unit == "relative"
         near = scene.disparity.disparity_px
         assert near.shape == (24, 32)
@@ -185,8 +185,8 @@ class TestPhoneDepth:
 
     def test_phone_depth_can_be_left_out_or_replaced(self, tmp_path: Path):
         (tmp_path / "portrait.jpg").write_bytes(gdepth(jpeg(RAMP)))
-        assert Scene.of(photo=tmp_path / "portrait.jpg", photo_depth=False).disparity is None
-        given = Scene.of(photo=tmp_path / "portrait.jpg", disparity=np.ones((24, 32))).disparity
+        assert Scene.photo(tmp_path / "portrait.jpg", photo_depth=False).disparity is None
+        given = Scene.photo(tmp_path / "portrait.jpg", disparity=np.ones((24, 32))).disparity
         assert given.unit == "px"
 
     def test_phone_depth_is_rotated_with_the_photo(self, tmp_path: Path):
@@ -195,7 +195,7 @@ class TestPhoneDepth:
         data = gdepth(jpeg(RAMP))
         upright = jpeg(PHOTO, exif=exif)
         (tmp_path / "portrait.jpg").write_bytes(upright[:2] + data[2 : data.index(b"\xff\xe0")] + upright[2:])
-        scene = Scene.of(photo=tmp_path / "portrait.jpg", rotate=180)
+        scene = Scene.photo(tmp_path / "portrait.jpg", rotate=180)
         near = scene.disparity.disparity_px
         assert near.shape == scene.views.shape == (32, 24)
         assert near[0].max() < 0.1 and near[-1].min() > 0.9
@@ -205,7 +205,7 @@ class TestPhoneDepth:
     )
     def test_damaged_phone_depth_gives_a_note_and_the_photo(self, tmp_path: Path, broken: bytes):
         (tmp_path / "portrait.jpg").write_bytes(broken)
-        scene = Scene.of(photo=tmp_path / "portrait.jpg")
+        scene = Scene.photo(tmp_path / "portrait.jpg")
         assert scene.disparity is None
         np.testing.assert_array_equal(scene.views.left, PHOTO)
         assert scene.notes[0].startswith("the depth map in portrait.jpg is damaged and left out: ")
@@ -219,7 +219,7 @@ class TestPhoneDepth:
         xmp = [segment(head + struct.pack(">II", len(content), at) + part) for at, part in parts]
         data = jpeg(PHOTO)
         (tmp_path / "portrait.jpg").write_bytes(data[:2] + b"".join(xmp) + data[2:])
-        assert Scene.of(photo=tmp_path / "portrait.jpg").disparity is None
+        assert Scene.photo(tmp_path / "portrait.jpg").disparity is None
 
 
 class TestNoData:
@@ -230,7 +230,7 @@ class TestNoData:
         tags = TiffImagePlugin.ImageFileDirectory_v2()
         tags[42113] = "-9999"
         Image.fromarray(heights).save(tmp_path / "dem.tif", tiffinfo=tags)
-        scene = Scene.of(height=tmp_path / "dem.tif")
+        scene = Scene.heights(tmp_path / "dem.tif")
         assert np.argwhere(np.isnan(scene.height)).tolist() == [[1, 2]]
         assert scene.notes == ("8.3 % of dem.tif is -9999, its value for no data",)
         assert scene.brings(0.08, 0.02)["relief"].height_m.max() == np.float32(0.02)

@@ -39,13 +39,13 @@ def test_few_matches_ignores_unknown_pixels():
 
 def test_identical_views_are_reported():
     left, right = np.random.default_rng(1).random((2, *SHAPE))
-    twice = Scene.of(left=left, right=left.copy()).views
-    two = Scene.of(left=left, right=right).views
+    twice = Scene.pair(left=left, right=left.copy()).views
+    two = Scene.pair(left, right).views
     assert twice is not None and two is not None
     assert "one and the same picture: " in identical_views(twice, matched(1))
     assert identical_views(two, matched(1)) == ""
     assert identical_views(twice, matched(1, unit="relative")) == ""
-    same = Pipeline(Scene.of(left=left, right=left), depth=Guesses(), cached=False)
+    same = Pipeline(Scene.pair(left=left, right=left), depth=Guesses(), cached=False)
     same.make("disparity")
     [doubt] = same.outcomes.doubts
     assert doubt.text.startswith("left and right are one and the same picture: ")
@@ -67,12 +67,12 @@ def test_few_matches_appear_in_log_outcomes_and_sheet_title(
     sheet = SimpleNamespace(draw=lambda work, path: titles.append(work.title) or "")
     monkeypatch.setattr(runs, "drawing", lambda: sheet)
     picture = np.random.default_rng(0).random((8, 8))
-    Pipeline(Scene.of(left=picture, right=picture[::-1]), depth=Guesses(), cached=False).run(tmp_path, "relief")
+    Pipeline(Scene.pair(left=picture, right=picture[::-1]), depth=Guesses(), cached=False).run(tmp_path, "relief")
     [message] = [each.message for each in caplog.records]
     outcomes = {each["product"]: each for each in json.loads((tmp_path / "outcomes.json").read_text())["outcomes"]}
     assert outcomes["disparity"]["notes"] == [{"text": message, "kind": "doubt"}]
     assert message.startswith("hardly anything matches in the two pictures: a depth was found for 0%")
     assert titles == ["arrays (doubtful: hardly anything matches in the two pictures)"]
-    alone = Pipeline(Scene.of(photo=picture), depth=Guesses(), cached=False)
+    alone = Pipeline(Scene.photo(picture), depth=Guesses(), cached=False)
     alone.make("disparity")
     assert not alone.outcomes.doubts

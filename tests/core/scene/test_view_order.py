@@ -63,7 +63,7 @@ def test_exchanged_views_give_the_same_relief_with_a_warning():
     assert views is not None and views.right is not None
     truth = np.nan_to_num(Scene.builtin("motorcycle").truth, posinf=0)
     for left, right, warned in ((views.left, views.right, False), (views.right, views.left, True)):
-        pipeline = Pipeline(Scene.of(left=left, right=right), depth=SemiGlobal(), cached=False)
+        pipeline = Pipeline(Scene.pair(left, right), depth=SemiGlobal(), cached=False)
         assert np.corrcoef(pipeline.relief.height_m.ravel(), truth.ravel())[0, 1] > 0.5
         [outcome] = [each for each in pipeline.outcomes if each.product == "disparity"]
         assert ("left and right seem to be exchanged" in outcome.why) == warned

@@ -1,4 +1,4 @@
-"""A beacon: a gentle pull to a part, conservative, at most 1 N, released by any button, and nothing where it is off."""
+"""A beacon: a gentle pull to a part, conservative, at most 1 N, released by any button, and without effect when off."""
 
 import math
 import pickle
@@ -43,6 +43,7 @@ from tangible_core.session import (
     run_simulated,
 )
 from tangible_devices import Mock
+from waiting import until
 
 WIDTH_M, LENGTH_M = 0.08, 0.06
 NAMES = ("ground", "disc", "", "disc ", "arc")
@@ -51,7 +52,7 @@ kernels = cast(Any, beacon_kernels)
 
 
 def in_parts() -> HapticSurface:
-    """80 x 60 mm, level: a disc of 5 mm, a bar of one cell's width, a single cell, an arc around most of the middle."""
+    """Return a level surface of 80 x 60 mm: a disc of 5 mm, a bar one cell wide, a single cell, and an arc."""
     rows, columns = 120, 160
     y, x = np.mgrid[:rows, :columns]
     x_m, y_m = ((x + 0.5) / columns - 0.5) * WIDTH_M, (0.5 - (y + 0.5) / rows) * LENGTH_M
@@ -73,7 +74,7 @@ def potential(memory: BeaconMemory, places_m: np.ndarray) -> np.ndarray:
 
 
 def pulls(memory: BeaconMemory, states: np.ndarray, buttons: int = 0, ticks: int = 1) -> np.ndarray:
-    """The force left in a guard's memory at states x, y, vx, vy, after so many ticks at each; faded in or not."""
+    """Return the pull in a guard's memory at states x, y, vx, vy, after a number of ticks at each."""
     kept = np.zeros(layout.MEMORY)
     found = []
     for x, y, vx, vy in states.tolist():
@@ -89,10 +90,10 @@ def faded_in(part: int) -> BeaconMemory:
     return memory
 
 
-class TestThePull:
+class TestPull:
     @pytest.mark.parametrize("part", PARTS)
-    def test_it_is_the_steepest_way_down_and_never_over_its_bound(self, part: int):
-        """At rest and at 3 m/s, over the picture and far beside it."""
+    def test_pull_is_the_gradient_of_the_potential_and_within_its_bound(self, part: int):
+        """At rest and at 3 m/s, over the picture and far outside."""
         random = np.random.default_rng(part)
         places = random.uniform(-0.1, 0.1, (1500, 2))
         still_n = pulls(faded_in(part), np.hstack([places, 0 * places]))
@@ -103,7 +104,7 @@ class TestThePull:
         assert np.hypot(*fast_n.T).max() <= MOST_N
 
     @pytest.mark.parametrize("part", PARTS)
-    def test_within_the_part_there_is_none(self, part: int):
+    def test_pull_within_the_part_is_zero(self, part: int):
         """Anywhere in its cells, to the bit, however fast; a part of one cell included."""
         assert SURFACE.labels is not None
         random, (across_m, along_m) = np.random.default_rng(0), SURFACE.relief.pitch_m
@@ -112,7 +113,7 @@ class TestThePull:
         places = np.column_stack([column * across_m - WIDTH_M / 2, LENGTH_M / 2 - row * along_m])
         assert not pulls(faded_in(part), np.hstack([places, random.uniform(-1, 1, places.shape)])).any()
 
-    def test_beside_a_disc_it_is_the_spring_that_the_formula_says(self):
+    def test_pull_next_to_a_disc_follows_the_formula(self):
         """Towards its middle, F D / sqrt(D^2 + s^2), but for the cells that a disc is made of."""
         turn = np.linspace(0, 2 * np.pi, 40)
         way = np.column_stack([np.cos(turn), np.sin(turn)])
@@ -126,7 +127,7 @@ class TestThePull:
             assert aside.max() < 0.08 * PULL_N
 
     @pytest.mark.parametrize(("part", "wide_m", "share"), [*((part, 0.06, 1e-6) for part in PARTS), (4, 0.09, 2e-4)])
-    def test_no_closed_path_takes_or_gives_work(self, part: int, wide_m: float, share: float):
+    def test_pull_along_closed_path_does_no_work(self, part: int, wide_m: float, share: float):
         """Line integrals of F.dx by Gauss's rule over each stretch, across ridges and the grid's end."""
         memory, random = faded_in(part), np.random.default_rng(part)
         nodes, weights = np.polynomial.legendre.leggauss(4)
@@ -141,7 +142,7 @@ class TestThePull:
                 work, most = work + done.sum(), most + np.abs(done).sum()
             assert abs(work) < share * most
 
-    def test_it_is_lateral_alone_and_the_same_on_a_surface_of_twice_the_cells(self):
+    def test_pull_is_lateral_and_independent_of_the_cell_size(self):
         assert SURFACE.labels is not None
         fine = np.kron(SURFACE.labels, np.ones((2, 2), np.int32))
         twice = HapticSurface(Relief(np.full(fine.shape, 0.002, np.float32), (WIDTH_M, LENGTH_M)), fine, None, NAMES)
@@ -151,7 +152,7 @@ class TestThePull:
             finer = potential(BeaconMemory.of(beacon_to(twice, part)), places)[:, 0]
             assert np.abs(finer - coarse).max() < PULL_N * 0.0008
 
-    def test_a_huge_surface_is_taken_in_coarser_cells_and_misses_no_part(self):
+    def test_beacon_on_huge_surface_uses_coarser_cells_and_misses_no_part(self):
         labels = np.zeros((3000, 2000), np.int32)
         labels[1500, 1700] = 1
         surface = HapticSurface(Relief(np.zeros(labels.shape, np.float32), (0.2, 0.3)), labels, None, ("a", "b"))
@@ -163,7 +164,7 @@ class TestThePull:
 
 
 class TestFadingAndRelease:
-    def test_it_fades_in_over_half_a_second_and_never_jumps(self):
+    def test_pull_fades_in_over_half_a_second_without_jumps(self):
         memory = BeaconMemory.of(beacon_to(SURFACE, 1))
         found = pulls(memory, np.tile([-0.03, -0.02, 0.0, 0.0], (700, 1)))
         size = np.hypot(*found.T)
@@ -171,7 +172,7 @@ class TestFadingAndRelease:
         assert size[250] == pytest.approx(size[-1] / 2, rel=0.01) and size[499] < size[501] == size[-1] > 0.7 * PULL_N
 
     @pytest.mark.parametrize("button", [1, 2, 128, 1 << 30])
-    def test_any_button_that_is_pressed_releases_it_within_the_tick_and_for_good(self, button: int):
+    def test_beacon_is_released_by_any_pressed_button_for_good(self, button: int):
         memory = faded_in(1)
         at = np.array([[-0.03, -0.02, 0.0, 0.0]])
         assert pulls(memory, at).any() and memory.state == BeaconState(1)
@@ -183,8 +184,8 @@ class TestFadingAndRelease:
         memory.put(beacon_to(SURFACE, 1))
         assert pulls(memory, at, button, ticks=3).any(), "a button that is held is not pressed"
 
-    def test_only_the_buttons_that_were_named_release_it(self):
-        """The bits above are the page's own, and change with every message."""
+    def test_beacon_is_released_by_the_named_buttons_alone(self):
+        """The bits above belong to the page, and change with every message."""
         memory = BeaconMemory.ready()
         memory.field = np.zeros(1 << 20, np.float32)
         memory.put(beacon_to(SURFACE, 1), 0xFF)
@@ -195,7 +196,7 @@ class TestFadingAndRelease:
         pulls(memory, at, (41 << 8) | 4)
         assert memory.state == BeaconState(None, "button")
 
-    def test_states_that_are_not_finite_give_none_and_break_nothing(self):
+    def test_pull_at_state_not_finite_is_zero(self):
         memory = faded_in(1)
         for bad in (math.nan, math.inf, -math.inf, 1e300):
             for axis in range(4):
@@ -206,7 +207,7 @@ class TestFadingAndRelease:
                 assert abs(bad) < math.inf or not found.any()
         assert pulls(memory, np.array([[-0.03, 0.0, 0.0, 0.0]])).any()
 
-    def test_a_grid_that_does_not_fit_is_not_read(self):
+    def test_grid_larger_than_the_memory_is_not_read(self):
         memory = faded_in(1)
         for rows, columns in ((1 << 40, 1 << 40), (-5, 9), (0, 0), (2, 9), (1 << 62, 4)):
             memory.words[[2, 3]] = rows, columns
@@ -229,7 +230,7 @@ def loop_of(beacon: Beacon | None, limits: Safety) -> tuple[GuardedForce, np.nda
 
 
 def drift(allowed: GuardedForce, seconds: float, at: np.ndarray, mass_kg: float = 0.3, b: float = 0.0) -> np.ndarray:
-    """A hand that only the force moves: position, velocity, force, flags, a row a tick; exact under a held force."""
+    """Return a row a tick of a hand that only the force moves: position, velocity, force, flags; exactly integrated."""
     place, speed, rows = np.array(at, float), np.zeros(3), []
     for _ in range(round(seconds / T)):
         force, flags = allowed(HapticState((place[0], place[1], place[2]), (speed[0], speed[1], speed[2])), T)
@@ -239,10 +240,10 @@ def drift(allowed: GuardedForce, seconds: float, at: np.ndarray, mass_kg: float 
     return np.array(rows)
 
 
-class TestThroughTheGuard:
+class TestBeaconInGuard:
     @pytest.mark.parametrize("mass_kg", [0.1, 0.5])
     @pytest.mark.parametrize(("damping", "gains_j", "over"), [(0.05, 1e-12, 1), (0.0, 1e-7, 100)])
-    def test_a_hand_that_it_pulls_swings_less_and_less(self, mass_kg: float, damping: float, gains_j: float, over: int):
+    def test_pulled_hand_swings_less_and_less(self, mass_kg: float, damping: float, gains_j: float, over: int):
         """At 1 kHz in free air, once it has faded in: no tick adds energy with a thirtieth of a Falcon's damping, and
         with none at all no tenth of a second."""
         allowed, _, asked = loop_of(beacon_to(SURFACE, 1), Safety(passivity="off", ramp_s=0))
@@ -253,16 +254,16 @@ class TestThroughTheGuard:
         assert energy[-1] < 0.1 * energy[0]
         assert np.hypot(rows[:, 6], rows[:, 7]).max() <= MOST_N and not rows[:, 8].any(), "neither lifted nor pressed"
 
-    def test_the_guard_takes_its_potential_for_no_debt(self):
-        """A hand that is pulled is not braked, owes nothing at the end, and a law that gives is braked as without."""
+    def test_pull_is_not_counted_as_debt_by_the_guard(self):
+        """A pulled hand is not damped and owes nothing at the end; a law that gives energy is damped as ever."""
         allowed, memory, _ = loop_of(beacon_to(SURFACE, 1), Safety(ramp_s=0))
         rows = drift(allowed, 4.0, np.array([-0.03, -0.02, 0.01]), b=2.0)
         assert not (rows[:, 9].astype(int) & TickFlag.DAMPED).any()
         assert np.hypot(rows[-1, 0] - 0.02, rows[-1, 1] - 0.01) < 0.007
         assert abs(memory[layout.ENERGY_J]) < 2e-3
 
-    def test_pressing_on_a_wall_while_it_pulls_is_as_without_it_along_z(self):
-        """Lateral alone; and the wall's flag tells of the wall, also in the air."""
+    def test_pull_on_a_wall_leaves_the_force_along_z(self):
+        """The pull is lateral, and TOUCHING is about the wall alone, also in the air."""
         states = [(-0.03, -0.02, 0.004 - 0.003 * math.sin(0.01 * i)) for i in range(900)]
         (with_it, *_), (without, *_) = (loop_of(b, Safety(ramp_s=0)) for b in (beacon_to(SURFACE, 1), None))
         found = [(with_it(HapticState(s), T), without(HapticState(s), T)) for s in states]
@@ -272,20 +273,20 @@ class TestThroughTheGuard:
             assert beacon_part(flags) == 1 and beacon_part(own) is None
 
     @pytest.mark.parametrize("law", ["proxy", None], ids=["compiled", "plain"])
-    def test_off_every_force_is_to_the_bit_what_it_was(self, law: str | None):
+    def test_beacon_that_is_off_leaves_forces_to_the_bit(self, law: str | None):
         random = np.random.default_rng(4)
         path = np.cumsum(random.normal(0, 2e-4, (1500, 3)), axis=0) + np.array([0, 0, 0.002])
 
-        def felt(with_one: bool) -> np.ndarray:
+        def forces(with_one: bool) -> np.ndarray:
             touch = load_method("render", law)().touch(SURFACE) if law else Wall()
             settings, memory = Safety().arrays(SPEC, 800.0)
             pull = BeaconMemory.ready().arrays if with_one else None
             allowed = guard_touch(touch, settings, memory, pull)
             return np.array([[*force, flags] for force, flags in (allowed(HapticState(tuple(p)), T) for p in path)])
 
-        assert felt(True).tobytes() == felt(False).tobytes()
+        assert forces(True).tobytes() == forces(False).tobytes()
 
-    def test_broken_states_mean_zero_as_before(self):
+    def test_broken_state_with_beacon_gives_zero_force(self):
         allowed, *_ = loop_of(beacon_to(SURFACE, 1), Safety(ramp_s=0))
         drift(allowed, 1.0, np.array([-0.03, -0.02, 0.01]))
         force, flags = allowed(HapticState((math.nan, 0.0, 0.01)), T)
@@ -293,7 +294,7 @@ class TestThroughTheGuard:
         force, flags = allowed(HapticState((-0.03, 0.0, 0.01)), 1.0)
         assert force == (0, 0, 0) and flags & TickFlag.STALE
 
-    def test_its_stiffness_counts_with_the_law_s(self):
+    def test_beacon_stiffness_is_added_to_the_law_stiffness(self):
         settings, memory = Safety(**{"ramp_s": 0, "passivity": "off"}).arrays(SPEC, 2300.0)
         asked = BeaconMemory.of(beacon_to(SURFACE, 1))
         allowed = guard_touch(Wall(), settings, memory, asked.arrays)
@@ -302,8 +303,8 @@ class TestThroughTheGuard:
         assert memory[layout.GAIN] == pytest.approx(2400 / 2460, abs=0.002)
 
 
-class TestNames:
-    def test_by_name_by_number_and_by_a_number_as_text(self):
+class TestPartNames:
+    def test_part_number_accepts_name_number_and_number_as_text(self):
         assert [beacon_to(SURFACE, each).part for each in ("ground", " arc", 4, "4")] == [0, 4, 4, 4]
         assert pickle.loads(pickle.dumps(beacon_to(SURFACE, 4))).part == 4
 
@@ -317,12 +318,12 @@ class TestNames:
             (-1, "there is no part -1"),
         ],
     )
-    def test_one_that_is_not_there_is_told_with_those_that_are(self, part: str | int, said: str):
+    def test_part_number_of_missing_part_lists_the_parts(self, part: str | int, said: str):
         with pytest.raises(ConfigError) as error:
             beacon_to(SURFACE, part)
         assert said in str(error.value) and "\n" not in str(error.value)
 
-    def test_names_that_two_parts_have_and_surfaces_without_parts(self):
+    def test_part_number_of_ambiguous_name_or_surface_without_parts_is_refused(self):
         twice = HapticSurface(SURFACE.relief, SURFACE.labels, None, ("a", "b", "a", "", ""))
         with pytest.raises(ConfigError, match=r"2 parts are called .*: 0, 2"):
             beacon_to(twice, "a")
@@ -336,16 +337,9 @@ IN_TIME_S = 60.0
 AT_ONCE = Safety(ramp_s=0, stale_s=1.0, passivity="off")  # a late tick takes no force away
 
 
-def until(condition: Callable[[], Any]) -> None:
-    end = time.monotonic() + IN_TIME_S
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.005)
-
-
 @pytest.fixture
 def pointer() -> Iterator[tuple[Any, Callable[..., Any]]]:
-    """A device that tests move and press, and what moves it once it is open."""
+    """A device that tests move and press, and the function that moves it once it is open."""
     from tangible_devices.pointer import PointerClient
 
     channel, clients = f"beacon-{time.monotonic_ns()}", []
@@ -368,7 +362,7 @@ def lateral(servo: Servo) -> float:
 @pytest.mark.slow
 @pytest.mark.usefixtures("patient")
 @pytest.mark.parametrize("law", ["proxy", None], ids=["compiled", "plain"])
-def test_in_the_loop_s_own_process_it_is_switched_while_feeling_and_released_by_a_button(law: str | None, pointer: Any):
+def test_beacon_in_loop_process_is_switched_on_and_released_by_a_button(law: str | None, pointer: Any):
     device, client = pointer
     touch = load_method("render", law)().touch(SURFACE) if law else FaultyTouch()
     beacon = beacon_to(SURFACE, 1)
@@ -409,7 +403,7 @@ def test_in_the_loop_s_own_process_it_is_switched_while_feeling_and_released_by_
 @pytest.mark.slow
 @pytest.mark.usefixtures("patient")
 @pytest.mark.usefixtures("loop_in_thread")
-def test_scenes_in_turn_pull_each_to_its_own_until_a_button_is_pressed():
+def test_beacon_of_each_kiosk_scene_pulls_until_a_button_is_pressed():
     turns = [Slot(null_touch(), AT_ONCE, SURFACE, beacon_to(SURFACE, part)) for part in (1, 4)]
     rows: list[np.ndarray] = []
     stop = Event()
@@ -435,12 +429,12 @@ def test_scenes_in_turn_pull_each_to_its_own_until_a_button_is_pressed():
 
 
 class TestSessionsAndRecordings:
-    def felt(self, beacon: Beacon | None) -> Recording:
+    def record(self, beacon: Beacon | None) -> Recording:
         touch = load_method("render", "penalty")().touch(SURFACE)
         return run_simulated(touch, Mock(path="press"), 1.5, None, Safety(ramp_s=0), beacon=beacon)
 
-    def test_a_recording_says_when_it_was_on_and_to_which_part(self, tmp_path: Path):
-        felt, alone = self.felt(beacon_to(SURFACE, 4)), self.felt(None)
+    def test_recording_has_the_ticks_and_the_part_of_a_beacon(self, tmp_path: Path):
+        felt, alone = self.record(beacon_to(SURFACE, 4)), self.record(None)
         for suffix in (".nc", ".npz", ".csv"):
             felt.save(tmp_path / f"a{suffix}")
             kept = Recording.load(tmp_path / f"a{suffix}")
@@ -448,10 +442,10 @@ class TestSessionsAndRecordings:
             assert beacons_felt(kept, SURFACE) == ((4, "arc", 1.0),)
         assert (alone.beacon == -1).all() and beacons_felt(alone, SURFACE) == ()
 
-    def test_its_ticks_are_not_compared_in_a_replay_and_what_it_pulls_over_is_not_touched(self):
+    def test_beacon_ticks_are_left_out_of_replays_and_of_touched_parts(self):
         from tangible_core.session import compare_replay, replay
 
-        felt = self.felt(beacon_to(SURFACE, 4))
+        felt = self.record(beacon_to(SURFACE, 4))
         again = replay(load_method("render", "penalty")().touch(SURFACE), felt)
         assert compare_replay(felt, again)["compared"] == 0
         in_air = felt.rows.copy()
@@ -460,7 +454,7 @@ class TestSessionsAndRecordings:
         in_air[:, 14] = beacon_flags(4) | TickFlag.TOUCHING
         assert parts_felt(Recording(in_air), SURFACE)
 
-    def test_no_room_for_it_is_one_line(self, monkeypatch: pytest.MonkeyPatch):
+    def test_beacon_without_memory_is_one_error(self, monkeypatch: pytest.MonkeyPatch):
         def full(*_: object) -> None:
             raise OSError(28, "No space left on device")
 
@@ -473,7 +467,7 @@ class TestSessionsAndRecordings:
         finally:
             ring.remove()
 
-    def test_another_scene_ends_it_and_none_is_none(self):
+    def test_beacon_ends_with_swapped_scene(self):
         memory = faded_in(1)
         memory.leave()
         assert memory.state == BeaconState(None, "scene")

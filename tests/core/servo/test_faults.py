@@ -1,4 +1,4 @@
-"""What goes wrong around a force loop: each fault ends with no force, in a time that is bounded, and is said."""
+"""Faults around a force loop: each one leaves no force, in bounded time, and is reported."""
 
 import copyreg
 import gc
@@ -30,6 +30,7 @@ from tangible_core.servo.framing import Start, StartReply, Swap, SwapReply, rece
 from tangible_core.servo.parcel import pack
 from tangible_core.servo.ring import COUNT, LAST, PERIOD_NS, STOP, SWAP, Ring, shared_folder
 from tangible_core.servo.ticks import loop, priority
+from waiting import until
 
 pytestmark = pytest.mark.usefixtures("own_memory")
 
@@ -44,15 +45,8 @@ def proxy(height_m: float = 0.002) -> Touch:
     return load_method("render", "proxy")().touch(level)
 
 
-def until(condition: Callable[[], object], seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.005)
-
-
-def held(path: Path) -> float:
-    """What the device holds; not a number where it was never open."""
+def held_force(path: Path) -> float:
+    """Return the force that the device holds; NaN if it was never open."""
     text = path.read_text() if path.exists() else ""
     return float(text) if text else float("nan")
 
@@ -88,7 +82,7 @@ class Interrupt:
 
 
 class TestInterruptedStart:
-    def test_no_force_after_an_interrupt_at_any_step(self, tmp_path: Path) -> None:
+    def test_interrupt_at_any_line_of_the_start_leaves_no_force(self, tmp_path: Path) -> None:
         """Every line of the start, one run each: few ticks more, no force, no process, no file."""
         before, ran_through, line = left_behind(), False, 0
         while not ran_through:
@@ -109,13 +103,13 @@ class TestInterruptedStart:
                 servo.stop()
                 assert interrupt.ticks == -1
             assert ticks(servo) - max(interrupt.ticks, 0) <= MOST_TICKS_AFTER or ran_through, line
-            assert not held(record) > 0, line
+            assert not held_force(record) > 0, line
             assert left_behind() == before, line
         assert line > 25
 
     @pytest.mark.parametrize("delay_s", [0.05, 0.3, 0.6, 0.9])
-    def test_ctrl_c_reaches_both_processes_while_the_loop_starts(self, tmp_path: Path, delay_s: float) -> None:
-        """As the keyboard sends it, also where the program was started with SIGINT ignored."""
+    def test_ctrl_c_during_the_start_ends_both_processes(self, tmp_path: Path, delay_s: float) -> None:
+        """As by the keyboard, even if the program was started with SIGINT ignored."""
         record, ready = tmp_path / "force", tmp_path / "ready"
         script = HOST.format(record=str(record), ready=str(ready), fault="none", at=0)
         program = subprocess.Popen(
@@ -127,9 +121,9 @@ class TestInterruptedStart:
         _, said = program.communicate(timeout=60)
         assert said.count("Traceback") == 1, said  # the host's; the loop's process says nothing
         assert said.rstrip().endswith("KeyboardInterrupt")
-        until(lambda: not held(record) > 0)
+        until(lambda: not held_force(record) > 0)
 
-    def test_a_start_that_takes_for_ever_is_given_up(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_start_that_takes_too_long_is_abandoned(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(supervisor, "COMPILING_S", 1.0)
         monkeypatch.setattr(supervisor, "STOPPING_S", 0.5)
         servo = Servo(FaultyTouch(), Failing(opens="late"), AT_ONCE)
@@ -140,13 +134,13 @@ class TestInterruptedStart:
         assert not servo.running
         assert not left_behind()
 
-    def test_a_process_that_cannot_be_started(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_process_that_cannot_be_started_is_an_error(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(supervisor, "command", lambda _: ["/no/such/python"])
         with pytest.raises(DeviceError, match="no process can be started"), Servo(proxy(), Circling()):
             pytest.fail("it was begun")
         assert not left_behind()
 
-    def test_what_was_not_started_says_so(self) -> None:
+    def test_servo_not_started_is_an_error(self) -> None:
         servo = Servo(proxy(), Circling())
         with pytest.raises(DeviceError, match="with Servo"):
             servo.report()
@@ -167,11 +161,11 @@ Path({ready!r}).touch()
 with Servo(FaultyTouch({fault!r}, {at}), device, Safety(ramp_s=0, max_step_n=10)):
     time.sleep(60)
 """
-"""A program with a session: killed, or interrupted from the keyboard."""
+"""A program with a session, to be killed, or interrupted from the keyboard."""
 
 
 class TestStandstill:
-    """A loop that does not tick has 0.2 s; then its process is ended and the device opened once more to let go."""
+    """A loop without ticks has 0.2 s; then its process is killed and the device opened once more to release it."""
 
     def feel(self, record: Path, law: Touch, fault: Any = "none") -> Servo:
         return Servo(law, Failing(fault=fault, record=str(record), simulated=False), AT_ONCE)
@@ -179,105 +173,105 @@ class TestStandstill:
     @pytest.mark.parametrize(
         ("law", "fault"), [(FaultyTouch("blocks"), "none"), (FaultyTouch(), "blocks"), (proxy(), "blocks")]
     )
-    def test_a_law_or_a_device_that_blocks(self, tmp_path: Path, law: Touch, fault: str) -> None:
+    def test_law_or_device_that_blocks_is_killed(self, tmp_path: Path, law: Touch, fault: str) -> None:
         record = tmp_path / "force"
         with self.feel(record, law, fault) as servo:
             until(lambda: not servo.running)
             assert servo.report().stopped == supervisor.STOOD_STILL
             assert servo.device_lost
             assert servo.report().peak_force_n > 0
-            assert held(record) == 0
+            assert held_force(record) == 0
             assert servo.report().ticks == 99
 
-    def test_a_process_that_is_stopped(self, tmp_path: Path) -> None:
+    def test_suspended_process_is_killed(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with self.feel(record, FaultyTouch()) as servo:
-            until(lambda: held(record) > 0)
+            until(lambda: held_force(record) > 0)
             os.kill(servo.process_id, signal.SIGSTOP)
             until(lambda: not servo.running)
             assert servo.report().stopped == supervisor.STOOD_STILL
-            assert held(record) == 0
+            assert held_force(record) == 0
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_its_bound_is_in_looks_and_grows_with_the_period(self, tmp_path: Path) -> None:
-        """Ticks are 0.3 s apart: no standstill."""
+    def test_standstill_bound_counts_checks_and_grows_with_the_period(self, tmp_path: Path) -> None:
+        """Ticks 0.3 s apart are not a standstill."""
         with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE, seconds=1.5, period_s=0.3) as servo:
             until(lambda: not servo.running)
             assert servo.report().ticks == 5
             assert servo.report().stopped == "the time is over"
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_a_law_that_compiles_itself_when_it_is_asked_first(self) -> None:
-        """That happens before the first tick, and is no standstill."""
+    def test_law_that_compiles_on_first_use_is_not_a_standstill(self) -> None:
+        """The law compiles before the first tick."""
         with Servo(FaultyTouch("begins slowly"), Failing(fault="none"), AT_ONCE, seconds=0.2) as servo:
             until(lambda: not servo.running)
             assert servo.report().stopped == "the time is over"
 
-    def test_a_device_that_cannot_be_opened_once_more_is_told_of(
+    def test_device_that_cannot_be_reopened_is_logged(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
     ) -> None:
         monkeypatch.setattr(supervisor, "STOPPING_S", 0.5)
         record = tmp_path / "force"
         device = Failing(fault="none", record=str(record), simulated=False, opens="once")
         with Servo(FaultyTouch(), device, AT_ONCE) as servo:
-            until(lambda: held(record) > 0)
+            until(lambda: held_force(record) > 0)
             os.kill(servo.process_id, signal.SIGSTOP)
             until(lambda: not servo.running)
         assert "may still hold its last force; switch it off" in caplog.text
 
-    def test_a_law_that_blocks_when_the_host_is_gone(self, tmp_path: Path) -> None:
-        """Nobody watches then: the loop's own process lets go."""
+    def test_law_that_blocks_without_host_leaves_no_force(self, tmp_path: Path) -> None:
+        """Without a host to watch it, the loop's own process releases the device."""
         record = tmp_path / "force"
         script = HOST.format(record=str(record), ready=str(tmp_path / "ready"), fault="blocks", at=3000)
         program = subprocess.Popen([sys.executable, "-c", script], stderr=subprocess.DEVNULL)
-        until(lambda: held(record) > 0)
+        until(lambda: held_force(record) > 0)
         program.send_signal(signal.SIGSTOP)  # nobody watches from now on, and the law blocks in its 3000th tick
         (path,) = shared_folder().glob(f"tangible-{program.pid}-*.ring")
         ring = Ring.attach(path)
         until(lambda: ring.count == 2999)
-        assert held(record) > 0
+        assert held_force(record) > 0
         program.kill()
         program.wait()
-        until(lambda: held(record) == 0)
+        until(lambda: held_force(record) == 0)
 
     @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGQUIT"])
-    def test_signals_that_a_terminal_sends_to_the_loop_too_leave_no_force(self, tmp_path: Path, name: str) -> None:
+    def test_terminal_signals_to_the_loop_leave_no_force(self, tmp_path: Path, name: str) -> None:
         record, number = tmp_path / "force", getattr(signal, name)
-        with answered(number, signal.SIG_DFL), self.feel(record, FaultyTouch()) as servo:
-            until(lambda: held(record) > 0)
+        with handle_signal(number, signal.SIG_DFL), self.feel(record, FaultyTouch()) as servo:
+            until(lambda: held_force(record) > 0)
             os.kill(servo.process_id, number)
             until(lambda: not servo.running)
             assert servo.report().stopped == "the process received a signal to end"
-            assert held(record) == 0
+            assert held_force(record) == 0
 
-    def test_a_signal_that_the_program_ignores_ends_its_loop_neither(self, tmp_path: Path) -> None:
+    def test_signal_ignored_by_the_program_does_not_end_the_loop(self, tmp_path: Path) -> None:
         """Under nohup, when the terminal is closed."""
-        with answered(signal.SIGHUP, signal.SIG_IGN), self.feel(tmp_path / "force", FaultyTouch()) as servo:
+        with handle_signal(signal.SIGHUP, signal.SIG_IGN), self.feel(tmp_path / "force", FaultyTouch()) as servo:
             os.kill(servo.process_id, signal.SIGHUP)
             there = servo.report().ticks
             until(lambda: servo.report().ticks > there + 50)
 
-    def test_stop_does_not_wait_for_a_law_that_blocks(self, tmp_path: Path) -> None:
+    def test_stop_does_not_wait_for_a_blocking_law(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with self.feel(record, FaultyTouch("blocks")) as servo:
             until(lambda: servo.report().ticks == 99)  # the hundredth never ends
         assert servo.report().peak_force_n > 0
-        assert held(record) == 0
+        assert held_force(record) == 0
 
     @pytest.mark.skipif(not hasattr(signal, "SIGTSTP"), reason="this system has no Ctrl-Z")
-    def test_ctrl_z_ends_it_rather_than_holding_the_force(self, tmp_path: Path) -> None:
+    def test_ctrl_z_ends_the_loop_without_force(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with self.feel(record, FaultyTouch()) as servo:
-            until(lambda: held(record) > 0)
+            until(lambda: held_force(record) > 0)
             os.kill(servo.process_id, signal.SIGTSTP)
             until(lambda: not servo.running)
             assert "paused from the keyboard" in servo.report().stopped
-            assert held(record) == 0
+            assert held_force(record) == 0
 
 
 @contextmanager
-def answered(number: int, how: signal.Handlers) -> Iterator[None]:
-    """A signal is answered so by this process, and by those that it starts."""
+def handle_signal(number: int, how: signal.Handlers) -> Iterator[None]:
+    """Set the handler of a signal in this process and in those that it starts."""
     before = signal.signal(number, how)
     try:
         yield
@@ -287,8 +281,8 @@ def answered(number: int, how: signal.Handlers) -> Iterator[None]:
 
 @pytest.mark.usefixtures("patient")
 @pytest.mark.usefixtures("loop_in_thread")
-class TestWhatAPluginRaises:
-    def test_an_error_that_cannot_be_unpickled_ends_the_session_with_its_text(
+class TestPluginErrors:
+    def test_error_that_cannot_be_unpickled_keeps_its_text(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         # distributed, which other tests of this process may have imported, teaches pickle every error that there is.
@@ -299,23 +293,23 @@ class TestWhatAPluginRaises:
             Servo(FaultyTouch("odd error"), Failing(fault="none", record=str(record)), AT_ONCE) as servo,
         ):
             until(lambda: not servo.running)
-        assert held(record) == 0
+        assert held_force(record) == 0
 
     @pytest.mark.parametrize(
         ("law", "fault", "name"),
         [(FaultyTouch("exits"), "none", "faulty_touch"), (FaultyTouch(), "exits", "loop_devices")],
     )
-    def test_sys_exit_is_an_error_that_names_the_plugin(self, tmp_path: Path, law, fault, name: str) -> None:
+    def test_sys_exit_of_plugin_is_an_error_with_its_name(self, tmp_path: Path, law, fault, name: str) -> None:
         record = tmp_path / "force"
         with (
             pytest.raises(BrokenMethod, match=rf"{name} called sys\.exit\(3\)"),
             Servo(law, Failing(fault=fault, record=str(record)), AT_ONCE) as servo,
         ):
             until(lambda: not servo.running)
-        assert held(record) == 0
+        assert held_force(record) == 0
 
-    def test_words_that_cannot_be_read_are_an_end(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        """Whatever the host fails to hear: the loop is stopped, and the failure told."""
+    def test_message_that_cannot_be_read_ends_the_loop(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """If the host cannot read a message, the loop is stopped and the error raised."""
 
         def deaf(_: object) -> object:
             raise EOFError("half a message")
@@ -326,8 +320,8 @@ class TestWhatAPluginRaises:
 
 
 @pytest.mark.parametrize("kept", [0, 4, 8, -1])
-def test_half_a_message_is_the_end(kept: int) -> None:
-    """As a process leaves it that was killed while it wrote."""
+def test_receive_of_half_a_message_is_none(kept: int) -> None:
+    """Such as by a process that was killed while it wrote."""
     whole = io.BytesIO()
     send(whole, StartReply("how"))
     assert receive(io.BytesIO(whole.getvalue())) == StartReply("how")
@@ -337,7 +331,7 @@ def test_half_a_message_is_the_end(kept: int) -> None:
 @pytest.mark.usefixtures("patient")
 class TestSwaps:
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_a_scene_that_does_not_arrive_is_refused_and_the_one_before_felt_on(self) -> None:
+    def test_swap_of_unreadable_scene_is_refused_and_the_loop_goes_on(self) -> None:
         with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE) as servo:
             with pytest.raises(LookupError, match="not in process"):
                 servo.swap(FaultyTouch("does not arrive"))
@@ -348,8 +342,8 @@ class TestSwaps:
         assert not left_behind()
 
     @pytest.mark.parametrize("device", [Circling(), Circling(exchanges=True), Failing(fault="none")])
-    def test_hundreds_leave_nothing_behind(self, device) -> None:
-        """Descriptors, mappings and memory of the loop's process; its threads still hear."""
+    def test_hundreds_of_swaps_leave_no_descriptors_or_memory(self, device) -> None:
+        """Checks descriptors, mappings and memory of the loop's process, and that its threads still respond."""
         scenes = [proxy(), proxy(0.003)]
         with Servo(scenes[0], device, AT_ONCE) as servo:
 
@@ -366,7 +360,7 @@ class TestSwaps:
             assert kibibytes <= 2_500
             assert servo.stop("enough").stopped == "enough"
 
-    def test_scenes_that_are_part_of_a_circle_are_collected(self) -> None:
+    def test_scenes_in_reference_cycles_are_collected(self) -> None:
         """800 kB each."""
         with Servo(FaultyTouch("knows itself"), Failing(fault="none"), AT_ONCE) as servo:
             for _ in range(10):
@@ -377,7 +371,7 @@ class TestSwaps:
             assert usage(servo.process_id)[-1] - first < 20_000
 
     @pytest.mark.nightly
-    def test_five_thousand(self) -> None:
+    def test_five_thousand_swaps_leave_no_memory(self) -> None:
         with Servo(proxy(), Circling(), AT_ONCE) as servo:
             for _ in range(200):
                 servo.swap(proxy())
@@ -390,7 +384,7 @@ class TestSwaps:
 
 
 def usage(process: int) -> tuple[int, int, int]:
-    """Descriptors, mappings, and KiB of memory of its own."""
+    """Return the process's number of descriptors and mappings, and its own memory, KiB."""
     of = Path(f"/proc/{process}")
     status = of.joinpath("status").read_text()
     anonymous = int(status.partition("RssAnon:")[2].split()[0])
@@ -398,7 +392,7 @@ def usage(process: int) -> tuple[int, int, int]:
 
 
 class Session:
-    """The loop's side of a session in a thread of this process, spoken to through pipes as a host does."""
+    """The loop's side of a session in a thread of this process, with the pipes of a host."""
 
     def __init__(self, device: Any) -> None:
         self.others = set(threading.enumerate())
@@ -435,14 +429,14 @@ ENDS: list[Callable[[Session], None]] = [
 
 @pytest.fixture
 def in_this_process(monkeypatch: pytest.MonkeyPatch):
-    """Neither real-time rights nor locked memory are asked for, and what is collected stays so."""
+    """Request no real-time rights and no locked memory, and leave the garbage collector alone."""
     monkeypatch.setattr(priority, "request", lambda: (False, "nothing asked"))
     yield
     gc.unfreeze()
 
 
-def test_a_scene_that_is_taken_over_leaves_the_word_to_stop() -> None:
-    """At the moment that thousands of swaps seldom meet: the word came after the loop last looked at it."""
+def test_swap_keeps_the_word_stop() -> None:
+    """At a moment that is rare in thousands of swaps: STOP is set after the loop last read it."""
     ring = Ring.create(64)
     ring.header[STOP], ring.header[SWAP] = 1, 1
     loop.take_over(ring)
@@ -453,8 +447,8 @@ def test_a_scene_that_is_taken_over_leaves_the_word_to_stop() -> None:
 
 @pytest.mark.parametrize("most", [800, pytest.param(5000, marks=pytest.mark.nightly)])
 @pytest.mark.parametrize("device", [Circling(), Circling(exchanges=True)])
-def test_no_stop_is_lost_among_thousands_of_swaps(device, most: int, in_this_process: None) -> None:
-    """In sessions that are ended in one of three ways at a random moment."""
+def test_stop_during_thousands_of_swaps_is_not_lost(device, most: int, in_this_process: None) -> None:
+    """Sessions are ended in one of three ways at a random moment."""
     rng, swaps, sessions, scene, sent = random.Random(0), 0, 0, proxy(), list[Path]()
     while swaps < most:
         session = Session(device)
@@ -480,7 +474,7 @@ def test_no_stop_is_lost_among_thousands_of_swaps(device, most: int, in_this_pro
 
 @pytest.mark.usefixtures("patient")
 @pytest.mark.parametrize("round", range(6))
-def test_no_sigterm_is_lost_among_swaps(round: int, tmp_path: Path) -> None:
+def test_sigterm_during_swaps_is_not_lost(round: int, tmp_path: Path) -> None:
     with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE) as servo:
         timer = threading.Timer(random.Random(round).uniform(0, 0.2), os.kill, [servo.process_id, signal.SIGTERM])
         timer.start()

@@ -1,4 +1,4 @@
-"""A surface that moves while it is felt: shown from here, felt there, in the same memory."""
+"""A moving surface: shown by one process and read by the loop's, in the same memory."""
 
 import os
 import signal
@@ -21,19 +21,13 @@ from tangible_core.servo import Packed, Ring, Safety, Servo, null_touch, pack_to
 from tangible_core.servo.guard.layout import GIVEN_J
 from tangible_core.servo.ring import shared_folder
 from tangible_core.session import run_simulated
+from waiting import until
 
 pytestmark = pytest.mark.usefixtures("own_memory", "patient")
 
 AT_ONCE = Safety(ramp_s=0, stale_s=1.0)  # a late tick takes no force away
 FRAME = TICK_COLUMNS.index("frame")
 DEVICES = [Circling(z_m=0.008), Circling(z_m=0.008, exchanges=True), Failing(fault="none")]
-
-
-def until(condition, seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.005)
 
 
 def proxy() -> Touch:
@@ -47,8 +41,8 @@ def left_behind() -> set[Path]:
 @pytest.mark.usefixtures("loop_in_thread")
 class TestShow:
     @pytest.mark.parametrize("device", DEVICES)
-    def test_what_is_shown_here_is_felt_there(self, device) -> None:
-        """By each of the three loops; the ticks tell which frame it was, and the guard what the surface gave."""
+    def test_shown_frames_move_the_surface_of_the_loop(self, device) -> None:
+        """For each kind of loop; ticks have the frame, and the guard counts the surface's work."""
         film, depth_m = MovingPlane(0.01, stiffness_n_per_m=100.0), 0.002 if isinstance(device, Circling) else 0.011
         with Servo(film, device, AT_ONCE) as servo:
             until(lambda: servo.report().force.z == pytest.approx(100 * depth_m))  # not one that still grows
@@ -64,10 +58,10 @@ class TestShow:
         assert before.frame == 0 and set(rows[:, FRAME]) == {0.0, 7.0}
         assert film.plane[0] == 0.01, "what was handed over is not what is felt"
 
-    def test_what_stands_still_shows_nothing(self) -> None:
+    def test_show_without_film_is_refused(self) -> None:
         film = MovingPlane()
         with Servo(proxy(), Circling(), AT_ONCE) as servo:
-            with pytest.raises(DeviceError, match="stands still and shows no frame; feel the film"):
+            with pytest.raises(DeviceError, match="stands still and shows no frame; start with a film"):
                 servo.show(level(0.011), 1)
             until(lambda: servo.ring.count)
             assert servo.film is servo.report().frame is None
@@ -85,7 +79,7 @@ class TestShow:
             assert servo.film is not None and servo.film.arrived
         assert not left_behind()
 
-    def test_a_film_that_cannot_be_felt_leaves_the_one_before(self) -> None:
+    def test_film_that_cannot_be_sent_leaves_the_scene_before(self) -> None:
         with Servo(MovingPlane(), Circling(), AT_ONCE) as servo:
             before, broken = servo.film, MovingPlane()
             assert isinstance(broken.touch, CompiledTouch)
@@ -100,20 +94,20 @@ class TestShow:
 
 @pytest.mark.usefixtures("loop_in_thread")
 class TestPacked:
-    def test_whoever_packed_it_shows(self) -> None:
-        """Also when another process feels it, which is given a name and a number alone."""
+    def test_packed_film_is_shown_by_its_packer(self) -> None:
+        """Even if another process starts the loop, with the file's name and the stiffness alone."""
         made = pack_touch(MovingPlane(0.01), Circling().spec())
         handed_on = Packed(str(made.parcel), made.stiffness_n_per_m)
         with Servo(null_touch(), Circling(z_m=0.009), AT_ONCE) as servo:
             servo.swap(handed_on)
-            with pytest.raises(DeviceError, match="feel the film"):
+            with pytest.raises(DeviceError, match="start with a film"):
                 servo.show(level(0.012), 1)
             assert made.film is not None
             made.film.show(level(0.012), 3)
             until(lambda: servo.report().frame == 3 and made.film.arrived)
         assert not left_behind()
 
-    def test_in_the_same_process_the_loop_shows_as_well(self) -> None:
+    def test_packed_film_in_the_same_process_is_shown_by_the_servo(self) -> None:
         made = pack_touch(MovingPlane(0.01), Circling().spec())
         with Servo(made, Circling(z_m=0.009), AT_ONCE) as servo:
             assert servo.film is made.film
@@ -123,7 +117,7 @@ class TestPacked:
         for path in left_behind():
             path.unlink()
 
-    def test_its_memory_is_everybody_s_who_unpacks_it(self) -> None:
+    def test_film_memory_is_shared_by_all_who_unpack_it(self) -> None:
         path = parcel.pack(MovingPlane(0.01))
         here, again, there = parcel.share(path), parcel.share(path), parcel.unpack(path)
         here.show(level(0.0123), 9)
@@ -133,7 +127,7 @@ class TestPacked:
 
 
 def usage(process: int | str) -> np.ndarray:
-    """Descriptors, mappings, and KiB of memory of its own."""
+    """Return the process's number of descriptors and mappings, and its own memory, KiB."""
     of = Path(f"/proc/{process}")
     status = of.joinpath("status").read_text()
     anonymous = int(status.partition("RssAnon:")[2].split()[0])
@@ -144,7 +138,7 @@ def usage(process: int | str) -> np.ndarray:
 
 class TestFaults:
     @pytest.mark.parametrize("times", [60, pytest.param(5000, marks=pytest.mark.nightly)])
-    def test_films_and_touches_in_turn_leave_nothing_behind(self, times: int) -> None:
+    def test_swaps_of_films_and_touches_leave_no_memory(self, times: int) -> None:
         """In the loop's process, and in this one, which maps each film too."""
         with Servo(proxy(), Circling(z_m=0.009), AT_ONCE) as servo:
 
@@ -163,7 +157,7 @@ class TestFaults:
                 assert kibibytes <= 10_000
         assert not left_behind()
 
-    def test_a_loop_that_is_killed_while_pictures_are_shown(self, tmp_path: Path) -> None:
+    def test_loop_killed_during_a_film_leaves_no_force(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         device = Failing(fault="none", record=str(record), simulated=False)
         with Servo(MovingPlane(0.01, 100.0), device, AT_ONCE) as servo:
@@ -177,10 +171,10 @@ class TestFaults:
             assert float(record.read_text()) == 0
         assert not left_behind()
 
-    def test_a_host_that_is_killed_while_it_shows(self, tmp_path: Path) -> None:
+    def test_host_killed_during_a_film_leaves_no_force(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         program = subprocess.Popen([sys.executable, "-c", HOST.format(path=sys.path, record=str(record))])
-        until(lambda: record.exists() and float(record.read_text() or 0) > 0, 60)
+        until(lambda: record.exists() and float(record.read_text() or 0) > 0)
         time.sleep(0.1)
         program.kill()
         program.wait()
@@ -212,7 +206,7 @@ class TestSimulated:
         )
         return run_simulated(film or MovingPlane(0.01), mock, seconds, limits=AT_ONCE, frames=frames)
 
-    def test_frames_go_by_the_device_s_clock(self) -> None:
+    def test_simulated_frames_follow_the_device_clock(self) -> None:
         film, asked = MovingPlane(0.01), list[float]()
 
         def frames(time_s: float) -> None:
@@ -226,14 +220,14 @@ class TestSimulated:
         assert felt.proxy_m[199, 2] == pytest.approx(0.01101)
         assert film.dropped == 0
 
-    def test_what_they_raise_ends_it(self) -> None:
+    def test_error_of_frames_ends_the_session(self) -> None:
         def frames(_: float) -> None:
             raise ConfigError("there is no such frame")
 
         with pytest.raises(ConfigError, match="no such frame"):
             self.feel(frames)
 
-    def test_a_film_that_is_shown_nothing_is_its_first_frame_to_the_last_bit(self) -> None:
+    def test_film_without_shown_frames_equals_its_first_frame_to_the_bit(self) -> None:
         film = MovingPlane(0.01)
         moved, stood = self.feel(None, film=film), self.feel(None, film=MovingPlane(0.01).touch)
         assert np.array_equal(moved.rows[:, :FRAME], stood.rows[:, :FRAME])

@@ -1,10 +1,9 @@
-"""The force loop in its process: that it ticks, how it is watched, and that it leaves no force, however it ends."""
+"""The force loop in its process: its ticks, its swaps, and that it leaves no force, however it ends."""
 
 import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -19,13 +18,14 @@ from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import OVER, Safety, Servo
 from tangible_core.servo.ring import shared_folder
+from waiting import until
 
 FLAGS = TICK_COLUMNS.index("flags")
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
 LEVEL = HapticSurface.from_heights(np.full((32, 32), 0.002, np.float32))
 AT_ONCE = Safety(ramp_s=0, stale_s=1.0)  # a late tick takes no force away
 SOFT_N_PER_M = 50.0
-"""Held stably on a clock that stands still for half a second, too: no force is made softer for that."""
+"""Stiffness that is stable even if the clock stands still for half a second, so that no force is scaled down."""
 
 pytestmark = pytest.mark.usefixtures("patient")
 
@@ -38,13 +38,6 @@ def ticks(servo: Servo) -> np.ndarray:
     return servo.ring.since(0)[0]
 
 
-def until(condition, seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.01)
-
-
 class TestTicks:
     @pytest.mark.parametrize(
         ("device", "how"),
@@ -54,7 +47,7 @@ class TestTicks:
             (Failing(fault="none"), "the tick is in Python"),
         ],
     )
-    def test_each_loop_feels_the_surface(self, device, how: str) -> None:
+    def test_each_kind_of_loop_renders_the_surface(self, device, how: str) -> None:
         with Servo(proxy(stiffness_n_per_m=SOFT_N_PER_M), device, AT_ONCE, seconds=0.3) as servo:
             assert how in servo.how
             assert servo.start_s > 0
@@ -71,8 +64,8 @@ class TestTicks:
         assert due_s == pytest.approx(0.001 * periods, abs=1e-9)
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_ticks_are_those_of_the_law_and_its_guard(self) -> None:
-        """What the loop gave, replayed by the same law here, where nothing was limited."""
+    def test_ticks_match_the_law_and_its_guard(self) -> None:
+        """Compares the loop's forces that were not limited with those of the same law here."""
         heights = np.random.default_rng(0).uniform(0.002, 0.0024, (32, 32)).astype(np.float32)
         touch = proxy(HapticSurface.from_heights(heights), stiffness_n_per_m=SOFT_N_PER_M)
         safety = AT_ONCE.model_copy(update={"passivity": "off"})
@@ -84,7 +77,7 @@ class TestTicks:
         np.testing.assert_allclose(rows[free][:, FORCE], touch.path(rows[:, 2:5])[free], atol=1e-9)
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_it_goes_on_until_it_is_stopped(self) -> None:
+    def test_servo_without_end_runs_until_stopped(self) -> None:
         with Servo(proxy(), Circling()) as servo:
             until(lambda: servo.report().ticks > 50)
             assert servo.running
@@ -93,7 +86,7 @@ class TestTicks:
             assert servo.stop("again").stopped == "enough"
 
     @pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf")])
-    def test_a_time_that_is_none(self, seconds: float) -> None:
+    def test_servo_time_that_is_invalid_is_refused(self, seconds: float) -> None:
         with pytest.raises(ConfigError, match="seconds"):
             Servo(proxy(), Circling(), seconds=seconds)
 
@@ -101,7 +94,7 @@ class TestTicks:
 @pytest.mark.usefixtures("loop_in_thread")
 class TestSwap:
     @pytest.mark.parametrize("device", [Circling(z_m=0.0), Circling(z_m=0.0, exchanges=True), Failing(fault="none")])
-    def test_another_scene_from_one_tick_to_the_next(self, device) -> None:
+    def test_swap_takes_effect_from_one_tick_to_the_next(self, device) -> None:
         high = HapticSurface.from_heights(np.full((48, 64), 0.003, np.float32))
         with Servo(proxy(stiffness_n_per_m=100.0), device, AT_ONCE) as servo:
             until(lambda: servo.report().ticks > 100)
@@ -117,7 +110,7 @@ class TestSwap:
         assert rows[swapped:, 13].max() == pytest.approx(0.05)
 
     @pytest.mark.parametrize("device", [Circling(z_m=0.0), Circling(z_m=0.0, exchanges=True), Failing(fault="none")])
-    def test_another_scene_fades_in(self, device) -> None:
+    def test_swapped_scene_fades_in(self, device) -> None:
         """By the clock of the ticks: late ones have a greater share."""
         fading = Safety(ramp_s=0.1, stale_s=1.0, max_step_n=10, passivity="off")
         with Servo(proxy(stiffness_n_per_m=100.0), device, fading) as servo:
@@ -136,7 +129,7 @@ class TestSwap:
         assert whole > 0.05
         np.testing.assert_allclose(rows[swapped:, FORCE][:, 2], np.minimum(share, 1) * whole, rtol=1e-4)
 
-    def test_another_law(self) -> None:
+    def test_swapped_law_changes_the_kind_of_loop(self) -> None:
         with Servo(proxy(), Circling()) as servo:
             assert "the tick is in Python" not in servo.how
             servo.swap(FaultyTouch())
@@ -146,15 +139,15 @@ class TestSwap:
             there = servo.report().ticks
             until(lambda: servo.report().ticks > there + 20)
 
-    def test_after_the_end(self) -> None:
+    def test_swap_after_the_end_is_an_error(self) -> None:
         with Servo(proxy(), Circling(), seconds=0.01) as servo:
             until(lambda: not servo.running)
             with pytest.raises(DeviceError, match="has ended"):
                 servo.swap(proxy())
 
 
-def held(path: Path) -> float:
-    """What the device holds; nothing that is half written."""
+def held_force(path: Path) -> float:
+    """Return the force that the device holds; NaN if it was not written yet."""
     text = path.read_text() if path.exists() else ""
     return float(text) if text else float("nan")
 
@@ -164,12 +157,12 @@ class TestNoForceIsLeft:
         ("fault", "stopped"), [("unplugged", "does not answer"), ("none", OVER), ("nan", OVER), ("hangs", OVER)]
     )
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_whatever_the_device_does(self, fault, stopped: str, tmp_path: Path) -> None:
+    def test_any_device_fault_leaves_no_force(self, fault, stopped: str, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with Servo(proxy(), Failing(fault=fault, record=str(record)), AT_ONCE, seconds=1.0) as servo:
             until(lambda: not servo.running)
             assert stopped in servo.report().stopped
-            assert held(record) == 0
+            assert held_force(record) == 0
             rows = ticks(servo)
         assert rows[:, FORCE].any(), "the device held one before"
         if fault == "nan":
@@ -177,44 +170,44 @@ class TestNoForceIsLeft:
             np.testing.assert_array_equal(rows[bad, FORCE], 0)
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_a_fault_of_the_driver_is_raised_here(self, tmp_path: Path) -> None:
+    def test_driver_error_is_raised_in_the_host(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with (
             pytest.raises(ZeroDivisionError, match="the driver's own fault"),
             Servo(proxy(), Failing(fault="bug", record=str(record)), AT_ONCE) as servo,
         ):
             until(lambda: not servo.running)
-        assert held(record) == 0
+        assert held_force(record) == 0
 
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_a_device_that_cannot_be_opened(self) -> None:
+    def test_device_that_cannot_be_opened_is_an_error(self) -> None:
         before = set(shared_folder().glob(f"tangible-{os.getpid()}-*"))
         with pytest.raises(DeviceError, match="in use by another program"), Servo(proxy(), Failing(opens="never")):
             pytest.fail("it was opened")
         assert set(shared_folder().glob(f"tangible-{os.getpid()}-*")) == before
 
-    def test_a_killed_loop(self, tmp_path: Path) -> None:
-        """Nobody can run in a process that is killed: the host opens the device once more and lets go."""
+    def test_killed_loop_leaves_no_force(self, tmp_path: Path) -> None:
+        """A killed process cannot clean up: the host opens the device once more to release it."""
         record = tmp_path / "force"
         with Servo(proxy(), Failing(fault="none", record=str(record), simulated=False), AT_ONCE) as servo:
-            until(lambda: held(record) > 0)
+            until(lambda: held_force(record) > 0)
             os.kill(servo.process_id, signal.SIGKILL)
             until(lambda: not servo.running)
             assert "died" in servo.report().stopped
-            assert held(record) == 0
+            assert held_force(record) == 0
 
     @pytest.mark.parametrize("killed_by", [signal.SIGKILL, signal.SIGINT])
-    def test_a_host_that_is_killed(self, tmp_path: Path, killed_by: signal.Signals) -> None:
+    def test_killed_host_leaves_no_force(self, tmp_path: Path, killed_by: signal.Signals) -> None:
         record = tmp_path / "force"
         script = [*HEARING, sys.executable, "-c", HOST.format(record=str(record))]
         host = subprocess.Popen(script, stderr=subprocess.DEVNULL, start_new_session=True)
         try:
-            until(lambda: held(record) > 0)
+            until(lambda: held_force(record) > 0)
             if killed_by == signal.SIGINT:
                 os.killpg(host.pid, killed_by)  # as the keyboard does: host and loop both
             else:
                 os.kill(host.pid, killed_by)
-            until(lambda: held(record) == 0)
+            until(lambda: held_force(record) == 0)
             host.wait(60)
         finally:
             host.kill()

@@ -33,7 +33,7 @@ def touch() -> Touch:
 
 
 @pytest.mark.slow
-def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tmp_path: Path) -> None:
+def test_session_records_every_tick_and_reports_ten_times_a_second(touch: Touch, tmp_path: Path) -> None:
     reports: list[ServoReport] = []
     began_s: list[float] = []
     kept_at: list[int] = []
@@ -62,16 +62,14 @@ def test_every_tick_is_kept_and_reports_come_ten_times_a_second(touch: Touch, tm
 @pytest.mark.parametrize("name", ["hand.npz", "hand.csv"])
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_other_files_are_made_of_it_at_the_end(touch: Touch, tmp_path: Path, name: str) -> None:
+def test_keeping_converts_other_suffixes_at_the_end(touch: Touch, tmp_path: Path, name: str) -> None:
     with keeping(tmp_path / name, About("circling", "proxy", "")) as writer:
         run_in_real_time(touch, Circling(), 0.2, Safety(), lambda _: None, writer.append)
     assert len(Recording.load(tmp_path / name).rows) == 200
     assert [each.name for each in tmp_path.iterdir()] == [name]
 
 
-def test_what_grew_stays_where_no_other_file_could_be_made_of_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_keeping_leaves_the_nc_file_if_the_conversion_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise OutputError("no room; free some space")
 
@@ -82,7 +80,7 @@ def test_what_grew_stays_where_no_other_file_could_be_made_of_it(
 
 
 @pytest.mark.usefixtures("unchecked_shapes")
-def test_ticks_that_were_overwritten_are_told_and_the_others_kept(caplog: pytest.LogCaptureFixture) -> None:
+def test_drain_logs_overwritten_ticks_and_keeps_the_others(caplog: pytest.LogCaptureFixture) -> None:
     """Of every five, a ring that is too small for so slow a host still has the last three."""
     firsts: list[int] = []
 
@@ -99,8 +97,8 @@ def test_ticks_that_were_overwritten_are_told_and_the_others_kept(caplog: pytest
     assert caplog.text.count("2 ticks were overwritten before they could be recorded") == 2
 
 
-def written(ring: Ring, count: int) -> None:
-    """So many ticks more, of which the first number is the tick's own."""
+def write_ticks(ring: Ring, count: int) -> None:
+    """Write more ticks, whose first value is the number of the tick."""
     for number in range(ring.count, ring.count + count):
         row = np.zeros(17)
         row[0] = number
@@ -108,46 +106,46 @@ def written(ring: Ring, count: int) -> None:
 
 
 @pytest.fixture
-def looped(touch: Touch) -> Iterator[Servo]:
-    """As much of a loop as a drain sees."""
+def loop_part(touch: Touch) -> Iterator[Servo]:
+    """The part of a loop that a drain uses."""
     servo = Servo(touch, Circling())
     servo._ring = Ring.create(64)
     yield servo
     servo.ring.remove()
 
 
-def test_a_keeper_begins_where_it_is_told_and_hands_on_each_tick_once(looped: Servo) -> None:
+def test_drain_starts_at_its_first_tick_and_passes_each_tick_once(loop_part: Servo) -> None:
     kept: list[np.ndarray] = []
-    written(looped.ring, 100)
-    drain = RingDrain(looped, kept.append, looped.ring.count)
+    write_ticks(loop_part.ring, 100)
+    drain = RingDrain(loop_part, kept.append, loop_part.ring.count)
     drain.look()
     assert kept == [], "of what was before, nothing"
     for count in (1, 0, 30):
-        written(looped.ring, count)
+        write_ticks(loop_part.ring, count)
         drain.look()
-    looped.ring.remove()  # the loop has ended
+    loop_part.ring.remove()  # the loop has ended
     drain.look()
     assert [rows[:, 0].tolist() for rows in kept] == [[100], list(range(101, 131))]
 
 
-def test_a_full_disk_is_told_and_the_loop_goes_on(looped: Servo, tmp_path: Path) -> None:
+def test_drain_on_full_disk_raises_and_the_loop_goes_on(loop_part: Servo, tmp_path: Path) -> None:
     with keeping(tmp_path / "hand.nc", About("none", "none", "")) as writer:
-        drain = RingDrain(looped, writer.append)
-        written(looped.ring, 10)
+        drain = RingDrain(loop_part, writer.append)
+        write_ticks(loop_part.ring, 10)
         drain.look()
-        written(looped.ring, 50)
+        write_ticks(loop_part.ring, 50)
         with files_up_to((tmp_path / "hand.nc").stat().st_size + 1000), pytest.raises(OutputError, match="free some"):
             drain.look()
-    assert not looped.ring.header[STOP]
+    assert not loop_part.ring.header[STOP]
     whole = Recording.load(tmp_path / "hand.nc")
     assert whole.time_s.tolist() == list(range(10))
     assert whole.stopped.startswith("the recording ends early")
     with keeping(tmp_path / "again.csv", About("none", "none", "")) as writer:  # begun in the middle of a life
-        RingDrain(looped, writer.append, 55).look()
+        RingDrain(loop_part, writer.append, 55).look()
     assert Recording.load(tmp_path / "again.csv").time_s.tolist() == [55, 56, 57, 58, 59]
 
 
-def test_what_could_not_be_kept_is_handed_on_again(looped: Servo) -> None:
+def test_drain_passes_unrecorded_ticks_again(loop_part: Servo) -> None:
     kept: list[np.ndarray] = []
     full = [OutputError("no room")]
 
@@ -156,18 +154,18 @@ def test_what_could_not_be_kept_is_handed_on_again(looped: Servo) -> None:
             raise full.pop()
         kept.append(rows)
 
-    drain = RingDrain(looped, keep)
-    written(looped.ring, 5)
+    drain = RingDrain(loop_part, keep)
+    write_ticks(loop_part.ring, 5)
     with pytest.raises(OutputError, match="no room"):
         drain.look()
-    written(looped.ring, 5)
+    write_ticks(loop_part.ring, 5)
     drain.look()
     assert [rows[:, 0].tolist() for rows in kept] == [list(range(10))]
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_a_full_disk_ends_it_with_no_force(touch: Touch, tmp_path: Path) -> None:
+def test_session_on_full_disk_ends_without_force(touch: Touch, tmp_path: Path) -> None:
     force = tmp_path / "force"
     device = Failing(fault="none", record=str(force))
     with (
@@ -188,7 +186,7 @@ def test_a_full_disk_ends_it_with_no_force(touch: Touch, tmp_path: Path) -> None
 
 
 @pytest.mark.slow
-def test_ctrl_c(touch: Touch, tmp_path: Path) -> None:
+def test_session_on_ctrl_c_ends_without_force_and_keeps_its_ticks(touch: Touch, tmp_path: Path) -> None:
     force = tmp_path / "force"
     reports: list[ServoReport] = []
     with keeping(tmp_path / "hand.nc", About("failing", "proxy", "")) as writer:

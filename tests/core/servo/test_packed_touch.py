@@ -1,4 +1,4 @@
-"""A touch that one process makes and another hands on unread, and the touch of no force that a loop begins with."""
+"""Packed touches, which one process makes and another passes on unread; and the null touch."""
 
 import json
 import os
@@ -32,14 +32,14 @@ def stiff() -> Touch:
 
 
 class Silent(PlainTouch):
-    """A spring that does not say how stiff it is."""
+    """A spring that does not state its stiffness."""
 
     def force(self, state: HapticState) -> Force:
         return Force(0.0, 0.0, max(0.0, -7000 * state.position_m[2]))
 
 
 class Unsendable(PlainTouch):
-    """Of a law that holds what no other process can have."""
+    """A touch with a member that cannot be sent to another process."""
 
     stiffness_n_per_m = 0.0
 
@@ -64,22 +64,22 @@ def parcels() -> set[Path]:
 class TestStiffness:
     @pytest.mark.parametrize("touch", [stiff(), Silent()])
     @pytest.mark.parametrize("limits", [Safety(), Safety(coupling="auto")])
-    def test_it_is_limited_as_the_touch_itself(self, touch: Touch, limits: Safety):
+    def test_packed_touch_is_limited_like_the_touch(self, touch: Touch, limits: Safety):
         one = pack_touch(touch, SPEC)
         settings = [Servo(each, Circling(), limits)._arrays(each)[0] for each in (touch, one)]
         assert np.array_equal(*settings)
         assert one.stiffness_n_per_m > 5000
         one.discard()
 
-    def test_one_that_is_none_is_refused(self):
+    def test_packed_touch_with_invalid_stiffness_is_refused(self):
         one = Packed(parcel.pack(stiff()), float("nan"))
         with pytest.raises(BrokenMethod, match="stiffness of nan"), Servo(one, Circling()):
             pass
         assert not parcels()
 
 
-class TestWhoseItIs:
-    def test_that_of_a_maker_that_was_killed_is_ours_from_then_on(self):
+class TestOwner:
+    def test_parcel_of_killed_maker_belongs_to_its_adopter(self):
         one = Packed(*of_a_dead_maker(stiff()))
         assert one.parcel.name == f"tangible-{os.getpid()}-a_b1.parcel"
         Ring.create(16).remove()  # which sweeps
@@ -88,13 +88,13 @@ class TestWhoseItIs:
         one.discard()
         assert not parcels()
 
-    def test_what_was_swept_away_before_is_said(self):
+    def test_parcel_deleted_before_adoption_is_an_error(self):
         path, stiffness = of_a_dead_maker(stiff())
         Ring.create(16).remove()
         with pytest.raises(DeviceError, match=r"the packed scene is missing .*; make it again"):
             Packed(path, stiffness)
 
-    def test_it_has_one_owner(self):
+    def test_parcel_has_one_owner(self):
         first = pack_touch(stiff(), SPEC)
         dead = first.parcel.rename(first.parcel.with_name("tangible-999999999-c.parcel"))
         second = Packed(str(dead), 1.0)
@@ -103,26 +103,26 @@ class TestWhoseItIs:
         second.discard()
 
     @pytest.mark.parametrize("name", ["tangible-1-x.ring", "x.parcel", "../tangible-1.parcel", ""])
-    def test_what_is_no_parcel_is_left_alone(self, tmp_path: Path, name: str):
+    def test_file_that_is_not_a_parcel_is_left_alone(self, tmp_path: Path, name: str):
         with pytest.raises(DeviceError, match="is not the file of a packed scene"):
             Packed(tmp_path / name, 1.0)
 
-    def test_nothing_is_left_where_it_cannot_be_packed(self):
+    def test_touch_that_cannot_be_packed_leaves_no_file(self):
         with pytest.raises(DeviceError, match="make it picklable"):
             pack_touch(Unsendable(), SPEC)
         assert not parcels()
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-class TestHandedOn:
-    def test_here_it_gives_no_force(self):
+class TestUse:
+    def test_packed_touch_in_the_host_has_no_force(self):
         one = pack_touch(stiff(), SPEC)
         for ask in (lambda: one.force(HapticState((0.0, 0.0, 0.0))), lambda: one.path(np.zeros((2, 3)))):
             with pytest.raises(DeviceError, match="only in the loop's process; ask the touch that was packed"):
                 ask()
         one.discard()
 
-    def test_within_something_else_it_arrives_as_the_touch(self):
+    def test_packed_touch_inside_an_object_arrives_as_the_touch(self):
         one = pack_touch(stiff(), SPEC)
         (touch,) = parcel.unpack(parcel.pack([one]))
         assert isinstance(touch, CompiledTouch)
@@ -130,7 +130,7 @@ class TestHandedOn:
         assert not parcels()
 
     @pytest.mark.parametrize("device", [Failing(opens="never"), Circling()])
-    def test_a_loop_that_does_not_start_takes_it_along(self, device, monkeypatch: pytest.MonkeyPatch):
+    def test_parcel_of_loop_that_does_not_start_is_deleted(self, device, monkeypatch: pytest.MonkeyPatch):
         one = pack_touch(stiff(), SPEC)
         if isinstance(device, Circling):  # there is no room for the ring
             monkeypatch.setattr(ring, "_size", lambda slots: 1 << 62)
@@ -138,7 +138,7 @@ class TestHandedOn:
             pass
         assert not parcels()
 
-    def test_it_is_felt_once_and_what_was_felt_before_stays(self):
+    def test_packed_touch_is_used_once_and_the_scene_before_stays(self):
         with Servo(null_touch(), Failing(fault="none")) as servo:
             one = pack_touch(FaultyTouch(), SPEC)
             servo.swap(one)
@@ -186,7 +186,7 @@ print(json.dumps({
 """
 
 
-def test_a_process_without_kernels_begins_with_no_force_and_hands_a_scene_on():
+def test_process_without_kernels_starts_with_null_touch_and_passes_a_scene_on():
     made = pack_touch(stiff(), SPEC)
     words = [str(made.parcel), str(made.stiffness_n_per_m), str(0.002 - DEPTH_M)]
     ran = subprocess.run([sys.executable, "-c", SERVER, *words], capture_output=True, text=True, timeout=120)
@@ -200,8 +200,8 @@ def test_a_process_without_kernels_begins_with_no_force_and_hands_a_scene_on():
     assert not parcels()
 
 
-class TestStill:
-    def test_it_gives_no_force_anywhere(self):
+class TestNullTouch:
+    def test_null_touch_has_no_force_anywhere(self):
         here, there = null_touch(), parcel.unpack(parcel.pack(null_touch()))
         assert isinstance(there, CompiledTouch)
         places = np.random.default_rng(0).uniform(-1, 1, (100, 3)) * np.logspace(-9, 3, 100)[:, None]

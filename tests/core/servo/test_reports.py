@@ -1,4 +1,4 @@
-"""What is said of a loop: one report, whichever loop it is."""
+"""Reports of a loop: the same for every kind of loop."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from tangible_devices.replay import Replay
 from tangible_render.penalty import Penalty
 
 
-def test_a_report_is_of_the_last_tick():
+def test_brief_report_has_the_last_tick():
     rows = np.arange(2.0 * len(TICK_COLUMNS)).reshape(2, -1)
     assert brief_report(rows, 7, 1.5, 0.25, "it is over") == ServoReport(
         ticks=7,
@@ -23,12 +23,12 @@ def test_a_report_is_of_the_last_tick():
     )
 
 
-def test_before_the_first_tick_there_is_nothing_to_say():
+def test_brief_report_before_the_first_tick_is_empty():
     nothing = brief_report(np.empty((0, len(TICK_COLUMNS))), 0, 0.0, 0.0, "")
     assert nothing == ServoReport(0, 0.0, HapticState((0.0, 0.0, 0.0)), NO_FORCE, 0.0, 0.0)
 
 
-def test_in_simulated_time_it_is_that_of_the_recording():
+def test_brief_report_in_simulated_time_matches_the_recording():
     from tangible_core.data import HapticSurface
 
     reports: list[ServoReport] = []

@@ -1,4 +1,4 @@
-"""The ring that a force loop shares: its layout, what a reader gets of it, and what becomes of the file."""
+"""The ring of a force loop: its layout, its readers, and its file."""
 
 import os
 import threading
@@ -38,7 +38,7 @@ def small():
 
 
 def put(into: Ring, *numbers: int) -> None:
-    """Ticks of which every number is the tick's own; the flags are none."""
+    """Write ticks whose values are all the number of the tick, without flags."""
     for number in numbers:
         row = np.full(len(TICK_COLUMNS), float(number))
         row[cycle.FLAGS] = 0
@@ -61,7 +61,7 @@ class Overwritten:
 
 
 class TestReading:
-    def test_all_of_it_then_only_what_is_new(self, small: Ring) -> None:
+    def test_since_returns_all_ticks_then_only_new_ones(self, small: Ring) -> None:
         put(small, *range(5))
         rows, following = small.since(0)
         assert (rows[:, 0].tolist(), following) == ([0, 1, 2, 3, 4], 5)
@@ -70,18 +70,18 @@ class TestReading:
         assert (rows[:, 0].tolist(), following) == ([5, 6], 7)
         assert small.since(following)[0].shape == (0, len(TICK_COLUMNS))
 
-    def test_what_was_overwritten_is_missing_and_can_be_counted(self, small: Ring) -> None:
+    def test_since_omits_overwritten_ticks_and_returns_the_next_number(self, small: Ring) -> None:
         put(small, *range(40))
         rows, following = small.since(10)
         assert rows[:, 0].tolist() == list(range(24, 40))
         assert following - 10 - len(rows) == 14
 
-    def test_a_slot_being_written_is_not_read(self, small: Ring) -> None:
+    def test_slot_being_written_is_not_read(self, small: Ring) -> None:
         put(small, *range(5))
         small.stamps[3] = -1
         assert small.since(0)[0][:, 0].tolist() == [0, 1, 2, 4]
 
-    def test_a_row_that_is_overwritten_while_it_is_read_is_not_given(self, small: Ring) -> None:
+    def test_row_overwritten_during_the_read_is_omitted(self, small: Ring) -> None:
         put(small, *range(16))
         small.ticks = Overwritten(small)
         rows, following = small.since(0)
@@ -89,13 +89,13 @@ class TestReading:
         assert whole.tolist() == [[number] * 16 for number in range(1, 16)]
         assert following == 16
 
-    def test_of_a_ring_that_is_not_full_nothing_is_made_up(self, small: Ring) -> None:
-        """The mark of a slot that is being written is no number of a tick."""
+    def test_ring_that_is_not_full_has_no_made_up_ticks(self, small: Ring) -> None:
+        """The mark of a slot that is being written is not the number of a tick."""
         put(small, *range(15))
         small.stamps[15] = -1
         assert small.since(-1)[0][:, 0].tolist() == list(range(15))
 
-    def test_no_torn_row_while_a_loop_writes_as_fast_as_it_can(self, small: Ring) -> None:
+    def test_rows_read_during_fast_writing_are_whole(self, small: Ring) -> None:
         done = threading.Event()
 
         def write() -> None:
@@ -130,7 +130,7 @@ class Overtaken:
 
 
 class TestLatest:
-    def test_it_is_the_newest_tick_of_a_ring_that_is_full_or_not(self, small: Ring) -> None:
+    def test_latest_is_the_newest_tick(self, small: Ring) -> None:
         small.stamps[-1] = -1  # the mark of a slot that is being written is no number of a tick
         assert small.latest() is None
         for number in range(40):
@@ -139,26 +139,26 @@ class TestLatest:
             assert row is not None and row[0] == number
             assert small.count == number + 1
 
-    def test_it_stays_what_it_was(self, small: Ring) -> None:
+    def test_latest_is_a_copy(self, small: Ring) -> None:
         put(small, *range(3))
         row = small.latest()
         put(small, *range(3, 30))
         assert row is not None and np.delete(row, cycle.FLAGS).tolist() == [2] * 16
 
-    def test_one_that_is_overwritten_while_it_is_read_is_none(self, small: Ring) -> None:
+    def test_latest_overwritten_during_the_read_is_none(self, small: Ring) -> None:
         put(small, *range(20))
         small.ticks = Overtaken(small)
         assert small.latest() is None
         row = small.latest()
         assert row is not None and row[0] == 35
 
-    def test_the_words_of_the_header_have_names(self, small: Ring) -> None:
+    def test_header_words_have_names(self, small: Ring) -> None:
         small.header[START_NS], small.header[OVERRUNS] = 7, 5
         assert (small.start_ns, small.overruns, small.count) == (7, 5, 0)
 
 
 class TestWriting:
-    def test_a_slot_is_marked_while_it_is_written(self, small: Ring) -> None:
+    def test_slot_is_marked_while_it_is_written(self, small: Ring) -> None:
         """The row that is written is the stamps themselves: what they were at that moment stands in it."""
         put(small, *range(20))
         row = small.stamps.view(np.float64)
@@ -167,9 +167,7 @@ class TestWriting:
         assert seen.tolist() == [16, 17, 18, 19, -1, *range(5, 16)]
         assert small.stamps[4] == 20
 
-    def test_a_tick_is_stamped_when_it_is_there_and_counted_when_it_is_stamped(
-        self, small: Ring, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
+    def test_tick_is_written_then_stamped_then_counted(self, small: Ring, monkeypatch: pytest.MonkeyPatch) -> None:
         put(small, *range(20))
         steps: list[tuple[str, int, bool, int]] = []
         row = np.full(len(TICK_COLUMNS), 20.0)
@@ -184,7 +182,7 @@ class TestWriting:
         cycle.publish.py_func(*sections(small), row, 20_000_000, 0)
         assert steps == [("stamp", -1, False, 4), ("stamp", 20, True, 4), ("count", 21, True, COUNT)]
 
-    def test_flags_of_the_loop_are_added_once(self, small: Ring) -> None:
+    def test_loop_flags_are_added_once(self, small: Ring) -> None:
         small.header[MARKS] = int(TickFlag.SWAPPED)
         for _ in range(2):
             row = np.full(len(TICK_COLUMNS), float(TickFlag.TOUCHING))
@@ -192,7 +190,7 @@ class TestWriting:
         both = int(TickFlag.TOUCHING | TickFlag.SWAPPED)
         assert small.since(0)[0][:, cycle.FLAGS].tolist() == [both, int(TickFlag.TOUCHING)]
 
-    def test_the_widest_of_each_histogram_are_counted_in_its_last_bin(self, small: Ring) -> None:
+    def test_histogram_values_beyond_the_range_are_in_the_last_bin(self, small: Ring) -> None:
         small.header[PERIOD_NS] = 1_000_000
         rest = np.zeros(len(TICK_COLUMNS))
         for at_ns, late_ns in ((0, -5_000), (10**10, 10**10), (10**10 + 10**6, 999), (10**10 + 10**6 + 10, 1000)):
@@ -209,14 +207,14 @@ class TestWriting:
 
 
 class TestFile:
-    def test_another_process_finds_the_same(self, small: Ring) -> None:
+    def test_attached_ring_has_the_same_contents(self, small: Ring) -> None:
         put(small, 0, 1)
         other = Ring.attach(small.path)
         assert other.header[COUNT] == 2
         assert other.header[SLOTS] == 16
         np.testing.assert_array_equal(other.since(0)[0], small.since(0)[0])
 
-    def test_sections_are_where_the_table_says(self, small: Ring) -> None:
+    def test_sections_are_at_the_documented_offsets(self, small: Ring) -> None:
         """By the documented layout alone, as a reader in another language finds them."""
         put(small, 0, 7)
         data = small.path.read_bytes()
@@ -226,20 +224,20 @@ class TestFile:
         assert ticks[1, 0] == 7
 
     @pytest.mark.parametrize("content", [b"", b"x" * 100, bytes(100_000)])
-    def test_what_is_no_ring_is_refused(self, tmp_path: Path, content: bytes) -> None:
+    def test_file_that_is_not_a_ring_is_refused(self, tmp_path: Path, content: bytes) -> None:
         (tmp_path / "x.ring").write_bytes(content)
         with pytest.raises(DeviceError, match=r"x\.ring"):
             Ring.attach(tmp_path / "x.ring")
 
     @pytest.mark.parametrize("word", [IS_MAGIC, IS_LAYOUT, SLOTS])
-    def test_a_ring_of_another_layout_is_refused(self, small: Ring, word: int) -> None:
+    def test_ring_of_another_layout_is_refused(self, small: Ring, word: int) -> None:
         small.header[word] += 1
         with pytest.raises(DeviceError, match="is not a ring of layout"):
             Ring.attach(small.path)
         small.header[word] -= 1
         Ring.attach(small.path)
 
-    def test_every_section_begins_at_a_multiple_of_64_bytes(self) -> None:
+    def test_sections_begin_at_multiples_of_64_bytes(self) -> None:
         odd = Ring.create(5)
         try:
             put(odd, *range(7))
@@ -251,23 +249,23 @@ class TestFile:
         assert np.frombuffer(data, np.float64, 1, at + 64)[0] == 5
         assert len(data) % 64 == 0
 
-    def test_none_there(self, tmp_path: Path) -> None:
+    def test_missing_ring_is_refused(self, tmp_path: Path) -> None:
         with pytest.raises(DeviceError, match="no force loop runs there"):
             Ring.attach(tmp_path / "none.ring")
 
-    def test_no_room(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def test_ring_without_room_is_an_error(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
         monkeypatch.setattr(ring, "shared_folder", lambda: tmp_path / "missing")
         with pytest.raises(DeviceError, match="no room"):
             Ring.create()
 
-    def test_a_folder_of_ones_own(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-        """For two runs of tests side by side, one of which sweeps away what it should not."""
+    def test_shared_folder_can_be_configured(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+        """So that two runs of tests at once do not delete each other's files."""
         monkeypatch.setenv("TANGIBLE_SHARED_DIR", str(tmp_path))
         made = Ring.create(16).path, parcel.pack([1])
         assert {path.parent for path in made} == {tmp_path}
         assert set(tmp_path.iterdir()) == set(made)
 
-    def test_what_killed_processes_left_is_swept_away(self) -> None:
+    def test_files_of_killed_processes_are_deleted(self) -> None:
         dead = shared_folder() / "tangible-999999999-x.ring"
         mine = shared_folder() / f"tangible-{os.getpid()}-x.ring"
         dead.touch()
@@ -279,8 +277,8 @@ class TestFile:
         finally:
             mine.unlink()
 
-    def test_only_files_of_ones_own_are_swept_and_odd_ones_harm_nobody(self, tmp_path: Path, monkeypatch) -> None:
-        """Names that are none of ours, a folder, a link, a file that cannot be removed, and one of another user."""
+    def test_files_of_others_and_odd_files_are_not_deleted(self, tmp_path: Path, monkeypatch) -> None:
+        """Files of other names, a folder, a link, a file that cannot be deleted, and a file of another user."""
         monkeypatch.setattr(ring, "shared_folder", lambda: tmp_path)
         odd = [
             "tangible-²-x.ring",
@@ -321,7 +319,7 @@ class TestFile:
         assert [path.exists() for path in tried] == [True, False]
         made.remove()
 
-    def test_the_table_in_the_documentation_is_the_layout(self) -> None:
+    def test_documented_table_matches_the_layout(self) -> None:
         """Name, type and shape of each section, for readers in other languages."""
         types = {np.int64: "int64", np.float64: "float64", np.float32: "float32"}
         for name, (kind, shape) in ring._sections(12345).items():
@@ -330,10 +328,10 @@ class TestFile:
 
 
 class TestReport:
-    def test_of_an_empty_ring(self, small: Ring) -> None:
+    def test_report_of_empty_ring_is_empty(self, small: Ring) -> None:
         assert report(small).ticks == 0
 
-    def test_sums(self, small: Ring) -> None:
+    def test_report_has_the_sums_of_the_ring(self, small: Ring) -> None:
         """Force and position are (k, k, k) at tick k: the work is that of each force over the way to the next tick."""
         put(small, *range(20))
         found = report(small, "over")
@@ -343,7 +341,7 @@ class TestReport:
         assert found.period_us == (1000, 1000, 1000, 1000)
         assert found.late_us == (18, 38, 38, 38)
 
-    def test_it_says_what_each_number_is(self, small: Ring) -> None:
+    def test_report_has_each_number_under_its_name(self, small: Ring) -> None:
         row = np.arange(100.0, 100.0 + len(TICK_COLUMNS))
         cycle.finish(sections(small), row, 5, 7_000)
         small.header[OVERRUNS], small.guard[COUNTS + 2] = 3, 8
@@ -355,7 +353,7 @@ class TestReport:
         assert found.late_us == pytest.approx((7, 7, 7, 7))
         assert found.period_us == (0, 0, 0, 0)
 
-    def test_the_greatest_of_all_and_not_of_the_last(self, small: Ring) -> None:
+    def test_report_has_the_greatest_values_of_all_ticks(self, small: Ring) -> None:
         for at_ns, late_ns, force_n in ((0, 50_000, 3.0), (5_000_000, 2_000, 1.0), (6_000_000, 0, 0.0)):
             row = np.zeros(len(TICK_COLUMNS))
             row[11] = force_n
@@ -365,7 +363,7 @@ class TestReport:
         assert found.late_us is not None and found.late_us.most == pytest.approx(50)
         assert found.period_us is not None and found.period_us.most == pytest.approx(5000)
 
-    def test_contact_is_what_it_is_in_a_recording(self, small: Ring) -> None:
+    def test_report_contact_matches_the_recording(self, small: Ring) -> None:
         """Ticks with a force, whatever the law gave before its force was limited."""
         for force_n in (0.0, 2.0004, 5.0, 5.0, 1e9):
             row = np.zeros(len(TICK_COLUMNS))
@@ -377,7 +375,7 @@ class TestReport:
         assert live["median_contact_force_n"] == pytest.approx(kept["median_contact_force_n"], abs=1e-3)
         assert np.flatnonzero(small.contact).tolist() == [2000, 5000, len(small.contact) - 1]
 
-    def test_loops_of_one_session_are_counted_together(self, small: Ring) -> None:
+    def test_totals_of_consecutive_loops_are_added(self, small: Ring) -> None:
         put(small, *range(20))
         small.guard[COUNTS + 2] = 8
         small.header[OVERRUNS] = 3
@@ -388,7 +386,7 @@ class TestReport:
         same = ("peak_force_n", "period_us", "late_us", "contact_share", "median_contact_force_n")
         assert [getattr(both, each) for each in same] == [getattr(one, each) for each in same]
 
-    def test_quantiles(self) -> None:
+    def test_spread_has_the_quantiles_of_a_histogram(self) -> None:
         counts = np.zeros(100, np.int64)
         counts[[10, 20, 30, 40]] = 989, 10, 1, 0
         assert spread(counts, 31e-6) == (10, 20, 20, 31)

@@ -1,4 +1,4 @@
-"""Where the guard changes most of what is felt, the summary of a session says so, and what to do."""
+"""The summary of a session if the guard changes most of its forces, with the cure."""
 
 from pathlib import Path
 
@@ -42,13 +42,13 @@ def folder(tmp_path: Path) -> Path:
         ({"STALE": 5}, "In 100 % of the ticks in contact the force was set to zero, because no new position came"),
     ],
 )
-def test_a_sentence_where_most_ticks_were_changed(flagged: dict[str, int], said: str):
+def test_guard_summary_reports_limits_of_most_ticks(flagged: dict[str, int], said: str):
     found = guard_summary(flagged)
     assert found[: len(said)] == said
     assert bool(found) == bool(said)
 
 
-def test_a_recording_says_it():
+def test_recording_prints_the_guard_summary():
     softened = run_simulated(Proxy(stiffness_n_per_m=5000.0).touch(GROUND), Mock(), 1.0)
     assert SOFTENED in repr(softened)
     assert repr(softened).startswith("Recording of 0.999 s: 1000 ticks, peak force ")
@@ -57,7 +57,7 @@ def test_a_recording_says_it():
 
 
 @pytest.mark.slow
-def test_a_run_says_it(folder: Path):
+def test_run_prints_the_guard_summary(folder: Path):
     done = tangible("run", "p.yaml", "--seconds", 0.5, cwd=folder)
     assert done.returncode == 0, done.stderr
     assert SOFTENED in done.stdout
@@ -65,7 +65,7 @@ def test_a_run_says_it(folder: Path):
 
 
 @pytest.mark.parametrize("more", [(), ("--json",)])
-def test_feeling_says_it(folder: Path, more: tuple[str, ...], monkeypatch: pytest.MonkeyPatch):
+def test_feel_prints_the_guard_summary(folder: Path, more: tuple[str, ...], monkeypatch: pytest.MonkeyPatch):
     def feel(self: Pipeline, *_: object, on_report, on_start, **__: object) -> None:
         flagged = {"TOUCHING": 90, "STIFFNESS_LIMITED": 90}
         on_start(type("Servo", (), {"how": "made up", "start_s": 0.0}))

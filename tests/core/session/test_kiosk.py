@@ -1,4 +1,4 @@
-"""Scenes in turn on one device that may go and come back: no force is left, nothing is counted twice or lost."""
+"""A kiosk whose device may be unplugged and return: no force is left, and no tick is lost or counted twice."""
 
 import signal
 from pathlib import Path
@@ -27,14 +27,14 @@ def proxy(height_m: float = 0.002) -> Touch:
 
 
 @pytest.fixture
-def soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A device is looked for again without a pause."""
+def no_pause(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Search for a device again without a pause."""
     monkeypatch.setattr(kiosk, "FIRST_PAUSE_S", 0.01)
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_each_is_felt_in_its_turn_with_its_own_limits_and_the_first_again() -> None:
+def test_kiosk_rotates_scenes_with_their_own_limits() -> None:
     kept: list[np.ndarray] = []
     stop = Event()
 
@@ -55,8 +55,8 @@ def test_each_is_felt_in_its_turn_with_its_own_limits_and_the_first_again() -> N
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("soon")
-def test_a_device_that_goes_is_waited_for_without_force(tmp_path: Path) -> None:
+@pytest.mark.usefixtures("no_pause")
+def test_kiosk_waits_for_a_lost_device_without_force(tmp_path: Path) -> None:
     """It answers 99 times each time it is opened."""
     force = tmp_path / "force"
     kept: list[np.ndarray] = []
@@ -90,9 +90,9 @@ def test_a_device_that_goes_is_waited_for_without_force(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("soon")
+@pytest.mark.usefixtures("no_pause")
 @pytest.mark.usefixtures("loop_in_thread")
-def test_a_device_that_is_not_there_yet(tmp_path: Path) -> None:
+def test_kiosk_waits_for_a_device_that_is_absent_at_first(tmp_path: Path) -> None:
     said: list[str] = []
     device = Failing(fault="none", opens="second", record=str(tmp_path / "force"))
     last = run_kiosk([Slot(proxy(), AT_ONCE)], device, 0.1, on_wait=said.append)
@@ -102,21 +102,21 @@ def test_a_device_that_is_not_there_yet(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_time_goes_on_without_a_device() -> None:
+def test_kiosk_time_goes_on_without_a_device() -> None:
     last = run_kiosk([Slot(proxy(), AT_ONCE)], Failing(), 0.5, on_wait=lambda _: None)
     assert (last.stopped, last.ticks) == (OVER, 99)
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_without_the_word_to_wait_it_ends_with_its_device() -> None:
+def test_kiosk_without_on_wait_ends_with_its_device() -> None:
     last = run_kiosk([Slot(proxy(), AT_ONCE)], Failing())
     assert (last.stopped, last.ticks) == ("the failing device does not answer; plug it in", 99)
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_a_fault_of_a_plugin_is_not_waited_for(tmp_path: Path) -> None:
+def test_kiosk_raises_a_plugin_error_at_once(tmp_path: Path) -> None:
     record = tmp_path / "force"
     with pytest.raises(ZeroDivisionError, match="the driver's own fault"):
         run_kiosk([Slot(proxy(), AT_ONCE)], Failing(fault="bug", record=str(record)), on_wait=pytest.fail)
@@ -125,9 +125,9 @@ def test_a_fault_of_a_plugin_is_not_waited_for(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_a_scene_that_cannot_be_sent_ends_it(tmp_path: Path) -> None:
+def test_kiosk_ends_on_a_scene_that_cannot_be_sent(tmp_path: Path) -> None:
     class Local(PlainTouch):
-        """Of a function: no other process finds it."""
+        """A touch of a local class, which no other process can import."""
 
         def force(self, state: HapticState) -> Force:
             return NO_FORCE
@@ -140,7 +140,7 @@ def test_a_scene_that_cannot_be_sent_ends_it(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_ctrl_c_while_it_waits() -> None:
+def test_kiosk_on_ctrl_c_while_waiting_ends() -> None:
     reports: list[ServoReport] = []
     with hearing():
         last = run_kiosk(
@@ -153,7 +153,7 @@ def test_ctrl_c_while_it_waits() -> None:
     assert (last, last.stopped, last.ticks) == (reports[-1], INTERRUPTED, 99)
 
 
-def test_a_reason_is_told_once_and_looked_into_less_and_less(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_kiosk_reports_a_reason_once_and_searches_less_and_less_often(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(kiosk, "FIRST_PAUSE_S", 1e-3)
     monkeypatch.setattr(kiosk, "LONGEST_PAUSE_S", 3e-3)
     said: list[str] = []

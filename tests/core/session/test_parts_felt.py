@@ -1,4 +1,4 @@
-"""Which part of a picture the tip is on: by its place, its name, and in what a recording says of itself."""
+"""The part under the tip: by place and by name, in reports and in recordings."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -34,7 +34,7 @@ NAMES = ("sky", "", "Gräser [hoch]")
 
 
 def in_parts(labels: np.ndarray = LABELS, names: tuple[str, ...] | None = NAMES) -> HapticSurface:
-    """80 x 40 mm, 5 mm high: upper left, upper right, and all of the lower half."""
+    """Return a surface of 80 x 40 mm, 5 mm high, with parts upper left, upper right, and the lower half."""
     relief = Relief(np.full(labels.shape, 0.005, np.float32), (0.08, 0.04))
     return HapticSurface(relief, labels, None, names)
 
@@ -52,19 +52,19 @@ def in_parts(labels: np.ndarray = LABELS, names: tuple[str, ...] | None = NAMES)
         (np.nan, 0, ""),
     ],
 )
-def test_the_part_under_a_tip_by_its_name(x_mm: float, y_mm: float, called: str):
+def test_part_under_a_tip_is_named(x_mm: float, y_mm: float, called: str):
     assert part_under(in_parts(), (x_mm / 1000, y_mm / 1000, 0.1)) == called
     assert part_under(in_parts(names=None), (x_mm / 1000, y_mm / 1000, 0.1)) == "", "its labels are no parts"
 
 
 def made_of(*materials: str, names: tuple[str, ...] | None = NAMES) -> HapticSurface:
-    """`in_parts`, each of a material."""
+    """Return the surface of `in_parts`, each part of a material."""
     found = tuple(Material(name, 500.0, 0.0, 0.0, 0.0) for name in materials)
     return replace(in_parts(names=names), materials=found)
 
 
 @pytest.mark.parametrize("names", [NAMES, None], ids=["parts", "segments"])
-def test_the_material_under_a_tip_of_parts_and_of_segments(names: tuple[str, ...] | None):
+def test_material_under_a_tip_is_named_for_parts_and_segments(names: tuple[str, ...] | None):
     surface = made_of("glass", "wood", "moss", names=names)
     places = [(-0.02, 0.01), (0.02, 0.01), (0.0, -0.01), (-0.041, 0.01), (np.nan, 0.0)]
     assert [material_under(surface, (x, y, 0.1)) for x, y in places] == ["glass", "wood", "moss", "", ""]
@@ -75,7 +75,7 @@ def test_the_material_under_a_tip_of_parts_and_of_segments(names: tuple[str, ...
     assert {each.material for each in heard} == {"moss"}
 
 
-def test_what_was_felt_of_each_part():
+def test_parts_felt_have_share_and_peak_force():
     places = [(-20, 10, 3.0)] * 5 + [(20, 10, 1.0)] * 3 + [(20, -10, 0.0)] * 9 + [(0, 30, 2.0), (-20, 10, 4.0)]
     position_m = np.array([(x / 1000, y / 1000, 0.0) for x, y, _ in places])
     force_n = np.array([(0.0, 0.0, force) for *_, force in places])
@@ -90,7 +90,7 @@ def test_what_was_felt_of_each_part():
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_reports_name_the_part_of_the_scene_that_is_felt():
+def test_reports_name_the_part_of_the_current_scene():
     """The first scene is all door, the second all wall; the loop is told neither."""
     said: list[str] = []
     both = Event()
@@ -107,7 +107,7 @@ def test_reports_name_the_part_of_the_scene_that_is_felt():
     assert last.part in ("door", "wall")
 
 
-def test_reports_of_simulated_time_too_and_none_before_the_first_tick():
+def test_reports_in_simulated_time_name_the_part_from_the_first_tick_on():
     heard: list[ServoReport] = []
     told = with_parts(in_parts(0 * LABELS, ("door",)), heard.append)
     run_simulated(Penalty().touch(in_parts()), Mock(path="press"), 0.3, told)
@@ -117,7 +117,7 @@ def test_reports_of_simulated_time_too_and_none_before_the_first_tick():
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz"])
-def test_a_recording_says_what_parts_are_called(tmp_path: Path, suffix: str):
+def test_recording_has_the_names_of_parts(tmp_path: Path, suffix: str):
     said, of = names_text({6: "Gräser [hoch]", 0: 'a "wall"\n'}), names_text({6: "moss"})
     Recording(np.zeros((2, 17)), "", About("mock", parts=said, materials=of)).save(tmp_path / f"a{suffix}")
     about = Recording.load(tmp_path / f"a{suffix}").about
@@ -126,7 +126,7 @@ def test_a_recording_says_what_parts_are_called(tmp_path: Path, suffix: str):
     assert about.device == "mock"
 
 
-def test_others_read_the_names_and_recordings_from_before_have_none(tmp_path: Path):
+def test_names_are_read_by_other_programs_and_absent_in_old_recordings(tmp_path: Path):
     from scipy.io import netcdf_file
 
     Recording(np.zeros((2, 17)), "", About(parts=names_text({1: "wall"}))).save(tmp_path / "a.nc")
@@ -149,11 +149,11 @@ def test_others_read_the_names_and_recordings_from_before_have_none(tmp_path: Pa
         ("", None),
     ],
 )
-def test_names_by_the_text_of_a_pipeline_file(text: str, names: dict[int, str] | None):
+def test_names_are_read_from_the_text_of_a_pipeline_file(text: str, names: dict[int, str] | None):
     assert names_of(names_in(text)) == ([] if names is None else [names])
 
 
-def test_names_of_scenes_in_turn_and_damaged_ones():
+def test_names_of_kiosk_scenes_are_read_and_damaged_ones_refused():
     assert names_of('{"0": "door"}\n\n{"2": "wall"}') == [{0: "door"}, {}, {2: "wall"}]
     assert names_text({}) == ""
     for damaged in ("{", "[1]", '{"a": "b"}', "7"):

@@ -1,4 +1,4 @@
-"""The loop of touch and device: what it records, how it ends, and that it ends with no force."""
+"""Sessions in simulated time: their recordings, and that every end leaves no force."""
 
 import logging
 import math
@@ -21,11 +21,11 @@ from tangible_render.proxy import Proxy
 
 PUSH = Force(0.0, 0.0, 2.0)
 FREE = Safety(ramp_s=0, max_step_n=10, passivity="off")
-"""Limits that let all through but what is too strong or not finite."""
+"""Limits that pass every force but those that are too strong or not finite."""
 
 
 class Says(PlainTouch):
-    """A touch that answers what a function of the tick says."""
+    """A touch whose force is a function of the tick."""
 
     stiffness_n_per_m = 0.0
 
@@ -38,7 +38,7 @@ class Says(PlainTouch):
 
 
 class Scripted(Link):
-    """A device that rises by a millimetre a tick, and fails or stands still where it is told to."""
+    """A device that rises by a millimetre a tick, and fails or stands still at a given tick."""
 
     def __init__(self, fails_at: int | None = None, stamps: Callable[[int], float] = lambda tick: 5 + tick * 0.001):
         super().__init__("the scripted device", 8.0)
@@ -69,7 +69,7 @@ LINKS: list[Link | DeviceError] = []
 
 
 class Bench(HapticDevice):
-    """Opens the link that the test has laid out."""
+    """A device that opens the link of the test."""
 
     def spec(self) -> DeviceSpec:
         return DeviceSpec(8.0, 3000.0, 20.0, (0.08, 0.08, 0.08), 1e-6)
@@ -97,7 +97,7 @@ def fails(error: BaseException, at: int) -> Callable[[int], Force]:
 
 
 class TestRun:
-    def test_what_is_recorded_is_what_was_felt(self):
+    def test_recording_matches_the_forces_of_the_touch(self):
         touch = PenaltyGradient().touch(HapticSurface.from_heights(np.random.default_rng(0).uniform(0, 0.004, (9, 9))))
         mock = Mock(hand=None, path="circle", z_m=0.001)
         recording = run_simulated(touch, mock, 0.5, limits=FREE)
@@ -110,7 +110,7 @@ class TestRun:
         assert (recording.stopped, recording.force_limited, recording.not_finite) == ("", 0, 0)
 
     @pytest.mark.parametrize(("seconds", "ticks"), [(1.0, 1000), (0.3, 300), (0.0014, 1), (0.0016, 2), (1e-9, 1)])
-    def test_ticks_are_the_seconds_in_periods(self, seconds: float, ticks: int):
+    def test_number_of_ticks_is_the_time_in_periods(self, seconds: float, ticks: int):
         recording, link = feel(lambda _: PUSH, seconds)
         assert recording.time_s.size == ticks
         assert recording.time_s[0] == 5
@@ -118,7 +118,7 @@ class TestRun:
         assert link.closed == 1
 
     @given(st.integers(1, 400), st.sampled_from([1e-4, 3e-4, 1e-3, 2e-3, 7e-3, 0.1]), st.floats(-100, 100))
-    def test_rounding_of_stamps_costs_no_tick(self, ticks: int, period: float, start: float):
+    def test_number_of_ticks_survives_rounding_of_stamps(self, ticks: int, period: float, start: float):
         link = Scripted(stamps=lambda tick: start + tick * period)
         recording, _ = feel(lambda _: PUSH, ticks * period, link)
         assert recording.time_s.size == ticks
@@ -134,7 +134,7 @@ class TestRun:
         assert last.work_j == pytest.approx(2.0 * 0.999)
         assert recording.work_j == pytest.approx(last.work_j, rel=1e-12)
 
-    def test_a_force_works_from_its_tick_to_the_next(self):
+    def test_work_of_a_force_counts_from_its_tick_to_the_next(self):
         """1 N at tick 0, 2 N at tick 1, ...: the last one has not worked yet."""
         recording, _ = feel(lambda tick: Force(0.0, 0.0, tick + 1.0), 0.004)
         assert recording.work_j == pytest.approx((1 + 2 + 3) * 0.001)
@@ -146,13 +146,13 @@ class TestRun:
         assert recording.peak_force_n == pytest.approx(8.0)
 
     @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-    def test_forces_that_are_not_finite_are_made_zero_and_counted(self, bad: float, caplog: pytest.LogCaptureFixture):
+    def test_forces_not_finite_are_set_to_zero_and_counted(self, bad: float, caplog: pytest.LogCaptureFixture):
         recording, link = feel(lambda tick: Force(0.0, bad, 1.0) if tick in (3, 4) else PUSH, 0.01)
         assert (recording.not_finite, recording.force_limited) == (2, 0)
         assert link.forces[2:6] == [PUSH, NO_FORCE, NO_FORCE, PUSH]
         assert "2 forces were not finite" in caplog.text
 
-    def test_the_force_is_the_one_that_the_device_applied(self):
+    def test_recorded_force_is_the_one_that_the_device_applied(self):
         class Weak(Scripted):
             @property
             def applied(self) -> Force:
@@ -161,7 +161,7 @@ class TestRun:
         recording, _ = feel(lambda _: PUSH, 0.01, Weak())
         assert recording.force_n.tolist() == [[0.0, 0.0, 1.0]] * 10
 
-    def test_a_law_that_is_too_stiff_for_the_device_is_softened(self):
+    def test_law_too_stiff_for_the_device_is_scaled_down(self):
         level = HapticSurface.from_heights(np.zeros((8, 8)))
         device = Mock(hand=None, path="circle", z_m=-0.001)
         held = gain(FREE.arrays(device.spec(), 4000.0)[0], 0.001)
@@ -171,18 +171,18 @@ class TestRun:
         assert recording.force_n[:, 2] == pytest.approx(held * 4000 * 0.001)
 
     @pytest.mark.parametrize("seconds", [0.0, -1.0, math.nan, math.inf])
-    def test_seconds_that_make_no_sense(self, seconds: float):
+    def test_seconds_that_are_invalid_are_refused(self, seconds: float):
         with pytest.raises(ConfigError, match="seconds"):
             feel(lambda _: PUSH, seconds)
 
-    def test_a_device_that_cannot_be_opened(self):
+    def test_device_that_cannot_be_opened_is_an_error(self):
         LINKS[:] = [DeviceError("it is in use; close the other program")]
         with pytest.raises(DeviceError, match="in use"):
             run_simulated(Says(lambda _: PUSH), Bench(), 1.0)
 
 
 class TestRows:
-    def test_proxy_flags_and_buttons(self):
+    def test_recording_has_proxy_flags_and_buttons(self):
         surface = HapticSurface.from_heights(np.full((8, 8), 1 / 128))
         recording = run_simulated(
             Proxy().touch(surface), Mock(hand=None, path="press", z_m=1 / 128 - 0.02, lift_m=0.03), 0.6
@@ -196,14 +196,14 @@ class TestRows:
         assert deep.any()
         assert np.array_equal(deep, (recording.flags & TickFlag.FORCE_LIMITED) > 0)
 
-    def test_a_tick_without_proxy_has_nan(self):
+    def test_tick_without_proxy_has_nan(self):
         recording, _ = feel(lambda _: PUSH, 0.01)
         assert np.isnan(recording.proxy_m).all()
         assert not recording.buttons.any()
 
 
 class TestEndings:
-    def test_from_the_keyboard(self, caplog: pytest.LogCaptureFixture):
+    def test_ctrl_c_ends_the_session_without_force(self, caplog: pytest.LogCaptureFixture):
         caplog.set_level(logging.INFO)
         reports: list[ServoReport] = []
         recording, link = feel(fails(KeyboardInterrupt(), 50), on_report=reports.append)
@@ -212,7 +212,7 @@ class TestEndings:
         assert (link.held, link.closed) == (NO_FORCE, 1)
         assert "stopped after 50 ticks" in caplog.text
 
-    def test_from_the_keyboard_in_a_report(self):
+    def test_ctrl_c_in_a_report_ends_the_session_without_force(self):
         def report(report: ServoReport) -> None:
             if not report.stopped:
                 raise KeyboardInterrupt
@@ -221,20 +221,20 @@ class TestEndings:
         assert recording.stopped == INTERRUPTED
         assert link.held == NO_FORCE
 
-    def test_a_device_that_stops_answering_even_to_the_last_write(self):
+    def test_device_that_stops_answering_ends_the_session(self):
         recording, link = feel(lambda _: PUSH, link=Scripted(fails_at=20))
         assert recording.stopped == "the cable is out; put it in"
         assert recording.time_s.size == 20
         assert link.closed == 1
         assert "after 20 ticks: the cable is out; put it in" in str(failure(len(recording.rows), recording.stopped))
 
-    def test_a_device_that_never_answers(self):
+    def test_device_that_never_answers_ends_the_session(self):
         recording, _ = feel(lambda _: PUSH, link=Scripted(fails_at=0))
         assert recording.time_s.size == 0
         assert (recording.peak_force_n, recording.work_j, recording.figures()["contact_share"]) == (0, 0, 0)
         assert recording.stopped == "the cable is out; put it in"
 
-    def test_a_device_that_is_gone_at_the_end(self):
+    def test_device_lost_at_the_end_ends_the_session(self):
         class Gone(Scripted):
             def _send(self, force: Force) -> None:
                 if self.tick == 10:
@@ -245,27 +245,27 @@ class TestEndings:
         assert recording.stopped == "gone; look for it"
 
     @pytest.mark.parametrize("stamps", [lambda _: 1.0, lambda tick: -tick, lambda tick: math.nan if tick else 0.0])
-    def test_a_clock_that_does_not_go_on(self, stamps):
+    def test_clock_that_stands_still_ends_the_session(self, stamps):
         recording, link = feel(lambda _: PUSH, link=Scripted(stamps=stamps))
         assert "clock stands still" in recording.stopped
         assert recording.time_s.size == 1
         assert link.held == NO_FORCE
 
-    def test_a_recording_that_is_full(self, monkeypatch: pytest.MonkeyPatch):
+    def test_recording_that_is_full_ends_the_session(self, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr(simulated, "MOST_TICKS", 30)
         recording, link = feel(lambda _: PUSH, 1e9)
         assert "full, 30 ticks" in recording.stopped
         assert recording.time_s.size == 30
         assert link.held == NO_FORCE
 
-    def test_a_touch_at_fault_is_heard_of_but_leaves_no_force(self):
+    def test_error_of_the_touch_is_raised_and_leaves_no_force(self):
         link = Scripted()
         with pytest.raises(ZeroDivisionError):
             feel(fails(ZeroDivisionError(), 5), link=link)
         assert (link.held, link.closed) == (NO_FORCE, 1)
 
 
-def test_logs_bear_the_rooms_name(caplog: pytest.LogCaptureFixture):
+def test_log_records_have_the_name_of_the_room(caplog: pytest.LogCaptureFixture):
     with caplog.at_level(logging.INFO, logger="tangible_core.session"):
         feel(fails(KeyboardInterrupt(), 1))
     assert caplog.records[0].name.startswith("tangible_core.session")

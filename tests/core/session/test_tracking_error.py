@@ -1,4 +1,4 @@
-"""Whether a hand followed its path: what is said of those that were held, and of those that were not."""
+"""The tracking error of hands that were held, and of hands that were not."""
 
 import json
 from pathlib import Path
@@ -42,7 +42,7 @@ def felt(heights: np.ndarray, device: HapticDevice, render: ForceRenderer = PROX
     ],
     ids=["pit", "wall", "side", "friction", "slow"],
 )
-def test_what_held_a_hand_is_said(heights: np.ndarray, device: Mock, render: Proxy, says: str):
+def test_tracking_error_names_the_cause(heights: np.ndarray, device: Mock, render: Proxy, says: str):
     _, followed = felt(heights, device, render)
     assert followed.off_share > 0.05 and followed.farthest_m > 0.0025
     assert followed.says.startswith(
@@ -54,7 +54,7 @@ def test_what_held_a_hand_is_said(heights: np.ndarray, device: Mock, render: Pro
 @pytest.mark.parametrize(
     "heights", [FLAT, FLAT[:16], FLAT[:, :12], HOLES * 0.05], ids=["square", "wide", "tall", "rough"]
 )
-def test_of_a_hand_that_follows_nothing_is_said(heights: np.ndarray):
+def test_tracking_error_of_following_hand_is_silent(heights: np.ndarray):
     """Late by 2 mm, as hands are; and of no path of its own does a mock leave the surface, whatever its shape."""
     recording, hand = felt(heights, Mock())
     width, length = 0.08, 0.08 * heights.shape[0] / heights.shape[1]
@@ -63,7 +63,7 @@ def test_of_a_hand_that_follows_nothing_is_said(heights: np.ndarray):
     assert recording.figures()["contact_share"] > 0.8
 
 
-def test_a_hand_that_yields_to_nothing_is_said_to_come_in_by_the_side():
+def test_tracking_error_of_rigid_hand_reports_the_side():
     device = Mock(hand=None, size_m=(0.06, 0.04), lines=2)
     _, held = felt(FLAT[:16], device)
     assert held.says.startswith(
@@ -83,7 +83,7 @@ def test_a_hand_that_yields_to_nothing_is_said_to_come_in_by_the_side():
     ],
     ids=["none", "quarter", "region"],
 )
-def test_a_path_is_known_and_within_the_surface_through_any_mapping(mapping: WorkspaceMapping):
+def test_path_through_any_mapping_stays_within_the_surface(mapping: WorkspaceMapping):
     extent_m = (0.08, 0.05)
     device = over(map_device(Mock(hand=None, tremor_m=1e-4), mapping), extent_m)
     link = device.open()
@@ -94,20 +94,20 @@ def test_a_path_is_known_and_within_the_surface_through_any_mapping(mapping: Wor
     assert np.ptp(found[:, :2], axis=0).min() > 0.012
 
 
-def test_a_size_that_was_asked_for_stays():
+def test_configured_path_size_stays():
     mock = Mock(size_m=(0.06, 0.04))
     assert over(mock, (0.01, 0.01)) is mock
     assert over(Mock(), (0.08, 0.08)) == mock
 
 
-def test_looks_are_every_tenth_tick_however_they_come():
+def test_tick_sampler_takes_every_tenth_tick():
     rows, looks = np.arange(1000.0)[:, None] * np.ones(len(TICK_COLUMNS)), TickSampler()
     for part in np.split(rows, [3, 4, 17, 120, 121, 500]):
         looks.keep(part)
     assert np.array_equal(looks.recording().rows, rows[::EVERY])
 
 
-def test_a_run_tells_it_and_keeps_it(tmp_path: Path):
+def test_run_prints_and_stores_the_tracking_error(tmp_path: Path):
     cv2.imwrite(str(tmp_path / "hole.png"), np.asarray(HOLES * 25500, np.uint8))
     (tmp_path / "hole.yaml").write_text(
         "scene: {height: hole.png, relief_m: 0.01}\nwant: touch\nrender: {use: proxy}\ndevice: {use: mock, lines: 3}\n"

@@ -1,4 +1,4 @@
-"""Many scenes through one pipeline; each failure is a row, and nothing that was made is made twice."""
+"""Batches: many scenes through one pipeline; failures are rows, and unchanged scenes are not made again."""
 
 import csv
 import json
@@ -75,7 +75,7 @@ class TestScenes:
     def run(self, cwd: Path, *words: object):
         return tangible("batch", "mine.yaml", "--over", "archive", *words, cwd=cwd)
 
-    def test_a_folder_becomes_rows_files_a_table_and_a_gallery(self, archive: Path):
+    def test_folder_gives_rows_files_a_table_and_a_gallery(self, archive: Path):
         import pyarrow.parquet as pq
 
         done = self.run(archive.parent)
@@ -93,18 +93,18 @@ class TestScenes:
         page = (out / "gallery.html").read_text()
         assert all(f'src="scenes/p{number}/card.jpg"' in page for number in range(4))
 
-    def test_each_scene_is_what_a_run_makes_of_it(self, archive: Path, tmp_path: Path):
+    def test_scene_equals_that_of_a_run(self, archive: Path, tmp_path: Path):
         from tangible_core.pipeline.engine.cache import read_record
 
         self.run(archive.parent, "--set", "workspace.width_m=0.06")
         found = read_record(tmp_path / "out/mine-batch/scenes/p2/relief.npz")
-        scene = Scene.of(photo=archive / "p2.png")
+        scene = Scene.photo(archive / "p2.png")
         from tangible_depth import Luminance
 
         same = Pipeline(scene, depth=Luminance(), workspace={"width_m": 0.06}, cached=False).relief
         assert found.digest() == same.digest()
 
-    def test_five_kinds_of_bad_picture_are_rows_with_the_usual_words(self, tmp_path: Path):
+    def test_bad_pictures_are_rows_with_the_usual_errors(self, tmp_path: Path):
         folder = tmp_path / "archive"
         folder.mkdir()
         (tmp_path / "mine.yaml").write_text(CONFIG.replace("luminance", "semi-global"))
@@ -135,7 +135,7 @@ class TestScenes:
             assert f"{name}: " in done.stderr
         assert "5 failed: --retry repeats these" in done.stdout
 
-    def test_rows_of_a_manifest_set_keys_and_name_files_beside_it(self, archive: Path):
+    def test_manifest_rows_set_keys_and_name_files(self, archive: Path):
         with (archive / "rows.csv").open("w", newline="") as file:
             table = csv.writer(file)
             table.writerow(["id", "scene.photo", "workspace.width_m", "depth.smoothing_px"])
@@ -148,7 +148,7 @@ class TestScenes:
         assert rows["wide"]["scene"] == rows["rough"]["scene"] == str(archive / "p0.png")
         assert rows["wide"]["key"] != rows["rough"]["key"]
 
-    def test_a_row_may_name_a_video(self, here: None, archive: Path):
+    def test_row_with_a_video_is_made(self, here: None, archive: Path):
         greys(archive / "walk.avi", 2)
         rows = [{"id": "film", "scene.video": archive / "walk.avi"}, {"id": "frames", "scene.video": archive}]
         done = list(batch(Pipeline.from_yaml(archive.parent / "mine.yaml"), rows, archive.parent / "out"))
@@ -157,7 +157,7 @@ class TestScenes:
             ("ok", f"{archive}"),
         ]
 
-    def test_videos_are_scenes_where_there_is_no_picture(self, archive: Path):
+    def test_folder_without_pictures_gives_its_videos(self, archive: Path):
         """A phone lays a film of the same name beside each photo."""
         greys(archive / "p0.avi", 2)
         assert all("scene.photo=" in row.sets[0] for row in rows_of(str(archive)))
@@ -171,7 +171,7 @@ class TestScenes:
             name: (f'scene.video="{films / file}"',) for name, file in (("run", "run.MP4"), ("walk", "walk.avi"))
         }
 
-    def test_a_table_in_parquet_is_a_manifest(self, archive: Path):
+    def test_parquet_manifest_gives_its_rows(self, archive: Path):
         import pyarrow as pa
         import pyarrow.parquet as pq
 
@@ -181,14 +181,14 @@ class TestScenes:
         assert done.returncode == 0, done.stderr
         assert sorted(by_id(rows_in(archive.parent / "out/mine-batch"))) == ["a", "b"]
 
-    def test_what_is_made_is_kept_what_changed_is_made_again(self, archive: Path):
+    def test_second_batch_makes_changed_scenes_only(self, archive: Path):
         tally = [json.loads(self.run(archive.parent, "--json").stdout) for _ in range(2)]
         assert [(each["made"], each["kept"]) for each in tally] == [(4, 0), (0, 4)]
         write_png(archive / "p1.png", picture(9, (30, 30)))
         assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 1
         assert json.loads(self.run(archive.parent, "--json", "--set", "want=surface").stdout)["made"] == 4
 
-    def test_failures_are_made_again_when_asked_for(self, archive: Path):
+    def test_failed_scenes_are_made_again_with_retry(self, archive: Path):
         whole = (archive / "p1.png").read_bytes()
         (archive / "p1.png").write_bytes(b"no")
         stamp = (archive / "p1.png").stat()
@@ -199,7 +199,7 @@ class TestScenes:
         done = json.loads(self.run(archive.parent, "--json", "--retry").stdout)
         assert (done["made"], done["failed"]) == (1, 0)
 
-    def test_a_torn_last_line_is_cut_off_and_its_scene_made_again(self, archive: Path):
+    def test_torn_last_line_is_removed_and_its_scene_made_again(self, archive: Path):
         out = archive.parent / "out/mine-batch"
         self.run(archive.parent)
         text = (out / "rows.jsonl").read_text()
@@ -207,7 +207,7 @@ class TestScenes:
         assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 1
         assert sorted(by_id(rows_in(out))) == ["p0", "p1", "p2", "p3"]
 
-    def test_a_full_disk_ends_the_batch_which_then_goes_on(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_full_disk_ends_the_batch_which_then_continues(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
         from tangible_batch import job
 
         def full(*_: object) -> None:
@@ -222,7 +222,7 @@ class TestScenes:
         assert rows_in(out) == []
         assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 4
 
-    def test_rows_that_find_no_room_end_it_too(self, archive: Path, tmp_path: Path):
+    def test_row_on_a_full_disk_is_not_half_written(self, archive: Path, tmp_path: Path):
         from tangible_core.files.json_lines import JsonLines
 
         with JsonLines(tmp_path / "rows.jsonl") as file:
@@ -242,7 +242,7 @@ class TestScenes:
             ("cells.csv", "more cells than there are columns"),
         ],
     )
-    def test_mistakes_are_one_line(self, archive: Path, over: str, said: str):
+    def test_command_with_a_mistake_reports_one_line(self, archive: Path, over: str, said: str):
         folder = archive.parent
         (folder / "twice.csv").write_text("id,scene.photo\na,archive/p0.png\na,archive/p1.png\n")
         (folder / "broken.parquet").write_text("PAR?")
@@ -252,7 +252,7 @@ class TestScenes:
         [line] = done.stderr.splitlines()
         assert said in line
 
-    def test_from_python_rows_come_as_they_are_made_and_it_can_be_stopped(self, archive: Path, tmp_path: Path):
+    def test_batch_in_python_yields_rows_and_stops(self, archive: Path, tmp_path: Path):
         from tangible_depth import Luminance
 
         pipeline = Pipeline.from_yaml(tmp_path / "mine.yaml")
@@ -268,7 +268,7 @@ class TestScenes:
         assert seen == ["p0"]
         assert [row["id"] for row in batch(pipeline, rows, tmp_path / "out")] == ["p0", "p1", "p2", "p3"]
 
-    def test_from_python_mistakes_are_one_line(self, archive: Path, tmp_path: Path):
+    def test_batch_in_python_with_a_mistake_reports_one_line(self, archive: Path, tmp_path: Path):
         pipeline, out = Pipeline.from_yaml(tmp_path / "mine.yaml"), tmp_path / "out"
         photo = {"scene.photo": str(archive / "p0.png")}
         with pytest.raises(BatchError, match="two rows are called 'a'; give each its own `id`"):
@@ -277,7 +277,7 @@ class TestScenes:
             list(batch(pipeline, [photo], out, workers=0))
         assert list(batch(pipeline, [], out)) == []
 
-    def test_a_mistake_in_the_file_itself_ends_it_before_the_first_scene(self, archive: Path):
+    def test_mistake_in_the_file_ends_the_batch_before_the_first_scene(self, archive: Path):
         (archive.parent / "mine.yaml").write_text(CONFIG + "textur: gabor\n")
         done = self.run(archive.parent)
         assert done.returncode == 2
@@ -286,7 +286,7 @@ class TestScenes:
         assert "textur" in line
         assert rows_in(archive.parent / "out/mine-batch") == []
 
-    def test_a_mistake_in_a_row_is_that_row_s(self, archive: Path):
+    def test_mistake_in_a_row_fails_that_row_only(self, archive: Path):
         (archive / "rows.csv").write_text("id,scene.photo,workspace.width_m\na,p0.png,-1\nb,p1.png,0.1\n")
         done = tangible("batch", "mine.yaml", "--over", archive / "rows.csv", cwd=archive.parent)
         assert done.returncode == 1
@@ -294,7 +294,7 @@ class TestScenes:
         assert "workspace.width_m" in rows["a"]["error"]
         assert rows["b"]["outcome"] == "ok"
 
-    def test_a_sweep_sees_that_the_file_s_own_picture_changed(self, archive: Path):
+    def test_sweep_with_a_changed_picture_is_made_again(self, archive: Path):
         (archive.parent / "mine.yaml").write_text(CONFIG.replace("builtin/brick", "{photo: archive/p0.png}"))
         (archive / "rows.csv").write_text("workspace.width_m\n0.05\n0.1\n")
         words = ("batch", "mine.yaml", "--over", archive / "rows.csv", "--json")
@@ -306,7 +306,7 @@ class TestScenes:
         assert made == [2, 0, 2]
 
     @pytest.mark.parametrize("name", ["Krug ä", "\N{AMPHORA}", 'a "quoted" one', "two\nlines", "b\udcff"])
-    def test_a_picture_may_have_any_name(self, archive: Path, name: str):
+    def test_picture_with_any_name_is_made(self, archive: Path, name: str):
         for each in archive.iterdir():
             each.unlink()
         write_png(archive / f"{name}.png", picture(0))
@@ -321,12 +321,12 @@ class TestScenes:
         if name != "b\udcff":  # no YAML holds half a character
             assert row["outcome"] == "ok", row["error"]
 
-    def test_pictures_that_it_wrote_itself_are_no_scenes(self, archive: Path):
+    def test_pictures_in_the_results_are_left_out(self, archive: Path):
         words = ("batch", "mine.yaml", "--over", ".", "--json")
         tally = [json.loads(tangible(*words, cwd=archive.parent).stdout) for _ in range(2)]
         assert [each["wanted"] for each in tally] == [4, 4]
 
-    def test_what_is_no_longer_wanted_is_in_no_table(self, archive: Path):
+    def test_table_leaves_out_scenes_that_are_gone(self, archive: Path):
         import pyarrow.parquet as pq
 
         out = archive.parent / "out/mine-batch"
@@ -337,7 +337,7 @@ class TestScenes:
         assert pq.read_table(out / "index.parquet")["id"].to_pylist() == ["p1", "p2", "p3"]
         assert "p0" not in (out / "gallery.html").read_text()
 
-    def test_a_scene_whose_files_were_deleted_is_made_again(self, archive: Path):
+    def test_scene_with_deleted_files_is_made_again(self, archive: Path):
         import shutil
 
         self.run(archive.parent)
@@ -345,7 +345,7 @@ class TestScenes:
         assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 1
 
     @pytest.mark.parametrize("want", ["segments", "disparity", "materials", "surface"])
-    def test_whatever_is_wanted_has_a_card(self, archive: Path, want: str):
+    def test_wanted_product_has_a_card(self, archive: Path, want: str):
         from PIL import Image
 
         (archive.parent / "mine.yaml").write_text(
@@ -357,7 +357,7 @@ class TestScenes:
         with Image.open(archive.parent / "out/mine-batch/scenes/p1/card.jpg") as card:
             assert card.width == 2 * 160
 
-    def test_what_the_file_exports_is_beside_each_scene_s_files(self, archive: Path):
+    def test_exports_of_the_file_are_in_each_scene_s_folder(self, archive: Path):
         (archive.parent / "mine.yaml").write_text(CONFIG + "texture: {use: histogram, segments: 2}\nexport: [text]\n")
         (archive / "p3.png").write_bytes(b"no")
         assert self.run(archive.parent).returncode == 1
@@ -372,7 +372,7 @@ class TestScenes:
         write_png(archive / "p3.png", picture(3))
         assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 2
 
-    def test_an_exporter_that_fails_is_the_scene_s_failure(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_failing_exporter_fails_its_scene(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
         from tangible_report import Text
 
         def fails(*_: object) -> None:
@@ -384,7 +384,7 @@ class TestScenes:
         assert done.returncode == 1
         assert "the ink is dry" in rows_in(archive.parent / "out/mine-batch")[0]["error"]
 
-    def test_a_second_one_in_the_same_folder_is_told(self, archive: Path):
+    def test_second_batch_in_the_same_folder_is_refused(self, archive: Path):
         from tangible_core.files.json_lines import JsonLines
 
         with JsonLines(archive.parent / "out/mine-batch/rows.jsonl", alone=True) as file:
@@ -394,7 +394,7 @@ class TestScenes:
         assert "another program is writing to it; wait for that one or choose another folder" in done.stderr
         assert len(rows_in(archive.parent / "out/mine-batch")) == 1
 
-    def test_without_the_extra_it_says_so_before_the_work(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_batch_without_the_extra_is_refused_before_the_work(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
         from tangible_batch import extra
 
         monkeypatch.setattr(extra, "find_spec", lambda name: None)
@@ -402,7 +402,7 @@ class TestScenes:
         assert done.returncode == 2
         assert "pip install 'tangible-images[batch]'" in done.stderr
 
-    def test_a_name_is_a_folder_s_on_any_system(self, archive: Path, tmp_path: Path):
+    def test_folder_names_are_safe_on_any_system(self, archive: Path, tmp_path: Path):
         rows = [
             {"id": name, "scene.photo": str(archive / "p0.png")} for name in ("a/b", "a_b", "..", "ä:*?", "x" * 300)
         ]
@@ -412,7 +412,7 @@ class TestScenes:
         assert all(Path(tmp_path / "out", each).resolve().parent == tmp_path / "out/scenes" for each in folders)
 
 
-def test_workers_times_threads_are_the_cores_unless_both_are_said(monkeypatch: pytest.MonkeyPatch):
+def test_workforce_uses_all_cores_by_default(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(running, "processors", lambda: 8)
     shares = {(None, None): (8, 1), (2, None): (2, 4), (None, 4): (2, 4), (16, None): (16, 1), (3, 9): (3, 9)}
     who = {said: running.Workforce(*said) for said in shares}
@@ -421,7 +421,7 @@ def test_workers_times_threads_are_the_cores_unless_both_are_said(monkeypatch: p
     assert elsewhere.threads_each is None  # of cores that are not here
 
 
-def test_a_plugin_that_raises_anything_is_a_row(tmp_path: Path):
+def test_scene_that_raises_is_a_row(tmp_path: Path):
     row = make_scene(Job("a", "k", "scene: {photo: no.png}\ndepth: luminance\n", str(tmp_path / "m.yaml"), (), "f"))
     assert row["outcome"] == "failed"
     assert "no.png" in row["error"]

@@ -1,4 +1,4 @@
-"""Methods that are made up, installed for this process and for the workers that it starts."""
+"""Fake methods, installed for this process and for the workers that it starts."""
 
 import os
 import subprocess
@@ -135,7 +135,7 @@ NAMES = {
 
 @pytest.fixture
 def registry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Registry:
-    """What is installed, and the fakes; processes that are started find them too."""
+    """A registry of installed methods and the fakes; started processes find them too."""
     points = {"tangible.depth": {name: f"bench_fakes:{cls}" for name, cls in NAMES.items()}}
     site = distribution(tmp_path / "site", "fakes", points, bench_fakes=FAKES)
     monkeypatch.syspath_prepend(site)
@@ -146,13 +146,13 @@ def registry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Registry:
 
 @pytest.fixture
 def cells_here(registry: Registry, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Measure in this process, not each cell in one of its own: what rows say and which are measured is the same."""
+    """Measure in this process, not each cell in its own: the rows and their choice are the same."""
     monkeypatch.setattr("tangible_core.plugins.registry.default_registry", lambda: registry)
     measure_here(monkeypatch)
 
 
 def measure_here(patch: pytest.MonkeyPatch) -> None:
-    """As `cells_here`, of the methods that are installed."""
+    """Measure in this process, with the installed methods, as `cells_here` does."""
     patch.setattr("tangible_bench.measuring.worker.gc", SimpleNamespace(collect=lambda: None, freeze=lambda: None))
     patch.setattr("tangible_bench.measuring.run._outcome", lambda wanted, _: answer(Place(*wanted.place), wanted.job))
 
@@ -162,7 +162,7 @@ Command = Callable[..., "subprocess.Popen[str]"]
 
 @pytest.fixture
 def tangible(registry: Registry) -> Iterator[Command]:
-    """Start the command line in a process of its own, which does not outlive the test."""
+    """Start the command line in a new process, which does not outlive the test."""
     started: list[subprocess.Popen[str]] = []
 
     def start(*words: str | Path) -> "subprocess.Popen[str]":

@@ -1,4 +1,4 @@
-"""Two files of results: what is worse, what is noise, what cannot be compared."""
+"""Regressions between two files of results: noise, tolerances, and files that cannot be compared."""
 
 from dataclasses import replace
 
@@ -36,11 +36,11 @@ def worse(before: list[Row], after: list[Row]) -> list[str]:
     ],
     ids=["within a tenth", "over a tenth", "faster", "within the noise", "over the noise", "one repeat"],
 )
-def test_time(before: list[float], after: list[float], expected: list[str]):
+def test_time_is_worse_beyond_a_tenth_and_the_noise(before: list[float], after: list[float], expected: list[str]):
     assert worse(rows(before), rows(after)) == expected
 
 
-def test_the_rule_of_time_is_three_standard_deviations():
+def test_time_may_rise_by_three_standard_deviations():
     verdict = find_regressions(rows([0.9, 1.0, 1.1]), rows([1.6, 1.7, 1.8]))
     assert verdict.worse[0].allowed == pytest.approx(3 * 2**0.5 * 1.4826 * 0.1)
     assert (verdict.worse[0].before, verdict.worse[0].after) == (1.0, 1.7)
@@ -50,37 +50,37 @@ def test_the_rule_of_time_is_three_standard_deviations():
     ("before", "after", "expected"),
     [(5.0, 5.004, []), (5.0, 5.006, ["bad2 %"]), (5.0, 1.0, []), (5.0, None, ["bad2 %"]), (None, 5.0, [])],
 )
-def test_errors_are_exact(before: float | None, after: float | None, expected: list[str]):
+def test_error_is_worse_beyond_its_tolerance(before: float | None, after: float | None, expected: list[str]):
     assert worse(rows([1.0], bad2=before), rows([1.0], bad2=after)) == expected
 
 
-def test_a_measure_that_is_better_when_high():
+def test_measure_that_is_better_when_high_is_worse_when_lower():
     high, low = ([replace(ROW, seconds=1.0, measures={"density": value})] for value in (90.0, 80.0))
     assert worse(high, low) == ["density %"]
     assert worse(low, high) == []
 
 
-def test_memory():
+def test_memory_is_worse_beyond_five_percent_and_a_mebibyte():
     assert worse(rows([1.0], memory=10**8), rows([1.0], memory=104 * 10**6)) == []
     assert worse(rows([1.0], memory=10**8), rows([1.0], memory=106 * 10**6)) == ["memory bytes"]
     assert worse(rows([1.0], memory=0), rows([1.0], memory=10**6)) == []
 
 
-def test_a_method_that_fails_now():
+def test_method_that_fails_now_is_worse():
     (found,) = find_regressions(rows([1.0]), [replace(ROW, error="gone")]).worse
     assert (found.what, found.why) == ("fails", "gone")
     assert worse([replace(ROW, error="gone")], rows([1.0])) == []
     assert worse([replace(ROW, error="gone")], [replace(ROW, error="still")]) == []
 
 
-def test_with_a_common_baseline_times_are_ratios_and_machines_may_differ():
+def test_times_with_a_common_baseline_are_compared_as_ratios():
     before = rows([1.0], baseline="base") + rows([2.0], "base", baseline="base")
     other = {"baseline": "base", "machine": {"processor": "q"}}
     assert worse(before, rows([10.0], **other) + rows([20.0], "base", **other)) == []
     assert worse(before, rows([12.0], **other) + rows([20.0], "base", **other)) == ["time / baseline"]
 
 
-def test_what_is_in_one_file_only_is_said():
+def test_cells_in_one_file_only_are_reported_missing():
     verdict = find_regressions(rows([1.0]) + rows([1.0], "gone"), rows([1.0]) + rows([1.0], "new"))
     assert verdict.compared == 1
     assert verdict.missing == ("gone | s | none", "new | s | none")
@@ -96,6 +96,6 @@ def test_what_is_in_one_file_only_is_said():
         (rows([1.0], scene_digest="other"), "in common"),
     ],
 )
-def test_files_that_cannot_be_compared(after: list[Row], why: str):
+def test_files_without_common_ground_are_refused(after: list[Row], why: str):
     with pytest.raises(ResultsError, match=why):
         find_regressions(rows([1.0]), after)

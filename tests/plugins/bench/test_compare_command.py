@@ -24,12 +24,12 @@ out: out
 
 
 @pytest.mark.parametrize("path", sorted(ROOT.glob("configs/compare-*.yaml")), ids=lambda path: path.name)
-def test_the_sample_comparisons_are_right(path: Path):
+def test_sample_comparisons_are_valid(path: Path):
     assert load_comparison(path, default_registry()).methods
 
 
 @pytest.mark.slow
-def test_measure_show_and_compare(tangible, tmp_path: Path):
+def test_command_measures_shows_and_finds_regressions(tangible, tmp_path: Path):
     config, rows = tmp_path / "c.yaml", tmp_path / "out" / "results.jsonl"
     config.write_text(TEXT)
     process = tangible("compare", config)
@@ -85,7 +85,7 @@ def better_than(row: Row) -> Row:
         (["good.yaml", "--against", "missing.jsonl"], "cannot be read as results"),
     ],
 )
-def test_mistakes_end_with_2_and_a_message(tangible, tmp_path: Path, words: list[str], why: str):
+def test_command_with_a_mistake_exits_with_2_and_a_message(tangible, tmp_path: Path, words: list[str], why: str):
     (tmp_path / "empty.jsonl").write_text("")
     (tmp_path / "wrong.yaml").write_text("compare: nothing\n")
     (tmp_path / "good.yaml").write_text(TEXT)

@@ -1,4 +1,4 @@
-"""A whole comparison as a program calls it: heard of, stopped, and held against an earlier one."""
+"""A whole comparison as a program calls it: progress, stop, and comparison with an earlier one."""
 
 import threading
 from pathlib import Path
@@ -22,15 +22,15 @@ out: {out}
 """
 
 
-def compared(registry: Registry, out: Path, methods: str = "constant", **how) -> ComparisonOutcome:
+def run_comparison(registry: Registry, out: Path, methods: str = "constant", **how) -> ComparisonOutcome:
     text = FILE.format(methods=methods, out=out)
     return compare(parse_comparison(text, Path("c.yaml"), registry), **how)
 
 
 @pytest.mark.usefixtures("cells_here")
-def test_every_measurement_is_heard_of_as_it_begins_and_ends(registry: Registry, tmp_path: Path):
+def test_progress_reports_start_and_end_of_every_measurement(registry: Registry, tmp_path: Path):
     heard: list[Step] = []
-    found = compared(registry, tmp_path, "constant, half", progress=heard.append)
+    found = run_comparison(registry, tmp_path, "constant, half", progress=heard.append)
     assert [(each.number, each.of, each.done) for each in heard] == [
         (0, 2, False),
         (0, 2, True),
@@ -43,25 +43,25 @@ def test_every_measurement_is_heard_of_as_it_begins_and_ends(registry: Registry,
 
 
 @pytest.mark.usefixtures("cells_here")
-def test_it_goes_on_where_it_was_stopped(registry: Registry, tmp_path: Path):
+def test_stopped_comparison_continues_where_it_stopped(registry: Registry, tmp_path: Path):
     stop = threading.Event()
     with pytest.raises(Stopped):
-        compared(registry, tmp_path, "constant, half", progress=lambda step: step.done and stop.set(), stop=stop)
+        run_comparison(registry, tmp_path, "constant, half", progress=lambda step: step.done and stop.set(), stop=stop)
     heard: list[Step] = []
-    compared(registry, tmp_path, "constant, half", progress=heard.append)
+    run_comparison(registry, tmp_path, "constant, half", progress=heard.append)
     assert [each.row.method for each in heard if each.done] == ["half"]
 
 
-def test_a_long_measurement_is_ended(registry: Registry, tmp_path: Path):
+def test_stop_ends_a_long_measurement(registry: Registry, tmp_path: Path):
     stop = threading.Event()
     threading.Timer(0.5, stop.set).start()
     with pytest.raises(Stopped):
-        compared(registry, tmp_path, "{use: constant, seconds: 200}", stop=stop)
+        run_comparison(registry, tmp_path, "{use: constant, seconds: 200}", stop=stop)
 
 
 @pytest.mark.usefixtures("cells_here")
-def test_what_was_measured_is_read_again(registry: Registry, tmp_path: Path):
-    found = compared(registry, tmp_path)
+def test_results_are_read_as_they_were_measured(registry: Registry, tmp_path: Path):
+    found = run_comparison(registry, tmp_path)
     again = read_comparison(tmp_path / "results.jsonl", earlier=list(read_rows(tmp_path / "results.jsonl").values()))
     assert again.results.cells == found.results.cells
     assert again.verdict is not None and not again.verdict.worse

@@ -1,4 +1,4 @@
-"""Comparison files: what they may say, and what is said of a wrong one."""
+"""Comparison files: their keys, and the messages on wrong ones."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ def complaints(text: str, registry: Registry) -> list[str]:
     return str(error.value).splitlines()
 
 
-def test_the_least_that_a_file_must_say(registry: Registry):
+def test_minimal_file_has_defaults(registry: Registry):
     found = parse(GOOD, registry)
     assert [each.label for each in found.methods] == ["constant"]
     assert list(found.scenes) == ["steps 480x360"]
@@ -33,7 +33,7 @@ def test_the_least_that_a_file_must_say(registry: Registry):
     assert found.out == Path("out/c")
 
 
-def test_everything_that_a_file_may_say(registry: Registry):
+def test_full_file_sets_every_field(registry: Registry):
     text = """\
 compare: depth
 methods:
@@ -58,7 +58,7 @@ out: ../results
     assert found.out == Path("results")
 
 
-def test_a_sweep_spans_a_grid(registry: Registry):
+def test_sweep_gives_a_method_for_each_grid_point(registry: Registry):
     text = GOOD.replace("[constant]", "[{use: constant, label: c, sweep: {value_px: [1, 2], seconds: [0, 0.5]}}]")
     found = parse(text, registry)
     assert [each.label for each in found.methods] == [
@@ -70,7 +70,7 @@ def test_a_sweep_spans_a_grid(registry: Registry):
     assert [each.chosen.method.model_dump() for each in found.methods][3] == {"value_px": 2.0, "seconds": 0.5}
 
 
-def test_every_complaint_at_once_each_with_its_place(registry: Registry):
+def test_file_with_many_mistakes_reports_all_with_places(registry: Registry):
     text = """\
 compare: depth
 methods:
@@ -146,13 +146,13 @@ baseline: constat
         ),
     ],
 )
-def test_one_mistake_one_line(registry: Registry, text: str, place: str, what: str):
+def test_file_with_one_mistake_reports_one_line(registry: Registry, text: str, place: str, what: str):
     found = complaints(text, registry)
     assert found[0].startswith(f"here/c.yaml:{place}: "), found
     assert what in found[0]
 
 
-def test_an_override(registry: Registry):
+def test_override_replaces_a_key(registry: Registry):
     assert parse(GOOD, registry, "repeats=2").protocol.repeats == 2
     assert list(parse(GOOD, registry, "scenes=[synthetic/bars]").scenes) == ["bars 480x360"]
     with pytest.raises(ConfigError, match=r"methods is a list; set it as a whole: methods=\[...\]"):
@@ -160,7 +160,7 @@ def test_an_override(registry: Registry):
 
 
 @pytest.mark.parametrize("kind", ["npz", "npy", "pfm", "png"])
-def test_a_folder_of_pairs(registry: Registry, tmp_path: Path, kind: str):
+def test_folder_of_pairs_gives_a_scene_each(registry: Registry, tmp_path: Path, kind: str):
     truth = np.full((20, 30), 3, np.float32)
     truth[0, :5] = 0 if kind == "png" else np.nan
     for name in ("b", "a"):
@@ -179,7 +179,7 @@ def test_a_folder_of_pairs(registry: Registry, tmp_path: Path, kind: str):
     np.testing.assert_array_equal(pair.visible[1:], np.arange(30) >= 3 + np.zeros((19, 1)))
 
 
-def test_a_folder_without_truth(registry: Registry, tmp_path: Path):
+def test_folder_without_truth_is_refused(registry: Registry, tmp_path: Path):
     write_pair(tmp_path / "a", np.ones((8, 9), np.float32), "npy")
     (tmp_path / "a" / "disparity.npy").unlink()
     (tmp_path / "c.yaml").write_text(GOOD.replace("synthetic/steps", "{folder: a}"))

@@ -18,13 +18,13 @@ def test_noise_has_its_standard_deviation_and_seed():
     assert (noisy != damage.noise(GREY, 5, 1)).any()
 
 
-def test_gain_and_gamma():
+def test_gain_and_gamma_follow_their_formulas():
     assert (damage.gain(GREY, 0.8) == 80).all()
     assert (damage.gain(GREY, 5) == 255).all()
     assert (damage.gamma(GREY, 1.4) == round(255 * (100 / 255) ** 1.4)).all()
 
 
-def test_offset_and_light():
+def test_offset_and_light_follow_their_formulas():
     assert (damage.offset(GREY, 20) == 120).all()
     assert (damage.offset(GREY, -200) == 0).all()
     lit = damage.light(GREY, 0.4)
@@ -49,7 +49,7 @@ def test_jpeg_loses_more_at_lower_quality():
 
 
 @pytest.mark.parametrize(("rows", "expected"), [(1, [0, 0, 10, 20]), (-1, [10, 20, 30, 30]), (0.5, [0, 5, 15, 25])])
-def test_shift_down(rows: float, expected: list[int]):
+def test_shift_down_interpolates_and_repeats_the_border(rows: float, expected: list[int]):
     ramp = np.uint8([[0], [10], [20], [30]])
     assert damage.shift_down(ramp, rows)[:, 0].tolist() == expected
 
@@ -63,7 +63,7 @@ def test_shift_down(rows: float, expected: list[int]):
         np.full((8, 8, 3), -3.0),
     ],
 )
-def test_every_kind_of_picture(picture: np.ndarray):
+def test_damage_accepts_every_kind_of_picture(picture: np.ndarray):
     changes = [damage.jpeg(picture, 50), damage.blur(picture, 1), damage.noise(picture, 1, 0), damage.gamma(picture, 2)]
     for changed in [*changes, damage.shift_down(picture, 0.5), damage.gain(picture, 1)]:
         assert changed.dtype == np.uint8
@@ -73,7 +73,7 @@ def test_every_kind_of_picture(picture: np.ndarray):
 @pytest.mark.parametrize(
     ("name", "value"), [("noise", 5), ("gain", 0.8), ("gamma", 1.4), ("jpeg", 50), ("blur", 1), ("shift", 1)]
 )
-def test_perturbations_of_a_pair(name: str, value: float):
+def test_perturbation_of_a_pair_changes_its_views_only(name: str, value: float):
     pair = synthetic_pair("steps", 64, 32)
     changed = PERTURBATIONS[name].apply(pair, value)
     assert (changed.views.right != pair.views.right).any()
@@ -81,7 +81,7 @@ def test_perturbations_of_a_pair(name: str, value: float):
     np.testing.assert_array_equal(changed.truth_px, pair.truth_px)
 
 
-def test_the_two_views_get_noise_of_their_own():
+def test_noise_of_a_pair_differs_between_its_views():
     pair = synthetic_pair("steps", 64, 32)
     changed = PERTURBATIONS["noise"].apply(pair, 5)
     left, right = (

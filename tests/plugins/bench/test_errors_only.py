@@ -24,16 +24,16 @@ baseline: half
 """
 
 
-def compared(registry: Registry, folder: Path, without_times: bool, **how) -> ComparisonOutcome:
+def run_comparison(registry: Registry, folder: Path, without_times: bool, **how) -> ComparisonOutcome:
     comparison = parse_comparison(f"{FILE}out: {folder}/out\n", Path("c.yaml"), registry)
     return compare(errors_only(comparison) if without_times else comparison, **how)
 
 
 @pytest.mark.slow
-def test_errors_are_those_of_timed_measurements_and_times_are_empty(registry: Registry, tmp_path: Path):
-    timed = compared(registry, tmp_path, False)
+def test_errors_alone_equal_those_of_timed_measurements(registry: Registry, tmp_path: Path):
+    timed = run_comparison(registry, tmp_path, False)
     heard: list[Step] = []
-    found = compared(registry, tmp_path, True, workers=1, progress=heard.append)
+    found = run_comparison(registry, tmp_path, True, workers=1, progress=heard.append)
     assert found.results.cells.keys() == timed.results.cells.keys()
     assert len(heard) == 5
     for key, cell in found.results.cells.items():
@@ -51,11 +51,11 @@ def test_errors_are_those_of_timed_measurements_and_times_are_empty(registry: Re
     assert not rows.keys() & read_rows(tmp_path / "out/results.jsonl").keys()
     assert {row.seconds for row in rows.values()} == {None}
 
-    compared(registry, tmp_path, True, progress=lambda step: pytest.fail("nothing is left to measure"))
+    run_comparison(registry, tmp_path, True, progress=lambda step: pytest.fail("nothing is left to measure"))
 
 
 @pytest.mark.slow
-def test_the_command_says_that_there_are_no_times(registry: Registry, tmp_path: Path):
+def test_command_with_errors_only_reports_no_times(registry: Registry, tmp_path: Path):
     words = f"methods: [ssd]\nscenes: [synthetic/steps]\nout: {tmp_path}/out\n"
     (tmp_path / "c.yaml").write_text(f"compare: depth\n{words}")
     done = tangible("compare", "c.yaml", "--errors-only", "--workers", 1, cwd=tmp_path)
@@ -67,7 +67,7 @@ def test_the_command_says_that_there_are_no_times(registry: Registry, tmp_path: 
     assert not (tmp_path / "out").exists()
 
 
-def test_workers_are_for_errors_alone(tmp_path: Path):
+def test_option_workers_without_errors_only_is_refused(tmp_path: Path):
     (tmp_path / "c.yaml").write_text("compare: depth\nmethods: [luminance]\nscenes: [synthetic/steps]\n")
     done = tangible("compare", "c.yaml", "--workers", 2, cwd=tmp_path)
     assert done.returncode == 2

@@ -1,4 +1,4 @@
-"""Measurements: each in a process of its own, kept as it comes, gone on with after an end of any kind."""
+"""Measurements: a process each; rows are saved at once, and an ended comparison continues."""
 
 import json
 import os
@@ -27,14 +27,14 @@ def comparison(registry: Registry, methods: str, more: str = QUICK) -> Compariso
     return parse_comparison(text, Path("c.yaml"), registry)
 
 
-def measured(registry: Registry, path: Path, methods: str, more: str = QUICK, retry: bool = False) -> list[Row]:
+def measure_rows(registry: Registry, path: Path, methods: str, more: str = QUICK, retry: bool = False) -> list[Row]:
     wanted = comparison(registry, methods, more)
     outlook = look(measurements(wanted), path, retry)
     return list(run(outlook, path, wanted.protocol.timeout_s, lambda *_: None, lambda *_: None).values())
 
 
-def test_a_row_says_everything(registry: Registry, tmp_path: Path):
-    (row,) = measured(
+def test_row_has_every_field_of_a_measurement(registry: Registry, tmp_path: Path):
+    (row,) = measure_rows(
         registry, tmp_path / "r.jsonl", "{use: constant, label: c, value_px: 4.5}", QUICK + "baseline: c\n"
     )
     assert (row.compare, row.method, row.use, row.origin) == ("depth", "c", "constant", "fakes 1.0")
@@ -50,28 +50,28 @@ def test_a_row_says_everything(registry: Registry, tmp_path: Path):
 
 
 @pytest.mark.usefixtures("cells_here")
-def test_measures_are_those_of_the_truth(registry: Registry, tmp_path: Path):
+def test_measures_are_errors_against_the_truth(registry: Registry, tmp_path: Path):
     """A constant of 0 px is wrong by the truth itself."""
     from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 
-    (row,) = measured(registry, tmp_path / "r.jsonl", "{use: constant, value_px: 0}")
+    (row,) = measure_rows(registry, tmp_path / "r.jsonl", "{use: constant, value_px: 0}")
     pair = synthetic_pair("steps", 64, 32)
     assert row.measures["average_px"] == pytest.approx(pair.truth_px.mean(), rel=1e-5)
     assert row.measures["bad2_noc"] == pytest.approx(100 * (pair.truth_px > 2)[pair.visible].mean())
 
 
 @pytest.mark.usefixtures("cells_here")
-def test_an_option_that_the_scene_tells(registry: Registry, tmp_path: Path):
-    """Disparities of this scene end below 16: the next multiple of 16, for the method that is told, and only that."""
+def test_option_given_by_the_scene_is_set_for_that_method_only(registry: Registry, tmp_path: Path):
+    """Disparities of this scene end below 16: the next multiple of 16, for the method with `given:` only."""
     methods = "ranged, {use: ranged, label: told, given: [max_disparity_px]}"
-    rows = measured(registry, tmp_path / "r.jsonl", methods)
+    rows = measure_rows(registry, tmp_path / "r.jsonl", methods)
     assert [(row.method, row.options) for row in rows] == [
         ("ranged", {"max_disparity_px": 8}),
         ("told", {"max_disparity_px": 16}),
     ]
 
 
-def test_an_option_that_a_method_cannot_be_told(registry: Registry, tmp_path: Path):
+def test_option_given_by_the_scene_out_of_bounds_is_refused(registry: Registry, tmp_path: Path):
     wanted = comparison(registry, "{use: ranged, given: [max_disparity_px]}")
     with pytest.raises(
         ConfigError, match=r"ranged cannot be given .* less than or equal to 1000; leave out its `given:`"
@@ -81,8 +81,8 @@ def test_an_option_that_a_method_cannot_be_told(registry: Registry, tmp_path: Pa
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("cells_here")
-def test_filling_is_done_to_the_methods_that_are_named(registry: Registry, tmp_path: Path):
-    rows = measured(registry, tmp_path / "r.jsonl", "half, {use: half, label: filled}", QUICK + "fill: [filled]\n")
+def test_fill_is_applied_to_the_named_methods_only(registry: Registry, tmp_path: Path):
+    rows = measure_rows(registry, tmp_path / "r.jsonl", "half, {use: half, label: filled}", QUICK + "fill: [filled]\n")
     assert [(row.method, row.measures["density"], row.finishes) for row in rows] == [
         ("half", 50, ()),
         ("filled", 100, ("fill",)),
@@ -90,25 +90,25 @@ def test_filling_is_done_to_the_methods_that_are_named(registry: Registry, tmp_p
 
 
 @pytest.mark.slow
-def test_seconds_and_memory_are_the_methods_own(registry: Registry, tmp_path: Path):
+def test_seconds_and_memory_leave_out_the_process(registry: Registry, tmp_path: Path):
     begun = time.perf_counter()
-    rows = measured(registry, tmp_path / "r.jsonl", "{use: constant, seconds: 0.1}, hungry")
+    rows = measure_rows(registry, tmp_path / "r.jsonl", "{use: constant, seconds: 0.1}, hungry")
     took = time.perf_counter() - begun
     assert 0.1 <= rows[0].seconds < took / 2  # of which half is the start of its process, on a machine at work too
     assert rows[0].peak_memory_bytes < 2**20
     assert rows[1].peak_memory_bytes == pytest.approx(64_000_000, rel=0.05)
 
 
-def test_what_a_method_prints_does_not_disturb(registry: Registry, tmp_path: Path):
-    (row,) = measured(registry, tmp_path / "r.jsonl", "talks")
+def test_output_of_a_method_does_not_disturb_its_row(registry: Registry, tmp_path: Path):
+    (row,) = measure_rows(registry, tmp_path / "r.jsonl", "talks")
     assert row.error is None
     assert row.seconds != 1
 
 
 @pytest.mark.slow
-def test_a_method_that_fails_is_a_row_and_stops_nobody(registry: Registry, tmp_path: Path, log_dir: Path):
+def test_failing_methods_are_rows_and_stop_no_other(registry: Registry, tmp_path: Path, log_dir: Path):
     methods = "raises, fails, dies, {use: dies, label: leaves, how: exit}, relative, constant"
-    rows = {row.method: row for row in measured(registry, tmp_path / "r.jsonl", methods)}
+    rows = {row.method: row for row in measure_rows(registry, tmp_path / "r.jsonl", methods)}
     assert rows["raises"].error == "PictureError: not this picture"
     log = log_dir / "failures.log"
     assert rows["fails"].error == f"IndexError: list index out of range; the traceback is in {log}"
@@ -120,23 +120,23 @@ def test_a_method_that_fails_is_a_row_and_stops_nobody(registry: Registry, tmp_p
     assert rows["raises"].seconds is None and rows["raises"].measures == {}
 
 
-def test_a_method_that_takes_too_long_is_ended(registry: Registry, tmp_path: Path):
-    (row,) = measured(registry, tmp_path / "r.jsonl", "sleeps", QUICK + "timeout_s: 0.5\n")
+def test_method_beyond_the_timeout_is_ended(registry: Registry, tmp_path: Path):
+    (row,) = measure_rows(registry, tmp_path / "r.jsonl", "sleeps", QUICK + "timeout_s: 0.5\n")
     assert row.error == "took longer than 0.5 s and was ended; raise timeout_s or drop the method"
 
 
 @pytest.mark.usefixtures("cells_here")
-def test_what_failed_once_is_not_tried_in_later_rounds(registry: Registry, tmp_path: Path):
+def test_failed_cell_is_tried_again_only_with_retry(registry: Registry, tmp_path: Path):
     more = "repeats: 3\nwarmups: 0\ncalls: 1\n"
     path = tmp_path / "r.jsonl"
-    assert len(measured(registry, path, "raises", more)) == 1
-    assert len(measured(registry, path, "raises", more)) == 1
+    assert len(measure_rows(registry, path, "raises", more)) == 1
+    assert len(measure_rows(registry, path, "raises", more)) == 1
     assert len(path.read_text().splitlines()) == 1
-    assert len(measured(registry, path, "raises", more, retry=True)) == 1
+    assert len(measure_rows(registry, path, "raises", more, retry=True)) == 1
     assert len(path.read_text().splitlines()) == 2
 
 
-def test_methods_take_turns(registry: Registry):
+def test_rounds_start_with_different_methods(registry: Registry):
     wanted = measurements(comparison(registry, "constant, half, talks", "repeats: 3\nperturb: [none, {noise: 5}]\n"))
     order = [(each.row.repeat, each.row.perturb, each.row.method) for each in wanted]
     assert order[:4] == [(0, "none", "constant"), (0, "none", "half"), (0, "none", "talks"), (0, "noise 5", "constant")]
@@ -160,13 +160,13 @@ def test_methods_take_turns(registry: Registry):
         ("constant", "repeats: 1\nwarmups: 1\ncalls: 1\n", False),
     ],
 )
-def test_the_key_is_what_is_measured(registry: Registry, methods: str, more: str, same: bool):
+def test_key_depends_on_what_is_measured(registry: Registry, methods: str, more: str, same: bool):
     first = measurements(comparison(registry, "constant"))[0].row.key
     assert (measurements(comparison(registry, methods, more))[0].row.key == first) is same
 
 
 @pytest.mark.parametrize("part", ["closure", "versions", "machine"])
-def test_the_key_is_what_it_is_measured_with_too(registry: Registry, monkeypatch: pytest.MonkeyPatch, part: str):
+def test_key_depends_on_code_libraries_and_machine(registry: Registry, monkeypatch: pytest.MonkeyPatch, part: str):
     """The code and all that it imports, the libraries, the machine."""
     other = {"closure": SimpleNamespace(digest="other"), "versions": {"python": "3.99"}, "machine": {"cores": 1000}}
     first = measurements(comparison(registry, "constant"))[0].row.key
@@ -175,20 +175,20 @@ def test_the_key_is_what_it_is_measured_with_too(registry: Registry, monkeypatch
 
 
 @pytest.mark.usefixtures("cells_here")
-def test_the_same_is_not_measured_again(registry: Registry, tmp_path: Path):
+def test_known_measurement_is_not_repeated(registry: Registry, tmp_path: Path):
     path = tmp_path / "r.jsonl"
-    measured(registry, path, "constant")
+    measure_rows(registry, path, "constant")
     before = path.read_bytes()
-    rows = measured(registry, path, "constant, half")
+    rows = measure_rows(registry, path, "constant, half")
     assert [row.method for row in rows] == ["constant", "half"]
     assert path.read_bytes().startswith(before)
     assert len(path.read_text().splitlines()) == 2
 
 
 @pytest.mark.usefixtures("cells_here")
-def test_a_torn_last_line_is_passed_over_and_goes(registry: Registry, tmp_path: Path):
+def test_torn_last_line_is_ignored_and_removed(registry: Registry, tmp_path: Path):
     path = tmp_path / "r.jsonl"
-    (row,) = measured(registry, path, "constant")
+    (row,) = measure_rows(registry, path, "constant")
     whole = path.read_bytes()
     path.write_bytes(whole + whole[:40])
     assert list(read_rows(path).values()) == [row]
@@ -197,7 +197,7 @@ def test_a_torn_last_line_is_passed_over_and_goes(registry: Registry, tmp_path: 
     assert path.read_bytes() == whole + whole
 
 
-def test_a_damaged_line_is_named(tmp_path: Path):
+def test_damaged_line_is_refused_with_its_number(tmp_path: Path):
     path = tmp_path / "r.jsonl"
     path.write_text('{"key": 1}\n')
     with pytest.raises(ResultsError, match=r"r\.jsonl:1: is not a row of results"):
@@ -217,7 +217,7 @@ LINES = {
 
 
 @pytest.mark.parametrize("line", LINES.values(), ids=LINES)
-def test_whatever_a_line_holds_it_is_named_in_one(tmp_path: Path, line: str):
+def test_hostile_line_is_refused_in_one_line(tmp_path: Path, line: str):
     path = tmp_path / "r.jsonl"
     path.write_text(f"{line}\n")
     with pytest.raises(ResultsError, match=r"r\.jsonl:1: is not a row of results: .*; remove the line") as error:
@@ -241,7 +241,7 @@ def test_whatever_a_line_holds_it_is_named_in_one(tmp_path: Path, line: str):
         ("more", 1),
     ],
 )
-def test_a_field_that_is_not_what_it_should_be_is_named(tmp_path: Path, field: str, value: object):
+def test_field_of_another_type_is_named(tmp_path: Path, field: str, value: object):
     path = tmp_path / "r.jsonl"
     append(path, ROW)
     path.write_text(json.dumps({**json.loads(path.read_text()), field: value}) + "\n")
@@ -249,14 +249,14 @@ def test_a_field_that_is_not_what_it_should_be_is_named(tmp_path: Path, field: s
         read_rows(path)
 
 
-def test_a_row_comes_back_as_it_was(tmp_path: Path):
+def test_row_is_read_as_it_was_written(tmp_path: Path):
     row = replace(ROW, finishes=("fill",), options={"a": [1, None]}, measures={"bad1": 3, "x": None}, seconds=1)
     append(tmp_path / "r.jsonl", row)
     assert read_rows(tmp_path / "r.jsonl") == {"k": row}
 
 
 @pytest.mark.timeout(20)
-def test_a_pipe_or_a_device_holds_no_results(tmp_path: Path):
+def test_pipe_and_device_are_refused_as_results(tmp_path: Path):
     os.mkfifo(tmp_path / "pipe.jsonl")
     (tmp_path / "zero.jsonl").symlink_to("/dev/zero")
     for name in ("pipe.jsonl", "zero.jsonl"):
@@ -264,7 +264,7 @@ def test_a_pipe_or_a_device_holds_no_results(tmp_path: Path):
             read_rows(tmp_path / name)
 
 
-def test_a_place_that_cannot_be_written(tmp_path: Path):
+def test_unwritable_results_are_refused(tmp_path: Path):
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match="choose another folder"):
         mend(tmp_path / "file" / "r.jsonl")
@@ -288,7 +288,7 @@ def lines(path: Path) -> int:
 
 
 @pytest.mark.slow
-def test_killed_and_gone_on_with(tangible, tmp_path: Path):
+def test_killed_comparison_continues_where_it_stopped(tangible, tmp_path: Path):
     config = write_file(tmp_path, "{use: constant, seconds: 0.2}, half", "repeats: 2\nwarmups: 0\ncalls: 1\n")
     rows = tmp_path / "out" / "results.jsonl"
     first = tangible("compare", config)
@@ -300,13 +300,13 @@ def test_killed_and_gone_on_with(tangible, tmp_path: Path):
     rows.write_bytes(kept + b'{"key": "torn')
 
     second = tangible("compare", config, "--json")
-    said, noise = second.communicate()
-    assert second.returncode == 0, noise
-    assert f"{lines_in(kept)} of 4 measurements are in" in noise.replace("\n", " ")
+    output, errors = second.communicate()
+    assert second.returncode == 0, errors
+    assert f"{lines_in(kept)} of 4 measurements are in" in errors.replace("\n", " ")
     assert rows.read_bytes().startswith(kept)
     found = [json.loads(line) for line in rows.read_text().splitlines()]
     assert len(found) == len({row["key"] for row in found}) == 4
-    assert [len(cell["seconds"]) for cell in json.loads(said)["cells"]] == [2, 2]
+    assert [len(cell["seconds"]) for cell in json.loads(output)["cells"]] == [2, 2]
 
 
 def lines_in(text: bytes) -> int:
@@ -315,16 +315,16 @@ def lines_in(text: bytes) -> int:
 
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGINT])
 @pytest.mark.slow
-def test_a_worker_does_not_outlive_the_comparison(tangible, tmp_path: Path, end: signal.Signals):
+def test_worker_ends_with_the_comparison(tangible, tmp_path: Path, end: signal.Signals):
     pid_file = tmp_path / "pid"
     config = write_file(tmp_path, f"constant, {{use: sleeps, pid_file: {pid_file}}}", QUICK)
     process = tangible("compare", config)
     wait_for(lambda: pid_file.exists() and pid_file.read_text())
     process.send_signal(end)
-    _, noise = process.communicate()
+    _, errors = process.communicate()
     if end == signal.SIGINT:
-        assert process.returncode == 130, noise
-        assert "the same command continues from there" in noise
+        assert process.returncode == 130, errors
+        assert "the same command continues from there" in errors
     worker = int(pid_file.read_text())
     wait_for(lambda: not alive(worker))
     assert [row.method for row in read_rows(tmp_path / "out" / "results.jsonl").values()] == ["constant"]

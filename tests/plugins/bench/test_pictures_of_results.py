@@ -38,13 +38,13 @@ def results(points: dict[str, tuple[float, float]]) -> Results:
     ],
     ids=["one", "the same", "many", "extremes"],
 )
-def test_a_plot_is_drawn(tmp_path: Path, points: dict[str, tuple[float, float]]):
+def test_plot_of_any_points_has_its_size(tmp_path: Path, points: dict[str, tuple[float, float]]):
     assert draw_plot(tmp_path / "plot.png", results(points))
     with Image.open(tmp_path / "plot.png") as image:
         assert image.size == (1920, 720)
 
 
-def test_a_curve_has_a_panel_of_its_own(tmp_path: Path):
+def test_plot_with_a_curve_has_a_third_panel(tmp_path: Path):
     curve = load_task("depth").curve
     assert curve is not None
     known = {**dict.fromkeys(curve.points.values(), 5.0), **dict.fromkeys(curve.ideal.values(), 1.0)}
@@ -56,7 +56,7 @@ def test_a_curve_has_a_panel_of_its_own(tmp_path: Path):
         assert image.size == (2880, 720)
 
 
-def test_every_point_of_a_curve_is_measured():
+def test_depth_task_measures_every_point_of_its_curve():
     task = load_task("depth")
     assert task.curve is not None
     pair = synthetic_pair("planes", 64, 48)
@@ -67,14 +67,14 @@ def test_every_point_of_a_curve_is_measured():
     assert not names & task.measures.keys()
 
 
-def test_nothing_to_draw_draws_nothing(tmp_path: Path):
+def test_plot_without_results_is_not_written(tmp_path: Path):
     failed = Cell("m", "s", "none", error="no")
     assert not draw_plot(tmp_path / "plot.png", Results(load_task("depth"), {failed.key: failed}, None))
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_names_cover_neither_each_other_nor_points(seed: int):
+def test_labels_cover_neither_each_other_nor_points(seed: int):
     points = np.random.default_rng(seed).normal(0.5, 0.2, (9, 2)).clip(0, 1)
     figure = Figure(figsize=(6.4, 4.8), dpi=100)
     canvas = FigureCanvasAgg(figure)

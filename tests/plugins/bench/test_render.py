@@ -33,7 +33,7 @@ def strokes() -> dict[str, KnownStroke]:
     return {name: analytic_stroke(name, CELLS) for name in SURFACES}
 
 
-def measured(name: str, stroke: KnownStroke, **options) -> dict[str, float]:
+def measure_method(name: str, stroke: KnownStroke, **options) -> dict[str, float]:
     method = load_method("render", name)(**options)
     return measure(feel(prepare(method, stroke), stroke), stroke)
 
@@ -43,9 +43,9 @@ def parse(text: str, registry: Registry) -> Comparison:
 
 
 @pytest.mark.slow
-def test_a_vertical_spring_on_a_slope(strokes):
-    """Off by tan(t), 1 / cos(t) too strong, and t aside; in at one height and out at another, k d dh given away."""
-    found = measured("penalty", strokes["ramp"])
+def test_vertical_spring_on_a_slope_has_known_errors(strokes):
+    """The error is tan(t), the strength 1 / cos(t), the direction off by t; a loop in and out gives work k d dh."""
+    found = measure_method("penalty", strokes["ramp"])
     assert found["error_percent"] == pytest.approx(100 * RISE, rel=1e-3)
     assert found["direction_deg"] == pytest.approx(math.degrees(math.atan(RISE)), rel=1e-3)
     assert found["jnd"] == pytest.approx(math.degrees(math.atan(RISE)) / 18, rel=1e-3)
@@ -53,7 +53,7 @@ def test_a_vertical_spring_on_a_slope(strokes):
 
 
 @pytest.mark.slow
-def test_the_work_of_one_loop_of_a_vertical_spring():
+def test_vertical_spring_around_a_loop_gives_known_work():
     """1 mm deep along a ramp of 0.2, 40 mm up: 800 N/m x 1 mm x 8 mm = 6.4 mJ; back down it is taken again."""
     known = ramp((0.2, 0.0), shape=(CELLS, CELLS))
     across = np.linspace(-0.02, 0.02, 4001)
@@ -62,21 +62,21 @@ def test_the_work_of_one_loop_of_a_vertical_spring():
     way = np.vstack([down, along[1:-1], up])
     for path, work_j in ((way, 6.4e-3), (way[::-1], -6.4e-3)):
         stroke = KnownStroke(known.surface, path, np.full_like(path, np.nan))
-        assert measured("penalty", stroke)["loop_work_j"] == pytest.approx(work_j, rel=2e-3)
-        assert measured("penalty-gradient", stroke)["loop_work_j"] == pytest.approx(0, abs=1e-5)
-        assert math.isnan(measured("penalty", stroke)["error_n"])
+        assert measure_method("penalty", stroke)["loop_work_j"] == pytest.approx(work_j, rel=2e-3)
+        assert measure_method("penalty-gradient", stroke)["loop_work_j"] == pytest.approx(0, abs=1e-5)
+        assert math.isnan(measure_method("penalty", stroke)["error_n"])
 
 
 @pytest.mark.parametrize("name", ["plane", "ramp", "sphere", "sine", "cone", "ridge"])
 @pytest.mark.slow
-def test_a_law_with_a_potential_gives_nothing_away(strokes, name: str):
-    assert measured("penalty-gradient", strokes[name])["loop_work_j"] == pytest.approx(0, abs=5e-5)
+def test_force_law_with_a_potential_gives_no_work(strokes, name: str):
+    assert measure_method("penalty-gradient", strokes[name])["loop_work_j"] == pytest.approx(0, abs=5e-5)
 
 
 @pytest.mark.parametrize(("name", "percent"), [("plane", 1e-3), ("ramp", 1e-3), ("sphere", 1e-2), ("sine", 0.1)])
 @pytest.mark.slow
-def test_the_proxy_is_the_spring_to_the_nearest_point(strokes, name: str, percent: float):
-    found = measured("proxy", strokes[name])
+def test_proxy_equals_the_spring_to_the_nearest_point(strokes, name: str, percent: float):
+    found = measure_method("proxy", strokes[name])
     assert found["error_percent"] < percent
     assert found["jnd"] < 0.01
     assert found["noticed_percent"] < 0.5
@@ -85,29 +85,29 @@ def test_the_proxy_is_the_spring_to_the_nearest_point(strokes, name: str, percen
 
 
 @pytest.mark.slow
-def test_a_gradient_spring_is_too_stiff_on_a_slope(strokes):
-    """By sqrt(1 + s^2) along the gradient's force and by as much again along the normal."""
-    found = measured("penalty-gradient", strokes["ramp"])
+def test_gradient_spring_on_a_slope_is_too_stiff(strokes):
+    """The factor is sqrt(1 + s^2) along the gradient's force, and the same again along the normal."""
+    found = measure_method("penalty-gradient", strokes["ramp"])
     assert found["error_percent"] == pytest.approx(100 * RISE**2, rel=1e-3)
     assert found["direction_deg"] == pytest.approx(0, abs=0.01)
     assert found["jnd"] == pytest.approx(RISE**2 / 0.07, rel=1e-3)
 
 
 @pytest.mark.slow
-def test_the_step_of_the_grey_level(strokes):
+def test_grey_level_steps_by_its_whole_force(strokes):
     """All of its force at once where the surface is met; a spring of 800 N/m at 20 mm/s steps by 0.016 N."""
-    assert measured("grey-level", strokes["plane"], force_at_white_n=2.0)["step_n"] == pytest.approx(2)
+    assert measure_method("grey-level", strokes["plane"], force_at_white_n=2.0)["step_n"] == pytest.approx(2)
     fastest = np.linalg.norm(np.diff(strokes["plane"].position_m, axis=0), axis=1).max()
-    assert measured("penalty", strokes["plane"])["step_n"] <= 800 * fastest
+    assert measure_method("penalty", strokes["plane"])["step_n"] <= 800 * fastest
 
 
 @pytest.mark.slow
-def test_friction_lags(strokes):
+def test_friction_makes_the_proxy_lag(strokes):
     """Sliding over a plane a depth d under it, the proxy is mu d behind."""
     circle = np.linspace(0, 2 * np.pi, 8001)
     way = np.column_stack([0.02 * np.cos(circle), 0.02 * np.sin(circle), np.full(8001, 0.009)])
     stroke = analytic_stroke("plane", CELLS, path_m=way)
-    found = measured("proxy", stroke, static_friction=0.3, dynamic_friction=0.3)
+    found = measure_method("proxy", stroke, static_friction=0.3, dynamic_friction=0.3)
     assert found["lag_mm"] == pytest.approx(0.3, rel=0.02)
     assert found["direction_deg"] == pytest.approx(math.degrees(math.atan(0.3)), rel=0.02)
     assert found["error_percent"] == pytest.approx(30, rel=0.02)
@@ -115,7 +115,7 @@ def test_friction_lags(strokes):
 
 
 @pytest.mark.parametrize("name", ["penalty", "penalty-gradient", "force-shading", "proxy"])
-def test_stiffness_limits_of_springs(strokes, name: str):
+def test_stiffness_limits_of_springs_equal_the_bound(strokes, name: str):
     method = load_method("render", name)()
     found = limits(method, strokes["plane"].surface)
     for delay in (0, 1, 2):
@@ -124,21 +124,21 @@ def test_stiffness_limits_of_springs(strokes, name: str):
 
 
 @pytest.mark.parametrize(("name", "scene"), [("grey-level", "plane"), ("lateral-shape", "plane"), ("penalty", "ramp")])
-def test_no_stiffness_limit(strokes, name: str, scene: str):
+def test_stiffness_limits_of_other_force_laws_are_unknown(strokes, name: str, scene: str):
     found = limits(load_method("render", name)(), strokes[scene].surface)
     assert list(found) == ["limit0", "limit1", "limit2"]
     assert all(map(math.isnan, found.values()))
 
 
-def test_the_true_spring_is_as_stiff_as_the_law(strokes):
-    assert measured("proxy", strokes["sphere"], stiffness_n_per_m=200.0)["error_percent"] < 1e-2
+def test_true_spring_has_the_stiffness_of_the_force_law(strokes):
+    assert measure_method("proxy", strokes["sphere"], stiffness_n_per_m=200.0)["error_percent"] < 1e-2
 
 
-def test_every_measure_is_there(strokes):
-    assert set(measured("lateral-gradient", strokes["step"])) == set(TASK.measures)
+def test_measures_of_a_force_law_are_complete(strokes):
+    assert set(measure_method("lateral-gradient", strokes["step"])) == set(TASK.measures)
 
 
-def test_speed_is_the_same_way_in_fewer_ticks(strokes):
+def test_speed_takes_the_same_path_in_fewer_ticks(strokes):
     fast = PERTURBATIONS["speed"].apply(strokes["sine"], 9.0)
     assert len(fast.position_m) == 889
     np.testing.assert_array_equal(fast.position_m[5], strokes["sine"].position_m[45])
@@ -147,7 +147,7 @@ def test_speed_is_the_same_way_in_fewer_ticks(strokes):
 
 
 @pytest.mark.parametrize("bits", [1, 8, 16])
-def test_heights_of_so_many_bits(strokes, bits: int):
+def test_bits_round_heights_to_n_levels(strokes, bits: int):
     changed = PERTURBATIONS["bits"].apply(strokes["sine"], float(bits))
     heights, before = changed.surface.height_m, strokes["sine"].surface.height_m
     assert np.unique(heights).size <= 2**bits
@@ -156,17 +156,17 @@ def test_heights_of_so_many_bits(strokes, bits: int):
     np.testing.assert_array_equal(changed.nearest_m, strokes["sine"].nearest_m)
 
 
-def test_ground_at_height_0_has_nothing_to_round():
+def test_bits_of_flat_ground_change_nothing():
     flat = KnownStroke(ramp((0.0, 0.0), 0.0).surface, np.zeros((2, 3)), np.zeros((2, 3)))
     assert not PERTURBATIONS["bits"].apply(flat, 8.0).surface.height_m.any()
 
 
 @pytest.mark.parametrize(("kind", "value"), [("speed", 1.0), ("speed", 2.5), ("bits", 0.0), ("bits", 17.0)])
-def test_what_is_no_perturbation(kind: str, value: float):
+def test_invalid_perturbation_is_not_allowed(kind: str, value: float):
     assert not PERTURBATIONS[kind].allowed(value)
 
 
-def test_scenes_by_name(registry: Registry, tmp_path: Path):
+def test_scene_names_give_their_options(registry: Registry, tmp_path: Path):
     picture = tmp_path / "map.png"
     Image.fromarray(np.arange(64 * 48, dtype=np.uint8).reshape(48, 64)).save(picture)
     scenes = parse(
@@ -184,8 +184,8 @@ def test_scenes_by_name(registry: Registry, tmp_path: Path):
     assert (relief.height_m.max(), relief.extent_m) == (np.float32(0.005), (0.08, 0.06))
 
 
-def test_the_truth_of_a_builtin_pair_is_its_relief():
-    """Near things stand out: the motorcycle before the wall."""
+def test_builtin_pair_has_the_relief_of_its_truth():
+    """The motorcycle is nearer than the wall, so it stands out."""
     heights = RenderScene(builtin="motorcycle").open().surface.height_m
     assert heights.shape == (500, 741)
     assert heights[250, 370] > heights[30, 30]
@@ -201,7 +201,7 @@ def test_the_truth_of_a_builtin_pair_is_its_relief():
         ("{builtin: coins, cells: 64}", "cells has no effect here; leave it out"),
     ],
 )
-def test_what_is_no_scene(registry: Registry, scene: str, what: str):
+def test_invalid_scene_is_refused(registry: Registry, scene: str, what: str):
     with pytest.raises(ConfigError, match=what):
         parse(f"compare: render\nmethods: [proxy]\nscenes: [{scene}]\n", registry)
 
@@ -214,7 +214,7 @@ def recording(count: int = 50) -> Recording:
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
 @pytest.mark.slow
-def test_a_way_that_was_recorded(tmp_path: Path, registry: Registry, suffix: str):
+def test_recording_gives_the_path_of_the_scene(tmp_path: Path, registry: Registry, suffix: str):
     recording().save(tmp_path / f"hand{suffix}")
     text = f"compare: render\nmethods: [proxy]\nscenes: [{{analytic: plane, recording: hand{suffix}}}]\n"
     ((name, scene),) = parse_comparison(text, tmp_path / "c.yaml", registry).scenes.items()
@@ -222,18 +222,18 @@ def test_a_way_that_was_recorded(tmp_path: Path, registry: Registry, suffix: str
     stroke = scene.open()
     np.testing.assert_array_equal(stroke.position_m, recording().position_m)
     assert stroke.period_s == pytest.approx(0.002)
-    assert measured("penalty", stroke)["error_percent"] == pytest.approx(0, abs=1e-3)
+    assert measure_method("penalty", stroke)["error_percent"] == pytest.approx(0, abs=1e-3)
 
 
 @pytest.mark.parametrize("count", [0, 1])
-def test_a_recording_that_is_no_way(tmp_path: Path, count: int):
+def test_recording_without_a_path_is_refused(tmp_path: Path, count: int):
     recording(count).save(tmp_path / "hand.npz")
     with pytest.raises(OutputError, match="two finite positions or more"):
         RenderScene(analytic="plane", recording=tmp_path / "hand.npz").open()
 
 
 @pytest.fixture(scope="module")
-def compared(tmp_path_factory: pytest.TempPathFactory) -> Results:
+def comparison_results(tmp_path_factory: pytest.TempPathFactory) -> Results:
     text = """\
 compare: render
 methods: [penalty, grey-level]
@@ -251,19 +251,19 @@ calls: 1
 
 
 @pytest.mark.slow
-def test_a_comparison_from_end_to_end(compared: Results):
-    """On the coins nobody knows the truth, so that the error is that of the ramp alone."""
-    (means,) = tables(compared)
+def test_render_comparison_end_to_end_has_exact_results(comparison_results: Results):
+    """The truth of the coins is unknown, so the error is that of the ramp alone."""
+    (means,) = tables(comparison_results)
     assert means.headings[:6] == ("method", "*", "ns a tick", "peak MB", "error %", "error N")
     assert [row[0] for row in means.rows] == ["penalty", "grey-level"]
     assert float(means.rows[0][4]) == pytest.approx(100 * RISE, abs=0.01)
     assert 0 < float(means.rows[0][2]) < 100_000
 
 
-def test_plots_of_what_is_known(compared: Results, tmp_path: Path):
-    """Without a truth there is only the panel of steps."""
-    assert draw_plot(tmp_path / "all.png", compared)
-    coins = {key: cell for key, cell in compared.cells.items() if "coins" in cell.scene}
+def test_plot_without_truth_has_the_panel_of_steps_only(comparison_results: Results, tmp_path: Path):
+    """The panel of steps is the only one that needs no truth."""
+    assert draw_plot(tmp_path / "all.png", comparison_results)
+    coins = {key: cell for key, cell in comparison_results.cells.items() if "coins" in cell.scene}
     assert draw_plot(tmp_path / "coins.png", Results(TASK, coins, None))
     with Image.open(tmp_path / "all.png") as everything, Image.open(tmp_path / "coins.png") as steps:
         assert everything.width == 3 * steps.width

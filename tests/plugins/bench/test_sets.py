@@ -35,7 +35,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def parsed(registry: Registry, folder: Path, scenes: str, methods: str = "constant", more: str = "") -> Comparison:
+def parse(registry: Registry, folder: Path, scenes: str, methods: str = "constant", more: str = "") -> Comparison:
     text = f"compare: depth\nmethods: [{methods}]\nscenes: [{scenes}]\nrepeats: 1\nwarmups: 0\ncalls: 1\n{more}"
     return parse_comparison(text, folder / "c.yaml", registry)
 
@@ -55,8 +55,8 @@ def parsed(registry: Registry, folder: Path, scenes: str, methods: str = "consta
         ("kitti-2015, kitti-2015@test", ["kitti-2015/000000_10", "kitti-2015@test/000000_10"]),
     ],
 )
-def test_a_set_stands_for_its_pairs(scene: str, names: list[str], registry: Registry, folder: Path):
-    comparison = parsed(registry, folder, scene)
+def test_set_expands_to_its_pairs(scene: str, names: list[str], registry: Registry, folder: Path):
+    comparison = parse(registry, folder, scene)
     assert list(comparison.scenes) == names
     for spec in comparison.scenes.values():
         again = DepthScene.model_validate(spec.model_dump(mode="json"))
@@ -76,14 +76,14 @@ def test_a_set_stands_for_its_pairs(scene: str, names: list[str], registry: Regi
         ("{pairs: {left: 'L*'}}", "scenes.0.pairs.right: Field required"),
     ],
 )
-def test_what_is_wrong_is_one_line_with_its_place(scene: str, why: str, registry: Registry, folder: Path):
+def test_set_with_a_mistake_is_refused_with_its_place(scene: str, why: str, registry: Registry, folder: Path):
     with pytest.raises(ConfigError) as error:
-        parsed(registry, folder, scene)
+        parse(registry, folder, scene)
     said = str(error.value)
     assert why in said and "c.yaml:3:" in said and "\n" not in said
 
 
-def test_pairs_of_ones_own_are_matched_by_their_stars(registry: Registry, tmp_path: Path):
+def test_custom_pairs_are_matched_by_their_stars(registry: Registry, tmp_path: Path):
     k = known()
     for name in ("a", "b"):
         put(tmp_path / "mine" / name / "L.png", k.pair.views.left)
@@ -91,7 +91,7 @@ def test_pairs_of_ones_own_are_matched_by_their_stars(registry: Registry, tmp_pa
     put(tmp_path / "mine/a/D.png", np.rint(64 * np.nan_to_num(k.truth_px)).astype(np.uint16))
     put(tmp_path / "mine/a/N.png", np.where(k.visible, 255, 0).astype(np.uint8))
     globs = "{left: 'mine/*/L.png', right: 'mine/*/R.png', truth: 'mine/*/D.png', truth_scale: 64, noc: 'mine/*/N.png'}"
-    comparison = parsed(registry, tmp_path, f"{{pairs: {globs}}}")
+    comparison = parse(registry, tmp_path, f"{{pairs: {globs}}}")
     assert list(comparison.scenes) == ["a", "b"]
     first, second = (spec.open() for spec in comparison.scenes.values())
     assert np.nanmax(np.abs(first.truth_px - k.truth_px)) <= 1 / 128 + 1e-6
@@ -100,7 +100,7 @@ def test_pairs_of_ones_own_are_matched_by_their_stars(registry: Registry, tmp_pa
     assert measure(DisparityMap(np.zeros(second.views.shape, np.float32)), second) == {}
 
 
-def test_pictures_and_labels_of_ones_own(tmp_path: Path):
+def test_custom_pictures_and_labels_are_matched_by_their_stars(tmp_path: Path):
     for name in ("x", "y"):
         put(tmp_path / f"pictures/{name}.png", np.arange(12, dtype=np.uint8).reshape(3, 4))
         put(tmp_path / f"truth/{name}_seg.png", np.eye(3, 4, dtype=np.uint8))
@@ -137,30 +137,30 @@ class TestMeasures:
             assert figures[f"a90_px_full{end}"] == pytest.approx(4 * figures[f"a90_px{end}"], rel=1e-5)
         assert figures["bad2"] < figures["bad1"] < figures["bad0.5"] < 100
 
-    def test_noc_is_over_the_sets_own_mask(self, folder: Path):
+    def test_noc_measures_use_the_mask_of_the_set(self, folder: Path):
         pair = self.pair(folder, {"set": "kitti-2015"})
         wrong = np.where(pair.noc, np.nan_to_num(pair.truth_px), 99).astype(np.float32)
         figures = measure(DisparityMap(wrong), pair)
         assert figures["d1_noc"] == figures["bad3_noc"] == 0 < figures["d1"] == figures["bad3"]
         assert figures["pixels_bg"] + figures["pixels_fg"] == figures["pixels"] > figures["pixels_noc"]
 
-    def test_sparse_truth_without_a_mask_has_no_noc(self, folder: Path):
+    def test_sparse_truth_without_a_mask_has_no_noc_measures(self, folder: Path):
         pair = replace(self.pair(folder, {"set": "kitti-2015"}), noc=None)
         figures = measure(DisparityMap(np.zeros(pair.views.shape, np.float32)), pair)
         assert figures["bad2"] > 0 and not [name for name in figures if name.endswith("_noc")]
 
-    def test_estimates_are_clipped_to_the_range_that_the_set_tells(self, folder: Path):
+    def test_estimates_are_clipped_to_the_range_of_the_set(self, folder: Path):
         pair = self.pair(folder, {"set": "middlebury-2014"})
         truth = np.full(pair.views.shape, 19.5, np.float32)
         figures = measure(DisparityMap(np.full(pair.views.shape, 500.0, np.float32)), replace(pair, truth_px=truth))
         assert figures["average_px"] == 0.5 and figures["bad0.5"] == 0
 
-    def test_the_range_that_methods_are_told(self, folder: Path):
+    def test_range_for_methods_follows_the_set(self, folder: Path):
         assert range_px(self.pair(folder, {"set": "middlebury-2014"})) == 32
         assert range_px(self.pair(folder, {"set": "kitti-2015"})) == 16
         assert range_px(self.pair(folder, {"set": "kitti-2015", "split": "test"})) == 256
 
-    def test_every_figure_has_a_heading(self, folder: Path):
+    def test_measures_all_have_a_heading(self, folder: Path):
         pair = self.pair(folder, {"set": "middlebury-eval3"})
         figures = measure(DisparityMap(np.zeros(pair.views.shape, np.float32)), pair)
         assert {name for name in figures if not name.startswith("pixels")} <= set(TASK.measures)
@@ -179,7 +179,7 @@ def results(*rows: Row) -> Results:
     return Results(TASK, cells(rows, None), None)
 
 
-def test_kittis_shares_are_over_all_pixels_of_all_pairs():
+def test_kitti_measures_are_weighted_by_pixels():
     """A pair without a foreground has no part in that of the others."""
     found = results(
         row("m", "kitti-2015/a", d1_fg=10.0, pixels_fg=300.0, d1=5.0, pixels=1000.0),
@@ -192,7 +192,7 @@ def test_kittis_shares_are_over_all_pixels_of_all_pairs():
     assert table.title == "KITTI 2015, 3 pairs"
 
 
-def test_methods_are_in_the_benchmarks_order_and_the_best_is_bold():
+def test_set_table_has_the_benchmark_order_and_bold_best():
     at = "middlebury-eval3@Q/x"
     found = results(
         row("one_a", at, bad2_full_noc=9.25, bad2_full=30.0),
@@ -211,7 +211,7 @@ def test_methods_are_in_the_benchmarks_order_and_the_best_is_bold():
     assert len(rest) == 1
 
 
-def test_a_method_that_lacks_a_pair_has_no_mean_of_the_others():
+def test_set_table_leaves_out_a_method_without_a_pair():
     found = results(
         row("m", "eth3d/a", bad1_noc=1.0),
         row("m", "eth3d/b", bad1_noc=2.0),
@@ -222,7 +222,7 @@ def test_a_method_that_lacks_a_pair_has_no_mean_of_the_others():
     assert list(table.rows) == ["m"] and 1.5 in table.rows["m"]
 
 
-def test_headings_say_of_which_size_the_pixels_are():
+def test_headings_name_the_size_of_pixels():
     def headings(*scenes: str) -> tuple[str, ...]:
         return tables(results(*(row("m", scene, bad2=1.0) for scene in scenes)), detail=False)[0].headings
 
@@ -233,7 +233,7 @@ def test_headings_say_of_which_size_the_pixels_are():
         assert "bad2 %" in headings(*scenes)
 
 
-def test_a_table_of_details_has_what_benchmarks_measure_of_their_own_scenes_alone():
+def test_detail_tables_have_benchmark_measures_for_sets_only():
     old = tables(results(row("m", "planes 64x32", bad2=1.0)), detail=True)[1]
     assert old.headings[4:] == tuple(each.title for each in TASK.measures.values() if not each.of_sets)
     assert len(old.headings) == 20 and "A90 px" not in old.headings
@@ -242,14 +242,16 @@ def test_a_table_of_details_has_what_benchmarks_measure_of_their_own_scenes_alon
 
 
 class TestSubmissions:
-    def done(self, registry: Registry, folder: Path, scenes: str, methods: str = "half") -> dict[str, Path]:
-        comparison = parsed(registry, folder, scenes, methods)
+    def submit_files(self, registry: Registry, folder: Path, scenes: str, methods: str = "half") -> dict[str, Path]:
+        comparison = parse(registry, folder, scenes, methods)
         found = list(submit(comparison, folder / "sent"))
         assert not [each.error for each in found if each.error]
         return {str(path.relative_to(folder / "sent")): path for each in found for path in each.files}
 
-    def test_middlebury_as_its_kit_has_it(self, registry: Registry, folder: Path):
-        files = self.done(registry, folder, "middlebury-eval3, middlebury-eval3@test", "{use: half, label: my half}")
+    def test_middlebury_submission_has_the_layout_of_its_kit(self, registry: Registry, folder: Path):
+        files = self.submit_files(
+            registry, folder, "middlebury-eval3, middlebury-eval3@test", "{use: half, label: my half}"
+        )
         assert list(files) == [
             "my-half/trainingQ/Adirondack/disp0my-half.pfm", "my-half/trainingQ/Adirondack/timemy-half.txt",
             "my-half/testQ/Australia/disp0my-half.pfm", "my-half/testQ/Australia/timemy-half.txt",
@@ -260,16 +262,16 @@ class TestSubmissions:
         assert b"\x00\x00\x80\x7f" in first.read_bytes(), "unknown is infinite"
         assert 0 < float(time.read_text()) < 60
 
-    def test_kitti_as_its_kit_has_it(self, registry: Registry, folder: Path):
-        files = self.done(registry, folder, "kitti-2015@test, kitti-2012@test", "{use: half, value_px: 4.126}")
+    def test_kitti_submission_has_the_layout_of_its_kit(self, registry: Registry, folder: Path):
+        files = self.submit_files(registry, folder, "kitti-2015@test, kitti-2012@test", "{use: half, value_px: 4.126}")
         assert list(files) == ["half/disp_0/000000_10.png", "half/000000_10.png"]
         for path in files.values():
             assert path.read_bytes()[24] == 16, "bits"
             found = read_truth(path, 256)
             assert np.isnan(found[:, 48:]).all() and np.abs(found[:, :48] - 4.126).max() <= 1 / 512
 
-    def test_eth3d_as_its_kit_has_it(self, registry: Registry, folder: Path):
-        files = self.done(registry, folder, "eth3d")
+    def test_eth3d_submission_has_the_layout_of_its_kit(self, registry: Registry, folder: Path):
+        files = self.submit_files(registry, folder, "eth3d")
         assert list(files) == [
             "half/low_res_two_view/delivery_area_1l.pfm", "half/low_res_two_view/delivery_area_1l.txt"
         ]  # fmt: skip
@@ -279,35 +281,35 @@ class TestSubmissions:
         assert word == "runtime" and float(seconds) > 0
 
     @pytest.mark.parametrize("shape", [(1, 1), (3, 5)])
-    def test_a_float_map_returns_as_it_was(self, shape: tuple[int, int], tmp_path: Path):
+    def test_float_map_is_read_as_it_was_written(self, shape: tuple[int, int], tmp_path: Path):
         values = np.random.default_rng(3).normal(0, 1e3, shape).astype(np.float32)
         values[-1, 0] = np.nan
         write_pfm(tmp_path / "d.pfm", values)
         np.testing.assert_array_equal(read_map(tmp_path / "d.pfm"), values)
         assert (tmp_path / "d.pfm").read_bytes().startswith(f"Pf\n{shape[1]} {shape[0]}\n-1.0\n".encode())
 
-    def test_what_16_bits_cannot_hold_is_the_nearest_that_they_can(self, tmp_path: Path):
+    def test_png16_clips_values_to_16_bits(self, tmp_path: Path):
         values = np.float32([[0, -3, 1e-4, 255.99, 300, np.nan, np.inf]])
         write_png16(tmp_path / "d.png", values)
         stored = read_map(tmp_path / "d.png")
         np.testing.assert_array_equal(stored, [[1, 1, 1, 65533, 65535, 0, 0]])
 
-    def test_a_method_that_fails_is_said_and_the_others_go_on(self, registry: Registry, folder: Path):
-        found = list(submit(parsed(registry, folder, "eth3d", "raises, fails, relative, constant"), folder / "sent"))
+    def test_submission_reports_failing_methods_and_continues(self, registry: Registry, folder: Path):
+        found = list(submit(parse(registry, folder, "eth3d", "raises, fails, relative, constant"), folder / "sent"))
         errors = {each.method: each.error for each in found}
         assert errors["raises"] == "not this picture" and "relative" in errors["relative"]
         assert errors["fails"] and not errors["constant"]
         assert [path.name for path in (folder / "sent").iterdir()] == ["constant"]
 
-    def test_a_full_disk_leaves_no_half_of_a_file(self, registry: Registry, folder: Path, monkeypatch):
+    def test_submission_on_a_full_disk_leaves_no_partial_file(self, registry: Registry, folder: Path, monkeypatch):
         monkeypatch.setattr("tangible_core.files.writing.os.fdopen", _full)
         with pytest.raises(OutputError, match="No space left"):
-            list(submit(parsed(registry, folder, "eth3d"), folder / "sent"))
+            list(submit(parse(registry, folder, "eth3d"), folder / "sent"))
         assert not [path for path in (folder / "sent").rglob("*") if path.is_file()]
 
-    def test_sets_that_take_none(self, registry: Registry, folder: Path):
+    def test_set_without_submissions_is_refused(self, registry: Registry, folder: Path):
         with pytest.raises(ConfigError, match="no scene is from a set that takes submissions: middlebury-eval3"):
-            list(submit(parsed(registry, folder, "{synthetic: steps}"), folder / "sent"))
+            list(submit(parse(registry, folder, "{synthetic: steps}"), folder / "sent"))
         pair = StandardPair("x", Path("l.png"), Path("r.png"))
         with pytest.raises(ConfigError, match="sintel takes no submissions; sets that do are middlebury-eval3"):
             write_submission(folder, "sintel", "m", pair, np.zeros((1, 1), np.float32), 1.0)
@@ -319,12 +321,12 @@ def _full(handle: int, mode: str):
 
 class TestCommand:
     @pytest.fixture(autouse=True)
-    def installed(self, registry: Registry, monkeypatch: pytest.MonkeyPatch) -> None:
+    def use_registry(self, registry: Registry, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr("tangible_core.plugins.registry.default_registry", lambda: registry)
 
     @pytest.mark.slow
     @pytest.mark.usefixtures("cells_here")
-    def test_measure_a_set_that_nobody_wrote_a_file_for(self, registry: Registry, folder: Path):
+    def test_command_measures_a_set_by_its_name(self, registry: Registry, folder: Path):
         methods = "methods=[constant, {use: constant, label: other, value_px: 2}]"
         words = ("compare", "kitti-2015", "--set", methods, "--set", "warmups=0")
         done = tangible(*words, cwd=folder)
@@ -340,12 +342,12 @@ class TestCommand:
             again = tangible("compare", out / "results.jsonl", "--table", form, cwd=folder)
             assert again.stdout == (out / file).read_text()
 
-    def test_a_missing_set_is_one_line(self, tmp_path: Path):
+    def test_command_with_a_missing_set_reports_one_line(self, tmp_path: Path):
         done = tangible("compare", "eth3d", cwd=tmp_path)
         assert done.returncode == 2 and done.stderr.count("\n") == 1
         assert f"{tmp_path / 'eth3d'}: there is no such folder; fetch two_view_training.7z" in done.stderr
 
-    def test_submit_by_the_command(self, registry: Registry, folder: Path):
+    def test_command_writes_submissions(self, registry: Registry, folder: Path):
         (folder / "elsewhere").symlink_to(folder / "eth3d")
         words = ("compare", "eth3d", "--folder", "elsewhere", "--submission", "sent")
         done = tangible(*words, "--set", "methods=[half]", cwd=folder)
@@ -355,7 +357,7 @@ class TestCommand:
         assert done.returncode == 1
         assert "no result of raises on eth3d/delivery_area_1l: not this picture" in done.stderr
 
-    def test_a_table_of_scenes_that_are_of_no_set(self, tmp_path: Path):
+    def test_command_prints_the_means_of_other_scenes(self, tmp_path: Path):
         append(tmp_path / "r.jsonl", row("m", "planes 64x32", bad2=1.0))
         done = tangible("compare", "r.jsonl", "--table", "latex", cwd=tmp_path)
         assert done.stdout == (tmp_path / "table.tex").read_text()
@@ -369,6 +371,6 @@ class TestCommand:
             (["kitti-2015@X"], "resolution: kitti-2015 has none called 'X'"),
         ],
     )
-    def test_options_that_do_not_go_together(self, words: list[str], why: str, folder: Path):
+    def test_command_with_conflicting_options_exits_with_2(self, words: list[str], why: str, folder: Path):
         done = tangible("compare", *words, cwd=folder)
         assert done.returncode == 2 and why in done.stderr and done.stderr.count("\n") == 1

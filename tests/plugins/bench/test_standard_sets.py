@@ -15,7 +15,7 @@ from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles
 
 
-def parsed(folder: Path, scene: str, *sets: str, rest: str = "") -> PipelineConfig:
+def parse(folder: Path, scene: str, *sets: str, rest: str = "") -> PipelineConfig:
     return parse_config(f"scene: {scene}\n{rest}", folder / "p.yaml", default_registry(), sets)
 
 
@@ -26,25 +26,23 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_a_pair_stands_for_left_right_truth_and_cameras(folder: Path):
-    """Beside the file, in a folder of the set's name."""
-    scene = parsed(folder, "{set: kitti-2015, name: 000000_10}").scene
+def test_set_scene_gives_left_right_truth_and_cameras(folder: Path):
+    """The folder is next to the file, with the name of the set."""
+    scene = parse(folder, "{set: kitti-2015, name: 000000_10}").scene
     assert isinstance(scene, SceneFiles)
     assert scene.left == folder / "kitti-2015/training/image_2/000000_10.png"
     assert (scene.truth_scale, scene.focal_px, scene.order) == (256, 700, "as-named")
     assert scene.baseline_m == pytest.approx(0.545)
 
 
-def test_what_a_run_writes_down_is_the_same_scene(folder: Path):
-    first = parsed(folder, "{set: sintel, folder: films, name: alley_1/frame_0001, crop: [8, 4, 40, 30]}")
+def test_set_scene_written_by_a_run_is_the_same(folder: Path):
+    first = parse(folder, "{set: sintel, folder: films, name: alley_1/frame_0001, crop: [8, 4, 40, 30]}")
     again = parse_config(first.as_yaml(), folder / "again.yaml", default_registry())
     assert again.scene == first.scene and again.scene.crop == (8, 4, 40, 30)
 
 
-def test_the_errors_of_a_run_are_those_of_the_truth(folder: Path):
-    config = parsed(
-        folder, "{set: sintel, folder: films, name: alley_1/frame_0001}", rest="depth: {use: semi-global}\n"
-    )
+def test_set_scene_in_a_pipeline_has_its_truth(folder: Path):
+    config = parse(folder, "{set: sintel, folder: films, name: alley_1/frame_0001}", rest="depth: {use: semi-global}\n")
     pipeline = Pipeline.from_config(config, default_registry(), None)
     truth = known().pair.truth_px
     assert np.nanmax(np.abs(pipeline.scene.truth - truth)) < 1e-4
@@ -52,15 +50,15 @@ def test_the_errors_of_a_run_are_those_of_the_truth(folder: Path):
     assert np.nanmedian(np.abs(found - truth)) < 0.5
 
 
-def test_the_command_line_sets_it(folder: Path):
-    config = parsed(
+def test_set_scene_is_set_by_overrides(folder: Path):
+    config = parse(
         folder, "builtin/brick", "scene={set: sintel, folder: films, name: alley_1/frame_0001}", "scene.variant=clean"
     )
     assert isinstance(config.scene, SceneFiles) and "clean_left" in str(config.scene.left)
 
 
 @pytest.mark.parametrize("said", ["set: sintel, folder: films", "set: kitti-2015"])
-def test_a_file_that_is_saved_elsewhere_leads_to_the_same_pair(said: str, folder: Path):
+def test_set_scene_in_a_moved_file_is_the_same_pair(said: str, folder: Path):
     name = "alley_1/frame_0001" if "sintel" in said else "000000_10"
     text, here, there = f"scene: {{{said}, name: {name}}}\n", folder / "p.yaml", folder / "other" / "q.yaml"
     config = parse_config(text, here, default_registry())
@@ -81,7 +79,7 @@ def test_a_file_that_is_saved_elsewhere_leads_to_the_same_pair(said: str, folder
         ("{set: kitti-2015, name: 000000_10, resolution: Q}", "p.yaml:1:1", "it is left out, for it has one size"),
     ],
 )
-def test_mistakes_are_said_with_their_place(scene: str, place: str, why: str, folder: Path):
+def test_set_scene_with_a_mistake_is_refused_with_its_place(scene: str, place: str, why: str, folder: Path):
     with pytest.raises(ConfigError) as error:
-        parsed(folder, scene)
+        parse(folder, scene)
     assert place in str(error.value) and why in str(error.value) and "\n" not in str(error.value)

@@ -20,7 +20,7 @@ def row(method: str, repeat: int, seconds: float | None, scene: str = "s", pertu
     return replace(ROW, key=key, method=method, repeat=repeat, seconds=seconds, scene=scene, perturb=perturb, **more)
 
 
-def test_a_ratio_is_the_median_of_pairs_within_a_round():
+def test_ratio_is_median_of_pairs_within_a_round():
     """The machine slows down tenfold in the last round: pairs do not notice, medians of each alone would."""
     rows = [row("base", 0, 1.0), row("fast", 0, 0.5), row("base", 1, 1.0), row("fast", 1, 0.5)]
     rows += [row("base", 2, 10.0), row("fast", 2, 5.0)]
@@ -31,12 +31,12 @@ def test_a_ratio_is_the_median_of_pairs_within_a_round():
     assert (base.ratio, fast.ratio, fast.seconds) == (1, 0.5, 0.5)
 
 
-def test_a_round_that_the_baseline_missed_gives_no_ratio():
+def test_round_without_baseline_gives_no_ratio():
     found = cells([row("base", 0, 2.0), row("m", 0, 1.0), row("m", 1, 1.0)], "base")
     assert found["m", "s", "none"].ratios == [0.5]
 
 
-def test_means_over_scenes():
+def test_lines_over_scenes_are_means():
     rows = [
         row("m", 0, 1.0, "a", measures={"bad2": 2.0}, peak_memory_bytes=10),
         row("m", 0, 3.0, "b", measures={"bad2": 4.0}, peak_memory_bytes=30),
@@ -50,7 +50,7 @@ def test_means_over_scenes():
     assert math.isnan(base.memory_bytes)
 
 
-def test_a_scene_without_truth_does_not_count():
+def test_scene_without_truth_does_not_count_in_means():
     """No method has the measure on it: unlike one on which only this method lacks it."""
     rows = [row(name, 0, 1.0, "a", measures={"bad2": value}) for name, value in (("m", 2.0), ("n", None))]
     rows += [row(name, 0, 3.0, "b", measures={"bad2": None}) for name in "mn"]
@@ -59,7 +59,7 @@ def test_a_scene_without_truth_does_not_count():
     assert math.isnan(n.measures["bad2"])
 
 
-def test_a_method_that_lacks_a_scene_has_no_mean():
+def test_method_without_result_on_a_scene_has_no_mean():
     rows = [row("m", 0, 1.0, "a", measures={"bad2": 2.0}), row("m", 0, None, "b", error="no")]
     (m,) = lines(cells(rows, None), "none", ["a", "b"])
     assert math.isnan(m.seconds)
@@ -67,7 +67,7 @@ def test_a_method_that_lacks_a_scene_has_no_mean():
     assert (m.done, m.scenes) == (1, 2)
 
 
-def test_spread():
+def test_spread_is_scaled_median_deviation():
     assert spread([1, 2, 3, 4, 100]) == pytest.approx(1.4826)
     assert spread([5]) == 0
     assert spread([]) == 0
@@ -77,7 +77,7 @@ points = st.lists(st.tuples(st.integers(0, 5), st.integers(0, 5)), max_size=12)
 
 
 @given(points)
-def test_a_front_is_what_nobody_beats(found: list[tuple[int, int]]):
+def test_front_has_exactly_the_unbeaten_points(found: list[tuple[int, int]]):
     best = [found[index] for index in front(found)]
     assert best == sorted(best)
     for point in found:
@@ -85,7 +85,7 @@ def test_a_front_is_what_nobody_beats(found: list[tuple[int, int]]):
         assert (point in best) is not beaten
 
 
-def test_what_is_unknown_is_on_no_front():
+def test_front_leaves_out_points_with_nan():
     assert front([(1.0, float("nan")), (float("nan"), 0.0), (2.0, 2.0)]) == [2]
 
 
@@ -101,7 +101,7 @@ def results() -> Results:
     return Results(load_task("depth"), cells(rows, "fast"), "fast")
 
 
-def test_tables():
+def test_tables_have_means_perturbations_and_failures():
     overview, perturbed, failures = tables(results())
     assert [(line[0], line[1], line[2], line[3]) for line in overview.rows] == [
         ("slow", "*", "2000.0", "2.00"),
@@ -113,13 +113,13 @@ def test_tables():
     assert failures.rows == (("bad", "s, noise 5", "gone"),)
 
 
-def test_detail_is_a_table_for_each_scene_and_perturbation_with_every_measure():
+def test_tables_with_detail_have_every_scene_perturbation_and_measure():
     found = tables(results(), detail=True)
     assert [table.title for table in found[2:-1]] == ["s", "s, noise 5"]
     assert "density noc %" in found[2].headings
 
 
-def test_a_measure_that_is_better_when_high_ranks_the_other_way():
+def test_measure_that_is_better_when_high_ranks_the_other_way():
     found = results()
     lines_ = found.means()
     assert [line.method for line in sorted(lines_, key=lambda line: found.loss(line, "density"))] == [

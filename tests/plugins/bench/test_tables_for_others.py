@@ -1,4 +1,4 @@
-"""How long a comparison will take, a first look at it, and its results as CSV and for LaTeX."""
+"""The forecast of a comparison, its short form, and its results as CSV and for LaTeX."""
 
 import csv
 import io
@@ -12,7 +12,7 @@ from tangible_bench.config.reading import Comparison, Damage, parse_comparison, 
 from tangible_bench.measuring.forecast import Forecast, forecast
 from tangible_bench.measuring.plan import measurements
 from tangible_bench.measuring.run import look
-from tangible_core.metrics.measured import measured
+from tangible_core.metrics.measured import load_measured
 from tangible_core.plugins.registry import Registry, default_registry
 
 TEXT = """\
@@ -31,7 +31,7 @@ def comparison(registry: Registry, folder: Path) -> Comparison:
     return parse_comparison(TEXT, folder / "c.yaml", registry)
 
 
-def test_a_first_look_is_a_sixth_of_the_work_in_a_folder_of_its_own(registry: Registry, tmp_path: Path):
+def test_shortened_comparison_is_a_sixth_of_the_work_in_its_own_folder(registry: Registry, tmp_path: Path):
     whole = comparison(registry, tmp_path)
     short = shorten(whole)
     assert (short.protocol.repeats, short.protocol.calls, short.damages) == (1, 1, (Damage(),))
@@ -39,13 +39,13 @@ def test_a_first_look_is_a_sixth_of_the_work_in_a_folder_of_its_own(registry: Re
     assert len(measurements(short)) * 6 == len(measurements(whole))
 
 
-def test_the_time_is_guessed_and_corrected_by_what_was_measured(tmp_path: Path):
+def test_forecast_is_corrected_by_finished_measurements(tmp_path: Path):
     text = "compare: depth\nmethods: [semi-global, report]\nscenes: [{synthetic: steps}]\nrepeats: 2\n"
     waiting = look(
         measurements(parse_comparison(text, tmp_path / "c.yaml", default_registry())), tmp_path / "x"
     ).waiting
     guess = forecast(waiting)
-    known = measured()["depth"].process_s
+    known = load_measured()["depth"].process_s
     assert guess.whole_s == pytest.approx(2 * (known["semi-global"] + known["report"]))
     once = tuple(replace(each, job=replace(each.job, warmups=0, calls=1)) for each in waiting)
     assert 0 < forecast(once).whole_s < guess.whole_s
@@ -57,7 +57,7 @@ def test_the_time_is_guessed_and_corrected_by_what_was_measured(tmp_path: Path):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("cells_here")
-def test_every_figure_is_written_for_other_programs(registry: Registry, tmp_path: Path):
+def test_comparison_writes_every_figure_as_csv_and_latex(registry: Registry, tmp_path: Path):
     found = compare(shorten(comparison(registry, tmp_path)))
     assert {"table.csv", "table.tex", "results.jsonl"} <= {path.name for path in found.files}
     lines = list(csv.DictReader(io.StringIO((tmp_path / "out-quick" / "table.csv").read_text())))

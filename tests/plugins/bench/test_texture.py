@@ -27,7 +27,7 @@ def parse(text: str, registry: Registry) -> Comparison:
     return parse_comparison(text, Path("c.yaml"), registry)
 
 
-def test_measures_of_segments_worked_out_by_hand():
+def test_measures_of_small_segments_equal_those_by_hand():
     truth = np.repeat(np.int32([[0, 0, 1, 1]]), 3, axis=0)
     found = np.repeat(np.int32([[0, 1, 2, 2]]), 3, axis=0)
     scene = KnownSegments(np.zeros((3, 4), np.uint8), truth)
@@ -38,7 +38,7 @@ def test_measures_of_segments_worked_out_by_hand():
     assert set(TASK.measures) == set(measure(SegmentMap(found), scene))
 
 
-def test_scenes_by_name(registry: Registry):
+def test_scene_names_give_their_options(registry: Registry):
     text = "compare: texture\nmethods: [gradient]\nscenes: [mosaic/4, smooth/14, {mosaic: 3, seed: 2, width_px: 64}]\n"
     scenes = parse(text, registry).scenes
     assert list(scenes) == ["mosaic 4 512x512", "smooth 14 512x512", "mosaic 3 64x512 seed 2"]
@@ -56,18 +56,18 @@ def test_scenes_by_name(registry: Registry):
         ("{folder: nowhere}", "neither it nor a folder in it holds picture.png and labels.png"),
     ],
 )
-def test_what_is_no_scene(registry: Registry, scene: str, what: str):
+def test_invalid_scene_is_refused(registry: Registry, scene: str, what: str):
     with pytest.raises(ConfigError, match=what):
         parse(f"compare: texture\nmethods: [gradient]\nscenes: [{scene}]\n", registry)
 
 
-def test_a_mosaic_of_more_textures_than_there_are_is_said_before_anything_is_measured(registry: Registry):
+def test_mosaic_of_too_many_textures_is_refused_before_measuring(registry: Registry):
     wanted = parse("compare: texture\nmethods: [gradient]\nscenes: [mosaic/99]\n", registry)
     with pytest.raises(ConfigError, match="scene mosaic 99 512x512: a mosaic of 99 needs as many textures"):
         measurements(wanted)
 
 
-def test_a_folder_of_pictures_with_labels(tmp_path: Path):
+def test_folder_of_pictures_with_labels_gives_scenes(tmp_path: Path):
     for name in ("one", "two"):
         folder = tmp_path / name
         folder.mkdir()
@@ -81,7 +81,7 @@ def test_a_folder_of_pictures_with_labels(tmp_path: Path):
         TextureScene(folder=tmp_path / "one").open()
 
 
-def test_a_folder_of_textures(tmp_path: Path):
+def test_folder_of_textures_makes_a_mosaic(tmp_path: Path):
     for name, seed in (("bark", 0), ("sand", 1)):
         noise = np.random.default_rng(seed).integers(0, 255, (40, 40), dtype=np.uint8)
         Image.fromarray(noise).save(tmp_path / f"{name}.png")
@@ -91,14 +91,14 @@ def test_a_folder_of_textures(tmp_path: Path):
 
 
 @pytest.mark.parametrize(("name", "value"), [("noise", 8), ("gain", 0.5), ("offset", 20), ("light", 0.4)])
-def test_damage_to_light_moves_nothing(name: str, value: float):
+def test_damage_to_light_keeps_the_labels(name: str, value: float):
     changed = PERTURBATIONS[name].apply(SCENE, value)
     assert (changed.picture != SCENE.picture).any()
     np.testing.assert_array_equal(changed.labels, SCENE.labels)
 
 
 @pytest.mark.parametrize(("name", "value"), TURNED.items())
-def test_the_truth_goes_where_the_picture_goes(name: str, value: float):
+def test_transformed_labels_follow_the_picture(name: str, value: float):
     """A picture of the labels themselves, turned, still shows them, but for pixels that a border crosses."""
     colours = KnownSegments((50 * SCENE.labels).astype(np.uint8), SCENE.labels)
     changed = PERTURBATIONS[name].apply(colours, value)
@@ -110,7 +110,7 @@ def test_the_truth_goes_where_the_picture_goes(name: str, value: float):
 
 @pytest.mark.parametrize("scene", [SCENE, KnownSegments(np.dstack([SCENE.picture] * 4), SCENE.labels)])
 @pytest.mark.parametrize(("name", "value"), TURNED.items())
-def test_any_picture_can_be_turned(scene: KnownSegments, name: str, value: float):
+def test_transform_accepts_any_picture(scene: KnownSegments, name: str, value: float):
     changed = PERTURBATIONS[name].apply(scene, value)
     assert changed.picture.shape[:2] == changed.labels.shape
     assert np.unique(changed.labels).tolist() == list(range(changed.count))
@@ -123,7 +123,7 @@ def test_quarter_turns_and_flips_are_exact():
     np.testing.assert_array_equal(transforms.flip(SCENE, 0).labels, SCENE.labels[::-1])
 
 
-def test_a_right_angle_in_degrees_is_a_quarter_turn():
+def test_rotation_by_90_degrees_is_a_quarter_turn():
     square = smooth_scene(4, (41, 41), seed=1)
     turned, expected = transforms.rotate(square, 90), transforms.quarter(square, 1)
     np.testing.assert_array_equal(turned.labels, expected.labels)
@@ -132,7 +132,7 @@ def test_a_right_angle_in_degrees_is_a_quarter_turn():
 
 @pytest.mark.parametrize("degrees", [-45, -10, 3, 30, 45])
 @pytest.mark.parametrize("shape", [(40, 40), (30, 90), (90, 30)])
-def test_a_turned_scene_has_no_empty_corners(degrees: float, shape: tuple[int, int]):
+def test_rotated_scene_has_no_empty_corners(degrees: float, shape: tuple[int, int]):
     """A slope stays one: anything from outside would bend it."""
     rows, columns = np.indices(shape)
     slope = KnownSegments((20 + rows + columns).astype(np.uint8), np.zeros(shape, np.int32))
@@ -145,20 +145,20 @@ def test_a_turned_scene_has_no_empty_corners(degrees: float, shape: tuple[int, i
 
 
 @pytest.mark.parametrize(("factor", "shape"), [(0.5, (20, 30)), (2, (80, 120)), (0.1, (4, 6))])
-def test_scaling(factor: float, shape: tuple[int, int]):
+def test_scaled_scene_has_the_scaled_shape(factor: float, shape: tuple[int, int]):
     scaled = transforms.scale(SCENE, factor)
     assert scaled.labels.shape == scaled.picture.shape == shape
     assert scaled.picture.mean() == pytest.approx(SCENE.picture.mean(), abs=4)
 
 
-def test_scaling_down_leaves_no_false_pattern():
+def test_scaling_down_avoids_aliasing():
     stripes = KnownSegments(np.uint8(255 * (np.indices((40, 60))[1] % 2)), np.zeros((40, 60), np.int32))
     assert transforms.scale(stripes, 0.45).picture.std() < 30
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("cells_here")
-def test_a_comparison_from_end_to_end(registry: Registry, tmp_path: Path):
+def test_texture_comparison_end_to_end_has_exact_results(registry: Registry, tmp_path: Path):
     """Told the count, `gradient` finds a scene of two greys exactly, turned or not."""
     text = """\
 compare: texture

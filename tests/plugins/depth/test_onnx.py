@@ -230,7 +230,7 @@ class TestMistakes:
         assert not Onnx(model=networks / "mono.onnx").needs_pair
         with pytest.raises(PictureError, match="compares two views, and this scene has one"):
             method.estimate(Views(picture()))
-        plan = Pipeline(Scene.of(photo=picture()), depth=method, cached=False).plan("disparity")
+        plan = Pipeline(Scene.photo(picture()), depth=method, cached=False).plan("disparity")
         assert [step.outcome for step in plan.steps if step.product == "disparity"] == ["refused"]
 
     def test_missing_onnxruntime_is_refused(self, networks: Path, monkeypatch: pytest.MonkeyPatch):
@@ -256,7 +256,7 @@ def test_changed_network_or_card_changes_the_result(tmp_path: Path):
     seen, cache = picture(), Cache(tmp_path / "cache")
 
     def create() -> tuple[str, np.ndarray]:
-        pipeline = Pipeline(Scene.of(photo=seen), depth=Onnx(model=tmp_path / "m.onnx"), workspace={"finest_m": 0})
+        pipeline = Pipeline(Scene.photo(seen), depth=Onnx(model=tmp_path / "m.onnx"), workspace={"finest_m": 0})
         pipeline.engine.cache = cache
         disparity = pipeline.disparity
         assert disparity is not None

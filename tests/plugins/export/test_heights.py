@@ -33,7 +33,7 @@ def write(folder: Path, relief: Relief, title: str = "hills") -> dict[str, Path]
 
 
 def read(path: Path, **options: Any) -> Pipeline:
-    return Pipeline(Scene.of(height=path, **options), cached=False)
+    return Pipeline(Scene.heights(path, **options), cached=False)
 
 
 @pytest.mark.parametrize("ending", ENDINGS)
@@ -57,7 +57,7 @@ def test_heights_are_read_by_a_pipeline_file(tmp_path: Path, ending: str):
 
 def test_heights_size_in_the_pipeline_overrides_the_file(tmp_path: Path):
     path = write(tmp_path, bumps())["json"]
-    half = Pipeline(Scene.of(height=path), workspace=Workspace(width_m=0.08, relief_m=0.005), cached=False).relief
+    half = Pipeline(Scene.heights(path), workspace=Workspace(width_m=0.08, relief_m=0.005), cached=False).relief
     assert half.extent_m[0] == 0.08
     assert (half.height_m.min(), half.height_m.max()) == pytest.approx((0.0006, 0.005), abs=TENTH_UM)
 
@@ -75,7 +75,7 @@ def test_heights_json_is_exact_for_any_height(tmp_path: Path, high_m: float):
 def test_heights_png_with_coarse_steps_is_noted(tmp_path: Path):
     def notes_of(high_m: float) -> list[str]:
         rows = np.linspace(0, high_m, 64, dtype=np.float32).reshape(8, 8)
-        scene, workspace = Scene.of(height=rows, relief_m=high_m or None), Workspace(relief_m=high_m)
+        scene, workspace = Scene.heights(rows, relief_m=high_m or None), Workspace(relief_m=high_m)
         done = Pipeline(scene, workspace=workspace, cached=False).export(tmp_path / str(high_m), ["heights"])
         return [note.text for note in done.outcomes[0].notes]
 
@@ -125,7 +125,7 @@ def test_heights_json_of_another_picture_is_ignored(tmp_path: Path):
         ({"step_mm": -1}, "step_mm"),
         ({"format": "tangible heights 9"}, "format"),
         ({"rows": 5}, "is 53 x 37, but its metadata state 53 x 5"),
-        ({"file": "../hills.png", "exact": ""}, "it must be a file beside this one"),
+        ({"file": "../hills.png", "exact": ""}, "it must be a file next to this one"),
         ({"file": "gone.png", "exact": ""}, "gone.png: there is no such file"),
     ],
 )

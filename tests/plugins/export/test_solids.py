@@ -160,7 +160,7 @@ def test_solid_picture_width_follows_longer_side(cls: type[Exporter], aspect: fl
 
 def test_pipeline_export_makes_relief_as_wide_as_the_print(tmp_path: Path):
     photo = (255 * np.random.default_rng(0).random((30, 60))).astype(np.uint8)
-    done = Pipeline(Scene.of(photo=photo), depth=Luminance()).export(tmp_path, [Stl(longer_side_m=0.1, braille=False)])
+    done = Pipeline(Scene.photo(photo), depth=Luminance()).export(tmp_path, [Stl(longer_side_m=0.1, braille=False)])
     ((path,),) = done.files.values()
     assert read(path).vertices.max(axis=0)[:2] == pytest.approx([112, 62], abs=1e-3)
 

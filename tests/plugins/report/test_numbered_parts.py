@@ -11,7 +11,7 @@ from tangible_core.parts import find_parts
 from tangible_report.numbered_parts import LONGEST_PX, SHORTEST_PX, numbered_parts
 
 
-def drawn(picture: np.ndarray, labels: np.ndarray, names: tuple[str, ...] = ()) -> np.ndarray:
+def draw(picture: np.ndarray, labels: np.ndarray, names: tuple[str, ...] = ()) -> np.ndarray:
     parts = find_parts(SegmentMap(labels.astype(np.int32)))
     return np.asarray(Image.open(BytesIO(numbered_parts(picture, parts, names))))
 
@@ -22,8 +22,8 @@ def halves(rows: int, columns: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("size", [(80, 100), (700, 900), (3000, 4000)])
-def test_numbers_are_as_large_whatever_the_size_of_the_picture(size: tuple[int, int]):
-    shown = drawn(*halves(*size))
+def test_numbers_have_the_same_share_of_any_picture(size: tuple[int, int]):
+    shown = draw(*halves(*size))
     longer = max(shown.shape)
     assert SHORTEST_PX <= longer <= LONGEST_PX and shown.shape[1] / shown.shape[0] == pytest.approx(size[1] / size[0])
     left = (shown[:, : shown.shape[1] * 2 // 5] != 127).any(axis=2)
@@ -32,30 +32,30 @@ def test_numbers_are_as_large_whatever_the_size_of_the_picture(size: tuple[int, 
     assert heights.mean() / shown.shape[0] == pytest.approx(0.5, abs=0.02)
 
 
-def test_borders_are_seen_on_black_and_on_white():
+def test_borders_are_visible_on_black_and_white():
     picture, labels = halves(600, 800)
     for grey in (0, 255):
-        row = drawn(np.full_like(picture, grey), labels)[5]
+        row = draw(np.full_like(picture, grey), labels)[5]
         middle = len(row) // 2
         assert {0, 255} <= set(row[middle - 10 : middle + 10].ravel().tolist())
         assert (row[: middle - 20] == grey).all()
 
 
-def test_names_are_written_where_there_is_room():
+def test_names_are_written_if_there_is_room():
     picture, labels = halves(600, 800)
     labels[:30, :30] = 2  # a part too small for its name
-    plain, named = drawn(picture, labels), drawn(picture, labels, ("corner of the wall", "helmet", ""))
+    plain, named = draw(picture, labels), draw(picture, labels, ("corner of the wall", "helmet", ""))
 
-    def inked(shown: np.ndarray, columns: slice) -> int:
+    def count_ink(shown: np.ndarray, columns: slice) -> int:
         return int((shown[:, columns] == 0).all(axis=2).sum())
 
     left, right = slice(100, plain.shape[1] // 2 - 40), slice(plain.shape[1] // 2 + 40, None)
-    assert inked(named, left) > 3 * inked(plain, left), "1 helmet"
-    assert inked(named, right) == inked(plain, right), "no name, its number alone"
+    assert count_ink(named, left) > 3 * count_ink(plain, left), "1 helmet"
+    assert count_ink(named, right) == count_ink(plain, right), "no name, its number alone"
     assert (named[:60, :60] == plain[:60, :60]).all(), "its number alone"
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 900), (5000, 1)])
-def test_a_line_of_pixels_is_drawn_as_well(shape: tuple[int, int]):
+def test_line_of_pixels_is_drawn(shape: tuple[int, int]):
     labels = (np.arange(shape[0] * shape[1]) // 7).reshape(shape)
-    assert drawn(np.zeros(shape, np.uint8), labels).size
+    assert draw(np.zeros(shape, np.uint8), labels).size

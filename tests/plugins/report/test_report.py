@@ -46,8 +46,7 @@ from tangible_render.haptic_textures import peak_wavelength_m
 from tangible_report import block
 from tangible_report.description import describe
 from tangible_report.drawing.layout import ROW_IN, TALLEST_IN, Cell, _height, arrange
-from tangible_report.drawing.sheet import DPI, WIDTH_IN, draw_figure, draw_sheet
-from tangible_report.drawing.showing import show
+from tangible_report.drawing.sheet import DPI, WIDTH_IN, draw_figure, draw_sheet, show
 from tangible_report.material_sheet import draw_material, spectra
 from tangible_report.panels import PANELS
 from tangible_report.panels.force import round_number, spread
@@ -87,7 +86,7 @@ def whole_run() -> dict[str, object]:
 
 
 class TestDisparityErrors:
-    def test_exact(self) -> None:
+    def test_errors_of_a_small_map_are_exact(self) -> None:
         truth = np.float32([[10, 10, 10, 10, 10], [10, 10, 10, NAN, np.inf]])
         found = np.float32([[10, 10.25, 10.75, 8.5, 13], [15, NAN, np.inf, 10, 10]])
         errors = disparity_errors(found, truth)  # 0, .25, .75, 1.5, 3, 5 and two that are missing, of 8 with truth
@@ -101,28 +100,28 @@ class TestDisparityErrors:
             "density": 75.0,
         }
 
-    def test_an_error_of_the_bound_is_not_over_it(self) -> None:
+    def test_error_equal_to_the_bound_is_not_bad(self) -> None:
         assert disparity_errors(np.float32([[2.0]]), np.float32([[0.0]]))["bad2"] == 0
 
-    def test_no_estimate_is_all_bad(self) -> None:
+    def test_map_without_estimates_is_all_bad(self) -> None:
         errors = disparity_errors(np.full((2, 2), NAN, np.float32), np.ones((2, 2), np.float32))
         assert errors["bad4"] == 100
         assert errors["density"] == 0
         assert math.isnan(errors["average_px"])
         assert math.isnan(errors["rms_px"])
 
-    def test_no_truth_is_nothing_measured(self) -> None:
+    def test_errors_without_truth_are_unknown(self) -> None:
         errors = disparity_errors(np.ones((2, 2), np.float32), np.full((2, 2), NAN, np.float32))
         assert all(map(math.isnan, errors.values()))
 
     @pytest.mark.usefixtures("unchecked_shapes")
-    def test_two_sizes(self) -> None:
+    def test_errors_of_two_sizes_are_refused(self) -> None:
         with pytest.raises(PictureError, match=r"\(1, 2\).*\(2, 1\)"):
             disparity_errors(np.ones((1, 2), np.float32), np.ones((2, 1), np.float32))
 
 
 class TestFigures:
-    def test_what_is_not_finite_becomes_null(self, tmp_path: Path) -> None:
+    def test_figures_that_are_not_finite_become_null(self, tmp_path: Path) -> None:
         figures = {
             "bad": {"bad1": NAN, "rms": np.float32(np.inf)},
             "map": np.array([[1.0, NAN]]),
@@ -152,7 +151,7 @@ class TestFigures:
             "7": "é",
         }
 
-    def test_what_has_no_place_in_json_leaves_the_old_file(self, tmp_path: Path) -> None:
+    def test_figures_that_json_cannot_hold_keep_the_old_file(self, tmp_path: Path) -> None:
         path = tmp_path / "figures.json"
         write_figures(path, {"a": 1})
         with pytest.raises(TypeError):
@@ -162,24 +161,24 @@ class TestFigures:
 
 
 class TestLayout:
-    def test_two_cells_fill_a_row(self) -> None:
+    def test_layout_of_two_cells_fills_a_row(self) -> None:
         cell = Cell(aspect=2.0, left_in=0.5, right_in=0.5, bottom_in=0.3, top_in=0.4)
         boxes, width_in, height_in = arrange([cell, cell], 12.0)
         np.testing.assert_allclose(boxes, [(0.5, 0.4, 5.0, 2.5), (6.5, 0.4, 5.0, 2.5)])
         assert (width_in, height_in) == (pytest.approx(12.0), pytest.approx(3.2))
 
-    def test_a_lone_cell_stays_small_and_the_sheet_with_it(self) -> None:
+    def test_layout_of_one_cell_is_a_small_sheet(self) -> None:
         boxes, width_in, _ = arrange([Cell(1.0, 0.1, 0.2, 0.3, 0.4)], 12.0)
         assert boxes[0].height_in == TALLEST_IN
         assert width_in == pytest.approx(TALLEST_IN + 0.3)
 
-    def test_a_narrow_cell_has_room_for_its_text(self) -> None:
+    def test_layout_of_a_narrow_cell_has_room_for_its_text(self) -> None:
         narrow = Cell(0.1, 0.0, 0.0, 0.0, 0.0, least_in=3.0)
         boxes, _, _ = arrange([narrow, narrow], 12.0)
         assert boxes[1].left_in >= 3.0
 
     @given(st.lists(st.floats(0.5, 5.0), min_size=1, max_size=8))
-    def test_rows_fill_the_sheet_and_nothing_overlaps(self, aspects: list[float]) -> None:
+    def test_layout_rows_fill_the_sheet_without_overlap(self, aspects: list[float]) -> None:
         cells = [Cell(aspect, 0.2, 0.8, 0.5, 0.4, 2.9) for aspect in aspects]
         boxes, width_in, height_in = arrange(cells, WIDTH_IN)
         tops = sorted({box.top_in for box in boxes})
@@ -192,7 +191,7 @@ class TestLayout:
         assert [(box.top_in, box.left_in) for box in boxes] == sorted((box.top_in, box.left_in) for box in boxes)
 
     @given(st.lists(st.floats(0.5, 5.0), min_size=1, max_size=7))
-    def test_no_other_rows_are_nearer_to_the_wanted_height(self, aspects: list[float]) -> None:
+    def test_layout_rows_are_nearest_to_the_preferred_height(self, aspects: list[float]) -> None:
         cells = [Cell(aspect, 0.2, 0.8, 0.5, 0.4, 2.9) for aspect in aspects]
         boxes, _, _ = arrange(cells, 12.0)
         tops = [box.top_in for box in boxes]
@@ -206,25 +205,25 @@ class TestLayout:
         cuts = [(0, *cut, len(cells)) for count in range(len(cells)) for cut in combinations(inner, count)]
         assert far(made) <= min(map(far, cuts)) + 1e-9  # several may be as near
 
-    def test_many_cells_are_arranged_at_once(self) -> None:
-        """Not by trying all ways, of which 40 cells have half a million millions."""
+    def test_layout_of_many_cells_is_fast(self) -> None:
+        """Trying all ways is impossible: 40 cells have half a million millions."""
         boxes, _, _ = arrange([Cell(1.5, 0.1, 0.5, 0.3, 0.4)] * 40, WIDTH_IN)
         assert len(boxes) == 40
 
-    def test_rows_come_near_to_the_wanted_height(self) -> None:
+    def test_layout_rows_are_near_the_preferred_height(self) -> None:
         boxes, _, _ = arrange([Cell(1.5, 0.1, 0.5, 0.3, 0.4)] * 6, WIDTH_IN)
         assert len({box.top_in for box in boxes}) == 2
         assert abs(boxes[0].height_in - ROW_IN) < 0.5
 
 
 class TestBlock:
-    def test_the_reader_sees_the_paper_upright(self) -> None:
+    def test_projection_is_upright_for_the_reader(self) -> None:
         axes = np.vstack([block.PAPER, block.SIGHT])
         np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
         assert np.linalg.det(axes) == pytest.approx(1)
         assert block.on_paper(np.array([0.0, 0, 1]))[1] > 0
 
-    def test_points_and_frame(self) -> None:
+    def test_points_with_border_have_the_surface_extent(self) -> None:
         relief = Relief(np.float32([[1, 2]]), (0.4, 0.1))
         points_m = block.points_of(relief)
         np.testing.assert_allclose(points_m, [[[-0.1, 0, 1], [0.1, 0, 2]]])
@@ -233,13 +232,13 @@ class TestBlock:
         np.testing.assert_allclose(framed[0], [[-0.2, 0.05, 1], [-0.1, 0.05, 1], [0.1, 0.05, 2], [0.2, 0.05, 2]])
         np.testing.assert_allclose(framed[2, 0], [-0.2, -0.05, 1])
 
-    def test_near_facets_come_last(self) -> None:
+    def test_facets_are_sorted_from_far_to_near(self) -> None:
         facets = block.facets(block.points_of(Relief(np.zeros((3, 3), np.float32), (0.1, 0.1))))
         assert (facets.row[0], facets.column[0]) == (0, 0)
         assert (facets.row[-1], facets.column[-1]) == (1, 1)
         assert facets.corners.shape == (4, 4, 2)
 
-    def test_a_wall_hides_what_lies_behind_it(self) -> None:
+    def test_points_behind_a_wall_are_not_visible(self) -> None:
         height_m = np.zeros((50, 50), np.float32)
         height_m[30] = 0.02
         relief = Relief(height_m, (0.05, 0.05))
@@ -253,35 +252,35 @@ class TestBlock:
         assert seen[beyond].all()
         assert seen[30:].all()
 
-    def test_heights_under(self) -> None:
+    def test_heights_under_points_are_those_of_cells(self) -> None:
         relief = Relief(np.float32([[1, 2], [3, 4]]), (0.2, 0.2))
         points_m = np.array([[-0.05, 0.05, 9], [0.05, 0.05, 0], [-0.05, -0.05, 0], [0.099, -0.099, 0], [0.2, 0, 0]])
         np.testing.assert_array_equal(block.heights_under(relief, points_m), [1, 2, 3, 4, NAN])
 
-    def test_drawn_size(self) -> None:
+    def test_drawn_size_has_at_most_n_cells(self) -> None:
         relief = Relief(np.ones((10, 1000), np.float32), (1.0, 0.01))
         assert block.drawn_size(relief, 100).height_m.shape == (1, 100)
         assert block.drawn_size(relief, 2000).height_m.shape == (10, 1000)
 
 
 class TestForces:
-    def test_arrows_stand_at_equal_steps_of_the_way(self) -> None:
+    def test_arrows_are_at_equal_steps_of_the_path(self) -> None:
         way_mm = np.r_[np.zeros(50), np.arange(51.0)]
         at_mm = np.stack([way_mm, 0 * way_mm, 0 * way_mm], axis=1)
         some = spread(at_mm, np.ones(101, bool), 6)
         np.testing.assert_array_equal(at_mm[some, 0], [0, 10, 20, 30, 40, 50])
 
-    def test_only_in_contact(self) -> None:
+    def test_arrows_are_in_contact_only(self) -> None:
         at_mm = np.arange(30.0).reshape(10, 3)
         touching = np.arange(10) >= 6
         assert set(spread(at_mm, touching, 100)) == {6, 7, 8, 9}
         assert spread(at_mm, np.zeros(10, bool), 5).size == 0
 
-    def test_where_nothing_moves_steps_are_of_time(self) -> None:
+    def test_arrows_without_motion_are_at_equal_steps_of_time(self) -> None:
         np.testing.assert_array_equal(spread(np.zeros((9, 3)), np.ones(9, bool), 3), [0, 4, 8])
 
     @given(st.floats(1e-9, 1e9))
-    def test_round_numbers(self, value: float) -> None:
+    def test_round_number_is_the_largest_below_the_value(self, value: float) -> None:
         number = round_number(value)
         assert number <= value * (1 + 1e-9) < 2.5 * number * (1 + 1e-9)
         assert f"{number:e}"[0] in "125"
@@ -298,22 +297,22 @@ HEADLINES = {
 
 
 def headlines(run: dict[str, object]) -> dict[str, str]:
-    return said(draw_figure(run, "title", PANELS))
+    return panel_headlines(draw_figure(run, "title", PANELS))
 
 
-def said(figure: Figure) -> dict[str, str]:
+def panel_headlines(figure: Figure) -> dict[str, str]:
     _, *texts = [text.get_text() for text in figure.texts]
     return dict(zip(texts[::2], texts[1::2], strict=True))
 
 
 def images(axes: Axes) -> list[np.ma.MaskedArray]:
-    """What each picture on a panel is of."""
+    """Return the pixels of every picture on a panel."""
     return [np.ma.masked_array(image.get_array()) for image in axes.images]
 
 
 @pytest.fixture
-def drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Figure]:
-    """Draw a sheet, and hand on what was put on it."""
+def draw_figure_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Figure]:
+    """Return a function that draws a sheet and returns its figure."""
     figures: list[Figure] = []
 
     def keep(*given: Any) -> Figure:
@@ -366,45 +365,48 @@ def adding(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
 class TestAddedPanels:
     """Panels of plugins, by the moment `tangible_panels`."""
 
-    def test_one_stands_after_the_others_with_what_it_needs_and_likes(self, adding: Any, drawn: Any) -> None:
+    def test_added_panel_is_drawn_last_with_its_products(self, adding: Any, draw_figure_of: Any) -> None:
         adding(Panel(histogram, {"relief"}, {"recording"}, aspect=1.5))
         run = whole_run()
-        assert said(drawn(**run))["h"] == "Heights, felt"
-        assert said(drawn(relief=run["relief"]))["b"] == "Heights, unfelt"
+        assert panel_headlines(draw_figure_of(**run))["h"] == "Heights, felt"
+        assert panel_headlines(draw_figure_of(relief=run["relief"]))["b"] == "Heights, unfelt"
 
-    def test_without_what_it_needs_it_is_left_out(self, adding: Any, drawn: Any) -> None:
+    def test_added_panel_without_its_products_is_left_out(self, adding: Any, draw_figure_of: Any) -> None:
         adding(Panel(histogram, {"relief"}))
-        assert len(said(drawn(views=whole_run()["views"]))) == 1
+        assert len(panel_headlines(draw_figure_of(views=whole_run()["views"]))) == 1
 
-    def test_it_may_be_the_only_one(self, adding: Any, drawn: Any) -> None:
+    def test_added_panel_may_be_the_only_one(self, adding: Any, draw_figure_of: Any) -> None:
         adding(Panel(lambda axes, recording: "Ticks", {"recording"}))
-        assert "Ticks" in said(drawn(recording=record())).values()
+        assert "Ticks" in panel_headlines(draw_figure_of(recording=record())).values()
 
-    def test_there_may_be_any_number(self, adding: Any, drawn: Any) -> None:
+    def test_added_panels_may_be_many(self, adding: Any, draw_figure_of: Any) -> None:
         adding(*[Panel(histogram, {"relief"}, aspect=1.5)] * 30)
-        found = said(drawn(relief=whole_run()["relief"]))
+        found = panel_headlines(draw_figure_of(relief=whole_run()["relief"]))
         assert list(found) == [*"abcdefghijklmnopqrstuvwxyz", "aa", "ab", "ac", "ad", "ae"]
 
-    def test_one_that_fails_says_so_and_the_others_are_drawn(
-        self, adding: Any, drawn: Any, caplog: pytest.LogCaptureFixture
+    def test_added_panel_that_fails_shows_its_error(
+        self, adding: Any, draw_figure_of: Any, caplog: pytest.LogCaptureFixture
     ) -> None:
         adding(Panel(raises, {"relief"}), Panel(histogram, {"relief"}))
-        figure = drawn(relief=whole_run()["relief"])
-        assert list(said(figure).values())[1:] == ["Not drawn, ZeroDivisionError: no\\nheights", "Heights, unfelt"]
+        figure = draw_figure_of(relief=whole_run()["relief"])
+        assert list(panel_headlines(figure).values())[1:] == [
+            "Not drawn, ZeroDivisionError: no\\nheights",
+            "Heights, unfelt",
+        ]
         assert not figure.axes[-2].lines
         assert "could not be drawn" in caplog.text
 
     @pytest.mark.parametrize("junk", [(histogram, {"relief"}), "panel", 3])
-    def test_what_is_no_panel_is_left_out(
-        self, junk: Any, adding: Any, drawn: Any, caplog: pytest.LogCaptureFixture
+    def test_added_object_that_is_not_a_panel_is_left_out(
+        self, junk: Any, adding: Any, draw_figure_of: Any, caplog: pytest.LogCaptureFixture
     ) -> None:
         adding(junk, Panel(histogram, {"relief"}))
-        assert len(said(drawn(relief=whole_run()["relief"]))) == 2
+        assert len(panel_headlines(draw_figure_of(relief=whole_run()["relief"]))) == 2
         assert "is not a Panel; it is left out" in caplog.text
 
 
 class TestSheet:
-    def test_every_panel_of_a_whole_run(self) -> None:
+    def test_sheet_of_a_whole_run_has_every_panel(self) -> None:
         found = headlines(whole_run())
         assert found.pop("c").startswith("Error: bad1 ")
         assert found == HEADLINES
@@ -421,12 +423,12 @@ class TestSheet:
             ("recording", ["Force and tip over time: peak 0.55 N, contact 50 %"]),
         ],
     )
-    def test_what_is_not_there_is_left_out(self, names: str, expected: list[str]) -> None:
+    def test_sheet_leaves_out_missing_products(self, names: str, expected: list[str]) -> None:
         run = {name: value for name, value in whole_run().items() if name in names.split()}
         assert list(headlines(run).values()) == expected
 
     @pytest.mark.parametrize("turned", [False, True])
-    def test_texts_stand_on_the_sheet_and_apart(self, turned: bool) -> None:
+    def test_sheet_texts_are_inside_and_apart(self, turned: bool) -> None:
         run = whole_run()
         if turned:
             heights_m = np.zeros((90, 60), np.float32)
@@ -449,7 +451,7 @@ class TestSheet:
             assert figure.bbox.y0 <= box.y0 <= box.y1 <= figure.bbox.y1
             assert not any(box.overlaps(other) for other in boxes[:number])
 
-    def test_the_file(self, tmp_path: Path) -> None:
+    def test_sheet_file_has_its_size(self, tmp_path: Path) -> None:
         path = tmp_path / "made" / "sheet.png"
         draw_sheet(path, title="$both^{ $ signs", **whole_run())  # pyright: ignore[reportArgumentType]
         with Image.open(path) as sheet:
@@ -457,7 +459,7 @@ class TestSheet:
             assert sheet.width == pytest.approx(WIDTH_IN * DPI, abs=1)
         assert list(path.parent.iterdir()) == [path]
 
-    def test_a_reader_s_own_style_changes_nothing(self, tmp_path: Path) -> None:
+    def test_sheet_ignores_the_reader_s_style(self, tmp_path: Path) -> None:
         run = {"views": whole_run()["views"], "disparity": whole_run()["disparity"]}
         draw_sheet(tmp_path / "a.png", **run)  # pyright: ignore[reportArgumentType]
         with matplotlib.rc_context({"font.size": 40, "text.usetex": True, "axes.grid": True, "savefig.dpi": 20}):
@@ -465,26 +467,26 @@ class TestSheet:
             assert matplotlib.rcParams["font.size"] == 40
         assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
-    def test_nothing_to_draw(self, tmp_path: Path) -> None:
+    def test_sheet_without_products_is_refused(self, tmp_path: Path) -> None:
         with pytest.raises(OutputError, match="nothing to draw"):
             draw_sheet(tmp_path / "sheet.png", title="demo", truth=np.ones((4, 4), np.float32))
         assert not list(tmp_path.iterdir())
 
-    def test_a_place_that_cannot_be_written(self, tmp_path: Path) -> None:
+    def test_sheet_in_an_unwritable_place_is_refused(self, tmp_path: Path) -> None:
         (tmp_path / "file").touch()
         with pytest.raises(OutputError, match="cannot be written"):
             draw_sheet(tmp_path / "file" / "sheet.png", views=Views(np.zeros((4, 4), np.uint8)))
 
     @pytest.mark.usefixtures("unchecked_shapes")
-    def test_truth_of_another_size_is_named(self, tmp_path: Path) -> None:
+    def test_sheet_with_truth_of_another_size_is_refused(self, tmp_path: Path) -> None:
         disparity = DisparityMap(np.zeros((2, 2), np.float32))
         with pytest.raises(PictureError, match="truth"):
             draw_sheet(tmp_path / "sheet.png", disparity=disparity, truth=np.zeros((3, 2), np.float32))
 
-    def test_nearness_has_no_error_in_px(self, drawn: Callable[..., Figure]) -> None:
+    def test_sheet_of_relative_nearness_has_no_error_panel(self, draw_figure_of: Callable[..., Figure]) -> None:
         disparity = DisparityMap(np.float32([[0.0, 0.25], [0.5, 1.0]]), unit="relative")
-        figure = drawn(disparity=disparity, truth=np.zeros((3, 2), np.float32))
-        assert said(figure) == {"a": "Relative nearness"}
+        figure = draw_figure_of(disparity=disparity, truth=np.zeros((3, 2), np.float32))
+        assert panel_headlines(figure) == {"a": "Relative nearness"}
         (axes,) = figure.axes
         np.testing.assert_array_equal(images(axes)[0], disparity.disparity_px)
         assert axes.images[0].get_clim() == pytest.approx(np.percentile([0, 0.25, 0.5, 1], (0.5, 99.5)))
@@ -506,24 +508,24 @@ class TestSheet:
             pytest.param({"surface": HapticSurface.from_heights(np.eye(5) * 50)}, id="taller than wide"),
         ],
     )
-    def test_nasty_cases(self, tmp_path: Path, run: dict[str, object]) -> None:
+    def test_sheet_of_hostile_products_is_drawn(self, tmp_path: Path, run: dict[str, object]) -> None:
         draw_sheet(tmp_path / "sheet.png", title="nasty", **run)  # pyright: ignore[reportArgumentType]
         with Image.open(tmp_path / "sheet.png") as sheet:
             assert min(sheet.size) > 100
 
-    def test_truth_nowhere(self, drawn: Callable[..., Figure]) -> None:
+    def test_sheet_with_truth_nowhere_is_drawn(self, draw_figure_of: Callable[..., Figure]) -> None:
         found = DisparityMap(np.full(SHAPE, 8.0, np.float32))
-        figure = drawn(disparity=found, truth=np.full(SHAPE, NAN, np.float32))
-        assert said(figure) == {"a": "Disparity", "b": "Error: bad1 nan %, bad2 nan %"}
+        figure = draw_figure_of(disparity=found, truth=np.full(SHAPE, NAN, np.float32))
+        assert panel_headlines(figure) == {"a": "Disparity", "b": "Error: bad1 nan %, bad2 nan %"}
         white, error = images(figure.axes[1])
         assert not np.ma.getmaskarray(white).any() and (white == 1).all()
         assert np.ma.getmaskarray(error).all()
 
-    def test_truth_everywhere(self, drawn: Callable[..., Figure]) -> None:
+    def test_sheet_with_truth_everywhere_is_drawn(self, draw_figure_of: Callable[..., Figure]) -> None:
         estimate = np.full(SHAPE, 8.0, np.float32)
         estimate[:, :6], estimate[:, 6:9], estimate[:, 9:12] = 9.5, 18.0, NAN
-        figure = drawn(disparity=DisparityMap(estimate), truth=np.full(SHAPE, 8.0, np.float32))
-        assert said(figure) == {"a": "Disparity", "b": "Error: bad1 20.0 %, bad2 10.0 %"}
+        figure = draw_figure_of(disparity=DisparityMap(estimate), truth=np.full(SHAPE, 8.0, np.float32))
+        assert panel_headlines(figure) == {"a": "Disparity", "b": "Error: bad1 20.0 %, bad2 10.0 %"}
         assert figure.axes[0].get_xlabel() == "hatched: unknown, 5.0 %"
         white, error = images(figure.axes[1])
         assert np.ma.getmaskarray(white).all()
@@ -531,10 +533,10 @@ class TestSheet:
         np.testing.assert_array_equal(error.compressed(), np.abs(estimate - 8)[np.isfinite(estimate)])
         assert figure.axes[1].images[1].get_clim() == (0, 4)
 
-    def test_thousands_of_segments(self, drawn: Callable[..., Figure]) -> None:
+    def test_sheet_of_thousands_of_segments_is_drawn(self, draw_figure_of: Callable[..., Figure]) -> None:
         labels = np.arange(2400, dtype=np.int32).reshape(SHAPE)
-        figure = drawn(views=Views(np.zeros(SHAPE, np.uint8)), segments=SegmentMap(labels))
-        assert said(figure) == {"a": "Input", "b": "Segments"}
+        figure = draw_figure_of(views=Views(np.zeros(SHAPE, np.uint8)), segments=SegmentMap(labels))
+        assert panel_headlines(figure) == {"a": "Input", "b": "Segments"}
         axes = figure.axes[1]
         assert axes.get_xlabel() == "2400 segments"
         assert not axes.texts  # none of them is large enough for its name
@@ -552,12 +554,12 @@ class TestSheet:
         np.testing.assert_allclose(picture[13, 13], outlined)
 
     @pytest.mark.parametrize(("count", "arrows", "contact"), [(1, 1, 100), (2, 1, 50), (5000, 150, 50)])
-    def test_recordings_of_any_length(
-        self, drawn: Callable[..., Figure], count: int, arrows: int, contact: int
+    def test_sheet_of_recordings_of_any_length_is_drawn(
+        self, draw_figure_of: Callable[..., Figure], count: int, arrows: int, contact: int
     ) -> None:
         hand = record(count)
-        figure = drawn(surface=HapticSurface.from_heights(np.full((5, 5), 0.004)), recording=hand)
-        assert list(said(figure).values())[1:] == [
+        figure = draw_figure_of(surface=HapticSurface.from_heights(np.full((5, 5), 0.004)), recording=hand)
+        assert list(panel_headlines(figure).values())[1:] == [
             "Lateral force along the path",
             f"Force and tip over time: peak 0.55 N, contact {contact} %",
         ]
@@ -575,14 +577,14 @@ class TestSheet:
         np.testing.assert_allclose(tip.get_xydata(), np.c_[hand.time_s, 1000 * hand.position_m[:, 2]])
         assert (upper.get_ylabel(), lower.get_ylabel(), lower.get_xlabel()) == ("force [N]", "height [mm]", "time [s]")
 
-    def test_a_recording_of_nothing_is_left_out(self, tmp_path: Path) -> None:
+    def test_sheet_leaves_out_an_empty_recording(self, tmp_path: Path) -> None:
         surface = HapticSurface.from_heights(np.zeros((5, 5)))
         recording = Recording(np.empty((0, 17)))
         draw_sheet(tmp_path / "a.png", surface=surface, recording=recording)
         draw_sheet(tmp_path / "b.png", surface=surface)
         assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
-    def test_never_in_contact(self) -> None:
+    def test_force_map_without_contact_reports_it(self) -> None:
         rows = record().rows.copy()
         rows[:, 11:14] = 0
         recording = Recording(rows)
@@ -590,7 +592,7 @@ class TestSheet:
         assert headlines({"relief": surface.relief, "recording": recording})["b"] == "Path, never in contact"
 
 
-def test_reporting_is_light_until_it_draws_and_never_wakes_pyplot() -> None:
+def test_report_imports_no_pyplot_and_little_before_drawing() -> None:
     subprocess.run([sys.executable, "-c", LIGHT], check=True)
 
 
@@ -624,7 +626,7 @@ def scene(rows: int, columns: int, count: int = 14) -> dict[str, Any]:
 
 
 class TestParts:
-    def test_they_are_drawn_in_place_of_their_segments_from_near_to_far(self, tmp_path: Path) -> None:
+    def test_parts_are_drawn_in_place_of_segments_from_near_to_far(self, tmp_path: Path) -> None:
         labels = np.zeros(SHAPE, np.int32)
         labels[10:30, 5:25], labels[10:30, 35:55] = 1, 2
         parts, segments = PartMap(labels, (0, 1, 1)), SegmentMap(np.minimum(labels, 1))
@@ -648,7 +650,7 @@ class TestParts:
             ("pt", " The scene is felt as a surface 8 cm wide", ["described in English: there are no words for the "]),
         ],
     )
-    def test_a_surface_is_described_in_the_language_of_its_names(
+    def test_sheet_describes_the_surface_in_the_language_of_its_names(
         self, tmp_path: Path, language: str, said: str, noted: list[str]
     ) -> None:
         surface = HapticSurface.from_heights(np.eye(8) * 1e-3, 0.08)
@@ -656,13 +658,13 @@ class TestParts:
             assert said in draw_sheet(tmp_path / "sheet.svg", surface=surface, title="x", language=language)
         assert [each[:46] for each in notes] == [each[:46] for each in noted]
 
-    def test_alone_they_are_in_their_order(self, tmp_path: Path) -> None:
+    def test_parts_without_surface_are_in_their_order(self, tmp_path: Path) -> None:
         parts = PartMap(np.int32([[0, 0, 0, 1]]), (0, 1))
         assert draw_sheet(tmp_path / "parts.png", parts=parts).endswith("Parts: 2 parts; 0, 75 %; 1, 25 %.")
         assert show(parts).get_title() == "Parts"
         assert parts._repr_html_().startswith("<img alt='PartMap'")  # pyright: ignore[reportPrivateUsage]
 
-    def test_their_materials_are_a_table_of_parts(self) -> None:
+    def test_parts_with_materials_list_them_in_the_legend(self) -> None:
         chosen = Material("ice", 900.0, 1.0, 0.5, 0.4)
         html = MaterialMap((chosen,), ("part 0 (wall): its own -> ice",))._repr_html_()  # pyright: ignore[reportPrivateUsage]
         assert ">part</th>" in html and ">segment</th>" not in html
@@ -673,23 +675,23 @@ class TestEveryShape:
 
     @pytest.mark.parametrize("alone", [False, True], ids=["run", "heights"])
     @pytest.mark.parametrize("shape", [(90, 90), (180, 60), (50, 200), (600, 30)])
-    def test_nothing_overlaps_and_the_sheet_is_filled(self, shape: tuple[int, int], alone: bool) -> None:
+    def test_sheet_of_any_shape_is_filled_without_overlap(self, shape: tuple[int, int], alone: bool) -> None:
         run = scene(*shape)
         if alone:
             run = {name: run[name] for name in ("relief", "recording")}
         figure = draw_figure(run, "title", PANELS)
         FigureCanvasAgg(figure).draw()
         bars = [bar for axes in figure.axes for bar in axes.child_axes if axes.images or axes.collections]
-        drawn = [
+        texts = [
             *figure.texts,
             *(axes.xaxis.label for axes in figure.axes if axes.get_xlabel()),
             *(bar.yaxis.label for bar in bars),
             *(text for axes in figure.axes if (legend := axes.get_legend()) for text in legend.get_texts()),
         ]
-        boxes = [text.get_window_extent() for text in drawn]
+        boxes = [text.get_window_extent() for text in texts]
         for number, box in enumerate(boxes):
             assert figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1 and figure.bbox.y0 <= box.y0
-            assert not any(box.overlaps(other) for other in boxes[:number]), drawn[number].get_text()
+            assert not any(box.overlaps(other) for other in boxes[:number]), texts[number].get_text()
         for row in {round(axes.get_position().y1, 6) for axes in figure.axes}:
             panels = [axes for axes in figure.axes if round(axes.get_position().y1, 6) == row]
             ends = [axes.get_position().x1 for axes in panels]
@@ -699,7 +701,7 @@ class TestEveryShape:
             assert max(ends) > 0.65
 
     @pytest.mark.parametrize("shape", [(90, 90), (180, 60), (50, 200)])
-    def test_pictures_keep_their_proportion(self, shape: tuple[int, int]) -> None:
+    def test_pictures_of_any_shape_keep_their_proportion(self, shape: tuple[int, int]) -> None:
         figure = draw_figure(scene(*shape), "title", PANELS)
         views, _, segments, _, way, _ = figure.axes
         for axes in (views, segments, way):
@@ -707,7 +709,7 @@ class TestEveryShape:
 
 
 class TestSegments:
-    def test_each_is_numbered_and_the_legend_has_their_order(self) -> None:
+    def test_segments_are_numbered_in_the_order_of_the_legend(self) -> None:
         axes = draw_figure(scene(900, 900), "title", PANELS).axes[2]
         names = list(library())[:14]
         assert sorted(int(text.get_text().split()[0]) for text in axes.texts) == [*range(14)]
@@ -718,13 +720,13 @@ class TestSegments:
         shown = {key.get_facecolor() for key in legend.get_patches()}
         assert len(shown) == 14
 
-    def test_segments_of_one_material_share_its_entry(self) -> None:
+    def test_segments_of_one_material_share_an_entry(self) -> None:
         legend = draw_figure(whole_run(), "title", PANELS).axes[3].get_legend()
         assert legend is not None
         assert [text.get_text() for text in legend.get_texts()] == ["0, 2: ice, 67 %", "1: sandpaper, 33 %"]
 
     @pytest.mark.parametrize("count", [0, 3, 8, 24, 25, 3000])
-    def test_no_two_colours_are_alike(self, count: int) -> None:
+    def test_colours_are_all_different(self, count: int) -> None:
         found = colours(count)
         assert found.shape == (count, 3) and (found >= 0).all() and (found <= 1).all()
         assert len(np.unique(found.round(6), axis=0)) == count
@@ -741,8 +743,8 @@ class TestFiles:
     )
 
     @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
-    def test_who_does_not_see_it_is_told_what_is_on_it(self, tmp_path: Path, suffix: str) -> None:
-        """In the file, which is the same each time."""
+    def test_sheet_file_has_a_description(self, tmp_path: Path, suffix: str) -> None:
+        """The description is in the file, which is the same each time."""
         run: dict[str, Any] = {name: whole_run()[name] for name in ("views", "segments", "materials", "relief")}
         for name in "xy":
             assert draw_sheet(tmp_path / f"{name}.{suffix}", title="a & b", **run) == self.SAYS
@@ -759,25 +761,25 @@ class TestFiles:
         else:
             assert first.startswith(b"%PDF") and b"/Subject" in first
 
-    def test_of_a_surface_it_is_told_what_a_hand_would_find(self, tmp_path: Path) -> None:
+    def test_sheet_file_describes_the_surface(self, tmp_path: Path) -> None:
         surface = HapticSurface.from_heights(np.linspace(0, 0.01, 12).reshape(3, 4))
         assert draw_sheet(tmp_path / "s.png", surface=surface, title="ramp").endswith(f". {describe(surface, '')}")
 
-    def test_another_suffix_is_refused(self, tmp_path: Path) -> None:
+    def test_sheet_with_another_suffix_is_refused(self, tmp_path: Path) -> None:
         with pytest.raises(OutputError, match=r"drawn as \.png, \.svg or \.pdf"):
             draw_sheet(tmp_path / "sheet.jpg", views=Views(np.zeros((4, 4), np.uint8)))
 
 
 class TestMaterial:
     @pytest.mark.parametrize("name", ["ice", "water", "wood", "skin"])
-    def test_its_sheet(self, tmp_path: Path, name: str) -> None:
+    def test_material_sheet_is_drawn(self, tmp_path: Path, name: str) -> None:
         draw_material(tmp_path / "a.png", library()[name])
         draw_material(tmp_path / "b.png", library()[name])
         assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
         with Image.open(tmp_path / "a.png") as sheet:
             assert sheet.width == pytest.approx(WIDTH_IN * DPI, abs=1)
 
-    def test_the_spectra_are_of_what_has_a_wavelength(self) -> None:
+    def test_spectra_of_a_material_are_those_with_a_wavelength(self) -> None:
         shown = {name: [*spectra(library()[name])] for name in ("ice", "water", "sand", "rubber")}
         assert shown == {"ice": [], "water": [], "sand": ["heights"], "rubber": ["heights", "friction"]}
         for spectrum in spectra(library()["rubber"]).values():

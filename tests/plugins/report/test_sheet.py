@@ -18,7 +18,7 @@ def pipeline() -> Pipeline:
     picture = np.zeros((24, 32, 3), np.uint8)
     picture[:, 16:] = 255
     return Pipeline(
-        Scene.of(photo=picture), depth=Luminance(), texture=Gradient(), workspace=Workspace(width_m=0.04), cached=False
+        Scene.photo(picture), depth=Luminance(), texture=Gradient(), workspace=Workspace(width_m=0.04), cached=False
     )
 
 

@@ -36,7 +36,7 @@ def work(*names: str, title: str = "Le lac", language: str = "fr", simplified: n
     )
 
 
-def written(given: Work, exporter: Text, folder: Path) -> tuple[dict[str, str], list[str]]:
+def write_texts(given: Work, exporter: Text, folder: Path) -> tuple[dict[str, str], list[str]]:
     """The texts by the endings of their files, and the notes."""
     with collected() as notes:
         files = exporter.write(given, folder / "lac")
@@ -47,9 +47,9 @@ def items(text: str) -> list[str]:
     return [line for line in text.splitlines() if line[:1].isdigit()]
 
 
-def test_parts_that_have_names_are_those_that_are_felt(tmp_path: Path):
+def test_text_with_named_parts_describes_the_surface(tmp_path: Path):
     merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
-    texts, notes = written(work("ciel", "", "île", "eau", simplified=merged), Text(), tmp_path)
+    texts, notes = write_texts(work("ciel", "", "île", "eau", simplified=merged), Text(), tmp_path)
     assert texts.keys() == {".txt", ".html"}
     assert [each.split(".")[1] for each in items(texts[".txt"])] == [" eau", " île", " partie 1", " ciel"]
     assert "Le long du bord inférieur" in items(texts[".txt"])[0]
@@ -57,37 +57,37 @@ def test_parts_that_have_names_are_those_that_are_felt(tmp_path: Path):
     assert notes == []
 
 
-def test_parts_without_names_are_those_that_fingers_read(tmp_path: Path):
+def test_text_without_names_describes_the_simplified_parts(tmp_path: Path):
     merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
-    texts, notes = written(work(simplified=merged), Text(), tmp_path)
+    texts, notes = write_texts(work(simplified=merged), Text(), tmp_path)
     assert [each[:12] for each in items(texts[".txt"])] == ["1. partie 3.", "2. partie 0."]
     assert notes == ["no part has a name, so parts are described by number; `tangible parts` shows them for naming"]
-    texts, notes = written(work(simplified=None), Text(), tmp_path)
+    texts, notes = write_texts(work(simplified=None), Text(), tmp_path)
     assert items(texts[".txt"]) == [] and "<ol>" not in texts[".html"] and notes == []
     assert "4 matières" in texts[".txt"]
 
 
-def test_its_language_is_that_of_the_pipeline_unless_it_is_named(tmp_path: Path):
+def test_text_is_in_the_language_of_the_pipeline_by_default(tmp_path: Path):
     names = "ciel", "lac", "île", "eau"
-    texts, _ = written(work(*names), Text(language="de"), tmp_path)
+    texts, _ = write_texts(work(*names), Text(language="de"), tmp_path)
     assert "1. eau. Am unteren Rand entlang." in texts[".txt"]
     assert '<html lang="de">' in texts[".html"] and '<span lang="fr" dir="auto">eau</span>' in texts[".html"]
-    texts, notes = written(work(*names, language="pt-BR"), Text(), tmp_path)
+    texts, notes = write_texts(work(*names, language="pt-BR"), Text(), tmp_path)
     assert "1. eau. Along the bottom." in texts[".txt"]
     assert '<html lang="en">' in texts[".html"] and '<h1><span lang="pt-BR" dir="auto">Le lac</span>' in texts[".html"]
     assert notes == ["described in English: there are no words for the language 'pt-BR'; there are for en, de and fr"]
 
 
-def test_paper_has_no_materials(tmp_path: Path):
+def test_text_without_materials_names_none(tmp_path: Path):
     names = "ciel", "lac", "île", "eau"
-    assert "Au toucher, comme du verre." in written(work(*names), Text(), tmp_path)[0][".txt"]
-    texts, _ = written(work(*names), Text(materials=False), tmp_path)
+    assert "Au toucher, comme du verre." in write_texts(work(*names), Text(), tmp_path)[0][".txt"]
+    texts, _ = write_texts(work(*names), Text(materials=False), tmp_path)
     assert not any("toucher" in text or "matière" in text or "verre" in text for text in texts.values())
 
 
-def test_braille_in_lines_and_pages_that_embossers_take(tmp_path: Path):
+def test_braille_has_the_lines_and_pages_of_embossers(tmp_path: Path):
     exporter = Text(braille=True, cells=20, lines=6)
-    texts, [*_, note] = written(work("ciel", "lac", "île", "eau"), exporter, tmp_path)
+    texts, [*_, note] = write_texts(work("ciel", "lac", "île", "eau"), exporter, tmp_path)
     assert note.startswith("braille by ")
     pages = texts[".brf"].split("\f")
     assert len(pages) > 2
@@ -101,17 +101,17 @@ def test_braille_in_lines_and_pages_that_embossers_take(tmp_path: Path):
     assert all(line.startswith("  ") for line in later if line not in starts)
 
 
-def test_a_name_without_braille_is_refused_and_nothing_is_wrong_without_braille(tmp_path: Path):
+def test_name_without_braille_is_refused_for_braille_only(tmp_path: Path):
     given = work("ciel", "湖", "île", "eau")
-    assert "湖" in written(given, Text(), tmp_path)[0][".txt"]
+    assert "湖" in write_texts(given, Text(), tmp_path)[0][".txt"]
     with pytest.raises(BrailleError, match="'湖'"):
-        written(given, Text(braille=True), tmp_path)
+        write_texts(given, Text(braille=True), tmp_path)
 
 
-def test_a_pipeline_exports_its_words(tmp_path: Path):
-    """From the pipeline to the files, at the width of a page."""
+def test_pipeline_exports_text(tmp_path: Path):
+    """The files have the width of a page."""
     picture = np.repeat(np.linspace(0, 255, 64).astype(np.uint8)[:, None], 96, axis=1)
-    scene = Scene.of(photo=picture, segments=np.repeat(np.arange(2), 32)[:, None].repeat(96, axis=1))
+    scene = Scene.photo(picture, segments=np.repeat(np.arange(2), 32)[:, None].repeat(96, axis=1))
     pipeline = Pipeline(
         scene, depth=Luminance(), workspace=Workspace(width_m=0.08), title="Rampe", language="de",
         parts={0: "oben", 1: "unten"},

@@ -41,7 +41,7 @@ def made(kind: str, name: str):
 
 def of_photo(picture: np.ndarray) -> Pipeline:
     methods = {kind: made(kind, name) for kind, name in (("depth", "luminance"), ("texture", "gradient"))}
-    return Pipeline(Scene.of(photo=picture), **methods, cached=False)
+    return Pipeline(Scene.photo(picture), **methods, cached=False)
 
 
 def array(folder: Path, about: dict, name: str, kind: str, level: int = 0) -> np.ndarray:
@@ -174,7 +174,7 @@ def pair() -> Scene:
     picture = (255 * np.random.default_rng(5).random((48, 64))).astype(np.uint8)
     disparity = np.full((48, 64), 3.0, np.float32)
     disparity[16:32, 24:44] = 6.0
-    return Scene.of(left=picture, right=np.roll(picture, -3, 1), disparity=disparity, truth=disparity + 0.5)
+    return Scene.pair(left=picture, right=np.roll(picture, -3, 1), disparity=disparity, truth=disparity + 0.5)
 
 
 class TestSee:
@@ -216,7 +216,7 @@ class TestSee:
 
     def test_materials_of_a_view_are_limited_to_the_device(self):
         segments = np.repeat([[0, 1]], 8, 0).repeat(8, 1).astype(np.int32)
-        scene = Scene.of(height=np.zeros((8, 16)), segments=segments)
+        scene = Scene.heights(np.zeros((8, 16)), segments=segments)
         by, law = {"by": {0: "brick", 1: "ice"}}, made("render", "proxy")
         bare = view_of(Pipeline(scene, materials=by, render=law, cached=False), "surface").materials
         device = made("device", "mock")
@@ -301,7 +301,7 @@ class TestWindow:
 def test_parts_that_were_simplified_away_are_not_shown():
     labels = np.zeros((60, 80), np.int32)
     labels[10:40, 10:40], labels[20:24, 60:64] = 1, 2
-    scene = Scene.of(photo=labels.astype(np.uint8), segments=labels)
+    scene = Scene.photo(labels.astype(np.uint8), segments=labels)
     said = {"parts": {0: "ground", 1: "box"}, "heights": "given", "cached": False}
     for more, there in (({}, [0, 1, 2]), ({"simplify": {}}, [0, 1])):
         pipeline = Pipeline(scene, **said, **more)

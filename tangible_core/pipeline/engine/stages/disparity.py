@@ -85,7 +85,7 @@ class DisparityStage(MethodStage):
         if depth.method.needs_pair and scene.views.right is None:
             give = (
                 "say how they lie in it, such as `layout: side-by-side`"
-                if scene.video
+                if scene.frames
                 else "give both, `left:` and `right:`"
             )
             return PictureError(

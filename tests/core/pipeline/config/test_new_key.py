@@ -58,7 +58,7 @@ def parse(text, *overrides):
     return parse_config(text, path, registry, overrides)
 
 text = "scene: builtin/brick\\ngrain: {shape: round, size_m: 2 mm}\\n"
-scene = Scene.of(height=np.eye(4))
+scene = Scene.heights(np.eye(4))
 forms = Forms(registry, "tangible-images")
 properties = {name: KEYS[name].schema_of_field(forms) for name in ("title", "grain", "workspace")}
 print(json.dumps({

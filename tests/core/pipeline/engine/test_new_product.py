@@ -21,7 +21,7 @@ from tangible_core.pipeline.config.schema import json_schema
 from tangible_core.pipeline.output.run_folder import NAMES
 from tangible_core.plugins.registry import default_registry
 
-pipeline = Pipeline(Scene.of(height=np.arange(12.0).reshape(3, 4)), cached=False)
+pipeline = Pipeline(Scene.heights(np.arange(12.0).reshape(3, 4)), cached=False)
 plan = pipeline.plan("flipped")
 flipped, relief = pipeline.make("flipped"), pipeline.make("relief")
 print(json.dumps({

@@ -46,7 +46,7 @@ def play(monkeypatch: pytest.MonkeyPatch, *captures: Played, repeat: bool = Fals
     """Return the scene of a file that opens as these captures, in turn; the first is for the scene."""
     opened = iter(captures)
     monkeypatch.setattr(video_readers, "open_file", lambda path: next(opened))
-    return Scene.of(video="film.avi", repeat=repeat, **options)
+    return Scene.video("film.avi", repeat=repeat, **options)
 
 
 class TestScene:
@@ -54,11 +54,11 @@ class TestScene:
         colours = np.zeros((24, 32, 3), np.uint8)
         colours[:] = 20, 60, 200  # blue, green, red
         path = write_video(tmp_path / "film.avi", [colours, *map(grey, range(4))])
-        scene = Scene.of(video=path, segments=np.zeros((24, 32), np.int32))
+        scene = Scene.video(path, segments=np.zeros((24, 32), np.int32))
         np.testing.assert_allclose(scene.views.left[5, 5], (200, 60, 20), atol=8)
         assert scene.views.left.dtype == np.uint8 and scene.views.right is None and scene.segments is not None
         assert scene.notes == ("film.avi is a video, of which this is the first of 5 frames; `tangible feel` plays it",)
-        video = scene.video
+        video = scene.frames
         assert (video.source, video.layout, video.fps, video.count) == (path, "mono", 25, 5)
         with video.open() as frames:
             np.testing.assert_array_equal(frames.next().views.left, scene.views.left)
@@ -74,7 +74,7 @@ class TestScene:
         files = SceneFiles.model_validate({"video": tmp_path, "layout": layout, "crop": (2, 1, 10, 9), **options})
         scene = Scene.read(files, Path())
         assert kind_of(scene) == kind_of(files) == "depth"
-        with scene.video.open() as frames:
+        with scene.frames.open() as frames:
             first, second = frames.next().views, frames.next().views
         np.testing.assert_array_equal(first.left, scene.views.left)
         np.testing.assert_array_equal(first.right, scene.views.right)
@@ -85,7 +85,7 @@ class TestScene:
         for each in folder.glob("f*.png"):
             write_png(each, np.arange(48, dtype=np.uint8).reshape(6, 8))
         scene = Scene.read(SceneFiles(video=folder, crop=(1, 2, 5, 3), rotate=90, invert=True), Path())
-        with scene.video.open() as frames:
+        with scene.frames.open() as frames:
             last = [frames.next() for _ in range(5)][-1]
         assert last.views.left.shape == (5, 3, 3)
         np.testing.assert_array_equal(last.views.left, scene.views.left)
@@ -96,8 +96,8 @@ class TestScene:
         rng = np.random.default_rng(0)
         for number in range(2):
             write_png(tmp_path / f"{number}.png", rng.integers(0, 255, (60, 160, 3), np.uint8))
-        scene = Scene.of(video=tmp_path, layout="side-by-side", rig=rig)
-        with scene.video.open() as frames:
+        scene = Scene.video(tmp_path, layout="side-by-side", rig=rig)
+        with scene.frames.open() as frames:
             first, second = frames.next().views, frames.next().views
         np.testing.assert_array_equal(first.left, scene.views.left)
         np.testing.assert_array_equal(first.right, scene.views.right)
@@ -108,20 +108,20 @@ class TestScene:
 
 class TestFiles:
     def test_repeating_file_gives_frames_in_order_and_again(self, film: Path):
-        with Scene.of(video=film).video.open() as frames:
-            found = [frames.next() for _ in range(23)]
-        assert [each.number for each in found] == list(range(23))
-        assert [shown(each.views) for each in found] == [number % 10 for number in range(23)]
-        np.testing.assert_allclose([each.time_s for each in found], np.arange(23) / 25, atol=1e-9)
+        with Scene.video(film).frames.open() as frames:
+            read = [frames.next() for _ in range(23)]
+        assert [each.number for each in read] == list(range(23))
+        assert [shown(each.views) for each in read] == [number % 10 for number in range(23)]
+        np.testing.assert_allclose([each.time_s for each in read], np.arange(23) / 25, atol=1e-9)
 
     def test_file_without_repeat_ends(self, film: Path):
-        with Scene.of(video=film, repeat=False).video.open() as frames:
+        with Scene.video(film, repeat=False).frames.open() as frames:
             assert frames.at(60).number == 9, "the last frame is due for ever, and is not lost"
             assert frames.at_end is False or frames.at(61) is None
             assert frames.next() is None and frames.at(62) is None and frames.at_end
 
     def test_latest_due_frame_is_returned_once(self, film: Path):
-        with Scene.of(video=film).video.open() as frames:
+        with Scene.video(film).frames.open() as frames:
             assert frames.at(0).number == 0
             assert frames.at(0.03) is None
             latest = frames.at(0.17)
@@ -130,7 +130,7 @@ class TestFiles:
             assert shown(frames.at(0.53).views) == 3, "the fourth of the second round"
 
     def test_requested_rate_replaces_the_time_stamps(self, film: Path):
-        video = Scene.of(video=film, fps=5).video
+        video = Scene.video(film, fps=5).frames
         with video.open() as frames:
             assert video.fps == frames.fps == 5
             assert frames.at(1.01).number == 5 and frames.next().time_s == pytest.approx(1.2)
@@ -139,14 +139,14 @@ class TestFiles:
         """Play a recorded screen, in which a frame stands for seconds and must not be skipped."""
         times_s = [0.0, 0.033, 0.066, 2.0, 5.0, 5.033]
         pictures = [grey(number) for number in range(6)]
-        with play(monkeypatch, *(Played(pictures, times_s) for _ in range(2))).video.open() as frames:
+        with play(monkeypatch, *(Played(pictures, times_s) for _ in range(2))).frames.open() as frames:
             assert [shown(frames.at(time_s).views) for time_s in (1, 4, 5.01, 9)] == [2, 3, 4, 5]
             assert frames.skipped == 2
 
     @pytest.mark.parametrize("times_s", [[0] * 4, [0, -1, 1e9, float("nan")]], ids=["none", "nonsense"])
     def test_implausible_time_stamps_are_replaced_by_an_even_rate(self, monkeypatch: pytest.MonkeyPatch, times_s: list):
         captures = [Played([grey(number) for number in range(4)], times_s, fps=1e5) for _ in range(2)]
-        with play(monkeypatch, *captures).video.open() as frames:
+        with play(monkeypatch, *captures).frames.open() as frames:
             assert frames.fps == 30, "nor such a rate"
             np.testing.assert_allclose([frames.next().time_s for _ in range(4)], np.arange(4) / 30, atol=1e-9)
 
@@ -154,11 +154,11 @@ class TestFiles:
         """Skip where the next frame is certainly due: by a requested rate, or after an even round."""
         pictures, times_s = [grey(number) for number in range(30)], [number / 30 for number in range(30)]
         captures = [Played(pictures, times_s) for _ in range(4)]
-        with play(monkeypatch, captures[0], captures[1], fps=30).video.open() as frames:
+        with play(monkeypatch, captures[0], captures[1], fps=30).frames.open() as frames:
             assert frames.at(0.9).number == 27
         assert captures[1].retrieved[-1] == 27 and len(captures[1].retrieved) <= 2
         assert captures[1].released.is_set()
-        with play(monkeypatch, *captures[:1], *captures[2:], repeat=True).video.open() as frames:
+        with play(monkeypatch, *captures[:1], *captures[2:], repeat=True).frames.open() as frames:
             assert (frames.at(0.9).number, frames.at(1.9).number) == (27, 57)
         assert len(captures[2].retrieved) > 27 and len(captures[3].retrieved) <= 2
 
@@ -169,7 +169,7 @@ class TestFiles:
         captures = [
             Played([grey(number) for number in range(31)], [number / 30 for number in range(31)]) for _ in range(2)
         ]
-        with play(monkeypatch, *captures).video.open() as frames:
+        with play(monkeypatch, *captures).frames.open() as frames:
             first = frames.at(0.8)
             assert first.number < 5
             assert frames.at(0.8) is None
@@ -186,13 +186,13 @@ class TestFiles:
         at = data.index(old, data.index(b"tkhd"))
         data[at : at + 36] = new
         path.write_bytes(data)
-        left = Scene.of(video=path).views.left
+        left = Scene.video(path).views.left
         assert left.shape == (64, 32, 3)
         assert left[:24].max() < 60 and left[40:].min() > 190
 
     def test_frame_of_another_size_raises_once(self, monkeypatch: pytest.MonkeyPatch):
         captures = [Played([grey(0), grey(1), grey(2, (48, 32)), grey(3)]) for _ in range(2)]
-        with play(monkeypatch, *captures).video.open() as frames:
+        with play(monkeypatch, *captures).frames.open() as frames:
             frames.next(), frames.next()
             with pytest.raises(PictureError, match=r"film.avi: is 32 x 48 and the first frame 32 x 24; .* one size$"):
                 frames.next()
@@ -202,13 +202,13 @@ class TestFiles:
         """Play a stream whose other frames FFmpeg scales."""
         shapes = [(24, 32), (48, 64), (24, 32)]
         path = jpegs(tmp_path / "film.mjpeg", (grey(number, shape) for number, shape in enumerate(shapes)))
-        with Scene.of(video=path).video.open() as frames:
-            found = [frames.next().views for _ in shapes]
-        assert [shown(each) for each in found] == [0, 1, 2] and {each.shape for each in found} == {(24, 32)}
+        with Scene.video(path).frames.open() as frames:
+            read = [frames.next().views for _ in shapes]
+        assert [shown(each) for each in read] == [0, 1, 2] and {each.shape for each in read} == {(24, 32)}
 
     def test_damaged_frame_raises_once_and_is_left_out(self, monkeypatch: pytest.MonkeyPatch):
         captures = [Played([grey(0), None, None, grey(3)]) for _ in range(2)]
-        with play(monkeypatch, *captures).video.open() as frames:
+        with play(monkeypatch, *captures).frames.open() as frames:
             assert frames.next().number == 0
             with pytest.raises(PictureError, match=r"film.avi: frame 1 is damaged and left out; copy"):
                 frames.next()
@@ -216,14 +216,18 @@ class TestFiles:
 
     def test_file_of_only_damaged_frames_raises_at_every_call(self, monkeypatch: pytest.MonkeyPatch):
         captures = [Played([grey(0)]), *(Played([None, None]) for _ in range(3))]
-        with play(monkeypatch, *captures, repeat=True).video.open() as frames:
-            for said in ("frame 0 is damaged", "none of its frames can be played", "none of its frames can be played"):
-                with pytest.raises(PictureError, match=said):
+        with play(monkeypatch, *captures, repeat=True).frames.open() as frames:
+            for message in (
+                "frame 0 is damaged",
+                "none of its frames can be played",
+                "none of its frames can be played",
+            ):
+                with pytest.raises(PictureError, match=message):
                     frames.next()
 
     def test_file_cut_short_raises_once_and_starts_again(self, tmp_path: Path, capfd: pytest.CaptureFixture[str]):
         path = write_video(tmp_path / "film.mkv", (grey(number) for number in range(30)), codec="mp4v")
-        video = Scene.of(video=path).video
+        video = Scene.video(path).frames
         data = path.read_bytes()
         path.write_bytes(data[: len(data) // 2])
         with video.open() as frames:
@@ -236,7 +240,7 @@ class TestFiles:
         assert capfd.readouterr().err == "", "OpenCV and FFmpeg say nothing themselves"
 
     def test_file_that_disappears_is_read_again_when_it_is_back(self, film: Path):
-        with Scene.of(video=film).video.open() as frames:
+        with Scene.video(film).frames.open() as frames:
             for _ in range(10):
                 frames.next()
             film.rename(film.with_name("elsewhere.avi"))
@@ -248,14 +252,14 @@ class TestFiles:
 
 class TestFolders:
     def test_folder_gives_pictures_in_the_order_of_their_numbers(self, folder: Path):
-        scene = Scene.of(video=folder, fps=10)
+        scene = Scene.video(folder, fps=10)
         assert scene.notes[0].startswith("pictures is a video, of which this is the first of 12 frames;")
-        with scene.video.open() as frames:
+        with scene.frames.open() as frames:
             assert [shown(frames.next().views) for _ in range(14)] == [*range(12), 0, 1]
-            assert frames.fps == 10 and Scene.of(video=folder).video.fps == 30
+            assert frames.fps == 10 and Scene.video(folder).frames.fps == 30
 
     def test_folder_reads_due_pictures_only(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
-        video = Scene.of(video=folder, repeat=False).video
+        video = Scene.video(folder, repeat=False).frames
         read: list[str] = []
         whole = video_readers.read_picture
         monkeypatch.setattr(video_readers, "read_picture", lambda path: read.append(path.name) or whole(path))
@@ -272,33 +276,33 @@ class TestFolders:
         cut_out[:, :3, 3] = 255
         for number, values in enumerate((cut_out, deep, np.full((4, 6, 3), 9, np.uint8))):
             cv2.imwrite(str(tmp_path / f"{number}.png"), values)
-        scene = Scene.of(video=tmp_path)
-        with scene.video.open() as frames:
-            found = [frames.next().views.left for _ in range(3)]
-        assert all(each.shape == (4, 6, 3) and each.dtype == np.uint8 for each in found)
-        assert [int(each.min()) for each in found] == [90, 128, 9], "what is hidden looks like what is"
-        np.testing.assert_array_equal(found[0], scene.views.left)
+        scene = Scene.video(tmp_path)
+        with scene.frames.open() as frames:
+            read = [frames.next().views.left for _ in range(3)]
+        assert all(each.shape == (4, 6, 3) and each.dtype == np.uint8 for each in read)
+        assert [int(each.min()) for each in read] == [90, 128, 9], "what is hidden looks like what is"
+        np.testing.assert_array_equal(read[0], scene.views.left)
         np.testing.assert_array_equal(scene.shown, np.repeat([[True, False]], 4, 0).repeat(3, 1))
 
     def test_folder_reports_pictures_of_another_size_and_damaged_ones(self, folder: Path):
         write_png(folder / "f2.png", grey(2, (48, 32)))
         for number in (4, 5):
             (folder / f"f{number}.png").write_bytes((folder / "f0.png").read_bytes()[:45])
-        with Scene.of(video=folder).video.open() as frames:
+        with Scene.video(folder).frames.open() as frames:
             frames.next(), frames.next()
             with pytest.raises(PictureError, match=r"f2.png: is 32 x 48 and the first frame 32 x 24"):
                 frames.next()
             assert frames.next().number == 3
             with pytest.raises(PictureError, match=r"f4.png: the picture is damaged or cut short"):
                 frames.next()
-            assert frames.next().number == 6, "a second damaged one is not said"
+            assert frames.next().number == 6, "a second damaged one does not raise"
 
     def test_folder_that_lost_its_pictures_raises_at_every_call(self, folder: Path):
-        with Scene.of(video=folder).video.open() as frames:
+        with Scene.video(folder).frames.open() as frames:
             for each in folder.glob("f*.png"):
                 each.unlink()
-            for said in ("f0.png: there is no such file", "none of its 12 pictures can be read", "none of its 12"):
-                with pytest.raises(PictureError, match=said):
+            for message in ("f0.png: there is no such file", "none of its 12 pictures can be read", "none of its 12"):
+                with pytest.raises(PictureError, match=message):
                     frames.next()
 
 
@@ -325,11 +329,13 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("name", "make", "said"), BAD.values(), ids=BAD)
-def test_unplayable_file_raises_one_line(tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str, make, said: str):
+@pytest.mark.parametrize(("name", "make", "message"), BAD.values(), ids=BAD)
+def test_unplayable_file_raises_one_line(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str, make, message: str
+):
     make(tmp_path / name)
-    with pytest.raises(PictureError, match=said) as error:
-        Scene.of(video=tmp_path / name)
+    with pytest.raises(PictureError, match=message) as error:
+        Scene.video(tmp_path / name)
     assert "\n" not in str(error.value) and str(error.value).startswith(str(tmp_path))
     assert capfd.readouterr().err == "", "OpenCV and FFmpeg say nothing themselves"
 
@@ -338,26 +344,26 @@ def test_device_as_video_file_is_refused(tmp_path: Path):
     if not Path("/dev/zero").is_char_device():
         return  # no such thing on this system
     with pytest.raises(PictureError, match="is a device or a pipe, not a video file"):
-        Scene.of(video="/dev/zero")
+        Scene.video("/dev/zero")
 
 
 def test_huge_frame_is_refused_before_it_is_decoded(film: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(reading, "MOST_PIXELS", 24 * 32 - 1)
     monkeypatch.setattr(video_readers, "grab", None)
     with pytest.raises(PictureError, match=r"film.avi: a frame is larger than .*; make the video smaller first"):
-        Scene.of(video=film)
+        Scene.video(film)
 
 
 def test_video_of_one_pixel_is_not_a_pair(tmp_path: Path):
     write_png(tmp_path / "0.png", grey(3, (1, 1)))
-    assert Scene.of(video=tmp_path).shape == (1, 1)
+    assert Scene.video(tmp_path).shape == (1, 1)
     with pytest.raises(PictureError, match=r"1 x 1 pixels have no two halves"):
-        Scene.of(video=tmp_path, layout="side-by-side")
+        Scene.video(tmp_path, layout="side-by-side")
 
 
 def test_video_given_as_photo_names_the_right_key(tmp_path: Path):
     with pytest.raises(PictureError, match="write `video:` for a video"):
-        Scene.of(photo=write_video(tmp_path / "film.mp4", [grey(1)], codec="mp4v"))
+        Scene.photo(write_video(tmp_path / "film.mp4", [grey(1)], codec="mp4v"))
 
 
 class TestPipelineFile:
@@ -377,9 +383,9 @@ class TestPipelineFile:
         "value", ["video=-1", "video=[1]", "fps=0", "fps=.nan", "layout=diagonal", "video=http://a/b.ts"]
     )
     def test_wrong_video_option_is_one_line_with_its_place(self, film: Path, value: str):
-        with pytest.raises(ConfigError) as said:
+        with pytest.raises(ConfigError) as message:
             parse_config("scene: {video: film.avi}", film.parent / "p.yaml", default_registry(), [f"scene.{value}"])
-        assert len(said.value.args) == 1 and str(said.value).startswith(f"--set scene.{value}: scene.")
+        assert len(message.value.args) == 1 and str(message.value).startswith(f"--set scene.{value}: scene.")
 
     def test_cache_key_depends_on_the_first_frame_only(self, tmp_path: Path):
         text = "scene: {video: film.avi}\nwant: relief\ndepth: luminance\n"
@@ -391,7 +397,7 @@ class TestPipelineFile:
         assert keys[0] == keys[1] != keys[2]
 
     def test_pair_method_on_a_mono_video_suggests_a_layout(self, film: Path):
-        pipeline = Pipeline(Scene.of(video=film), depth=SemiGlobal())
+        pipeline = Pipeline(Scene.video(film), depth=SemiGlobal())
         with pytest.raises(PictureError, match="say how they lie in it, such as `layout: side-by-side`, or name"):
             pipeline.make("disparity")
 
@@ -432,17 +438,17 @@ class TestOptions:
             SceneFiles.model_validate({"video": "film.avi", **options})
 
     def test_video_options_without_a_video_are_refused(self):
-        for options, said in (
+        for options, message in (
             ({"fps": 30}, "fps needs video"),
             ({"repeat": False}, "repeat needs video"),
             ({"layout": "mono"}, "mono is for a video"),
             ({"layout": "top-bottom"}, "layout needs stereo"),
         ):
-            with pytest.raises(ValidationError, match=said):
+            with pytest.raises(ValidationError, match=message):
                 SceneFiles.model_validate({"photo": "a.png", **options})
         with pytest.raises(ValidationError, match="mono is for a video"):
             SceneFiles.model_validate({"stereo": "a.png", "layout": "mono"})
 
     def test_address_is_refused_in_python_too(self):
         with pytest.raises(ConfigError, match=r"scene.video: addresses are not opened"):
-            Scene.of(video="rtsp://camera/1")
+            Scene.video("rtsp://camera/1")

@@ -89,16 +89,16 @@ def test_camera_keeps_the_newest_picture_only():
 
 def test_scene_of_a_camera_shows_its_picture(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video_capture, "open_camera", opening(Played([grey(4)] * 99), Played([grey(7)] * 99)))
-    scene = Scene.of(video=1)
+    scene = Scene.video(1)
     assert scene.name == "camera 1" and shown(scene.views) == 4
     assert scene.notes == ("camera 1 is a video, of which this is one picture; `tangible feel` plays it",)
-    with scene.video.open() as frames:
+    with scene.frames.open() as frames:
         assert shown(frames.next().views) == 7
 
 
 def test_camera_frame_of_another_size_raises(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(video_capture, "open_camera", opening(Played([grey(4)]), Played([grey(7, (9, 9))])))
-    with Scene.of(video=1).video.open() as frames, pytest.raises(PictureError, match=r"camera 1: is 9 x 9 and the fir"):
+    with Scene.video(1).frames.open() as frames, pytest.raises(PictureError, match=r"camera 1: is 9 x 9 and the fir"):
         frames.next()
 
 

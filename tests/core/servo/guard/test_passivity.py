@@ -31,33 +31,33 @@ def tick(arrays, place: Sequence[float], velocity: Sequence[float], force: Seque
 
 class TestObserver:
     @AXES
-    def test_work_is_seen_along_each_axis(self, axis: int):
-        """Twice, as the place that was kept is where the next way begins."""
+    def test_work_is_observed_along_each_axis(self, axis: int):
+        """Two steps, as each starts at the stored place."""
         arrays = STRICT.arrays(SPEC, 0.0)
         for step in range(3):
             tick(arrays, along(axis, 0.001 * step), REST, (0.5, 0.25, 0.125))
         assert arrays[1][ENERGY_J] == pytest.approx(-2 * 0.001 * (0.5, 0.25, 0.125)[axis])
 
     @AXES
-    def test_a_leap_along_any_axis_is_no_work(self, axis: int):
+    def test_jump_along_any_axis_is_not_work(self, axis: int):
         arrays = STRICT.arrays(SPEC, 0.0)
         tick(arrays, REST, REST, (0.5, 0.25, 0.125))
         tick(arrays, along(axis, 0.011), REST, (0.5, 0.25, 0.125))
         assert arrays[1][ENERGY_J] == 0.0
 
-    def test_nothing_is_taken_in_on_the_way_to_the_first_place(self):
+    def test_energy_before_the_first_position_is_zero(self):
         arrays = COUPLED.arrays(SPEC, 0.0)
         tick(arrays, (0.002, 0.002, 0.002), REST, (0.0, 0.0, 1e-12))
         assert arrays[1][ENERGY_J] == 0.0
 
-    def test_a_debt_is_at_most_one_s_own_greatest_force_over_a_millimetre(self):
+    def test_energy_debt_is_at_most_the_configured_force_over_a_millimetre(self):
         arrays = Safety(passivity="strict", ramp_s=0, max_step_n=10, max_force_n=2).arrays(SPEC, 0.0)
         for step in range(10):
             tick(arrays, (0.005 * step, 0.0, 0.0), REST, (8.0, 0.0, 0.0))
         assert arrays[1][ENERGY_J] == pytest.approx(-2.0 * 0.001)
 
     @pytest.mark.parametrize("period_s", [0.0005, 0.002])
-    def test_the_damping_s_credit_at_other_periods(self, period_s: float):
+    def test_damping_credit_scales_with_the_period(self, period_s: float):
         arrays = COUPLED.arrays(SPEC, 0.0)
         tick(arrays, REST, REST, (0.0, 0.0, 1e-12), period_s)
         tick(arrays, (0.001, 0.001, 0.001), REST, (0.0, 0.0, 1e-12), period_s)
@@ -69,7 +69,7 @@ class TestController:
     @pytest.mark.parametrize("velocity", [(0.1, 0.2, 0.05), (0.0, -0.1, 0.2), (0.3, 0.0, 0.0), (0.0, 0.0, 0.3)])
     @pytest.mark.parametrize("energy_j", [0.0, -2e-5, 2e-5])
     @pytest.mark.parametrize("period_s", [0.0005, 0.001, 0.002])
-    def test_what_this_tick_will_give_is_braked_before_it_is_given(
+    def test_energy_of_this_tick_is_damped_in_advance(
         self, safety: Safety, credit: float, velocity: tuple[float, float, float], energy_j: float, period_s: float
     ):
         arrays, force, v = safety.arrays(SPEC, 0.0), np.array([0.3, -0.2, 0.25]), np.array(velocity)
@@ -80,7 +80,7 @@ class TestController:
         np.testing.assert_allclose(left, force - brake * v, atol=1e-12)
         assert (TickFlag.DAMPED in flags) == (brake > 0)
 
-    def test_a_braked_force_is_within_the_maximum(self):
+    def test_damped_force_is_at_most_the_maximum(self):
         arrays = STRICT.arrays(SPEC, 0.0)
         arrays[1][ENERGY_J] = -1e-2
         left, flags = tick(arrays, REST, (-1.0, 0.0, 0.0), (7.9, 0.0, 0.0))
@@ -88,7 +88,7 @@ class TestController:
         assert TickFlag.DAMPED in flags
 
     @AXES
-    def test_a_law_that_let_go_is_braked_while_its_force_is_still_at_the_hand(self, axis: int):
+    def test_released_force_is_damped_while_it_acts(self, axis: int):
         arrays = STRICT.arrays(SPEC, 0.0)
         tick(arrays, REST, REST, along(axis, 1.0))
         arrays[1][ENERGY_J] = -1e-3
@@ -96,14 +96,14 @@ class TestController:
         np.testing.assert_allclose(left, (-0.1 * 5 * DAMPING, 0.0, 0.0))
         assert flags == TickFlag.DAMPED
 
-    def test_off_is_off(self):
+    def test_passivity_off_changes_no_force(self):
         arrays = Safety(passivity="off", ramp_s=0, max_step_n=10).arrays(SPEC, 0.0)
         arrays[1][ENERGY_J] = -1e-3
         left, flags = tick(arrays, REST, (0.1, 0.1, 0.1), (0.0, 0.0, 0.2))
         assert left.tolist() == [0.0, 0.0, 0.2]
         assert flags == TickFlag.TOUCHING
 
-    def test_free_air_is_not_braked(self):
+    def test_hand_in_free_air_is_not_damped(self):
         arrays = STRICT.arrays(SPEC, 0.0)
         arrays[1][ENERGY_J] = -1e-3
         left, flags = tick(arrays, REST, (0.1, 0.0, 0.0), REST)

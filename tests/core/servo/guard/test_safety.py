@@ -1,4 +1,4 @@
-"""The options of a force loop, the stiffness limits, and what of them a guard reads."""
+"""The options of a force loop, its stiffness limits, and the arrays of its guard."""
 
 from pathlib import Path
 
@@ -28,17 +28,17 @@ def parse(text: str):
 
 
 class TestPipelineFile:
-    def test_a_file_that_says_nothing_is_guarded(self):
+    def test_file_without_safety_is_guarded(self):
         assert parse("").safety == Safety()
 
-    def test_what_is_guarded_unless_it_says_otherwise(self):
+    def test_defaults_of_safety_are_as_documented(self):
         stated = Safety(
             max_force_n=None, max_step_n=0.5, ramp_s=0.5, stale_s=0.02, stiffness_margin=0.8, delay_ticks=0,
             friction_n=None, passivity="coupled", coupling=None,
         )  # fmt: skip
         assert Safety() == stated
 
-    def test_what_it_says(self):
+    def test_file_options_reach_safety(self):
         text = "safety: {max_force_n: 2, coupling: {stiffness_n_per_m: 900, damping_n_s_per_m: 0.2}, passivity: off}\n"
         safety = parse(text).safety
         coupling = Coupling(stiffness_n_per_m=900, damping_n_s_per_m=0.2)
@@ -54,21 +54,21 @@ class TestPipelineFile:
             "coupling: {stiffness_n_per_m: 0, damping_n_s_per_m: 0}", "coupling: {stiffness_n_per_m: 900}",
         ],
     )  # fmt: skip
-    def test_what_it_may_not_say(self, wrong: str):
+    def test_file_options_out_of_bounds_are_refused(self, wrong: str):
         with pytest.raises(ConfigError, match="2:"):
             parse(f"safety: {{{wrong}}}\n")
 
 
 class TestLimits:
     @pytest.mark.parametrize(("delay", "limit"), [(0, 4000), (1, 4000 / 3), (2, 800)])
-    def test_stiffness(self, delay: int, limit: float):
+    def test_stiffness_limit_follows_the_formula(self, delay: int, limit: float):
         assert stiffness_limit_n_per_m(2.0, 0.001, delay) == pytest.approx(limit, rel=1e-15)
 
-    def test_encoder(self):
+    def test_encoder_limit_follows_the_formula(self):
         assert encoder_limit_n_per_m(0.05, 5e-5) == pytest.approx(2000)
 
     @pytest.mark.parametrize(("damping", "effective"), [(20.0, 1.5), (1.0, 1.0), (0.0, 1.5)])
-    def test_a_damping_that_the_greatest_stiffness_contradicts(self, damping: float, effective: float):
+    def test_damping_above_the_stiffness_limit_is_reduced(self, damping: float, effective: float):
         assert effective_damping_n_s_per_m(DeviceSpec(8.0, 3000.0, damping, (0.08, 0.08, 0.08), 3e-5)) == effective
 
 
@@ -84,20 +84,20 @@ class TestArrays:
             (Safety(), 0.0, 1.0),
         ],
     )
-    def test_the_share_of_a_law_s_force(self, safety: Safety, stiffness: float, share: float):
+    def test_gain_is_the_stable_share_of_the_stiffness(self, safety: Safety, stiffness: float, share: float):
         settings, memory = safety.arrays(FALCON, stiffness)
         assert gain(settings, 0.001) == pytest.approx(share, rel=1e-12)
         assert memory[layout.GAIN] == gain(settings, 0.001)
 
-    def test_a_quick_loop_is_no_stiffer_than_the_device(self):
-        """At 4 kHz its damping would hold 9600 N/m; its own word is 3000."""
+    def test_gain_of_fast_loop_respects_the_device_stiffness(self):
+        """At 4 kHz the device's damping allows 9600 N/m, but its stated limit is 3000."""
         settings, memory = Safety(ramp_s=0, passivity="off").arrays(FALCON, 5000.0)
         assert gain(settings, 0.00025) == pytest.approx(3000 / 5000)
         for _ in range(4000):
             left = guard.guard(settings, memory, 0.00025, *[0.0] * 6, 0.0, 0.0, 0.1)
         assert 0.1 * 2400 / 5000 < left[2] <= 0.1 * 3000 / 5000
 
-    def test_an_automatic_coupling_is_one_that_the_device_holds(self):
+    def test_automatic_coupling_is_stable_on_the_device(self):
         for delay in range(9):
             settings, _ = Safety(coupling="auto", delay_ticks=delay).arrays(FALCON, 800.0)
             stiffness, damping = settings[[layout.COUPLING, layout.COUPLING_DAMPING]]
@@ -106,8 +106,8 @@ class TestArrays:
 
     @pytest.mark.parametrize("law", [800.0, 0.0])
     @pytest.mark.parametrize("delay", [0, 1])
-    def test_an_automatic_coupling_is_half_of_what_is_held(self, law: float, delay: int):
-        """And a quarter of the damping. A law behind it is in series; one that says nothing may be as stiff as any."""
+    def test_automatic_coupling_is_half_the_stable_stiffness(self, law: float, delay: int):
+        """And a quarter of the damping. The law is in series with it; a law of unknown stiffness may have any."""
         held, times = 2400 / (1 + 2 * delay), 1 + 2 * delay
         settings, _ = Safety(coupling="auto", delay_ticks=delay).arrays(FALCON, law)
         assert settings[layout.COUPLING] == pytest.approx(held / 2)
@@ -115,24 +115,24 @@ class TestArrays:
         assert settings[layout.COUPLING_LAW] == pytest.approx(law or held)
         assert settings[layout.STIFFNESS] == pytest.approx(1 / (2 / held + 1 / law) if law else held / 2)
 
-    def test_a_faster_loop_does_not_make_a_device_stiffer_than_it_is(self):
+    def test_gain_at_half_period_respects_the_device_stiffness(self):
         settings, _ = Safety().arrays(FALCON, 6000.0)
         assert gain(settings, 0.0005) == pytest.approx(0.5, rel=1e-12)
 
-    def test_an_automatic_coupling_on_coarse_encoders_is_half_of_what_they_allow(self):
+    def test_automatic_coupling_respects_the_encoder_limit(self):
         coarse, _ = Safety(coupling="auto", friction_n=0.015).arrays(FALCON, 800.0)
         assert coarse[layout.COUPLING] == pytest.approx(0.8 * 2 * 0.015 / 3e-5 / 2)
 
     @pytest.mark.parametrize(("law", "behind", "felt"), [(800.0, 800.0, 1 / (1 / 900 + 1 / 800)), (0.0, 2400.0, 900.0)])
-    def test_a_coupling_of_one_s_own(self, law: float, behind: float, felt: float):
-        """A law that says nothing may be as stiff as the device holds; the tool is heavy enough for that."""
+    def test_custom_coupling_is_used_as_given(self, law: float, behind: float, felt: float):
+        """A law of unknown stiffness may be as stiff as the device allows; the tool is heavy enough for that."""
         coupling = Coupling(stiffness_n_per_m=900, damping_n_s_per_m=0.2)
         settings, _ = Safety(coupling=coupling).arrays(FALCON, law)
         names = [layout.COUPLING, layout.COUPLING_DAMPING, layout.COUPLING_LAW]
         assert settings[names].tolist() == pytest.approx([900, 0.2, behind])
         assert settings[layout.STIFFNESS] == pytest.approx(felt)
 
-    def test_the_tool_begins_where_the_device_is(self):
+    def test_tool_starts_at_the_device(self):
         settings, memory = Safety(coupling="auto").arrays(FALCON, 800.0)
         state = (0.05, -0.04, 0.03, 0.1, 0.2, 0.3)
         assert guard.couple(settings, memory, 0.001, *state) == state
@@ -140,23 +140,23 @@ class TestArrays:
     @pytest.mark.parametrize(
         ("passivity", "brake", "credit"), [("off", 0, 0), ("coupled", 7.5, 1.2), ("strict", 7.5, 0)]
     )
-    def test_the_brake_and_its_credit(self, passivity: str, brake: float, credit: float):
+    def test_brake_and_credit_follow_the_passivity_option(self, passivity: str, brake: float, credit: float):
         settings, _ = Safety(passivity=passivity).arrays(FALCON, 800.0)
         assert settings[[layout.BRAKE, layout.CREDIT]] == pytest.approx([brake, credit])
 
-    def test_each_device_has_a_memory_of_its_own(self):
+    def test_memory_is_new_for_each_device(self):
         (one, first), (two, second) = Safety().arrays(FALCON, 1.0), Safety().arrays(FALCON, 1.0)
         np.testing.assert_array_equal(one, two)
         first[:] = 0
         assert second.any()
 
 
-def test_the_kernels_flags_are_those_of_the_records():
+def test_kernel_flags_match_the_record_flags():
     for name in ("TOUCHING", "FORCE_LIMITED", "SLEW_LIMITED", "STIFFNESS_LIMITED", "RAMPING", "NOT_FINITE", "DAMPED"):
         assert getattr(guard, name) == TickFlag[name]
     assert guard.STALE == TickFlag.STALE == 1 << (layout.FLAGS - 1)
 
 
-def test_options_are_frozen():
+def test_safety_options_are_frozen():
     with pytest.raises(ValidationError):
         Safety().ramp_s = 1.0  # pyright: ignore[reportAttributeAccessIssue]

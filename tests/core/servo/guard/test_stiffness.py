@@ -1,4 +1,4 @@
-"""How stiff a law is that does not say so: felt before the device is opened, so that the guard can soften it."""
+"""The stiffness of laws that do not state it: measured before the device is opened, so that the guard can limit it."""
 
 import importlib
 import math
@@ -24,6 +24,7 @@ from tangible_core.servo.guard.stiffness import DEPTHS_M, HALVINGS, LAYERS, PLAC
 from tangible_core.session import run_simulated
 from tangible_core.testing.synthetic.scenes import plane, ramp
 from tangible_devices.mock import Mock
+from waiting import until
 
 SPEC = DeviceSpec(8.0, 3000.0, 20.0, (0.08, 0.08, 0.08), 1e-6)
 AT_ONCE = Safety(ramp_s=0, max_step_n=10, passivity="off")
@@ -43,7 +44,7 @@ class Plain(PlainTouch):
 
 
 class Law(PlainTouch):
-    """A force of the position, and how often it was asked for."""
+    """A force by position, and the number of calls."""
 
     def __init__(self, law: Callable[[float, float, float], tuple[float, float, float]]) -> None:
         self.law, self.asked = law, 0
@@ -54,7 +55,7 @@ class Law(PlainTouch):
 
 
 def level(push_n: Callable[[float], float], height_m: float = LEVEL_M) -> Law:
-    """Pushes straight up by a function of the depth under level ground."""
+    """Return a law that pushes up by a function of the depth under level ground."""
     return Law(lambda x, y, z: (0.0, 0.0, push_n(height_m - z) if z < height_m else 0.0))
 
 
@@ -64,34 +65,34 @@ def spring(k: float, height_m: float = LEVEL_M) -> Law:
 
 @pytest.fixture
 def plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """A law of somebody's, in plain Python, in a module that the loop's process finds too."""
+    """A third party's law in plain Python, in a module that the loop's process can import."""
     tmp_path.joinpath("plain_law.py").write_text(PLAIN)
     monkeypatch.syspath_prepend(tmp_path)
     yield importlib.import_module("plain_law").Plain
     del sys.modules["plain_law"]
 
 
-class TestSoftening:
+class TestLimitOfUnstatedStiffness:
     """5,000 N/m, where the mock's own table says 3,000, and damping of 1.5 N s/m leaves 0.8 of 3,000."""
 
-    def test_a_session(self) -> None:
+    def test_session_limits_a_law_of_unstated_stiffness(self) -> None:
         recording = run_simulated(spring(5000.0), Mock(hand=None, path="circle", z_m=0.0015), 0.2, limits=AT_ONCE)
         assert recording.force_n[:, 2].max() == pytest.approx(2400 * 0.0005, rel=1e-6)
         assert (recording.rows[:, FLAGS].astype(int) & TickFlag.STIFFNESS_LIMITED).all()
 
-    def test_the_force_loop_and_a_law_that_it_is_given_later(self, plain: Any) -> None:
+    def test_loop_limits_a_swapped_law_of_unstated_stiffness(self, plain: Any) -> None:
         device = Mock(hand=None, path="circle", z_m=0.0015)
         with Servo(plain(5000.0), device, AT_ONCE) as servo:
             assert servo.how.endswith("; Plain does not state its stiffness; 5000 N/m was measured")
             until(lambda: servo.report().ticks > 100)
             hard = servo.ring.since(0)[0]
             servo.swap(plain(50.0))
-            until(lambda: felt(servo) == pytest.approx((50 * 0.0005, False), rel=1e-6))
+            until(lambda: last_force(servo) == pytest.approx((50 * 0.0005, False), rel=1e-6))
         felt_n, flags = hard[:, FZ], hard[:, FLAGS].astype(int)
         assert 0 < felt_n.max() <= 2401 * 0.0005
         assert (flags[felt_n > 0] & TickFlag.STIFFNESS_LIMITED).all()
 
-    def test_one_that_says_it_is_taken_at_its_word(self) -> None:
+    def test_law_that_states_its_stiffness_is_not_measured(self) -> None:
         touch = spring(5000.0)
         touch.stiffness_n_per_m = 1000.0
         recording = run_simulated(touch, Mock(hand=None, path="circle", z_m=0.0015), 0.1, limits=AT_ONCE)
@@ -99,39 +100,32 @@ class TestSoftening:
         assert touch.asked == len(recording.rows)
 
 
-def felt(servo: Servo) -> tuple[float, bool]:
-    """Force of the last tick, and whether it was softened."""
+def last_force(servo: Servo) -> tuple[float, bool]:
+    """Return the force of the last tick, and whether it was scaled down."""
     last = servo.ring.since(0)[0][-1]
     return float(last[FZ]), bool(int(last[FLAGS]) & TickFlag.STIFFNESS_LIMITED)
 
 
-def until(condition: Callable[[], bool]) -> None:
-    end = time.monotonic() + 60
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.01)
-
-
-class TestWhatIsSaid:
+class TestStatedStiffness:
     @pytest.mark.parametrize("said", [0.0, 1234.5, np.float32(2.0), 3])
-    def test_it_counts_as_it_is(self, said: float) -> None:
+    def test_stated_stiffness_is_used_unchanged(self, said: float) -> None:
         touch = spring(5000.0)
         touch.stiffness_n_per_m = said
         assert stiffness_of(touch, SPEC) == (float(said), "")
         assert touch.asked == 0
 
     @pytest.mark.parametrize("said", [math.nan, math.inf, -1.0])
-    def test_what_is_no_stiffness(self, said: float) -> None:
+    def test_stated_stiffness_that_is_invalid_is_refused(self, said: float) -> None:
         touch = spring(5000.0)
         touch.stiffness_n_per_m = said
         with pytest.raises(BrokenMethod, match=r"^Law states a stiffness of .* N/m; state 0 or more, or None"):
             stiffness_of(touch, SPEC)
 
     @pytest.mark.parametrize("name", ["grey-level", "lateral-gradient", "tangible-mask"])
-    def test_laws_that_are_no_springs_say_so(self, name: str) -> None:
+    def test_laws_without_springs_state_zero(self, name: str) -> None:
         assert load_method("render", name)().touch(plane().surface).stiffness_n_per_m == 0
 
-    def test_a_compiled_law_that_says_nothing_is_felt(self) -> None:
+    def test_compiled_law_of_unstated_stiffness_is_measured(self) -> None:
         said = wall(1500.0)
         silent = CompiledTouch(said.tick, said.fixed)
         assert silent.stiffness_n_per_m is None
@@ -139,26 +133,26 @@ class TestWhatIsSaid:
         assert stiffness_of(said, SPEC) == (1500.0, "")
 
 
-class TestFelt:
+class TestMeasuredStiffness:
     @pytest.mark.parametrize("k", [1.0, 800.0, 5000.0, 2e5])
-    def test_a_spring(self, k: float) -> None:
+    def test_spring_is_measured_exactly(self, k: float) -> None:
         found = stiffness_of(spring(k), SPEC)
         assert found.n_per_m == pytest.approx(k, rel=1e-6)
         assert found.how == f"Law does not state its stiffness; {k:.4g} N/m was measured"
 
-    def test_steep_ground_counts(self) -> None:
-        """k (1 + g^2) along itself."""
+    def test_steep_ground_raises_the_stiffness(self) -> None:
+        """The stiffness along the force is k (1 + g^2)."""
         slope = load_method("render", "penalty-gradient")(stiffness_n_per_m=500.0).touch(ramp((0.6, 0.8), 0.06).surface)
         slope.stiffness_n_per_m = None
         assert stiffness_of(slope, SPEC).n_per_m == pytest.approx(1000, rel=0.01)
 
-    def test_a_wall_is_felt_sideways(self) -> None:
-        """Pushed up softly, and held back along x and y by a spring that no depth tells of."""
+    def test_wall_is_measured_sideways(self) -> None:
+        """A constant force up, and a stiff spring along x that does not depend on the depth."""
         law = Law(lambda x, y, z: (-3000.0 * x, 0.0, 2.0) if z < LEVEL_M else NO_FORCE)
         assert stiffness_of(law, SPEC).n_per_m == pytest.approx(3000, rel=1e-6)
 
-    def test_one_that_stiffens_is_as_stiff_as_the_device_can_feel(self) -> None:
-        """F = c d^2 at the deepest place whose force is one that the device can give."""
+    def test_stiffening_law_is_measured_up_to_the_device_force(self) -> None:
+        """F = c d^2, whose slope counts at the deepest place with a force that the device can give."""
         c = 1e6
         assert stiffness_of(level(lambda depth: c * depth**2), SPEC).n_per_m == pytest.approx(
             2 * c * (DEPTHS_M[2] + STEP_M / 2), rel=0.02
@@ -178,10 +172,10 @@ class TestFelt:
         ],
         ids=["none", "a step", "cells", "nan"],
     )
-    def test_what_is_no_spring(self, law: Any) -> None:
+    def test_force_that_jumps_is_not_a_spring(self, law: Any) -> None:
         assert stiffness_of(Law(law), SPEC).n_per_m == 0
 
-    def test_what_shakes_by_itself_is_no_spring(self) -> None:
+    def test_vibration_at_rest_is_not_a_spring(self) -> None:
         class Shaking(Law):
             def force(self, state: HapticState) -> Force:
                 x, y, z = super().force(state)
@@ -192,14 +186,14 @@ class TestFelt:
 
     @pytest.mark.parametrize("width_m", [0.004, 0.02, 0.3])
     @pytest.mark.parametrize("height_m", [0.0, 0.0123, 0.2])
-    def test_pictures_of_any_size_are_found(self, width_m: float, height_m: float) -> None:
+    def test_surface_of_any_size_is_found(self, width_m: float, height_m: float) -> None:
         def law(x: float, y: float, z: float) -> tuple[float, float, float]:
             inside = abs(x) < width_m / 2 and abs(y) < width_m / 2 and z < height_m
             return 0.0, 0.0, 700.0 * (height_m - z) * inside
 
         assert stiffness_of(Law(law), SPEC).n_per_m == pytest.approx(700, rel=1e-6)
 
-    def test_a_small_picture_is_felt_at_many_places(self) -> None:
+    def test_small_picture_is_probed_at_many_places(self) -> None:
         """A quarter of them lie in the middle sixteenth."""
         columns: set[tuple[float, float]] = set()
 
@@ -212,11 +206,11 @@ class TestFelt:
         list(slopes(Law(law), SPEC))
         assert len(columns) == pytest.approx(PLACES / 4, abs=4)
 
-    def test_one_stiff_quarter_is_found(self) -> None:
+    def test_stiff_quarter_of_a_surface_is_found(self) -> None:
         law = Law(lambda x, y, z: (0.0, 0.0, (9000.0 if x > 0.01 and y > 0.01 else 500.0) * max(0.0, LEVEL_M - z)))
         assert stiffness_of(law, SPEC).n_per_m == pytest.approx(9000, rel=1e-6)
 
-    def test_the_same_every_time_and_without_a_trace(self) -> None:
+    def test_measurement_is_repeatable_and_leaves_the_law_unchanged(self) -> None:
         heights = np.random.default_rng(0).uniform(0, 0.002, (32, 32)).astype(np.float32)
         touch = load_method("render", "proxy")(static_friction=0.4).touch(HapticSurface.from_heights(heights))
         touch.stiffness_n_per_m = None
@@ -229,15 +223,15 @@ class TestFelt:
         assert counted.asked == 0
 
     @pytest.mark.parametrize("height_m", [-1.0, 0.0, 0.004, 1.0])
-    def test_it_asks_no_more_than_it_says(self, height_m: float) -> None:
+    def test_number_of_probes_is_as_documented(self, height_m: float) -> None:
         touch = spring(1000.0, height_m)
         list(slopes(touch, SPEC))
         assert touch.asked <= PLACES * (LAYERS + HALVINGS + 14 * len(DEPTHS_M))
 
 
-class TestTrouble:
+class TestFaultyLaw:
     @pytest.mark.parametrize("error", [ZeroDivisionError("at fault"), SystemExit(0), KeyboardInterrupt()])
-    def test_a_law_that_raises_is_left_to_the_loop(
+    def test_law_that_raises_keeps_the_slopes_before(
         self, error: BaseException, caplog: pytest.LogCaptureFixture
     ) -> None:
         touch = level(lambda depth: 900.0 * depth)
@@ -253,14 +247,14 @@ class TestTrouble:
         assert found.how.endswith(f"900 N/m was measured; then it raised {type(error).__name__}: {error}")
         assert found.how in caplog.text
 
-    def test_a_law_that_cannot_be_copied(self, caplog: pytest.LogCaptureFixture) -> None:
+    def test_law_that_cannot_be_copied_counts_as_zero(self, caplog: pytest.LogCaptureFixture) -> None:
         touch = spring(900.0)
         touch.lock = threading.Lock()  # pyright: ignore[reportAttributeAccessIssue]
         found = stiffness_of(touch, SPEC)
         assert found.n_per_m == 0
         assert "0 N/m was measured; then it raised TypeError: cannot pickle" in caplog.text
 
-    def test_a_law_that_does_not_answer_holds_nobody(
+    def test_law_that_blocks_is_abandoned_in_time(
         self, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
     ) -> None:
         monkeypatch.setattr(stiffness, "MOST_S", 0.3)

@@ -1,4 +1,4 @@
-"""A simulated handle on springs: where it is stable by itself, that a guard keeps it so, and what energy it gets."""
+"""A simulated handle on springs: its stability with and without guard, and the energy that it receives."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ DAMPING = 2.0
 SPEC = DeviceSpec(100.0, 1e7, DAMPING, (0.08, 0.08, 0.08), 1e-6)
 FALLING = np.array([0.0, 0.0, 0.002, 0.0, 0.0, -0.05])
 AT_ONCE = {"ramp_s": 0, "max_step_n": 10}
-"""The ramp and the slew limit left out, so that a law is what it says."""
+"""Options without ramp and slew limit, so that the force is the law's own."""
 DELAYS = pytest.mark.parametrize("delay", [0, 1, 2])
 PERIODS = pytest.mark.parametrize("period_s", [0.00025, 0.001, 0.004])
 
@@ -35,20 +35,20 @@ def limit(delay: int, period_s: float = 0.001) -> float:
 
 @DELAYS
 @PERIODS
-def test_the_simulated_limit_is_the_formula_s(delay: int, period_s: float):
+def test_simulated_limit_matches_the_formula(delay: int, period_s: float):
     held = handle(delay, mass_kg=0.5, period_s=period_s)
     assert stiffest_stable_n_per_m(wall, held) == pytest.approx(limit(delay, period_s), rel=0.05)
 
 
 @DELAYS
 @pytest.mark.parametrize("mass_kg", [0.1, 0.5])
-def test_the_simulation_is_right(delay: int, mass_kg: float):
+def test_simulation_matches_an_independent_one(delay: int, mass_kg: float):
     held = handle(delay, mass_kg=mass_kg, period_s=0.004)
     exact = exact_stiffness_limit(held.handle, delay)
     assert stiffest_stable_n_per_m(wall, held) == pytest.approx(exact, rel=0.01)
 
 
-def test_a_proxy_on_level_ground_has_the_limit_of_a_spring():
+def test_proxy_on_level_ground_has_the_limit_of_a_spring():
     plane = HapticSurface.from_heights(np.zeros((16, 16)))
     make = load_method("render", "proxy")
     found = stiffest_stable_n_per_m(lambda stiffness: make(stiffness_n_per_m=stiffness).touch(plane), handle())
@@ -58,7 +58,7 @@ def test_a_proxy_on_level_ground_has_the_limit_of_a_spring():
 @DELAYS
 @PERIODS
 @pytest.mark.parametrize("times", [1.5, 20.0])
-def test_a_law_that_says_how_stiff_it_is_rests(delay: int, period_s: float, times: float):
+def test_law_of_stated_stiffness_comes_to_rest(delay: int, period_s: float, times: float):
     law, held = wall(times * limit(delay, period_s)), handle(delay, period_s=period_s)
     assert not comes_to_rest(law, held, (0.0, 0.0, 0.0))
     for safety in (Safety(delay_ticks=delay, passivity="off"), Safety(delay_ticks=delay)):
@@ -66,7 +66,7 @@ def test_a_law_that_says_how_stiff_it_is_rests(delay: int, period_s: float, time
 
 
 @DELAYS
-def test_behind_a_guard_no_law_is_too_stiff(delay: int):
+def test_any_law_behind_the_guard_comes_to_rest(delay: int):
     safety = Safety(delay_ticks=delay)
     found = stiffest_stable_n_per_m(wall, handle(delay), guard=lambda law: safety.arrays(SPEC, law.stiffness_n_per_m))
     assert found > 9e5
@@ -74,7 +74,7 @@ def test_behind_a_guard_no_law_is_too_stiff(delay: int):
 
 @DELAYS
 @pytest.mark.parametrize("jitter", [0.3, 0.9])
-def test_it_rests_by_a_clock_that_is_late_and_early(delay: int, jitter: float):
+def test_guarded_law_with_clock_jitter_comes_to_rest(delay: int, jitter: float):
     law, held = wall(3 * limit(delay)), handle(delay, jitter=jitter)
     assert not comes_to_rest(law, held, (0.0, 0.0, 0.0))
     arrays = Safety(delay_ticks=delay, passivity="off").arrays(SPEC, law.stiffness_n_per_m)
@@ -82,7 +82,7 @@ def test_it_rests_by_a_clock_that_is_late_and_early(delay: int, jitter: float):
 
 
 @DELAYS
-def test_an_automatic_coupling_holds_any_law(delay: int):
+def test_any_law_behind_automatic_coupling_comes_to_rest(delay: int):
     law, held = wall(20 * limit(delay)), handle(delay)
     arrays = Safety(delay_ticks=delay, coupling="auto", passivity="off").arrays(SPEC, law.stiffness_n_per_m)
     assert comes_to_rest(law, held, (0.0, 0.0, 0.0), arrays)
@@ -90,7 +90,7 @@ def test_an_automatic_coupling_holds_any_law(delay: int):
 
 @DELAYS
 @pytest.mark.parametrize("times", [3.0, 10.0])
-def test_no_more_energy_than_the_handle_s_damping_takes(delay: int, times: float):
+def test_energy_is_at_most_what_the_handle_damping_takes(delay: int, times: float):
     law, held = wall(times * limit(delay)), handle(delay)
     bare = ride(law, held, FALLING, 3.0)
     assert (bare.work_j - bare.lost_j).max() > 1e-4
@@ -100,7 +100,7 @@ def test_no_more_energy_than_the_handle_s_damping_takes(delay: int, times: float
 
 
 @DELAYS
-def test_strictly_no_energy_at_all_is_left_over(delay: int):
+def test_energy_with_strict_passivity_is_not_positive(delay: int):
     law, held = wall(3 * limit(delay)), handle(delay)
     safety = Safety(delay_ticks=delay, passivity="strict", **AT_ONCE)
     safe = ride(law, held, FALLING, 3.0, safety.arrays(SPEC, law.stiffness_n_per_m))
@@ -112,7 +112,7 @@ def test_strictly_no_energy_at_all_is_left_over(delay: int):
 @pytest.mark.parametrize("times", [1.5, 3.0, 5.0])
 @pytest.mark.parametrize("passivity", ["coupled", "strict"])
 @pytest.mark.parametrize("resolution_m", [0.0, 3e-5])
-def test_a_law_that_says_nothing_is_braked(delay: int, times: float, passivity: str, resolution_m: float):
+def test_law_of_unknown_stiffness_is_damped(delay: int, times: float, passivity: str, resolution_m: float):
     law, held = wall(times * limit(delay)), handle(delay, resolution_m=resolution_m)
     safety = Safety(delay_ticks=delay, passivity=passivity, **AT_ONCE)
     bare, safe = (ride(law, held, FALLING, 4.0, guard) for guard in (None, safety.arrays(SPEC, 0.0)))
@@ -122,7 +122,7 @@ def test_a_law_that_says_nothing_is_braked(delay: int, times: float, passivity: 
 
 
 @DELAYS
-def test_a_spring_within_the_limit_is_left_as_it_is(delay: int):
+def test_spring_within_the_limit_is_not_changed(delay: int):
     law, held = wall(0.79 * limit(delay)), handle(delay)
     bare = ride(law, held, FALLING, 2.0)
     safe = ride(law, held, FALLING, 2.0, Safety(delay_ticks=delay, **AT_ONCE).arrays(SPEC, law.stiffness_n_per_m))

@@ -1,4 +1,4 @@
-"""The energy account of a surface that moves: what it does on the hand is its own work, and no more than it may do."""
+"""The energy account of a moving surface: its work on the hand is bounded, and is not charged to the loop."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ STRICT = Safety(passivity="strict", ramp_s=0, max_step_n=10)
 
 
 class Felt:
-    """A plane under a hand that is led, tick by tick."""
+    """A plane under a hand on a given path, tick by tick."""
 
     def __init__(self, safety: Safety = STRICT, stiffness_n_per_m: float = STIFF) -> None:
         self.film = MovingPlane(0.01, stiffness_n_per_m)
@@ -30,7 +30,7 @@ class Felt:
         self.work_j, self.damped, self.time_s = 0.0, 0, 0.0
 
     def tick(self, hand_m: float, rises_m: float = 0.0) -> float:
-        """The plane rises by so much, with the hand at this height then."""
+        """Do a tick in which the plane rises, with the hand at this height."""
         plane = self.film.plane
         plane[GOAL_M], plane[STEP_M] = plane[AT_M] + rises_m, abs(rises_m)
         speed = 0.0 if self._at_m is None else (hand_m - self._at_m) / 0.001
@@ -51,8 +51,8 @@ class Felt:
         return self.force_n**2 / 2 / STIFF
 
 
-class TestAccount:
-    def test_what_a_plane_does_on_a_hand_at_rest_is_in_the_spring_and_comes_back(self):
+class TestSurfaceWork:
+    def test_surface_work_on_hand_at_rest_is_stored_in_the_spring_and_returns(self):
         """Exactly, at any speed; half of the last way counts with the next force."""
         felt, hand_m = Felt(), 0.009
         felt.tick(hand_m)
@@ -65,7 +65,7 @@ class TestAccount:
         assert not felt.damped
 
     @pytest.mark.parametrize("way_m", [5e-5, -5e-5])
-    def test_a_hand_that_is_carried_takes_the_work_of_the_plane_and_is_not_braked(self, way_m: float):
+    def test_carried_hand_takes_the_surface_work_and_is_not_damped(self, way_m: float):
         felt = Felt()
         felt.tick(0.00801)  # it presses by a hair, so that rounding owes nothing
         for i in range(101):
@@ -76,8 +76,8 @@ class TestAccount:
         if way_m > 0:  # of the last way, half is yet to count
             assert felt.energy_j == pytest.approx(pressed_j - STIFF * 0.002 * way_m / 2)
 
-    def test_what_a_hand_pressed_in_is_no_debt_when_the_surface_sinks(self):
-        """It was lost, and the surface owes nothing, nor does the loop."""
+    def test_energy_released_by_a_sinking_surface_is_not_a_debt(self):
+        """That energy is lost to the hand: neither the surface nor the loop owes it."""
         felt = Felt()
         for i in range(21):
             felt.tick(0.0101 - 1e-4 * i)
@@ -87,8 +87,8 @@ class TestAccount:
             felt.tick(0.0081, -1e-4)
         assert felt.energy_j == pressed_j
 
-    def test_a_ratchet_ends_where_the_surface_may_do_no_more(self):
-        """A hand that is lifted with force and comes down without takes 6 mJ a round, until it is braked on its way."""
+    def test_ratchet_is_damped_once_the_surface_work_is_used_up(self):
+        """A hand that is lifted with force and comes down without gains 6 mJ a round, until it is damped."""
         felt, hand_m, way_m, most_j = Felt(), 0.0101, 5e-5, 0.02
         felt.settings[at.SURFACE_W], felt.settings[at.MOST_SURFACE_J], felt.memory[at.MAY_GIVE_J] = 0.0, most_j, most_j
         ways = [(-1, 0)] * 42 + ([(1, 1)] * 100 + [(0, -1)] * 38 + [(-1, -1)] * 62 + [(-1, 0)] * 38) * 10
@@ -99,7 +99,7 @@ class TestAccount:
                 break
         assert 0.95 * most_j < felt.work_j < 1.05 * most_j
 
-    def test_the_work_that_it_may_do_comes_back_with_time(self):
+    def test_allowed_surface_work_recovers_with_time(self):
         felt = Felt()
         felt.tick(0.009)
         felt.memory[at.MAY_GIVE_J] = 0.0
@@ -107,7 +107,7 @@ class TestAccount:
             felt.tick(0.009)
         assert felt.memory[at.MAY_GIVE_J] == pytest.approx(0.1 * SPEC.max_force_n * SURFACE_M_PER_S)
 
-    def test_free_air_ends_what_a_surface_gave(self):
+    def test_surface_work_account_ends_in_free_air(self):
         felt = Felt()
         felt.tick(0.009)
         for _ in range(20):
@@ -118,7 +118,7 @@ class TestAccount:
         assert felt.memory[at.GIVEN_J] == felt.energy_j == 0
 
     @pytest.mark.parametrize("rise", [np.nan, np.inf, -np.inf, 1.0, -1e300])
-    def test_a_rise_that_is_none_is_no_work(self, rise: float):
+    def test_rise_not_finite_or_too_fast_is_not_work(self, rise: float):
         arrays = STRICT.arrays(SPEC, STIFF)
         for _ in range(3):
             arrays[1][at.RISE_M] = rise
@@ -126,14 +126,14 @@ class TestAccount:
         assert arrays[1][at.ENERGY_J] == 0
         assert np.isfinite(arrays[1]).sum() == at.MEMORY - (not np.isfinite(rise)) - 1  # of the tool there is none
 
-    def test_another_scene_begins_with_nothing_given(self):
+    def test_surface_work_account_of_swapped_scene_is_zero(self):
         felt = Felt()
         for _ in range(20):
             felt.tick(0.009, 5e-5)
         restart(felt.memory)
         assert felt.memory[[at.GIVEN_J, at.SURFACE_FORCE_N, at.LAST_RISE_M]].tolist() == [0, 0, 0]
 
-    def test_of_a_surface_that_stands_still_nothing_of_this_has_a_say(self):
+    def test_surface_at_rest_has_the_same_forces_to_the_bit(self):
         """To the last bit."""
         random = np.random.default_rng(0)
         steps = np.cumsum(random.normal(0, 2e-5, (500, 3)), axis=0)
@@ -155,8 +155,8 @@ HARD = {"stiffness_n_per_m": 20_000.0, "damping_n_s_per_m": 0.5}
 
 
 class TestCoupling:
-    def test_the_surface_works_by_the_law_s_force_on_the_tool(self):
-        """Under a hand at rest: its work is in the two springs, the law's and the coupling's."""
+    def test_surface_works_by_the_law_force_on_the_tool(self):
+        """The work on a hand at rest is stored in the springs of the law and of the coupling."""
         felt = Felt(Safety(passivity="strict", ramp_s=0, max_step_n=10, coupling="auto"))
         for _ in range(500):
             felt.tick(0.009)
@@ -169,7 +169,7 @@ class TestCoupling:
         stored_j = (felt.force_n**2 - before_n**2) / 2 * (1 / STIFF + 1 / coupling)
         assert felt.energy_j - before_j == pytest.approx(stored_j, rel=0.02)
 
-    def test_also_while_the_tool_is_still_on_its_way(self):
+    def test_surface_work_with_moving_tool_covers_the_springs(self):
         """Its work is never less than what it left in the springs: the rest went into the coupling's damper."""
         felt = Felt(Safety(passivity="strict", ramp_s=0, max_step_n=10, coupling=Coupling(**SOFT)))
         for _ in range(2000):
@@ -185,9 +185,7 @@ class TestCoupling:
         ("hand_m", "stiffness_n_per_m", "more"),
         [(0.007, STIFF, {"max_force_n": 0.5}), (0.0099, 20_000.0, {"coupling": Coupling(**HARD)})],
     )
-    def test_a_force_that_is_cut_or_softened_counts_as_far_as_it_left(
-        self, hand_m: float, stiffness_n_per_m: float, more
-    ):
+    def test_surface_work_of_limited_force_counts_the_sent_part(self, hand_m: float, stiffness_n_per_m: float, more):
         felt = Felt(Safety(**{**FREE, "coupling": "auto", **more}), stiffness_n_per_m)
         for _ in range(500):
             felt.tick(hand_m)
@@ -199,7 +197,7 @@ class TestCoupling:
 def damped_share(
     film: MovingPlane, rate_hz: float, coupling, seconds: float, from_s: float, hand_n_s_per_m: float = 6.0
 ) -> float:
-    """On a plane that goes up and down by 3 mm at this rate, under a hand that circles on it at 20 mm/s."""
+    """Return the share of damped ticks of a circling hand on a plane that moves up and down by 3 mm at this rate."""
     hand = {"damping_n_s_per_m": hand_n_s_per_m}
     path = {"path": "circle", "size_m": (0.02, 0.02), "z_m": 0.006, "speed_m_per_s": 0.02}
     mock = load_method("device", "mock").model_validate({"hand": hand, **path})
@@ -216,13 +214,13 @@ def damped_share(
     return float(np.mean(felt.flags[round(1000 * from_s) :] & TickFlag.DAMPED > 0))
 
 
-class TestHand:
+class TestMovedHand:
     @pytest.mark.parametrize("coupling", [None, "auto"])
     @pytest.mark.parametrize("rate_hz", [0.5, 2.0])
-    def test_one_that_is_moved_by_a_surface_is_not_braked(self, rate_hz: float, coupling):
+    def test_hand_moved_by_surface_is_not_damped(self, rate_hz: float, coupling):
         """Once the force has faded in, which lifts a hand by itself."""
         assert damped_share(MovingPlane(0.012, STIFF), rate_hz, coupling, 5.0, 1.5) < 0.01
 
-    def test_one_that_is_shaken_is(self):
+    def test_hand_shaken_by_surface_is_damped(self):
         """At 8 Hz a firm hand is given more than the surface may give for long."""
         assert damped_share(MovingPlane(0.012, STIFF), 8.0, None, 6.0, 5.0, hand_n_s_per_m=20.0) > 0.5

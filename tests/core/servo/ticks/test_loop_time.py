@@ -1,4 +1,4 @@
-"""The three loops on a clock that is made up: the same ticks from each, none made up for, no force for what is late."""
+"""The three kinds of loop on a simulated clock: equal ticks, overruns without catching up, no force when late."""
 
 import ctypes
 from collections.abc import Iterator
@@ -103,7 +103,7 @@ class Plain(Link):
 
 
 class Clock:
-    """Time that goes on while somebody sleeps, at some sleeps by more than was asked for or by less, and when read."""
+    """A simulated clock that advances with each read and sleep, some sleeps being longer or shorter than requested."""
 
     def __init__(self) -> None:
         self.now, self.reads, self.read_ns = START, 0, 0
@@ -140,8 +140,8 @@ class Foreign(types.WrapperAddressProtocol):
 
 
 @pytest.fixture
-def made_up(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    """The clock that Python's loops ask, and compiled ones."""
+def simulated_clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """Put a simulated clock into the loops in Python and the compiled ones."""
     time, words = Clock(), np.zeros(2, np.int64)
 
     def tell(which: int, place: int) -> int:
@@ -166,10 +166,10 @@ def ring() -> Iterator[Ring]:
     made.remove()
 
 
-def felt(
+def run_loop(
     ring: Ring, how: str, ticks: int, safety: Safety = AT_ONCE, link: Sinking | None = None, real_time: bool = False
 ) -> np.ndarray:
-    """The rows of so many ticks of one of the loops."""
+    """Return the rows of a number of ticks of one kind of loop."""
     law: Touch = load_method("render", "penalty")(stiffness_n_per_m=400.0).touch(LEVEL)
     settings, memory = safety.arrays(SPEC, 400.0)
     ring.guard[: memory.size] = memory
@@ -184,10 +184,10 @@ def felt(
 
 
 @LOOPS
-def test_a_late_tick_is_an_overrun_and_those_that_it_missed_are_skipped(how: str, made_up: Clock, ring: Ring):
+def test_late_tick_is_an_overrun_and_missed_ticks_are_skipped(how: str, simulated_clock: Clock, ring: Ring):
     """The sixth tick is 3.5 periods late: three were missed, and the next one is half a period later, in step."""
-    made_up.over[5] = 7 * PERIOD // 2
-    rows = felt(ring, how, 12)
+    simulated_clock.over[5] = 7 * PERIOD // 2
+    rows = run_loop(ring, how, 12)
     due = [0, 1, 2, 3, 4, 8.5, 9, 10, 11, 12, 13, 14]
     np.testing.assert_allclose(rows[:, 0], np.multiply(due, 1e-3), atol=1e-12)
     np.testing.assert_allclose(rows[:, 1], [0] * 5 + [0.0035] + [0] * 6, atol=1e-12)
@@ -201,18 +201,18 @@ def test_a_late_tick_is_an_overrun_and_those_that_it_missed_are_skipped(how: str
 
 @LOOPS
 @pytest.mark.parametrize(("late_ns", "overrun"), [(PERIOD - 1, False), (PERIOD, True)])
-def test_a_period_late_is_an_overrun(how: str, late_ns: int, overrun: bool, made_up: Clock, ring: Ring):
-    made_up.over[3] = late_ns
-    rows = felt(ring, how, 6)
+def test_tick_one_period_late_is_an_overrun(how: str, late_ns: int, overrun: bool, simulated_clock: Clock, ring: Ring):
+    simulated_clock.over[3] = late_ns
+    rows = run_loop(ring, how, 6)
     assert bool(int(rows[3, FLAGS]) & TickFlag.OVERRUN) == overrun
     assert report(ring).overruns == overrun
 
 
 @LOOPS
-def test_a_position_that_comes_too_late_gives_no_force(how: str, made_up: Clock, ring: Ring):
-    """30 ms between two ticks, where 20 are allowed: zero, and the force fades in again."""
-    made_up.over[20] = 30 * PERIOD
-    rows = felt(ring, how, 40, Safety(ramp_s=0.004, max_step_n=10))
+def test_position_that_is_too_late_gives_no_force(how: str, simulated_clock: Clock, ring: Ring):
+    """30 ms pass between two ticks, and 20 are allowed: the force is zero, then fades in again."""
+    simulated_clock.over[20] = 30 * PERIOD
+    rows = run_loop(ring, how, 40, Safety(ramp_s=0.004, max_step_n=10))
     flags = rows[:, FLAGS].astype(int)
     assert np.flatnonzero(flags & TickFlag.STALE).tolist() == [20]
     assert not rows[20, FORCE].any()
@@ -221,10 +221,10 @@ def test_a_position_that_comes_too_late_gives_no_force(how: str, made_up: Clock,
 
 
 @LOOPS
-def test_the_guard_is_told_each_period(how: str, made_up: Clock, ring: Ring):
-    """A force that fades in over 10 ms is half of itself after five, however many ticks they had."""
-    made_up.over[2] = 2 * PERIOD
-    rows = felt(ring, how, 12, Safety(ramp_s=0.01, max_step_n=10, passivity="off"))
+def test_guard_gets_each_measured_period(how: str, simulated_clock: Clock, ring: Ring):
+    """A force that fades in over 10 ms has half its strength after 5 ms, whatever the number of ticks."""
+    simulated_clock.over[2] = 2 * PERIOD
+    rows = run_loop(ring, how, 12, Safety(ramp_s=0.01, max_step_n=10, passivity="off"))
     depth = HEIGHT_M - rows[:, 4]
     share = np.minimum(1, np.add(rows[:, 0], 0.001) / 0.01)
     np.testing.assert_allclose(rows[:, FORCE][:, 2], share * 400 * depth, rtol=1e-9)
@@ -232,23 +232,23 @@ def test_the_guard_is_told_each_period(how: str, made_up: Clock, ring: Ring):
 
 @pytest.mark.parametrize("how", ["exchanges", "python"])
 @pytest.mark.parametrize("safety", [Safety(), Safety(ramp_s=0, coupling="auto", passivity="strict", delay_ticks=2)])
-def test_each_loop_gives_the_same_ticks(how: str, safety: Safety, made_up: Clock, ring: Ring):
-    made_up.over = {7: 300_000, 13: 3 * PERIOD, 30: 25 * PERIOD}
-    whole = felt(ring, "whole", 100, safety)
-    made_up.now, made_up.wakes = START, []
+def test_each_kind_of_loop_has_the_same_ticks(how: str, safety: Safety, simulated_clock: Clock, ring: Ring):
+    simulated_clock.over = {7: 300_000, 13: 3 * PERIOD, 30: 25 * PERIOD}
+    whole = run_loop(ring, "whole", 100, safety)
+    simulated_clock.now, simulated_clock.wakes = START, []
     other = Ring.create(128)
     try:
-        np.testing.assert_allclose(felt(other, how, 100, safety), whole, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(run_loop(other, how, 100, safety), whole, rtol=1e-12, atol=1e-12)
     finally:
         other.remove()
     assert whole[-1, FORCE].any()
 
 
 @pytest.mark.parametrize("how", ["whole", "exchanges"])
-def test_without_a_fresh_position_the_force_is_held_until_it_is_stale(how: str, made_up: Clock, ring: Ring):
+def test_force_without_fresh_position_is_held_until_stale(how: str, simulated_clock: Clock, ring: Ring):
     """The tip of the ninth read is the last for 30 ms: its force stays for 20, and then is none."""
     tip = Sinking(how == "exchanges", 10, 40)
-    rows = felt(ring, how, 50, Safety(ramp_s=0, max_step_n=10, stale_s=0.0205), tip)
+    rows = run_loop(ring, how, 50, Safety(ramp_s=0, max_step_n=10, stale_s=0.0205), tip)
     flags = rows[:, FLAGS].astype(int)
     assert (rows[9:29, FORCE] == rows[8, FORCE]).all() and rows[8, FORCE].any()
     assert not (flags[9:29] & TickFlag.STALE).any()
@@ -258,27 +258,27 @@ def test_without_a_fresh_position_the_force_is_held_until_it_is_stale(how: str, 
 
 
 @LOOPS
-def test_who_may_spin_wakes_early_and_waits_for_the_time_awake(how: str, made_up: Clock, ring: Ring):
-    made_up.read_ns = 500
+def test_loop_that_may_spin_wakes_early_and_spins(how: str, simulated_clock: Clock, ring: Ring):
+    simulated_clock.read_ns = 500
     ring.header[LEAD_NS] = 50_000
-    rows = felt(ring, how, 5, real_time=True)
-    first = min(made_up.wakes)
+    rows = run_loop(ring, how, 5, real_time=True)
+    first = min(simulated_clock.wakes)
     assert first == pytest.approx(START + PERIOD - 50_000, abs=2_000)
-    assert made_up.reads > 5 * 50, "it reads the clock until the time has come"
+    assert simulated_clock.reads > 5 * 50, "it reads the clock until the time has come"
     assert ((rows[:, 1] >= 0) & (rows[:, 1] <= 1e-6)).all()
 
 
-def test_a_sleep_that_a_signal_ends_is_slept_on(made_up: Clock, ring: Ring):
-    made_up.read_ns, made_up.over = 1, {2: -600_000}
-    rows = felt(ring, "whole", 5)
-    assert len(made_up.wakes) == 6
-    assert made_up.wakes[2] == made_up.wakes[3]
-    assert made_up.reads < 100
+def test_sleep_ended_by_a_signal_is_resumed(simulated_clock: Clock, ring: Ring):
+    simulated_clock.read_ns, simulated_clock.over = 1, {2: -600_000}
+    rows = run_loop(ring, "whole", 5)
+    assert len(simulated_clock.wakes) == 6
+    assert simulated_clock.wakes[2] == simulated_clock.wakes[3]
+    assert simulated_clock.reads < 100
     np.testing.assert_allclose(rows[:, 0], np.arange(5) * 1e-3, atol=1e-6)
 
 
-def test_what_a_swap_needs_is_compiled_before_a_tick_waits_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Compiled between two ticks, it is a standstill on a slow machine."""
+def test_kernels_of_a_swap_are_compiled_before_the_first_tick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compiling between two ticks would be a standstill on a slow machine."""
     restarted: list[np.ndarray] = []
     monkeypatch.setattr(guard, "restart", restarted.append)
     ring = Ring.create(16)

@@ -1,4 +1,4 @@
-"""What is asked of the operating system for a loop, with the answers made up."""
+"""Requests to the operating system for a loop, with simulated answers."""
 
 import os
 import platform
@@ -14,8 +14,8 @@ from tangible_core.servo.ticks import priority
 ON_LINUX = "x86_64", 314
 
 
-class Asked:
-    """The C library's functions, and what each was called with."""
+class FakeCalls:
+    """Fakes of the C library's functions, with the arguments of each call."""
 
     def __init__(self) -> None:
         self.calls: list[tuple] = []
@@ -25,9 +25,9 @@ class Asked:
 
 
 @pytest.fixture
-def asked(monkeypatch: pytest.MonkeyPatch) -> Asked:
+def linux(monkeypatch: pytest.MonkeyPatch) -> FakeCalls:
     """Linux on a 64-bit processor, with a thread of niceness 3 to which real time is refused."""
-    made_up = Asked()
+    fakes = FakeCalls()
 
     def refuse(*_: object) -> None:
         raise PermissionError(1, "Operation not permitted")
@@ -42,42 +42,42 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> Asked:
         getpriority=lambda *_: 3,
     )
     monkeypatch.setattr(priority, "os", system)
-    monkeypatch.setattr(priority, "_c", made_up)
+    monkeypatch.setattr(priority, "_c", fakes)
     monkeypatch.setattr(priority.sys, "platform", "linux")
     monkeypatch.setattr(platform, "machine", lambda: ON_LINUX[0])
-    return made_up
+    return fakes
 
 
-def test_without_rights_the_shortest_slack_and_slice_are_asked_for_and_the_niceness_stays(asked: Asked):
+def test_request_without_rights_sets_shortest_slack_and_slice_and_keeps_niceness(linux: FakeCalls):
     real_time, said = priority.request()
     assert not real_time
     assert said == (
         "plain sleeping: SCHED_FIFO is not permitted (Operation not permitted), so busy programs make ticks late; "
         "give the user an rtprio limit"
     )
-    slack, (name, number, thread, attributes, flags) = asked.calls
+    slack, (name, number, thread, attributes, flags) = linux.calls
     assert slack == ("prctl", priority.SET_TIMER_SLACK, 1, 0, 0, 0)
     assert (name, number, thread, flags) == ("syscall", ON_LINUX[1], 0, 0)
     assert struct.unpack("=IIQiIQQQ", attributes) == (48, 0, 0, 3, 0, 100_000, 0, 0)
 
 
 @pytest.mark.parametrize("policy", [3, 5, 0x40000000])
-def test_who_chose_another_class_stays_in_it(policy: int, asked: Asked, monkeypatch: pytest.MonkeyPatch):
-    """SCHED_BATCH, SCHED_IDLE, and what its children are not to inherit."""
+def test_thread_of_another_class_stays_in_it(policy: int, linux: FakeCalls, monkeypatch: pytest.MonkeyPatch):
+    """SCHED_BATCH, SCHED_IDLE, and a class that children do not inherit."""
     monkeypatch.setattr(priority.os, "sched_getscheduler", lambda _: policy)
     priority.shorten_slice()
-    assert asked.calls == []
+    assert linux.calls == []
 
 
-def test_a_processor_whose_call_is_not_known_is_asked_for_nothing(asked: Asked, monkeypatch: pytest.MonkeyPatch):
+def test_unknown_processor_makes_no_system_call(linux: FakeCalls, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(platform, "machine", lambda: "s390x")
     priority.shorten_slice()
-    assert asked.calls == []
+    assert linux.calls == []
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="another system grants nothing")
-def test_the_thread_keeps_its_class_and_niceness():
-    """Of the kernel itself, whether it knows slices or not."""
+def test_thread_keeps_its_class_and_niceness():
+    """Calls the real kernel, whether it supports slices or not."""
     seen: list[tuple[int, int]] = []
 
     def ask() -> None:

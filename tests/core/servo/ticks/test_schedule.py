@@ -1,4 +1,4 @@
-"""When ticks are due: late ones are counted and not made up for, and the lead follows the machine's own lateness."""
+"""The schedule of ticks: missed ones are counted, not made up for, and the lead follows the machine's lateness."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ COMPILED = pytest.mark.parametrize("begin_tick", [schedule.begin_tick, cycle.beg
 
 
 def header(lead_ns: int = 0, spins: bool = False) -> np.ndarray:
-    """Of a loop whose first tick is due."""
+    """Return the header of a loop whose first tick is due."""
     words = np.zeros(64, np.int64)
     words[[PERIOD_NS, NEXT_NS, LEAD_NS, SPINS]] = PERIOD, FIRST, lead_ns, spins
     return words
@@ -21,7 +21,7 @@ def header(lead_ns: int = 0, spins: bool = False) -> np.ndarray:
 @pytest.mark.parametrize(
     ("late_ns", "missed"), [(0, 0), (999_999, 0), (1_000_000, 1), (3_500_000, 3), (1_000_000_000, 1000)]
 )
-def test_what_was_missed_is_counted_and_the_next_tick_is_in_step(begin_tick, late_ns: int, missed: int):
+def test_missed_periods_are_counted_and_the_next_tick_is_in_step(begin_tick, late_ns: int, missed: int):
     words = header()
     assert begin_tick(words, FIRST + late_ns) == late_ns
     assert words[OVERRUNS] == missed
@@ -44,9 +44,7 @@ def test_what_was_missed_is_counted_and_the_next_tick_is_in_step(begin_tick, lat
         (0, 0, 0),
     ],
 )
-def test_the_lead_grows_by_much_and_shrinks_by_a_thousandth_of_that(
-    begin_tick, late_ns: int, before_ns: int, after_ns: int
-):
+def test_lead_grows_fast_and_shrinks_by_a_thousandth_of_that(begin_tick, late_ns: int, before_ns: int, after_ns: int):
     words = header(before_ns, spins=True)
     begin_tick(words, FIRST + late_ns)
     assert words[LEAD_NS] == after_ns
@@ -54,7 +52,7 @@ def test_the_lead_grows_by_much_and_shrinks_by_a_thousandth_of_that(
 
 @COMPILED
 @pytest.mark.parametrize("late_ns", [0, 50_000])
-def test_without_the_right_to_spin_there_is_no_lead(begin_tick, late_ns: int):
+def test_lead_without_the_right_to_spin_is_zero(begin_tick, late_ns: int):
     words = header()
     begin_tick(words, FIRST + late_ns)
     assert words[LEAD_NS] == 0

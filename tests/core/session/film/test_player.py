@@ -10,19 +10,12 @@ from tangible_core.data import NO_FORCE, HapticState, ServoReport
 from tangible_core.errors import BrokenMethod, PictureError
 from tangible_core.session.film import ByClock, FrameMaker, Player, Reliefs
 from tangible_core.session.film.player import STOPPING_S
+from waiting import until
 
 BOX = np.full((8, 12), 20.0)
 BOX[2:5, 3:7] = 80
 SOON_S = 20.0
-"""What a loaded machine does in a blink."""
-
-
-def until(true):
-    """Wait for something that a thread does soon."""
-    ends_s = time.monotonic() + SOON_S
-    while not true():
-        assert time.monotonic() < ends_s, "it did not come"
-        time.sleep(0.002)
+"""Longest wait for a thread on a loaded machine."""
 
 
 class Slow(Seen):
@@ -53,7 +46,7 @@ def play():
         each.stop()
 
 
-def test_frames_are_shown_in_order_and_the_surface_stands_where_the_source_ends(play):
+def test_player_shows_frames_in_order_and_stops_at_the_end_of_the_source(play):
     film = Seen()
     player = play(greys(*[BOX] * 5), film)
     until(lambda: film.frames[-1:] == [4])
@@ -62,7 +55,7 @@ def test_frames_are_shown_in_order_and_the_surface_stands_where_the_source_ends(
     player.check()
 
 
-def test_the_latest_frame_wins_and_those_between_are_counted(play):
+def test_player_shows_the_latest_frame_and_counts_skipped_ones(play):
     film = Slow(0.03)
     player = play(greys(*[BOX] * 60), film, fps=200)
     until(lambda: film.frames[-1:] == [59])
@@ -72,7 +65,7 @@ def test_the_latest_frame_wins_and_those_between_are_counted(play):
     assert felt.age_ms >= 30
 
 
-def test_a_relief_is_shown_again_until_the_surface_is_there(play):
+def test_player_repeats_a_relief_until_the_surface_arrives(play):
     film = Seen(arrives=3)
     play(greys(BOX, BOX), film)
     until(lambda: film.frames[-4:] == [1] * 4 and film.arrived)
@@ -81,7 +74,7 @@ def test_a_relief_is_shown_again_until_the_surface_is_there(play):
     assert len(film.frames) == count, "and not once more"
 
 
-def test_damaged_frames_are_said_once_and_the_film_goes_on(play, caplog):
+def test_player_logs_damaged_frames_once_and_goes_on(play, caplog):
     film, given = Seen(), greys(*[BOX] * 6)
     given[1] = given[3] = PictureError("frame is damaged")
     player = play(given, film, fps=20)
@@ -93,7 +86,7 @@ def test_damaged_frames_are_said_once_and_the_film_goes_on(play, caplog):
     player.check()
 
 
-def test_a_source_that_is_not_there_is_looked_for_again(caplog, monkeypatch):
+def test_player_opens_a_missing_source_again(caplog, monkeypatch):
     monkeypatch.setattr("tangible_core.session.film.player.OPEN_AGAIN_S", 0.01)
     tries, film = defaultdict(int), Seen()
 
@@ -111,7 +104,7 @@ def test_a_source_that_is_not_there_is_looked_for_again(caplog, monkeypatch):
 
 
 class Faulty(FrameMaker):
-    """Makes nothing of any frame."""
+    """A maker that raises an error for every frame."""
 
     def __init__(self, error):
         self._error = error
@@ -123,7 +116,7 @@ class Faulty(FrameMaker):
 
 
 @pytest.mark.parametrize("error", [ZeroDivisionError("a plugin's fault"), BrokenMethod("made a map of 3 x 4")])
-def test_a_plugins_fault_ends_it_and_is_raised_once_for_whoever_watches(play, error):
+def test_player_raises_a_plugin_error_once_and_ends(play, error):
     player = play(greys(BOX), Seen(), maker=Faulty(error))
 
     def raised():
@@ -137,7 +130,7 @@ def test_a_plugins_fault_ends_it_and_is_raised_once_for_whoever_watches(play, er
     player.check()
 
 
-def test_it_ends_soon_though_a_method_takes_long_and_keeps_no_process_alive(play):
+def test_player_stops_soon_during_a_slow_method_and_keeps_no_process_alive(play):
     begun, release = threading.Event(), threading.Event()
 
     class Long(Seen):
@@ -155,7 +148,7 @@ def test_it_ends_soon_though_a_method_takes_long_and_keeps_no_process_alive(play
     player.check()
 
 
-def test_by_a_clock_nothing_is_left_out_and_frames_come_when_they_are_due():
+def test_by_clock_shows_every_frame_when_it_is_due():
     film = Seen()
     with Reliefs(lambda: GivenFrames(greys(*[BOX] * 5), fps=10), NearnessOfGrey()) as reliefs:
         show, shown = ByClock(reliefs, film), []
@@ -171,7 +164,7 @@ def test_by_a_clock_nothing_is_left_out_and_frames_come_when_they_are_due():
     assert heard[0].film == felt
 
 
-def test_by_a_clock_a_relief_is_shown_again_and_damaged_frames_are_passed_over(caplog):
+def test_by_clock_repeats_reliefs_and_skips_damaged_frames(caplog):
     film, given = Seen(arrives=2), greys(*[BOX] * 4)
     given[1] = given[2] = PictureError("frame is damaged")
     with Reliefs(lambda: GivenFrames(given, fps=10), NearnessOfGrey()) as reliefs:

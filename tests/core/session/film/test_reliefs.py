@@ -18,25 +18,25 @@ NEARER[4:8, 8:11] = 120
 
 
 def heights(*pictures):
-    """Of the frames of a film."""
+    """Return the heights of the frames of a film."""
     with Reliefs(lambda: GivenFrames(greys(*pictures)), NearnessOfGrey()) as reliefs:
         return [each.relief.height_m for each in reliefs]
 
 
-def test_the_scale_of_the_first_frame_is_kept():
+def test_scale_of_the_first_frame_is_kept():
     film = heights(BOX, *[NEARER] * 5)
     assert film[-1][6, 9] == film[-1][2, 3] == pytest.approx(0.01), "what is nearer is clipped, and pushes nothing down"
     assert film[-1][0, 0] == 0
 
 
-def test_it_follows_slowly():
+def test_scale_follows_slowly():
     film = heights(BOX, *[NEARER] * 400)
     box = np.array([each[2, 3] for each in film])
     assert box[-1] < 0.008, "the box goes down as something nearer stays"
     assert np.abs(np.diff(box)).max() < 0.001
 
 
-def test_the_range_follows_with_its_time_constant_whatever_the_rate():
+def test_scale_follows_with_its_time_constant_at_any_rate():
     for step_s in (0.1, 1.0):
         scale = Scale(ValueRange(0, 10))
         for number in range(1, round(ADAPTS_S / step_s) + 1):
@@ -44,13 +44,13 @@ def test_the_range_follows_with_its_time_constant_whatever_the_rate():
         assert scale.spans.high == pytest.approx(20 - 10 / np.e)
 
 
-def test_a_film_that_begins_in_the_dark_finds_its_range_when_there_is_light():
+def test_scale_of_film_that_begins_dark_adopts_the_first_range():
     film = heights(*[GROUND] * 2, *[BOX] * 30)
     assert not film[0].any()
     assert film[-1][2, 3] == pytest.approx(0.01)
 
 
-def test_at_a_cut_range_and_cameras_are_found_anew():
+def test_cut_determines_range_and_cameras_again():
     maker = NearnessOfGrey()
     other = 200 - BOX / 2
     with Reliefs(lambda: GivenFrames(greys(BOX, BOX, other, other)), maker) as reliefs:
@@ -60,12 +60,12 @@ def test_at_a_cut_range_and_cameras_are_found_anew():
     assert film[3][0, 0] == pytest.approx(0.01) and film[3][2, 3] == 0
 
 
-def test_numbers_and_times_are_those_of_the_frames():
+def test_reliefs_have_the_numbers_and_times_of_their_frames():
     with Reliefs(lambda: GivenFrames(greys(BOX, BOX, BOX), fps=10), NearnessOfGrey()) as reliefs:
         assert [(each.number, each.time_s) for each in reliefs] == [(0, 0.0), (1, 0.1), (2, 0.2)]
 
 
-def test_it_begins_anew_when_it_is_opened_again_and_closes_what_it_opened():
+def test_reliefs_restart_when_reopened_and_close_the_video():
     opened = []
 
     def frames():
@@ -83,7 +83,7 @@ def test_it_begins_anew_when_it_is_opened_again_and_closes_what_it_opened():
     assert [each.closed for each in opened] == [True, True]
 
 
-def test_a_frame_without_depth_is_refused_and_the_next_goes_on():
+def test_frame_without_depth_is_refused_and_the_next_goes_on():
     dark = np.full((8, 12), 255.0)
     with Reliefs(lambda: GivenFrames(greys(dark, BOX)), NearnessOfGrey()) as reliefs:
         with pytest.raises(GeometryError, match="no depth is known"):
@@ -91,7 +91,7 @@ def test_a_frame_without_depth_is_refused_and_the_next_goes_on():
         assert reliefs.make(reliefs.frames.next()).relief.height_m.any()
 
 
-def test_after_a_dark_pause_a_scene_begins_by_what_is_seen_then():
+def test_scene_after_a_dark_pause_begins_with_its_own_range():
     maker, dark, other = NearnessOfGrey(), np.full((8, 12), 255.0), 200 - BOX / 2
     film = []
     with Reliefs(lambda: GivenFrames(greys(BOX, *[dark] * 12, *[other] * 3)), maker) as reliefs:
@@ -102,7 +102,7 @@ def test_after_a_dark_pause_a_scene_begins_by_what_is_seen_then():
     assert film[-1][0, 0] == pytest.approx(0.01) and film[-1][2, 3] == 0, "the range is the new one"
 
 
-def test_a_scene_that_begins_with_a_frame_that_shows_nothing_begins_with_the_next():
+def test_scene_whose_first_frame_is_empty_begins_with_the_next():
     class Blind(FrameMaker):
         """Knows nothing of a picture that is dark, of which it would keep that."""
 

@@ -10,33 +10,33 @@ from tangible_depth import SemiGlobal
 FLAT = np.full((6, 8), 10, np.float32)
 
 
-def told(*maps, unit="px"):
-    """What is felt of maps that follow one another."""
+def filter_maps(*maps, unit="px"):
+    """Return the filtered maps of consecutive maps."""
     steady = Steady()
     return [steady.next(DisparityMap(np.float32(each), unit=unit)).disparity.disparity_px for each in maps]
 
 
 def at(value, where=(2, 3)):
-    """Flat ground but for one pixel."""
+    """Return flat ground with one other pixel."""
     made = FLAT.copy()
     made[where] = value
     return made
 
 
-def test_an_error_of_one_frame_is_never_felt():
-    felt = told(FLAT, at(40), FLAT, FLAT)
+def test_error_of_one_frame_is_filtered_out():
+    felt = filter_maps(FLAT, at(40), FLAT, FLAT)
     assert all(np.array_equal(each, FLAT) for each in felt)
 
 
-def test_a_change_is_felt_when_it_is_seen_for_the_second_time_and_leaves_no_ghost():
-    felt = [each[2, 3] for each in told(FLAT, at(20), at(20.5), at(20.5), FLAT, FLAT, FLAT)]
+def test_change_is_adopted_at_the_second_frame_without_a_trail():
+    felt = [each[2, 3] for each in filter_maps(FLAT, at(20), at(20.5), at(20.5), FLAT, FLAT, FLAT)]
     assert felt[:3] == [10, 10, 20.5]
     assert felt[4] == 20.5, "seen once"
     assert felt[5:] == [10, 10]
 
 
-def test_what_changes_in_each_frame_is_followed_after_a_few():
-    felt = [each[2, 3] for each in told(*(at(10 + 5 * number) for number in range(9)))]
+def test_value_that_changes_in_each_frame_is_adopted_after_a_few():
+    felt = [each[2, 3] for each in filter_maps(*(at(10 + 5 * number) for number in range(9)))]
     assert all(abs(value - (10 + 5 * number)) <= 5 * MOST_DOUBTS for number, value in enumerate(felt))
     assert felt[-1] >= 40
 
@@ -44,25 +44,25 @@ def test_what_changes_in_each_frame_is_followed_after_a_few():
 def test_noise_is_averaged():
     generator = np.random.default_rng(1)
     maps = [FLAT + generator.normal(0, 0.2, FLAT.shape) for _ in range(60)]
-    flicker = np.diff(np.stack(told(*maps)[10:]), axis=0).std()
+    flicker = np.diff(np.stack(filter_maps(*maps)[10:]), axis=0).std()
     assert flicker < 0.3 * np.diff(np.stack(maps[10:]), axis=0).std()
 
 
-def test_a_hole_that_flickers_is_not_felt_and_one_that_stays_is():
-    flickers = told(FLAT, at(np.nan), FLAT, at(np.nan), at(np.nan), FLAT)
+def test_flickering_hole_is_filled_and_lasting_hole_stays():
+    flickers = filter_maps(FLAT, at(np.nan), FLAT, at(np.nan), at(np.nan), FLAT)
     assert all(np.array_equal(each, FLAT) for each in flickers)
-    stays = [each[2, 3] for each in told(FLAT, *[at(np.nan)] * (MOST_MISSING + 2))]
+    stays = [each[2, 3] for each in filter_maps(FLAT, *[at(np.nan)] * (MOST_MISSING + 2))]
     assert np.isfinite(stays[: MOST_MISSING + 1]).all()
     assert np.isnan(stays[MOST_MISSING + 1 :]).all()
 
 
-def test_what_was_unknown_must_be_seen_twice():
-    felt = [each[2, 3] for each in told(at(np.nan), at(30), at(np.nan), at(12), at(12))]
+def test_unknown_value_must_be_seen_twice():
+    felt = [each[2, 3] for each in filter_maps(at(np.nan), at(30), at(np.nan), at(12), at(12))]
     assert np.isnan(felt[:4]).all()
     assert felt[4] == 12
 
 
-def test_at_a_cut_all_is_taken_in_the_second_frame():
+def test_cut_adopts_the_second_frame_as_a_whole():
     steady, other = Steady(), FLAT + 25
     generator = np.random.default_rng(2)
     noisy = other + generator.normal(0, 2, FLAT.shape).astype(np.float32)
@@ -72,14 +72,14 @@ def test_at_a_cut_all_is_taken_in_the_second_frame():
     assert np.array_equal(felt[2].disparity.disparity_px, noisy), "no pixel of the scene before it is left"
 
 
-def test_a_relative_map_has_a_gate_of_its_own_range():
+def test_relative_map_has_a_gate_relative_to_its_range():
     ramp = np.linspace(0, 1, 48, dtype=np.float32).reshape(6, 8)
-    felt = told(ramp, ramp + np.float32(0.02), ramp + np.float32(0.2), unit="relative")
+    felt = filter_maps(ramp, ramp + np.float32(0.02), ramp + np.float32(0.2), unit="relative")
     assert np.allclose(felt[1], ramp + 0.004, atol=1e-6), "noise is averaged"
     assert np.allclose(felt[2], felt[1]), "what is more is not believed at once"
 
 
-def test_frames_of_another_size_begin_anew():
+def test_frame_of_another_size_restarts_the_filter():
     steady = Steady()
     steady.next(DisparityMap(FLAT))
     found = steady.next(DisparityMap(FLAT[:3] + 5))
@@ -88,7 +88,7 @@ def test_frames_of_another_size_begin_anew():
 
 @pytest.fixture(scope="module")
 def films():
-    """Disparity of a box that walks over a ground, noise anew in each frame: as it is found, as it is felt, true."""
+    """Return the noisy, the filtered and the true disparity of a box that moves over a ground."""
     generator, steady = np.random.default_rng(3), Steady()
     method = SemiGlobal(resolution="half", min_disparity_px=0, max_disparity_px=32)
     found = [method.estimate(layered(number, 6.0, generator)) for number in range(18)]
@@ -96,7 +96,7 @@ def films():
     return np.stack([each.disparity_px for each in found]), np.stack(felt), np.stack([*map(true_disparity, range(18))])
 
 
-def test_flicker_of_what_stands_still_is_halved_and_no_more_is_wrong(films):
+def test_flicker_at_rest_is_halved_without_more_errors(films):
     found, felt, true = films
     still = (true == true[0]).all(axis=0)
     flicker = [np.diff(each[4:], axis=0)[:, still].std() for each in (found, felt)]
@@ -105,7 +105,7 @@ def test_flicker_of_what_stands_still_is_halved_and_no_more_is_wrong(films):
     assert wrong[1] <= wrong[0]
 
 
-def test_moving_edges_are_at_most_a_frame_late_and_drag_nothing(films):
+def test_moving_edge_is_at_most_a_frame_late_without_a_trail(films):
     found, felt, true = films
     before = np.roll(true, 1, axis=0)
     late = np.minimum(np.abs(felt - true), np.abs(felt - before))[2:] > 2

@@ -1,4 +1,4 @@
-"""Two recordings side by side, against forces that can be written down."""
+"""Comparison of recordings with analytic forces."""
 
 import math
 
@@ -12,7 +12,7 @@ from tangible_core.session.recording.comparison import MOST_COMPARED
 DEEP_M, WIDE_M = 1e-3, 0.1
 
 
-def pressed(stiffness_n_per_m: float, friction_n: float = 0.0, ticks: int = 2001, away_m: float = 0.0) -> Recording:
+def press(stiffness_n_per_m: float, friction_n: float = 0.0, ticks: int = 2001, away_m: float = 0.0) -> Recording:
     """Along x and back, pressed twice into a spring as deep as a sine, against a friction of constant force."""
     way = np.linspace(0, 2, ticks)
     x, depth_m = WIDE_M * (1 - np.abs(1 - way)), DEEP_M * np.abs(np.sin(np.pi * way))
@@ -26,9 +26,9 @@ def pressed(stiffness_n_per_m: float, friction_n: float = 0.0, ticks: int = 2001
     )
 
 
-def test_springs_of_other_stiffness_felt_at_other_speeds():
+def test_comparison_of_springs_at_different_speeds_is_exact():
     """F = k d: the forces differ by (k2 - k1) d, whose root mean square over a sine is its height / sqrt(2)."""
-    found = compare_recordings(pressed(1000), pressed(600, ticks=901, away_m=1e-4))
+    found = compare_recordings(press(1000), press(600, ticks=901, away_m=1e-4))
     assert found["error_n"] == pytest.approx(400 * DEEP_M / math.sqrt(2), rel=0.01)
     assert found["error_percent"] == pytest.approx(40, abs=0.5)
     assert (found["first_peak_force_n"], found["second_peak_force_n"]) == pytest.approx((1.0, 0.6), rel=1e-3)
@@ -41,30 +41,30 @@ def test_springs_of_other_stiffness_felt_at_other_speeds():
     assert (found["first_seconds"], found["second_ticks"]) == (2.0, 901)
 
 
-def test_a_way_back_is_compared_with_the_way_back():
+def test_comparison_pairs_ticks_of_the_same_direction():
     """Friction turns with the direction: compared with the way there, it would differ by twice its force."""
-    found = compare_recordings(pressed(0, 0.3), pressed(0, 0.3, ticks=1501))
+    found = compare_recordings(press(0, 0.3), press(0, 0.3, ticks=1501))
     assert found["error_n"] == pytest.approx(0, abs=0.05)
     assert found["first_work_j"] == pytest.approx(-0.3 * 2 * WIDE_M, rel=0.01)
-    assert compare_recordings(pressed(0, 0.3), pressed(0, 0.1))["error_n"] == pytest.approx(0.2, rel=0.02)
+    assert compare_recordings(press(0, 0.3), press(0, 0.1))["error_n"] == pytest.approx(0.2, rel=0.02)
 
 
-def test_what_was_never_touched_by_the_other_is_left_out():
-    apart = compare_recordings(pressed(1000), pressed(600, away_m=0.01))
+def test_comparison_omits_places_without_a_partner():
+    apart = compare_recordings(press(1000), press(600, away_m=0.01))
     assert (apart["compared"], apart["compared_share"]) == (0, 0.0)
     assert math.isnan(apart["error_n"]) and math.isnan(apart["apart_m"])
-    half = pressed(600)
+    half = press(600)
     half = Recording(half.rows[half.position_m[:, 0] < WIDE_M / 2])
-    assert compare_recordings(pressed(1000), half)["compared_share"] == pytest.approx(0.5, abs=0.02)
+    assert compare_recordings(press(1000), half)["compared_share"] == pytest.approx(0.5, abs=0.02)
 
 
-def test_nothing_unknown_places_and_a_long_one():
-    empty, one = Recording(np.empty((0, 17))), pressed(1000)
+def test_comparison_of_empty_unknown_and_long_recordings_works():
+    empty, one = Recording(np.empty((0, 17))), press(1000)
     assert compare_recordings(empty, one)["compared"] == compare_recordings(one, empty)["compared"] == 0
     lost = one.rows.copy()
     lost[:1000, 2] = np.nan
     assert compare_recordings(Recording(lost), one)["compared"] == 1001
     assert compare_recordings(one, Recording(lost))["compared"] > 1000
-    assert compare_recordings(pressed(1000, ticks=2 * MOST_COMPARED), one)["compared"] == MOST_COMPARED
+    assert compare_recordings(press(1000, ticks=2 * MOST_COMPARED), one)["compared"] == MOST_COMPARED
     with pytest.raises(ConfigError, match="near_m: is 0; it must be positive"):
         compare_recordings(one, one, 0)

@@ -1,4 +1,4 @@
-"""What was felt, in memory and in its files."""
+"""Recordings in memory and in their files."""
 
 import csv
 import os
@@ -41,13 +41,13 @@ def same(one: Recording, other: Recording) -> bool:
 @pytest.mark.parametrize("suffix", [".nc", ".npz"])
 @pytest.mark.parametrize("count", [0, 1, 5])
 @pytest.mark.parametrize("about", [About(), ABOUT])
-def test_all_of_it_is_kept(tmp_path: Path, count: int, about: About, suffix: str):
+def test_saved_recording_is_loaded_unchanged(tmp_path: Path, count: int, about: About, suffix: str):
     recording = some(count, stopped="the cable is out", about=about)
     recording.save(tmp_path / "deep" / f"stroke{suffix}")
     assert same(Recording.load(tmp_path / "deep" / f"stroke{suffix}"), recording)
 
 
-def test_numpy_reads_npz(tmp_path: Path):
+def test_npz_is_read_by_numpy(tmp_path: Path):
     some().save(tmp_path / "stroke.npz")
     with np.load(tmp_path / "stroke.npz") as file:
         assert np.array_equal(file["force_n"], some().force_n)
@@ -63,8 +63,8 @@ def test_csv_keeps_every_digit_of_the_ticks(tmp_path: Path, count: int):
         assert [float(row["fz_n"]) for row in csv.DictReader(file)] == recording.force_n[:, 2].tolist()
 
 
-def test_csv_is_read_by_the_names_of_its_columns(tmp_path: Path):
-    """Ten columns were all, once; nothing was known of the others."""
+def test_csv_is_read_by_its_column_names(tmp_path: Path):
+    """Old files have ten columns; the others are unknown."""
     names = [name for name in TICK_COLUMNS if not name.startswith(("proxy", "late", "flags", "buttons", "frame"))]
     (tmp_path / "old.csv").write_text(
         "\ufeff" + ",".join(["note", *reversed(names)]) + "\n" + "9,9,8,7,6,5,4,3,2,1,0\n" * 2
@@ -77,7 +77,7 @@ def test_csv_is_read_by_the_names_of_its_columns(tmp_path: Path):
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz"])
-def test_of_a_file_from_before_there_were_films_every_surface_stood_still(tmp_path: Path, suffix: str):
+def test_old_file_without_frames_is_read(tmp_path: Path, suffix: str):
     before = some()
     path = tmp_path / f"old{suffix}"
     if suffix == ".nc":
@@ -94,8 +94,8 @@ def test_of_a_file_from_before_there_were_films_every_surface_stood_still(tmp_pa
     assert np.isnan(found.frame).all()
 
 
-def test_others_find_the_frame_or_that_there_is_none(tmp_path: Path):
-    """Numbers that float32 does not hold, and whatever else may stand there."""
+def test_frame_in_nc_file_is_read_by_other_programs(tmp_path: Path):
+    """Frame numbers beyond float32, and invalid ones."""
     rows = some().rows.copy()
     rows[:, 16] = 0, 2**24 + 1, np.nan, np.inf, -7
     Recording(rows).save(tmp_path / "stroke.nc")
@@ -105,13 +105,13 @@ def test_others_find_the_frame_or_that_there_is_none(tmp_path: Path):
 
 
 @pytest.mark.parametrize("name", ["time_s", "x_m", "vz_m_per_s", "fz_n"])
-def test_a_csv_without_a_column_that_each_recording_has(tmp_path: Path, name: str):
+def test_csv_without_a_needed_column_is_refused(tmp_path: Path, name: str):
     (tmp_path / "less.csv").write_text(",".join(each for each in TICK_COLUMNS if each != name) + "\n")
     with pytest.raises(OutputError, match=f"first line has no {name}"):
         Recording.load(tmp_path / "less.csv")
 
 
-def test_an_npz_of_before(tmp_path: Path):
+def test_old_npz_file_is_read(tmp_path: Path):
     arrays = {name: getattr(some(), name) for name in ("time_s", "position_m", "velocity_m_per_s", "force_n")}
     np.savez(tmp_path / "old.npz", **arrays, stopped="", not_finite=2, limited=3)
     recording = Recording.load(tmp_path / "old.npz")
@@ -120,7 +120,7 @@ def test_an_npz_of_before(tmp_path: Path):
     assert recording.about == About()
 
 
-def test_a_mock_plays_a_csv_again(tmp_path: Path):
+def test_csv_is_replayed_by_a_mock(tmp_path: Path):
     touch = PenaltyGradient().touch(HapticSurface.from_heights(np.full((3, 3), 0.01)))
     first = run_simulated(touch, Mock(speed_m_per_s=0.2), 0.3)
     first.save(tmp_path / "stroke.csv")
@@ -129,7 +129,7 @@ def test_a_mock_plays_a_csv_again(tmp_path: Path):
     assert np.allclose(again.force_n, first.force_n, rtol=0, atol=1e-11)
 
 
-def test_figures():
+def test_figures_of_a_recording_are_exact():
     force = np.array([[0, 0, 0], [0, 3, 4], [0, 0, 1], [0, 0, 0]], float)
     position = np.array([[0, 0, 0], [0, 0, 0], [0, 1, 1], [0, 1, 3]], float)
     flags = np.array([0, TickFlag.FORCE_LIMITED | TickFlag.TOUCHING, TickFlag.NOT_FINITE, TickFlag.NOT_FINITE])
@@ -148,7 +148,7 @@ def test_figures():
     }
 
 
-def test_tables_that_are_none():
+def test_recording_of_wrong_shape_is_refused():
     with pytest.raises(OutputError, match=r"\(n, 17\)"):
         Recording(np.zeros((3, 10)))
     parts = {"time_s": np.zeros(3), "position_m": np.zeros((3, 3)), "velocity_m_per_s": np.zeros((3, 3))}
@@ -173,7 +173,7 @@ def header(path: Path) -> str:
 
 @pytest.mark.timeout(20)
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
-def test_what_has_no_end_or_never_begins_is_no_recording(tmp_path: Path, suffix: str):
+def test_pipe_or_device_is_refused(tmp_path: Path, suffix: str):
     os.mkfifo(tmp_path / f"pipe{suffix}")
     (tmp_path / f"zero{suffix}").symlink_to("/dev/zero")
     for name in ("pipe", "zero"):
@@ -181,13 +181,13 @@ def test_what_has_no_end_or_never_begins_is_no_recording(tmp_path: Path, suffix:
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
-def test_a_recording_of_more_than_is_read(tmp_path: Path, suffix: str):
+def test_recording_above_the_size_limit_is_refused(tmp_path: Path, suffix: str):
     with (tmp_path / f"a{suffix}").open("wb") as file:
         file.truncate(1_500_000_000)
     assert "cannot be read: it holds more than 1424 MB" in refusal(tmp_path / f"a{suffix}")
 
 
-def test_a_bomb_is_not_unpacked(tmp_path: Path):
+def test_decompression_bomb_is_not_unpacked(tmp_path: Path):
     ticks = 12_000_000
     shapes = {"time_s": (ticks,), "position_m": (ticks, 3), "velocity_m_per_s": (ticks, 3), "force_n": (ticks, 10)}
     path = npz_bomb(tmp_path / "a.npz", **shapes)
@@ -199,7 +199,7 @@ def test_a_bomb_is_not_unpacked(tmp_path: Path):
         tracemalloc.stop()
 
 
-def test_an_odd_archive(tmp_path: Path):
+def test_archive_with_odd_entries_is_refused(tmp_path: Path):
     some().save(tmp_path / "a.npz")
     whole = (tmp_path / "a.npz").read_bytes()
     entry = whole.find(b"PK\x01\x02")
@@ -213,7 +213,7 @@ def test_an_odd_archive(tmp_path: Path):
         assert name in refusal(tmp_path / "a.npz")
 
 
-def test_an_archive_that_misses_something_says_what(tmp_path: Path):
+def test_archive_without_a_needed_array_names_it(tmp_path: Path):
     np.savez(tmp_path / "a.npz", time_s=np.zeros(3), stopped="")
     assert "it holds no position_m, velocity_m_per_s, force_n" in refusal(tmp_path / "a.npz")
     some().save(tmp_path / "a.npz")
@@ -223,14 +223,14 @@ def test_an_archive_that_misses_something_says_what(tmp_path: Path):
 
 
 @pytest.mark.parametrize("dtype", [complex, "U1", "M8[s]"])
-def test_ticks_are_numbers(tmp_path: Path, dtype: object):
+def test_ticks_that_are_not_numbers_are_refused(tmp_path: Path, dtype: object):
     some().save(tmp_path / "a.npz")
     with np.load(tmp_path / "a.npz") as held:
         np.savez(tmp_path / "b.npz", **{**held, "late_s": np.zeros(5, dtype)})
     assert "late_s holds" in refusal(tmp_path / "b.npz")
 
 
-def test_what_else_is_in_an_archive_is_not_read(tmp_path: Path):
+def test_archive_entries_of_other_names_are_not_read(tmp_path: Path):
     some().save(tmp_path / "a.npz")
     with np.load(tmp_path / "a.npz") as held:
         np.savez(tmp_path / "b.npz", **held, more=np.array([{}], object))
@@ -239,21 +239,21 @@ def test_what_else_is_in_an_archive_is_not_read(tmp_path: Path):
 
 @pytest.mark.parametrize("bits", ["nan", "inf", "1e300", "-3e9"])
 @pytest.mark.parametrize("place", [14, 15])
-def test_flags_and_buttons_are_bits(tmp_path: Path, bits: str, place: int):
+def test_flags_and_buttons_beyond_32_bits_are_refused(tmp_path: Path, bits: str, place: int):
     row = ["0"] * 17
     row[place] = bits
     (tmp_path / "a.csv").write_text(f"{header(tmp_path / 'b.csv')}\n{','.join(row)}\n")
     assert f"its {TICK_COLUMNS[place]} do not all fit into 32 bits" in refusal(tmp_path / "a.csv")
 
 
-def test_a_long_text_in_place_of_a_number_is_not_repeated(tmp_path: Path):
+def test_error_shortens_a_long_text_in_place_of_a_number(tmp_path: Path):
     (tmp_path / "a.csv").write_text(header(tmp_path / "b.csv") + "\n" + "x\x1b" * 10**6 + ",0" * 16 + "\n")
     assert "could not convert string to float" in refusal(tmp_path / "a.csv")
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
 @given(data=st.data())
-def test_any_damage_is_one_error_or_a_recording(tmp_path_factory, suffix: str, data):
+def test_damaged_file_is_one_error_or_a_recording(tmp_path_factory, suffix: str, data):
     path = tmp_path_factory.mktemp("damaged") / f"a{suffix}"
     some(about=ABOUT).save(path)
     damaged = bytearray(path.read_bytes())
@@ -268,7 +268,7 @@ def test_any_damage_is_one_error_or_a_recording(tmp_path_factory, suffix: str, d
 
 
 @pytest.mark.parametrize("name", ["stroke", "stroke.parquet", "stroke.npz.txt"])
-def test_names_it_cannot_have(tmp_path: Path, name: str):
+def test_recording_name_with_wrong_suffix_is_refused(tmp_path: Path, name: str):
     with pytest.raises(OutputError, match=r"\.nc, \.npz or \.csv"):
         check_record_path(tmp_path / name)
     with pytest.raises(OutputError, match=r"\.nc, \.npz or \.csv"):
@@ -276,7 +276,7 @@ def test_names_it_cannot_have(tmp_path: Path, name: str):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_place_that_cannot_be_written(tmp_path: Path):
+def test_recording_at_unwritable_place_is_an_error(tmp_path: Path):
     (tmp_path / "file").touch()
     with pytest.raises(OutputError, match="cannot be written"):
         some().save(tmp_path / "file" / "stroke.npz")
@@ -284,7 +284,7 @@ def test_a_place_that_cannot_be_written(tmp_path: Path):
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
 @pytest.mark.parametrize("damage", [lambda b: b"", lambda b: b[:-200], lambda b: b"\xff" * 99, lambda b: b"a,b\n"])
-def test_damaged_files(tmp_path: Path, suffix: str, damage: Callable[[bytes], bytes]):
+def test_damaged_recordings_are_refused(tmp_path: Path, suffix: str, damage: Callable[[bytes], bytes]):
     path = tmp_path / f"stroke{suffix}"
     some().save(path)
     path.write_bytes(damage(path.read_bytes()))
@@ -293,7 +293,7 @@ def test_damaged_files(tmp_path: Path, suffix: str, damage: Callable[[bytes], by
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz"])
-def test_any_cut_is_seen(tmp_path: Path, suffix: str):
+def test_truncated_recording_is_refused(tmp_path: Path, suffix: str):
     some(2).save(tmp_path / f"whole{suffix}")
     data = (tmp_path / f"whole{suffix}").read_bytes()
     path = tmp_path / f"cut{suffix}"
@@ -303,7 +303,7 @@ def test_any_cut_is_seen(tmp_path: Path, suffix: str):
             Recording.load(path)
 
 
-def test_files_that_are_something_else(tmp_path: Path):
+def test_file_of_another_kind_is_refused(tmp_path: Path):
     from scipy.io import netcdf_file
 
     np.savez(tmp_path / "other.npz", picture=np.zeros(3))
@@ -318,7 +318,7 @@ def test_files_that_are_something_else(tmp_path: Path):
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
-def test_files_that_are_not_there(tmp_path: Path, suffix: str):
+def test_missing_file_is_an_error(tmp_path: Path, suffix: str):
     (tmp_path / f"folder{suffix}").mkdir()
     for path in (tmp_path / f"none{suffix}", tmp_path / f"folder{suffix}"):
         with pytest.raises(OutputError, match="cannot be read"):

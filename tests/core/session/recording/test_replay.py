@@ -1,4 +1,4 @@
-"""Recordings felt again: the states as they were, through any law."""
+"""Replay: recorded states through any law."""
 
 import numpy as np
 import pytest
@@ -24,28 +24,28 @@ class Viscous(PlainTouch):
 
 
 @pytest.fixture(scope="module")
-def felt() -> Recording:
+def stroke() -> Recording:
     free = Safety(ramp_s=0, max_step_n=10, passivity="off")
     return run_simulated(LAW.touch(SURFACE), Mock(speed_m_per_s=0.2, tremor_m=1e-4), 1.0, limits=free)
 
 
-def test_through_its_own_law_a_recording_is_the_same(felt: Recording):
+def test_replay_with_the_same_law_is_identical(stroke: Recording):
     """Friction and damping too: the velocities are those that were recorded, not steps between positions."""
-    again = replay(LAW.touch(SURFACE), felt)
-    assert np.array_equal(again.rows[:, :14], felt.rows[:, :14], equal_nan=True)
-    assert np.array_equal(again.flags[1:], felt.flags[1:])  # force faded in at the first tick, from none
+    again = replay(LAW.touch(SURFACE), stroke)
+    assert np.array_equal(again.rows[:, :14], stroke.rows[:, :14], equal_nan=True)
+    assert np.array_equal(again.flags[1:], stroke.flags[1:])  # force faded in at the first tick, from none
 
 
-def test_through_another_law_only_force_proxy_and_flags_differ(felt: Recording):
-    again = replay(Penalty(stiffness_n_per_m=300).touch(SURFACE), felt)
-    assert np.array_equal(again.rows[:, :8], felt.rows[:, :8])
+def test_replay_with_another_law_changes_force_proxy_and_flags(stroke: Recording):
+    again = replay(Penalty(stiffness_n_per_m=300).touch(SURFACE), stroke)
+    assert np.array_equal(again.rows[:, :8], stroke.rows[:, :8])
     assert np.isnan(again.proxy_m).all()
     touch = Penalty(stiffness_n_per_m=300).touch(SURFACE)
-    assert np.array_equal(again.force_n, [touch.force(HapticState(tuple(at))) for at in felt.position_m.tolist()])
+    assert np.array_equal(again.force_n, [touch.force(HapticState(tuple(at))) for at in stroke.position_m.tolist()])
     assert np.array_equal(again.flags == TickFlag.TOUCHING, again.force_n.any(axis=1))
 
 
-def test_a_law_in_python_sees_velocities_and_buttons():
+def test_replay_of_python_law_has_velocities_and_buttons():
     rows = np.random.default_rng(0).normal(size=(8, 17))
     rows[:, 14:16] = np.arange(16).reshape(8, 2)
     again = replay(Viscous(), Recording(rows, "the cable is out"))
@@ -56,13 +56,13 @@ def test_a_law_in_python_sees_velocities_and_buttons():
     assert again.stopped == "the cable is out"
 
 
-def test_nothing_is_replayed_to_nothing():
+def test_replay_of_empty_recording_is_empty():
     assert replay(LAW.touch(SURFACE), Recording(np.empty((0, 17)))).rows.shape == (0, 17)
     assert replay(Viscous(), Recording(np.empty((0, 17)))).rows.shape == (0, 17)
 
 
 @pytest.mark.parametrize("flag", list(TickFlag))
-def test_only_forces_that_are_the_laws_own_are_compared(flag: TickFlag):
+def test_unaltered_forces_are_those_of_the_law_alone(flag: TickFlag):
     rows = np.ones((2, 17))
     rows[:, 14], rows[:, 16] = (0, flag), np.nan
     own = np.isfinite(unaltered_forces(Recording(rows))).all(axis=1)

@@ -1,4 +1,4 @@
-"""Recordings that grow: what is appended can be read at once, by anyone, and after any end of the program."""
+"""Growing recordings: appended ticks can be read at once, by other programs too, and after any end of the program."""
 
 import random
 import subprocess
@@ -22,13 +22,13 @@ ROWS = np.arange(17 * 50, dtype=float).reshape(50, 17)
 
 
 def start(code: str, *words: object) -> subprocess.Popen[str]:
-    """A program that writes, with the file as its first word."""
+    """Start a program that writes a recording, with these words as its arguments."""
     head = "import sys, numpy as np; from pathlib import Path; from tangible_core.session import Writer\n"
     command = [sys.executable, "-c", head + textwrap.dedent(code), *map(str, words)]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def test_what_is_appended_is_there_at_once(tmp_path: Path):
+def test_writer_makes_appended_ticks_readable_at_once(tmp_path: Path):
     path = tmp_path / "deep" / "stroke.nc"
     with Writer(path, About("mock", "proxy", "want: touch\n")) as writer:
         for end in (0, 1, 20, 20, 50):
@@ -44,7 +44,7 @@ def test_what_is_appended_is_there_at_once(tmp_path: Path):
     assert "tangible-images" in about.software
 
 
-def test_others_find_names_units_and_flags(tmp_path: Path):
+def test_file_has_names_units_and_flags_for_other_programs(tmp_path: Path):
     with Writer(tmp_path / "stroke.nc", About("falcon")) as writer:
         writer.append(ROWS)
     with netcdf_file(tmp_path / "stroke.nc", mmap=False) as file:
@@ -57,22 +57,22 @@ def test_others_find_names_units_and_flags(tmp_path: Path):
         assert np.array_equal(file.variables["fz_n"][:], ROWS[:, 13])
 
 
-def test_what_is_said_of_a_recording_is_kept(tmp_path: Path):
+def test_file_has_the_information_about_the_session(tmp_path: Path):
     about = About("mock", "proxy", "want: touch\n", "2026-01-02T03:04:05+00:00", "mine 1.0")
     Writer(tmp_path / "stroke.nc", about).close()
     assert Recording.load(tmp_path / "stroke.nc").about == about
 
 
-def test_each_variable_says_where_it_begins():
-    """scipy believes the first one, and then the sizes; other readers believe all. A variable ends with it."""
+def test_header_has_the_offset_of_each_variable():
+    """scipy uses the first offset and then the sizes; other readers use all offsets."""
     head = tick_file.header(About())
     following = [head.rindex(netcdf.integer(len(name)) + name.encode()) for name in TICK_COLUMNS[1:]] + [len(head)]
     begins = [int.from_bytes(head[at - 8 : at], "big") for at in following]
     assert begins == [len(head) + tick_file.RECORD.fields[name][1] for name in TICK_COLUMNS]
 
 
-def test_a_tick_is_96_bytes_and_loses_little(tmp_path: Path):
-    """What a law is given is exact, after ten days too; proxies are within 4 nm, forces within 0.3 uN."""
+def test_tick_takes_96_bytes_with_little_loss(tmp_path: Path):
+    """Inputs of a law are exact, even after ten days; proxies are within 4 nm, forces within 0.3 uN."""
     rows = np.random.default_rng(0).uniform(-1, 1, (1000, 17)) * ([0.01, 1e-3] + [0.125] * 9 + [8] * 3 + [0, 0, 0])
     rows[:, 0] += 864_000
     path = tmp_path / "stroke.nc"
@@ -86,7 +86,7 @@ def test_a_tick_is_96_bytes_and_loses_little(tmp_path: Path):
     assert lost[11:14].max() < 3e-7
 
 
-def test_numbers_that_float32_cannot_hold(tmp_path: Path):
+def test_values_beyond_float32_become_infinite(tmp_path: Path):
     rows = np.zeros((3, 17))
     rows[:, 11] = 1e300, np.nan, -np.inf
     with Writer(tmp_path / "stroke.nc") as writer:
@@ -94,7 +94,7 @@ def test_numbers_that_float32_cannot_hold(tmp_path: Path):
     assert np.array_equal(Recording.load(tmp_path / "stroke.nc").rows[:, 11], [np.inf, np.nan, -np.inf], equal_nan=True)
 
 
-def test_why_it_ended(tmp_path: Path):
+def test_writer_stores_the_reason_of_the_end(tmp_path: Path):
     path = tmp_path / "stroke.nc"
     writer = Writer(path)
     writer.close("é" * 200)
@@ -111,12 +111,12 @@ def test_why_it_ended(tmp_path: Path):
 
 @pytest.mark.usefixtures("unchecked_shapes")
 @pytest.mark.parametrize("rows", [np.zeros(17), np.zeros((3, 10)), np.zeros((2, 2, 17))])
-def test_rows_that_are_none(tmp_path: Path, rows: np.ndarray):
+def test_rows_of_wrong_shape_are_refused(tmp_path: Path, rows: np.ndarray):
     with Writer(tmp_path / "stroke.nc") as writer, pytest.raises(OutputError, match=r"\(n, 17\)"):
         writer.append(rows)
 
 
-def test_places_that_cannot_be_written(tmp_path: Path):
+def test_writer_at_unwritable_place_is_an_error(tmp_path: Path):
     (tmp_path / "file").touch()
     (tmp_path / "folder.nc").mkdir()
     for path in (tmp_path / "file" / "stroke.nc", tmp_path / "folder.nc"):
@@ -124,7 +124,7 @@ def test_places_that_cannot_be_written(tmp_path: Path):
             Writer(path)
 
 
-def test_one_writer_a_file(tmp_path: Path):
+def test_second_writer_of_a_file_is_refused(tmp_path: Path):
     path = tmp_path / "stroke.nc"
     with Writer(path) as writer:
         writer.append(ROWS)
@@ -137,8 +137,8 @@ def test_one_writer_a_file(tmp_path: Path):
     assert len(Recording.load(path).rows) == 0
 
 
-def test_a_kill_at_any_moment_costs_nothing_that_was_appended(tmp_path: Path):
-    """Each tick carries its number; the program says a number once its tick is appended."""
+def test_killed_writer_loses_no_appended_tick(tmp_path: Path):
+    """Each tick has its number; the program prints a number once its tick is appended."""
     path = tmp_path / "stroke.nc"
     code = """
         with Writer(Path(sys.argv[1])) as writer:
@@ -160,7 +160,7 @@ def test_a_kill_at_any_moment_costs_nothing_that_was_appended(tmp_path: Path):
         assert recording.stopped.startswith("cut off")
 
 
-def test_between_any_two_writes_and_within_each_the_file_is_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_file_is_whole_between_and_within_writes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     writes: list[tuple[int, bytes]] = []
 
     class Noted(FileIO):
@@ -186,7 +186,7 @@ def test_between_any_two_writes_and_within_each_the_file_is_whole(tmp_path: Path
             assert np.array_equal(cut.rows, ROWS[: len(cut.rows)])
 
 
-def test_a_full_disk_keeps_what_was_written(tmp_path: Path):
+def test_writer_on_full_disk_keeps_written_ticks(tmp_path: Path):
     path = tmp_path / "stroke.nc"
     writer = Writer(path)
     with files_up_to(20_000), pytest.raises(OutputError, match=r"cannot be written: .*; it holds 150 ticks; free some"):
@@ -199,7 +199,7 @@ def test_a_full_disk_keeps_what_was_written(tmp_path: Path):
 
 
 @pytest.mark.parametrize("most", [100, 120])
-def test_a_file_that_is_full(tmp_path: Path, most: int, monkeypatch: pytest.MonkeyPatch):
+def test_writer_of_full_file_is_closed(tmp_path: Path, most: int, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(netcdf, "MOST_RECORDS", most)
     path = tmp_path / "stroke.nc"
     with Writer(path) as writer:
@@ -210,7 +210,7 @@ def test_a_file_that_is_full(tmp_path: Path, most: int, monkeypatch: pytest.Monk
     assert (len(Recording.load(path).rows), Recording.load(path).stopped) == (100, "the recording is full")
 
 
-def test_no_room_for_the_first_byte(tmp_path: Path):
+def test_writer_without_room_for_the_header_is_an_error(tmp_path: Path):
     with files_up_to(100), pytest.raises(OutputError, match="it holds 0 ticks"):
         Writer(tmp_path / "stroke.nc")
     Writer(tmp_path / "stroke.nc").close()

@@ -1,4 +1,4 @@
-"""Files matched by what stars match."""
+"""Custom files, matched by the stars of their patterns."""
 
 from pathlib import Path
 
@@ -28,7 +28,7 @@ def touch(folder: Path, *names: str) -> None:
         (["a+b/1.png", "a+c/1.png"], ("a+b/*.png", "a+c/*.png"), ["1"]),
     ],
 )
-def test_what_the_stars_match_belongs_together(files, patterns, names, tmp_path: Path):
+def test_files_with_the_same_stars_are_matched(files, patterns, names, tmp_path: Path):
     touch(tmp_path, *files)
     found = matched(tmp_path, dict(zip(NEEDED, patterns, strict=True)), NEEDED)
     assert list(found) == names
@@ -36,13 +36,13 @@ def test_what_the_stars_match_belongs_together(files, patterns, names, tmp_path:
         assert parts["left"] != parts["right"] and all(path.is_file() for path in parts.values())
 
 
-def test_a_part_that_is_not_needed_may_be_missing(tmp_path: Path):
+def test_optional_part_may_be_missing(tmp_path: Path):
     touch(tmp_path, "L1.png", "R1.png", "D1.pfm", "L2.png", "R2.png")
     found = matched(tmp_path, {"left": "L*.png", "right": "R*.png", "truth": "D*.pfm"}, NEEDED)
     assert found["1"]["truth"] == tmp_path / "D1.pfm" and "truth" not in found["2"]
 
 
-def test_patterns_may_be_absolute(tmp_path: Path):
+def test_absolute_patterns_are_matched(tmp_path: Path):
     touch(tmp_path, "L1.png", "R1.png")
     patterns = {"left": f"{tmp_path}/L*.png", "right": f"{tmp_path}/R*.png"}
     assert list(matched(Path("elsewhere"), patterns, NEEDED)) == ["1"]
@@ -62,7 +62,7 @@ def test_patterns_may_be_absolute(tmp_path: Path):
         ({"left": "no/L*.png", "right": "R*.png"}, PictureError, "no: there is no such folder for 'no/L*.png'"),
     ],
 )
-def test_what_is_wrong_is_one_line(patterns, error, why, tmp_path: Path):
+def test_wrong_patterns_are_refused_in_one_line(patterns, error, why, tmp_path: Path):
     touch(tmp_path, "L1.png", "R1.png", "L2.png")
     with pytest.raises(error) as said:
         matched(tmp_path, patterns, NEEDED)

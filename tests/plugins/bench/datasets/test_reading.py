@@ -1,4 +1,4 @@
-"""Every set, laid out in code from a pair whose truth is known, and read back."""
+"""Every standard set, written from a pair with known truth, and read again."""
 
 import sys
 import time
@@ -29,18 +29,18 @@ def only(name: str, folder: Path, **more: object) -> StandardPair:
     return found
 
 
-def made(name: str, folder: Path, k: Known) -> Layout:
+def make_set(name: str, folder: Path, k: Known) -> Layout:
     LAYOUTS[name].make(folder, k)
     return LAYOUTS[name]
 
 
-def test_every_set_has_a_layout_and_a_name():
+def test_sets_all_have_a_layout_and_a_name():
     assert list(SETS) == list(LAYOUTS) == list(get_args(SetName))
 
 
 @EACH
-def test_truth_and_masks_return_within_their_encoding(name: str, tmp_path: Path, k: Known):
-    layout = made(name, tmp_path, k)
+def test_truth_and_masks_are_read_within_their_encoding(name: str, tmp_path: Path, k: Known):
+    layout = make_set(name, tmp_path, k)
     found = only(name, tmp_path)
     assert found.name == layout.name and not found.test
     pair = found.open()
@@ -73,8 +73,8 @@ CAMERAS = {
 
 
 @EACH
-def test_cameras_range_and_size(name: str, tmp_path: Path, k: Known):
-    made(name, tmp_path, k)
+def test_cameras_range_and_size_are_read(name: str, tmp_path: Path, k: Known):
+    make_set(name, tmp_path, k)
     calibration, most_px, full_px = CAMERAS.get(name, (None, None, None))
     pair = only(name, tmp_path).open()
     assert (pair.most_px, pair.full_px) == (most_px, full_px)
@@ -85,15 +85,15 @@ def test_cameras_range_and_size(name: str, tmp_path: Path, k: Known):
 
 
 @EACH
-def test_a_scene_of_a_pipeline_is_the_pair(name: str, tmp_path: Path, k: Known):
-    made(name, tmp_path, k)
+def test_pair_as_a_scene_has_its_truth(name: str, tmp_path: Path, k: Known):
+    make_set(name, tmp_path, k)
     pair, scene = only(name, tmp_path).open(), only(name, tmp_path).scene()
     np.testing.assert_array_equal(scene.truth, pair.truth_px)
     assert scene.files.order == "as-named"
 
 
 @EACH
-def test_a_missing_and_an_empty_folder_say_what_to_fetch(name: str, tmp_path: Path):
+def test_missing_and_empty_folders_name_the_archive_to_fetch(name: str, tmp_path: Path):
     for folder in (tmp_path / "nowhere", tmp_path):
         with pytest.raises(PictureError) as error:
             pairs(name, folder)
@@ -103,8 +103,8 @@ def test_a_missing_and_an_empty_folder_say_what_to_fetch(name: str, tmp_path: Pa
 
 
 @EACH
-def test_a_pair_without_truth_is_of_use(name: str, tmp_path: Path, k: Known):
-    layout = made(name, tmp_path, k)
+def test_pair_without_truth_is_read(name: str, tmp_path: Path, k: Known):
+    layout = make_set(name, tmp_path, k)
     (tmp_path / layout.truth).unlink()
     (found,) = pairs(name, tmp_path, only=[layout.name]) if not layout.test else pairs(name, tmp_path)
     pair = found.open()
@@ -113,8 +113,8 @@ def test_a_pair_without_truth_is_of_use(name: str, tmp_path: Path, k: Known):
 
 
 @pytest.mark.parametrize("name", [name for name, layout in LAYOUTS.items() if layout.test])
-def test_the_test_split_is_apart(name: str, tmp_path: Path, k: Known):
-    layout = made(name, tmp_path, k)
+def test_test_split_is_read_apart(name: str, tmp_path: Path, k: Known):
+    layout = make_set(name, tmp_path, k)
     found = only(name, tmp_path, split="test")
     assert found.test and found.name == layout.test
     assert found.open().truth_px is None
@@ -123,8 +123,8 @@ def test_the_test_split_is_apart(name: str, tmp_path: Path, k: Known):
 
 @EACH
 @pytest.mark.parametrize("content", [b"", b"no picture", b"\x89PNG\r\n\x1a\n broken"])
-def test_a_broken_file_is_one_line_with_its_name(name: str, content: bytes, tmp_path: Path, k: Known):
-    layout = made(name, tmp_path, k)
+def test_broken_file_is_refused_with_its_name(name: str, content: bytes, tmp_path: Path, k: Known):
+    layout = make_set(name, tmp_path, k)
     for part in filter(None, (layout.left, layout.truth, layout.mask)):
         path = tmp_path / part
         whole = path.read_bytes()
@@ -137,8 +137,8 @@ def test_a_broken_file_is_one_line_with_its_name(name: str, content: bytes, tmp_
 
 
 @pytest.mark.parametrize("name", [name for name, layout in LAYOUTS.items() if layout.mask])
-def test_a_mask_of_another_size_is_refused(name: str, tmp_path: Path, k: Known):
-    path = tmp_path / made(name, tmp_path, k).mask
+def test_mask_of_another_size_is_refused(name: str, tmp_path: Path, k: Known):
+    path = tmp_path / make_set(name, tmp_path, k).mask
     put(path, np.zeros((5, 7), np.uint8))
     with pytest.raises(PictureError, match="a mask has the size of its picture") as error:
         only(name, tmp_path).open()
@@ -146,9 +146,9 @@ def test_a_mask_of_another_size_is_refused(name: str, tmp_path: Path, k: Known):
 
 
 @EACH
-def test_extra_files_nested_folders_and_links_do_no_harm(name: str, tmp_path: Path, k: Known):
+def test_extra_files_nested_folders_and_links_are_ignored(name: str, tmp_path: Path, k: Known):
     root = tmp_path / "deep" / "deeper" / "set"
-    layout = made(name, root, k)
+    layout = make_set(name, root, k)
     for folder in [tmp_path, *(path for path in tmp_path.rglob("*") if path.is_dir())]:
         (folder / "README.txt").write_text("hello")
         (folder / ".DS_Store").write_bytes(b"\0")
@@ -160,7 +160,7 @@ def test_extra_files_nested_folders_and_links_do_no_harm(name: str, tmp_path: Pa
     assert only(name, linked).open().truth_px is not None
 
 
-def test_no_folder_is_listed_twice(tmp_path: Path):
+def test_folders_with_link_cycles_are_listed_once(tmp_path: Path):
     """Links that lead back would otherwise be followed as deep as folders may lie, in every order."""
     (tmp_path / "a" / "b").mkdir(parents=True)
     for folder in (tmp_path, tmp_path / "a", tmp_path / "a" / "b"):
@@ -170,7 +170,7 @@ def test_no_folder_is_listed_twice(tmp_path: Path):
     assert found == [tmp_path, tmp_path / "a", tmp_path / "a" / "b"]
 
 
-def test_ten_thousand_pairs_are_listed_at_once_and_none_is_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_large_set_is_listed_fast_without_opening_pairs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     for number in range(2500):
         folder = tmp_path / "trainingQ" / f"scene{number:04}"
         folder.mkdir(parents=True)
@@ -184,7 +184,7 @@ def test_ten_thousand_pairs_are_listed_at_once_and_none_is_opened(tmp_path: Path
     assert taken_s < 1, "of the processor's time, whatever else the machine does"
 
 
-def test_ten_thousand_files_in_one_folder(tmp_path: Path):
+def test_large_folder_is_listed_fast(tmp_path: Path):
     for side in ("image_2", "image_3"):
         (tmp_path / "training" / side).mkdir(parents=True)
         for number in range(5000):
@@ -194,21 +194,21 @@ def test_ten_thousand_files_in_one_folder(tmp_path: Path):
     assert time.process_time() - began < 1
 
 
-def test_a_folder_without_end_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, k: Known):
-    made("kitti-2015", tmp_path, k)
+def test_folder_with_too_many_entries_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, k: Known):
+    make_set("kitti-2015", tmp_path, k)
     monkeypatch.setattr(folders, "MOST_ENTRIES", 5)
     with pytest.raises(PictureError, match="more than 5 files; name the folder of the set alone"):
         pairs("kitti-2015", tmp_path)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="permissions are other ones there")
-def test_a_folder_that_may_not_be_listed_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, k: Known):
-    made("kitti-2015", tmp_path, k)
+def test_folder_without_permission_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, k: Known):
+    make_set("kitti-2015", tmp_path, k)
 
-    def denied(path: str) -> None:
+    def deny(path: str) -> None:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(folders.os, "scandir", denied)  # root may list anything
+    monkeypatch.setattr(folders.os, "scandir", deny)  # root may list anything
     with pytest.raises(PictureError, match="cannot be listed: Permission denied; check its permissions"):
         pairs("kitti-2015", tmp_path)
 
@@ -223,35 +223,35 @@ def test_a_folder_that_may_not_be_listed_is_said(tmp_path: Path, monkeypatch: py
         ({"only": ["000000_01"]}, "no pair in it is named '000000_01' (did you mean '000000_10'?); there are:"),
     ],
 )
-def test_a_wrong_choice_is_said(call: dict[str, object], said: str, tmp_path: Path, k: Known):
-    made("kitti-2015", tmp_path, k)
+def test_wrong_choice_of_pairs_is_refused(call: dict[str, object], said: str, tmp_path: Path, k: Known):
+    make_set("kitti-2015", tmp_path, k)
     with pytest.raises(ConfigError) as error:
         pairs(**{"name": "kitti-2015", "folder": tmp_path, **call})
     assert said in str(error.value)
 
 
-def test_a_name_that_yaml_takes_for_a_number(tmp_path: Path, k: Known):
-    made("kitti-2015", tmp_path, k)
+def test_pair_name_read_as_a_number_is_resolved(tmp_path: Path, k: Known):
+    make_set("kitti-2015", tmp_path, k)
     assert only("kitti-2015", tmp_path, only=[10]).name == "000000_10"
     with pytest.raises(ConfigError, match="no pair in it is named '11'"):
         pairs("kitti-2015", tmp_path, only=[11])
 
 
-def test_sintels_passes(tmp_path: Path, k: Known):
-    made("sintel", tmp_path, k)
+def test_sintel_variant_selects_its_folder(tmp_path: Path, k: Known):
+    make_set("sintel", tmp_path, k)
     assert "clean_left" in str(only("sintel", tmp_path, variant="clean").left)
     with pytest.raises(ConfigError, match="there are final and clean"):
         pairs("sintel", tmp_path, variant="final_left")
 
 
-def test_tsukuba_has_names_of_its_own(tmp_path: Path, k: Known):
+def test_tsukuba_is_read_with_its_file_names(tmp_path: Path, k: Known):
     put_views(tmp_path / "tsukuba", k, "scene1.row3.col3.ppm", "scene1.row3.col4.ppm")
     put(tmp_path / "tsukuba/truedisp.row3.col3.pgm", np.full((64, 96), 160, np.uint8))
     assert np.all(only("middlebury-2001", tmp_path).open().truth_px == 10)
 
 
-def test_seven_views_are_taken_under_one_lamp(tmp_path: Path, k: Known):
-    made("middlebury-2006", tmp_path, k)
+def test_seven_view_folder_gives_views_of_one_lamp(tmp_path: Path, k: Known):
+    make_set("middlebury-2006", tmp_path, k)
     folder = tmp_path / "ThirdSize/Aloe"
     for lamp in ("Illum1/Exp0", "Illum2/Exp1"):
         put_views(folder / lamp, k, "view1.png", "view5.png")
@@ -260,8 +260,8 @@ def test_seven_views_are_taken_under_one_lamp(tmp_path: Path, k: Known):
     assert only("middlebury-2006", tmp_path).left == folder / "Illum2/Exp1/view1.png"
 
 
-def test_grey_cameras_stand_in_for_colour_ones(tmp_path: Path, k: Known):
-    made("kitti-2012", tmp_path, k)
+def test_kitti_grey_cameras_replace_missing_colour_ones(tmp_path: Path, k: Known):
+    make_set("kitti-2012", tmp_path, k)
     for grey, colour in (("image_0", "colored_0"), ("image_1", "colored_1")):
         (tmp_path / "training" / colour).rename(tmp_path / "training" / grey)
     pair = only("kitti-2012", tmp_path)
@@ -280,29 +280,29 @@ def test_grey_cameras_stand_in_for_colour_ones(tmp_path: Path, k: Known):
         ("\0" * 300_000, "it holds more than 0.25 MB"),
     ],
 )
-def test_a_wrong_calibration_is_one_line(text: str, why: str, tmp_path: Path, k: Known):
-    made("middlebury-2014", tmp_path, k)
+def test_wrong_calibration_is_refused_in_one_line(text: str, why: str, tmp_path: Path, k: Known):
+    make_set("middlebury-2014", tmp_path, k)
     (tmp_path / "Adirondack-perfect/calib.txt").write_text(text)
     with pytest.raises(PictureError) as error:
         only("middlebury-2014", tmp_path).open()
     assert why in str(error.value) and "\n" not in str(error.value) and "calib.txt" in str(error.value)
 
 
-def test_only_255_of_a_mask_is_seen_by_both(tmp_path: Path, k: Known):
-    layout = made("middlebury-eval3", tmp_path, k)
+def test_noc_mask_has_pixels_of_255_only(tmp_path: Path, k: Known):
+    layout = make_set("middlebury-eval3", tmp_path, k)
     put(tmp_path / layout.mask, np.full((64, 96), 254, np.uint8))
     assert not only("middlebury-eval3", tmp_path).open().noc.any()
 
 
-def test_sparse_truth_without_a_mask_tells_nothing_of_occlusion(tmp_path: Path, k: Known):
-    made("kitti-2015", tmp_path, k)
+def test_sparse_truth_without_a_mask_gives_no_noc(tmp_path: Path, k: Known):
+    make_set("kitti-2015", tmp_path, k)
     (tmp_path / "training/disp_noc_0/000000_10.png").unlink()
     assert only("kitti-2015", tmp_path).open().noc is None
 
 
 class TestSizes:
-    def test_the_one_that_lies_there_is_taken(self, tmp_path: Path, k: Known):
-        made("middlebury-2006", tmp_path, k)
+    def test_size_in_the_folder_is_taken(self, tmp_path: Path, k: Known):
+        make_set("middlebury-2006", tmp_path, k)
         put_views(tmp_path / "FullSize/Aloe", k, "view1.png", "view5.png")
         put(tmp_path / "FullSize/Aloe/disp1.png", np.full((64, 96), 90, np.uint8))
         assert only("middlebury-2006", tmp_path).resolution == "F"
@@ -310,8 +310,8 @@ class TestSizes:
         third = only("middlebury-2006", tmp_path, resolution="T")
         assert third.shrink == 1 and "ThirdSize" in str(third.left)
 
-    def test_a_smaller_one_is_made(self, tmp_path: Path, k: Known):
-        made("middlebury-2014", tmp_path, k)
+    def test_smaller_size_is_made_by_shrinking(self, tmp_path: Path, k: Known):
+        make_set("middlebury-2014", tmp_path, k)
         whole, quarter = (only("middlebury-2014", tmp_path, resolution=size).open() for size in ("F", "Q"))
         assert quarter.views.shape == (16, 24) and quarter.full_px == 4 and quarter.most_px == 5
         assert vars(quarter.views.calibration) == pytest.approx(vars(Calibration(750.0, 0.193001, 2.5)))
@@ -322,18 +322,18 @@ class TestSizes:
         low, high = (np.percentile(blocks[1:], q, axis=-1) for q in (40, 60))
         assert (low <= 4 * quarter.truth_px[1:]).all() and (4 * quarter.truth_px[1:] <= high + 1e-4).mean() > 0.9
 
-    def test_a_larger_one_cannot_be_made(self, tmp_path: Path, k: Known):
-        made("middlebury-eval3", tmp_path, k)
+    def test_larger_size_is_refused(self, tmp_path: Path, k: Known):
+        make_set("middlebury-eval3", tmp_path, k)
         with pytest.raises(PictureError, match=r"holds Adirondack at Q, from which H cannot be made; fetch .*, at H"):
             pairs("middlebury-eval3", tmp_path, resolution="H")
 
-    def test_a_pipeline_takes_files_as_they_are(self, tmp_path: Path, k: Known):
-        made("middlebury-2014", tmp_path, k)
+    def test_pipeline_refuses_a_size_that_is_not_in_the_folder(self, tmp_path: Path, k: Known):
+        make_set("middlebury-2014", tmp_path, k)
         with pytest.raises(ConfigError, match="is not in its folder at Q; fetch that size, or leave `resolution:` out"):
             only("middlebury-2014", tmp_path, resolution="Q").files()
 
     @pytest.mark.parametrize("shape", [(1, 1), (3, 2), (4, 4), (5, 9)])
-    def test_however_small_it_is(self, shape: tuple[int, int], tmp_path: Path):
+    def test_tiny_pair_is_shrunk(self, shape: tuple[int, int], tmp_path: Path):
         folder = tmp_path / "tiny"
         for view in ("im0.png", "im1.png"):
             put(folder / view, np.full(shape, 7, np.uint8))

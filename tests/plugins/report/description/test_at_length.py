@@ -25,7 +25,7 @@ def still_life(names: tuple[str, ...] = ("wall", "", "cup")) -> HapticSurface:
     return replace(HapticSurface.from_heights(height_m, 0.08, LABELS, (STONE, WOOD, GLASS)), names=names)
 
 
-def test_facts_from_near_to_far():
+def test_facts_are_sorted_from_near_to_far():
     cup, table, wall = facts(still_life())
     assert [each.number for each in (cup, table, wall)] == [2, 1, 0]
     assert (cup.name, table.name, wall.name) == ("cup", "", "wall")
@@ -39,7 +39,7 @@ def test_facts_from_near_to_far():
     assert table.neighbours == (0, 2)
 
 
-def test_facts_of_parts_that_lie_on_another_grid():
+def test_facts_of_parts_on_another_grid_are_known():
     """Parts made simpler are larger or smaller maps, in which some of the numbers are gone."""
     surface = replace(still_life(), names=None)
     coarse = PartMap(np.where(LABELS[::4, ::4] == 2, 5, 3).astype(np.int32), tuple(range(7)))
@@ -57,14 +57,14 @@ def test_facts_of_parts_that_lie_on_another_grid():
     ]
 
 
-def test_materials_that_the_surface_does_not_bring():
+def test_facts_use_materials_that_the_surface_lacks():
     bare = replace(still_life(), materials=None)
     assert {each.material for each in facts(bare)} == {""}
     of_segments = MaterialMap((GLASS, GLASS, WOOD), ("", "", ""))
     assert [each.material for each in facts(bare, of_segments)] == ["wood", "glass", "glass"]
 
 
-def test_one_pixel_and_no_parts():
+def test_description_of_one_pixel_has_no_parts():
     dot = HapticSurface.from_heights(np.ones((1, 1)), 0.01, np.zeros((1, 1), np.int32))
     [only] = facts(dot)
     assert (only.share, only.size_m, only.neighbours, only.place) == (1.0, (0.01, 0.01), (), "- -")
@@ -123,12 +123,12 @@ def test_one_pixel_and_no_parts():
         )),
     ],
 )  # fmt: skip
-def test_every_word_of_it(language: Any, lines: tuple[str, ...]):
+def test_description_has_exactly_these_lines(language: Any, lines: tuple[str, ...]):
     found = describe_at_length(still_life(), "Still life", language, facts(still_life()))
     assert tuple(line.replace("\u00a0", " ") for line in found) == lines
 
 
-def test_heights_are_from_high_to_low():
+def test_description_of_heights_lists_parts_from_high_to_low():
     assert "Parts, from high to low" in describe_at_length(still_life(), "x", "en", facts(still_life()), "heights")
 
 
@@ -137,7 +137,7 @@ def test_heights_are_from_high_to_low():
     (1, "One smaller part, 2 % of the picture, is left out."),
     (20, "20 smaller parts, 25 % of the picture together, are left out."),
 ])  # fmt: skip
-def test_of_very_many_parts_the_named_and_the_largest(extra: int, says: str | None):
+def test_description_of_many_parts_has_the_named_and_largest(extra: int, says: str | None):
     count = MOST_PARTS + extra
     labels = np.repeat(np.arange(count, dtype=np.int32), 160).reshape(-1, 80)
     surface = replace(
@@ -172,7 +172,7 @@ class Page(HTMLParser):
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_the_page_says_what_the_lines_say(language: Any):
+def test_page_has_the_words_of_the_lines(language: Any):
     surface = still_life(("wall & <b>", "", "cup"))
     page = Page(page_of(surface, 'A "still" <life>', language, facts(surface)))
     assert page.open == [("", "")]
@@ -187,7 +187,7 @@ def test_the_page_says_what_the_lines_say(language: Any):
     assert body == told
 
 
-def test_names_in_another_language_are_marked():
+def test_page_marks_names_in_another_language():
     page = Page(page_of(still_life(), "Still life", "fr", facts(still_life()), named_in="en-GB"))
     said = {text for language, text in page.text if language == "en-GB"}
     assert said == {"Still life", "wall", "cup"}
@@ -196,6 +196,6 @@ def test_names_in_another_language_are_marked():
     assert "<span" not in alike
 
 
-def test_the_page_is_the_same_every_time():
+def test_page_is_deterministic():
     pages = {page_of(still_life(), "x", "de", facts(still_life())) for _ in range(3)}
     assert len(pages) == 1

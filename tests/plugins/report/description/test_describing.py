@@ -38,11 +38,11 @@ def bump(x: float, y: float) -> np.ndarray:
         (np.where(X < 0.5, 3, 3 + 10 * (X - 0.5)), "about 50 % of it is flat, on the left"),
     ],
 )
-def test_where_it_is_high_and_low(height: np.ndarray, says: str):
+def test_sentence_names_high_and_low_places(height: np.ndarray, says: str):
     assert says in describe(surface(height), "it")
 
 
-def test_a_pin_that_stands_out_is_the_highest():
+def test_sentence_names_a_pin_as_the_highest_place():
     pin = np.zeros((60, 80))
     pin[50, 70] = 9
     assert "up to 9 mm high. It is highest at the lower right" in describe(surface(pin), "pin")
@@ -58,11 +58,11 @@ def test_a_pin_that_stands_out_is_the_highest():
         (np.array([[0.0, 1e-3]]), 0.02, "a surface 2 cm wide and 1 cm long, up to 1 mm high. High and low"),
     ],
 )
-def test_how_large_it_is(height_m: np.ndarray, width_m: float, says: str):
+def test_sentence_has_the_size(height_m: np.ndarray, width_m: float, says: str):
     assert says in describe(HapticSurface.from_heights(height_m, width_m), "x")
 
 
-def test_materials_how_much_of_each_and_where():
+def test_sentence_has_materials_with_shares_and_places():
     labels = np.where(X < 0.25, 0, np.where(Y < 0.5, 1, 2)).astype(np.int32)
     flat = np.zeros((60, 80))
     assert describe(surface(flat, "ice", "wood", "sand", labels=labels), "it").endswith(
@@ -85,7 +85,7 @@ def in_parts(names: tuple[str, ...], *materials: str) -> HapticSurface:
     return replace(surface(height, *materials, labels=labels), names=names)
 
 
-def test_parts_by_name_from_near_to_far():
+def test_sentence_lists_named_parts_from_near_to_far():
     found = in_parts(("wall", "", "cup\n"), "stone", "wood", "glass")
     assert describe(found, "it").endswith(
         " Its parts, from near to far, are cup\\n (on the right, halfway down, 4.3 mm high, feels like glass), "
@@ -102,7 +102,7 @@ def test_parts_by_name_from_near_to_far():
     assert "It has 3 materials" in describe(in_parts(("", "", ""), "stone", "wood", "glass"), "it")
 
 
-def test_of_many_parts_the_nearest():
+def test_sentence_on_many_parts_lists_the_nearest():
     labels = np.repeat(np.arange(30, dtype=np.int32), 160).reshape(60, 80)
     many = replace(surface(labels / 10.0, labels=labels), names=tuple(f"step {each}" for each in range(30)))
     said = describe(many, "it")
@@ -112,7 +112,7 @@ def test_of_many_parts_the_nearest():
     assert describe(one, "it").endswith("It is of one part, plate.")
 
 
-def test_the_same_in_german():
+def test_sentence_in_german_has_these_words():
     labels = (X > 0.7).astype(np.int32)
     hill = surface(bump(0.15, 0.15), "wood", "ice", labels=labels)
     assert describe(hill, "builtin/hügel", "de", "heights") == (
@@ -122,7 +122,7 @@ def test_the_same_in_german():
     )
 
 
-def test_the_same_in_french():
+def test_sentence_in_french_has_these_words():
     hill = surface(bump(0.15, 0.15), "wood", "ice", labels=(X > 0.7).astype(np.int32))
     assert describe(hill, "colline", "fr", "heights").replace("\u00a0", "~") == (
         "La carte de hauteurs colline se touche comme une surface de 8 cm de large et 6 cm de long, jusqu'à 10 mm de "
@@ -137,18 +137,18 @@ def test_the_same_in_french():
 
 
 @pytest.mark.usefixtures("unchecked_shapes")
-def test_another_language_is_refused():
+def test_unknown_language_is_refused():
     with pytest.raises(ArgumentError, match="language: is the str 'pt'; it must be one of en, de, fr"):
         describe(surface(10 * X), "", "pt")  # pyright: ignore[reportArgumentType]
 
 
-def test_every_kind_of_scene_has_its_words():
+def test_scene_kinds_all_have_words():
     hill = surface(bump(0.5, 0.5))
     starts = {kind: describe(hill, "x\n", "en", kind) for kind in ("photograph", "depth", "heights")}
     assert len(set(starts.values())) == 3
     assert all("\n" not in each for each in starts.values())
 
 
-def test_a_large_one_is_described_by_a_part_of_its_cells():
+def test_large_surface_is_described_on_a_coarse_grid():
     large = HapticSurface.from_heights(np.tile(np.linspace(0, 0.01, 3000, dtype=np.float32), (20, 1)), 0.08)
     assert "highest on the right and lowest on the left" in describe(large, "x")

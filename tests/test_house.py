@@ -260,7 +260,7 @@ CORE_ROOMS = [
     "house",
     [
         *("plugins/authoring", "plugins/depth", "plugins/devices", "plugins/export", "plugins/render"),
-        *("plugins/texture", "tangible_core/data", "tangible_core/plugins", *CORE_ROOMS),
+        *("plugins/texture", "plugins/ui/tangible_ui", "tangible_core/data", "tangible_core/plugins", *CORE_ROOMS),
     ],
 )
 def test_docstrings_open_with_a_verb_or_a_noun(house):
@@ -271,7 +271,8 @@ def test_docstrings_open_with_a_verb_or_a_noun(house):
 
 
 @pytest.mark.parametrize(
-    "house", ["plugins/authoring", "plugins/depth", "plugins/export", "plugins/texture", *CORE_ROOMS]
+    "house",
+    ["plugins/authoring", "plugins/depth", "plugins/export", "plugins/texture", "plugins/ui/tangible_ui", *CORE_ROOMS],
 )
 def test_functions_are_not_named_by_a_bare_participle(house):
     words = count_words([ROOT / house])

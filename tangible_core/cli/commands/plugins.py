@@ -19,6 +19,13 @@ if TYPE_CHECKING:
     from ...testing import CheckResult
 
 COLUMNS = ("kind", "name", "origin", "summary")
+Kind = Annotated[str, typer.Argument(help=" | ".join(KIND_NAMES), show_default=False, autocompletion=completing.kinds)]
+Name = Annotated[
+    str,
+    typer.Argument(
+        help="The method, as `tangible plugins` lists it.", show_default=False, autocompletion=completing.methods
+    ),
+]
 
 app = typer.Typer(name="plugins", rich_markup_mode=None, add_completion=False)
 
@@ -48,21 +55,7 @@ def plugins(context: typer.Context, as_json: Json = False) -> None:
 
 
 @app.command("show")
-def show_one(
-    kind: Annotated[
-        str,
-        typer.Argument(help=" | ".join(KIND_NAMES), show_default=False, autocompletion=completing.kinds),
-    ],
-    name: Annotated[
-        str,
-        typer.Argument(
-            help="The method, as `tangible plugins` lists it.",
-            show_default=False,
-            autocompletion=completing.methods,
-        ),
-    ],
-    as_json: Json = False,
-) -> None:
+def show_one(kind: Kind, name: Name, as_json: Json = False) -> None:
     """Show one method or device.
 
     What it does and by which source; each option with its unit, bounds and default; how fast and how exact it was.
@@ -128,18 +121,7 @@ def _speed_and_accuracy(listing: Listing, measured: Measured | None) -> str:
     return f"{where}: {figures}. The most exact of {len(measured.methods)} is {best}."
 
 
-def check(
-    kind: Annotated[
-        str, typer.Argument(help=" | ".join(KIND_NAMES), show_default=False, autocompletion=completing.kinds)
-    ],
-    name: Annotated[
-        str,
-        typer.Argument(
-            help="The method, as `tangible plugins` lists it.", show_default=False, autocompletion=completing.methods
-        ),
-    ],
-    as_json: Json = False,
-) -> None:
+def check(kind: Kind, name: Name, as_json: Json = False) -> None:
     """Test an installed method with the conformance kit.
 
     Exit 1 if a check fails that the method does not declare to fail, or passes that it declares to fail.

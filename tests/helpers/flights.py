@@ -1,5 +1,6 @@
 """Fake flights: all measurements of a machine are fixed, so that every verdict is known."""
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -83,3 +84,18 @@ def of(verdicts: Any, what: str) -> Verdict:
     """Return the one verdict of this thing."""
     [found] = [each for each in verdicts if each.of == what]
     return found
+
+
+def grades(verdicts: Any) -> list[str]:
+    return [each.verdict for each in verdicts]
+
+
+def value_in_cure(verdict: Verdict, key: str) -> float:
+    """Return the value of a key in the text of the cure."""
+    return float(re.search(rf"{re.escape(key)}: ([\d.e-]+)", verdict.cure)[1])
+
+
+def surface_with_materials(*materials: Any) -> HapticSurface:
+    """Return level ground with a stripe of each material."""
+    labels = (np.arange(32) * len(materials) // 32).astype(np.int32)
+    return level(labels=np.tile(labels, (32, 1)), materials=materials)

@@ -18,14 +18,7 @@ from tangible_core import DisparityMap, Views
 from tangible_core.errors import BrokenMethod, UnknownMethod
 from tangible_core.plugins import DepthEstimator
 from tangible_core.plugins.registry import KIND_NAMES, Registry
-from tangible_core.testing import (
-    CheckFailure,
-    CheckResult,
-    checks,
-    conforms,
-    every_method,
-    run_checks,
-)
+from tangible_core.testing import CheckFailure, CheckResult, checks, conforms, every_method, run_checks
 
 SOURCE = '''
     import numpy as np

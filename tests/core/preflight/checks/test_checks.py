@@ -1,0 +1,51 @@
+"""All checks together, and bounds that are met or not."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flights import fly, half_slope, level, material, surface_with_materials
+from tangible_core import HapticSurface
+from tangible_core.preflight import CHECKS, judge
+from tangible_core.preflight.checks.jitter import lateness
+from tangible_core.preflight.checks.stiffness import law_stiffness, quantisation
+from tangible_core.preflight.verdict import check_bound
+
+
+def test_page_names_every_check():
+    page = Path(__file__).parents[4].joinpath("docs/preflight.md").read_text(encoding="utf-8")
+    for each in judge(fly(surface_with_materials(material(texture="stochastic", roughness_m=1e-4)))):
+        assert f"| {each.check} |" in page
+
+
+@pytest.mark.parametrize("law", ["proxy", "penalty-gradient", "grey-level", "tangible-mask", "lateral-gradient"])
+@pytest.mark.parametrize(
+    "surface",
+    [HapticSurface.from_heights(np.zeros((1, 1))), level(), half_slope(5.0, 32)],
+    ids=["pixel", "level", "half"],
+)
+def test_checks_all_yield_verdicts_and_failures_have_cures(law: str, surface: HapticSurface):
+    flight = fly(surface, law)
+    verdicts = judge(flight)
+    assert len(verdicts) >= len(CHECKS) - 3
+    for each in verdicts:
+        assert (each.verdict == "ok") == (each.cure == "") == (each.says == ""), each
+        assert "proxy" not in each.cure or law != "proxy", each
+        assert math.isfinite(each.value)
+
+
+@pytest.mark.parametrize("relation", ["<=", ">="])
+def test_check_bound_nan_meets_no_bound(relation: Any):
+    assert check_bound("check", "of", math.nan, relation, 1.0, "N", "", cure="measure it").verdict == "warn"
+    assert check_bound("check", "of", 1.0, relation, math.nan, "N", "", cure="measure it").verdict == "warn"
+
+
+def test_law_that_is_not_a_spring_has_no_stiffness_limit():
+    for law in ("grey-level", "tangible-mask"):
+        [found] = law_stiffness(fly(level(), law))
+        assert (found.verdict, found.value) == ("ok", 0)
+        assert not list(quantisation(fly(level(), law)))
+        assert "stiffness it leaves" not in {each.of for each in lateness(fly(level(), law))}

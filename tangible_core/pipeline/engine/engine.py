@@ -142,13 +142,13 @@ class Engine:
         other = copy(self)
         other.scene_products = {**self.scene_products, **products}
         context = Context(self.config, self.scene, other.scene_products)
-        anew = {name for name in self.stages if self._depends_on(name, products)}
+        dependent = {name for name in self.stages if self._depends_on(name, products)}
         other.stages = {
-            name: stage_class(name)(context) if name in anew else stage
+            name: stage_class(name)(context) if name in dependent else stage
             for name, stage in self.stages.items()
             if name not in products
         }
-        other._substituted = self._substituted | anew | products.keys()
+        other._substituted = self._substituted | dependent | products.keys()
         other.begun, other.beside, other._progress = set(), None, ignore_event
         for each in ("_made", "_finished", "_full_size", "_keys", "_outcomes", "_notes"):
             kept = {name: value for name, value in getattr(self, each).items() if name not in other._substituted}

@@ -89,7 +89,7 @@ def test_file_without_cure_is_not_written(folder: Path):
     done = tangible("preflight", "p.yaml", "--seconds", 0.05, "--rate", 100, "--fix", "fixed.yaml", cwd=folder)
     assert done.returncode == 1
     assert "on mock: Unsafe, because " in done.stdout
-    assert done.stdout.rstrip().endswith("tried, which is not enough; nothing was written")
+    assert done.stdout.rstrip().endswith("tried, but not enough; nothing was written")
     assert not (folder / "fixed.yaml").exists()
 
 

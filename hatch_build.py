@@ -115,7 +115,7 @@ def _run(program: Any, words: list[str], folder: str, longest_s: float = LONGEST
 
 
 def _complaint(output: str) -> str:
-    """The line that says most of what a program said as it failed: npm's code, or the last line."""
+    """Return the line that says most of what a program said as it failed: npm's code, or the last line."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     codes = [line.removeprefix("npm error code ") for line in lines if line.startswith("npm error code ")]
     return (codes or lines or [""])[-1]

@@ -11,7 +11,7 @@ REPAIRS = ("Degenerate", "Edges fixed", "Facets removed", "Facets added", "Facet
 
 
 def told(*command: str) -> str:
-    """What a program says. It must end well."""
+    """Return what a program prints; it must succeed."""
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
@@ -23,7 +23,7 @@ def repaired(stl: Path) -> int:
 
 
 def sliced(solid: Path) -> None:
-    """The slicer finds one closed part, and makes a print of it without a word of repair."""
+    """Check that the slicer finds one closed part and slices it without a repair."""
     info = dict(line.split(" = ") for line in told("prusa-slicer", "--info", str(solid)).splitlines() if " = " in line)
     assert info["manifold"] == "yes" and int(info["number_of_parts"]) == 1, info
     gcode = solid.with_suffix(".gcode")

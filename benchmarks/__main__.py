@@ -65,7 +65,7 @@ def keep(name: str, section: str) -> None:
 
 
 def kept() -> dict[str, str]:
-    """The sections that are there, by title."""
+    """Return the sections that are there, by title."""
     text = RESULTS.read_text(encoding="utf-8") if RESULTS.exists() else ""
     parts = re.split(r"^## (.+)\n\n", text, flags=re.MULTILINE)
     return {title: body.rstrip("\n") + "\n" for title, body in zip(parts[1::2], parts[2::2], strict=True)}

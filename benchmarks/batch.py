@@ -33,7 +33,7 @@ ONE_PAIR = "scene: builtin/motorcycle\nwant: relief\ndepth: semi-global\nworkspa
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown."""
+    """Return the section of RESULTS.md, as Markdown."""
     head = (
         f"`tangible batch` over {COUNT:,} photographs of {TINY[1]} x {TINY[0]} pixels, two workers with a thread each, "
         "`luminance`. The client holds the scheduler. Times are processor times."
@@ -73,7 +73,7 @@ def _handing_out(found: dict[str, Any]) -> Iterator[Figure]:
 
 
 def _scaling(folder: Path) -> Figure:
-    """Rounds of both, in turns, so that whatever else the machine does meets both."""
+    """Run rounds of both in turns, so that other work of the machine meets both."""
     left = _picture(0, LARGER)
     Image.fromarray(left).save(folder / "left.png")
     Image.fromarray(np.roll(left, -9, axis=1)).save(folder / "right.png")
@@ -97,7 +97,7 @@ def _scaling(folder: Path) -> Figure:
 
 
 def _machine_ratio() -> float:
-    """What a second process gains that does nothing but count: 2 on two idle cores, less where two share one."""
+    """Measure the gain of a second process that only counts: 2 on two idle cores, less where two share one."""
     gains = []
     for _ in range(ROUNDS):
         alone, both = _counted(1), _counted(2)
@@ -116,7 +116,7 @@ def _picture(seed: int, shape: tuple[int, int]) -> np.ndarray:
 
 
 def _run(folder: Path, name: str, text: str, rows: list[dict[str, str]], workers: int) -> dict[str, Any]:
-    """What a process of its own says."""
+    """Return what a process of its own prints."""
     config, manifest = folder / f"{name}.yaml", folder / f"{name}.csv"
     config.write_text(text)
     with manifest.open("w", newline="") as file:

@@ -47,7 +47,7 @@ def compared() -> Results:
 
 
 def errors(method: str, measure: str = "bad2") -> dict[str, float]:
-    """A measure of a method, by scene."""
+    """Return a measure of a method, by scene."""
     return {
         scene: _cell(method, scene).measures.get(measure, math.nan) for scene in [*real_specs(), *synthetic_specs()]
     }
@@ -68,7 +68,7 @@ def times(scene: str) -> dict[str, Timed]:
 
 
 def figures() -> list[Figure]:
-    """The promises about undamaged pairs."""
+    """Return the promises about undamaged pairs."""
     return [_motorcycle(), _means(), _never_slower(), *_best(), _preview(), _zncc()]
 
 
@@ -165,7 +165,7 @@ def _zncc() -> Figure:
 
 
 def comparison_rows() -> list[str]:
-    """The table of `tangible compare`: all methods, mean over all scenes."""
+    """Return the table of `tangible compare`: all methods, mean over all scenes."""
     shown = tables(compared())[0]
     return table(shown.headings, shown.rows)
 

@@ -34,7 +34,7 @@ NEAR_ROWS = 8
 
 
 def measured() -> tuple[list[Figure], list[str]]:
-    """The promises about growth, and a row a size, of the default."""
+    """Return the promises about growth, and a row a size, of the default."""
     default = _sizes("balanced")
     figures = [*_promises("balanced", default), *_promises("best", _sizes("best")), _seams()]
     lines = [(f"{mpx:.1f}", f"{cost:.2f}", f"{used / 2**20:.0f}", f"{share:.2f}") for mpx, cost, used, share in default]

@@ -38,7 +38,7 @@ class KnownScene(NamedTuple):
 
 
 def known(pair: KnownPair) -> KnownScene:
-    """What a benchmark needs of a pair."""
+    """Open a pair: its views, its truth and its masks."""
     return KnownScene(pair, grey_pair(pair.views, "the benchmark"), range_px(pair))
 
 
@@ -60,13 +60,13 @@ def synthetic_specs(width_px: int = 480, height_px: int = 360) -> dict[str, Dept
 
 @cache
 def real() -> dict[str, KnownScene]:
-    """The photographs, opened."""
+    """Return the photographs, opened."""
     return {name: known(spec.open()) for name, spec in real_specs().items()}
 
 
 @cache
 def synthetic() -> dict[str, KnownScene]:
-    """The analytic scenes, opened."""
+    """Return the analytic scenes, opened."""
     return {name: known(spec.open()) for name, spec in synthetic_specs().items()}
 
 

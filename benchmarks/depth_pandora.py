@@ -52,7 +52,7 @@ def figures(rounds: int = 2) -> list[Figure]:
 
 
 def pandora(scene: KnownScene) -> Callable[[], np.ndarray]:
-    """A call that gives pandora's disparity in pixels, NaN where it found none; reading the files is not in it.
+    """Return a call that gives pandora's disparity in pixels, NaN where it found none; reading the files is not in it.
 
     Raises: ImportError if pandora or its plugin is not installed.
     """

@@ -122,7 +122,7 @@ def _warped(picture: np.ndarray, camera: Taken) -> np.ndarray:
 
 
 def _bricks() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A wall and a pillar before it, of bricks that differ by little: left, right, disparity where both show it."""
+    """Return a wall and a pillar before it, of similar bricks: left, right, disparity where both show it."""
     y, x = np.indices(SHAPE)
     wall_px, pillar_px = 20, 52
 

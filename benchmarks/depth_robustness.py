@@ -21,7 +21,7 @@ DAMAGES = (
 
 
 def measured() -> tuple[list[Figure], list[str]]:
-    """The promise about damaged pairs, and bad2 by damage, mean over the scenes."""
+    """Return the promise about damaged pairs, and bad2 by damage, mean over the scenes."""
     scenes = {**real(), **synthetic()}
     cells = {
         (kind, value): {name: _errors(_damaged(each, kind, value)) for name, each in scenes.items()}

@@ -29,7 +29,7 @@ class Skip(NamedTuple):
 
 
 def rows() -> list[str]:
-    """A row a skip, on the builtin pair."""
+    """Return a row a skip, on the builtin pair."""
     return table(
         ("left out", "switch", "time of all of it, ms", "time saved", "bad2 with all of it", "error added, points"),
         [_row(each) for each in skips(real()["motorcycle"])],
@@ -128,7 +128,7 @@ def _rectified(views: Views, tolerance_px: float) -> DisparityMap:
 
 
 def _half_flat(scene: KnownScene) -> tuple[Views, np.ndarray]:
-    """The pair with grey paper over the lower half, of which nothing is known."""
+    """Return the pair with grey paper over the lower half, of which nothing is known."""
     middle = scene.grey.left.shape[0] // 2
     left, right = (np.where(np.arange(len(each))[:, None] < middle, each, np.uint8(128)) for each in scene.grey)
     truth_px = scene.pair.truth_px.copy()
@@ -137,7 +137,7 @@ def _half_flat(scene: KnownScene) -> tuple[Views, np.ndarray]:
 
 
 def _each_channel(views: Views) -> DisparityMap:
-    """What colour could give: three matchings, the middle value of each pixel."""
+    """Match each of the three channels, and return the middle value of each pixel."""
     assert views.right is not None
     left, right = views.left, views.right
     channels = [SemiGlobal().estimate(Views(left[..., i], right[..., i])).disparity_px for i in range(3)]

@@ -62,7 +62,7 @@ def figures() -> list[Figure]:
 
 
 def roll(scene: KnownScene) -> Rolled:
-    """The right view as a camera that rolled and tilted would show it."""
+    """Return the right view as a camera that rolled and tilted would show it."""
     h, w = scene.grey.right.shape
     middle = camera_matrix(1, (h, w))
     turned = rotation(0, 0, np.radians(ROLL_DEGREES))
@@ -121,7 +121,7 @@ def own_row_offset_px(scene: KnownScene) -> float:
 
 
 def undone(rolled: Rolled) -> RectifiedPair:
-    """The pair rectified by what rolled it: whatever is lost then, no better geometry brings back."""
+    """Return the pair rectified by what rolled it: whatever is lost then, no better geometry brings back."""
     return warp_pair(rolled.views, (np.eye(3), np.linalg.inv(rolled.homography)), "the roll undone")
 
 

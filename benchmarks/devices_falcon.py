@@ -19,7 +19,7 @@ read, write, receive, saturate = tick.read, tick.write, framing.receive, packet.
 
 
 def figures() -> Iterator[Figure]:
-    """What needs no USB."""
+    """Yield the figures that need no USB."""
     yield from part("kinematics", lambda: list(_kinematics()))
     yield from part("force to torque", lambda: list(_torques()))
 

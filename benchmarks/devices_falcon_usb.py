@@ -25,7 +25,7 @@ CYCLES, STREAMS = 1_000_000, 1_000_000
 
 
 def figures() -> Iterator[Figure]:
-    """What goes over USB."""
+    """Yield the figures that go over USB."""
     yield part("firmware", _firmware)
     yield from part("protocol", lambda: list(_protocol()))
     yield from part("exchange", lambda: list(_exchange()))
@@ -87,7 +87,7 @@ class Nothing:
         return SimpleNamespace(**simulated.ENDPOINT, bEndpointAddress=(IN, OUT)[ep])
 
     def get_configuration(self, dev_handle: Any) -> int:
-        """Configured."""
+        """Accept the configuration."""
         return 1
 
     def bulk_write(self, dev_handle: Any, ep: int, intf: int, data: array, timeout: int) -> int:
@@ -95,7 +95,7 @@ class Nothing:
         return len(data)
 
     def bulk_read(self, dev_handle: Any, ep: int, intf: int, buff: array, timeout: int) -> int:
-        """The answer."""
+        """Give the answer of the device."""
         buff[:18] = self._answer
         return 18
 

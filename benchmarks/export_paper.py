@@ -24,7 +24,7 @@ DISPLAYS = {"monarch": 1, "graphiti": 4, "dotpad": 1}
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a bound is missed."""
+    """Return the section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a bound is missed."""
     logging.getLogger("tangible_export").addHandler(logging.NullHandler())  # what it says of each page
     pages, figures = part("pages", _pages)
     pins, kept = part("pins", _pins)
@@ -64,7 +64,7 @@ def _pages() -> tuple[list[str], list[Figure]]:
 
 
 def nearest_mm(svg: Path) -> float:
-    """The least gap between two blots of ink, but for the dots of one text and within the net of outlines."""
+    """Return the least gap between two blots of ink, but for the dots of one text and within the net of outlines."""
     root = ElementTree.parse(svg).getroot()
     ink = exported_pictures.pixels(svg, 25.4 * PER_MM) < 128
     blots, count = ndimage.label(ink, np.ones((3, 3)))
@@ -106,7 +106,7 @@ def _pins() -> tuple[list[str], list[Figure]]:
 
 
 def _borders(labels: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    """The pins on which a side between two pixels of two parts lies."""
+    """Return the pins on which a side between two pixels of two parts lies."""
     height, width = labels.shape
     scale = min(columns / width, rows / height)
     wide, long = max(1, round(width * scale)), max(1, round(height * scale))

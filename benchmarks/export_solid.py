@@ -32,7 +32,7 @@ REPAIRS = ("Degenerate", "Edges fixed", "Facets removed", "Facets added", "Facet
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a bound is missed."""
+    """Return the section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a bound is missed."""
     logging.getLogger("tangible_export").addHandler(logging.NullHandler())  # what it says of each solid
     rows, figures = part("pictures", _pictures)
     figures += part(f"{HUGE} x {HUGE}", lambda: list(_huge()))
@@ -110,7 +110,7 @@ def _works() -> dict[str, Work]:
 
 
 def _huge() -> Iterator[Figure]:
-    """The motorcycle with so many nodes, and grain of 0.1 mm on it."""
+    """Yield the motorcycle with so many nodes, and grain of 0.1 mm on it."""
     heights = cv2.resize(_works()["motorcycle, stereo"].relief.height_m, (HUGE, HUGE), interpolation=cv2.INTER_CUBIC)
     wave = np.sin(np.arange(HUGE, dtype=np.float32) * np.float32(2 * np.pi / 51))
     heights += np.float32(5e-5) * wave * wave[:, None]

@@ -19,7 +19,7 @@ class MissedError(Exception):
 
 
 def judged(figures: Iterable[Figure]) -> list[str]:
-    """A Markdown table; what is not within its bound says `missed`."""
+    """Return a Markdown table; what is not within its bound says `missed`."""
     rows = [(each.what, each.bound, each.measured, "" if each.met else "missed") for each in figures]
     return table(("what", "bound", "measured", ""), rows)
 
@@ -30,7 +30,7 @@ def table(headings: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> list[st
 
 
 def part(name: str, work: Callable[[], Any]) -> Any:
-    """What `work` gives; its name is said before, as it may take minutes."""
+    """Return what `work` gives; its name is printed before, as it may take minutes."""
     print(f"  {name} ...", file=sys.stderr)
     return work()
 

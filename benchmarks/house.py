@@ -26,7 +26,7 @@ PRODUCTS = ("disparity", "segments", "materials", "surface", "touch")
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown."""
+    """Return the section of RESULTS.md, as Markdown."""
     return "\n".join([*structure_rows(), "", *start_rows(), "", *overhead_rows(), "", *cache_rows(), "", *demo_rows()])
 
 
@@ -151,7 +151,7 @@ def demo(folder: Path, kernels: Path) -> tuple[float, str]:
 
 
 def tangible() -> str:
-    """The command of this environment."""
+    """Return the command of this environment."""
     return str(Path(sys.executable).with_name("tangible"))
 
 

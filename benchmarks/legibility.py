@@ -38,7 +38,7 @@ class Case(NamedTuple):
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown."""
+    """Return the section of RESULTS.md, as Markdown."""
     head = (
         f"Pictures that come with scikit-image, {1000 * WIDTH_M:.0f} mm wide, by the rules of swell paper. Drawn: by "
         "hand, in `tests/helpers/drawn_parts.yaml`; colours: six, by k-means; `gradient`: 20 segments. Seconds of one "
@@ -93,7 +93,7 @@ def _simplified() -> tuple[list[str], list[Figure]]:
 
 
 def _broken(parts: PartMap) -> tuple[str, str, str]:
-    """Connected parts, the share that is too narrow, and centimetres of border a square centimetre."""
+    """Return connected parts, the share that is too narrow, and centimetres of border a square centimetre."""
     grid = on_grid(parts, WIDTH_M)
     wide = measure(grid.parts.labels, grid.pitch_m, GAP_M)
     labels = wide.pieces
@@ -114,7 +114,7 @@ def _passes(parts: PartMap, names: tuple[str, ...]) -> bool:
 
 
 def _strips() -> list[Figure]:
-    """Strips of 3.1 and 3.3 mm, at all pitches and angles."""
+    """Yield strips of 3.1 and 3.3 mm, at all pitches and angles."""
     found: dict[float, list[bool]] = {0.0031: [], 0.0033: []}
     for pitch_m in PITCHES_M:
         for angle_deg in ANGLES_DEG:
@@ -138,7 +138,7 @@ def _strip(width_m: float, angle_deg: float, pitch_m: float) -> PartMap:
 
 
 def _scale() -> list[Figure]:
-    """The same picture of twice the pixels."""
+    """Return the same picture of twice the pixels."""
     figures: list[Figure] = []
     for name in PICTURES:
         drawn = drawn_parts.drawn(name)

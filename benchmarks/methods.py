@@ -29,7 +29,7 @@ ROUNDS = 3
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown; the same figures are written into the program."""
+    """Return the section of RESULTS.md, as Markdown; the same figures are written into the program."""
     found = {kind: part(kind, lambda kind=kind: side_by_side(kind)) for kind in SCENES}
     Path(measured.__file__).with_name(measured.FILE).write_bytes(Kinds.dump_json(found, indent=1) + b"\n")
     return "\n".join(line for kind, each in found.items() for line in (*rows(kind, each), "")).rstrip()
@@ -60,14 +60,14 @@ class Clock:
         self._since = 0.0
 
     def heard(self, step: Step) -> None:
-        """A process begins, or has ended."""
+        """Print that a process begins, or has ended."""
         if step.done:
             self.seconds.setdefault(step.row.method, []).append(perf_counter() - self._since)
         self._since = perf_counter()
 
 
 def values(line: Line, kind: str) -> tuple[float | None, ...]:
-    """Rounded to what is worth saying."""
+    """Round a figure to its significant digits."""
     task = load_task(kind)
     time, memory = task.clock.per_second * line.seconds, line.memory_bytes / 1e6
     errors = [(line.measures.get(name, math.nan), task.measures[name].digits) for name in SHOWN[kind]]

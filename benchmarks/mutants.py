@@ -64,7 +64,7 @@ class UnreadyError(Exception):
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a mutant was not noticed."""
+    """Return the section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a mutant was not noticed."""
     results = complete(ROOT, (), _jobs())
     text = "\n".join(rows(results))
     if any(each.outcome in BAD for each in results):
@@ -73,7 +73,7 @@ def section() -> str:
 
 
 def rows(results: Iterable[Result], before: Mapping[str, tuple[str, ...]] | None = None) -> list[str]:
-    """A table with a line a list, and a line each for what went wrong.
+    """Return a table with a line a list, and a line each for what went wrong.
 
     before: lines of lists that were measured earlier; results of the same list take their place.
     """
@@ -96,7 +96,7 @@ def rows(results: Iterable[Result], before: Mapping[str, tuple[str, ...]] | None
 
 
 def before() -> dict[str, tuple[str, ...]]:
-    """The lines of lists that RESULTS.md has."""
+    """Return the lines of lists that RESULTS.md has."""
     text = kept().get(SECTIONS["mutants"], "")
     found = re.findall(r"^\| `([\w-]+)` \| (.+) \|$", text, re.MULTILINE)
     return {room: tuple(cells.split(" | ")) for room, cells in found}
@@ -118,7 +118,7 @@ def _count(results: Iterable[Result], *outcomes: Outcome) -> int:
 
 
 def run(root: Path, chosen: Sequence[Mutant], jobs: int, patience_s: float = PATIENCE_S) -> Generator[Result]:
-    """The chosen mutants of a tree, as they are done.
+    """Yield the chosen mutants of a tree, as they are done.
 
     Raises: UnreadyError if the tests do not pass without them.
     """
@@ -140,7 +140,7 @@ def run(root: Path, chosen: Sequence[Mutant], jobs: int, patience_s: float = PAT
 
 @contextmanager
 def _folder(parent: Path | None) -> Generator[Path]:
-    """A new folder there, or among temporary ones, that goes with all in it."""
+    """Provide a new folder there, or among temporary ones, that goes with all in it."""
     with tempfile.TemporaryDirectory(prefix="mutants-", dir=parent, ignore_cleanup_errors=True) as folder:
         yield Path(folder)
 
@@ -222,12 +222,12 @@ def _say(text: str) -> None:
 
 
 def _jobs() -> int:
-    """Tests of real time want a core beside their own."""
+    """Return the number of workers: tests of real time need a core next to their own."""
     return max(1, (os.cpu_count() or 1) // 2)
 
 
 def main() -> None:
-    """The command line; exit 1 if a mutant was not noticed."""
+    """Run the command line; exit 1 if a mutant was not noticed."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.mutants", description="Do the tests notice faults?")
     parser.add_argument("words", nargs="*", help="names of lists, or parts of names of mutants; all")
     parser.add_argument("--keep", action="store_true", help="write the lines of whole lists to RESULTS.md")

@@ -58,7 +58,7 @@ def mutants(root: Path) -> list[Mutant]:
 
 
 def mutated(root: Path, mutant: Mutant) -> str:
-    """The text of its file with the fault in it."""
+    """Return the text of its file with the fault in it."""
     return (root / mutant.file).read_text(encoding="utf-8").replace(mutant.old, mutant.new)
 
 

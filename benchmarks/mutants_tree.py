@@ -52,7 +52,7 @@ class Tree:
         self._shared = shared
 
     def make(self) -> None:
-        """The environment round the sources, which are there: their folders first, then what is installed here."""
+        """Return the environment of the sources there: their folders first, then what is installed here."""
         self._temporary.mkdir()
         self._shared.mkdir()
         venv.create(self._venv, symlinks=True)
@@ -67,7 +67,7 @@ class Tree:
             script.chmod(0o755)
 
     def _own(self) -> list[str]:
-        """The folders that packages are imported from."""
+        """Return the folders that packages are imported from."""
         return self._config().get("tool", {}).get("hatch", {}).get("build", {}).get("dev-mode-dirs", ["."])
 
     def _config(self) -> dict[str, Any]:
@@ -86,12 +86,12 @@ class Tree:
         return {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "NUMBA_CACHE_DIR")} | ours
 
     def pytest(self, programs: "Programs", tests: Sequence[str], limit_s: float) -> Ended:
-        """The first failure ends it."""
+        """Run the tests until the first failure."""
         command = [str(self.python), "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests]
         return programs.run(command, self.sources, self.environ(), limit_s)
 
     def put_in(self, mutant: Mutant) -> None:
-        """The fault, in a file of another time: what was compiled of it before is then not used."""
+        """Write the fault into a file of another time: what was compiled of it before is then not used."""
         path, text = self.sources / mutant.file, mutated(self.sources, mutant)
         later_ns = path.stat().st_mtime_ns + 2_000_000_000
         path.write_text(text, encoding="utf-8")
@@ -119,7 +119,7 @@ class Programs:
         self._stopped = False
 
     def run(self, command: Sequence[str], cwd: Path, environ: dict[str, str], limit_s: float) -> Ended:
-        """What it says goes to a file: a pipe would wait for what the program left behind."""
+        """Run a command with its output in a file: a pipe would wait for processes that it left behind."""
         with (Path(environ["TMPDIR"]) / "said.txt").open("w+b") as said:
             with self._lock:
                 if self._stopped:

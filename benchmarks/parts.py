@@ -39,7 +39,7 @@ RELIEF_MS, RUNS = 15, 7
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown."""
+    """Return the section of RESULTS.md, as Markdown."""
     head = (
         f"Pictures that come with scikit-image, {1000 * WIDTH_M:.0f} mm wide, {1000 * TALL_M:.0f} mm high. A step is "
         "felt where heights differ by 0.5 mm within 2 mm, after a Gaussian of 0.5 mm. Drawn: by hand, in "
@@ -123,7 +123,7 @@ def _times() -> tuple[list[str], list[Figure]]:
 
 
 def _works(shape: tuple[int, int]) -> dict[str, Callable[[], Any]]:
-    """What is timed, of the drawn motorcycle at a size."""
+    """Return the timed calls on the drawn motorcycle at a size."""
     drawn = drawn_parts.drawn("motorcycle")
     segments = SegmentMap(cv2.resize(drawn.parts.labels, shape[::-1], interpolation=cv2.INTER_NEAREST))
     picture = cv2.resize(drawn.picture, shape[::-1])

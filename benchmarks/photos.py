@@ -48,7 +48,7 @@ class Process(NamedTuple):
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown."""
+    """Return the section of RESULTS.md, as Markdown."""
     head = (
         f"A JPEG of gradients, shapes and noise, through `luminance`, `gradient` and `proxy`, 80 mm wide. Whole "
         f"processes, kernels compiled, results not kept; medians of {RUNS}. Peak: resident memory."
@@ -123,7 +123,7 @@ def _figures(taken: dict[int, Taken]) -> Iterator[Figure]:
 
 
 def _lost(file: Path) -> Iterator[Figure]:
-    """The surface as it is felt, against one of every pixel of the photo, both smoothed by 0.5 mm."""
+    """Yield the surface as it is felt, against one of every pixel of the photo, both smoothed by 0.5 mm."""
     pipeline = load_pipeline(file, ["workspace.smooth_m=0.0005", "workspace.relief_m=0.005"])
     pipeline.engine.cache = None
     size, disparity, law = pipeline.config.workspace, pipeline.disparity, pipeline.config.render

@@ -23,7 +23,7 @@ DEVICE = DeviceSpec(8.0, 3000.0, 1.5, (0.08, 0.08, 0.08), 3e-5)
 
 
 def figures() -> Iterator[Figure]:
-    """The steps of a force, and the time of a tick."""
+    """Yield the steps of a force, and the time of a tick."""
     yield _steps()
     ns = _times({"guard": (Safety(), 800.0)})["guard"]
     yield Figure("the guard, as it is without options", "<= 60 ns", f"{ns:.0f} ns", ns <= 60)
@@ -83,7 +83,7 @@ ALL = Safety(coupling="auto", delay_ticks=2)
 
 
 def parts() -> list[str]:
-    """A row for each part that can be left out."""
+    """Return a row for each part that can be left out."""
     rows = {
         "all of them: coupling, softening, passivity, delay": (ALL, 3000.0),
         "without the coupling": (ALL.model_copy(update={"coupling": None}), 3000.0),

@@ -18,7 +18,7 @@ SPRINGS: tuple[ForceRenderer, ...] = (Proxy(), Penalty(), PenaltyGradient(), For
 
 
 def figures() -> Iterator[Figure]:
-    """A row for each delay: the limits of all springs lie within the bound's 5 %."""
+    """Yield a row for each delay: the limits of all springs lie within the bound's 5 %."""
     found = [limits(each, plane().surface) for each in SPRINGS]
     for delay in DELAYS:
         bound = stiffness_limit_n_per_m(HANDLE.damping_n_s_per_m, HANDLE.period_s, delay)

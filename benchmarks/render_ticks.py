@@ -27,7 +27,7 @@ from .turns import in_turns
 
 
 def figures() -> Iterator[Figure]:
-    """The proxy by size, materials around a law against both apart, and the mask against the plain sum."""
+    """Yield the proxy by size, materials around a law against both apart, and the mask against the plain sum."""
     yield from _growth()
     yield from _around()
     yield from _mask()
@@ -115,7 +115,7 @@ def _by_tables(tables, rows, columns, half, out):  # noqa: ANN001, ANN202
 
 
 def skips() -> list[str]:
-    """A row for each thing that is left out: what it saves, and how far apart it and all of it feel the same path."""
+    """Yield a row for each part left out: the time saved, and how far its forces differ along the same path."""
     level = HapticSurface.from_heights(np.full((256, 256), 0.004))
     flat = path(HAND)
     flat[:, 2] = 0.003
@@ -142,7 +142,7 @@ def skips() -> list[str]:
 
 
 def _unsure(felt: HapticSurface) -> CompiledTouch:
-    """The proxy, told of no tile how deep it goes."""
+    """Return the proxy, told of no tile how deep it goes."""
     touch = Proxy().touch(felt)
     assert isinstance(touch, CompiledTouch)
     tiles_m = touch.fixed[5].copy()
@@ -151,13 +151,13 @@ def _unsure(felt: HapticSurface) -> CompiledTouch:
 
 
 def covered(count: int, material: Material) -> HapticSurface:
-    """The waves, all of one material."""
+    """Return the waves, all of one material."""
     waves = surface(count)
     return HapticSurface(waves.relief, np.zeros((count, count), np.int32), (material,))
 
 
 def laws() -> list[str]:
-    """A row for each law that is shipped."""
+    """Return a row for each law that is shipped."""
     felt, hands = surface(256), path(HAND)
     methods: dict[str, ForceRenderer] = {
         each.name: default_registry().load("render", each.name)()

@@ -30,14 +30,14 @@ def surface(count: int, steps: int = 0) -> HapticSurface:
 
 
 def path(speed: float, depth_m: float = DEPTH_M) -> np.ndarray:
-    """A wandering hand, this deep under the waves."""
+    """Return a wandering hand, this deep under the waves."""
     t = np.arange(TICKS) / 1000 * speed
     x, y = 0.034 * np.sin(2 * np.pi * 0.31 * t), 0.034 * np.sin(2 * np.pi * 0.23 * t + 0.7)
     return np.column_stack([x, y, AMPLITUDE_M * (1 + np.sin(WAVE * x) * np.sin(WAVE * y)) - depth_m])
 
 
 def nearest(hands: np.ndarray) -> np.ndarray:
-    """The exact nearest points, by Newton's method on the formula, followed along the path."""
+    """Return the exact nearest points, by Newton's method on the formula, followed along the path."""
     found, p = np.empty_like(hands), hands[0, :2]
     for hand, out in zip(hands, found, strict=True):
         for _ in range(60):

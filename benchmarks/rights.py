@@ -8,7 +8,7 @@ PR_CAPBSET_DROP = 24
 
 
 def give_up() -> None:
-    """What this process starts from now on may neither be real time nor lock its memory. It cannot be taken back."""
+    """Deny real time and locked memory to all that this process starts from now on. It cannot be taken back."""
     if sys.platform != "linux":
         return
     import resource

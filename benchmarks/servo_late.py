@@ -32,7 +32,7 @@ Rounds = dict[str, list[Round]]
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown."""
+    """Return the section of RESULTS.md, as Markdown."""
     recorded, of_recorder = part("recorder", _recorder)
     plain, of_rights = part("without real-time rights", _without_rights)
     head = (
@@ -71,7 +71,7 @@ def _recorder() -> tuple[Rounds, list[Figure]]:
 
 
 def _watched(keep: Callable, used_s: list[float]) -> Round:
-    """A session, and how many seconds of a processor this process had meanwhile, from the first tick on."""
+    """Return a session, and how many seconds of a processor this process had meanwhile, from the first tick on."""
     servos, begun_s = list[Servo](), list[float]()
 
     def started(servo: Servo) -> None:

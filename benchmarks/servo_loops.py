@@ -32,14 +32,14 @@ LOOPS = {"all compiled": Circling(), "compiled tick, a device that Python asks":
 
 
 def touch() -> Touch:
-    """The proxy on waves, which the tip of `Circling` is always in."""
+    """Return the proxy on waves, which the tip of `Circling` is always in."""
     across = np.linspace(0, 8 * np.pi, 1024)
     heights = (0.002 + 0.001 * np.sin(across)[:, None] * np.sin(across)).astype(np.float32)
     return load_method("render", "proxy")().touch(HapticSurface.from_heights(heights))
 
 
 def ours(device: HapticDevice, seconds: float) -> tuple[Round, bool]:
-    """The servo on this device, and whether it was real time."""
+    """Return the servo on this device, and whether it was real time."""
     with Servo(touch(), device, seconds=seconds) as servo:
         while servo.running:
             time.sleep(0.1)
@@ -47,7 +47,7 @@ def ours(device: HapticDevice, seconds: float) -> tuple[Round, bool]:
 
 
 def compiled_c(folder: Path) -> Path | None:
-    """The loop in C, if there is a compiler."""
+    """Return the loop in C, if there is a compiler."""
     compiler = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
     if compiler is None:
         return None
@@ -57,7 +57,7 @@ def compiled_c(folder: Path) -> Path | None:
 
 
 def in_c(program: Path, seconds: float) -> tuple[Round, bool]:
-    """The loop in C, and whether it was real time."""
+    """Return the loop in C, and whether it was real time."""
     done = subprocess.run([str(program), str(round(1000 * seconds))], check=True, capture_output=True, text=True)
     real_time, overruns, most_ns, *late = map(int, done.stdout.split())
     return Round(np.array(late), overruns, 1e-9 * most_ns), real_time == 1
@@ -107,7 +107,7 @@ def beside_a_server() -> Iterator[Figure]:
 
 @contextmanager
 def busy_server() -> Iterator:
-    """A web server in a process of its own, asked without pause; what it gives counts the answers."""
+    """Provide a web server in a process of its own, asked without pause; what it gives counts the answers."""
     words = [sys.executable, "-c", "from benchmarks.servo_loops import serve; serve()"]
     server = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
     assert server.stdout is not None
@@ -134,7 +134,7 @@ def busy_server() -> Iterator:
 
 class _Page(BaseHTTPRequestHandler):
     def do_GET(self) -> None:
-        """Some work, and 100 kB."""
+        """Return some work, and 100 kB."""
         body = "".join(f"<p>{number}</p>" for number in range(8000)).encode()
         self.send_response(200)
         self.send_header("Content-Length", str(len(body)))

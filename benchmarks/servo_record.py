@@ -17,7 +17,7 @@ MINUTES = float(os.environ.get("TANGIBLE_MINUTES", "10"))
 
 
 def figures() -> Iterator[Figure]:
-    """A long recording."""
+    """Yield a long recording."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "long.nc"
         with Writer(path) as writer:

@@ -29,7 +29,7 @@ class Round(NamedTuple):
 
     @classmethod
     def of(cls, ring: Ring) -> Self:
-        """What the loop counted that wrote to this ring."""
+        """Return the counts of the loop that wrote to this ring."""
         return cls(ring.late.copy(), ring.overruns, float(ring.sums[MOST_LATE_S]))
 
     @property
@@ -75,7 +75,7 @@ def no_more_overruns(mine: Sequence[Round], other: Sequence[Round]) -> bool:
 
 
 def rows(kinds: Mapping[str, Sequence[Round]]) -> list[tuple[str, ...]]:
-    """A line for each kind: share of late ticks as the median of its rounds; the rest of all their ticks together."""
+    """Return a line for each kind: share of late ticks as the median of its rounds; the rest of all ticks together."""
     return [_row(name, rounds) for name, rounds in kinds.items()]
 
 

@@ -37,7 +37,7 @@ OTHERS_S = 8
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown."""
+    """Return the section of RESULTS.md, as Markdown."""
     head = (
         "README's second command without the installation; kernels are those of the run before, if there was one. "
         "A room that grows past its processor seconds pays: its tests get quicker, or another room gives up as many."
@@ -64,13 +64,13 @@ def figures(whole: dict[str, float]) -> Iterator[Figure]:
 
 
 def seconds_of_tests(folder: Path) -> dict[str, float]:
-    """What the plugin `processor_time` wrote there, by the id of each test."""
+    """Read what the plugin `processor_time` wrote: seconds by the id of each test."""
     lines = [line for path in sorted(folder.iterdir()) for line in path.read_text().splitlines()]
     return dict(map(json.loads, lines))
 
 
 def rows(seconds: Mapping[str, float]) -> Iterable[tuple[str, ...]]:
-    """A line a room, the dearest first, and one with what missed its bound marked so."""
+    """Yield a line a room, the dearest first, and one with what missed its bound marked so."""
     spent, count = Counter[str](), Counter[str]()
     for test, each_s in seconds.items():
         spent[room(test)] += each_s

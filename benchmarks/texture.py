@@ -30,7 +30,7 @@ PROTOCOL = (
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown."""
+    """Return the section of RESULTS.md, as Markdown."""
     figures = part("mosaics", texture_accuracy.figures)
     figures += part("colour", texture_colour.figures)
     figures += part("features", texture_features.figures)

@@ -38,7 +38,7 @@ def found(label: str, picture: np.ndarray, segments: int, **options: object) -> 
 
 
 def calls(scene: KnownSegments) -> dict[str, Callable[[], np.ndarray]]:
-    """What each does on a scene, the recipe first."""
+    """Return the result of each method on a scene, the recipe first."""
     ours = {label: partial(_labels, label, scene) for label in METHODS}
     return {OPENCV: partial(segmented, scene.picture, scene.count), **ours}
 
@@ -75,7 +75,7 @@ def share(label: str) -> float:
 
 
 def figures() -> list[Figure]:
-    """The promises about mosaics."""
+    """Return the promises about mosaics."""
     return [_gabor(), _never_below(), _fast(), _counted()]
 
 

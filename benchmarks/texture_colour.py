@@ -24,7 +24,7 @@ TIE = 0.005
 
 
 def figures() -> list[Figure]:
-    """The promise about colour, for each way in which a mosaic is coloured."""
+    """Return the promise about colour, for each way in which a mosaic is coloured."""
     kinds: dict[str, list[tuple[float, float, str]]] = {}
     for name, scene in list(published().items())[::EVERY]:
         for kind, picture in coloured(scene):

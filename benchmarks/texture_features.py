@@ -21,7 +21,7 @@ ROUNDS = 15
 
 
 def figures() -> list[Figure]:
-    """The promise about features."""
+    """Return the promise about features."""
     greys = [to_grey(scene.picture) for scene in some().values()]
     wavelengths_px = octaves(LONGEST_PX)
     filters = bank(wavelengths_px)

@@ -37,12 +37,12 @@ def recipe(picture: np.ndarray) -> np.ndarray:
 
 
 def pieces(scene: KnownSegments) -> np.ndarray:
-    """The true regions, int32 (h, w), each in one piece."""
+    """Return the true regions, int32 (h, w), each in one piece."""
     return np.asarray(label(scene.labels, background=-1, connectivity=1), np.int32) - 1
 
 
 def figures() -> list[Figure]:
-    """The promises about smooth scenes."""
+    """Return the promises about smooth scenes."""
     method = load_method("texture", "gradient")()
     calls = {
         name: {

@@ -20,7 +20,7 @@ MEMORY_BYTES_PX, MEMORY_BYTES = 60, 16 << 20
 
 
 def measured() -> tuple[list[Figure], list[str]]:
-    """The promises about growth, and a row a size."""
+    """Return the promises about growth, and a row a size."""
     calls = [partial(found, "gabor", _picture(side), SEGMENTS) for side in SIDES_PX]
     memory = [_peak(call) for call in calls]
     times = np.array([[seconds(call) for call in calls] for _ in range(ROUNDS)]).min(axis=0)

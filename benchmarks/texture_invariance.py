@@ -34,7 +34,7 @@ FLAT["one pixel + 1"][40, 60] += 1
 
 
 def figures() -> list[Figure]:
-    """The promises about what must not matter."""
+    """Return the promises about what must not matter."""
     light = {what: list(_against_plain(change, lambda labels: labels)) for what, change in LIGHT.items()}
     turns = {what: list(_against_plain(*pair)) for what, pair in TURNS.items()}
     noisy = {"sd 8": list(_against_plain(lambda picture: noise(picture, 8, 0), lambda labels: labels))}

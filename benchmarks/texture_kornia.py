@@ -21,7 +21,7 @@ MOSAICS = 3
 
 
 def figures() -> list[Figure]:
-    """The promise about torch."""
+    """Return the promise about torch."""
     scenes = dict(list(some().items())[:MOSAICS])
     agreements, accuracies = {}, []
     for name, scene in scenes.items():
@@ -49,7 +49,7 @@ def _kornia(scene: KnownSegments) -> np.ndarray:
 
 
 def _our_bank(scene: KnownSegments) -> np.ndarray:
-    """The same bank, windows, features and starts, without torch; nothing is skipped or dropped in either."""
+    """Return the same bank, windows, features and starts, without torch; nothing is skipped or dropped in either."""
     options = KorniaGabor()
     grey, filters = to_grey(scene.picture), bank(octaves(options.longest_px))
     spectrum = spectrum_of(grey, padding(filters, options.window_px))

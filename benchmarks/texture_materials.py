@@ -22,7 +22,7 @@ ROUNDS = 9
 
 
 def measured() -> tuple[list[Figure], list[str]]:
-    """The promises about texture models, and a row a material."""
+    """Return the promises about texture models, and a row a material."""
     nanoseconds = _nanoseconds()
     peaks_m = {name: peak_m(material) for name, material in library().items()}
     off = {name: abs(peak / library()[name].grain_m - 1) for name, peak in peaks_m.items() if not math.isnan(peak)}
@@ -49,7 +49,7 @@ def measured() -> tuple[list[Figure], list[str]]:
 
 
 def _nanoseconds() -> dict[str, float]:
-    """A point of each material: the median over calls that walk over many points."""
+    """Return a point of each material: the median over calls that walk over many points."""
     names = list(library())
     textures = compile_textures(list(library().values()))
     way_m = np.outer(np.arange(POINTS) * PERIOD_S * SPEED_M_PER_S, (0.8, 0.6))

@@ -36,7 +36,7 @@ class Skip(NamedTuple):
 
 
 def rows() -> list[str]:
-    """A row a skip, on one mosaic."""
+    """Return a row a skip, on one mosaic."""
     scene = next(scene for scene in some().values() if scene.count == SEGMENTS)
     return table(
         ("left out", "switch", "time of all of it, ms", "time saved", "ARI with all of it", "ARI lost"),
@@ -45,7 +45,7 @@ def rows() -> list[str]:
 
 
 def exact() -> str:
-    """What is known before anything is looked for: no error, and next to no time."""
+    """Yield what is known before any search: no error, and next to no time."""
     picture = next(iter(some().values())).picture
     calls = {
         "whole": partial(found, "gabor", picture, SEGMENTS),

@@ -21,7 +21,7 @@ DRAG_S = 8.0
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown."""
+    """Return the section of RESULTS.md, as Markdown."""
     found = [*smoothness(), *start(), *tasks(), *editor(), *size(), *installing(), *lasting()]
     late, rows = lateness()
     text = "\n".join(
@@ -42,7 +42,7 @@ def section() -> str:
 
 
 def smoothness() -> Iterator[Figure]:
-    """The cursor while the mouse is dragged."""
+    """Yield the cursor while the mouse is dragged."""
     runs = [part(f"drag {n + 1}", _dragged) for n in range(RUNS)]
     hz, tick, tick95, mouse, mouse95, pick, pick99 = (statistics.median(column) for column in zip(*runs, strict=True))
     yield Figure("cursor drawn", ">= 40 Hz", f"{hz:.0f} Hz", hz >= 40)
@@ -95,7 +95,7 @@ def _started(in_a_tab: bool) -> tuple[float, float]:
 
 
 def tasks() -> Iterator[Figure]:
-    """What takes its time, and must not take it from the hand."""
+    """Yield the figures of long work, which must not slow the hand."""
     swap_s = statistics.median(part("swap", swapped))
     yield Figure("another law that is known, click to felt", "<= 400 ms", f"{1e3 * swap_s:.0f} ms", swap_s <= 0.4)
     stop_s, overruns = part("stop", stopped)
@@ -116,7 +116,7 @@ def size() -> Iterator[Figure]:
 
 
 def lasting() -> Iterator[Figure]:
-    """What happens in a long time."""
+    """Yield the figures of a long session."""
     stale, seconds, asked = part("a minute of dragging", stale_ticks)
     yield Figure(f"stale ticks in {seconds:.0f} s of dragging", "0", str(stale), stale == 0)
     yield Figure("requests to another machine meanwhile", "0", str(asked), asked == 0)

@@ -52,7 +52,7 @@ class Served:
 
 @contextmanager
 def scene_640() -> Generator[Path]:
-    """A pipeline file of the motorcycle, cut to 640 x 480."""
+    """Provide a pipeline file of the motorcycle, cut to 640 x 480."""
     from PIL import Image
     from skimage import data
 
@@ -81,7 +81,7 @@ def served(*words: object, **env: str) -> Generator[Served]:
 
 
 def tangible() -> str:
-    """The program of this environment."""
+    """Return the program of this environment."""
     return shutil.which("tangible", path=str(Path(sys.executable).parent)) or "tangible"
 
 
@@ -110,7 +110,7 @@ def browser() -> "Generator[Browser]":
 
 
 def window(chromium: "Browser") -> "BrowserContext":
-    """A window of the browser with an empty tab, at rest. To make one takes the browser a second of processor time."""
+    """Return a window of the browser with an empty tab, at rest. Making one takes a second of processor time."""
     found = chromium.new_context(viewport=SIZE, locale="en-GB")  # pyright: ignore[reportArgumentType]
     found.new_page()
     time.sleep(1.0)
@@ -118,14 +118,14 @@ def window(chromium: "Browser") -> "BrowserContext":
 
 
 def opened(chromium: "Browser", url: str, within: "BrowserContext | None" = None) -> "Page":
-    """A tab with the page, which keeps figures; in a window that is there, or in one of its own."""
+    """Return a tab with the page, which keeps figures; in a window that is there, or in one of its own."""
     page = (within or chromium.new_context(viewport=SIZE, locale="en-GB")).new_page()  # pyright: ignore[reportArgumentType]
     page.goto(f"{url}&measure")
     return page
 
 
 def until(page: "Page", said: str) -> Any:
-    """What an expression of the page says, once that is something. Raises: TimeoutError."""
+    """Return the value of an expression of the page, once it has one. Raises: TimeoutError."""
     end_s = time.monotonic() + LONGEST_S
     while not (found := page.evaluate(said)):
         if time.monotonic() > end_s:
@@ -145,7 +145,7 @@ def felt(page: "Page") -> float:
 
 
 def drag(page: "Page", seconds: float, hz: float = 60.0, where: str = "#terrain") -> None:
-    """A mouse, held down, on a curve that crosses the whole surface."""
+    """Return a mouse, held down, on a curve that crosses the whole surface."""
     box = page.locator(where).bounding_box()
     assert box is not None
     middle = box["x"] + box["width"] / 2, box["y"] + box["height"] * 0.55

@@ -38,7 +38,7 @@ def _round(built: Path, bare: Path) -> tuple[float, float, float]:
 
 
 def _copy(tree: Path) -> None:
-    """The files of the project, without what was built."""
+    """Return the files of the project, without what was built."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True, text=True).stdout
     for name in filter(None, listed.split("\0")):
         (tree / name).parent.mkdir(parents=True, exist_ok=True)

@@ -53,7 +53,7 @@ def lateness() -> tuple[Figure, list[tuple[str, ...]]]:
 
 
 def ring_of(process: int) -> Ring:
-    """The ring of a host's loop, once it ticks. Raises: TimeoutError."""
+    """Return the ring of a host's loop, once it ticks. Raises: TimeoutError."""
     end_s = time.monotonic() + 60
     while time.monotonic() < end_s:
         for path in shared_folder().glob(f"tangible-{process}-*.ring"):

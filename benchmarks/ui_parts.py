@@ -37,7 +37,7 @@ DRAG_HEIGHT = """async ([count, times]) => {
 
 
 def editor() -> Iterator[Figure]:
-    """What a person waits for who draws parts."""
+    """Yield the waits of a person who draws parts."""
     brush, proposed = part("parts of 12 megapixels", _large)
     p50, p95 = (percentile(brush, share) for share in (50, 95))
     yield Figure("brush on 12 megapixels, seen after, p50 / p95", "<= 50 ms", f"{p50:.0f} / {p95:.0f} ms", p50 <= 50)
@@ -79,7 +79,7 @@ def _dragged() -> list[float]:
 
 @contextmanager
 def _editor(photo: Path) -> "Generator[Page]":
-    """The editor, open on the first parts of a photograph, which are felt."""
+    """Provide the editor, open on the first parts of a photograph, which are felt."""
     words = [tangible(), "parts", str(photo), "--out", str(photo.parent / "parts")]
     subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
     (config,) = (photo.parent / "parts").glob("*.yaml")

@@ -44,7 +44,7 @@ WIDTH_M = 0.08
 
 
 def section() -> str:
-    """The section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a bound is missed."""
+    """Return the section of RESULTS.md, as Markdown. Raises: MissedError, with it, if a bound is missed."""
     parts: dict[str, Callable[[], Iterator[Figure]]] = {
         "frames a second": _rates,
         "lateness": _lateness,
@@ -68,7 +68,7 @@ def section() -> str:
 
 
 def _pipeline(folder: Path, size: tuple[int, int], fps: float, **scene: Any) -> Pipeline:
-    """The film of this size, as a file and a pipeline."""
+    """Return the film of this size, as a file and a pipeline."""
     path = folder / f"{size[0]}-{fps:g}.avi"
     if not path.exists():
         _write(path, size, fps)
@@ -77,7 +77,7 @@ def _pipeline(folder: Path, size: tuple[int, int], fps: float, **scene: Any) -> 
 
 
 def _write(path: Path, size: tuple[int, int], fps: float) -> None:
-    """A pair that moves by a tenth of its width to and fro, and noise that is new in each frame."""
+    """Return a pair that moves by a tenth of its width to and fro, and noise that is new in each frame."""
     from skimage.data import stereo_motorcycle
 
     (width, height), generator = size, np.random.default_rng(0)
@@ -112,7 +112,7 @@ def _played(
     on_start: Callable[[Servo], None] | None = None,
     on_report: Callable[[ServoReport], None] | None = None,
 ) -> ServoReport:
-    """A session of a film on a device without Python; of its first frame alone, if it is not to play."""
+    """Return a session of a film on a device without Python; of its first frame alone, if it is not to play."""
     turn = Slot(Feeling(pipeline).film(), Safety(), reliefs=(lambda: Feeling(pipeline).reliefs) if playing else None)
     return run_kiosk([turn], Circling(), seconds, on_start=on_start, on_report=on_report)
 
@@ -133,7 +133,7 @@ def _rates() -> Iterator[Figure]:
 
 
 def _lateness() -> Iterator[Figure]:
-    """The same loop with a film that plays and with one that stands, in turn: any machine has spells of its own."""
+    """Yield the same loop with a film that plays and one that stands, in turn: any machine has its spells."""
     late = {True: list[float](), False: list[float]()}
     with tempfile.TemporaryDirectory() as folder:
         pipeline = _pipeline(Path(folder), (640, 480), 30.0)
@@ -156,7 +156,7 @@ def _late_percent(pipeline: Pipeline, playing: bool) -> float:
 
 
 def _cuts() -> Iterator[Figure]:
-    """A hand at rest in the surface while it is cut to others: the law's own force, which no guard softens."""
+    """Yield a hand at rest in the surface while it is cut to others: the law's own force, which no guard softens."""
     one, other = _hills(0.0), Relief(_hills(0.0).height_m[::-1, ::-1] * 0.3, _hills(0.0).extent_m)
     for stiffness in STIFFNESSES:
         film = Proxy(stiffness_n_per_m=stiffness).film(HapticSurface(one))
@@ -180,7 +180,7 @@ def _hills(phase: float) -> Relief:
 
 
 def _breathing() -> Iterator[Figure]:
-    """A surface that goes up and down by 3 mm twice a second under a hand that holds still: no leak."""
+    """Yield a surface that goes up and down by 3 mm twice a second under a hand that holds still: no leak."""
     flat = np.zeros((240, 320), np.float32)
 
     def at(time_s: float) -> Relief:
@@ -202,7 +202,7 @@ def _breathing() -> Iterator[Figure]:
 
 
 def _steadiness() -> Iterator[Figure]:
-    """A box walks over a ground, both known exactly, with noise that is new in each frame."""
+    """Yield a box walks over a ground, both known exactly, with noise that is new in each frame."""
     generator, steady, count = np.random.default_rng(3), Steady(), 45
     shape = (240, 320)
     method = SemiGlobal(resolution="half", min_disparity_px=0, max_disparity_px=32)

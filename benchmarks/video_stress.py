@@ -49,7 +49,7 @@ class Worst(NamedTuple):
 
 
 def figures() -> Iterator[Figure]:
-    """What is demanded over 1e7 ticks."""
+    """Yield the demands over 1e7 ticks."""
     worst = stress(TICKS)
     told = f"{worst.ticks:.0e} ticks, {worst.touched:.0e} of them in contact"
     yield Figure(
@@ -68,7 +68,7 @@ def figures() -> Iterator[Figure]:
 
 
 def stress(ticks: int, seed: int = 0) -> Worst:
-    """What films did at their worst, a new one every 20000 ticks."""
+    """Yield the worst of the films, a new one every 20000 ticks."""
     random = np.random.default_rng(seed)
     worst, done = Worst(0, 0, 0, 0.0, -np.inf, 0.0, -np.inf, 0.0), 0
     while done < ticks:
@@ -180,14 +180,14 @@ def walk(fixed, tick, moving, settings, memory, hands, first, last, stiffness, f
 
 
 def _held(random: np.random.Generator, surface: HapticSurface, ticks: int) -> Float64[np.ndarray, "n 3"]:
-    """A hand that is put down somewhere over or in the block, and stays for a while."""
+    """Return a hand that is put down somewhere over or in the block, and stays for a while."""
     half_m, high_m = np.array(surface.extent_m) / 2, float(surface.height_m.max())
     places = random.uniform((*-half_m, -0.002), (*half_m, high_m + 0.001), (ticks // 1000 + 2, 3))
     return places[np.minimum(np.cumsum(random.random(ticks) < 1 / 1500), len(places) - 1)]
 
 
 def _loops(random: np.random.Generator, surface: HapticSurface, ticks: int) -> Float64[np.ndarray, "n 3"]:
-    """A closed path over and over: within the borders or beyond them, shallow or through everything, slow or fast."""
+    """Return a closed path over and over: within the borders or beyond them, shallow or deep, slow or fast."""
     half_m, high_m = np.array(surface.extent_m) / 2, float(surface.height_m.max())
     beyond, deep, turn_s = random.choice([0.7, 1.1]), random.choice([0.1, 0.5]), random.choice([0.5, 2.0, 8.0])
     turn = 2 * np.pi * PERIOD_S / turn_s * np.arange(ticks)

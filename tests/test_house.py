@@ -250,9 +250,18 @@ def test_dependencies_have_their_reasons():
         assert name in reasons, f"{name} is not explained"
 
 
+CORE_ROOMS = [
+    f"tangible_core/{room}" for room in ("cli", "compiled", "files", "metrics", "pipeline", "provenance", "runtime")
+]
+"""The rooms of the core whose functions and docstrings keep both rules of words."""
+
+
 @pytest.mark.parametrize(
     "house",
-    ["plugins/authoring", "plugins/depth", "plugins/devices", "plugins/export", "plugins/render", "plugins/texture"],
+    [
+        *("plugins/authoring", "plugins/depth", "plugins/devices", "plugins/export", "plugins/render"),
+        *("plugins/texture", "plugins/ui/tangible_ui", "tangible_core/data", "tangible_core/plugins", *CORE_ROOMS),
+    ],
 )
 def test_docstrings_open_with_a_verb_or_a_noun(house):
     """The rest of the house follows; `python -m benchmarks.house_words --list` names what is left."""
@@ -261,7 +270,10 @@ def test_docstrings_open_with_a_verb_or_a_noun(house):
     assert share(words.openers, words.docstrings) < 5, words.openers
 
 
-@pytest.mark.parametrize("house", ["plugins/authoring", "plugins/depth", "plugins/export", "plugins/texture"])
+@pytest.mark.parametrize(
+    "house",
+    ["plugins/authoring", "plugins/depth", "plugins/export", "plugins/texture", "plugins/ui/tangible_ui", *CORE_ROOMS],
+)
 def test_functions_are_not_named_by_a_bare_participle(house):
     words = count_words([ROOT / house])
     assert words.functions > 30

@@ -19,7 +19,7 @@ TOP = ("class", "exception", "function", "data")
 
 
 def restructured(text: str) -> str:
-    """A docstring as reStructuredText."""
+    """Return a docstring as reStructuredText."""
     paragraphs = LABELS.sub(r"\n\n\g<0>", text).strip("\n").split("\n\n")
     return "\n\n".join(_paragraph(each.strip("\n")) for each in paragraphs)
 
@@ -34,7 +34,7 @@ def _paragraph(text: str) -> str:
 
 
 def _inline(text: str) -> str:
-    """What is in backticks is code, and a link where it is a documented name; all else is no markup."""
+    """Turn text in backticks into code, and into a link where it is a documented name; escape the rest."""
     prose, code = text.split("`")[::2], text.split("`")[1::2]
     escaped = [re.sub(r"([*_|\\])", r"\\\1", part) for part in prose]
     marked = [f":py:obj:`{part}`" if NAME.fullmatch(part) else f"``{part}``" for part in code]
@@ -42,7 +42,7 @@ def _inline(text: str) -> str:
 
 
 def options(method: type[BaseModel]) -> str:
-    """The fields of a model, each with its type as it is written, its default and its docstring."""
+    """Return the fields of a model, each with its type as it is written, its default and its docstring."""
     home = {name: cls for cls in reversed(method.__mro__) for name in vars(cls).get("__annotations__", ())}
     entries: list[str] = []
     for name, field in method.model_fields.items():
@@ -81,7 +81,7 @@ def _is_model(obj: Any) -> bool:
 
 
 def resolve(app: Sphinx, env: BuildEnvironment, node: pending_xref, words: nodes.Element) -> nodes.Element | None:
-    """A name by its last part, as records are documented in the room that hands them on, not in their file.
+    """Return a name by its last part, as records are documented in the room that hands them on, not in their file.
 
     What no page documents stays plain in a signature and in a docstring; what a page refers to must be there.
     """

@@ -31,17 +31,16 @@ ROOM = f"{__package__}.commands"
 COMMANDS = {
     "demo": Command(f"{ROOM}.run:demo", "Run the built-in example from picture to force."),
     "run": Command(f"{ROOM}.run:run", "Run a pipeline file, or a picture, and write a report."),
-    "plan": Command(f"{ROOM}.run:plan", "Say what `run` would do, and why; run nothing."),
+    "plan": Command(f"{ROOM}.run:plan", "Show what `run` would do, and why; run nothing."),
     "export": Command(f"{ROOM}.export:export", "Write files for others: a printer, swell paper, pins, a reader."),
     "preflight": Command(f"{ROOM}.preflight:preflight", "Check, before a motor moves, what is safe."),
     "legible": Command(
-        f"{ROOM}.legible:legible", "Check whether fingers can read it, on paper, print, pins or a device."
+        f"{ROOM}.legible:legible", "Check whether fingers can read a picture on paper, print, pins or a device."
     ),
     "feel": Command(f"{ROOM}.feel:feel", "Feel the surface on the configured device, in real time."),
     "replay": Command(f"{ROOM}.replay:replay", "Re-run a recorded hand path with another force law."),
     "plugins": Command(f"{ROOM}.plugins:app", "List the installed methods and devices; show one of them."),
     "check": Command(f"{ROOM}.plugins:check", "Test an installed method with the conformance kit."),
-    "devices": Command(f"{ROOM}.devices:app", "List devices; examine, home or calibrate one."),
     "cache": Command(f"{ROOM}.cache:app", "Print the size of the cache of results; clear it."),
     "schema": Command(f"{ROOM}.schema:schema", "Print the JSON Schema of pipeline files."),
 }

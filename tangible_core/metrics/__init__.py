@@ -1,9 +1,9 @@
-"""How far results are from the truth: disparity maps, segments and forces; which borders of parts are felt."""
+"""Errors of disparity maps, segments and forces against the truth; borders of parts as steps; the stable stiffness."""
 
-from .benchmarks import benchmark_errors as benchmark_errors
 from .borders import border_steps as border_steps
 from .borders import felt_steps as felt_steps
 from .disparity import absolute_error as absolute_error
+from .disparity import benchmark_errors as benchmark_errors
 from .disparity import disparity_errors as disparity_errors
 from .disparity import visible_pixels as visible_pixels
 from .forces import force_errors as force_errors

@@ -1,4 +1,4 @@
-"""How far forces along a path are from the true ones, how they step, and what work they do."""
+"""The errors of forces along a path against the true ones, their steps, and their work."""
 
 from math import atan2
 
@@ -9,20 +9,20 @@ from ..errors import GeometryError
 
 Vectors = Float64[np.ndarray, "n 3"]
 MAGNITUDE_JND, DIRECTION_JND_DEG = 0.07, 18.0
-"""The least differences that a hand tells apart, of a force's magnitude and of its direction. Source: Pang, Tan &
+"""The just noticeable differences of a force's magnitude and of its direction. Source: Pang, Tan &
 Durlach, Manual discrimination of force using active finger motion, Perception & Psychophysics 49 (1991); Barbagli et
 al., Haptic discrimination of force direction and the influence of visual information, ACM TAP 3 (2006)."""
 
 
 def force_errors(force_n: Vectors, truth_n: Vectors) -> dict[str, float]:
-    """How far forces are from the true ones, tick by tick; ticks whose truth is NaN are left out.
+    """Measure the errors of forces tick by tick; ticks whose truth is NaN are left out.
 
     Returns: `error_n`, the root mean square of |F - F*| over the ticks at which either is not zero, in newtons, and
     `error_percent`, that over the root mean square of |F*| at the same ticks; over the ticks at which F* is not zero
     `jnd`, the median number of just noticeable differences, and `noticed_percent`, the share of these ticks with more
     than one; `direction_deg`, the mean angle between the two where neither is zero. At a tick the number is the larger
-    one of ||F| / |F*| - 1| / 0.07 and of the angle / 18 degrees, the angle counting where there is a force. NaN where
-    there is no such tick.
+    of ||F| / |F*| - 1| / 0.07 and of the angle / 18 degrees, the angle counting where there is a force. NaN without
+    such a tick.
     Raises: GeometryError if the two differ in length.
     """
     _same_length(force_n, truth_n)
@@ -46,16 +46,16 @@ def force_errors(force_n: Vectors, truth_n: Vectors) -> dict[str, float]:
 
 
 def angles_deg(first: Vectors, second: Vectors) -> Float64[np.ndarray, "n"]:
-    """Angles between vectors, 0..180 degrees; exact for small ones too, as an arc cosine is not."""
+    """Return the angles between vectors, 0..180 degrees, exact for small ones too, unlike an arc cosine."""
     across, along = np.linalg.norm(np.cross(first, second), axis=1), (first * second).sum(axis=1)
     # One by one: NumPy's arc tangent of an array has other last bits where AVX-512 is.
     return np.degrees(np.array(list(map(atan2, across.tolist(), along.tolist())), np.float64))
 
 
 def force_steps(force_n: Vectors) -> dict[str, float]:
-    """`step_n` and `step_p99_n`: the largest |F(t + T) - F(t)| from tick to tick, in newtons, and its 99th percentile.
+    """Return `step_n` and `step_p99_n`, the largest |F(t + T) - F(t)| in newtons, and its 99th percentile.
 
-    NaN of less than two ticks.
+    NaN for less than two ticks.
     """
     steps_n = np.linalg.norm(np.diff(force_n, axis=0), axis=1)
     if not steps_n.size:
@@ -64,11 +64,11 @@ def force_steps(force_n: Vectors) -> dict[str, float]:
 
 
 def proxy_lag(position_m: Vectors, proxy_m: Vectors, nearest_m: Vectors) -> float:
-    """How far a proxy trails behind the true one along the hand's motion: |mean of (p - p*) . v / |v||, in metres.
+    """Return the lag of a proxy behind the true one along the hand's motion: |mean of (p - p*) . v / |v||, in metres.
 
-    Over the ticks in contact (p* is not the hand itself) at which the hand moves; v is the central difference of its
-    positions. What pushes aside on the way up and again on the way down cancels: what is left is delay, or friction.
-    NaN where there is no such tick.
+    The mean is over the ticks in contact (p* is not the hand itself) at which the hand moves; v is the central
+    difference of its positions. Sideways offsets on the way up and on the way down cancel: delay or friction is left.
+    NaN without such a tick.
     Raises: GeometryError if the three differ in length.
     """
     _same_length(position_m, proxy_m)
@@ -83,11 +83,11 @@ def proxy_lag(position_m: Vectors, proxy_m: Vectors, nearest_m: Vectors) -> floa
 
 
 def loop_works(force_n: Vectors, position_m: Vectors, free: Bool[np.ndarray, "n"]) -> Float64[np.ndarray, "loops"]:
-    """Work done on the hand, in joules, by each loop: from one tick that is free of contact to the next such tick.
+    """Return the work done on the hand by each loop, J: from one tick that is free of contact to the next such tick.
 
-    Free ticks can be joined by a way through the air, on which there is no force: so each loop is closed, and work
-    above 0 is energy given away. Trapezoids, which are exact for a spring: what sampling and holding adds is no part
-    of a law. Ticks before the first free one and after the last belong to no loop.
+    Free ticks can be joined by a path through the air without force: so each loop is closed, and work above 0 is
+    energy given away. The trapezoidal rule is exact for a spring: the energy of sampling and holding is not part of a
+    force law. Ticks before the first free one and after the last belong to no loop.
     Raises: GeometryError if the three differ in length.
     """
     _same_length(force_n, position_m)

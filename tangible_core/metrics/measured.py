@@ -1,6 +1,6 @@
-"""How fast and how exact each method was when all of them were measured: figures that come with the program.
+"""The measured times and errors of all methods, which come with the program.
 
-`python -m benchmarks methods` writes them; nobody else does.
+Only `python -m benchmarks methods` writes them.
 """
 
 from collections.abc import Mapping
@@ -16,33 +16,33 @@ FILE = "measured.json"
 
 @dataclass(frozen=True)
 class Measured:
-    """The methods of one kind, with their defaults, side by side on the same scene."""
+    """The figures of the methods of one kind, with their defaults, on the same scene."""
 
     scene: str
     day: str
     machine: Mapping[str, str | int]
     versions: Mapping[str, str]
     columns: tuple[str, ...]
-    """What the figures are, with units: time, memory, and the measures of the kind, the one that counts first."""
+    """The names of the figures, with units: time, memory, and the measures of the kind, the most important first."""
     methods: Mapping[str, tuple[float | None, ...]]
-    """Name -> a value for each column, None where there is none."""
+    """The figures of each method by its name, in the order of the columns; None for a missing one."""
     process_s: Mapping[str, float]
-    """Name -> how long its process took for a warm-up and three calls, start, scene and measures included."""
+    """The time of each method's process for a warm-up and three calls, with start, scene and measures, by its name."""
     failed: Annotated[Mapping[str, str], Field(default_factory=dict)]
-    """Name -> why there is no figure at all."""
+    """The reason why a method has no figures, by its name."""
 
 
 Kinds = TypeAdapter(dict[str, Measured])
 
 
 @cache
-def measured() -> Mapping[str, Measured]:
-    """By kind."""
+def load_measured() -> Mapping[str, Measured]:
+    """Read the figures, by kind."""
     return Kinds.validate_json(files("tangible_core.metrics").joinpath(FILE).read_bytes())
 
 
 def in_words(machine: Mapping[str, str | int]) -> str:
-    """A machine as a sentence names it.
+    """Name a machine in a sentence.
 
     >>> in_words({"processor": "Acme 9000", "cores": 2, "system": "Linux x86_64"})
     'Acme 9000, 2 cores, Linux x86_64'

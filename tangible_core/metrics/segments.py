@@ -1,4 +1,4 @@
-"""How well segments agree with the true ones, whatever their numbers are."""
+"""The agreement of segments with the true ones, regardless of their numbers."""
 # scipy has no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
@@ -15,12 +15,12 @@ Counts = Integer[np.ndarray, "n m"]
 
 
 def segment_errors(labels: Labels, truth: Labels) -> dict[str, float]:
-    """Agreement of two label maps; which numbers stand for the segments does not matter.
+    """Compare two label maps, regardless of the numbers of their segments.
 
     Returns: `ari`, the adjusted Rand index: 1 for the same segments, 0 on average for segments by chance; `accuracy`,
     the share of the pixels that are right after the best one-to-one matching of the labels, in 0..1; `boundary_px`,
-    see `boundary_distance`; `segments`, how many labels the map holds.
-    Raises: PictureError if the two differ in size, or hold nothing.
+    see `boundary_distance`; `segments`, the number of labels in the map.
+    Raises: PictureError if the two differ in size, or are empty.
     """
     if labels.shape != truth.shape or labels.size == 0:
         raise PictureError(f"the labels are {labels.shape} and the true ones {truth.shape}; crop or scale one of them")
@@ -34,14 +34,14 @@ def segment_errors(labels: Labels, truth: Labels) -> dict[str, float]:
 
 
 def contingency(labels: Labels, truth: Labels) -> Counts:
-    """Pixels of each label that have each true label: int64, (labels, true labels) that are present, in order."""
+    """Count the pixels of each label with each true label: int64, (labels, true labels) that are present, in order."""
     (rows, row), (columns, column) = (np.unique(each, return_inverse=True) for each in (labels, truth))
     cells = row.ravel() * columns.size + column.ravel()
     return np.bincount(cells, minlength=rows.size * columns.size).reshape(rows.size, columns.size)
 
 
 def adjusted_rand_index(counts: Counts) -> float:
-    """Pairs of pixels that both maps keep together, beyond what chance gives: at most 1, and 1 for equal partitions.
+    """Return the share of pairs of pixels that both maps keep together, corrected for chance: 1 for equal partitions.
 
     With T pairs in all, A and B of them together in each of the maps, and S in both:
     (S - A B / T) / ((A + B) / 2 - A B / T), in whole numbers of any size, so that only the last division rounds. Two
@@ -55,7 +55,7 @@ def adjusted_rand_index(counts: Counts) -> float:
 
 
 def matched_accuracy(counts: Counts) -> float:
-    """Share of the pixels on the matching of labels that has the most; what is left without a partner is wrong.
+    """Return the share of the pixels on the best matching of labels; pixels of labels without a partner are wrong.
 
     Source: Kuhn, The Hungarian method for the assignment problem, 1955.
     """
@@ -65,11 +65,11 @@ def matched_accuracy(counts: Counts) -> float:
 
 
 def boundary_distance(labels: Labels, truth: Labels) -> float:
-    """How far the borders of two maps lie apart, in pixels: the mean of both directions.
+    """Return the distance between the borders of two maps in pixels, the mean of both directions.
 
     A border point lies in the middle between two neighbours, in a row or in a column, whose labels differ. Each
     direction is the mean, over the border points of one map, of the distance to the nearest border point of the other.
-    0 where neither map has a border; where only one has, the picture's diagonal, which no distance exceeds.
+    0 where neither map has a border; the picture's diagonal, which no distance exceeds, where only one has.
     """
     one, other = border_points(labels), border_points(truth)
     if not one.any() or not other.any():
@@ -78,23 +78,23 @@ def boundary_distance(labels: Labels, truth: Labels) -> float:
 
 
 def border_points(labels: Labels) -> Bool[np.ndarray, "r c"]:
-    """Borders on a grid of half pixels, (2 h - 1, 2 w - 1): pixel (row, column) is at (2 row, 2 column)."""
+    """Mark borders on a grid of half pixels, (2 h - 1, 2 w - 1): pixel (row, column) is at (2 row, 2 column)."""
     h, w = labels.shape
-    found = np.zeros((2 * h - 1, 2 * w - 1), np.bool_)
-    found[::2, 1::2] = labels[:, 1:] != labels[:, :-1]
-    found[1::2, ::2] = labels[1:] != labels[:-1]
-    return found
+    borders = np.zeros((2 * h - 1, 2 * w - 1), np.bool_)
+    borders[::2, 1::2] = labels[:, 1:] != labels[:, :-1]
+    borders[1::2, ::2] = labels[1:] != labels[:-1]
+    return borders
 
 
 def _mean_distance(start: Bool[np.ndarray, "r c"], goal: Bool[np.ndarray, "r c"]) -> float:
-    """Pixels from the points of one set to the nearest of the other, mean."""
-    from scipy.spatial import KDTree  # exact, which OpenCV's transform of distances is not with every number of threads
+    """Return the mean distance from the points of one set to the nearest of the other, in pixels."""
+    from scipy.spatial import KDTree  # exact, unlike OpenCV's distance transform with several threads
 
     nearest: Any = KDTree(np.argwhere(goal))
     return float(nearest.query(np.argwhere(start))[0].mean()) / 2
 
 
 def _pairs(sizes: Counts | np.ndarray) -> int:
-    """Pairs within groups of these sizes; a whole number of Python's, which does not overflow."""
+    """Count the pairs within groups of these sizes, as a Python integer, which does not overflow."""
     sizes = sizes.astype(np.int64)
     return int((sizes * (sizes - 1) // 2).sum())

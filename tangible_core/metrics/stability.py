@@ -1,4 +1,4 @@
-"""How stiff a spring can be before a handle on it starts to shake: a sampled mass and damper, simulated."""
+"""The greatest stiffness at which a handle comes to rest: a sampled mass and damper on a spring, simulated."""
 
 import math
 from collections import deque
@@ -10,14 +10,14 @@ from ..data import Force, HapticState
 Law = Callable[[HapticState], Force]
 RANGE_N_PER_M = (1.0, 1e6)
 CLOSE = 1e-3
-"""A limit is found to this share of itself."""
+"""The relative accuracy of a limit."""
 TICKS = 4000
 DEPTH_M, PUSHED_M = 1e-3, 1e-4
-"""How deep the handle rests, and how far it is out of its rest at the start."""
+"""The depth at which the handle rests, and its distance from there at the start, m."""
 
 
 class Handle(NamedTuple):
-    """A handle in a hand, as the servo feels it along z."""
+    """A handle in a hand, as a mass and a damper along z."""
 
     mass_kg: float = 0.2
     damping_n_s_per_m: float = 2.0
@@ -30,11 +30,11 @@ HANDLE = Handle()
 def stiffness_limit(
     law: Callable[[float], Law], height_m: float, delay_ticks: int = 0, handle: Handle = HANDLE
 ) -> float:
-    """The stiffness up to which a handle comes to rest on level ground, in N/m, by bisection to 0.1 %.
+    """Return the stiffness up to which a handle comes to rest on level ground, in N/m, by bisection to 0.1 %.
 
     law: stiffness in N/m -> forces on ground at height_m. A force acts from `delay_ticks` ticks after its position was
     read, and is held for a period.
-    Returns: NaN for a law that does not push up in proportion to its stiffness, infinity for one that is stable at any.
+    Returns: NaN for a force law whose push is not in proportion to its stiffness, infinity for an always stable one.
     """
     low, high = RANGE_N_PER_M
     if not _is_spring(law, height_m):

@@ -70,11 +70,11 @@ def _fill(parts: PartMap, medians: Float64[np.ndarray, "n"]) -> Float64[np.ndarr
     unknown = np.isinf(filled)
     if unknown.all():
         return np.zeros_like(medians)
-    beside = neighbours(parts) if unknown.any() else None
-    while beside is not None and (open_parts := np.isinf(filled)).any():
+    pairs = neighbours(parts) if unknown.any() else None
+    while pairs is not None and (open_parts := np.isinf(filled)).any():
         least = np.full(parts.count, np.inf)
-        np.minimum.at(least, beside.low, filled[beside.high])
-        np.minimum.at(least, beside.high, filled[beside.low])
+        np.minimum.at(least, pairs.low, filled[pairs.high])
+        np.minimum.at(least, pairs.high, filled[pairs.low])
         if not np.isfinite(least[open_parts]).any():  # parts without a pixel have no neighbour
             break
         filled = np.where(open_parts, least, filled)

@@ -37,15 +37,15 @@ def guess_heights(parts: PartMap, top_m: float) -> PartHeights:
     sizes = part_sizes(parts)
     foot, middle, rim = _places(parts, sizes)
     own = FOOT * foot + MIDDLE * middle - RIM * rim - SIZE * sizes / parts.labels.size
-    beside = neighbours(parts)
-    sure = in_front(parts, beside)
-    nearness = _relax(own, beside, FRONT * sure + ENCLOSED * _enclosure(beside, parts.count))
+    pairs = neighbours(parts)
+    sure = in_front(parts, pairs)
+    nearness = _relax(own, pairs, FRONT * sure + ENCLOSED * _enclosure(pairs, parts.count))
     rank, steps = _rank(nearness, sizes)
     heights_m = top_m * rank / max(1, steps - 1)
     reasons = (
         f"guessed, {at + 1} of {steps} from the back: it reaches down to {100 * low:.0f} % of the picture's height and "
         f"has {100 * edge:.0f} % of its upper and side rims{overlap}"
-        for at, low, edge, overlap in zip(rank.tolist(), foot, rim, _overlaps(beside, sure, parts.count), strict=True)
+        for at, low, edge, overlap in zip(rank.tolist(), foot, rim, _overlaps(pairs, sure, parts.count), strict=True)
     )
     return PartHeights(tuple(heights_m.tolist()), tuple(reasons))
 
@@ -63,38 +63,38 @@ def _places(
     return foot, middle, np.bincount(rim, minlength=parts.count) / rim.size
 
 
-def _enclosure(beside: Neighbours, count: int) -> Float64[np.ndarray, "m"]:
+def _enclosure(pairs: Neighbours, count: int) -> Float64[np.ndarray, "m"]:
     """Return, for each pair, 1 if `low` is the only neighbour of `high`, -1 for the reverse, 0 for neither or both."""
-    many = np.bincount(beside.low, minlength=count) + np.bincount(beside.high, minlength=count)
-    return (many[beside.high] == 1).astype(np.float64) - (many[beside.low] == 1)
+    many = np.bincount(pairs.low, minlength=count) + np.bincount(pairs.high, minlength=count)
+    return (many[pairs.high] == 1).astype(np.float64) - (many[pairs.low] == 1)
 
 
 def _relax(
-    own: Float64[np.ndarray, "n"], beside: Neighbours, nearer: Float64[np.ndarray, "m"]
+    own: Float64[np.ndarray, "n"], pairs: Neighbours, nearer: Float64[np.ndarray, "m"]
 ) -> Float64[np.ndarray, "n"]:
     """Relax the nearness of each part between its own and its neighbours', given how much nearer `high` of a pair is.
 
     A pair weighs by the root of the length of its common border.
     """
-    weight = np.sqrt(beside.sides.astype(np.float64))
+    weight = np.sqrt(pairs.sides.astype(np.float64))
     count = own.size
-    whole = np.bincount(beside.low, weight, count) + np.bincount(beside.high, weight, count)
+    whole = np.bincount(pairs.low, weight, count) + np.bincount(pairs.high, weight, count)
     nearness = own
     for _ in range(ROUNDS):
-        sums = np.bincount(beside.low, weight * (nearness[beside.high] - nearer), count)
-        sums += np.bincount(beside.high, weight * (nearness[beside.low] + nearer), count)
+        sums = np.bincount(pairs.low, weight * (nearness[pairs.high] - nearer), count)
+        sums += np.bincount(pairs.high, weight * (nearness[pairs.low] + nearer), count)
         nearness = np.where(whole > 0, (OWN * own + sums / np.maximum(whole, 1)) / (OWN + 1), own)
     return nearness
 
 
-def _overlaps(beside: Neighbours, sure: Float64[np.ndarray, "m"], count: int) -> list[str]:
+def _overlaps(pairs: Neighbours, sure: Float64[np.ndarray, "m"], count: int) -> list[str]:
     """Describe, for each part, the parts that it hides and that hide it, the most certain first."""
     hides: list[list[int]] = [[] for _ in range(count)]
     hidden: list[list[int]] = [[] for _ in range(count)]
     for pair in np.argsort(-np.abs(sure), kind="stable").tolist():
         if abs(sure[pair]) < SURE:
             break
-        ends = int(beside.low[pair]), int(beside.high[pair])
+        ends = int(pairs.low[pair]), int(pairs.high[pair])
         behind, front = ends if sure[pair] > 0 else ends[::-1]
         hides[front].append(behind)
         hidden[behind].append(front)

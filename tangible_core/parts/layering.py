@@ -81,10 +81,10 @@ def border_distance(parts: PartMap) -> Float32[np.ndarray, "h w"]:
     """Return the distance in pixels from each pixel's centre to the nearest border; infinite if there is none."""
     from scipy.ndimage import distance_transform_edt
 
-    beside = border_pixels(parts.labels)
-    if not beside.any():
-        return np.full(beside.shape, np.float32(np.inf))
-    return (np.asarray(distance_transform_edt(~beside)) + 0.5).astype(np.float32)
+    at_border = border_pixels(parts.labels)
+    if not at_border.any():
+        return np.full(at_border.shape, np.float32(np.inf))
+    return (np.asarray(distance_transform_edt(~at_border)) + 0.5).astype(np.float32)
 
 
 def _profile(distance_m: Float32[np.ndarray, "h w"], round_m: float) -> Float32[np.ndarray, "h w"]:

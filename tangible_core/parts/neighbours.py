@@ -42,7 +42,7 @@ def _pairs(one: np.ndarray, other: np.ndarray, count: int) -> Int64[np.ndarray, 
     return np.minimum(first, second) * count + np.maximum(first, second)
 
 
-def in_front(parts: PartMap, beside: Neighbours) -> Float64[np.ndarray, "m"]:
+def in_front(parts: PartMap, pairs: Neighbours) -> Float64[np.ndarray, "m"]:
     """Return, for each pair, the certainty that `high` is in front of `low`, -1 for the reverse to 1; 0 if unknown.
 
     Where three parts meet, the one whose border runs straight on hides the border of the two others, which ends there.
@@ -51,11 +51,11 @@ def in_front(parts: PartMap, beside: Neighbours) -> Float64[np.ndarray, "m"]:
     """
     three, share = _junctions(parts.labels)
     if not len(three):
-        return np.zeros(beside.low.size)
+        return np.zeros(pairs.low.size)
     nearest = share.argmax(axis=1)
     rows = np.arange(len(three))
     sure = np.clip(1 - np.abs(share[rows, nearest] - 0.5) / STRAIGHT, 0, 1) * (share.min(axis=1) > THIN)
-    keys = beside.low * parts.count + beside.high
+    keys = pairs.low * parts.count + pairs.high
     votes, weight = np.zeros(keys.size), np.ones(keys.size)
     for each in range(3):
         front, behind = three[rows, nearest], three[:, each]

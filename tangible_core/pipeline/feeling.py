@@ -1,16 +1,17 @@
-"""A session with a device: the surface of a pipeline checked before it is felt, felt, replayed, and looked at after."""
+"""A session with a device on the surface of a pipeline: preflight, the session itself, replay and reports."""
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from os import PathLike
 from threading import Event
-from typing import Any, Protocol, TypedDict, TypeVar, final, get_args, runtime_checkable
+from typing import Any, Protocol, TypedDict, TypeVar, final, runtime_checkable
 
 import numpy as np
 
+from .. import session
 from ..data import TICK_COLUMNS, ServoReport
-from ..errors import ConfigError, did_you_mean, quoted
+from ..errors import ConfigError
 from ..files.paths import as_path
 from ..legibility import Legibility
 from ..plugins import hooks
@@ -18,27 +19,14 @@ from ..plugins.interfaces import Film, HapticDevice, Medium, Reshaping, Touch
 from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
 from ..runtime.threads import limited_threads
 from ..servo import OVER, Beacon, Servo, beacon_to
-from ..session import (
-    About,
-    PartFelt,
-    Recording,
-    Slot,
-    TrackingError,
-    check_record_path,
-    keeping,
-    parts_felt,
-    replay,
-    run_kiosk,
-    run_simulated,
-    with_parts,
-)
+from ..session import About, PartFelt, Recording, Slot, TrackingError
 from ..session.film import ByClock, Reliefs
 from .config.methods import check_kind, named_method
 from .engine.engine import Engine
 from .engine.film import film_of, reliefs_of
 from .engine.stages.touch import fit_to_device
-from .output.legible import legible, of_width
-from .output.runs import about, felt_device, how_followed
+from .output.legible import legible, with_width
+from .output.runs import about, device_in_workspace, join_descriptions, path_tracking
 
 T = TypeVar("T")
 NO_ROWS = np.empty((0, len(TICK_COLUMNS)))
@@ -47,7 +35,7 @@ NO_ROWS = np.empty((0, len(TICK_COLUMNS)))
 
 @runtime_checkable
 class Felt(Protocol):
-    """A pipeline, as far as a session needs it."""
+    """The members of a pipeline that a session needs."""
 
     engine: Engine
 
@@ -60,36 +48,36 @@ class FeelOptions(TypedDict, total=False):
     """Options of `Feeling.run` next to its seconds."""
 
     in_real_time: bool
-    """False goes by the clock of the device, for simulated ones; True by default, in a process of its own."""
+    """True by default, for a loop in a process of its own; False runs a simulated device by its own clock."""
     record: str | PathLike[str] | None
-    """A file (.nc, .npz, .csv) that keeps every tick while it is felt."""
+    """A file (.nc, .npz, .csv) for every tick, written during the session."""
     keep: Callable[[np.ndarray], None] | None
-    """Called with all ticks, as rows of `TICK_COLUMNS`; the recording that is returned is then empty, and a session may
-    be as long as the disk has room."""
+    """A function called with all ticks, as rows of `TICK_COLUMNS`; the returned recording is then empty, and the length
+    of a session is limited by the disk alone."""
     on_report: Callable[[ServoReport], None] | None
-    """Called ten times a second, and at the end."""
+    """A function called ten times a second, and at the end."""
     on_start: Callable[[Servo], None] | None
-    """Called once a loop in real time runs."""
+    """A function called once a loop in real time runs."""
     stop: Event | None
-    """Ends the session when it is set from another thread."""
+    """An event that ends the session when another thread sets it."""
     then: Sequence[Felt]
-    """The pipelines that are felt after this one, each for `each_s`, and then this one again; in real time alone."""
+    """The pipelines that follow this one, each for `each_s`, before this one comes again; in real time only."""
     each_s: float
     """Seconds for each pipeline of `then`; 60 by default."""
     on_wait: Callable[[str], None] | None
-    """Waits for a device that is missing or goes away, and is called with a sentence (`session.run_kiosk`); in real
-    time alone."""
+    """A function called with a sentence while a missing or disconnected device is awaited (`session.run_kiosk`); in
+    real time only."""
     beacon: str | int | None
     """The name or the number of a part to which the hand is pulled gently, with 1 N at most, until a button of the
-    device releases it; of every scene of `then`, too."""
+    device releases it; for every scene of `then`, too."""
 
 
 @final
 class Feeling:
-    """The surface of a pipeline on a device, the given or the configured one."""
+    """The surface of a pipeline on the given device, or on the configured one."""
 
     def __init__(self, pipeline: Felt, device: HapticDevice | None = None) -> None:
-        """Nothing runs, and no device is opened yet. Raises: ArgumentError for what is not a device."""
+        """Keep both; nothing runs, and no device is opened yet. Raises: ConfigError for an object of another kind."""
         if device is not None:
             check_kind("device", device)
         self.pipeline = pipeline
@@ -98,34 +86,34 @@ class Feeling:
 
     @property
     def device(self) -> HapticDevice:
-        """The device as the picture sees it, by the mapping. Raises: ConfigError if there is none."""
-        device = felt_device(self.engine, self.given)
+        """The device in the picture's frame, by the mapping. Raises: ConfigError without a device."""
+        device = device_in_workspace(self.engine, self.given)
         if device is None:
             raise self.engine.config.missing("device")
         return device
 
     @property
     def touch(self) -> Touch:
-        """The force law on the surface, whose materials fit the device. Raises: TangibleError as `Pipeline.make`."""
+        """The force law on the surface, with materials that fit the device. Raises: as `Pipeline.make`."""
         return self.pipeline.make("touch") if self.given is None else self.engine.touch_on(self.given)
 
     @property
     def reliefs(self) -> Reliefs:
-        """The frames of a scene that is a video, as reliefs; not open yet.
+        """The frames of a video as reliefs; not open yet.
 
         `with feeling.reliefs as reliefs: for number, time_s, relief in reliefs:` makes one after the other, steady in
         time and of one scale; without end where the video repeats. `reliefs.frames.at` skips to the frame that is due,
         and `reliefs.made` makes its relief.
-        Raises: ConfigError for a scene that does not move, or a relief that is made of parts.
+        Raises: ConfigError for a scene without a video, or a relief that is made of parts.
         """
         return reliefs_of(self.engine.config, self.engine.scene)
 
     def film(self, period_s: float = 0.001) -> Film:
-        """Make the touch of the video's first frame, as a film that goes on from there.
+        """Make the touch of the video's first frame, as a film for the next ones.
 
-        It is given to a `Servo` or to `session.run_simulated` like a touch, and shown the `reliefs`; `run` does both.
-        period_s: of the loop that feels it.
-        Raises: ConfigError for a scene that does not move, or a force law without films; TangibleError as `make`.
+        A `Servo` or `session.run_simulated` takes it like a touch, and it is shown the `reliefs`; `run` does both.
+        period_s: of the force loop.
+        Raises: ConfigError for a scene without a video, or a force law without films; TangibleError as `make`.
         """
         config = self.engine.config
         return film_of(self.engine, config.felt_device if self.given is None else self.device, period_s)
@@ -145,113 +133,105 @@ class Feeling:
         on_wait: Callable[[str], None] | None = None,
         beacon: str | int | None = None,
     ) -> Recording:
-        """Feel the surface, and return the recording.
+        """Run a session, and return its recording.
 
-        Ctrl-C, `stop` set from another thread, and a device that fails end it: the force is zero, and the recording
-        says why. A scene that is a video plays while it is felt, by the clock of the device where that is simulated;
-        its parts and materials stay those of the first frame. `ServoReport.film` says how it plays.
-        seconds: None goes on until something ends it; in real time alone. The others: see `FeelOptions`.
-        Raises: ConfigError if there is no device or force law, or no such part, or others of `then` have another
+        Ctrl-C, `stop`, and a device that fails end it: the force is zero, and the recording has the reason. A video
+        plays during the session, by the clock of a simulated device; its parts and materials stay those of the first
+        frame. `ServoReport.film` reports how it plays.
+        seconds: None goes on until something ends it; in real time only. The others: see `FeelOptions`.
+        Raises: ConfigError without a device or force law, for an unknown part, or if others of `then` have another
         device; DeviceError if it cannot be opened; OutputError for the file.
         """
         file = None if record is None else as_path(record, "record")
         if file is not None:
-            check_record_path(file, seconds is None)
-        device, said = self.device, self._about()
-        tell = _both(self._report, on_report)
+            session.check_record_path(file, seconds is None)
+        device, about_session = self.device, self._about()
+        listener = _both(self._report, on_report)
         if not in_real_time:
             if then or on_wait:
                 raise ConfigError(
                     "then, on_wait: are for a session in real time; leave them out, or in_real_time=False"
                 )
-            simulated = self._run_simulated(device, math.inf if seconds is None else seconds, tell, stop, beacon)
-            simulated = replace(simulated, about=said.with_versions())
+            simulated = self._run_simulated(device, math.inf if seconds is None else seconds, listener, stop, beacon)
+            simulated = replace(simulated, about=about_session.with_versions())
             if file is not None:
                 simulated.save(file)
             return simulated
 
         turns = [self._turn(self, beacon), *(Feeling(each, self.given)._turn(self, beacon) for each in then)]
-        said = _in_turn(said, [Feeling(each)._about() for each in (self.pipeline, *then)])
+        about_session = join_descriptions(about_session, [Feeling(each)._about() for each in (self.pipeline, *then)])
 
         def run(rows: Callable[[np.ndarray], None]) -> str:
-            report = run_kiosk(
-                turns, device, seconds, each_s if then else math.inf, on_report=tell, keep=rows, on_start=on_start,
+            report = session.run_kiosk(
+                turns, device, seconds, each_s if then else math.inf, on_report=listener, keep=rows, on_start=on_start,
                 on_wait=on_wait, stop=stop, threads=self.engine.threads,
             )  # fmt: skip
             return "" if report.stopped == OVER else report.stopped
 
         if file is not None:
-            with keeping(file, said) as writer:
+            with session.keeping(file, about_session) as writer:
                 stopped = run(_both(writer.append, keep))
                 writer.close(stopped)
-            return Recording.load(file) if keep is None else Recording(NO_ROWS, stopped, said.with_versions())
+            return Recording.load(file) if keep is None else Recording(NO_ROWS, stopped, about_session.with_versions())
         rows = [NO_ROWS]
         stopped = run(keep or rows.append)
-        return Recording(np.concatenate(rows), stopped, said.with_versions())
+        return Recording(np.concatenate(rows), stopped, about_session.with_versions())
 
     def _run_simulated(
         self,
         device: HapticDevice,
         seconds: float,
-        tell: Callable[[ServoReport], None],
+        listener: Callable[[ServoReport], None],
         stop: Event | None,
         beacon: str | int | None,
     ) -> Recording:
-        """Feel by the clock of a simulated device."""
-        tell = with_parts(self.pipeline.make("surface"), tell)
-        touch, how = self._touch_or_film(), (self.engine.config.safety, stop, self._beacon(beacon))
+        """Run a session by the clock of a simulated device."""
+        listener = session.with_parts(self.pipeline.make("surface"), listener)
+        touch, options = self._touch_or_film(), (self.engine.config.safety, stop, self._beacon(beacon))
         if not isinstance(touch, Film):
-            return run_simulated(touch, device, seconds, tell, *how)
+            return session.run_simulated(touch, device, seconds, listener, *options)
         with self.reliefs as reliefs, limited_threads(self.engine.threads):
             frames = ByClock(reliefs, touch)
-            return run_simulated(touch, device, seconds, frames.with_counts(tell), *how, frames=frames)
+            return session.run_simulated(touch, device, seconds, frames.with_counts(listener), *options, frames=frames)
 
     def replay(self, recording: Recording | str | PathLike[str]) -> Recording:
-        """Return the forces of this pipeline's law for each recorded state; nothing limits them.
+        """Return the forces of this pipeline's force law for each recorded state, without limits.
 
-        recording: or the file of one. `session.compared` says how far the forces are from the recorded ones.
+        recording: or its file. `session.compared` measures the distance of the forces from the recorded ones.
         Raises: as `Pipeline.make`, and OutputError for a file that cannot be read.
         """
         recording = recording if isinstance(recording, Recording) else Recording.load(recording)
-        said = replace(about(self.engine), device=f"replay of {recording.about.device or 'a recording'}")
-        return replace(replay(self.touch, recording), about=said.with_versions())
+        about_replay = replace(about(self.engine), device=f"replay of {recording.about.device or 'a recording'}")
+        return replace(session.replay(self.touch, recording), about=about_replay.with_versions())
 
     def track(self, seen: Recording) -> TrackingError:
-        """Return how the hand followed its path on the device, where the device knows that.
-
-        seen: the ticks, one of `session.EVERY`. Raises: as `run`.
-        """
-        return how_followed(self.engine, self.device, seen)
+        """Report how well the hand tracked the device's path, if it has one. seen: one of `session.EVERY` ticks."""
+        return path_tracking(self.engine, self.device, seen)
 
     def parts_felt(self, seen: Recording) -> tuple[PartFelt, ...]:
-        """Return how long and how hard each part was touched, the longest touched first; none without parts.
+        """Return how long and how hard each part was touched, the longest first; none without parts.
 
         seen: the ticks, or one of `session.EVERY`. Raises: as `Pipeline.make`.
         """
-        return parts_felt(seen, self.pipeline.make("surface"))
+        return session.parts_felt(seen, self.pipeline.make("surface"))
 
     def legible(self, medium: Medium, width_m: float | None = None) -> Legibility:
         """Check whether fingers can read the parts: on swell paper, as a print, on pins, or on a force device.
 
-        width_m: of the whole picture; that of the workspace by default. The parts are those that `simplify` makes
-        legible, where the pipeline has them made so.
+        width_m: of the whole picture; that of the workspace by default. With `simplify`, the simplified parts count.
         Raises: ConfigError for an unknown medium or width; TangibleError as `Pipeline.make`.
         """
-        if medium not in (media := get_args(Medium)):
-            raise ConfigError(
-                f"medium: is {quoted(medium)}{did_you_mean(str(medium), media)}; it is {', '.join(media)}"
-            )
-        return legible(of_width(self.engine, width_m), medium)
+        return legible(with_width(self.engine, width_m), medium)
 
     def preflight(self, hand: Hand | None = None, loop: Loop | None = None) -> Preflight:
-        """Judge what is safe and what will be felt on the device; it is not opened.
+        """Judge the safety and the quality of the surface on the device, which is not opened.
 
-        Raises: ConfigError if there is no device or force law; TangibleError as `Pipeline.make`.
+        Raises: ConfigError without a device or force law; TangibleError as `Pipeline.make`.
         """
         return judge(self.flight(hand, loop))
 
     def flight(self, hand: Hand | None = None, loop: Loop | None = None) -> Flight:
-        """Measure what the checks of `preflight` judge. Raises: as `preflight`."""
+        """Measure the quantities that `preflight` judges. Raises: as `preflight`."""
         device, config = self.device, self.engine.config
         law = config.render
         if law is None:
@@ -280,7 +260,7 @@ class Feeling:
         if ours.mapping != theirs.mapping or (own and ours.felt_device != theirs.felt_device):
             here, before = (each.engine.config.path or each.engine.scene.name for each in (self, first))
             raise ConfigError(
-                f"{here}: has another `device:` or `mapping:` than {before}, which is felt before it; give both the "
+                f"{here}: has another `device:` or `mapping:` than {before}, which comes before it; give both the "
                 "same, or leave `device:` out of all but the first"
             )
         on = self
@@ -290,7 +270,7 @@ class Feeling:
         return Slot(on._touch_or_film(), ours.safety, self.pipeline.make("surface"), self._beacon(beacon), reliefs)
 
     def _touch_or_film(self) -> Touch | Film:
-        """Return what a loop feels: of a video, a film."""
+        """Return the touch; the film for a video."""
         return self.touch if self.engine.scene.frames is None else self.film()
 
     def _beacon(self, part: str | int | None) -> Beacon | None:
@@ -298,27 +278,20 @@ class Feeling:
         return None if part is None else beacon_to(self.pipeline.make("surface"), part)
 
     def _about(self) -> About:
-        said = about(self.engine)
+        """Describe the pipeline and the device for a recording."""
+        about_pipeline = about(self.engine)
         if self.given is None:
-            return said
-        return replace(said, device=named_method("device", self.given, self.engine.registry).name)
+            return about_pipeline
+        return replace(about_pipeline, device=named_method("device", self.given, self.engine.registry).name)
 
     def _report(self, report: ServoReport) -> None:
         hooks.tell(self.engine.registry.plugins, "tangible_servo_report", report=report)
 
 
-def _in_turn(said: About, each: Sequence[About]) -> About:
-    """Return the description of scenes that are felt in turn."""
-    configuration = "---\n".join(one.configuration for one in each)
-    names = (tuple(getattr(one, which) for one in each) for which in ("parts", "materials"))
-    parts, materials = ("\n".join(lines) if any(lines) else "" for lines in names)
-    return replace(said, configuration=configuration, parts=parts, materials=materials)
-
-
 def _both(one: Callable[[T], None], other: Callable[[T], None] | None) -> Callable[[T], None]:
-    def tell(heard: T) -> None:
-        one(heard)
+    def call(value: T) -> None:
+        one(value)
         if other is not None:
-            other(heard)
+            other(value)
 
-    return tell
+    return call

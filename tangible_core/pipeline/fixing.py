@@ -1,4 +1,4 @@
-"""What to change in a pipeline file for it to pass preflight: the cures, one at a time, each tried before the next."""
+"""Corrections of a pipeline file for preflight: its cures, applied one at a time, each tried before the next."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -15,50 +15,50 @@ from .feeling import Feeling
 from .pipeline import Pipeline
 
 ROUNDS = 24
-"""Most need one to three changes; each is tried on the surface that it makes."""
+"""The most changes: most files need one to three, and each is tried on the surface that it makes."""
 AT_ONCE = 0.001
-"""Seconds for which a machine is timed again: what counts is how late it was in the first flight."""
+"""The time for measuring the machine again, s: only the lateness of the first flight counts."""
 
 
 @dataclass(frozen=True)
 class Fixed:
-    """What was changed, and what preflight says then."""
+    """The changes of a file, and the verdicts of preflight after them."""
 
     changes: Mapping[str, str]
-    """By key, in the order in which they were made."""
+    """New values by key, in the order of the changes."""
     flight: Flight
     verdicts: Preflight
     text: str
-    """The file with these changes and with its own comments, as one that stands where it is to be written."""
+    """The file with these changes and its comments, with paths relative to its new place."""
 
 
 class Cured(NamedTuple):
-    """A text that was changed until nothing is left to change."""
+    """A text to which preflight has no further cures."""
 
     changes: Mapping[str, Change]
-    """By key, in the order in which they were made."""
+    """Changes by key, in their order."""
     flight: Flight
     verdicts: Preflight
     text: str
     pipeline: Pipeline
-    """What the text says."""
+    """The pipeline of the text."""
 
 
 def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cached: bool = True) -> Fixed:
-    """Change what the cures say, the unsafe first, until nothing is left to change; `verdicts.safe` says if it passes.
+    """Apply the cures of preflight, the unsafe first, until none is left; `verdicts.safe` is True if it passes.
 
-    sets: `key.key=value` each, as `--set` takes them. out: where the file is to stand; nothing is written.
+    sets: `key.key=value` each, as `--set` takes them. out: the place for the file; nothing is written.
     Raises: ConfigError as `load_config`; TangibleError as `Feeling.flight`.
     """
     pipeline = Pipeline.from_yaml(path, sets := list(sets))
     if not cached:
         pipeline.engine.cache = None
-    found = cured(with_overrides(read_text(path), path, sets), path, pipeline, hand, loop)
-    changes = {key: change.value for key, change in found.changes.items()}
-    return Fixed(changes, found.flight, found.verdicts, relocate_text(found.text, path, found.pipeline.config, out))
+    cured = cure(with_overrides(read_text(path), path, sets), path, pipeline, hand, loop)
+    changes = {key: change.value for key, change in cured.changes.items()}
+    return Fixed(changes, cured.flight, cured.verdicts, relocate_text(cured.text, path, cured.pipeline.config, out))
 
 
-def cured(
+def cure(
     text: str,
     path: Path,
     pipeline: Pipeline,
@@ -67,10 +67,10 @@ def cured(
     sets: Sequence[str] = (),
     lateness: Lateness | None = None,
 ) -> Cured:
-    """`fix` for a text, and the pipeline of it.
+    """Apply the cures of preflight to a text, and return it with its pipeline.
 
-    sets: what the pipeline has beside the text. lateness: of a loop that runs, in place of this process's own.
-    Raises: as `fix`.
+    sets: overrides of the pipeline that the text does not have. lateness: that of a running loop, in place of this
+    process's. Raises: as `fix`.
     """
     flight = Feeling(pipeline).flight(hand=hand, loop=loop)
     flight = replace(flight, lateness=(lateness := lateness or flight.lateness))
@@ -87,7 +87,7 @@ def cured(
 
 
 def _next(verdicts: Preflight, done: Mapping[str, Change]) -> Change | None:
-    """The first change of the worst verdict that brings anything new."""
+    """Return the first change of the worst verdict that was not made yet."""
     worst_first = sorted(verdicts, key=lambda each: each.verdict != "unsafe")
     return next((change for each in worst_first for change in each.changes[:1] if _is_new(change, done)), None)
 

@@ -49,4 +49,4 @@ OLD_NAMES: Mapping[str, Callable[[Any], Any]] = {
     "legible": _on("legible"),
     "flight": _on("flight"),
 }
-"""Each old name, and what it gives."""
+"""The old names, each with its value for a pipeline."""

@@ -1,20 +1,11 @@
-"""The pipeline: one scene, its methods, and all that can be done with them. Files are one way to say it."""
+"""The pipeline: a scene, its methods, and everything that can be done with them, from Python or from a file."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
 from threading import Event
 from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, cast, final
 
-from ..data import (
-    DisparityMap,
-    HapticSurface,
-    MaterialMap,
-    Outcomes,
-    Plan,
-    Relief,
-    SegmentMap,
-    ServoReport,
-)
+from ..data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Plan, Relief, SegmentMap, ServoReport
 from ..data.products import Product
 from ..errors import wrong_argument
 from ..files.paths import as_path
@@ -23,22 +14,13 @@ from ..legibility import SimplifyChoice
 from ..mapping import WorkspaceMapping
 from ..parts import HeightChoice, PartChoice
 from ..plugins import hooks
-from ..plugins.interfaces import (
-    DepthEstimator,
-    Exporter,
-    ForceRenderer,
-    HapticDevice,
-    Segmenter,
-    Touch,
-)
+from ..plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter, Touch
 from ..plugins.registry import Registry, default_registry
 from ..preflight import Hand, Loop, Preflight
 from ..scene.scene import Scene
 from ..scene.workspace import Workspace
 from ..servo import Safety
-from ..session import (
-    Recording,
-)
+from ..session import Recording
 from .config.material_choice import MaterialChoice
 from .config.model import PipelineConfig
 from .config.parsing import config_of, load_config
@@ -51,19 +33,19 @@ from .output.exporting import Export, chosen_exporters, export
 from .output.runs import Run, Sheet, make_run
 
 Materials = MaterialChoice | Mapping[Any, Any] | str
-"""As in YAML: a rule's name, a map from label to material, or a block of options."""
+"""The key `materials:`: a rule's name, a map from label to material, or a block of options."""
 Parts = Mapping[int, PartChoice | Mapping[str, Any] | str]
-"""As in YAML: by number, the name of a part, or a block of what is said of it."""
+"""The key `parts:`: by number, the name of a part, or a block of options."""
 Heights = HeightChoice | Mapping[str, Any] | Literal["depth", "given", "guess"]
-"""As in YAML: where the heights of parts come from, or a block of options."""
+"""The key `heights:`: the source of the heights of parts, or a block of options."""
 
 
 @final
 class Pipeline:
-    """A scene, its methods, and what was made of them so far.
+    """A scene, its methods, and the products that were made of them so far.
 
-    A product is made when it is first asked for, with what it needs and no more; it is None where this scene does not
-    need it, and `outcomes` says why. What was made before, with the same methods and inputs, comes from the cache.
+    A product is made at its first request, with the products that it needs and no others. It is None where this scene
+    does not need it, and `outcomes` has the reason. The cache has the results of earlier runs with equal inputs.
 
     >>> import numpy as np
     >>> pipeline = Pipeline(Scene.heights(np.eye(8)), workspace=Workspace(width_m=0.04), cached=False)
@@ -93,14 +75,14 @@ class Pipeline:
         threads: int | None = None,
         **others: Any,
     ) -> None:
-        """Methods are objects, of installed plugins or of classes of one's own; blocks may be mappings, as in YAML.
+        """Make a pipeline of methods as objects, of installed plugins or custom classes; blocks may be mappings.
 
-        parts: what the parts of the segments are called, how high they stand and what they are of, by number.
+        parts: names, heights and materials of the parts of the segments, by number.
         heights: makes the relief of these parts. simplify: makes the parts legible first; `{}` by the usual rules.
-        export: what `export` writes. title, language: of the whole. cached: False neither reads nor writes the user's
-        cache. threads: the most that work at once; see the property.
+        export: the exporters of `export`. title, language: of the whole. cached: False neither reads nor writes the
+        user's cache. threads: the most threads at once; None for one a processor, or for `TANGIBLE_THREADS`.
         others: other keys of the pipeline file.
-        Raises: ConfigError with every complaint about these; ArgumentError for what is not a key.
+        Raises: ConfigError with every complaint about these; ArgumentError for an unknown key.
         """
         if not isinstance(scene, cast(Any, Scene)):
             raise wrong_argument("scene", scene, "a Scene, such as Scene.photo(...) makes")
@@ -135,9 +117,9 @@ class Pipeline:
         registry: Registry | None = None,
         cache: Cache | None = None,
     ) -> Self:
-        """A pipeline from a YAML file; nothing runs yet.
+        """Read a pipeline from a YAML file; nothing runs yet.
 
-        overrides: `key.key=value` each. cache: where results are kept between runs; the user's own by default.
+        overrides: `key.key=value` each. cache: keeps results between runs; the user's cache by default.
         Raises: ConfigError with every complaint, each with file:line:column.
         """
         registry = registry or default_registry()
@@ -152,10 +134,10 @@ class Pipeline:
         *,
         like: "Pipeline | None" = None,
     ) -> Self:
-        """Make a pipeline of a configuration that was checked.
+        """Make a pipeline of a checked configuration.
 
-        cache: where results are kept between runs; None keeps none. like: another pipeline, whose registry and cache
-        this one shares; what the configuration makes alike is not made again.
+        cache: keeps results between runs; None keeps none. like: another pipeline, whose registry, cache and equal
+        products this one shares.
         """
         pipeline = cls.__new__(cls)
         if like is None:
@@ -165,72 +147,69 @@ class Pipeline:
         return pipeline
 
     def to_yaml(self, path: str | PathLike[str]) -> None:
-        """Write it as a pipeline file, every default filled in, paths absolute; `from_yaml` makes the same of it.
+        """Write an equal pipeline file, with all defaults filled in and absolute paths.
 
-        Raises: ConfigError for what no file can say: a scene of arrays, a method of no installed plugin; OutputError.
+        Raises: ConfigError for a scene of arrays or a method that is not an installed plugin; OutputError.
         """
         write_text(as_path(path), self.config.as_yaml())
 
     @property
     def config(self) -> PipelineConfig:
-        """What it is made of."""
+        """The checked configuration."""
         return self.engine.config
 
     @property
     def scene(self) -> Scene:
-        """The scene; read from its files when first asked for. Raises: PictureError."""
+        """The scene, read from its files at the first use. Raises: PictureError."""
         return self.engine.scene
 
     @property
     def outcomes(self) -> Outcomes:
-        """What became of each product, and why, in the order of making; last those that nothing needed."""
+        """The outcome of each product with its reason, in the order of making; last those that nothing needed."""
         return self.engine.outcomes
 
     def plan(self, want: Product | None = None) -> Plan:
-        """What making a product (the farthest that has a method) would do, as a table; nothing runs.
-
-        Raises: TangibleError for a scene that cannot be read; UnknownMethod for a product that nothing makes.
-        """
+        """Foresee the outcomes of making a product, by default the configured one, as a table. Raises: as `make`."""
         return self.engine.plan(want)
 
     def make(self, want: str | None = None, progress: Progress | None = None, stop: Event | None = None) -> Any:
-        """A product, made from what it needs and no more; None if this scene does not need it.
+        """Make a product from what it needs and no more; None if this scene does not need it.
 
-        progress: hears of every stage as it begins and ends. stop: set from another thread, it ends the work.
-        Raises: TangibleError for what a user can put right, Stopped after `stop`, and whatever a plugin raises.
+        progress: called at the start and the end of every stage. stop: ends the work when another thread sets it.
+        Raises: TangibleError for mistakes of the user, Stopped after `stop`, and whatever a plugin raises.
         """
-        watched, beside = self.engine.watching(progress, stop), warm_up(self.engine, want or self.config.want)
-        with watched, beside as self.engine.beside:
+        compiling = warm_up(self.engine, want or self.config.want)
+        with self.engine.watching(progress, stop), compiling as self.engine.compiler:
             return self.engine.make(want)
 
     @property
     def disparity(self) -> DisparityMap | None:
-        """Disparity of the left view, or relative nearness of a photo."""
+        """The disparity of the left view, or the relative nearness of a photo."""
         return self.make("disparity")
 
     @property
     def relief(self) -> Relief:
-        """Heights in metres."""
+        """The heights in metres."""
         return self.make("relief")
 
     @property
     def segments(self) -> SegmentMap | None:
-        """Which texture segment each pixel belongs to."""
+        """The texture segment of each pixel."""
         return self.make("segments")
 
     @property
     def materials(self) -> MaterialMap | None:
-        """One material a segment, or a part where anything is by parts, and why each was chosen."""
+        """The material of each segment, or of each part where anything is by parts, with the reason of the choice."""
         return self.make("materials")
 
     @property
     def surface(self) -> HapticSurface:
-        """What is touched: heights, and materials where the law uses them."""
+        """The surface: heights, and materials where the force law uses them."""
         return self.make("surface")
 
     @property
     def touch(self) -> Touch:
-        """The law on this surface."""
+        """The force law on this surface."""
         return self.make("touch")
 
     def run(
@@ -242,9 +221,9 @@ class Pipeline:
         stop: Event | None = None,
         sheet: Sheet = "png",
     ) -> Run:
-        """Make what is wanted, and write products, figures and a sheet into a folder.
+        """Make the wanted product, and write products, figures and a sheet into a folder.
 
-        A touch is felt for so many seconds of a simulated device's own time; a real device is never moved by it.
+        A touch is run for these seconds of a simulated device's time; a real device is never moved by it.
         progress, stop: as `make`. sheet: png, or svg or pdf, which can be enlarged.
         Raises: OutputError if the folder cannot be written; TangibleError as `make`.
         """
@@ -260,14 +239,14 @@ class Pipeline:
         *,
         force: bool = False,
     ) -> Export:
-        """Write it as files for others: a printer, swell paper, a pin display, a reader.
+        """Write files for other devices and programs: a printer, swell paper, a pin display, a reader.
 
-        to: names of exporters, or objects of them; what the pipeline's `export` lists where nothing is said. A name
-        that is listed there has the options that it has there. Only what they need is made, of the width that each
-        writes. One that fails does not keep the others from being written: see `Export.outcomes`.
-        progress, stop: as `make`. force: over files that are no earlier export of this pipeline, too.
-        Raises: ConfigError if nothing is named; UnknownMethod, BrokenMethod; OutputError if the folder cannot be
-        written; Stopped after `stop`.
+        to: names of exporters, with the options that the pipeline's `export` lists, or objects of them; all that
+        `export` lists by default. Only the products that they need are made, at the width of each exporter. An exporter
+        that fails does not stop the others: see `Export.outcomes`.
+        progress, stop: as `make`. force: overwrites files that are not an earlier export of this pipeline, too.
+        Raises: ConfigError without exporters; UnknownMethod, BrokenMethod; OutputError if the folder cannot be written;
+        Stopped after `stop`.
         """
         chosen = chosen_exporters(self.config, to, self.engine.registry)
         return export(self.engine, as_path(out, "out"), chosen, progress, stop, force=force)
@@ -275,20 +254,20 @@ class Pipeline:
     def feel(
         self, device: HapticDevice | None = None, seconds: float | None = 8.0, **options: Unpack[FeelOptions]
     ) -> Recording:
-        """Feel the surface on a device, this or the configured one, and return the recording.
+        """Run a session on a device, by default the configured one, and return its recording.
 
-        See `Feeling.run`, which also says the options. A `Feeling` replays a recording, too, makes the film of a video,
-        and tells how long each part was touched.
+        See `Feeling.run` and `FeelOptions`. A `Feeling` also replays recordings, makes the film of a video, and reports
+        how long each part was touched.
         """
         return Feeling(self, device).run(seconds, **options)
 
     def preflight(
         self, device: HapticDevice | None = None, hand: Hand | None = None, loop: Loop | None = None
     ) -> Preflight:
-        """Judge what is safe and what will be felt on a device, this or the configured one; no device is opened.
+        """Judge the safety and the quality of the surface on a device, by default the configured one; none is opened.
 
-        It shows itself as one sentence, and the cure of all that is wrong; it is a tuple of verdicts.
-        Raises: ConfigError if there is no device or force law; TangibleError as `make`.
+        The result is a tuple of verdicts, shown as one sentence with the cure of each problem.
+        Raises: ConfigError without a device or force law; TangibleError as `make`.
         """
         return Feeling(self, device).preflight(hand, loop)
 
@@ -315,8 +294,5 @@ def load_pipeline(
     registry: Registry | None = None,
     cache: Cache | None = None,
 ) -> Pipeline:
-    """`Pipeline.from_yaml`: a pipeline from a YAML file; nothing runs yet.
-
-    Raises: ConfigError with every complaint, each with file:line:column.
-    """
+    """Read a pipeline from a YAML file, as `Pipeline.from_yaml`. Raises: ConfigError with every complaint."""
     return Pipeline.from_yaml(path, overrides, registry, cache)

@@ -1,4 +1,4 @@
-"""A pipeline file for pictures that have none: commented, with values that suit these pictures."""
+"""A commented pipeline file for pictures, with values that suit these pictures."""
 
 import json
 import re
@@ -26,40 +26,41 @@ from .engine.cache import Cache
 from .pipeline import Pipeline
 
 MAPS = frozenset({".npy", ".npz", ".pfm"})
-"""Ends of names that are taken for those of a map of heights."""
+"""Suffixes of files that are maps of heights."""
 
 SIDE_MM = 80
-"""The longer side of the surface: what a small desktop device reaches."""
+"""The longer side of the surface, mm: the reach of a small desktop device."""
 SMOOTH_MM: Mapping[str, float] = {"photo": 1.5, "heights": 0.0}
+"""The smoothing of the relief by kind of scene, mm."""
 STEEPEST = 0.6
-"""Slope that at most a twentieth of the relief exceeds: from 1 on, 45 degrees, a hand pushes harder sideways than
-down."""
+"""The slope that at most a twentieth of the relief exceeds: from 1 on, 45 degrees, the sideways force is larger than
+the force down."""
 LEAST_MM = 2.0
 MOST_MM: Mapping[str, float] = {"photo": 8.0, "heights": 15.0}
-"""Of a relief. The brightness of a photograph is no depth."""
+"""The greatest height of the relief by kind of scene, mm; less for photos, as their brightness is not a depth."""
 CELLS = 400
-"""Of the longer side, at which slopes are measured."""
+"""The cells along the longer side, at which slopes are measured."""
 
 Kind = Literal["photo", "pair", "heights"]
 
 
 def are_pictures(paths: Iterable[Path]) -> bool:
-    """Whether these are to be felt as they are, and not the name of one pipeline file."""
+    """Return True for pictures, videos, maps and builtin scenes, which are not pipeline files."""
     return all(_is_builtin(path) or path.suffix.lower() in PICTURES | VIDEOS or _is_map(path) for path in paths)
 
 
 class Starter(NamedTuple):
-    """A pipeline file for a scene, which was read for it already."""
+    """The text of a pipeline file, and its scene, which is read already."""
 
     text: str
     scene: Scene
 
 
 def starter(pictures: Sequence[Path], file: Path) -> Starter:
-    """A pipeline file for one picture, for left and right, for a map of heights, a video, or a builtin scene.
+    """Write a pipeline file for one picture, a left and a right one, a map of heights, a video, or a builtin scene.
 
-    file: where the text is to stand: its paths are relative to that.
-    Raises: ConfigError if there are more; PictureError for one that cannot be read, or two that differ in size.
+    file: the place for the text, to which its paths are relative.
+    Raises: ConfigError for more pictures; PictureError for an unreadable one, or for two of different size.
     """
     if len(pictures) > 2:
         raise ConfigError(
@@ -69,23 +70,23 @@ def starter(pictures: Sequence[Path], file: Path) -> Starter:
     absolute = {part: path.absolute() for part, path in parts.items()}
     scene = Scene.read(SceneFiles.model_validate(absolute), Path()) if parts else Scene.builtin(str(pictures[0]))
     kind: Kind = "heights" if scene.views is None else "pair" if scene.views.right is not None else "photo"
-    named = ", ".join(f"{part}: {_path_in_yaml(path, file.parent)}" for part, path in parts.items())
-    said = {"scene": f"{{{named}}}" if parts else scene.name, "name": " and ".join(path.name for path in pictures)}
+    block = ", ".join(f"{part}: {_path_in_yaml(path, file.parent)}" for part, path in parts.items())
+    values = {"scene": f"{{{block}}}" if parts else scene.name, "name": " and ".join(path.name for path in pictures)}
     if scene.frames is not None:
-        said["name"] += ", its first frame"
-        said["scene"] += "   # with layout: side-by-side, if each frame holds the two views of a pair"
+        values["name"] += ", its first frame"
+        values["scene"] += "   # with layout: side-by-side, if each frame holds the two views of a pair"
     template = kind if scene.measured is None else "measured"
     text = files("tangible_core.pipeline").joinpath(f"starter_{template}.yaml").read_text(encoding="utf-8")
-    return Starter(Template(text).substitute(said, file=file, **_size(scene, kind)), scene)
+    return Starter(Template(text).substitute(values, file=file, **_size(scene, kind)), scene)
 
 
 def pipeline_of(pictures: Sequence[Path], overrides: Sequence[str] = ()) -> Pipeline:
-    """The pipeline of a starter that is not written. Raises: as `starter`, and ConfigError for the overrides."""
+    """Make the pipeline of a starter without writing it. Raises: as `starter`, and ConfigError for the overrides."""
     registry, path = default_registry(), pictures[0]
-    made = starter(pictures, path)
-    config = parse_config(made.text, path, registry, overrides)
+    text, scene = starter(pictures, path)
+    config = parse_config(text, path, registry, overrides)
     if not any(each.lstrip().startswith("scene") for each in overrides):
-        config = config.with_values(scene=made.scene)  # it need not be read again
+        config = config.with_values(scene=scene)  # it need not be read again
     return Pipeline.from_config(config, registry, Cache())
 
 
@@ -94,12 +95,12 @@ def _is_builtin(path: Path) -> bool:
 
 
 def _is_map(path: Path) -> bool:
-    """By its name, or by what it says of itself. Raises: PictureError if that is nonsense."""
+    """Return True for a map of heights, by its name or its metadata. Raises: PictureError for nonsense in these."""
     return path.suffix.lower() in MAPS or read_heights_metadata(path) is not None
 
 
 def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:
-    """Which part of a scene each is; none for a builtin one. Raises: ConfigError."""
+    """Return the pictures by their keys in `scene:`; none for a builtin scene. Raises: ConfigError."""
     if len(pictures) == 1:
         (path,) = pictures
         return {} if _is_builtin(path) else {_part(path): path}
@@ -109,32 +110,32 @@ def _parts(pictures: Sequence[Path]) -> Mapping[str, Any]:
 
 
 def _part(path: Path) -> str:
-    """Which part of a scene a file is, given alone."""
+    """Return the key in `scene:` of a file that is given alone."""
     return "height" if _is_map(path) else "video" if path.suffix.lower() in VIDEOS else "photo"
 
 
 def _size(scene: Scene, kind: Kind) -> dict[str, object]:
-    """How large it is felt: it fits the device, and no more of it is too steep than can be felt as a slope."""
+    """Choose a size that fits the device, and a height at which few slopes are too steep; return them as texts."""
     values = scene.height if scene.views is None else to_grey(scene.views.left)
     assert values is not None
     rows, columns = values.shape
     longer = max(rows, columns)
-    found: dict[str, object] = {"columns": columns, "rows": rows}
-    found |= {"width_mm": f"{SIDE_MM * columns / longer:.3g}", "length_mm": f"{SIDE_MM * rows / longer:.3g}"}
+    size: dict[str, object] = {"columns": columns, "rows": rows}
+    size |= {"width_mm": f"{SIDE_MM * columns / longer:.3g}", "length_mm": f"{SIDE_MM * rows / longer:.3g}"}
     if kind == "pair":
-        return found
-    if (own := scene.measured) is not None:
-        named = zip(("width_mm", "length_mm", "relief_mm"), own, strict=True)
-        return found | {name: f"{1e3 * length_m:.3g}" for name, length_m in named}
+        return size
+    if scene.measured is not None:
+        lengths_m = zip(("width_mm", "length_mm", "relief_mm"), scene.measured, strict=True)
+        return size | {name: f"{1e3 * length_m:.3g}" for name, length_m in lengths_m}
     slope = _slope(values, SMOOTH_MM[kind])
     least, most = LEAST_MM, MOST_MM[kind]
     relief_mm = max(least, min(most, floor(2 * STEEPEST / slope) / 2)) if slope > 0 else most
     why = "more would make its edges walls" if relief_mm < most else "its edges would bear more"
-    return found | {"relief_mm": f"{relief_mm:g}", "smooth_mm": f"{SMOOTH_MM[kind]:g}", "why": why}
+    return size | {"relief_mm": f"{relief_mm:g}", "smooth_mm": f"{SMOOTH_MM[kind]:g}", "why": why}
 
 
 def _slope(values: Float32[np.ndarray, "h w"], smooth_mm: float) -> float:
-    """The slope that a relief of 1 mm has in the steepest twentieth of the surface."""
+    """Return the slope that the steepest twentieth of a relief of 1 mm exceeds."""
     import cv2
 
     longer = max(values.shape)
@@ -156,12 +157,12 @@ def _slope(values: Float32[np.ndarray, "h w"], smooth_mm: float) -> float:
 
 
 def _path_in_yaml(path: Path, folder: Path) -> str:
-    """A path as a file in this folder names it; in quotes where YAML would take it for something else."""
+    """Write a path relative to this folder if it is inside, in quotes where YAML needs them."""
     here = path.absolute()
     text = here.relative_to(folder.absolute()).as_posix() if here.is_relative_to(folder.absolute()) else here.as_posix()
     return in_yaml(text)
 
 
 def in_yaml(text: str) -> str:
-    """A name or a path, in quotes where YAML would take it for something else."""
+    """Write a name or a path, in quotes where YAML needs them."""
     return text if re.fullmatch(r"[A-Za-z0-9_./-]+", text) else json.dumps(text, ensure_ascii=False)

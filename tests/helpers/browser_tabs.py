@@ -28,7 +28,7 @@ class Chromium:
 
     @contextmanager
     def used(self) -> "Iterator[Browser]":
-        """Within this, the browser and what it opened can be asked for something."""
+        """Yield the browser; it and its pages can be used in the block alone."""
         asyncio._set_running_loop(self._loop)
         try:
             yield self.browser
@@ -38,7 +38,7 @@ class Chromium:
 
 @contextmanager
 def tabs(browser: "Browser", complaints: list[str]) -> Iterator[OpenPage]:
-    """What opens addresses, each in a context of its own. In the end nobody may have complained."""
+    """Yield a function that opens an address in a context of its own; at the end no page may have complained."""
     contexts = []
 
     def open_page(url: str, **options: Any) -> "Page":
@@ -63,7 +63,7 @@ def tabs(browser: "Browser", complaints: list[str]) -> Iterator[OpenPage]:
 
 
 def watch(page: "Page", complaints: list[str]) -> None:
-    """Collect what a page says is wrong, and whom it asks that is not this machine."""
+    """Collect a page's errors, and its requests to other machines."""
 
     def asks(url: str) -> None:
         if not url.startswith(HERE):

@@ -21,7 +21,7 @@ REQUESTS["let_go"] = let_go
 
 
 class LastingServer(UiServer):
-    """It opens a built-in example first; `open` opens whatever a test wants."""
+    """A server that opens a built-in example first; `open` opens another file."""
 
     def __init__(self, folder: Path, env: dict[str, str]) -> None:
         self._data = Path(env["TANGIBLE_DATA_DIR"])

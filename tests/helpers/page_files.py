@@ -1,4 +1,4 @@
-"""Where the page, its sources and node are."""
+"""Places of the page, its sources and node."""
 
 import importlib.util
 import re
@@ -38,7 +38,7 @@ def node(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
 
 
 IMPORTED = re.compile(r'(?:\bfrom|\bimport)\s*"\./([\w-]+\.js)"')
-"""What a script needs before it runs; `import(...)` is asked for when it runs."""
+"""Scripts that a script imports before it runs; `import(...)` loads others while it runs."""
 
 
 def fetched_first(page: Path) -> list[str]:

@@ -1,4 +1,4 @@
-"""The page's server in this process, in a thread of its own, with no worker and, unless asked for, no loop."""
+"""The page's server in this process, in a thread of its own, without a worker and at first without a loop."""
 
 import asyncio
 import http.client
@@ -23,7 +23,7 @@ KEY = "key-of-a-test-0123456789"
 
 
 class NoWorker:
-    """Does nothing that it is asked."""
+    """A worker that does no job."""
 
     def __init__(self, folder: Path, hear: Callable[[Any], None]) -> None:
         self.asked: list[str] = []
@@ -38,14 +38,14 @@ class NoWorker:
     quick = ask
 
     def kill(self) -> None:
-        """There is none."""
+        """Do nothing."""
 
     def close(self) -> None:
-        """There is none."""
+        """Do nothing."""
 
 
 class PageServer:
-    """It listens in its `with`."""
+    """A server that listens in its `with` block."""
 
     def __init__(self, folder: Path, monkeypatch: Any) -> None:
         monkeypatch.setattr("tangible_ui.state.session.Worker", NoWorker)
@@ -95,7 +95,7 @@ class PageServer:
     def ask(
         self, path: str, method: str = "GET", body: bytes | None = None, **headers: str | None
     ) -> http.client.HTTPResponse:
-        """One request; headers are named with underscores, None leaves one out. The answer's text is its `text`."""
+        """Send a request; headers are named with underscores, None omits one. The answer's text is its `text`."""
         said = {"host": self.host, "origin": f"http://{self.host}" if method not in ("GET", "HEAD") else None}
         said |= {name.replace("_", "-"): value for name, value in headers.items()}
         connection = http.client.HTTPConnection(HOST, self.port, timeout=LONGEST_S)
@@ -119,7 +119,7 @@ class PageServer:
 
 
 class TestTab:
-    """What a page hears and says."""
+    """A tab's websocket."""
 
     __test__ = False
 
@@ -130,7 +130,7 @@ class TestTab:
         self._number = 0
 
     def ask(self, name: Any, **told: Any) -> int:
-        """Without waiting for the answer."""
+        """Send a request without waiting for the answer; return its number."""
         self._number += 1
         self.socket.send(json.dumps({"number": self._number, "ask": name, **told}))
         return self._number

@@ -107,7 +107,7 @@ class InlineWorker:
 
 
 def _done(worker_state: WorkerState, alive: threading.Event, job: str, told: dict[str, Any]) -> Any:
-    """What a job makes; of one that was killed meanwhile nothing is left."""
+    """Do a job and return its result; remove the file of a job that was killed meanwhile."""
     made = JOBS[job].do(worker_state, **told)
     if not alive.is_set() and isinstance(made, dict) and "parcel" in made:
         Path(made["parcel"]).unlink()
@@ -115,7 +115,7 @@ def _done(worker_state: WorkerState, alive: threading.Event, job: str, told: dic
 
 
 class Heard:
-    """A tab that keeps what it is told."""
+    """A tab that keeps its events."""
 
     def __init__(self) -> None:
         self.events: list[dict[str, Any]] = []
@@ -130,7 +130,7 @@ class Heard:
         return [each["event"] for each in self.events]
 
     async def until(self, name: str, count: int = 1) -> dict[str, Any]:
-        """The newest event of a name, as soon as there were so many."""
+        """Return the newest event of a name, as soon as there are `count` of them."""
         await happened(lambda: self.names().count(name) >= count, f"no {name}")
         return self.last(name)
 

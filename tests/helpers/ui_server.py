@@ -19,7 +19,7 @@ ADDRESS = re.compile(r"http://127\.0\.0\.1:\d+/\S*")
 
 
 class UiServer:
-    """It listens when this is made; what it prints is kept in `lines`. A `with` ends it."""
+    """A server that listens once it is made; its output is kept in `lines`. A `with` block ends it."""
 
     def __init__(self, *words: object, cwd: Path, env: Mapping[str, str] | None = None, start: str = START) -> None:
         command = [sys.executable, "-c", start, "ui", *map(str, words), "--no-browser", "--port", "0"]

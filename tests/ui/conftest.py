@@ -115,7 +115,7 @@ def own_folders(folder: Path) -> dict[str, str]:
 
 @pytest.fixture
 def complaints() -> list[str]:
-    """What pages complained of so far; a test that provokes a complaint looks for it here and clears it."""
+    """Complaints of pages so far; a test that provokes one looks for it here and clears the list."""
     return []
 
 

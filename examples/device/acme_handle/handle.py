@@ -28,7 +28,7 @@ class Handle(HapticDevice):
         return SPEC
 
     def open(self) -> Link:
-        """Raises: DeviceAbsent if there is no box, DeviceError if another program has it."""
+        """Open the box. Raises: DeviceAbsent without a box, DeviceError if another program has it."""
         from .maker import Box
 
         try:
@@ -48,7 +48,7 @@ class HandleLink(Link):
         self._ms, self._position_m = self._poll()
 
     def _read(self) -> HapticState:
-        """The velocity is the step from the position before."""
+        """Read the box; the velocity is the step from the position before."""
         before_ms, before_m = self._ms, self._position_m
         self._ms, self._position_m = self._poll()
         seconds = (self._ms - before_ms) / 1000

@@ -18,7 +18,7 @@ from .listed_parts import ListedPart
 
 RELIEF_MM = 6.0
 """The height of the whole relief, mm: as `workspace` has it for parts."""
-GUESSED = "it is a guess, as a picture does not tell what stands in front of what."
+GUESSED = "it is a guess, as a picture does not show which parts are in front."
 MEASURED = "it is by depth, of which this is the median over the part."
 
 

@@ -38,6 +38,6 @@ class Sheet(Exporter, Drawing):
 
     def show(self, product: Record, axes: Axes | None = None, **others: Any) -> Axes:
         """Draw one product as its panel on the sheet. Raises: OutputError for a product without a picture."""
-        from .drawing.showing import show
+        from .drawing.sheet import show
 
         return show(product, axes, **others)

@@ -1,1 +1,1 @@
-"""The page: a surface seen, heard and felt in the browser of one's own machine."""
+"""The page of `tangible ui`: a surface seen, heard and felt in the browser of this machine."""

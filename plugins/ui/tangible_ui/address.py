@@ -59,7 +59,7 @@ class Address:
         """Print the address. browser: open it too."""
         url = f"http://{HOST}:{self.port}/?token={self.key}"
         print(url, flush=True)  # noqa: T201 - what the command is called for
-        if browser:  # in a thread of its own: one that needs the terminal is waited for until it ends
+        if browser:  # in a thread, as a browser in the terminal blocks until it ends
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
 
 

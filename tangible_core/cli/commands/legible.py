@@ -37,7 +37,7 @@ def legible(
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
-    """Check whether fingers can read it, on paper, print, pins or a device.
+    """Check whether fingers can read a picture on paper, print, pins or a device.
 
     Prints by the rules of tactile graphics what is ok, what is not and where, and its cure. Writes nothing. Exit 1 if
     something is illegible.

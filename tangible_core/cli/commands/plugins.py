@@ -19,6 +19,13 @@ if TYPE_CHECKING:
     from ...testing import CheckResult
 
 COLUMNS = ("kind", "name", "origin", "summary")
+Kind = Annotated[str, typer.Argument(help=" | ".join(KIND_NAMES), show_default=False, autocompletion=completing.kinds)]
+Name = Annotated[
+    str,
+    typer.Argument(
+        help="The method, as `tangible plugins` lists it.", show_default=False, autocompletion=completing.methods
+    ),
+]
 
 app = typer.Typer(name="plugins", rich_markup_mode=None, add_completion=False)
 
@@ -48,28 +55,14 @@ def plugins(context: typer.Context, as_json: Json = False) -> None:
 
 
 @app.command("show")
-def show_one(
-    kind: Annotated[
-        str,
-        typer.Argument(help=" | ".join(KIND_NAMES), show_default=False, autocompletion=completing.kinds),
-    ],
-    name: Annotated[
-        str,
-        typer.Argument(
-            help="The method, as `tangible plugins` lists it.",
-            show_default=False,
-            autocompletion=completing.methods,
-        ),
-    ],
-    as_json: Json = False,
-) -> None:
+def show_one(kind: Kind, name: Name, as_json: Json = False) -> None:
     """Show one method or device.
 
     What it does and by which source; each option with its unit, bounds and default; how fast and how exact it was.
     """
     import inspect
 
-    from ...metrics.measured import measured
+    from ...metrics.measured import load_measured
     from ...pipeline.config.markdown import options_of
     from ...plugins.registry import default_registry
     from .. import show
@@ -77,7 +70,7 @@ def show_one(
     registry = default_registry()
     listing, cls = registry.find(kind, name), registry.load(kind, name)
     text, options = inspect.getdoc(cls) or "", options_of(cls)
-    measurements = measured().get(kind) if listing.distribution == OURS else None
+    measurements = load_measured().get(kind) if listing.distribution == OURS else None
     if as_json:
         figures = None if measurements is None else _figures(measurements, listing.name)
         head = {column: getattr(listing, column) for column in (*COLUMNS, "target")}
@@ -128,18 +121,7 @@ def _speed_and_accuracy(listing: Listing, measured: Measured | None) -> str:
     return f"{where}: {figures}. The most exact of {len(measured.methods)} is {best}."
 
 
-def check(
-    kind: Annotated[
-        str, typer.Argument(help=" | ".join(KIND_NAMES), show_default=False, autocompletion=completing.kinds)
-    ],
-    name: Annotated[
-        str,
-        typer.Argument(
-            help="The method, as `tangible plugins` lists it.", show_default=False, autocompletion=completing.methods
-        ),
-    ],
-    as_json: Json = False,
-) -> None:
+def check(kind: Kind, name: Name, as_json: Json = False) -> None:
     """Test an installed method with the conformance kit.
 
     Exit 1 if a check fails that the method does not declare to fail, or passes that it declares to fail.

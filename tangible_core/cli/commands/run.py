@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ...pipeline.pipeline import Pipeline
     from ...plugins.interfaces import HapticDevice
 
-Seconds = Annotated[float, typer.Option(help="Simulated time for which the surface is felt, s.")]
+Seconds = Annotated[float, typer.Option(help="Length of the simulated touch, s.")]
 
 
 def demo(
@@ -83,7 +83,7 @@ def run(
 
 
 def plan(config: ConfigOrPictures, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
-    """Say what `run` would do, and why; run nothing.
+    """Show what `run` would do, and why; run nothing.
 
     Exit 2 if `run` would refuse.
     """

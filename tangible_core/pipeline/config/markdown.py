@@ -47,7 +47,7 @@ def _forms(node: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def _tables(forms: Iterable[dict[str, Any]], blocks: Mapping[str, Any]) -> Iterator[str]:
-    """A heading and a table for each method; a table for each other block, the second and later ones introduced."""
+    """Yield a heading and a table for each method, and a table for each other block, from the second on introduced."""
     for index, form in enumerate(forms):
         if use := form.get("properties", {}).get("use", {}).get("const"):
             yield from (f"### {use}", "", form.get("description", "").split("\n")[0], "")

@@ -16,22 +16,21 @@ class MaterialChoice(Section):
     """The material of each segment; of each part, with `parts:` or `heights:`."""
 
     rules: tuple[MaterialRule, ...] = ()
-    """Rules, which decide first; of several that fit a segment or a part, the first one wins. Before them goes what
-    `parts:` says of a part itself."""
+    """Rules for segments or parts; of several that fit, the first one wins. A material under `parts:` goes before
+    them."""
     by: Annotated[
         Annotated[Literal["roughness", "rules"], Tag(":word")] | Annotated[dict[int, str], Tag(":labels")],
         Discriminator(lambda value: ":labels" if isinstance(value, dict) else ":word"),
     ] = "roughness"
     """The choice for segments without a rule. `roughness`: by rank, the roughest segment of the picture gets the
-    roughest material. A map: from label to material, for all parts of that segment. `rules`: not at all, they get
-    `default`."""
+    roughest material. A map: from label to material, for all parts of that segment. `rules`: they get `default`."""
     default: str = NEUTRAL
-    """Material of the segments that are left."""
+    """The material of all other segments."""
     library: Path | None = None
-    """A YAML file with materials of your own, in addition to the built-in ones."""
+    """A YAML file with custom materials, in addition to the built-in ones."""
     fit: Literal["device", "never"] = "device"
-    """`device`: what the device cannot hold of a material's stiffness, texture or damping is taken off that material,
-    and the outcome of the touch says so. `never`: materials stay as they are, and the guard softens the whole law."""
+    """`device`: stiffness, texture and damping of each material are limited to what the device renders stably, and the
+    outcome of the touch lists the limits. `never`: materials stay as they are, and the guard scales the whole force."""
 
 
 def check_material_names(source: Source, location: Location, choice: MaterialChoice) -> None:

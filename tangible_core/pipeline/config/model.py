@@ -77,13 +77,13 @@ class PipelineConfig(BaseModel):
     """The names, heights and materials of the connected parts of the segments, by number: parts are numbered from 0 in
     the order of their first pixels, row by row. With it, each part has one material."""
     heights: Annotated[HeightChoice | None, Block("A word alone is `by` (`heights: given`), or:", word="by")] = None
-    """The relief is made of parts, each of one height, with rounded rims and a little of the picture's light, in place
-    of depth or brightness; `null` switches it off."""
+    """The relief is made of parts, each of one height, with rounded rims and a little of the picture's brightness, in
+    place of depth or brightness alone; `null` switches it off."""
     simplify: Annotated[
         SimplifyChoice | None, Block("`simplify: {}` takes the usual rules ([more](legibility.md)):")
     ] = None
-    """Parts that are too narrow or too small for fingers go to those beside them, before relief, materials and labels
-    are made of the parts; each keeps its number."""
+    """Parts that are too narrow or too small for fingers are merged into their neighbours, before relief, materials and
+    labels are made of the parts; the numbers stay."""
     workspace: Annotated[Workspace, Block()] = Workspace()
     """The size of the surface under the hand."""
     mapping: Annotated[WorkspaceMapping, Block()] = WorkspaceMapping()
@@ -100,7 +100,7 @@ class PipelineConfig(BaseModel):
     render: Annotated[NamedMethod[ForceRenderer] | None, MethodBlock()] = None
     """The force law."""
     device: Annotated[NamedMethod[HapticDevice] | None, MethodBlock()] = None
-    """The device that the surface is felt with."""
+    """The haptic device."""
     export: Annotated[tuple[NamedMethod[Exporter], ...], MethodList("[More](export.md).")] = ()
     """The files that `tangible export` writes: a list of names of exporters, `[stl, swell]`, or of blocks with options,
     `[{use: pins, display: monarch}]`."""
@@ -110,7 +110,7 @@ class PipelineConfig(BaseModel):
     path: Annotated[Path | None, Unchecked()] = None
     """The file that the configuration stands in; None for a configuration that was made in Python."""
     measured: Annotated[MeasuredSize | None, Unchecked()] = None
-    """The size that the scene's heights have by their own account."""
+    """The size of the scene's heights according to their file."""
     source: Annotated[Source | None, Unchecked()] = Field(default=None, repr=False)
     """The file with the places of its keys."""
 
@@ -150,7 +150,7 @@ class PipelineConfig(BaseModel):
 
     @property
     def size(self) -> FeltSize:
-        """The workspace, with what suits the scene, or its parts, where the file leaves it open."""
+        """The workspace, with sizes that suit the scene or its parts where the file leaves them open."""
         size = self.workspace.size("parts" if self.heights else kind_of(self.scene))
         if self.measured is None:
             return size
@@ -160,11 +160,11 @@ class PipelineConfig(BaseModel):
 
     @property
     def felt_device(self) -> HapticDevice | None:
-        """The device as the picture sees it, by the mapping; None where none is configured."""
+        """The device in the picture's frame, by the mapping; None without a configured device."""
         return None if self.device is None else map_device(self.device.method, self.mapping)
 
     def missing(self, kind: str) -> ConfigError:
-        """Return the complaint for a method that is needed and not named."""
+        """Return the error for a missing method that is needed."""
         if self.path is None:
             return ConfigError(f"the pipeline has no {kind}; give it one: Pipeline(scene, {kind}=...)")
         return ConfigError(
@@ -173,7 +173,7 @@ class PipelineConfig(BaseModel):
         )
 
     def error_at(self, *wrong: Wrong) -> ConfigError:
-        """Return the complaints about these keys, each at its place in the file."""
+        """Return the error with these complaints about keys, each at its place in the file."""
         source = replace(self.source or Source(Path(), {}), complaints=[])
         for location, text in wrong:
             source.complain(location, f"{'.'.join(map(str, location))}: {text}")

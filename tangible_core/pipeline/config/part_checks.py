@@ -1,4 +1,4 @@
-"""Checks of what a configuration says of parts, as far as they need no picture."""
+"""Checks of the configured parts that need no picture."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
@@ -12,11 +12,11 @@ from .model import PipelineConfig
 from .part_names import Wrong, numbers_of
 
 ROUNDING_M = 1e-9
-"""Metres that a sum of lengths may be off by: far less than anybody feels, far more than a rounding error."""
+"""The tolerance of a sum of lengths, m: far less than can be felt, far more than a rounding error."""
 
 
 def wrong_of_parts(config: PipelineConfig) -> Iterator[Wrong]:
-    """Find what contradicts itself among `parts:`, `heights:` and the rules for materials."""
+    """Find contradictions among `parts:`, `heights:` and the rules for materials."""
     parts = config.parts or {}
     yield from _wrong_names(parts)
     with suppress(ConfigError):  # a library that cannot be read is its reader's complaint
@@ -47,7 +47,7 @@ def _wrong_heights(config: PipelineConfig) -> Iterator[Wrong]:
 
 
 def _wrong_names(parts: Mapping[int, PartChoice]) -> Iterator[Wrong]:
-    """Find names that nobody can pronounce, and names of two parts."""
+    """Find names that cannot be spoken, and names of two parts."""
     first: dict[str, int] = {}
     for number, choice in parts.items():
         wrong = _wrong_name(choice.name)

@@ -27,14 +27,14 @@ log = logging.getLogger(__name__)
 
 @final
 class PipelineFrames(FrameMaker):
-    """The frames of a video, each made by the stages that make its first frame, except for what is found once.
+    """The frames of a video, each made by the stages that make its first frame.
 
-    Found once a scene: what the depth method finds out about the cameras (`Following`), and whether the views are
-    exchanged.
+    The first frame alone decides the geometry of the cameras, as far as the depth method keeps it (`Following`), and
+    whether the views are exchanged.
     """
 
     def __init__(self, config: PipelineConfig, scene: Scene) -> None:
-        """Raises: ConfigError without a depth method."""
+        """Prepare the stages. Raises: ConfigError without a depth method."""
         if config.depth is None:
             raise config.missing("depth")
         self._config, self._scene = config, scene
@@ -44,7 +44,7 @@ class PipelineFrames(FrameMaker):
         self._relief = ReliefStage(Context(config, scene))
 
     def begin(self, views: Views) -> DisparityMap:
-        """Return the disparity of the first frame in pixels of the pictures, and find what is found once."""
+        """Return the disparity of the first frame in pixels of the pictures, and keep its decisions for the others."""
         stage = self._stage(views)
         self._estimate = (
             self._method.follow(stage.views) if isinstance(self._method, Following) else self._method.estimate
@@ -82,8 +82,8 @@ def reliefs_of(config: PipelineConfig, scene: Scene) -> Reliefs:
         raise config.error_at(
             (
                 ("heights",),
-                "the relief of a video is made anew of the depth in each frame, and not of parts; leave `heights:` "
-                "out, or take one frame as a `photo:`",
+                "the relief of a video is made from the depth of each frame, and not of parts; leave `heights:` out, "
+                "or take one frame as a `photo:`",
             )
         )
     return Reliefs(scene.frames.open, PipelineFrames(config, scene))
@@ -117,8 +117,8 @@ def _filming(config: PipelineConfig, registry: Registry) -> Filming:
         raise config.error_at(
             (
                 ("render",),
-                f"the scene is a video, and {config.render.name} feels no surface that moves{why}; use {can}, or take "
-                "one frame as a `photo:` or a pair",
+                f"the scene is a video, and {config.render.name} does not support moving surfaces{why}; use {can}, or "
+                "take one frame as a `photo:` or a pair",
             )
         )
     return law

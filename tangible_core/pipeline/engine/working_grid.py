@@ -18,7 +18,7 @@ from ...scene.workspace import FeltSize
 
 @final
 class WorkingGrid:
-    """A scene on the working grid; each thing is reduced at its first use."""
+    """A scene on the working grid; pictures and masks are reduced at their first use."""
 
     def __init__(self, scene: Scene, size: FeltSize) -> None:
         self.scene = scene
@@ -26,7 +26,7 @@ class WorkingGrid:
         self.shape = scaling.reduced_shape(scene.shape, self.factor)
         """(h, w) of the grid."""
         self.note = _note(self.factor, size.finest_m)
-        """A sentence about the reduction; "" for a grid of the pictures' size."""
+        """A sentence about the reduction; empty for a grid of the pictures' size."""
 
     @property
     def key(self) -> str:

@@ -1,10 +1,10 @@
-"""Handing on: exporters get what they need, and their files come into a folder, each whole or not at all."""
+"""Exports: run exporters and move their files into the output folder, all files of one or none."""
 
 import errno
 import logging
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from threading import Event
@@ -27,57 +27,58 @@ from ...scene.scene_files import SceneFiles
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from ..engine.engine import Engine
-from ..engine.stage import Progress, StageEvent
+from ..engine.planning import REQUESTED, with_notes
+from ..engine.stage import Progress, StageEvent, ignore_event
 from .export_folder import check_writable, check_written, move, scratch
-from .legible import judged, names, of_width
+from .legible import judge_products, names_of_parts, with_width
 from .run_folder import default_name, relative_source
 
 log = logging.getLogger(__name__)
 
 PREFIX = "export: "
-"""Of an exporter's name, in what is said of its outcome."""
+"""The prefix of an exporter's name in the product of its outcome."""
 MOST_STEM_BYTES = 120
-"""Of a file's name before its ending: systems take 255, and endings are added."""
+"""The most bytes of a file's name before its ending: systems take 255, and endings are added."""
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
-"""What the disk says, whoever writes."""
+"""The errors of a disk, for which the exporter is not to blame."""
 
 
 @dataclass(frozen=True, eq=False)
 class Exported:
-    """What one exporter wrote, or why it did not."""
+    """The files of one exporter, or the reason why there are none."""
 
     name: str
-    """The exporter's; with a number where it is there twice."""
+    """The exporter's name, with a number where it is listed twice."""
     outcome: Outcome
-    """`ran`; `refused` for what cannot be written of this, and the message says the cure; `failed` by a fault of the
+    """`ran`; `refused` for a work that cannot be written, with the cure in the message; `failed` for a fault of the
     exporter."""
     files: tuple[Path, ...] = ()
     made: Outcomes = field(default_factory=Outcomes)
-    """What became of the products that it needs."""
+    """The outcomes of the products that it needs."""
     legible: Legibility | None = None
-    """Whether fingers can read it; None for what is not felt."""
+    """The legibility for fingers; None for files that are not touched."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Export:
-    """What was written for others, and where. It shows itself as a table, in a terminal and in a notebook."""
+    """The files of all exporters and their folder, shown as a table in a terminal and in a notebook."""
 
     folder: Path
     exports: tuple[Exported, ...]
-    """In the order in which they were asked for."""
+    """The exporters in the order of the request."""
 
     @property
     def files(self) -> dict[str, tuple[Path, ...]]:
-        """The files of each exporter, by its name; none of one that wrote nothing."""
+        """The files of each exporter by its name; empty for an exporter that wrote none."""
         return {each.name: each.files for each in self.exports}
 
     @property
     def outcomes(self) -> Outcomes:
-        """What became of each exporter."""
+        """The outcome of each exporter."""
         return Outcomes(each.outcome for each in self.exports)
 
     def document(self) -> dict[str, Any]:
-        """Everything as plain values."""
+        """Return everything as plain values."""
         return {"folder": str(self.folder), "exports": [_as_data(each) for each in self.exports]}
 
     def __repr__(self) -> str:
@@ -103,23 +104,25 @@ def _as_data(each: Exported) -> dict[str, Any]:
 def chosen_exporters(
     config: PipelineConfig, to: Sequence[str | Exporter] | None, registry: Registry
 ) -> tuple[NamedMethod[Exporter], ...]:
-    """The exporters that are named, with the options that the configuration gives them; without names, all of its own.
+    """Return the named exporters with their configured options; without names, all that the configuration lists.
 
     Raises: ConfigError if there are none; ArgumentError for what is neither name nor exporter; UnknownMethod,
-    BrokenMethod; ConfigError for one whose options must be given.
+    BrokenMethod; ConfigError for an exporter whose options have no defaults.
     """
     if to is None:
-        found = config.export
+        chosen = config.export
     else:
         to = [to] if isinstance(to, str | Exporter) else to
-        found = tuple(chosen for each in to for chosen in _chosen(config, each, registry))
-    if not found:
+        chosen = tuple(method for each in to for method in _find_exporters(config, each, registry))
+    if not chosen:
         known = ", ".join(registry.names("export"))
         raise ConfigError(f"no exporter is named; name some, `--to NAMES` or `export: [NAMES]`; installed: {known}")
-    return found
+    return chosen
 
 
-def _chosen(config: PipelineConfig, each: str | Exporter, registry: Registry) -> tuple[NamedMethod[Exporter], ...]:
+def _find_exporters(
+    config: PipelineConfig, each: str | Exporter, registry: Registry
+) -> tuple[NamedMethod[Exporter], ...]:
     if isinstance(each, Exporter):
         return (NamedMethod(type(each).__qualname__, "", each),)
     if not isinstance(each, cast(Any, str)):
@@ -142,31 +145,24 @@ def export(
     *,
     force: bool = False,
 ) -> Export:
-    """Have each exporter write its files into a folder. What one cannot write does not keep the others from it.
+    """Write the files of each exporter into a folder. An exporter that fails does not stop the others.
 
     Raises: OutputError if the folder cannot be written; TangibleError for a scene that cannot be read; Stopped.
     """
     stem = stem_of(engine.config, engine.scene)
     check_writable(folder)
-    desk, done = _Desk(engine, folder, force, progress or _unheard), list[Exported]()
+    run, done, names = _ExportRun(engine, folder, force, progress or ignore_event), list[Exported](), Counter[str]()
     with stoppable(stop):
-        for name, number, each in _numbered(chosen):
-            done.append(desk.serve(name, stem if number == 1 else f"{stem}-{number}", each))
+        for each in chosen:
+            names[each.name] += 1
+            number = f"-{names[each.name]}" if names[each.name] > 1 else ""
+            done.append(run.export(f"{each.name}{number}", f"{stem}{number}", each))
     return Export(folder, tuple(done))
 
 
-def _numbered(chosen: Iterable[NamedMethod[Exporter]]) -> Iterable[tuple[str, int, NamedMethod[Exporter]]]:
-    """Each with a name of its own, and how many of its name there are so far."""
-    seen = Counter[str]()
-    for each in chosen:
-        seen[each.name] += 1
-        number = seen[each.name]
-        yield each.name if number == 1 else f"{each.name}-{number}", number, each
-
-
 @final
-class _Desk:
-    """One call of `export`: what was made for one exporter is there for the next."""
+class _ExportRun:
+    """The state of one call of `export`, whose exporters share their products."""
 
     def __init__(self, engine: Engine, folder: Path, force: bool, progress: Progress) -> None:
         self.engine = engine
@@ -174,21 +170,21 @@ class _Desk:
         self.force = force
         self.progress = progress
         self.source = relative_source(engine.config.path, folder)
-        self.of_width: dict[float | None, Engine] = {None: engine, engine.config.size.width_m: engine}
+        self.by_width: dict[float | None, Engine] = {None: engine, engine.config.size.width_m: engine}
 
-    def serve(self, name: str, stem: str, chosen: NamedMethod[Exporter]) -> Exported:
-        """Make what this exporter needs, and have it write."""
+    def export(self, name: str, stem: str, chosen: NamedMethod[Exporter]) -> Exported:
+        """Make the products for an exporter, and run it."""
         made, product, seconds = Outcomes(), f"{PREFIX}{name}", 0.0
         files, legible, notes = (), None, list[Note]()
 
-        def told(stage: StageEvent) -> None:
+        def listen(stage: StageEvent) -> None:
             if stage.outcome is not None:
                 made.append(stage.outcome)
             self.progress(stage)
 
         try:
             engine = self._engine(chosen)
-            with engine.watching(told):
+            with engine.watching(listen):
                 work = work_for(engine, chosen.method)
                 legible = legible_for(engine, chosen.method)
             check_stopped()
@@ -196,47 +192,50 @@ class _Desk:
             hooks.tell(self.engine.registry.plugins, "tangible_stage_started", product=product, method=chosen.name)
             start = perf_counter()
             with scratch(self.folder) as place, collect_notes() as notes:
-                files = self._written(chosen, work, place / stem)
+                files = self._write(chosen, work, place / stem)
             seconds = perf_counter() - start
-            became: OutcomeKind = "ran"
+            kind: OutcomeKind = "ran"
             notes = [*_illegible(legible), *notes]
-            why = "; ".join(["asked for", *(each.text for each in notes)])
+            why = with_notes(notes, REQUESTED)
         except Stopped:
             raise
         except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever a plugin raises, the others still write
-            became, why = _fault(error, self.folder)
-        outcome = Outcome(product, became, why, chosen.name, seconds, tuple(notes))
+            kind, why = _fault(error, self.folder)
+        outcome = Outcome(product, kind, why, chosen.name, seconds, tuple(notes))
         self.progress(StageEvent(product, chosen.name, outcome))
         hooks.tell(self.engine.registry.plugins, "tangible_stage_finished", outcome=outcome)
         return Exported(name, outcome, files, made, legible)
 
     def _engine(self, chosen: NamedMethod[Exporter]) -> Engine:
-        """The one that makes products as wide as this exporter writes them."""
+        """Return the engine for the width at which this exporter writes."""
         rows, columns = self.engine.scene.shape
         width_m = chosen.method.picture_width_m(columns / rows)
-        if width_m not in self.of_width:
-            self.of_width[width_m] = of_width(self.engine, width_m)
-        found = self.of_width[width_m]
-        for other in self.of_width.values():
-            found.adopt(other)
-        return found
+        if width_m not in self.by_width:
+            self.by_width[width_m] = with_width(self.engine, width_m)
+        engine = self.by_width[width_m]
+        for other in self.by_width.values():
+            engine.adopt(other)
+        return engine
 
-    def _written(self, chosen: NamedMethod[Exporter], work: Work, stem: Path) -> tuple[Path, ...]:
-        cls = type(chosen.method)
+    def _write(self, chosen: NamedMethod[Exporter], work: Work, stem: Path) -> tuple[Path, ...]:
         written = chosen.method.write(work, stem)
         check_stopped()
-        found = check_written(written, stem, plugin_name("export", cls.__module__, cls.__qualname__))
-        return move(found, self.folder, self.source, chosen.name, self.force)
+        paths = check_written(written, stem, _full_name(chosen.method))
+        return move(paths, self.folder, self.source, chosen.name, self.force)
+
+
+def _full_name(exporter: Exporter) -> str:
+    return plugin_name("export", type(exporter).__module__, type(exporter).__qualname__)
 
 
 def work_for(engine: Engine, exporter: Exporter) -> Work:
-    """What an exporter is given: the products that it needs, made as finely as they are felt.
+    """Make the work for an exporter: the products that it needs, on the working grid.
 
     Raises: BrokenMethod for a product that nothing makes; TangibleError as `Engine.make`.
     """
     if odd := [each for each in exporter.needs if each not in EXPORTABLE]:
-        who = plugin_name("export", type(exporter).__module__, type(exporter).__qualname__)
-        raise BrokenMethod(f"{who}: needs {quoted(odd[0])}; an exporter may need {', '.join(EXPORTABLE)}")
+        name = _full_name(exporter)
+        raise BrokenMethod(f"{name}: needs {quoted(odd[0])}; an exporter may need {', '.join(EXPORTABLE)}")
     products: dict[str, Record | None] = {name: engine.make_on_grid(name) for name in exporter.needs}
     views = engine.scene.views
     return Work(
@@ -244,17 +243,17 @@ def work_for(engine: Engine, exporter: Exporter) -> Work:
         engine.config.language,
         products,
         None if views is None else views.left,
-        names(engine.config, products),
+        names_of_parts(engine.config, products),
         {"views": views, "truth": engine.scene.truth},
     )
 
 
 def legible_for(engine: Engine, exporter: Exporter) -> Legibility | None:
-    """Whether fingers can read what it writes, by what is made for it anyway; None for what is not felt."""
+    """Judge the legibility by the products that an exporter needs; None for files that are not touched."""
     if exporter.medium is None:
         return None
     parts = "simplified" if "simplified" in exporter.needs else engine.config.felt_parts
-    return judged(engine, exporter.medium, parts, set[str]().union(*map(engine.inputs_of, exporter.needs)))
+    return judge_products(engine, exporter.medium, parts, set[str]().union(*map(engine.inputs_of, exporter.needs)))
 
 
 def _illegible(legible: Legibility | None) -> list[Note]:
@@ -265,7 +264,7 @@ def _illegible(legible: Legibility | None) -> list[Note]:
 
 
 def title_of(config: PipelineConfig, scene: Scene) -> str:
-    """What an exporter calls it: its title, or else the name of its scene, without folder and ending."""
+    """Return the title for exporters: the configured one, or the name of the scene without folder and ending."""
     if config.title.strip():
         return config.title.strip()
     name = Path(scene.name)
@@ -273,8 +272,7 @@ def title_of(config: PipelineConfig, scene: Scene) -> str:
 
 
 def stem_of(config: PipelineConfig, scene: Scene) -> str:
-    """How the names of files begin: as that of the pipeline file, or of the scene; without a dot, which begins an
-    ending.
+    """Return the name of exported files without their endings: that of the pipeline file or of the scene, without dots.
 
     >>> stem_of(PipelineConfig(scene="builtin/coins", path=Path("maps/harbour.v2.yaml")), Scene("coins"))
     'harbour-v2'
@@ -285,16 +283,11 @@ def stem_of(config: PipelineConfig, scene: Scene) -> str:
 
 
 def _fault(error: BaseException, folder: Path) -> tuple[OutcomeKind, str]:
-    """What became of an exporter that raised this, and the words for it."""
+    """Return the outcome of an exporter that raised this error, and its reason."""
     if isinstance(error, SystemExit):
         return "failed", str(exit_error(error))
     if isinstance(error, TangibleError):
         return "failed" if isinstance(error, BrokenMethod) else "refused", str(error)
     if isinstance(error, OSError) and error.errno in NO_ROOM:
-        said = f"{folder}: cannot be written: {error.strerror}; free some space or choose another folder"
-        return "refused", said
+        return "refused", f"{folder}: cannot be written: {error.strerror}; free some space or choose another folder"
     return "failed", failures.sentence(error)
-
-
-def _unheard(stage: StageEvent) -> None:
-    """Nobody listens."""

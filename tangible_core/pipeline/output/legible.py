@@ -1,10 +1,10 @@
-"""Whether fingers can read what a pipeline makes, of the width that it has or is to have."""
+"""The legibility of a pipeline's products for fingers, at the configured or at another width."""
 
 from collections.abc import Collection, Mapping
-from typing import Any
+from typing import Any, get_args
 
 from ...data import PartMap, Record
-from ...errors import ConfigError, quoted
+from ...errors import ConfigError, did_you_mean, quoted
 from ...legibility import Legibility, legibility
 from ...plugins.interfaces import Medium
 from ...scene.workspace import Workspace
@@ -14,31 +14,33 @@ from ..engine.engine import Engine
 from ..engine.working_grid import WorkingGrid
 
 ROUNDING = 1e-9
-"""A share by which a product of floating-point numbers may be off, and more."""
-LOOKED_AT: Mapping[Medium, tuple[str, ...]] = {"print": ("relief",), "force": ("relief", "materials")}
-"""Products that a medium's rules are about, beside the parts."""
+"""A share above the rounding error of a product of floating-point numbers."""
+JUDGED: Mapping[Medium, tuple[str, ...]] = {"print": ("relief",), "force": ("relief", "materials")}
+"""Products that the rules of a medium judge next to the parts."""
 
 
 def legible(engine: Engine, medium: Medium) -> Legibility:
-    """Of what the engine makes, at its width. Raises: TangibleError as `Engine.make`."""
+    """Judge the engine's parts at its width. Raises: ConfigError for an unknown medium; as `Engine.make`."""
+    if medium not in (media := get_args(Medium)):
+        raise ConfigError(f"medium: is {quoted(medium)}{did_you_mean(str(medium), media)}; it is {', '.join(media)}")
     parts = engine.config.felt_parts
-    return judged(engine, medium, parts, {parts, *LOOKED_AT.get(medium, ())})
+    return judge_products(engine, medium, parts, {parts, *JUDGED.get(medium, ())})
 
 
-def judged(engine: Engine, medium: Medium, parts: str, looked_at: Collection[str]) -> Legibility:
-    """Of no other products than these. parts: the product whose parts are read. Raises: TangibleError as `make`."""
-    found: dict[str, Any] = {
-        name: engine.make_on_grid(name) for name in (parts, "relief", "materials") if name in looked_at
-    }
-    said = {name: found[name] for name in LOOKED_AT.get(medium, ()) if name in found}
-    read: PartMap | None = found.get(parts)
-    return legibility(medium, read, engine.config.size.width_m, names=names(engine.config, found), **said)
+def judge_products(engine: Engine, medium: Medium, parts: str, judged: Collection[str]) -> Legibility:
+    """Judge the legibility by these products alone. parts: the product with the parts. Raises: TangibleError."""
+    names = [name for name in (parts, "relief", "materials") if name in judged]
+    products: dict[str, Any] = {name: engine.make_on_grid(name) for name in names}
+    others = {name: products[name] for name in JUDGED.get(medium, ()) if name in products}
+    part_map: PartMap | None = products.get(parts)
+    width_m = engine.config.size.width_m
+    return legibility(medium, part_map, width_m, names=names_of_parts(engine.config, products), **others)
 
 
-def of_width(engine: Engine, width_m: float | None) -> Engine:
-    """The same, so wide: what is found in the picture stays the same, as it is looked at no finer than before.
+def with_width(engine: Engine, width_m: float | None) -> Engine:
+    """Return an engine for another width; the grid gets no finer, so that the same parts are found.
 
-    width_m: None for as wide as it is. Raises: ConfigError for what is no width.
+    width_m: None for the same width. Raises: ConfigError for a width out of bounds.
     """
     config = engine.config
     if width_m is None or width_m == config.size.width_m:
@@ -52,9 +54,9 @@ def of_width(engine: Engine, width_m: float | None) -> Engine:
     return engine.with_config(config.with_values(workspace=workspace))
 
 
-def names(config: PipelineConfig, products: Mapping[str, Record | None]) -> tuple[str, ...]:
-    """Names of all parts, as far as it is known how many there are; none where nothing is said of parts."""
+def names_of_parts(config: PipelineConfig, products: Mapping[str, Record | None]) -> tuple[str, ...]:
+    """Return the names of all parts, as many as the products have; none without configured parts."""
     if not config.parts:
         return ()
-    counts = [made.count for made in products.values() if isinstance(made, PartMap)]
+    counts = [each.count for each in products.values() if isinstance(each, PartMap)]
     return names_of(config.parts, max(counts, default=max(config.parts) + 1))

@@ -1,12 +1,12 @@
-"""A run: what a pipeline wants, made and kept in a folder with its figures and its sheet."""
+"""Runs: the wanted product of a pipeline, kept in a folder with its figures and its sheet."""
 
 import platform
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from html import escape
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 
@@ -33,36 +33,36 @@ from ..engine.cache import write_record
 from ..engine.engine import Engine
 from ..engine.warm_up import FELT, warm_up
 from .parts_text import part_heights, to_correct
-from .run_folder import CONFIG, GUESSED, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewritten
+from .run_folder import CONFIG, GUESSED, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewriting
 from .showing import can_draw, drawing, png_html
 
 Sheet = Literal["png", "svg", "pdf"]
-"""What a sheet can be drawn as."""
+"""A file format of sheets."""
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What a run made, and where it lies."""
+    """The results of a run and their files."""
 
     scene: str
     products: Mapping[str, Any]
-    """By name: those that the report shows and the one that was wanted; None where one was skipped."""
+    """The products of the report and the wanted one, by name; None for a skipped product."""
     recording: Recording | None
-    """What was felt, where a touch was wanted and the device is simulated."""
+    """The session of a wanted touch on a simulated device."""
     figures: Mapping[str, Any]
-    """Errors against the truth, materials and why, forces: what of it there is."""
+    """Errors against the truth, materials with reasons, and forces, as far as the run has them."""
     outcomes: Outcomes
     versions: Mapping[str, str]
     title: str
     language: str
-    """Of the title and of the names of parts, as a tag."""
+    """The language of the title and of the names of parts, as a tag."""
     files: tuple[Path, ...]
     sheet_says: str
-    """What is on the sheet, in words."""
+    """The description of the sheet."""
 
     @property
     def sheet(self) -> Path:
-        """The picture of all of it. Raises: OutputError where no exporter draws sheets."""
+        """The file of the sheet. Raises: OutputError where no exporter draws sheets."""
         for path in self.files:
             if path.stem == SHEET:
                 return path
@@ -74,7 +74,7 @@ class Run:
         return self.sheet.read_text(encoding="utf-8") if self.sheet.suffix == ".svg" else escape(self.sheet_says)
 
     def document(self) -> dict[str, Any]:
-        """Everything but the products, as plain values."""
+        """Return everything but the products, as plain values."""
         return {
             "scene": self.scene,
             "title": self.title,
@@ -93,60 +93,57 @@ def make_run(
     on_report: Callable[[ServoReport], None] | None = None,
     sheet: Sheet = "png",
 ) -> Run:
-    """Make what is wanted, and write the results and their report into a folder, in place of an earlier run's.
+    """Make the wanted product, and write the results and their report into a folder in place of an earlier run's.
 
-    What is refused, and a folder that cannot be written, stop the run before it starts. A
-    touch is felt for so many seconds of a simulated device's own time; a real device is not moved.
+    A refused product, or a folder that cannot be written, stops the run before it starts. A touch is run on a simulated
+    device for these seconds of its time; a real device is not moved.
     Raises: OutputError if the folder cannot be written; TangibleError as `Engine.make` and `run_simulated`.
     """
     engine.check(want)
     check_folder(out, engine.config.path)
-    with warm_up(engine, want) as engine.beside:
+    with warm_up(engine, want) as engine.compiler:
         value = engine.make_on_grid(want)
         products = {name: engine.make_on_grid(name) for name in IN_REPORT if name in engine.inputs_of(want)}
         products[want] = value
-        recording = _felt(engine, value, seconds, on_report) if want == "touch" else None
-    figures, config = _figures(engine, products, recording), _configuration(engine)
-    kept = {f"{name}.npz": record for name, record in products.items() if isinstance(record, Record)}
-    felt = [RECORDING] if recording is not None else []
-    drawn = [f"{SHEET}.{sheet}"] if can_draw(engine.registry) else []
-    texts = {config.name: config.text, **_guessed(engine, products)}
-    files = tuple(out / name for name in (*texts, *kept, *felt, *drawn, OUTCOMES))
-    with rewritten(out, engine.config.path) as place:
-        for name, record in kept.items():
+        recording = _run_touch(engine, value, seconds, on_report) if want == "touch" else None
+    figures, config_file = _figures(engine, products, recording), _config_file(engine)
+    records = {f"{name}.npz": record for name, record in products.items() if isinstance(record, Record)}
+    recordings = [RECORDING] if recording is not None else []
+    sheets = [f"{SHEET}.{sheet}"] if can_draw(engine.registry) else []
+    texts = {**config_file, **_guessed_parts(engine, products)}
+    files = tuple(out / name for name in (*texts, *records, *recordings, *sheets, OUTCOMES))
+    with rewriting(out, engine.config.path) as place:
+        for name, record in records.items():
             write_record(place(name), record)
         if recording is not None:
             recording.save(place(RECORDING))
-        says = "".join(_draw(engine, products, recording, place(name)) for name in drawn)
-        said = engine.config.title, engine.config.language
-        run = Run(engine.scene.name, products, recording, figures, engine.outcomes, _versions(), *said, files, says)
+        about_sheet = "".join(_draw(engine, products, recording, place(name)) for name in sheets)
+        run = Run(
+            engine.scene.name, products, recording, figures, engine.outcomes, _versions(), engine.config.title,
+            engine.config.language, files, about_sheet,
+        )  # fmt: skip
         for name, text in texts.items():
             write_text(place(name), text)
         write_figures(place(OUTCOMES), run.document())
     return run
 
 
-class _Configuration(NamedTuple):
-    name: str
-    text: str
-
-
-def _configuration(engine: Engine) -> _Configuration:
-    """The file of the completed configuration; where no file can say it, one that says why."""
+def _config_file(engine: Engine) -> dict[str, str]:
+    """Return the completed configuration, or the reason why no file can have it, by the name of its file."""
     try:
-        return _Configuration(CONFIG, engine.config.as_yaml())
+        return {CONFIG: engine.config.as_yaml()}
     except ConfigError as error:
-        return _Configuration(NO_CONFIG, f"{error}\n")
+        return {NO_CONFIG: f"{error}\n"}
 
 
-def _guessed(engine: Engine, products: Mapping[str, Any]) -> dict[str, str]:
-    """The file of what was guessed of parts, where anything was."""
+def _guessed_parts(engine: Engine, products: Mapping[str, Any]) -> dict[str, str]:
+    """Return the file with guessed heights of parts, if any, by its name."""
     heights, high = engine.config.heights, products.keys() & {"relief", "surface", "touch"}
     return {GUESSED: to_correct(engine)} if heights is not None and heights.by == "guess" and high else {}
 
 
 def about(engine: Engine) -> About:
-    """What a recording says of the pipeline that was felt."""
+    """Describe the pipeline for a recording."""
     used = {kind: getattr(engine.config, kind) for kind in ("device", "render")}
     names = {kind: chosen.name if chosen else "" for kind, chosen in used.items()}
     try:
@@ -157,37 +154,46 @@ def about(engine: Engine) -> About:
     return About(names["device"], names["render"], text, parts=parts, materials=materials)
 
 
-def felt_device(engine: Engine, device: HapticDevice | None = None) -> HapticDevice | None:
-    """This or the configured device as the picture sees it, a path of its own over the surface; None where none is."""
-    felt = engine.config.felt_device if device is None else map_device(device, engine.config.mapping)
-    return felt and over(felt, engine.make("surface").extent_m)
+def join_descriptions(first: About, each: Sequence[About]) -> About:
+    """Describe scenes that follow one another in one recording."""
+    configuration = "---\n".join(one.configuration for one in each)
+    names = (tuple(getattr(one, which) for one in each) for which in ("parts", "materials"))
+    parts, materials = ("\n".join(lines) if any(lines) else "" for lines in names)
+    return replace(first, configuration=configuration, parts=parts, materials=materials)
 
 
-def how_followed(engine: Engine, felt: HapticDevice | None, seen: Recording) -> TrackingError:
-    """How the hand followed the path of a device of `felt_device`. seen: one of `EVERY` ticks."""
-    path_m = felt and intended_path(felt, np.arange(len(seen.rows)) * EVERY)
-    return tracking_error(seen, path_m, engine.make("surface"))
+def device_in_workspace(engine: Engine, device: HapticDevice | None = None) -> HapticDevice | None:
+    """Place the device, or the configured one, over the surface, in the picture's frame; None without a device."""
+    placed = engine.config.felt_device if device is None else map_device(device, engine.config.mapping)
+    return placed and over(placed, engine.make("surface").extent_m)
 
 
-def _felt(
+def path_tracking(engine: Engine, device: HapticDevice | None, ticks: Recording) -> TrackingError:
+    """Report how well the path of a device of `device_in_workspace` was tracked. ticks: one of `EVERY`."""
+    path_m = device and intended_path(device, np.arange(len(ticks.rows)) * EVERY)
+    return tracking_error(ticks, path_m, engine.make("surface"))
+
+
+def _run_touch(
     engine: Engine, touch: Touch, seconds: float, on_report: Callable[[ServoReport], None] | None
 ) -> Recording | None:
-    device = felt_device(engine)
+    """Run a touch on the configured device; None without a simulated one."""
+    device = device_in_workspace(engine)
     if device is None or not device.spec().simulated:
         return None
-    said = about(engine).with_versions()
-    if engine.beside is not None:
-        engine.beside.wait(FELT)
-    told = with_parts(engine.make_on_grid("surface"), on_report) if on_report else None
-    recording = run_simulated(touch, device, seconds, told, engine.config.safety)
-    return replace(recording, about=said)
+    description = about(engine).with_versions()
+    if engine.compiler is not None:
+        engine.compiler.wait(FELT)
+    listener = with_parts(engine.make_on_grid("surface"), on_report) if on_report else None
+    recording = run_simulated(touch, device, seconds, listener, engine.config.safety)
+    return replace(recording, about=description)
 
 
 def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | None, path: Path) -> str:
     scene, language = engine.scene, engine.config.language
     shown: dict[str, Any] = {name: products.get(name) for name in (*IN_REPORT, "relief")}
     if scene.truth is not None and shown["disparity"] is not None:
-        shown["disparity"] = engine.make("disparity")  # pixel by pixel beside its truth
+        shown["disparity"] = engine.make("disparity")  # pixel by pixel next to its truth
     title = engine.config.title or (Path(scene.name).name if Path(scene.name).is_absolute() else scene.name)
     if doubts := [each.text.partition(":")[0] for each in engine.outcomes.doubts]:
         title = f"{title} (doubtful: {'; '.join(doubts)})"
@@ -210,24 +216,24 @@ def _figures(engine: Engine, products: Mapping[str, Any], recording: Recording |
         figures["parts"] = _part_figures(engine, surface)
     if recording is not None:
         figures["force"] = recording.figures()
-        if said := recording.guard_sentence:
-            figures["guard"] = {"says": said}
-        hand = how_followed(engine, felt_device(engine), Recording(recording.rows[::EVERY]))
+        if sentence := recording.guard_sentence:
+            figures["guard"] = {"says": sentence}
+        hand = path_tracking(engine, device_in_workspace(engine), Recording(recording.rows[::EVERY]))
         if hand.says:
             figures["hand"] = hand._asdict()
     return figures
 
 
 def _part_figures(engine: Engine, surface: HapticSurface) -> dict[int, dict[str, Any]]:
-    """By number: the name of each part, its material, and its height with where that is from."""
-    found = part_heights(engine)
+    """Return name, material, height and the reason of the height for each part, by number."""
+    heights = part_heights(engine)
     names, materials = surface.names or (), surface.materials
     return {
         number: {
             "name": name,
             "material": materials[number].name if materials else None,
-            "height_m": found.heights_m[number] if found else None,
-            "why": found.reasons[number] if found else "",
+            "height_m": heights.heights_m[number] if heights else None,
+            "why": heights.reasons[number] if heights else "",
         }
         for number, name in enumerate(names)
     }

@@ -1,4 +1,4 @@
-"""One product as a picture, drawn by the exporter `sheet`, which is found like any other plugin."""
+"""Pictures of single products, in matplotlib and in notebooks, drawn by the exporter `sheet`."""
 
 from __future__ import annotations
 
@@ -30,10 +30,11 @@ log = logging.getLogger(__name__)
 SHEET = "sheet"
 """The exporter that draws runs and products."""
 DPI = 80
+"""The resolution of a picture in a notebook."""
 
 
 def can_draw(registry: Registry) -> bool:
-    """Tell whether the exporter that draws is installed; without it, a run has no sheet, and a note says so."""
+    """Return True if the exporter that draws is installed; else a run has no sheet, and a note gives the reason."""
     if SHEET in registry.names("export"):
         return True
     note(log, f"no sheet is drawn: no exporter named {SHEET!r} is installed")
@@ -44,42 +45,41 @@ def drawing(**options: Any) -> Drawing:
     """Load the exporter that draws. Raises: UnknownMethod, BrokenMethod."""
     sheet: type[Exporter] = cast("type[Exporter]", default_registry().load("export", SHEET))
     if not issubclass(sheet, Drawing):
-        raise BrokenMethod(f"export method {SHEET!r} is not a Drawing; rename it, for runs are drawn by this one")
+        raise BrokenMethod(f"export method {SHEET!r} is not a Drawing; rename it, as runs are drawn by this name")
     return sheet(**options)
 
 
 def show(product: Record, axes: Axes | None = None, **others: Any) -> Axes:
-    """Draw a product as its panel on the sheet of a run, with units; returns the axes, whose title says what it is.
+    """Draw a product as its panel on the sheet of a run, with units and a title, and return the axes.
 
-    axes: where to draw; a new pyplot figure of the panel's own proportions where it is None.
-    others: products that the panel can show with it, by name: `views` and `materials` with segments, `views` and
-    `surface` with parts, `relief` with a recording.
-    Raises: OutputError for a product that has no picture, such as materials without segments.
+    axes: the axes to draw into; None makes a pyplot figure of the panel's proportions.
+    others: further products for the panel, by name: `views` and `materials` with segments, `views` and `surface` with
+    parts, `relief` with a recording.
+    Raises: OutputError for a product without a picture, such as materials without segments.
     """
     return drawing().show(product, axes, **others)
 
 
 def as_html(record: Record) -> str:
-    """A picture of what has one; of materials and other records a table of what is in them."""
+    """Show a record as a picture with units, or as a table where it has no picture."""
     if not (isinstance(record, Recording) and not record.time_s.size):
         with suppress(OutputError):  # it has no picture
-            return png_html(_drawn(record), type(record).__name__)
+            return png_html(_png(record), type(record).__name__)
     if isinstance(record, MaterialMap):
-        found = zip(record.materials, record.reasons, strict=True)
-        rows = [(str(label), material.name, why) for label, (material, why) in enumerate(found)]
+        materials = enumerate(zip(record.materials, record.reasons, strict=True))
+        rows = [(str(label), material.name, why) for label, (material, why) in materials]
         what = "part" if any(why.startswith("part ") for why in record.reasons) else "segment"
         return html_table((what, "material", "why"), rows)
-    return html_table(
-        ("field", "value"), [(each.name, _said(getattr(record, each.name))) for each in fields(cast(Any, record))]
-    )
+    rows = [(each.name, _text(getattr(record, each.name))) for each in fields(cast(Any, record))]
+    return html_table(("field", "value"), rows)
 
 
 def png_html(png: bytes, what: str) -> str:
-    """A PNG inside of the page itself."""
+    """Embed a PNG in a page. what: its description for people who do not see it."""
     return f"<img alt='{escape(what)}' src='data:image/png;base64,{base64.b64encode(png).decode()}'>"
 
 
-def _drawn(record: Record) -> bytes:
+def _png(record: Record) -> bytes:
     from matplotlib import pyplot
 
     axes, file = show(record), BytesIO()
@@ -92,7 +92,7 @@ def _drawn(record: Record) -> bytes:
     return file.getvalue()
 
 
-def _said(value: Any) -> str:
+def _text(value: Any) -> str:
     if isinstance(value, np.ndarray):
         array = cast(np.ndarray, value)
         return f"{array.dtype} {array.shape}"

@@ -105,7 +105,7 @@ def find_picture(path: Path, metadata: HeightsMetadata) -> tuple[Path, HeightsMe
         return path, metadata
     for name in filter(None, (metadata.exact, metadata.file)):
         if Path(name).name != name:
-            raise PictureError(f"{path}: names the picture {quoted(name)}; it must be a file beside this one")
+            raise PictureError(f"{path}: names the picture {quoted(name)}; it must be a file next to this one")
     exact = path.with_name(metadata.exact) if metadata.exact else path
     if exact != path and exact.is_file() and (own := read_heights_metadata(exact)) is not None:
         return exact, own

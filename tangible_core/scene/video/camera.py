@@ -46,7 +46,7 @@ class CameraFrames(VideoFrames):
         Raises: PictureError if the camera is missing or delivers no picture.
         """
         super().__init__(fps or USUAL_FPS, views_of)
-        self._camera, self._asked_fps = number, fps
+        self._camera, self._requested_fps = number, fps
         self._open = open_capture or video_capture.open_camera
         self._changed, self._closed = Condition(), Event()
         self._newest: _Shot | None = None
@@ -131,9 +131,9 @@ class CameraFrames(VideoFrames):
         """Take pictures until that fails; return the reason."""
         taken, capture = self._taken, None
         try:
-            capture = self._open(self._camera, self._asked_fps)
+            capture = self._open(self._camera, self._requested_fps)
             if capture.isOpened():
-                self.fps = self._asked_fps or stated_fps(capture) or USUAL_FPS
+                self.fps = self._requested_fps or stated_fps(capture) or USUAL_FPS
                 self._take_all(capture)
         except PictureError as error:
             return error

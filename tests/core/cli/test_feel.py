@@ -126,5 +126,5 @@ def test_feel_of_a_video_plays_it_and_reports_its_frames(tmp_path: Path):
     assert {"frames_dropped", "frames_skipped", "frames_per_s", "frames_age_ms"} <= figures.keys()
     assert np.nanmax(Recording.load(tmp_path / "hand.csv").frame) > 0
     refused = tangible("feel", "walk.yaml", "--set", "render.use=penalty", cwd=tmp_path)
-    assert refused.returncode and "penalty feels no surface that moves" in refused.stderr
+    assert refused.returncode and "penalty does not support moving surfaces" in refused.stderr
     assert "Traceback" not in refused.stderr

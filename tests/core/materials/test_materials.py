@@ -190,14 +190,14 @@ class TestOwnFile:
 
 class TestByName:
     def test_each_label_gets_its_material(self):
-        found = assign(stripes(3), None, {0: "ice", 1: "sand", 2: "ice"}, library())
-        assert [each.name for each in found.materials] == ["ice", "sand", "ice"]
-        assert found.reasons == ("segment 0: named ice", "segment 1: named sand", "segment 2: named ice")
+        assigned = assign(stripes(3), None, {0: "ice", 1: "sand", 2: "ice"}, library())
+        assert [each.name for each in assigned.materials] == ["ice", "sand", "ice"]
+        assert assigned.reasons == ("segment 0: named ice", "segment 1: named sand", "segment 2: named ice")
 
     def test_unnamed_label_is_neutral(self):
-        found = assign(stripes(2), None, {1: "sand"}, library())
-        assert [each.name for each in found.materials] == ["plain", "sand"]
-        assert found.reasons[0] == "segment 0: not named -> plain"
+        assigned = assign(stripes(2), None, {1: "sand"}, library())
+        assert [each.name for each in assigned.materials] == ["plain", "sand"]
+        assert assigned.reasons[0] == "segment 0: not named -> plain"
 
     def test_wrong_labels_and_names_are_all_reported(self):
         with pytest.raises(MaterialError) as error:
@@ -211,10 +211,10 @@ class TestByName:
 class TestByRoughness:
     def test_rougher_segment_gets_the_rougher_material(self):
         picture = checkers(0.3, 0.0, 0.1)
-        found = assign(stripes(3), picture, "roughness", library())
-        assert [each.name for each in found.materials] == ["brick", "ice", "wood"]
+        assigned = assign(stripes(3), picture, "roughness", library())
+        assert [each.name for each in assigned.materials] == ["brick", "ice", "wood"]
         spread = picture.std()
-        assert found.reasons == (
+        assert assigned.reasons == (
             f"segment 0: roughness rank 3 of 3 ({0.3 / spread * np.sqrt(80 / 81):.3f}) -> brick",
             "segment 1: roughness rank 1 of 3 (0.000) -> ice",
             f"segment 2: roughness rank 2 of 3 ({0.1 / spread * np.sqrt(80 / 81):.3f}) -> wood",
@@ -229,18 +229,18 @@ class TestByRoughness:
         ]
 
     def test_equally_rough_segments_share_a_rank(self):
-        found = assign(stripes(3), checkers(0.2, 0.0, 0.2), "roughness", library())
-        assert [each.name for each in found.materials] == ["brick", "ice", "brick"]
-        assert "rank 2 of 2" in found.reasons[0]
+        assigned = assign(stripes(3), checkers(0.2, 0.0, 0.2), "roughness", library())
+        assert [each.name for each in assigned.materials] == ["brick", "ice", "brick"]
+        assert "rank 2 of 2" in assigned.reasons[0]
 
     @pytest.mark.parametrize("picture", [checkers(0.2, 0.2), np.zeros((40, 80)), np.full((40, 80, 3), 0.3)])
     def test_single_rank_gives_the_neutral_material(self, picture: np.ndarray):
-        found = assign(stripes(2), picture, "roughness", library())
-        assert [each.name for each in found.materials] == [NEUTRAL, NEUTRAL]
+        assigned = assign(stripes(2), picture, "roughness", library())
+        assert [each.name for each in assigned.materials] == [NEUTRAL, NEUTRAL]
 
     def test_more_segments_than_materials_share_them_in_order(self):
-        found = assign(stripes(12), checkers(*np.arange(12) / 30), "roughness", library())
-        rungs = [LADDER.index(each.name) for each in found.materials]
+        assigned = assign(stripes(12), checkers(*np.arange(12) / 30), "roughness", library())
+        rungs = [LADDER.index(each.name) for each in assigned.materials]
         assert rungs == [0, 1, 1, 2, 3, 4, 4, 5, 6, 7, 7, 8]
 
     @pytest.mark.parametrize("scale", [1e-20, 1.0, 1e20])
@@ -270,8 +270,8 @@ class TestByRoughness:
         assert relative_roughness(SegmentMap(labels), picture) == pytest.approx(expected, abs=6e-4)
 
     def test_roughness_of_a_single_pixel_is_zero(self):
-        found = assign(SegmentMap(np.zeros((1, 1), np.int32)), np.ones((1, 1)), "roughness", library())
-        assert found.reasons == ("segment 0: roughness rank 1 of 1 (0.000) -> plain",)
+        assigned = assign(SegmentMap(np.zeros((1, 1), np.int32)), np.ones((1, 1)), "roughness", library())
+        assert assigned.reasons == ("segment 0: roughness rank 1 of 1 (0.000) -> plain",)
 
     def test_roughness_without_a_picture_is_refused(self):
         for picture in (None, np.zeros((3, 4))):
@@ -308,9 +308,9 @@ class TestByRules:
             {"colour": "blue", "material": "water"},
             {"segment": 0, "material": "glass"},
         )
-        found = assign(segments, picture, "rules", library(), given, "leather")
-        assert [each.name for each in found.materials] == ["water", "ice", "leather", "sand"]
-        assert found.reasons == (
+        assigned = assign(segments, picture, "rules", library(), given, "leather")
+        assert [each.name for each in assigned.materials] == ["water", "ice", "leather", "sand"]
+        assert assigned.reasons == (
             "segment 0: rule 4, 100 % of it blue -> water",
             "segment 1: rule 2, at [25.4, 0] -> ice",
             "segment 2: not named -> leather",
@@ -322,13 +322,13 @@ class TestByRules:
     )
     def test_point_selects_the_pixel_with_the_nearest_centre(self, at: list[float], label: int):
         """Select a pixel; centres are at whole numbers."""
-        found = assign(quarters()[0], None, "rules", library(), rules({"at": at, "material": "ice"}))
-        assert [each.name for each in found.materials].index("ice") == label
+        assigned = assign(quarters()[0], None, "rules", library(), rules({"at": at, "material": "ice"}))
+        assert [each.name for each in assigned.materials].index("ice") == label
 
     def test_rest_is_decided_by_name_or_by_roughness(self):
         given = rules({"segment": 1, "material": "glass"})
-        found = assign(stripes(3), None, {1: "sand", 2: "wood"}, library(), given)
-        assert [each.name for each in found.materials] == ["plain", "glass", "wood"]
+        assigned = assign(stripes(3), None, {1: "sand", 2: "wood"}, library(), given)
+        assert [each.name for each in assigned.materials] == ["plain", "glass", "wood"]
         picture = checkers(0.3, 0.0, 0.1)
         alone, ruled = (assign(stripes(3), picture, "roughness", library(), each) for each in ([], given))
         assert [each.name for each in ruled.materials] == ["brick", "glass", "wood"]
@@ -341,11 +341,11 @@ class TestByRules:
     def test_colour_rule_follows_most_pixels(self):
         segments, picture = quarters()
         picture[:9, :20] = (200, 30, 30)
-        found = assign(segments, picture, "rules", library(), rules({"colour": "blue", "material": "water"}))
-        assert found.reasons[0] == "segment 0: rule 1, 55 % of it blue -> water"
+        assigned = assign(segments, picture, "rules", library(), rules({"colour": "blue", "material": "water"}))
+        assert assigned.reasons[0] == "segment 0: rule 1, 55 % of it blue -> water"
         picture[:11, :20] = (200, 30, 30)
-        found = assign(segments, picture, "rules", library(), rules({"colour": "blue", "material": "water"}))
-        assert found.reasons[0] == "segment 0: not named -> plain"
+        assigned = assign(segments, picture, "rules", library(), rules({"colour": "blue", "material": "water"}))
+        assert assigned.reasons[0] == "segment 0: not named -> plain"
 
     def test_rule_that_fits_nothing_is_logged(self, caplog: pytest.LogCaptureFixture):
         assign(*quarters(), "rules", library(), rules({"colour": "pink", "material": "skin"}))
@@ -353,8 +353,8 @@ class TestByRules:
 
     @pytest.mark.parametrize("point", [[0, 0], [19.4, 19.4], [-0.0, 0.4]])
     def test_point_counts_in_pixels_of_the_picture(self, point: list):
-        found = assign(*quarters(), "rules", library(), rules({"at": point, "material": "ice"}))
-        assert [each.name for each in found.materials] == ["ice", "plain", "plain", "plain"]
+        assigned = assign(*quarters(), "rules", library(), rules({"at": point, "material": "ice"}))
+        assert [each.name for each in assigned.materials] == ["ice", "plain", "plain", "plain"]
 
     def test_every_wrong_rule_is_reported(self):
         given = rules(

@@ -10,7 +10,7 @@ NAN = np.nan
 
 @pytest.fixture(scope="module")
 def maps() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """An estimate, its truth with a fifth unknown, and a foreground."""
+    """Make an estimate, its truth with a fifth unknown, and a foreground."""
     random = np.random.default_rng(17)
     truth = random.uniform(2, 120, (60, 80)).astype(np.float32)
     found = (truth + random.normal(0, 4, truth.shape)).astype(np.float32)
@@ -19,7 +19,7 @@ def maps() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("bound", [0.5, 1.0, 2.0, 4.0])
-def test_bad_pixels_and_d1_are_kornias(maps, bound: float):
+def test_bad_pixels_and_d1_equal_those_of_kornia(maps, bound: float):
     import torch
     from kornia import metrics
 
@@ -40,7 +40,7 @@ def test_bad_pixels_and_d1_are_kornias(maps, bound: float):
     assert 5 < mine["d1_bg"] < 95 and mine["d1_bg"] != mine["d1_fg"] != mine["d1"]
 
 
-def test_quantiles_and_counts_are_over_what_is_known(maps):
+def test_quantiles_and_counts_are_over_known_pixels(maps):
     found, truth, foreground = maps
     found = found.copy()
     found[:30] = NAN
@@ -67,13 +67,13 @@ def test_quantiles_and_counts_are_over_what_is_known(maps):
         (10.0, NAN, NAN, NAN),
     ],
 )
-def test_an_outlier_is_off_by_more_than_3_px_and_5_percent(found, truth, d1, bad3):
+def test_outlier_is_off_by_more_than_3_px_and_5_percent(found, truth, d1, bad3):
     mine = benchmark_errors(np.float32([[found]]), np.float32([[truth]]))
     assert (mine["d1"], mine["bad3"]) == pytest.approx((d1, bad3), nan_ok=True)
     assert np.isnan(mine["d1_fg"]) and np.isnan(mine["d1_bg"]) and mine["pixels_fg"] == 0
 
 
-def test_nothing_known():
+def test_maps_without_known_pixels_give_nan():
     nothing = np.full((2, 3), NAN, np.float32)
     mine = benchmark_errors(nothing, np.ones((2, 3), np.float32))
     assert mine["invalid"] == mine["d1"] == 100 and np.isnan(mine["a90_px"])

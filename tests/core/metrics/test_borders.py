@@ -1,4 +1,4 @@
-"""Which borders are felt as steps: against answers that are known exactly."""
+"""Borders that can be felt as steps, against answers that are known exactly."""
 
 from math import isnan
 from statistics import NormalDist
@@ -29,7 +29,7 @@ def halves(relief: Relief, at_m: float) -> np.ndarray:
 
 
 def half_width_m(height_m: float) -> float:
-    """How far from a step it is felt: where the blurred step rises by 0.5 mm from 1 mm left to 1 mm right of there."""
+    """Return the distance from a step within which it is found: the blurred step rises by 0.5 mm within 2 mm there."""
     skin = NormalDist(0, SKIN_M)
     x_m = np.linspace(0, 0.004, 4001)
     rise = [height_m * (skin.cdf(x + 0.001) - skin.cdf(x - 0.001)) for x in x_m]
@@ -37,7 +37,7 @@ def half_width_m(height_m: float) -> float:
 
 
 @pytest.mark.parametrize("height_m", [0.00055, 0.001, 0.002, 0.005])
-def test_a_step_at_a_border_is_felt_and_is_that_border(height_m):
+def test_step_at_a_border_is_found_at_that_border(height_m):
     relief = steps_at(0.02, height_m=height_m)
     found = border_steps(relief, halves(relief, 0.02))
     assert found["borders_found"] == 1
@@ -45,28 +45,28 @@ def test_a_step_at_a_border_is_felt_and_is_that_border(height_m):
     assert found["steps_at_borders"] == 1
 
 
-def test_a_step_too_low_is_not_felt():
+def test_low_step_is_not_found():
     relief = steps_at(0.02, height_m=0.00049)
     found = border_steps(relief, halves(relief, 0.02))
     assert (found["borders_found"], found["area_stepped"]) == (0, 0)
     assert isnan(found["steps_at_borders"])
 
 
-def test_a_slope_is_a_step_if_it_is_steep_enough():
+def test_steep_slope_is_a_step_and_a_gentle_one_is_not():
     ramp = np.tile(np.arange(400) * PITCH_M, (60, 1))
     felt, gentle = (felt_steps(Relief((ramp * slope).astype(np.float32), (0.04, 0.006))) for slope in (0.26, 0.24))
     assert felt[:, 50:-50].all()
     assert not gentle.any()
 
 
-def test_of_two_steps_alike_one_at_a_border_the_share_is_a_half():
+def test_two_equal_steps_with_one_at_a_border_share_a_half():
     relief = steps_at(0.01, 0.03, height_m=0.001)
     found = border_steps(relief, halves(relief, 0.01))
     assert found["steps_at_borders"] == pytest.approx(0.5, abs=1e-9)
     assert found["borders_found"] == 1
 
 
-def test_a_step_further_than_2_mm_from_a_border_is_none_of_it():
+def test_step_further_than_2_mm_from_a_border_does_not_belong_to_it():
     relief = steps_at(0.02, height_m=0.001)
     reach = half_width_m(0.001)
     assert border_steps(relief, halves(relief, 0.02 + 0.002 + reach + 0.0002))["steps_at_borders"] == 0
@@ -75,8 +75,8 @@ def test_a_step_further_than_2_mm_from_a_border_is_none_of_it():
 
 
 @pytest.mark.parametrize("tall", [1, 10])
-def test_borders_are_found_by_their_length(tall):
-    """One around a step, 60 cells high and 200 wide, one without a step, 100 cells high; cells may be no squares."""
+def test_borders_are_counted_by_their_length(tall):
+    """A border at a step is 60 cells high and 200 wide, one without a step 100 cells high; cells are not squares."""
     height_m = np.zeros((100, 400), np.float32)
     height_m[:60, 200:] = 0.002
     labels = np.zeros(height_m.shape, np.int32)
@@ -86,7 +86,7 @@ def test_borders_are_found_by_their_length(tall):
     assert found["borders_found"] == pytest.approx((60 * tall + 200) / (60 * tall + 200 + 100 * tall))
 
 
-def test_the_measure_is_that_of_metres_and_not_of_pixels():
+def test_shares_depend_on_metres_and_not_on_pixels():
     relief = steps_at(0.01, 0.03, height_m=0.001)
     finer = Relief(relief.height_m.repeat(2, axis=0).repeat(2, axis=1), relief.extent_m)
     labels = halves(relief, 0.01)
@@ -95,19 +95,19 @@ def test_the_measure_is_that_of_metres_and_not_of_pixels():
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1)])
-def test_of_one_part_on_a_flat_surface_nothing_is_felt(shape):
+def test_flat_surface_of_one_part_has_no_steps(shape):
     found = border_steps(Relief(np.zeros(shape, np.float32), (0.08, 0.08)), np.zeros(shape, np.int32))
     assert found["area_stepped"] == 0
     assert isnan(found["borders_found"])
     assert isnan(found["steps_at_borders"])
 
 
-def test_cells_wider_than_a_fingertip_are_compared_with_those_beside_them():
+def test_cells_wider_than_a_fingertip_are_compared_with_their_neighbours():
     labels = np.arange(4, dtype=np.int32)[None]
     found = border_steps(Relief(np.float32([[0, 0.001, 0.001, 0.001]]), (0.04, 0.01)), labels)
     assert (found["borders_found"], found["area_stepped"]) == (pytest.approx(2 / 3), 0.5)
 
 
-def test_labels_of_another_size_are_said():
+def test_labels_of_another_size_are_refused():
     with pytest.raises(PictureError, match=r"\(1, 2\)"):
         border_steps(Relief(np.zeros((1, 3), np.float32), (0.08, 0.08)), np.zeros((1, 2), np.int32))

@@ -11,7 +11,7 @@ from tangible_core.metrics import absolute_error, disparity_errors, visible_pixe
 NAN = np.nan
 
 
-def test_measures_of_a_map_worked_out_by_hand():
+def test_measures_equal_those_computed_by_hand():
     truth = np.float32([[1, 2, 3, NAN], [4, 5, 6, 7]])
     found = np.float32([[1, 2.75, NAN, 9], [5.5, 2, 11, np.inf]])
     assert disparity_errors(found, truth) == pytest.approx(
@@ -27,11 +27,11 @@ def test_measures_of_a_map_worked_out_by_hand():
     )
 
 
-def test_an_error_of_just_the_bound_is_good():
+def test_error_equal_to_the_bound_is_good():
     assert disparity_errors(np.float32([[2]]), np.float32([[0]]))["bad2"] == 0
 
 
-def test_nothing_to_measure_is_unknown():
+def test_maps_without_known_pixels_give_nan():
     unknown = np.full((2, 2), NAN, np.float32)
     assert all(np.isnan(value) for value in disparity_errors(unknown, unknown).values())
     found = disparity_errors(unknown, np.ones((2, 2), np.float32))
@@ -40,14 +40,14 @@ def test_nothing_to_measure_is_unknown():
 
 
 @pytest.mark.usefixtures("unchecked_shapes")
-def test_sizes_must_agree():
+def test_maps_of_different_size_are_refused():
     with pytest.raises(PictureError, match=r"\(2, 2\) and its truth \(2, 3\)"):
         absolute_error(np.ones((2, 2)), np.ones((2, 3)))
 
 
 @given(st.integers(1, 12), st.integers(0, 12))
-def test_behind_a_step_a_strip_as_wide_as_the_jump_is_hidden(jump: int, far: int):
-    """Left of a nearer surface, and at the left border."""
+def test_strip_behind_a_step_is_hidden_as_wide_as_the_jump(jump: int, far: int):
+    """The strip is left of a nearer surface, and at the left border."""
     edge, width = 40, 64
     truth = np.full((3, width), far, np.float64)
     truth[:, edge:] = far + jump
@@ -59,12 +59,12 @@ def test_behind_a_step_a_strip_as_wide_as_the_jump_is_hidden(jump: int, far: int
     np.testing.assert_array_equal(hidden, np.tile(expected, (3, 1)))
 
 
-def test_a_step_down_hides_nothing():
+def test_step_down_hides_nothing():
     truth = np.where(np.arange(64) < 30, 9.0, 2.0)[None]
     np.testing.assert_array_equal(visible_pixels(truth)[0], np.arange(64) >= 9)
 
 
-def test_a_thin_bar_hides_its_own_width_and_what_it_passes_stays_visible():
+def test_thin_bar_hides_its_own_width_only():
     """The bar at 40 jumps over the wall: seen at 40 - 12 it hides the wall of 28 + 2, and none between."""
     truth = np.full((1, 64), 2.0)
     truth[0, 40:43] = 12
@@ -72,7 +72,7 @@ def test_a_thin_bar_hides_its_own_width_and_what_it_passes_stays_visible():
     assert hidden.tolist() == [0, 1, 30, 31, 32]
 
 
-def test_a_surface_that_the_right_view_stretches_has_no_gaps():
+def test_surface_stretched_in_the_right_view_has_no_gaps():
     """A slanted one, whose columns lie 1.5 px apart there, hides all of the wall behind it."""
     truth = np.full((1, 30), np.nan, np.float32)
     truth[0, :14] = 0
@@ -80,18 +80,18 @@ def test_a_surface_that_the_right_view_stretches_has_no_gaps():
     assert np.flatnonzero(visible_pixels(truth)[0]).tolist() == list(range(20, 30))
 
 
-def test_either_sign_of_disparity():
+def test_negative_disparities_are_visible_alike():
     assert np.flatnonzero(~visible_pixels(np.full((1, 9), -2.0))[0]).tolist() == [7, 8]
 
 
-def test_a_slanted_surface_hides_nothing_of_itself():
+def test_slanted_surface_hides_nothing_of_itself():
     for slope in (-0.45, -0.2, 0.3, 0.9):
         truth = 30 + slope * np.arange(60.0)[None]
         seen = np.arange(60) - truth[0] >= -0.5
         np.testing.assert_array_equal(visible_pixels(truth)[0], seen)
 
 
-def test_what_has_no_truth_is_hidden_and_hides_nothing():
+def test_pixel_without_truth_is_hidden_and_hides_nothing():
     truth = np.full((1, 20), 2.0)
     truth[0, 10:] = NAN
     np.testing.assert_array_equal(np.flatnonzero(visible_pixels(truth)[0]), np.arange(2, 10))

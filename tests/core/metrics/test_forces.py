@@ -19,7 +19,7 @@ def rows(*vectors: tuple[float, ...]) -> np.ndarray:
     return np.array(vectors, np.float64)
 
 
-def test_a_vertical_spring_on_a_slope():
+def test_vertical_spring_on_a_slope_has_the_errors_of_its_angle():
     """k d z against k d cos(t) n: off by k d sin(t), which is tan(t) of the truth; 1 / cos(t) as large, and t aside."""
     slope, depths = 0.3, np.linspace(0.001, 0.002, 50)[:, None]
     angle = math.atan(slope)
@@ -33,7 +33,7 @@ def test_a_vertical_spring_on_a_slope():
 
 
 @pytest.mark.parametrize(("factor", "jnd"), [(1.0, 0.0), (1.035, 0.5), (0.86, 2.0), (0.0, 1 / 0.07)])
-def test_a_force_of_another_size(factor: float, jnd: float):
+def test_force_of_another_magnitude_has_that_error(factor: float, jnd: float):
     truth = RANDOM.normal(0, 1, (30, 3))
     errors = force_errors(factor * truth, truth)
     assert errors["jnd"] == pytest.approx(jnd, abs=1e-9)
@@ -41,7 +41,7 @@ def test_a_force_of_another_size(factor: float, jnd: float):
     assert errors["noticed_percent"] == 100 * (jnd > 1 + 1e-9)
 
 
-def test_one_great_error_does_not_hide_what_is_felt_at_most_ticks():
+def test_jnd_of_one_great_error_is_that_of_most_ticks():
     """The median of 0, 1 and 10 just noticeable differences, and the share of ticks above one."""
     truth = np.tile(UP, (3, 1))
     errors = force_errors(truth * np.array([[1.0], [1.07], [1.7]]), truth)
@@ -49,7 +49,7 @@ def test_one_great_error_does_not_hide_what_is_felt_at_most_ticks():
     assert force_errors(truth * np.array([[1.0], [1.06], [1.7]]), truth)["noticed_percent"] == pytest.approx(100 / 3)
 
 
-def test_what_counts_where():
+def test_errors_count_the_ticks_with_a_force_only():
     """A force in free air counts for newtons, not for what is told apart; a tick of unknown truth for nothing."""
     truth = rows((0, 0, 1), (0, 0, 1), (0, 0, 0), (np.nan,) * 3, (0, 0, 0))
     force = rows((0, 0, 1), (0, 1, 0), (0, 0, 2), (9, 9, 9), (0, 0, 0))
@@ -62,7 +62,7 @@ def test_what_counts_where():
 
 
 @pytest.mark.parametrize("count", [0, 3])
-def test_nothing_to_measure(count: int):
+def test_paths_without_force_give_nan(count: int):
     nothing = np.zeros((count, 3))
     for truth in (nothing, np.full((count, 3), np.nan)):
         assert all(math.isnan(value) for value in force_errors(nothing, truth).values())
@@ -72,18 +72,18 @@ def test_nothing_to_measure(count: int):
 
 
 @pytest.mark.usefixtures("unchecked_shapes")
-def test_two_paths_are_not_compared():
+def test_paths_of_different_length_are_refused():
     with pytest.raises(GeometryError, match="one has 3 ticks and the other 2"):
         force_errors(np.zeros((3, 3)), np.zeros((2, 3)))
 
 
 @given(st.floats(0, math.pi), st.floats(1e-9, 1e9))
-def test_angles_are_exact_small_and_large(angle: float, size: float):
+def test_angles_are_exact_for_small_and_large_ones(angle: float, size: float):
     turned = size * rows((math.cos(angle), math.sin(angle), 0))
     assert angles_deg(rows((1, 0, 0)), turned)[0] == pytest.approx(math.degrees(angle), abs=1e-12)
 
 
-def test_steps():
+def test_force_steps_are_the_largest_and_the_99th_percentile():
     force = np.zeros((1001, 3))
     force[:20, 0] = np.arange(20) / 1000  # 19 steps of a thousandth, one of 5, and 980 of none
     force[20:] = (0.019, 3, 4)
@@ -92,8 +92,8 @@ def test_steps():
     assert force_steps(np.repeat(rows((1, 2, 3)), 4, axis=0)) == {"step_n": 0, "step_p99_n": 0}
 
 
-def test_a_delay_of_some_ticks_is_a_lag():
-    """At 50 mm/s a proxy that is 4 ticks late is 0.2 mm behind, whichever way the hand goes."""
+def test_delay_of_some_ticks_is_a_lag():
+    """A proxy that is 4 ticks late at 50 mm/s is 0.2 mm behind in every direction of the hand."""
     turn = np.linspace(0, 2 * np.pi, 4001)
     hand = 0.05 * 4 / (2 * np.pi) * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(4001)])
     nearest = hand + 0.001 * UP
@@ -102,21 +102,21 @@ def test_a_delay_of_some_ticks_is_a_lag():
     assert proxy_lag(hand, nearest, nearest) == 0
 
 
-def test_what_pushes_aside_there_and_back_is_no_lag():
+def test_sideways_offset_there_and_back_is_not_a_lag():
     there = np.column_stack([np.linspace(0, 0.02, 500), np.zeros(500), np.zeros(500)])
     hand = np.vstack([there, there[::-1]])
     nearest, aside = hand + 0.001 * UP, np.array((0.0003, 0.0, 0.0))
     assert proxy_lag(hand, nearest + aside, nearest) == pytest.approx(0, abs=1e-12)
 
 
-def test_motion_is_the_central_difference():
+def test_lag_is_along_the_central_difference():
     """A hand that turns a corner moves along its diagonal there."""
     hand = rows((0, 0, 0), (1, 0, 0), (1, 1, 0))
     nearest = hand + rows((0, 0, 0), (0, 0, 1), (0, 0, 0))
     assert proxy_lag(hand, nearest - (0.5, 0, 0), nearest) == pytest.approx(0.5 / math.sqrt(2))
 
 
-def test_ticks_in_free_air_and_at_rest_have_no_lag():
+def test_lag_ignores_ticks_in_free_air_and_at_rest():
     hand = rows((0, 0, 1), (1, 0, 1), (2, 0, 1), (2, 0, 1), (2, 0, 1))
     nearest = hand + rows((0, 0, 0), (0, 0, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1))
     proxy = nearest - rows((9, 0, 0), (0.5, 0, 0), (0.5, 0, 0), (0.5, 0, 0), (9, 0, 0))
@@ -124,13 +124,13 @@ def test_ticks_in_free_air_and_at_rest_have_no_lag():
 
 
 def loops(count: int = 3, ticks: int = 500) -> tuple[np.ndarray, np.ndarray]:
-    """In and out at other places: hands, and whether each is over the level z = 0."""
+    """Make paths in and out at different places, with masks of the ticks over the level z = 0."""
     t = np.arange(count * ticks + 1) / ticks
     z = 0.001 * np.cos(2 * np.pi * t)
     return np.column_stack([0.02 * np.sin(t), 0.01 * t, z]), z > 0.0009
 
 
-def test_springs_give_no_energy_away():
+def test_work_of_springs_is_not_above_zero():
     hand, free = loops()
     works = loop_works(-800 * hand, hand, np.ones(len(hand), np.bool_))
     assert works.size == 0  # free everywhere: there is no loop
@@ -140,7 +140,7 @@ def test_springs_give_no_energy_away():
     assert np.abs(works).max() < 1e-9 * 3 + 800 * 0.0000126**2  # the tick that crosses the surface
 
 
-def test_work_of_a_known_law():
+def test_work_of_a_known_law_is_exact():
     """Pushed along x by 2 N: 2 N times the way of each loop; friction is the negative of that."""
     hand, free = loops()
     push = np.tile((2.0, 0.0, 0.0), (len(hand), 1))
@@ -150,13 +150,13 @@ def test_work_of_a_known_law():
     np.testing.assert_allclose(loop_works(-push, hand, free), -2 * ways)
 
 
-def test_a_way_that_never_leaves_the_surface_has_no_loop():
+def test_work_of_a_path_always_in_contact_has_no_loops():
     hand, _ = loops()
     assert loop_works(hand, hand, np.zeros(len(hand), np.bool_)).size == 0
 
 
 @given(st.integers(0, 2**32 - 1))
-def test_errors_do_not_depend_on_the_frame(seed: int):
+def test_errors_are_the_same_in_any_frame(seed: int):
     random = np.random.default_rng(seed)
     force, truth = random.normal(0, 1, (2, 20, 3))
     turn, _ = np.linalg.qr(random.normal(0, 1, (3, 3)))

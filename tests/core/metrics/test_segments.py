@@ -42,7 +42,7 @@ def halves(edge: int, shape: tuple[int, int] = (20, 32)) -> np.ndarray:
         ([7], [3], 1),
     ],
 )
-def test_adjusted_rand_index_of_values_known_by_hand(labels, truth, expected):
+def test_adjusted_rand_index_equals_values_computed_by_hand(labels, truth, expected):
     assert adjusted_rand_index(contingency(row(*labels), row(*truth))) == expected
 
 
@@ -66,13 +66,13 @@ def test_adjusted_rand_index_is_exact_where_products_of_counts_do_not_fit_64_bit
 
 
 @given(SMALL, SMALL)
-def test_accuracy_is_that_of_the_best_of_all_matchings(labels, truth):
+def test_accuracy_equals_the_best_of_all_matchings(labels, truth):
     best = max(np.mean(np.take(order, labels) == truth) for order in permutations(range(4)))
     assert matched_accuracy(contingency(labels, truth)) == pytest.approx(best)
 
 
 @given(SMALL)
-def test_the_numbers_of_labels_do_not_matter(labels):
+def test_measures_ignore_the_numbers_of_labels(labels):
     renamed = np.array([40, -3, 0, 7], np.int32)[labels]
     assert segment_errors(renamed, labels) == {
         "ari": 1,
@@ -82,26 +82,26 @@ def test_the_numbers_of_labels_do_not_matter(labels):
     }
 
 
-def test_too_many_segments_leave_pixels_without_a_partner():
+def test_accuracy_of_too_many_segments_counts_pixels_without_partner():
     found = segment_errors(halves(8) + halves(16), halves(16))
     assert found["accuracy"] == 0.75
     assert found["segments"] == 3
 
 
 @pytest.mark.parametrize("shift", [1, 2, 7])
-def test_a_border_that_is_moved_is_as_far_away_as_that(shift: int):
+def test_boundary_distance_of_a_moved_border_is_the_move(shift: int):
     assert boundary_distance(halves(16 + shift), halves(16)) == shift
 
 
-def test_a_border_too_many_counts_in_one_direction():
-    """Its points are 6 px from the true border; the true border's are at 0."""
+def test_boundary_distance_of_an_extra_border_counts_in_one_direction():
+    """The extra points are 6 px from the true border; those of the true border are at 0."""
     extra = halves(16) + halves(22)
     assert boundary_distance(extra, halves(16)) == pytest.approx((6 / 2 + 0) / 2)
     assert boundary_distance(halves(16), extra) == pytest.approx((0 + 6 / 2) / 2)
 
 
 @given(SMALL, SMALL)
-def test_boundary_distance_is_the_mean_over_pairs_of_points(labels, truth):
+def test_boundary_distance_equals_the_mean_over_pairs_of_points(labels, truth):
     one, other = (np.argwhere(border_points(each)) / 2 for each in (labels, truth))
     if len(one) and len(other):
         apart = np.hypot(*np.moveaxis(one[:, None] - other[None], 2, 0))
@@ -112,13 +112,13 @@ def test_boundary_distance_is_the_mean_over_pairs_of_points(labels, truth):
 
 
 @given(SMALL, SMALL)
-def test_turning_both_maps_changes_nothing(labels, truth):
+def test_boundary_distance_of_turned_maps_is_the_same(labels, truth):
     expected = pytest.approx(segment_errors(labels, truth), rel=1e-6)
     assert segment_errors(labels.T, truth.T) == expected
     assert segment_errors(labels[::-1], truth[::-1]) == expected
 
 
-def test_a_map_without_a_border():
+def test_boundary_distance_without_borders_is_zero_or_the_diagonal():
     flat = np.zeros((3, 4), np.int32)
     assert segment_errors(flat, flat) == {"ari": 1, "accuracy": 1, "boundary_px": 0, "segments": 1}
     found = segment_errors(flat, halves(2, (3, 4)))
@@ -126,7 +126,7 @@ def test_a_map_without_a_border():
 
 
 @pytest.mark.usefixtures("unchecked_shapes")
-def test_sizes_must_agree_and_hold_something():
+def test_maps_empty_or_of_different_size_are_refused():
     with pytest.raises(PictureError, match=r"\(3, 4\) and the true ones \(3, 5\)"):
         segment_errors(np.zeros((3, 4), np.int32), np.zeros((3, 5), np.int32))
     with pytest.raises(PictureError, match=r"\(0, 5\)"):

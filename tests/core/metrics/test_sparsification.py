@@ -1,4 +1,4 @@
-"""What is left of the wrong pixels as the least confident ones are removed."""
+"""Sparsification: the share of wrong pixels as the least confident ones are removed."""
 
 import numpy as np
 import pytest
@@ -18,20 +18,20 @@ def curve(figures: dict[str, float], end: str = "") -> list[float]:
     return [figures[f"left_{removed}{end}"] for removed in LEFT]
 
 
-def test_a_curve_worked_out_by_hand():
+def test_curve_equals_that_computed_by_hand():
     wrong = np.array([True, False, True, False])
     curve = sparsification_curve(np.array([0.1, 0.9, 0.5, 0.3]), wrong)
     np.testing.assert_allclose(curve, [0, 1 / 2, 1 / 3, 1 / 2])
 
 
-def test_pixels_of_one_confidence_count_as_in_all_orders_at_once():
-    """Of the three at .5, one is wrong: a third of a wrong pixel comes with each."""
+def test_curve_of_equal_confidence_is_the_mean_over_all_orders():
+    """A wrong pixel among the three at .5 counts as a third with each."""
     wrong = np.array([False, True, False, False])
     curve = sparsification_curve(np.array([0.9, 0.5, 0.5, 0.5]), wrong)
     np.testing.assert_allclose(curve, [0, (1 / 3) / 2, (2 / 3) / 3, 1 / 4])
 
 
-def test_areas_of_the_best_of_the_worst_and_of_no_order():
+def test_areas_of_best_worst_and_constant_order_are_exact():
     """Four pixels, one of them 3 px off: only the whole map has it in the best order, every part in the worst."""
     truth, found = np.zeros((2, 2), np.float32), np.float32([[0, 3], [1, 2]])
     best = sparsification_errors(found, np.float32([[1, 0], [1, 1]]), truth)
@@ -44,8 +44,8 @@ def test_areas_of_the_best_of_the_worst_and_of_no_order():
     assert none["ausc"] == pytest.approx(disparity_errors(found, truth)["bad2"])
 
 
-def test_the_curve_of_the_best_order_falls_until_nothing_wrong_is_left():
-    """Of 100 pixels 20 are wrong: of the 100 - r that are left, 20 - r, and then none."""
+def test_curve_of_the_best_order_falls_to_zero():
+    """Twenty of 100 pixels are wrong: 20 - r of the 100 - r that are left, and then none."""
     truth = np.zeros((10, 10), np.float32)
     found = np.zeros((10, 10), np.float32)
     found[:2] = 3
@@ -58,19 +58,19 @@ def test_the_curve_of_the_best_order_falls_until_nothing_wrong_is_left():
     assert curve(unsure, "_by_oracle") == pytest.approx(by_hand)
 
 
-def test_of_one_pixel_one_is_always_left():
+def test_curve_of_one_pixel_keeps_it():
     figures = sparsification_errors(np.float32([[3]]), np.float32([[1]]), np.float32([[0]]))
     assert curve(figures) == [100] * len(LEFT)
 
 
-def test_a_missing_estimate_is_wrong_and_least_confident_and_what_has_no_truth_is_left_out():
+def test_missing_estimate_is_wrong_and_least_confident():
     found = np.float32([[0, NAN, 9, 0]])
     truth = np.float32([[0, 0, NAN, 0]])
     figures = sparsification_errors(found, np.float32([[0.1, 1, 1, 0]]), truth)
     assert areas(figures) == pytest.approx({"ausc": 100 * (1 / 3) / 3, "ausc_by_oracle": 1})
 
 
-def test_nothing_wrong_has_an_area_of_zero_and_nothing_known_has_none():
+def test_area_without_wrong_pixels_is_zero_and_without_truth_nan():
     zero, sure = np.zeros((2, 2), np.float32), np.ones((2, 2), np.float32)
     right = sparsification_errors(zero, sure, zero)
     assert right["ausc"] == 0
@@ -79,6 +79,6 @@ def test_nothing_wrong_has_an_area_of_zero_and_nothing_known_has_none():
 
 
 @pytest.mark.usefixtures("unchecked_shapes")
-def test_sizes_must_agree():
+def test_maps_of_different_size_are_refused():
     with pytest.raises(PictureError, match=r"\(2, 2\) and its truth \(2, 3\)"):
         sparsification_errors(np.ones((2, 2)), np.ones((2, 2)), np.ones((2, 3)))

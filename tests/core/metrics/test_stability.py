@@ -21,27 +21,27 @@ def spring(stiffness: float, damping: float = 0.0) -> Law:
     return law
 
 
-def bound(delay_ticks: int) -> float:
+def literature_bound(delay_ticks: int) -> float:
     return stiffness_limit_n_per_m(HANDLE.damping_n_s_per_m, HANDLE.period_s, delay_ticks)
 
 
 @pytest.mark.parametrize("delay", [0, 1, 2])
-def test_the_bound_of_the_literature_holds(delay: int):
+def test_limit_equals_the_bound_of_the_literature(delay: int):
     """K < 2 b / (T (1 + 2 d)), within 5 %."""
-    assert stiffness_limit(spring, GROUND_M, delay) == pytest.approx(bound(delay), rel=0.05)
+    assert stiffness_limit(spring, GROUND_M, delay) == pytest.approx(literature_bound(delay), rel=0.05)
 
 
 @pytest.mark.parametrize("delay", [0, 1, 2, 5])
 @pytest.mark.parametrize("handle", [HANDLE, Handle(0.05, 1.0), Handle(0.3, 5.0, 0.002)])
-def test_the_limit_is_where_the_eigenvalues_leave_the_circle(delay: int, handle: Handle):
+def test_limit_is_where_eigenvalues_leave_the_unit_circle(delay: int, handle: Handle):
     exact = exact_stiffness_limit(handle, delay)
     assert stiffness_limit(spring, GROUND_M, delay, handle) == pytest.approx(exact, rel=0.005)
 
 
-def test_damping_of_the_law_counts():
+def test_limit_rises_with_the_damping_of_the_law():
     found = stiffness_limit(lambda stiffness: spring(stiffness, 2.0), GROUND_M, 0)
     assert found == pytest.approx(exact_stiffness_limit(HANDLE, 0, 2.0), rel=0.005)
-    assert found > 1.5 * bound(0)
+    assert found > 1.5 * literature_bound(0)
 
 
 @pytest.mark.parametrize(
@@ -54,9 +54,9 @@ def test_damping_of_the_law_counts():
     ],
     ids=["no force", "constant", "lateral", "pull"],
 )
-def test_what_is_no_spring_has_no_limit(law):
+def test_limit_of_a_law_without_a_spring_is_nan(law):
     assert math.isnan(stiffness_limit(law, GROUND_M))
 
 
-def test_a_spring_that_goes_no_stiffer_is_stable_at_any_setting():
+def test_limit_of_a_bounded_spring_is_infinite():
     assert stiffness_limit(lambda stiffness: spring(min(stiffness, 1000.0)), GROUND_M) == math.inf

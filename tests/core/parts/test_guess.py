@@ -100,14 +100,14 @@ def test_guess_of_a_single_part_is_zero(shape):
 
 
 def test_guess_takes_a_part_for_every_pixel():
-    found = guess_heights(parts_of(np.arange(30 * 40).reshape(30, 40)), 0.004)
-    assert len(found.heights_m) == len(found.reasons) == 1200
-    assert (min(found.heights_m), max(found.heights_m)) == (0, 0.004)
+    heights = guess_heights(parts_of(np.arange(30 * 40).reshape(30, 40)), 0.004)
+    assert len(heights.heights_m) == len(heights.reasons) == 1200
+    assert (min(heights.heights_m), max(heights.heights_m)) == (0, 0.004)
 
 
 def test_reasons_name_the_place_of_a_part_and_what_it_hides():
-    found = guess_heights(parts_of(discs((120, 100), (170, 100))), 0.004)
-    assert found.reasons == (
+    heights = guess_heights(parts_of(discs((120, 100), (170, 100))), 0.004)
+    assert heights.reasons == (
         "guessed, 1 of 3 from the back: it reaches down to 96 % of the picture's height and has 100 % of its upper and "
         "side rims; it is behind part 2",
         "guessed, 2 of 3 from the back: it reaches down to 68 % of the picture's height and has 0 % of its upper and "

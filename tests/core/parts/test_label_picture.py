@@ -17,8 +17,8 @@ from tangible_core.scene.formats.pictures import read_labels
 def test_label_picture_is_read_back_as_the_same_parts(count: int, tmp_path: Path):
     labels = (np.arange(count * 6, dtype=np.int32) // 6).reshape(count, 6)
     (tmp_path / "parts.png").write_bytes(label_picture(labels))
-    found = find_parts(SegmentMap(read_labels(tmp_path / "parts.png")))
-    assert (found.labels == labels).all()
+    parts = find_parts(SegmentMap(read_labels(tmp_path / "parts.png")))
+    assert (parts.labels == labels).all()
     image = Image.open(tmp_path / "parts.png")
     assert image.mode == ("P" if count <= 256 else "RGB")
     colours = np.unique(np.asarray(image.convert("RGB")).reshape(-1, 3), axis=0)

@@ -23,34 +23,34 @@ def test_speck_joins_its_most_similar_neighbour():
     labels = segments.labels.copy()
     labels[10:13, 38:42] = 3
     picture[10:13, 38:42] = ROSE
-    found = large_parts(SegmentMap(labels), picture, least_px=6, most=12)
-    assert found.count == 3
-    assert (found.labels[10:13, 38:42] == found.labels[0, 30]).all(), "half of it lies in the blue, all of it is rose"
-    kept = large_parts(SegmentMap(labels), picture, least_px=2, most=12)
-    assert kept.count == 4, "it is as wide as a part must be"
+    merged = large_parts(SegmentMap(labels), picture, least_px=6, most=12)
+    assert merged.count == 3
+    assert (merged.labels[10:13, 38:42] == merged.labels[0, 30]).all(), "half of it lies in the blue, all of it is rose"
+    unmerged = large_parts(SegmentMap(labels), picture, least_px=2, most=12)
+    assert unmerged.count == 4, "it is as wide as a part must be"
 
 
 def test_specks_that_are_large_together_become_one_part():
     rows, columns = np.indices((40, 40)) // 4
     mosaic = (rows * 10 + columns).astype(np.int32)
     picture = np.random.default_rng(1).integers(0, 255, (100, 3)).astype(np.uint8)[mosaic]
-    found = large_parts(SegmentMap(mosaic), picture, least_px=8, most=100)
-    assert 1 < found.count < 100 and (disc_widths(found) >= 8).all()
+    merged = large_parts(SegmentMap(mosaic), picture, least_px=8, most=100)
+    assert 1 < merged.count < 100 and (disc_widths(merged) >= 8).all()
 
 
 def test_most_similar_parts_join_when_there_are_too_many():
     segments, picture = in_three()
-    found = large_parts(segments, picture, least_px=2, most=2)
-    assert found.count == 2
-    assert (found.labels == np.array([0, 0, 1])[segments.labels]).all(), "red and rose are one"
+    merged = large_parts(segments, picture, least_px=2, most=2)
+    assert merged.count == 2
+    assert (merged.labels == np.array([0, 0, 1])[segments.labels]).all(), "red and rose are one"
     assert large_parts(segments, picture, least_px=2, most=1).count == 1
 
 
 def test_colour_counts_as_much_as_lightness():
     segments, _ = in_three()
     picture = np.array([(208, 68, 68), (119, 119, 119), (144, 144, 144)], np.uint8)[segments.labels]
-    found = large_parts(segments, picture, least_px=2, most=2)
-    assert (found.labels == np.array([0, 1, 1])[segments.labels]).all(), "a red and a grey of one lightness stay apart"
+    merged = large_parts(segments, picture, least_px=2, most=2)
+    assert (merged.labels == np.array([0, 1, 1])[segments.labels]).all(), "a red and a grey of one lightness stay apart"
 
 
 def test_part_numbers_follow_first_pixels_at_any_resolution():
@@ -58,15 +58,15 @@ def test_part_numbers_follow_first_pixels_at_any_resolution():
     coarse = rng.integers(0, 6, (6, 8)).astype(np.int32)
     labels = np.repeat(np.repeat(coarse, 5, axis=0), 5, axis=1)
     picture = rng.integers(0, 255, (6, 8, 3)).astype(np.uint8)[np.arange(30) // 5][:, np.arange(40) // 5]
-    found = large_parts(SegmentMap(labels), picture, least_px=4, most=7)
-    again = find_parts(SegmentMap(found.labels))
-    assert (again.labels == found.labels).all() and again.count == found.count == 7
+    merged = large_parts(SegmentMap(labels), picture, least_px=4, most=7)
+    again = find_parts(SegmentMap(merged.labels))
+    assert (again.labels == merged.labels).all() and again.count == merged.count == 7
 
     def twice(values: np.ndarray) -> np.ndarray:
         return np.repeat(np.repeat(values, 2, axis=0), 2, axis=1)
 
     larger = large_parts(SegmentMap(twice(labels)), twice(picture), least_px=8, most=7)
-    assert (larger.labels == twice(found.labels)).all()
+    assert (larger.labels == twice(merged.labels)).all()
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 40), (40, 1), (3, 3)])

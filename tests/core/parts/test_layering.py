@@ -128,9 +128,9 @@ def test_every_dtype_gives_the_same_relief(kind):
     grey = np.random.default_rng(0).integers(0, 255, (60, 60)).astype(np.uint8)
     layering = Layering(parts_of(disc(20, 60)), 0.08, GIVEN, as_kinds(grey)[kind])
     expected = Layering(parts_of(disc(20, 60)), 0.08, GIVEN, grey).relief([0, 0.002]).height_m
-    found = layering.relief([0, 0.002]).height_m
-    assert found.dtype == np.float32
-    assert np.abs(found - expected).max() < 1e-8
+    height_m = layering.relief([0, 0.002]).height_m
+    assert height_m.dtype == np.float32
+    assert np.abs(height_m - expected).max() < 1e-8
 
 
 def test_detail_exists_for_black_and_white_and_not_for_one_shade():
@@ -150,8 +150,8 @@ def test_single_part_is_flat_at_its_height(shape):
 
 def test_relief_without_rounding_has_steps():
     steps = HeightChoice(by="given", round_m=0, detail_m=0)
-    found = Layering(parts_of(disc(20, 60)), 0.08, steps).relief([0, 0.002]).height_m
-    assert set(found.ravel().tolist()) == {0, float(np.float32(0.002) + np.float32(0.0015))}
+    height_m = Layering(parts_of(disc(20, 60)), 0.08, steps).relief([0, 0.002]).height_m
+    assert set(height_m.ravel().tolist()) == {0, float(np.float32(0.002) + np.float32(0.0015))}
 
 
 @pytest.mark.parametrize(

@@ -36,7 +36,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_a_file_that_passes_with_what_the_user_wrote(folder: Path):
+def test_unsafe_file_is_fixed_and_keeps_the_users_text(folder: Path):
     asked = "preflight", "p.yaml", "--seconds", 0.05
     assert tangible(*asked, cwd=folder).returncode == 1
     done = tangible(*asked, "--fix", "kept/fixed.yaml", "--set", "workspace.width_m=0.06", cwd=folder)
@@ -51,7 +51,7 @@ def test_a_file_that_passes_with_what_the_user_wrote(folder: Path):
     assert (folder / "p.yaml").read_text() == STEEP
 
 
-def test_every_value_is_one_and_json_names_them(folder: Path):
+def test_changes_are_single_values_that_json_lists(folder: Path):
     done = tangible("preflight", "p.yaml", "--seconds", 0.05, "--fix", "fixed.yaml", "--json", cwd=folder)
     found = json.loads(done.stdout)
     assert (found["grade"] != "unsafe", found["file"]) == (True, "fixed.yaml")
@@ -62,7 +62,7 @@ def test_every_value_is_one_and_json_names_them(folder: Path):
     assert fixed.config.render.name == "penalty-gradient"
 
 
-def test_what_passes_is_written_as_it_is(folder: Path):
+def test_safe_file_is_written_unchanged(folder: Path):
     calm = (
         STEEP.replace(", fit: never", "")
         .replace("  smooth_m: 0\n", "")
@@ -75,7 +75,7 @@ def test_what_passes_is_written_as_it_is(folder: Path):
     assert (folder / "fixed.yaml").read_text() == calm
 
 
-def test_where_nothing_helps_nothing_is_written(folder: Path):
+def test_file_without_cure_is_not_written(folder: Path):
     """A wall of a material that no key of the file softens, on a loop so slow that it holds none."""
     (folder / "hard.yaml").write_text(
         "hard: {stiffness_n_per_m: 3000, damping_n_s_per_m: 0, static_friction: 0, dynamic_friction: 0, "
@@ -93,14 +93,14 @@ def test_where_nothing_helps_nothing_is_written(folder: Path):
     assert not (folder / "fixed.yaml").exists()
 
 
-def test_a_place_that_cannot_be_written(folder: Path):
+def test_fix_at_an_unwritable_place_fails(folder: Path):
     (folder / "taken").write_text("")
     done = tangible("preflight", "p.yaml", "--seconds", 0.05, "--fix", "taken/fixed.yaml", cwd=folder)
     assert done.returncode == 2
     assert "taken/fixed.yaml: cannot be written" in done.stderr
 
 
-def test_what_is_safe_can_still_be_felt(folder: Path):
+def test_fixed_file_can_still_be_felt(folder: Path):
     """Cliffs make a stiff penalty endlessly stiff: the surface becomes gentler then, and no law gives way to a hand."""
     render = "render={use: penalty-gradient, stiffness_n_per_m: 6000}"
     sets = ("materials={by: rules}", "device=falcon-simulated", "workspace.relief_m=0.04", render)
@@ -112,7 +112,7 @@ def test_what_is_safe_can_still_be_felt(folder: Path):
     assert load_pipeline(folder / "fixed.yaml").surface.height_m.max() > 0.001
 
 
-def test_a_file_that_is_there_is_written_over_only_if_asked(folder: Path):
+def test_existing_file_is_overwritten_only_with_force(folder: Path):
     asked = "preflight", "p.yaml", "--seconds", 0.05, "--fix", "p.yaml"
     done = tangible(*asked, cwd=folder)
     assert (done.returncode, (folder / "p.yaml").read_text()) == (2, STEEP)

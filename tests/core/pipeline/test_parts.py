@@ -42,7 +42,7 @@ class Ramp(DepthEstimator):
 
 
 class Never(Ramp, Skippable):
-    """Not needed by any scene."""
+    """A depth method that every scene skips."""
 
     def skip(self, views: Views) -> str | None:
         return "the views are identical"
@@ -80,7 +80,7 @@ def pipeline(labels: np.ndarray | None = LABELS, cached: bool = False, **parts: 
     return Pipeline(scene(labels), **parts, cached=cached)
 
 
-def said(made: Pipeline) -> dict[str, str]:
+def outcome_kinds(made: Pipeline) -> dict[str, str]:
     return {each.product: each.outcome for each in made.outcomes}
 
 
@@ -100,7 +100,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def written(folder: Path, text: str, name: str = "p.yaml") -> Path:
+def write_pipeline(folder: Path, text: str, name: str = "p.yaml") -> Path:
     path = folder / name
     path.write_text(f"scene: {{photo: photo.npy, segments: labels.npy}}\n{text}")
     return path
@@ -110,7 +110,7 @@ SAID = "parts: {0: wall, 1: {name: left box, height_m: 1 mm}, 3: {name: chest, h
 
 
 class TestHeights:
-    def test_given(self):
+    def test_heights_given_are_those_of_the_relief(self):
         made = pipeline(
             parts={0: "wall", 1: PartChoice(height_m=0.001), 3: {"name": "chest", "height_m": 0.003}},
             heights={"by": "given", "bulge_m": 0, "detail_m": 0},
@@ -128,7 +128,7 @@ class TestHeights:
             "no height is given for parts 0 and 2, which lie at 0",
         ]
 
-    def test_by_depth_the_median_of_each_part(self):
+    def test_heights_by_depth_are_medians_over_the_parts(self):
         made = pipeline(heights="depth", depth=Ramp())
         found = made.part_heights
         assert found is not None
@@ -137,23 +137,23 @@ class TestHeights:
         assert middle_mm(made.surface, 1) < middle_mm(made.surface, 3) < middle_mm(made.surface, 2)
         assert float(made.relief.height_m.max()) <= 0.006 + 1e-9
 
-    def test_a_given_height_wins_in_every_recipe(self):
+    def test_given_height_wins_in_every_recipe(self):
         for by in ("given", "depth", "guess"):
             made = pipeline(heights=by, parts={2: {"height_m": 0.0007}}, depth=Ramp())
             assert made.part_heights is not None
             assert (made.part_heights.heights_m[2], made.part_heights.reasons[2]) == (0.0007, "given")
 
-    def test_a_depth_that_no_view_shows_leaves_parts_at_the_bottom(self):
+    def test_heights_by_unknown_depth_are_zero(self):
         made = pipeline(heights={"by": "depth", "detail_m": 0}, depth=Never())
         assert made.disparity is None and made.part_heights is not None
         assert set(made.part_heights.heights_m) == {0.0}
         assert float(made.relief.height_m.max()) == 0
 
-    def test_a_guess_is_never_silent(self, caplog: pytest.LogCaptureFixture):
+    def test_guessed_heights_give_a_warning(self, caplog: pytest.LogCaptureFixture):
         made = pipeline(heights="guess")
         made.make("relief")
         (warning,) = [each for each in notes(made, "relief") if each.kind == "warning"]
-        assert warning.text.startswith("the heights of all 4 parts are guessed, as a picture does not tell")
+        assert warning.text.startswith("the heights of all 4 parts are guessed, as a picture does not show")
         assert [each.levelname for each in caplog.records if "guessed" in each.message] == ["WARNING"]
         made = pipeline(heights="guess", parts={0: {"height_m": 0}, 2: {"height_m": 0}})
         made.make("relief")
@@ -162,11 +162,11 @@ class TestHeights:
         made.make("relief")
         assert [each.kind for each in notes(made, "relief")] == ["decision"]
 
-    def test_heights_that_were_found_are_no_finer_than_a_hand_feels(self):
+    def test_computed_heights_are_rounded_to_a_hundredth_of_a_millimetre(self):
         found = pipeline(heights="guess").part_heights
         assert found is not None and found.heights_m == tuple(round(each, 5) for each in found.heights_m)
 
-    def test_transparent_ground_has_no_height(self):
+    def test_transparent_ground_lies_at_zero(self):
         picture = np.dstack([PICTURE] * 3 + [np.ones_like(PICTURE)])
         picture[20:35, 20:45, 3] = 0
         made = Pipeline(
@@ -179,9 +179,9 @@ class TestHeights:
         assert surface.materials[3].name == "sand"
 
 
-class TestWhatIsNotNeeded:
+class TestSkipped:
     @pytest.mark.parametrize("by", ["given", "guess"])
-    def test_no_depth_and_no_texture_where_segments_are_given(self, by: str):
+    def test_depth_and_texture_are_skipped_with_given_segments(self, by: str):
         made = pipeline(heights=by, depth=Ramp(), texture=Same())
         plan = {each.product: (each.outcome, each.why) for each in made.plan("surface").steps}
         assert "disparity" not in plan and plan["segments"][0] == "given"
@@ -189,84 +189,84 @@ class TestWhatIsNotNeeded:
         assert ran == []
         made.make("surface")
         assert ran == []
-        assert said(made)["disparity"] == "skipped"
+        assert outcome_kinds(made)["disparity"] == "skipped"
 
-    def test_nor_of_a_pair(self):
+    def test_depth_of_a_pair_is_skipped_with_given_segments(self):
         pair = Scene.pair(left=PICTURE, right=np.roll(PICTURE, 2, axis=1), segments=LABELS)
         Pipeline(pair, heights="guess", depth=Ramp(), cached=False).make("surface")
         assert ran == []
 
-    def test_texture_finds_what_no_label_picture_says_and_is_first(self):
+    def test_texture_without_a_label_picture_runs_before_depth(self):
         made = pipeline(None, heights="depth", depth=Ramp(), texture=Same())
         assert made.surface.labels is not None and made.surface.labels.max() == 3
         assert ran == ["segments", "disparity"]
 
-    def test_parts_are_found_for_who_asks_and_nobody_else_hears_of_them(self):
+    def test_parts_without_a_key_are_made_on_request_only(self):
         made = pipeline(depth=Ramp())
         made.make("surface")
-        assert "parts" not in said(made)
+        assert "parts" not in outcome_kinds(made)
         assert made.surface.names is None and made.part_heights is None
         assert made.parts is not None and made.parts.count == 4
-        assert said(made)["parts"] == "ran"
+        assert outcome_kinds(made)["parts"] == "ran"
         assert pipeline(None, depth=Ramp()).parts is None
 
 
 class TestCached:
-    def made(self, folder: Path, text: str) -> Pipeline:
-        found = load_pipeline(written(folder, text), cache=Cache(folder / "cache"))
+    def make_surface(self, folder: Path, text: str) -> Pipeline:
+        found = load_pipeline(write_pipeline(folder, text), cache=Cache(folder / "cache"))
         found.make("surface")
         return found
 
-    def test_another_name_makes_nothing_new(self, folder: Path):
-        self.made(folder, f"{SAID}heights: given\nmaterials: {{rules: [{{part: left box, material: ice}}]}}\n")
-        again = self.made(
+    def test_changed_name_makes_no_product_again(self, folder: Path):
+        self.make_surface(folder, f"{SAID}heights: given\nmaterials: {{rules: [{{part: left box, material: ice}}]}}\n")
+        again = self.make_surface(
             folder,
             SAID.replace("left box", "crate") + "heights: given\nmaterials: {rules: [{part: crate, material: ice}]}\n",
         )
-        assert said(again)["surface"] == "cached"
+        assert outcome_kinds(again)["surface"] == "cached"
         assert again.surface.names == ("wall", "crate", "", "chest")
         assert again.materials is not None
         assert again.materials.reasons[1] == "part 1 (crate): rule 1, named -> ice"
-        assert said(again)["materials"] == "cached"
-        assert again.relief is not None and said(again)["relief"] == "cached"
+        assert outcome_kinds(again)["materials"] == "cached"
+        assert again.relief is not None and outcome_kinds(again)["relief"] == "cached"
 
-    def test_nor_within_one_program(self, folder: Path):
-        first = load_pipeline(written(folder, f"{SAID}heights: given\n"))
+    def test_changed_name_within_one_program_makes_no_product_again(self, folder: Path):
+        first = load_pipeline(write_pipeline(folder, f"{SAID}heights: given\n"))
         first.engine.cache = None
         first.make("surface")
         config = first.config.with_values(parts={**(first.config.parts or {}), 0: PartChoice(name="sky")})
         again = first.changed(config)
         assert again.surface.names is not None and again.surface.names[0] == "sky"
         assert again.materials is not None and "part 0 (sky)" in again.materials.reasons[0]
-        assert "ran" not in said(again).values()
+        assert "ran" not in outcome_kinds(again).values()
         assert first.surface.names is not None and first.surface.names[0] == "wall"
 
-    def test_another_height_makes_another_relief_of_the_same_materials(self, folder: Path):
-        self.made(folder, f"{SAID}heights: given\n")
-        again = self.made(folder, f"{SAID.replace('1 mm', '2 mm')}heights: given\n")
-        assert {each: said(again)[each] for each in ("parts", "relief", "materials", "surface")} == {
+    def test_changed_height_makes_the_relief_again_and_not_the_materials(self, folder: Path):
+        self.make_surface(folder, f"{SAID}heights: given\n")
+        again = self.make_surface(folder, f"{SAID.replace('1 mm', '2 mm')}heights: given\n")
+        assert {each: outcome_kinds(again)[each] for each in ("parts", "relief", "materials", "surface")} == {
             "parts": "cached", "relief": "ran", "materials": "cached", "surface": "ran",
         }  # fmt: skip
 
-    def test_another_material_of_a_part_makes_no_other_relief(self, folder: Path):
-        self.made(folder, f"{SAID}heights: given\n")
-        again = self.made(folder, f"{SAID.replace('glass', 'sand')}heights: given\n")
-        assert (said(again)["relief"], said(again)["materials"]) == ("cached", "ran")
+    def test_changed_material_makes_no_relief_again(self, folder: Path):
+        self.make_surface(folder, f"{SAID}heights: given\n")
+        again = self.make_surface(folder, f"{SAID.replace('glass', 'sand')}heights: given\n")
+        assert (outcome_kinds(again)["relief"], outcome_kinds(again)["materials"]) == ("cached", "ran")
 
     @pytest.mark.parametrize(
         "heights", ["guess", "{by: given, round_m: 1 mm}", "{by: given, bulge_m: 0}", "{by: given, detail_m: 0}"]
     )
-    def test_another_recipe_is_another_relief(self, folder: Path, heights: str):
-        self.made(folder, f"{SAID}heights: given\n")
-        assert said(self.made(folder, f"{SAID}heights: {heights}\n"))["relief"] == "ran"
+    def test_changed_recipe_makes_the_relief_again(self, folder: Path, heights: str):
+        self.make_surface(folder, f"{SAID}heights: given\n")
+        assert outcome_kinds(self.make_surface(folder, f"{SAID}heights: {heights}\n"))["relief"] == "ran"
 
-    def test_notes_are_told_again(self, folder: Path):
-        self.made(folder, "heights: guess\n")
-        again = self.made(folder, "heights: guess\n")
-        assert said(again)["surface"] == "cached"
+    def test_notes_of_cached_parts_are_repeated(self, folder: Path):
+        self.make_surface(folder, "heights: guess\n")
+        again = self.make_surface(folder, "heights: guess\n")
+        assert outcome_kinds(again)["surface"] == "cached"
         assert [each.kind for each in notes(again, "relief")] == ["decision", "warning"]
 
-    def test_what_is_no_part_is_complained_of_whatever_is_kept(self, folder: Path):
+    def test_unknown_part_is_refused_though_all_is_cached(self, folder: Path):
         text = "texture: {use: histogram, segments: 2}\nscene: {photo: photo.npy}\nheights: guess\n"
         path = folder / "p.yaml"
         path.write_text(text)
@@ -275,11 +275,11 @@ class TestCached:
         again = load_pipeline(path, cache=Cache(folder / "cache"))
         with pytest.raises(ConfigError, match=r"p.yaml:4:9: parts.99999: there is no part 99999 \(nobody\)"):
             again.make("surface")
-        assert said(again)["surface"] == "failed"
+        assert outcome_kinds(again)["surface"] == "failed"
 
 
 class TestMaterials:
-    def test_a_part_s_own_goes_before_rules_and_these_before_the_others(self):
+    def test_material_of_a_part_goes_before_rules_and_the_choice(self):
         made = pipeline(
             parts={0: "wall", 1: {"name": "left box", "material": "glass"}},
             materials={
@@ -302,7 +302,7 @@ class TestMaterials:
             "part 3: segment 2, named cloth",
         )
 
-    def test_by_place_and_by_colour(self):
+    def test_materials_by_place_and_colour_are_those_of_the_rules(self):
         colours = np.array([[0.5] * 3, [1, 0, 0], [0, 0, 1]], np.float32)[LABELS]
         rules = [{"at": [50, 10], "material": "ice"}, {"colour": "red", "material": "brick"}]
         made = Pipeline(
@@ -312,7 +312,7 @@ class TestMaterials:
         assert [each.name for each in made.materials.materials] == ["plain", "brick", "ice", "plain"]
         assert made.materials.reasons[1] == "part 1: rule 2, 100 % of it red -> brick"
 
-    def test_by_roughness_one_a_part(self):
+    def test_materials_by_roughness_are_one_for_each_part(self):
         picture = np.full((ROWS, COLUMNS), 0.5, np.float32)
         picture[5:15, 5:20] = PICTURE[5:15, 5:20]
         made = Pipeline(scene(picture=picture), parts={0: "wall"}, depth=Ramp(), cached=False)
@@ -321,14 +321,14 @@ class TestMaterials:
         assert names[1] == "brick" and names[2] != "brick"  # both are of one segment
         assert made.materials.reasons[0].startswith("part 0 (wall): roughness rank ")
 
-    def test_a_segment_that_is_not_there(self):
+    def test_rule_for_an_unknown_segment_is_refused(self):
         made = pipeline(parts={}, materials={"by": "rules", "rules": [{"segment": 7, "material": "ice"}]}, depth=Ramp())
         with pytest.raises(MaterialError, match=r"rule 1: there is no segment 7; the segments are 0 to 2"):
             made.make("materials")
         with pytest.raises(MaterialError, match=r"there is no segment 7; the segments are 0 to 2"):
             pipeline(parts={}, materials={7: "ice"}, depth=Ramp()).make("materials")
 
-    def test_on_a_map_of_heights(self):
+    def test_materials_on_a_map_of_heights_are_by_parts(self):
         heights = Scene.heights(PICTURE, segments=LABELS)
         made = Pipeline(
             heights, parts={1: {"name": "lake", "material": "water"}}, materials={"by": "rules"}, cached=False
@@ -336,9 +336,9 @@ class TestMaterials:
         surface = made.surface
         assert surface.materials is not None and surface.names is not None
         assert (surface.materials[1].name, surface.materials[2].name, surface.names[1]) == ("water", "plain", "lake")
-        assert said(made)["relief"] == "given"
+        assert outcome_kinds(made)["relief"] == "given"
 
-    def test_a_law_without_materials_still_knows_the_names(self):
+    def test_surface_for_a_law_without_materials_has_the_names(self):
         made = pipeline(parts={0: "wall"}, heights="given", render=Heights())
         assert made.surface.materials is None
         assert made.surface.names == ("wall", "", "", "")
@@ -346,10 +346,10 @@ class TestMaterials:
 
 
 class TestComplaints:
-    """Of what only the picture shows to be wrong: each with the part, its place in the file, and the cure."""
+    """Mistakes that only the picture shows: each has the part, its place in the file, and the cure."""
 
     def complaints(self, folder: Path, text: str) -> ConfigError:
-        made = load_pipeline(written(folder, text), cache=Cache(folder / "cache"))
+        made = load_pipeline(write_pipeline(folder, text), cache=Cache(folder / "cache"))
         with pytest.raises(ConfigError) as error:
             made.plan("surface")
         with pytest.raises(ConfigError) as later:
@@ -357,7 +357,7 @@ class TestComplaints:
         assert str(error.value) == str(later.value)
         return error.value
 
-    def test_a_number_that_is_no_part(self, folder: Path):
+    def test_unknown_part_is_refused_with_its_place(self, folder: Path):
         error = self.complaints(folder, "parts:\n  0: wall\n  9: {name: ghost}\nheights: given\n")
         assert str(error) == (
             f"{folder / 'p.yaml'}:4:3: parts.9: there is no part 9 (ghost); the parts are 0 to 3 "
@@ -366,12 +366,12 @@ class TestComplaints:
         (complaint,) = error.complaints
         assert (complaint.location, complaint.line, complaint.column) == (("parts", 9), 4, 3)
 
-    def test_a_rule_for_one(self, folder: Path):
+    def test_rule_for_an_unknown_part_is_refused_with_its_place(self, folder: Path):
         error = self.complaints(folder, "parts: {}\nmaterials: {rules: [{part: 4, material: ice}]}\n")
         assert error.complaints[0].location == ("materials", "rules", 0, "part")
         assert "p.yaml:3:22: materials.rules.0.part: there is no part 4; the parts are 0 to 3" in str(error)
 
-    def test_a_height_above_the_workspace(self, folder: Path):
+    def test_height_above_the_workspace_is_refused_with_the_cure(self, folder: Path):
         error = self.complaints(folder, f"{SAID.replace('3 mm', '4.3 mm')}heights: given\n")
         assert str(error).endswith(
             ":2:72: parts.3.height_m: part 3 (chest), at [32, 27] of the picture, is 4.3 mm high, and the highest can "
@@ -380,24 +380,24 @@ class TestComplaints:
         )
         assert error.complaints[0].location == ("parts", 3, "height_m")
         made = load_pipeline(
-            written(folder, f"{SAID.replace('3 mm', '4.3 mm')}heights: given\n"), ["workspace.relief_m=6.1 mm"]
+            write_pipeline(folder, f"{SAID.replace('3 mm', '4.3 mm')}heights: given\n"), ["workspace.relief_m=6.1 mm"]
         )
         assert made.surface.height_m.max() <= 0.0061
 
-    def test_the_highest_part_fits_to_the_last_bit(self, folder: Path):
-        made = load_pipeline(written(folder, f"{SAID.replace('3 mm', '4.2 mm')}heights: given\n"))
+    def test_height_of_exactly_the_workspace_is_accepted(self, folder: Path):
+        made = load_pipeline(write_pipeline(folder, f"{SAID.replace('3 mm', '4.2 mm')}heights: given\n"))
         assert made.config.top_m == pytest.approx(0.0042, abs=1e-12)
         made.make("surface")
 
     @pytest.mark.parametrize("parts", [{}, {"heights": "depth"}], ids=["materials alone", "heights"])
-    def test_of_segments_that_are_found_it_is_said_before_a_depth_is_looked_for(self, parts: dict):
+    def test_unknown_part_is_refused_before_depth_runs(self, parts: dict):
         made = pipeline(None, parts={9: "ghost"}, depth=Ramp(), texture=Same(), **parts)
         with pytest.raises(ConfigError, match="there is no part 9"):
             made.make("surface")
         assert ran == ["segments"]
-        assert said(made)["parts"] == "failed"
+        assert outcome_kinds(made)["parts"] == "failed"
 
-    def test_in_python_without_a_file(self):
+    def test_unknown_part_in_python_is_refused_without_a_place(self):
         with pytest.raises(ConfigError) as error:
             pipeline(parts={9: "ghost", 1: {"height_m": 1}}, heights="given").make("relief")
         assert [each.location for each in error.value.complaints] == [("parts", 9), ("parts", 1, "height_m")]
@@ -405,7 +405,7 @@ class TestComplaints:
         assert {each.line for each in error.value.complaints} == {None}
 
     @pytest.mark.parametrize("key", ["heights: given", "parts: {0: wall}"])
-    def test_no_segments(self, folder: Path, key: str):
+    def test_parts_without_segments_are_refused_with_the_cure(self, folder: Path, key: str):
         path = folder / "p.yaml"
         path.write_text(f"scene: {{photo: photo.npy}}\ndepth: luminance\n{key}\n")
         made = load_pipeline(path)
@@ -419,21 +419,21 @@ class TestComplaints:
             made.make("surface")
         assert error.value.complaints[0].location == (key.partition(":")[0],)
 
-    def test_depth_of_one_photo_without_a_method_for_it(self):
+    def test_heights_by_depth_of_a_photo_need_a_method(self):
         plan = pipeline(heights="depth").plan("surface")
         assert plan.refusal == "the pipeline has no depth; give it one: Pipeline(scene, depth=...)"
 
-    def test_a_map_of_heights_has_its_heights(self):
+    def test_heights_on_a_map_of_heights_are_refused(self):
         with pytest.raises(ConfigError, match="heights: the scene is a map of heights, which are felt as they are"):
             Pipeline(Scene.heights(PICTURE, segments=LABELS), heights="given")
 
-    def test_a_label_picture_of_another_size(self):
+    def test_label_picture_of_another_size_is_refused(self):
         with pytest.raises(
             PictureError, match=r"\(segments\) is 30 x 40 and .* is 60 x 40; .* resize by its nearest neighbours"
         ):
             scene(LABELS[:, ::2])
 
-    def test_more_parts_than_anybody_feels(self):
+    def test_too_many_parts_are_refused(self):
         grain = np.indices((2 * ROWS, 2 * COLUMNS)).sum(axis=0) % 2  # each pixel a part
         made = Pipeline(scene(grain, np.zeros(grain.shape)), heights="guess", cached=False)
         with pytest.raises(
@@ -453,12 +453,12 @@ class TestComplaints:
             ({0: "a", 1: "A"}, "parts.1.name: 'A' is the name of part 0 as well"),
         ],
     )
-    def test_nonsense_in_python(self, parts: Any, says: str):
+    def test_nonsense_in_python_is_refused(self, parts: Any, says: str):
         with pytest.raises((ConfigError, TypeError)) as error:
             pipeline(parts=parts, heights="given")
         assert says in str(error.value)
 
-    def test_a_slip_of_the_brush_is_told_and_keeps_its_number(self):
+    def test_small_parts_give_a_warning_and_keep_their_numbers(self):
         labels = LABELS.copy()
         labels[2, 50] = labels[30, 2] = 5
         made = pipeline(labels, heights="given")
@@ -474,7 +474,7 @@ class TestComplaints:
 
 class TestSizes:
     @pytest.mark.parametrize("heights", ["given", "guess", "depth"])
-    def test_twice_the_pixels_are_the_same_parts_and_the_same_relief(self, heights: str):
+    def test_relief_of_twice_the_pixels_is_the_same(self, heights: str):
         double = np.kron(PICTURE, np.ones((2, 2), np.float32))
         said = {0: "wall", 1: {"name": "box", "height_m": 0.001}, 3: {"name": "chest", "height_m": 0.004}}
         small, large = (
@@ -495,7 +495,7 @@ class TestSizes:
         assert small.surface.names == large.surface.names
         assert within_one_pixel(small.surface.height_m, large.surface.height_m)
 
-    def test_on_a_coarser_grid_they_keep_their_numbers(self):
+    def test_parts_on_a_coarser_grid_keep_their_numbers(self):
         labels = np.kron(LABELS, np.ones((4, 4), int))
         picture = np.kron(PICTURE, np.ones((4, 4), np.float32))
         said = {1: {"height_m": 0.001}, 3: {"name": "chest", "height_m": 0.004}}
@@ -510,7 +510,7 @@ class TestSizes:
         for number in range(4):
             assert middle_mm(coarse.surface, number) == pytest.approx(middle_mm(fine.surface, number), abs=0.15)
 
-    def test_segments_that_were_found_on_the_grid_have_parts_for_every_pixel(self):
+    def test_parts_of_segments_on_the_grid_cover_every_pixel(self):
         picture = np.kron(PICTURE, np.ones((2, 2), np.float32))
         made = Pipeline(
             scene(None, picture), heights="guess", texture=Same(), workspace={"finest_m": 0.08 / COLUMNS}, cached=False
@@ -520,7 +520,7 @@ class TestSizes:
             made.parts.labels, np.kron(made.engine.make_on_grid("parts").labels, np.ones((2, 2), int))
         )
 
-    def test_twelve_megapixels(self):
+    def test_parts_of_twelve_megapixels_are_made(self):
         rows, columns = 3000, 4000
         labels = np.zeros((rows, columns), np.uint8)
         labels[1000:2000, 1000:3000] = 1
@@ -538,7 +538,7 @@ def pipeline_of(labels: np.ndarray, picture: np.ndarray, **parts: Any) -> Pipeli
 
 
 def within_one_pixel(small: np.ndarray, large: np.ndarray) -> bool:
-    """Whether each height of one is between those that the other has around it, but for a hundredth of a millimetre."""
+    """Test that each height is between those of the other map around it, with a tolerance of 0.01 mm."""
     rows, columns = small.shape
     blocks = large.reshape(rows, 2, columns, 2).mean(axis=(1, 3))
     padded = np.pad(small, 1, mode="edge")
@@ -546,10 +546,10 @@ def within_one_pixel(small: np.ndarray, large: np.ndarray) -> bool:
     return bool(((blocks >= around.min(axis=0) - 2e-5) & (blocks <= around.max(axis=0) + 2e-5)).all())
 
 
-def test_a_cure_for_steep_borders_leaves_heights_that_fit(folder: Path):
+def test_cure_for_steep_borders_leaves_heights_that_fit(folder: Path):
     """A lower workspace would be too low for them."""
     text = "parts: {3: {height_m: 4.2 mm}}\nheights: given\nmaterials: {by: rules}\nworkspace: {width_m: 20 mm}\n"
-    path = written(folder, f"{text}render: penalty-gradient\ndevice: mock\n")
+    path = write_pipeline(folder, f"{text}render: penalty-gradient\ndevice: mock\n")
     assert not load_pipeline(path).preflight(loop=Loop(seconds=0.01)).safe
     fixed = fix(path, [], Hand(), Loop(seconds=0.01), path)
     assert fixed.verdicts.safe
@@ -557,10 +557,10 @@ def test_a_cure_for_steep_borders_leaves_heights_that_fit(folder: Path):
 
 
 class TestWritten:
-    def test_a_guess_lies_in_the_folder_as_a_file_that_makes_the_same(self, folder: Path):
+    def test_run_with_guessed_heights_writes_an_equal_file_to_correct(self, folder: Path):
         parts = "{0: Wand, 3: {name: Truhe, material: glass}}"
         text = f"title: Boxes\nlanguage: de\nparts: {parts}\nheights: {{by: guess, bulge_m: 1 mm}}\n"
-        first = load_pipeline(written(folder, text), cache=Cache(folder / "cache"))
+        first = load_pipeline(write_pipeline(folder, text), cache=Cache(folder / "cache"))
         run = first.run(folder / "out")
         file = folder / "out" / "parts-guessed.yaml"
         assert file in run.files
@@ -576,7 +576,7 @@ class TestWritten:
         rerun = again.run(folder / "out")
         assert not file.exists() and file not in rerun.files
 
-    def test_of_arrays_only_the_parts_are_said(self, tmp_path: Path):
+    def test_file_to_correct_of_arrays_has_only_the_parts(self, tmp_path: Path):
         made = pipeline(heights="guess")
         made.run(tmp_path / "out")
         text = (tmp_path / "out" / "parts-guessed.yaml").read_text(encoding="utf-8")
@@ -585,8 +585,8 @@ class TestWritten:
         with pytest.raises(ConfigError, match="no part has a height"):
             pipeline(depth=Ramp()).parts_to_correct()
 
-    def test_a_run_says_its_parts(self, folder: Path):
-        run = load_pipeline(written(folder, f"title: Boxes\n{SAID}heights: given\n")).run(folder / "out")
+    def test_run_lists_its_parts(self, folder: Path):
+        run = load_pipeline(write_pipeline(folder, f"title: Boxes\n{SAID}heights: given\n")).run(folder / "out")
         document = json.loads((folder / "out" / "outcomes.json").read_text(encoding="utf-8"))
         assert (document["title"], document["language"]) == ("Boxes", "en")
         assert document["figures"]["parts"]["3"] == {
@@ -598,7 +598,7 @@ class TestWritten:
         assert "Its parts, from near to far, are chest (" in run.sheet_says
         assert "heights: {by: guess" not in run.sheet_says and not (folder / "out" / "parts-guessed.yaml").exists()
 
-    def test_a_pipeline_of_objects_is_the_one_of_its_file(self, folder: Path, tmp_path: Path):
+    def test_file_of_a_pipeline_of_objects_makes_an_equal_one(self, folder: Path, tmp_path: Path):
         made = Pipeline(
             Scene.photo(folder / "photo.npy", segments=folder / "labels.npy"),
             parts={0: "wall", 3: PartChoice(name="chest", height_m=0.003)},

@@ -28,10 +28,10 @@ def pair() -> tuple[np.ndarray, np.ndarray]:
 
 
 class Flat(DepthEstimator):
-    """Everything at one disparity; in no entry point."""
+    """A depth method of one disparity everywhere, in no entry point."""
 
     value_px: float = 3.0
-    """That one."""
+    """The disparity everywhere, px."""
 
     def estimate(self, views: Views) -> DisparityMap:
         return DisparityMap(np.full(views.shape, self.value_px, np.float32))
@@ -47,7 +47,7 @@ class Slow(DepthEstimator):
             in_turns(list(range(4)), list)
 
 
-def test_the_whole_of_it(tmp_path: Path):
+def test_pipeline_plans_makes_runs_and_feels(tmp_path: Path):
     left, right = pair()
     scene = Scene.pair(left, right, calibration=Calibration(994.978, 0.193, 31.086))
     pipeline = Pipeline(
@@ -78,7 +78,7 @@ def test_the_whole_of_it(tmp_path: Path):
 
 
 class TestScene:
-    def test_files_and_arrays_are_the_same(self, tmp_path: Path):
+    def test_scene_of_files_equals_that_of_arrays(self, tmp_path: Path):
         left, right = pair()
         np.save(tmp_path / "left.npy", left)
         of_files = Scene.pair(left=tmp_path / "left.npy", right=right)
@@ -87,7 +87,7 @@ class TestScene:
         assert of_arrays is not None
         assert of_files.views.digest() == of_arrays.digest()
 
-    def test_what_was_given_may_change_afterwards(self):
+    def test_scene_is_not_changed_by_later_changes_of_arrays(self):
         left, right = pair()
         scene = Scene.pair(left, right)
         before = scene.views.left.copy() if scene.views else None
@@ -95,11 +95,11 @@ class TestScene:
         assert scene.views is not None
         np.testing.assert_array_equal(scene.views.left, before)
 
-    def test_heights(self):
+    def test_scene_of_heights_has_their_relief(self):
         scene = Scene.heights([[0, 1], [2, 3]], relief_m=0.006)
         assert Pipeline(scene, cached=False).surface.height_m.max() == np.float32(0.006)
 
-    def test_labels_and_a_disparity_of_ones_own(self):
+    def test_scene_of_custom_labels_and_disparity_is_made_of_them(self):
         left, right = pair()
         labels = np.repeat([[7, 9]], SHAPE[0], axis=0).repeat(SHAPE[1] // 2, axis=1)
         scene = Scene.pair(left, right, disparity=np.ones(SHAPE), segments=labels)
@@ -110,7 +110,7 @@ class TestScene:
         kinds = {each.product: each.outcome for each in pipeline.outcomes}
         assert (kinds["disparity"], kinds["segments"]) == ("given", "given")
 
-    def test_builtin(self):
+    def test_builtin_scene_is_found_by_name(self):
         assert Scene.builtin("coins").name == Scene.builtin("builtin/coins").name == "builtin/coins"
         with pytest.raises(ConfigError, match=r"no scene is named 'builtin/coin'.*did you mean"):
             Scene.builtin("coin")
@@ -123,7 +123,7 @@ class TestScene:
             ({"photo": np.zeros(SHAPE), "relief_m": 0.01}, "relief_m needs height"),
         ],
     )
-    def test_parts_that_make_no_scene(self, parts: dict, said: str):
+    def test_scene_of_impossible_parts_is_refused(self, parts: dict, said: str):
         with pytest.raises(ConfigError, match=said):
             Scene.of(**parts)
 
@@ -136,41 +136,41 @@ class TestScene:
             ("nowhere.png", "there is no such file"),
         ],
     )
-    def test_what_is_no_picture(self, photo: object, said: str):
+    def test_scene_of_an_invalid_picture_is_refused(self, photo: object, said: str):
         with pytest.raises(PictureError, match=said):
             Scene.photo(photo)  # pyright: ignore[reportArgumentType]
 
-    def test_nan_may_be_masked(self):
+    def test_scene_with_nan_is_masked_on_request(self):
         photo = np.ones((4, 4), np.float32)
         photo[0, 0] = np.nan
         scene = Scene.photo(photo, non_finite="mask")
         assert scene.known is not None and not scene.known[0, 0] and scene.known.sum() == 15
 
-    def test_sizes_that_differ(self):
+    def test_scene_of_different_sizes_is_refused(self):
         with pytest.raises(PictureError, match="all parts of a scene must be of one size"):
             Scene.pair(left=np.zeros((4, 4)), right=np.zeros((4, 5)))
 
 
 class TestMethods:
-    def test_a_class_of_ones_own(self):
+    def test_method_of_a_custom_class_is_used(self):
         left, right = pair()
         pipeline = Pipeline(Scene.pair(left, right), depth=Flat())
         assert pipeline.disparity is not None and (pipeline.disparity.disparity_px == 3).all()
         assert pipeline.config.depth is not None and pipeline.config.depth.name == "Flat"
 
-    def test_no_result_of_other_options_is_taken_for_it(self):
+    def test_method_with_other_options_is_not_answered_from_the_cache(self):
         left, right = pair()
         for value in (3.0, 4.0, 3.0):
             found = Pipeline(Scene.pair(left, right), depth=Flat(value_px=value)).disparity
             assert found is not None and (found.disparity_px == value).all()
 
-    def test_a_file_cannot_name_it(self, tmp_path: Path):
+    def test_method_of_a_custom_class_is_in_no_file(self, tmp_path: Path):
         pipeline = Pipeline(Scene.builtin("coins"), depth=Flat())
         with pytest.raises(ConfigError, match=r"depth: Flat is not an installed plugin.*tangible.depth"):
             pipeline.to_yaml(tmp_path / "mine.yaml")
         assert not (tmp_path / "mine.yaml").exists()
 
-    def test_a_method_that_is_missing(self):
+    def test_missing_method_is_named_with_the_cure(self):
         pipeline = Pipeline(Scene.builtin("coins"), cached=False)
         with pytest.raises(ConfigError, match=r"^the pipeline has no depth; give it one: Pipeline\(scene, depth=...\)"):
             pipeline.surface  # noqa: B018
@@ -179,7 +179,7 @@ class TestMethods:
 
     @pytest.mark.usefixtures("unchecked_shapes")
     @pytest.mark.parametrize("wrong", ["semi-global", SemiGlobal, Gabor()])
-    def test_what_is_no_method(self, wrong: object):
+    def test_method_of_another_kind_is_refused(self, wrong: object):
         with pytest.raises(ConfigError, match="depth: takes a DepthEstimator"):
             Pipeline(Scene.builtin("coins"), depth=wrong)  # pyright: ignore[reportArgumentType]
 
@@ -195,18 +195,18 @@ class TestMethods:
             ({"workspace": 0.08}, "workspace: Input should be a mapping, such as {key: value}, not 0.08"),
         ],
     )
-    def test_blocks_that_say_nonsense(self, block: dict, said: str):
+    def test_blocks_with_nonsense_are_refused(self, block: dict, said: str):
         with pytest.raises(ConfigError, match=said) as error:
             Pipeline(Scene.builtin("coins"), **block)
         assert error.value.complaints[0].location == tuple(said.partition(":")[0].split("."))
 
-    def test_a_product_that_nothing_makes(self):
+    def test_unknown_product_is_refused_with_the_nearest(self):
         with pytest.raises(UnknownMethod, match="no product method is named 'surfaces'"):
             Pipeline(Scene.builtin("coins")).make("surfaces")
 
 
 class TestThereAndBack:
-    def test_files(self, tmp_path: Path):
+    def test_file_of_a_pipeline_makes_an_equal_one(self, tmp_path: Path):
         left, right = pair()
         for name, picture in (("left", left), ("right", right)):
             np.save(tmp_path / f"{name}.npy", picture)
@@ -230,22 +230,22 @@ class TestThereAndBack:
         again.to_yaml(tmp_path / "again.yaml")
         assert (tmp_path / "again.yaml").read_text() == (tmp_path / "elsewhere" / "mine.yaml").read_text()
 
-    def test_builtin(self, tmp_path: Path):
+    def test_file_of_a_builtin_scene_makes_an_equal_one(self, tmp_path: Path):
         Pipeline(Scene.builtin("coins"), render=GreyLevel()).to_yaml(tmp_path / "mine.yaml")
         assert load_pipeline(tmp_path / "mine.yaml").config.scene == "builtin/coins"
 
-    def test_arrays_are_in_no_file(self, tmp_path: Path):
+    def test_file_of_a_scene_of_arrays_is_refused(self, tmp_path: Path):
         with pytest.raises(ConfigError, match="scene: is made of arrays"):
             Pipeline(Scene.heights(np.eye(4))).to_yaml(tmp_path / "mine.yaml")
 
-    def test_a_run_of_what_no_file_can_say_says_why(self, tmp_path: Path):
+    def test_run_without_a_configuration_file_writes_the_reason(self, tmp_path: Path):
         run = Pipeline(Scene.heights(np.eye(4)), cached=False).run(tmp_path)
         assert "scene: is made of arrays" in (tmp_path / "config.txt").read_text()
         assert tmp_path / "config.txt" in run.files
 
 
 class TestWatching:
-    def test_progress(self):
+    def test_progress_has_the_start_and_outcome_of_each_stage(self):
         heard: list[StageEvent] = []
         Pipeline(Scene.heights(np.eye(4)), cached=False).make("surface", progress=heard.append)
         assert [(each.product, each.outcome and each.outcome.outcome) for each in heard] == [
@@ -256,7 +256,7 @@ class TestWatching:
             ("surface", "ran"),
         ]
 
-    def test_stopped_between_stages(self):
+    def test_stop_between_stages_raises_stopped(self):
         left, right = pair()
         stop = threading.Event()
         pipeline = Pipeline(Scene.pair(left, right), depth=Flat(), cached=False)
@@ -264,7 +264,7 @@ class TestWatching:
             pipeline.make("surface", progress=lambda stage: stop.set(), stop=stop)
         assert pipeline.surface.height_m.shape == SHAPE
 
-    def test_stopped_inside_of_a_long_one(self):
+    def test_stop_within_a_long_stage_raises_stopped(self):
         left, right = pair()
         stop, pipeline = threading.Event(), Pipeline(Scene.pair(left, right), depth=Slow(), cached=False)
         threading.Timer(0.2, stop.set).start()
@@ -274,7 +274,7 @@ class TestWatching:
 
     @pytest.mark.parametrize("in_real_time", [True, False])
     @pytest.mark.usefixtures("loop_in_thread")
-    def test_stopped_while_it_is_felt(self, in_real_time: bool):
+    def test_stop_in_a_session_ends_it(self, in_real_time: bool):
         stop = threading.Event()
         pipeline = Pipeline(Scene.heights(np.ones((8, 8))), render=Penalty(), cached=False)
         found = pipeline.feel(
@@ -291,31 +291,31 @@ class TestFeeling:
         device = Mock(hand=None, path="circle", z_m=0.0015)
         return Pipeline(Scene.heights(np.arange(64.0).reshape(8, 8)), render=Penalty(), device=device, cached=False)
 
-    def test_simulated(self, pipeline: Pipeline):
+    def test_simulated_session_is_recorded_and_reported(self, pipeline: Pipeline):
         found = pipeline.feel(seconds=0.25, in_real_time=False)
         assert len(found.rows) == 250 and found.peak_force_n > 0
 
-    def test_into_a_file(self, pipeline: Pipeline, tmp_path: Path):
+    def test_session_is_recorded_into_a_file(self, pipeline: Pipeline, tmp_path: Path):
         for real, name in ((True, "a.nc"), (True, "b.npz"), (False, "c.csv")):
             found = pipeline.feel(seconds=0.2, in_real_time=real, record=tmp_path / name)
             np.testing.assert_array_equal(Recording.load(tmp_path / name).rows, found.rows)
 
-    def test_ticks_may_go_elsewhere(self, pipeline: Pipeline):
+    def test_session_passes_ticks_to_a_function(self, pipeline: Pipeline):
         rows: list[np.ndarray] = []
         found = pipeline.feel(seconds=0.2, keep=rows.append)
         assert found.rows.size == 0 and sum(map(len, rows)) > 50
 
-    def test_a_file_that_cannot_be(self, pipeline: Pipeline, tmp_path: Path):
+    def test_session_with_an_invalid_file_is_refused(self, pipeline: Pipeline, tmp_path: Path):
         with pytest.raises(OutputError, match=r"hand\.txt"):
             pipeline.feel(seconds=0.1, record=tmp_path / "hand.txt")
 
-    def test_in_simulated_time_there_is_an_end(self, pipeline: Pipeline):
+    def test_simulated_session_without_end_is_refused(self, pipeline: Pipeline):
         with pytest.raises(ConfigError, match="seconds: is inf; it must be positive and finite"):
             pipeline.feel(seconds=None, in_real_time=False)
         with pytest.raises(ConfigError, match="then, on_wait: are for a session in real time"):
             pipeline.feel(in_real_time=False, on_wait=pytest.fail)
 
-    def test_again_with_another_law(self, pipeline: Pipeline):
+    def test_recording_is_replayed_with_another_law(self, pipeline: Pipeline):
         before = pipeline.feel(seconds=1.0, in_real_time=False)
         other = Pipeline(pipeline.scene, render=Penalty(stiffness_n_per_m=400.0), cached=False)
         after = other.replay(before)
@@ -323,7 +323,7 @@ class TestFeeling:
         assert compare_replay(before, after)["ticks"] == 1000
         assert 0 < after.peak_force_n < before.peak_force_n
 
-    def test_a_device_that_fails(self, pipeline: Pipeline):
+    def test_session_with_a_failing_device_keeps_its_ticks(self, pipeline: Pipeline):
         from loop_devices import Failing
 
         with pytest.raises(DeviceError):
@@ -331,7 +331,7 @@ class TestFeeling:
 
 
 @pytest.fixture(scope="module")
-def shown() -> Pipeline:
+def sample_pipeline() -> Pipeline:
     left, right = pair()
     scene, texture = Scene.pair(left, right), Histogram(segments=2)
     return Pipeline(scene, depth=Flat(), texture=texture, render=Penalty(), cached=False)
@@ -339,11 +339,11 @@ def shown() -> Pipeline:
 
 class TestShown:
     @pytest.mark.parametrize("product", ["views", "disparity", "segments", "relief", "surface"])
-    def test_a_product_as_its_panel(self, shown: Pipeline, product: str):
+    def test_product_is_drawn_as_its_panel(self, sample_pipeline: Pipeline, product: str):
         from matplotlib import pyplot
         from matplotlib.figure import Figure
 
-        record = getattr(shown, product)
+        record = getattr(sample_pipeline, product)
         axes = Figure().add_subplot()
         assert show(record, axes) is axes
         assert axes.get_title()
@@ -352,32 +352,32 @@ class TestShown:
         pyplot.close("all")
 
     @pytest.mark.parametrize("product", ["views", "disparity", "segments", "relief", "surface"])
-    def test_in_a_notebook(self, shown: Pipeline, product: str):
+    def test_product_in_a_notebook_is_a_picture(self, sample_pipeline: Pipeline, product: str):
         from matplotlib import pyplot
 
         before = pyplot.get_fignums()
-        html = getattr(shown, product)._repr_html_()
+        html = getattr(sample_pipeline, product)._repr_html_()
         assert html.startswith("<img alt=") and "data:image/png;base64," in html
         assert pyplot.get_fignums() == before
 
-    def test_tables(self, shown: Pipeline):
-        assert shown.materials is not None
-        assert "<td" in shown.materials._repr_html_()
-        assert "&lt;" not in shown.outcomes._repr_html_()
-        assert "relief" in repr(shown.outcomes)
-        assert "<table>" in shown._repr_html_()
+    def test_plan_and_outcomes_are_shown_as_tables(self, sample_pipeline: Pipeline):
+        assert sample_pipeline.materials is not None
+        assert "<td" in sample_pipeline.materials._repr_html_()
+        assert "&lt;" not in sample_pipeline.outcomes._repr_html_()
+        assert "relief" in repr(sample_pipeline.outcomes)
+        assert "<table>" in sample_pipeline._repr_html_()
         assert "<table>" in Calibration(1.0, 1.0)._repr_html_()
 
-    def test_recordings(self, shown: Pipeline):
-        found = shown.feel(Mock(), seconds=0.1, in_real_time=False)
+    def test_recording_is_drawn(self, sample_pipeline: Pipeline):
+        found = sample_pipeline.feel(Mock(), seconds=0.1, in_real_time=False)
         assert found._repr_html_().startswith("<img ")
         empty = Recording(found.rows[:0])
         assert "<table>" in empty._repr_html_()
 
-    def test_what_has_no_picture(self):
+    def test_record_without_a_picture_is_refused(self):
         with pytest.raises(OutputError, match="a Calibration has no picture of its own"):
             show(Calibration(1.0, 1.0))
 
-    def test_types_are_told_by_the_product(self, shown: Pipeline):
-        assert isinstance(shown.make("surface"), HapticSurface)
-        logging.getLogger(__name__).debug("%s", shown.make("surface").extent_m)
+    def test_properties_have_the_types_of_their_products(self, sample_pipeline: Pipeline):
+        assert isinstance(sample_pipeline.make("surface"), HapticSurface)
+        logging.getLogger(__name__).debug("%s", sample_pipeline.make("surface").extent_m)

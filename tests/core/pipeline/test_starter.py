@@ -16,7 +16,7 @@ from videos import greys
 
 
 def waves(columns: int, rows: int, across: float) -> np.ndarray:
-    """A grey picture of so many waves from left to right."""
+    """Make a grey picture of n waves from left to right."""
     wave = np.rint(127 + 120 * np.sin(np.linspace(0, 2 * np.pi * across, columns))).astype(np.uint8)
     return np.tile(wave, (rows, 1))
 
@@ -35,7 +35,7 @@ def relief_mm(picture: str) -> float:
     return 1e3 * config.workspace.relief_m
 
 
-def test_the_values_suit_the_picture(folder: Path):
+def test_starter_values_suit_the_picture(folder: Path):
     made = starter([Path("calm.png")], folder / "p.yaml")
     config = parse_config(made.text, folder / "p.yaml", default_registry())
     assert isinstance(config.scene, SceneFiles) and config.scene.photo == folder / "calm.png"
@@ -46,7 +46,7 @@ def test_the_values_suit_the_picture(folder: Path):
     assert all(line.count("#") for line in made.text.splitlines() if " mm " in line), "each length is explained"
 
 
-def test_heights_in_millimetres_are_taken_at_their_word(folder: Path):
+def test_starter_of_heights_in_millimetres_keeps_their_size(folder: Path):
     tangible("export", "map.npy", "--to", "heights", "--out", ".", cwd=folder)
     for name in ("map-heights.json", "map-heights.tif", "map-heights.png"):
         assert are_pictures([Path(name)])
@@ -57,7 +57,7 @@ def test_heights_in_millimetres_are_taken_at_their_word(folder: Path):
 
 
 @pytest.mark.parametrize("hole", [np.nan, np.inf, -np.inf])
-def test_what_is_not_known_of_a_map_is_no_slope(folder: Path, hole: float):
+def test_starter_of_a_map_with_nan_ignores_it_as_a_slope(folder: Path, hole: float):
     ramp = np.tile(np.linspace(0, 1, 60), (30, 1))
     np.save("ramp.npy", ramp)
     ramp[:, 0] = hole
@@ -67,7 +67,7 @@ def test_what_is_not_known_of_a_map_is_no_slope(folder: Path, hole: float):
     assert "scene: {height: unknown.npy}" in starter([Path("unknown.npy")], Path("p.yaml")).text
 
 
-def test_a_map_and_a_pair_and_a_builtin_scene(folder: Path):
+def test_starter_takes_a_map_a_pair_and_a_builtin_scene(folder: Path):
     assert "scene: {height: map.npy}" in starter([Path("map.npy")], Path("p.yaml")).text
     pair = starter([folder / "calm.png", folder / "calm.png"], folder / "sub" / "p.yaml").text
     assert f"left: {folder.as_posix()}/calm.png" in pair
@@ -79,7 +79,7 @@ def test_a_map_and_a_pair_and_a_builtin_scene(folder: Path):
     assert are_pictures([Path("A.JPG")]) and not are_pictures([Path("a.yaml")])
 
 
-def test_a_video_makes_a_scene_of_its_first_frame(folder: Path):
+def test_starter_of_a_video_reads_its_first_frame(folder: Path):
     greys(folder / "walk.avi", 3, shape=(120, 160))
     made = starter([Path("walk.avi")], folder / "p.yaml")
     config = parse_config(made.text, folder / "p.yaml", default_registry())
@@ -92,7 +92,7 @@ def test_a_video_makes_a_scene_of_its_first_frame(folder: Path):
         starter([Path("walk.avi")] * 2, folder / "p.yaml")
 
 
-def test_new_writes_a_file_that_runs_and_never_writes_over_one(folder: Path):
+def test_new_writes_a_file_that_runs_and_never_overwrites(folder: Path):
     assert tangible("new", "my steep: one.png", "--out", "p.yaml", cwd=folder).returncode == 0
     text = (folder / "p.yaml").read_text()
     assert tangible("plan", "p.yaml", cwd=folder).returncode == 0
@@ -106,7 +106,7 @@ def test_new_writes_a_file_that_runs_and_never_writes_over_one(folder: Path):
     assert "name a picture" in tangible("new", "p.yaml", cwd=folder).stderr
 
 
-def test_a_picture_runs_without_a_file(folder: Path):
+def test_picture_runs_without_a_file(folder: Path):
     done = tangible("run", "calm.png", "--set", "want=surface", "--set", "workspace.width_m=30 mm", cwd=folder)
     assert done.returncode == 0, done.stderr
     assert "`tangible new calm.png` writes them down" in done.stderr

@@ -7,7 +7,7 @@ from tangible_core.data import NO_FORCE, HapticState, Outcome, Plan, ServoReport
 from tangible_core.plugins import hooks
 from tangible_core.plugins.hooks import hookimpl
 
-RAN = Outcome("relief", "ran", "asked for")
+RAN = Outcome("relief", "ran", "requested")
 FACTS = {
     "tangible_methods": {"kind": "depth"},
     "tangible_plan_made": {"plan": Plan("relief", (RAN,))},

@@ -17,9 +17,9 @@ PHOTO = np.arange(36, dtype=np.uint8).reshape(3, 4, 3)
 
 class TestHeights:
     def of(self, heights=HEIGHTS, **options) -> np.ndarray:
-        found = Scene.heights(heights, **options).height
-        assert found is not None
-        return found
+        framed = Scene.heights(heights, **options).height
+        assert framed is not None
+        return framed
 
     def test_crop_counts_from_the_upper_left_corner(self):
         assert self.of(crop=[1, 0, 3, 2]).tolist() == [[1, 2, 3], [5, 6, 7]]
@@ -37,9 +37,9 @@ class TestHeights:
     def test_nodata_values_become_unknown(self, nodata):
         torn = HEIGHTS.copy()
         torn[1, 1] = -9999
-        found = self.of(torn, nodata=nodata)
-        assert np.isnan(found).tolist() == (torn == -9999).tolist()
-        assert np.nanmin(found) == 0
+        framed = self.of(torn, nodata=nodata)
+        assert np.isnan(framed).tolist() == (torn == -9999).tolist()
+        assert np.nanmin(framed) == 0
 
     def test_nodata_values_are_compared_in_32_bits(self):
         lowest = float(np.finfo(np.float32).min)
@@ -48,9 +48,9 @@ class TestHeights:
     def test_clip_cuts_spikes(self):
         spiked = np.linspace(0, 1, 1000).reshape(20, 50)
         spiked[3, 3] = 1e6
-        found = self.of(spiked, clip=[1, 99])
-        assert found.max() == pytest.approx(0.99, abs=0.005)
-        assert found.min() == pytest.approx(0.01, abs=0.005)
+        framed = self.of(spiked, clip=[1, 99])
+        assert framed.max() == pytest.approx(0.99, abs=0.005)
+        assert framed.min() == pytest.approx(0.01, abs=0.005)
 
     def test_transparent_heights_are_unknown(self):
         grey = np.repeat(HEIGHTS.astype(np.uint8)[..., None], 4, axis=2)
@@ -85,15 +85,15 @@ class TestPhotos:
         ],
     )
     def test_invert_exchanges_light_and_dark(self, photo, inverted):
-        found = self.of(photo, invert=True)
-        assert found.tolist() == inverted
-        assert found.dtype == photo.dtype
+        framed = self.of(photo, invert=True)
+        assert framed.tolist() == inverted
+        assert framed.dtype == photo.dtype
 
     def test_clip_limits_brightness_to_percentiles(self):
         photo = np.linspace(50, 150, 1000).astype(np.uint8).reshape(20, 50)
         photo[0, 0], photo[5, 5] = 0, 255
-        found = self.of(photo, clip=[5, 95])
-        assert (found.min(), found.max()) == (54, 145)
+        framed = self.of(photo, clip=[5, 95])
+        assert (framed.min(), framed.max()) == (54, 145)
 
     def test_clip_ignores_transparent_pixels(self):
         photo = np.full((10, 10, 4), 100, np.uint8)
@@ -218,5 +218,5 @@ def test_crop_applies_to_the_upright_picture(tmp_path: Path):
     exif = Image.Exif()
     exif[0x0112] = 6
     Image.fromarray(PHOTO).save(tmp_path / "p.png", exif=exif)
-    found = Scene.photo(tmp_path / "p.png", crop=[0, 0, 3, 1]).views
-    np.testing.assert_array_equal(found.left, np.rot90(PHOTO, -1)[:1])
+    framed = Scene.photo(tmp_path / "p.png", crop=[0, 0, 3, 1]).views
+    np.testing.assert_array_equal(framed.left, np.rot90(PHOTO, -1)[:1])

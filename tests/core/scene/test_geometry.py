@@ -43,9 +43,9 @@ def plane(shape, across, along, extent_m=(0.08, 0.06)):
 
 
 def test_depth_is_focal_length_times_baseline_over_disparity():
-    found = disparity_to_depth(np.float32([[50, 25, 12.5]]), focal_px=1000, baseline_m=0.2)
-    assert found.dtype == np.float32
-    assert found.tolist() == [[4, 8, 16]]
+    depth_m = disparity_to_depth(np.float32([[50, 25, 12.5]]), focal_px=1000, baseline_m=0.2)
+    assert depth_m.dtype == np.float32
+    assert depth_m.tolist() == [[4, 8, 16]]
 
 
 def test_depth_uses_the_offset_of_the_principal_points():
@@ -201,9 +201,9 @@ def test_constant_map_is_flat_at_zero(camera, shape):
 
 
 def test_holes_are_filled_from_the_background_or_cut_to_the_base():
-    found = disparity(*[[4, NAN, 2, 3, 3]] * 200)
-    filled = make_relief(found, None, 0.1, 0.02).height_m[0]
-    cut = make_relief(found, None, 0.1, 0.02, "cut").height_m[0]
+    torn = disparity(*[[4, NAN, 2, 3, 3]] * 200)
+    filled = make_relief(torn, None, 0.1, 0.02).height_m[0]
+    cut = make_relief(torn, None, 0.1, 0.02, "cut").height_m[0]
     np.testing.assert_allclose(filled, [0.02, 0, 0, 0.01, 0.01], atol=1e-8)
     np.testing.assert_allclose(cut, [0.02, 0, 0, 0.01, 0.01], atol=1e-8)
     raised = make_relief(disparity(*[[4, NAN, 3, 2]] * 200), None, 0.1, 0.02).height_m[0]
@@ -452,9 +452,9 @@ def test_smoothing_refuses_negative_and_infinite_lengths(sigma_m):
 @given(SHAPES, st.floats(-2, 2), st.floats(-2, 2))
 def test_slopes_and_normals_of_a_plane_are_exact_in_the_workspace_frame(shape, across, along):
     relief = plane(shape, across, along)
-    found = slopes(relief)
+    slopes_of_plane = slopes(relief)
     wanted = (across if shape[1] > 1 else 0, along if shape[0] > 1 else 0)
-    for got, want in zip(found, wanted, strict=True):
+    for got, want in zip(slopes_of_plane, wanted, strict=True):
         assert got.dtype == np.float32
         np.testing.assert_allclose(got, np.full(shape, want), atol=1e-4)
     up = np.array([-wanted[0], -wanted[1], 1]) / np.sqrt(1 + wanted[0] ** 2 + wanted[1] ** 2)
@@ -474,10 +474,10 @@ def test_surface_rising_away_from_the_user_has_a_positive_slope_in_y():
 def test_relief_with_its_own_range_given_is_unchanged(camera, holes):
     values = np.random.default_rng(4).uniform(2, 60, (20, 30)).astype(np.float32)
     values[3, 4:9] = np.nan
-    found = DisparityMap(values)
-    spans = nearness_range(found, camera)
-    alone = make_relief(found, camera, 0.08, 0.01, holes)
-    assert np.array_equal(make_relief(found, camera, 0.08, 0.01, holes, spans).height_m, alone.height_m)
+    disparity_map = DisparityMap(values)
+    spans = nearness_range(disparity_map, camera)
+    alone = make_relief(disparity_map, camera, 0.08, 0.01, holes)
+    assert np.array_equal(make_relief(disparity_map, camera, 0.08, 0.01, holes, spans).height_m, alone.height_m)
 
 
 def test_relief_with_a_given_range_clips_values_beyond_it_only():

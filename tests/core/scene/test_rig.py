@@ -43,10 +43,10 @@ def seen(points_m: np.ndarray, camera: Camera) -> np.ndarray:
     coefficients = camera.distortion if camera.distortion.size else np.zeros(4)
     project = cv2.fisheye.projectPoints if camera.model == "equidistant" else cv2.projectPoints
     if camera.model == "equidistant":
-        found = project(points_m[None], np.zeros(3), np.zeros(3), camera.matrix, coefficients)[0]
+        projected = project(points_m[None], np.zeros(3), np.zeros(3), camera.matrix, coefficients)[0]
     else:
-        found = project(points_m, np.zeros(3), np.zeros(3), camera.matrix, coefficients)[0]
-    return found.reshape(-1, 2)
+        projected = project(points_m, np.zeros(3), np.zeros(3), camera.matrix, coefficients)[0]
+    return projected.reshape(-1, 2)
 
 
 def axes_of(cameras: StereoRig) -> np.ndarray:
@@ -88,33 +88,33 @@ def test_rectified_pictures_follow_their_points(lens: str):
         for x, y in seen(points, camera):
             picture += np.exp(-((columns - x) ** 2 + (rows - y) ** 2) / 8).astype(np.float32)
         views.append(np.clip(picture, 0, 1))
-    found = rectify_views(Views(*views), cameras)
-    assert found.known.shape == found.views.shape and found.known.mean() > 0.5
-    assert found.views.right is not None and found.views.right.shape == found.views.shape
-    rows_lit = [np.sort(peaks(each)[:, 0]) for each in (found.views.left, found.views.right)]
+    rectified = rectify_views(Views(*views), cameras)
+    assert rectified.known.shape == rectified.views.shape and rectified.known.mean() > 0.5
+    assert rectified.views.right is not None and rectified.views.right.shape == rectified.views.shape
+    rows_lit = [np.sort(peaks(each)[:, 0]) for each in (rectified.views.left, rectified.views.right)]
     np.testing.assert_allclose(*rows_lit, atol=0.3)
 
 
 def peaks(picture: np.ndarray) -> np.ndarray:
     """Rows and columns of the six brightest blobs, to a fraction of a pixel."""
-    rest, found = picture.copy(), []
+    rest, peaks_px = picture.copy(), []
     for _ in range(6):
         row, column = np.unravel_index(np.argmax(rest), rest.shape)
         rows, columns = np.s_[max(0, row - 5) : row + 6], np.s_[max(0, column - 5) : column + 6]
         part = rest[rows, columns]
         inner = np.indices(part.shape).reshape(2, -1)
-        found.append((inner * part.ravel()).sum(axis=1) / part.sum() + [rows.start, columns.start])
+        peaks_px.append((inner * part.ravel()).sum(axis=1) / part.sum() + [rows.start, columns.start])
         rest[rows, columns] = 0
-    return np.array(found)
+    return np.array(peaks_px)
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, bool, np.float32])
 @pytest.mark.parametrize("channels", [(), (3,), (4,)])
 def test_rectified_pictures_keep_dtype_and_channels(dtype, channels):
     picture = (np.random.default_rng(0).random((*SHAPE, *channels)) > 0.5).astype(dtype)
-    found = rectify_views(Views(picture, picture), rig(lens="radial")).views
-    assert found.left.shape[2:] == channels
-    assert found.left.max() <= picture.max()
+    rectified = rectify_views(Views(picture, picture), rig(lens="radial")).views
+    assert rectified.left.shape[2:] == channels
+    assert rectified.left.max() <= picture.max()
 
 
 def test_rectifying_one_view_raises():

@@ -75,11 +75,11 @@ def test_reduced_pixel_stays_a_pixel():
 def test_enlarged_segments_keep_every_label(shape, factor):
     small = reduce_views(Views(np.zeros(shape, np.uint8)), factor).shape
     labels = np.arange(small[0] * small[1], dtype=np.int32).reshape(small)
-    found = enlarged_segments(SegmentMap(labels, np.full(small, 0.25, np.float32)), shape)
-    assert found.labels.dtype == np.int32
-    assert np.array_equal(np.unique(found.labels), labels.ravel())
-    assert found.confidence.shape == shape
-    assert np.all(found.confidence == 0.25)
+    enlarged = enlarged_segments(SegmentMap(labels, np.full(small, 0.25, np.float32)), shape)
+    assert enlarged.labels.dtype == np.int32
+    assert np.array_equal(np.unique(enlarged.labels), labels.ravel())
+    assert enlarged.confidence.shape == shape
+    assert np.all(enlarged.confidence == 0.25)
 
 
 def test_enlarged_segments_stay_in_place():

@@ -1,93 +1,30 @@
 """A beacon: a gentle pull to a part, conservative, at most 1 N, released by any button, and without effect when off."""
 
 import math
-import pickle
-import time
-from collections.abc import Callable, Iterator
-from pathlib import Path
-from threading import Event
-from typing import Any, cast
 
 import numpy as np
 import pytest
 
-from faulty_touch import FaultyTouch
-from loop_devices import SPEC, Circling, Failing
-from tangible_core.data import Force, HapticState, HapticSurface, Relief, ServoReport, TickFlag, beacon_part
-from tangible_core.errors import ConfigError, DeviceError, GeometryError
+from beacon_ground import LENGTH_M, NAMES, PARTS, SURFACE, WIDTH_M, T, faded_in, kernels, pulls
+from loop_devices import SPEC
+from tangible_core.data import Force, HapticState, HapticSurface, Relief, TickFlag, beacon_part
 from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.plugins.registry import load_method
-from tangible_core.servo import Beacon, Safety, Servo, beacon_kernels, beacon_to, null_touch
+from tangible_core.servo import Beacon, Safety, beacon_to
 from tangible_core.servo.beacon import (
-    ASKED,
-    LET_GO,
     MOST_N,
     PULL_N,
     RAMP_S,
-    SEEN,
     SOFT_M,
     BeaconMemory,
     BeaconState,
-    beacon_flags,
 )
 from tangible_core.servo.guard import layout
-from tangible_core.servo.ring import Ring
 from tangible_core.servo.ticks.python_tick import GuardedForce, guard_touch
-from tangible_core.session import (
-    Recording,
-    Slot,
-    beacons_felt,
-    parts_felt,
-    run_in_real_time,
-    run_kiosk,
-    run_simulated,
-)
-from tangible_devices import Mock
-from waiting import until
-
-WIDTH_M, LENGTH_M = 0.08, 0.06
-NAMES = ("ground", "disc", "", "disc ", "arc")
-T = 0.001
-kernels = cast(Any, beacon_kernels)
-
-
-def in_parts() -> HapticSurface:
-    """Return a level surface of 80 x 60 mm: a disc of 5 mm, a bar one cell wide, a single cell, and an arc."""
-    rows, columns = 120, 160
-    y, x = np.mgrid[:rows, :columns]
-    x_m, y_m = ((x + 0.5) / columns - 0.5) * WIDTH_M, (0.5 - (y + 0.5) / rows) * LENGTH_M
-    labels = np.zeros((rows, columns), np.int32)
-    labels[np.hypot(x_m - 0.02, y_m - 0.01) < 0.005] = 1
-    labels[100, 30:70] = 2
-    labels[10, 10] = 3
-    labels[(abs(np.hypot(x_m, y_m) - 0.025) < 0.001) & (x_m < 0.01)] = 4
-    relief = Relief(np.full(labels.shape, 0.002, np.float32), (WIDTH_M, LENGTH_M))
-    return HapticSurface(relief, labels, None, NAMES)
-
-
-SURFACE = in_parts()
-PARTS = [1, 2, 3, 4]
 
 
 def potential(memory: BeaconMemory, places_m: np.ndarray) -> np.ndarray:
     return np.array([kernels.potential(*memory.arrays, x, y) for x, y in places_m.tolist()])
-
-
-def pulls(memory: BeaconMemory, states: np.ndarray, buttons: int = 0, ticks: int = 1) -> np.ndarray:
-    """Return the pull in a guard's memory at states x, y, vx, vy, after a number of ticks at each."""
-    kept = np.zeros(layout.MEMORY)
-    found = []
-    for x, y, vx, vy in states.tolist():
-        for _ in range(ticks):
-            kernels.pull(*memory.arrays, kept, T, x, y, vx, vy, buttons)
-        found.append(kept[layout.PULL : layout.PULL + 2].copy())
-    return np.array(found)
-
-
-def faded_in(part: int) -> BeaconMemory:
-    memory = BeaconMemory.of(beacon_to(SURFACE, part))
-    pulls(memory, np.zeros((1, 4)), ticks=round(RAMP_S / T) + 2)
-    return memory
 
 
 class TestPull:
@@ -301,179 +238,3 @@ class TestBeaconInGuard:
         for _ in range(900):
             allowed(HapticState((-0.03, -0.02, 0.01)), T)
         assert memory[layout.GAIN] == pytest.approx(2400 / 2460, abs=0.002)
-
-
-class TestPartNames:
-    def test_part_number_accepts_name_number_and_number_as_text(self):
-        assert [beacon_to(SURFACE, each).part for each in ("ground", " arc", 4, "4")] == [0, 4, 4, 4]
-        assert pickle.loads(pickle.dumps(beacon_to(SURFACE, 4))).part == 4
-
-    @pytest.mark.parametrize(
-        ("part", "said"),
-        [
-            ("arch", "no part is called 'arch' (did you mean 'arc'?); the parts are 0: 'ground'"),
-            ("", "no part is called ''; the parts are 0: 'ground', 1: 'disc'"),
-            (5, "there is no part 5; the parts are 0: 'ground'"),
-            ("9", "there is no part 9"),
-            (-1, "there is no part -1"),
-        ],
-    )
-    def test_part_number_of_missing_part_lists_the_parts(self, part: str | int, said: str):
-        with pytest.raises(ConfigError) as error:
-            beacon_to(SURFACE, part)
-        assert said in str(error.value) and "\n" not in str(error.value)
-
-    def test_part_number_of_ambiguous_name_or_surface_without_parts_is_refused(self):
-        twice = HapticSurface(SURFACE.relief, SURFACE.labels, None, ("a", "b", "a", "", ""))
-        with pytest.raises(ConfigError, match=r"2 parts are called .*: 0, 2"):
-            beacon_to(twice, "a")
-        with pytest.raises(ConfigError, match="has no parts"):
-            beacon_to(HapticSurface(SURFACE.relief), 0)
-        with pytest.raises(GeometryError, match="part 5 is too small"):
-            beacon_to(HapticSurface(SURFACE.relief, SURFACE.labels, None, (*NAMES, "gone")), 5)
-
-
-IN_TIME_S = 60.0
-AT_ONCE = Safety(ramp_s=0, stale_s=1.0, passivity="off")  # a late tick takes no force away
-
-
-@pytest.fixture
-def pointer() -> Iterator[tuple[Any, Callable[..., Any]]]:
-    """A device that tests move and press, and the function that moves it once it is open."""
-    from tangible_devices.pointer import PointerClient
-
-    channel, clients = f"beacon-{time.monotonic_ns()}", []
-
-    def client() -> PointerClient:
-        clients.append(PointerClient(channel, IN_TIME_S))
-        return clients[-1]
-
-    options: dict[str, Any] = {"channel": channel, "stale_after_s": 10}
-    yield load_method("device", "pointer")(**options), client
-    for each in clients:
-        each.close()
-
-
-def lateral(servo: Servo) -> float:
-    row = servo.ring.latest()
-    return 0.0 if row is None else float(np.hypot(row[11], row[12]))
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("patient")
-@pytest.mark.parametrize("law", ["proxy", None], ids=["compiled", "plain"])
-def test_beacon_in_loop_process_is_switched_on_and_released_by_a_button(law: str | None, pointer: Any):
-    device, client = pointer
-    touch = load_method("render", law)().touch(SURFACE) if law else FaultyTouch()
-    beacon = beacon_to(SURFACE, 1)
-    with Servo(touch, device, AT_ONCE) as servo:
-        hand = client()
-        hand.send((-0.03, -0.02, 0.02))
-        until(lambda: (row := servo.ring.latest()) is not None and abs(row[2] + 0.03) < 1e-6)
-        assert servo.beacon == BeaconState(None) and lateral(servo) == 0
-        servo.pull_to(beacon)
-        assert servo.beacon == BeaconState(1)
-        until(lambda: lateral(servo) > 0.7)
-        until(lambda: servo.report().flagged["BEACON"] > 100)
-        assert servo.report().beacon == 1
-        servo.pull_to(beacon_to(SURFACE, 4))
-        until(lambda: servo.report().beacon == 4)
-        servo.pull_to(None)
-        until(lambda: lateral(servo) == 0)
-        assert servo.beacon == BeaconState(None) and servo.report().beacon is None
-        servo.pull_to(beacon)
-        until(lambda: lateral(servo) > 0.5)
-        hand.send((-0.03, -0.02, 0.02), 2)
-        until(lambda: lateral(servo) == 0)
-        assert servo.beacon == BeaconState(None, "button")
-        rows, _ = servo.ring.since(0)
-        pressed = int(np.flatnonzero(rows[:, 15])[0])
-        flags = rows[:, 14].astype(int)
-        assert beacon_part(int(flags[pressed - 1])) == 1 and beacon_part(int(flags[pressed])) is None
-        assert np.hypot(*rows[pressed + 1, 11:13]) <= 0.31, "at most half a newton less a tick: the slew of the guard"
-        servo.pull_to(beacon)
-        until(lambda: lateral(servo) > 0.5)  # asked for again, with the button held
-        servo.swap(touch)
-        assert servo.beacon == BeaconState(None, "scene")
-    assert servo.beacon == BeaconState(None)
-    with pytest.raises(DeviceError):
-        Servo(touch, device).pull_to(beacon)
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("patient")
-@pytest.mark.usefixtures("loop_in_thread")
-def test_beacon_of_each_kiosk_scene_pulls_until_a_button_is_pressed():
-    turns = [Slot(null_touch(), AT_ONCE, SURFACE, beacon_to(SURFACE, part)) for part in (1, 4)]
-    rows: list[np.ndarray] = []
-    stop = Event()
-
-    def keep(felt: np.ndarray) -> None:
-        rows.append(felt)
-        if 4 in Recording(felt).beacon:
-            stop.set()
-
-    last = run_kiosk(turns, Failing(fault="none"), IN_TIME_S, 0.4, keep=keep, stop=stop)
-    felt = Recording(np.concatenate(rows)).beacon
-    pulled, way = felt[felt >= 0], np.flatnonzero(np.diff(felt))
-    assert (pulled[0], pulled[-1], last.flagged["BEACON"]) == (1, 4, pulled.size)
-    assert len(way) <= 3, "to nothing at most once between the two, and before the first"
-    stop = Event()
-
-    def heard(report: ServoReport) -> None:
-        if report.beacon == 1:
-            stop.set()
-
-    one = run_in_real_time(null_touch(), Circling(), IN_TIME_S, AT_ONCE, heard, beacon=turns[0].beacon, stop=stop)
-    assert one.beacon == 1
-
-
-class TestSessionsAndRecordings:
-    def record(self, beacon: Beacon | None) -> Recording:
-        touch = load_method("render", "penalty")().touch(SURFACE)
-        return run_simulated(touch, Mock(path="press"), 1.5, None, Safety(ramp_s=0), beacon=beacon)
-
-    def test_recording_has_the_ticks_and_the_part_of_a_beacon(self, tmp_path: Path):
-        felt, alone = self.record(beacon_to(SURFACE, 4)), self.record(None)
-        for suffix in (".nc", ".npz", ".csv"):
-            felt.save(tmp_path / f"a{suffix}")
-            kept = Recording.load(tmp_path / f"a{suffix}")
-            assert (kept.beacon == 4).all()
-            assert beacons_felt(kept, SURFACE) == ((4, "arc", 1.0),)
-        assert (alone.beacon == -1).all() and beacons_felt(alone, SURFACE) == ()
-
-    def test_beacon_ticks_are_left_out_of_replays_and_of_touched_parts(self):
-        from tangible_core.session import compare_replay, replay
-
-        felt = self.record(beacon_to(SURFACE, 4))
-        again = replay(load_method("render", "penalty")().touch(SURFACE), felt)
-        assert compare_replay(felt, again)["compared"] == 0
-        in_air = felt.rows.copy()
-        in_air[:, 14] = beacon_flags(4)
-        assert parts_felt(Recording(in_air), SURFACE) == ()
-        in_air[:, 14] = beacon_flags(4) | TickFlag.TOUCHING
-        assert parts_felt(Recording(in_air), SURFACE)
-
-    def test_beacon_without_memory_is_one_error(self, monkeypatch: pytest.MonkeyPatch):
-        def full(*_: object) -> None:
-            raise OSError(28, "No space left on device")
-
-        ring = Ring.create(64)
-        try:
-            ring.allocate_beacon()
-            monkeypatch.setattr("os.posix_fallocate", full, raising=False)
-            with pytest.raises(DeviceError, match="no room for a beacon: No space left"):
-                ring.allocate_beacon()
-        finally:
-            ring.remove()
-
-    def test_beacon_ends_with_swapped_scene(self):
-        memory = faded_in(1)
-        memory.leave()
-        assert memory.state == BeaconState(None, "scene")
-        assert not pulls(memory, np.array([[-0.03, 0.0, 0.0, 0.0]])).any()
-        fresh = BeaconMemory.ready()
-        fresh.leave()
-        assert (
-            fresh.state == BeaconState(None) and [int(fresh.words[each]) for each in (ASKED, SEEN, LET_GO)] == [0] * 3
-        )

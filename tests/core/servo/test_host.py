@@ -12,6 +12,7 @@ import pytest
 from ctrl_c import HEARING
 from faulty_touch import FaultyTouch
 from loop_devices import Circling, Failing
+from loop_scenes import held_force
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
@@ -144,12 +145,6 @@ class TestSwap:
             until(lambda: not servo.running)
             with pytest.raises(DeviceError, match="has ended"):
                 servo.swap(proxy())
-
-
-def held_force(path: Path) -> float:
-    """Return the force that the device holds; NaN if it was not written yet."""
-    text = path.read_text() if path.exists() else ""
-    return float(text) if text else float("nan")
 
 
 class TestNoForceIsLeft:

@@ -244,7 +244,7 @@ warmups: 0
 calls: 1
 """
     wanted = measurements(parse(text, Registry()))
-    path = tmp_path_factory.mktemp("comparison_results") / "r.jsonl"
+    path = tmp_path_factory.mktemp("compared") / "r.jsonl"
     rows = run(look(wanted, path), path, 120, lambda *_: None, lambda *_: None).values()
     assert {row.error for row in rows} == {None}
     return Results(TASK, cells(rows, None), None)

@@ -12,7 +12,7 @@ from tangible_bench.config.reading import Comparison, Damage, parse_comparison, 
 from tangible_bench.measuring.forecast import Forecast, forecast
 from tangible_bench.measuring.plan import measurements
 from tangible_bench.measuring.run import look
-from tangible_core.metrics.measured import measured
+from tangible_core.metrics.measured import load_measured
 from tangible_core.plugins.registry import Registry, default_registry
 
 TEXT = """\
@@ -45,7 +45,7 @@ def test_forecast_is_corrected_by_finished_measurements(tmp_path: Path):
         measurements(parse_comparison(text, tmp_path / "c.yaml", default_registry())), tmp_path / "x"
     ).waiting
     guess = forecast(waiting)
-    known = measured()["depth"].process_s
+    known = load_measured()["depth"].process_s
     assert guess.whole_s == pytest.approx(2 * (known["semi-global"] + known["report"]))
     once = tuple(replace(each, job=replace(each.job, warmups=0, calls=1)) for each in waiting)
     assert 0 < forecast(once).whole_s < guess.whole_s

@@ -125,7 +125,7 @@ def test_heights_json_of_another_picture_is_ignored(tmp_path: Path):
         ({"step_mm": -1}, "step_mm"),
         ({"format": "tangible heights 9"}, "format"),
         ({"rows": 5}, "is 53 x 37, but its metadata state 53 x 5"),
-        ({"file": "../hills.png", "exact": ""}, "it must be a file beside this one"),
+        ({"file": "../hills.png", "exact": ""}, "it must be a file next to this one"),
         ({"file": "gone.png", "exact": ""}, "gone.png: there is no such file"),
     ],
 )

@@ -46,8 +46,7 @@ from tangible_render.haptic_textures import peak_wavelength_m
 from tangible_report import block
 from tangible_report.description import describe
 from tangible_report.drawing.layout import ROW_IN, TALLEST_IN, Cell, _height, arrange
-from tangible_report.drawing.sheet import DPI, WIDTH_IN, draw_figure, draw_sheet
-from tangible_report.drawing.showing import show
+from tangible_report.drawing.sheet import DPI, WIDTH_IN, draw_figure, draw_sheet, show
 from tangible_report.material_sheet import draw_material, spectra
 from tangible_report.panels import PANELS
 from tangible_report.panels.force import round_number, spread

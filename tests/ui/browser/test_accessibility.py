@@ -96,15 +96,15 @@ def focus(page: "Page") -> str:
     return page.evaluate("document.activeElement.id || document.activeElement.closest('[id]')?.id || ''")
 
 
-def felt(page: "Page") -> None:
-    """Until forces are given."""
+def wait_for_force(page: "Page") -> None:
+    """Wait until forces are given."""
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
 
 
 class TestSeen:
     @pytest.mark.parametrize("locale", ["en-GB", "de-DE"])
     def test_page_has_no_violations_by_axe(self, show: Show, locale: str):
-        """In all themes and widths, every panel open; in German, where colours are the same, in one theme."""
+        """Every panel is open, in all themes and widths; in German, where colours are the same, in one theme."""
         if not AXE.is_file():
             lacking("axe-core is not installed: npm ci in plugins/ui/web")
         page = show(locale=locale)
@@ -113,7 +113,7 @@ class TestSeen:
         assert axe_finds(page, every_theme=locale == "en-GB") == []
 
     def test_parts_editor_has_no_violations_by_axe_in_any_size(self, show: Show):
-        """In German, whose words are longer; a proposal, a complaint and all that is folded are open."""
+        """The language is German, whose words are longer; a proposal, a complaint and all folded controls are open."""
         if not AXE.is_file():
             lacking("axe-core is not installed: npm ci in plugins/ui/web")
         page = show(locale="de-DE")
@@ -140,11 +140,11 @@ class TestSeen:
             assert page.evaluate(SMALL) == [], name
 
     def test_export_panels_have_no_violations_by_axe_in_any_size(self, show: Show):
-        """In German: verdicts with places and cures, files with what was decided, a refusal, the description."""
+        """The page in German shows verdicts with places and cures, files with decisions, a refusal, the description."""
         if not AXE.is_file():
             lacking("axe-core is not installed: npm ci in plugins/ui/web")
         page = show(locale="de-DE")
-        felt(page)
+        wait_for_force(page)
         open_all(page)
         page.get_by_label("3D-Druck (STL)").check()
         page.get_by_label("3D-Druck (3MF)").check()
@@ -165,7 +165,7 @@ class TestSeen:
             assert page.evaluate(SMALL) == [], name
 
     def test_page_fits_every_size_from_a_phone_to_a_wall(self, show: Show):
-        """In German, whose words are longer."""
+        """The language is German, whose words are longer."""
         page = show(locale="de-DE")
         open_all(page)
         for name, (width, height) in SIZES.items():
@@ -219,7 +219,7 @@ THEMES: dict[str, dict[str, Any]] = {
 
 
 def axe_finds(page: "Page", *, every_theme: bool) -> list[str]:
-    """What is wrong with the page as it is, in the light theme or in all, in forced colours, and in small windows."""
+    """Return axe's violations in the light theme or in all themes, in forced colours, and in small windows."""
     page.evaluate(AXE.read_text(encoding="utf-8"))
     found: list[str] = []
     for name, media in THEMES.items() if every_theme else [("light", THEMES["light"])]:
@@ -332,7 +332,7 @@ class TestKeys:
 class TestSaid:
     def test_announcements_come_once_a_second_and_answers_at_once(self, show: Show):
         page = show(SPY)
-        felt(page)
+        wait_for_force(page)
         page.evaluate("heard.length = 0")
         touching = "new Set(heard.map((each) => each.text).filter((each) => each.startsWith('Touching '))).size"
         drag(page, lambda: page.evaluate(touching) > 1)
@@ -352,7 +352,7 @@ class TestSaid:
         canvas.focus()
         for key in ("ArrowRight", "ArrowUp", " "):
             page.keyboard.press(key)
-        where = asked(page, "w", "newtons")
+        where = answer_to(page, "w", "newtons")
         assert all(part in where for part in ("right of the middle", "away from you", "high", "newtons")), where
         page.keyboard.press("d")
         assert "materials: " in last(page)
@@ -360,7 +360,7 @@ class TestSaid:
         page.wait_for_function("() => document.querySelector('#alerted').textContent.includes('no force')")
         assert page.locator("#status").get_attribute("data-state") == "stopped"
         page.locator("#again").click()
-        felt(page)
+        wait_for_force(page)
 
     def test_speech_in_german_needs_a_german_voice(self, show: Show):
         page = show(SPY + VOICES, locale="de-DE")
@@ -414,19 +414,19 @@ class TestHeard:
     def test_sound_of_a_stroke_is_bounded_off_at_first_and_has_one_context(self, show: Show):
         page = show(CONTEXTS, measure=True)
 
-        def heard(force_n: float, speed: float, **changed: Any) -> tuple[float, float]:
+        def play(force_n: float, speed: float, **changed: Any) -> tuple[float, float]:
             return page.evaluate(OFFLINE, [{**CLOTH, **changed}, [0, 0, force_n], [speed, 0, 0]])
 
-        assert heard(1, 0)[0] < 1e-5, "at rest"
-        assert heard(0, 0.1)[0] < 1e-5, "in the air"
-        assert heard(1, 0.1, texture="smooth", roughness_m=0)[0] < 1e-5, "on ice"
-        soft, loud, loudest = heard(0.3, 0.05), heard(1, 0.1), heard(1e6, 1e6, roughness_m=1)
+        assert play(1, 0)[0] < 1e-5, "at rest"
+        assert play(0, 0.1)[0] < 1e-5, "in the air"
+        assert play(1, 0.1, texture="smooth", roughness_m=0)[0] < 1e-5, "on ice"
+        soft, loud, loudest = play(0.3, 0.05), play(1, 0.1), play(1e6, 1e6, roughness_m=1)
         assert 0.01 < soft[0] < loud[0] < loudest[0] < 0.5
         assert loudest[1] < 1, "it is never cut off"
         for texture in ("periodic", "stick-slip"):
-            assert 0.01 < heard(1, 0.1, texture=texture)[0] < 0.5, texture
+            assert 0.01 < play(1, 0.1, texture=texture)[0] < 0.5, texture
 
-        felt(page)
+        wait_for_force(page)
         drag(page, lambda: page.evaluate("(page.net.latest?.flags & 1) === 1"))
         assert page.evaluate("contexts.length") == 0
         for _ in range(3):
@@ -486,10 +486,10 @@ class TestTasks:
     def test_first_visit_works_with_the_keyboard_alone(self, show: Show, tmp_path: Path):
         """Open, look, feel, ask, hear, record, stop, feel again, save, and find the keys."""
         page = show(SPY)
-        felt(page)
+        wait_for_force(page)
         enter(page, "left", "#open .examples button:nth-child(2)")
         page.wait_for_function("() => document.querySelector('#terrain').ariaLabel.includes('brick')")
-        felt(page)
+        wait_for_force(page)
 
         reach(page, "right", "#view input[name=look]:checked")
         page.keyboard.press("ArrowDown")
@@ -498,7 +498,7 @@ class TestTasks:
         reach(page, "main", "#terrain")
         for key in ("ArrowLeft", " "):
             page.keyboard.press(key)
-        assert "newtons" in asked(page, "w", "newtons")
+        assert "newtons" in answer_to(page, "w", "newtons")
         page.keyboard.press(" ")
         for key, answer in (
             ("w", "In the air"),
@@ -507,12 +507,12 @@ class TestTasks:
             ("h", ""),
             ("s", "Sound is off"),
         ):
-            asked(page, key, answer)
+            answer_to(page, key, answer)
 
         page.keyboard.press("Escape")
         page.wait_for_function("() => document.querySelector('#status').dataset.state === 'stopped'")
         enter(page, "head", "#again")
-        felt(page)
+        wait_for_force(page)
 
         enter(page, "left", "#yaml > summary")
         reach(page, "left", "#yaml-path")
@@ -554,11 +554,11 @@ def drag(page: "Page", enough: Callable[[], bool]) -> None:
     page.mouse.down()
     steps = count()
 
-    def moved() -> bool:
+    def move() -> bool:
         page.mouse.move(x + 0.25 * width * (next(steps) % 60 / 30 - 1), y)
         return enough()
 
-    until(moved, "the stroke has no end")
+    until(move, "the stroke has no end")
     page.mouse.up()
     page.mouse.move(2, 2)
 
@@ -567,16 +567,16 @@ def last(page: "Page") -> str:
     return page.evaluate("heard.at(-1)?.text ?? ''")
 
 
-def asked(page: "Page", key: str, answer: str) -> str:
+def answer_to(page: "Page", key: str, answer: str) -> str:
     """Press a key, and return the announcement that contains the answer; W is pressed until the hand has arrived."""
     page.evaluate("heard.length = 0")
     page.keyboard.press(key)
     if not answer:
         return ""
 
-    def found() -> str:
+    def answer_now() -> str:
         if key == "w":
             page.keyboard.press(key)
         return next((each["text"] for each in page.evaluate("heard") if answer in each["text"]), "")
 
-    return until(found, f"{answer!r} is announced")
+    return until(answer_now, f"{answer!r} is announced")

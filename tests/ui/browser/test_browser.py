@@ -1,4 +1,4 @@
-"""What the tests in a browser stand on: a page is served and drawn, and nothing that goes wrong with it is missed."""
+"""The tests in a browser themselves: a page is served and drawn, and none of its complaints is missed."""
 
 import io
 from pathlib import Path
@@ -48,7 +48,7 @@ class TestWatch:
 
 class TestServed:
     def test_page_is_served_and_drawn(self, opened, open_page):
-        """With what hangs together: the policy lets script and style in, WebGL is there, the surface is drawn."""
+        """The policy lets script and style in, WebGL is there, the surface is drawn."""
         page = open_page(f"{opened('builtin/brick')}&measure")
         page.wait_for_function("() => window.figures?.firstMs > 0")
         assert page.title().endswith("Tangible Images")

@@ -1,7 +1,7 @@
-"""What is drawn is where the numbers say: surface, cursor and arrow, in a real browser, on a surface that is known.
+"""The drawing at the pixels where the numbers put it: surface, cursor and arrow, in a browser, on a known surface.
 
-The surface is a step: level ground on the left and in front, level and 6 mm higher on the far right. Where a place of
-the workspace is on the screen comes from the view; that the view itself is the right way round is looked at first.
+The surface is a step: level ground on the left and in front, level and 6 mm higher on the far right. The view gives the
+place of a point on the screen; that the view itself is the right way round is tested first.
 """
 
 import io
@@ -43,7 +43,7 @@ class Shown(NamedTuple):
     page: Any
 
     def spot(self, *at: float) -> np.ndarray:
-        """Where a place of the workspace is on the canvas."""
+        """Return the pixel of a place of the workspace on the canvas."""
         return np.array(self.page.evaluate("at => page.view.toScreen(at)", list(at)))
 
     def state(self, hand: Vec, force: Vec = (0, 0, 0), proxy: Vec | None = None) -> None:
@@ -69,7 +69,7 @@ class Shown(NamedTuple):
         self.page.mouse.click(*self.on_page(*at))
 
     def on_page(self, *at: float) -> tuple[float, float]:
-        """Where a place of the workspace is on the page."""
+        """Return the pixel of a place of the workspace on the page."""
         box, (x, y) = self.page.locator("#terrain").bounding_box(), self.spot(*at)
         return box["x"] + x, box["y"] + y
 
@@ -79,16 +79,16 @@ class Shown(NamedTuple):
         return np.array([box["x"] + box["width"] / 2 - around["x"], box["y"] + box["height"] / 2 - around["y"]])
 
     def mapping(self) -> dict[str, Any]:
-        """As the document says it."""
+        """Return the mapping of the document."""
         return self.page.evaluate("() => page.document.values.mapping ?? {}")
 
-    def drawn(self) -> None:
-        """Wait until what was told is drawn."""
+    def wait_until_drawn(self) -> None:
+        """Wait until the newest state is drawn."""
         self.page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
     def pixels(self) -> np.ndarray:
         """The canvas as it is drawn now."""
-        self.drawn()
+        self.wait_until_drawn()
         box = self.page.locator("#terrain").bounding_box()
         with Image.open(io.BytesIO(self.page.screenshot(clip=box))) as picture:
             return np.asarray(picture.convert("RGB")).astype(int)
@@ -131,13 +131,13 @@ def near(picture: np.ndarray, spot: np.ndarray) -> np.ndarray:
 
 
 def centroid(mask: np.ndarray) -> np.ndarray:
-    """Of pixels: x, y from the upper left corner, at pixels' middles."""
+    """Return the centroid of a mask: x, y from the upper left corner, at pixels' middles."""
     rows, columns = np.nonzero(mask)
     assert len(rows), "nothing is drawn"
     return np.array([columns.mean() + 0.5, rows.mean() + 0.5])
 
 
-def coloured(picture: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:
+def colour_mask(picture: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:
     return np.abs(picture - colour).max(axis=2) < 24
 
 
@@ -160,17 +160,17 @@ def test_surface_is_drawn_the_right_way_round_and_in_place(shown: Shown):
 
 @pytest.mark.parametrize("hand", [(LEFT, 0.015, 0.004), (RIGHT, -0.002, HIGH_M - 0.001), (LEFT, -0.02, -0.002)])
 def test_cursor_is_drawn_at_the_hand(shown: Shown, hand: Vec):
-    """Also under the surface, through which it is seen."""
+    """The cursor is drawn under the surface too, through which it is seen."""
     shown.only("device")
     shown.state(hand)
-    found = centroid(coloured(shown.pixels(), DEVICE))
+    found = centroid(colour_mask(shown.pixels(), DEVICE))
     assert np.hypot(*(found - shown.spot(*hand))) < 2
 
 
 @pytest.mark.parametrize("force", [(0.0, 0.0, 3.0), (1.5, 0.0, 2.0), (-1.0, 1.5, 2.5)])
 @pytest.mark.parametrize("proxy", [None, (LEFT + 0.004, 0.003, 0.0)])
 def test_arrow_is_drawn_as_long_as_the_force(shown: Shown, force: Vec, proxy: Vec | None):
-    """It begins at the contact, and ends where the scale of metres to a newton says."""
+    """The arrow begins at the contact, and ends where the scale of metres to a newton puts its tip."""
     hand = LEFT, 0.0, -0.001
     contact = np.array(proxy or (LEFT, 0.0, 0.0))
     shown.state(hand, force, proxy)
@@ -190,21 +190,21 @@ def test_arrow_is_drawn_as_long_as_the_force(shown: Shown, force: Vec, proxy: Ve
 
 
 def test_trace_is_drawn_where_the_contact_was(shown: Shown):
-    """Between the places of two states, and not over a place where the hand was let go."""
+    """The trace runs between the places of two states, and not over a place where the hand was released."""
     shown.only()
     before = shown.pixels()
     shown.only("trace")
     shown.page.evaluate("() => { page.overlay.settings.seconds = 30; }")
     for hand in ((LEFT - 0.008, 0.0, -0.001), (LEFT, 0.0, -0.001), (LEFT, 0.0, 0.9), (LEFT, 0.012, -0.001)):
         shown.state(hand, (0, 0, 4))
-        shown.drawn()
+        shown.wait_until_drawn()
     changed = np.abs(shown.pixels() - before)
     assert near(changed, shown.spot(LEFT - 0.004, 0, 0)).max() > 20
     assert near(changed, shown.spot(LEFT, 0.006, 0)).max() < 5
 
 
 def test_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
-    """From the mouse to the loop and back: F = k d, drawn and said."""
+    """The force runs from the mouse to the loop and back: F = k d, drawn and in figures."""
     shown.only("device", "labels", "arrow")
     x, y = shown.on_page(RIGHT, 0.01, HIGH_M)
     mouse = shown.page.mouse
@@ -213,7 +213,7 @@ def test_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
     mouse.move(x - 5, y)
     mouse.down()
 
-    def pressed() -> Any:
+    def press() -> Any:
         mouse.move(x, y)
         state = shown.page.evaluate(
             "alone => { const s = page.net.latest; if (!s || (s.flags & 255) !== alone) return null;"
@@ -225,13 +225,13 @@ def test_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
         shown.page.evaluate("() => { page.replayed = null; }")
         return None
 
-    state = until(pressed)
+    state = until(press)
     mouse.up()
     hand, force = np.array(state["hand"]), np.array(state["force"])
     assert hand[:2] == pytest.approx([RIGHT, 0.01], abs=5e-4)
     assert force[2] == pytest.approx(STIFFNESS_N_PER_M * (HIGH_M - hand[2]), rel=0.05)
     assert np.abs(force[:2]).max() < 1e-6
-    found = centroid(coloured(shown.pixels(), DEVICE))
+    found = centroid(colour_mask(shown.pixels(), DEVICE))
     assert np.hypot(*(found - shown.spot(*hand))) < 2
     until(lambda: f"{force[2]:.2f} N" in shown.page.inner_text(".live-label .force"))
     shown.page.evaluate("() => { document.getElementById('data-cursor').open = true; }")
@@ -255,7 +255,7 @@ def test_values_are_copied_as_they_are(shown: Shown):
 
 
 def test_ruler_measures_the_step(shown: Shown):
-    """By the mouse, then by the keyboard; what it says is what it is drawn between."""
+    """The ruler is set by the mouse, then by the keyboard; its figures are those of the drawn ends."""
     shown.only("labels")
     shown.page.get_by_role("button", name="Measure with the mouse").click()
     shown.click(LEFT, 0.01, 0.0)

@@ -62,7 +62,7 @@ def panel_of(page: "Page", panel: str) -> Any:
     return page.locator(f"#{panel}")
 
 
-def kept(download: "Download") -> bytes:
+def content_of(download: "Download") -> bytes:
     path = download.path()
     return Path(path).read_bytes()
 
@@ -88,7 +88,7 @@ class TestExport:
         with page.expect_download() as waited:
             panel.get_by_role("link", name="mine.stl").press("Enter")
         assert waited.value.suggested_filename == "mine.stl"
-        solid: Any = trimesh.load(io.BytesIO(kept(waited.value)), file_type="stl")
+        solid: Any = trimesh.load(io.BytesIO(content_of(waited.value)), file_type="stl")
         assert solid.is_volume
         rim_mm = 2 * 6.0
         assert solid.extents[0] == pytest.approx(50.0 + rim_mm, abs=1e-3)
@@ -96,7 +96,7 @@ class TestExport:
         with page.expect_download() as waited:
             panel.get_by_role("button", name="Download all as ZIP").press("Enter")
         assert waited.value.suggested_filename == "mine.zip"
-        with ZipFile(io.BytesIO(kept(waited.value))) as packed:
+        with ZipFile(io.BytesIO(content_of(waited.value))) as packed:
             assert packed.namelist() == ["mine.3mf", "mine.stl"]
             assert packed.testzip() is None
 
@@ -142,7 +142,7 @@ class TestExport:
         panel.locator("summary", has_text="3D print (STL)").nth(1).press("Enter")
         panel.get_by_role("button", name="Remove 3D print (STL)").press("Enter")
         until(lambda: lines.count() == count - 1, "one")
-        assert page.evaluate("document.activeElement.type") == "checkbox"
+        until(lambda: page.evaluate("document.activeElement.type") == "checkbox", "the focus")
 
 
 class TestLegible:
@@ -216,7 +216,7 @@ class TestDescription:
         with page.expect_download() as waited:
             panel.get_by_role("button", name="Save as HTML").press("Enter")
         assert waited.value.suggested_filename == "mine.html"
-        assert '<html lang="fr">' in kept(waited.value).decode()
+        assert '<html lang="fr">' in content_of(waited.value).decode()
         assert not [each for each in page.evaluate("heard") if said[:40] in each], "it is not read out unasked"
 
 

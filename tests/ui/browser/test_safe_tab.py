@@ -32,7 +32,7 @@ def test_tab_that_is_frozen_or_closed_gives_no_force(serve, open_page, browser, 
     until(lambda: page.evaluate("() => document.getElementById('status').dataset.state") == "felt", "nothing is felt")
     ring = Ring.attach(next(shared.glob("*.ring")))
 
-    def felt() -> bool:
+    def has_force() -> bool:
         row = ring.latest()
         return row is not None and bool(row[FORCE].any())
 
@@ -42,7 +42,7 @@ def test_tab_that_is_frozen_or_closed_gives_no_force(serve, open_page, browser, 
         page.mouse.move(x, y)
         page.mouse.down()
         page.mouse.move(x + 3, y)
-        until(felt, "the mouse is not felt")
+        until(has_force, "the mouse is not felt")
 
     press()
     session = browser.new_browser_cdp_session()
@@ -51,11 +51,11 @@ def test_tab_that_is_frozen_or_closed_gives_no_force(serve, open_page, browser, 
     for each in renderers:
         os.kill(each, signal.SIGSTOP)
     try:
-        until(lambda: not felt(), "a tab that stands still holds the hand")
+        until(lambda: not has_force(), "a tab that stands still holds the hand")
     finally:
         for each in renderers:
             os.kill(each, signal.SIGCONT)
     page.mouse.up()
     press()
     page.close()
-    until(lambda: not felt(), "a tab that was closed holds the hand")
+    until(lambda: not has_force(), "a tab that was closed holds the hand")

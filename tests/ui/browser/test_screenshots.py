@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 DOCS = ROOT / "docs"
 MOST_BYTES = 150_000
 COLOURS = 200
-"""Of a palette: the photograph is small, and the rest has few."""
+"""Colours of a palette: the photograph is small, and the rest has few."""
 PICTURES: dict[str, dict[str, Any]] = {
     "ui": {"viewport": {"width": 1440, "height": 900}, "color_scheme": "light"},
     "ui-dark": {"viewport": {"width": 1440, "height": 900}, "color_scheme": "dark"},
@@ -52,7 +52,7 @@ def test_screenshot_of_the_page(open_page: Callable[..., Any], url: str, tmp_pat
 
 
 def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_path: Path):
-    """With what it says once something is felt; a long one is cut."""
+    """Each panel has its contents once a surface is felt; a long panel is cut."""
     page = open_page(url, viewport={"width": 1440, "height": 1100}, color_scheme="light")
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
     page.evaluate("document.querySelectorAll('details.panel').forEach((each) => (each.open = false))")
@@ -131,7 +131,7 @@ def prepare(page: "Page", name: str) -> None:
 
 
 def keep(picture: Image.Image, folder: Path, name: str) -> None:
-    """Write it, small, where it is asked for; something is on it."""
+    """Write the picture, small, if the environment wants it; it is not empty."""
     assert np.asarray(picture).std() > 5
     path = (DOCS if os.environ.get("TANGIBLE_UI_PICTURES") else folder) / f"{name}.png"
     path.parent.mkdir(exist_ok=True)

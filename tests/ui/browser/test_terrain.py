@@ -14,9 +14,9 @@ from page_server import KEY, PageServer
 from waiting import until
 
 BEFORE, BEHIND = (0.016, 0.0), (-0.02, 0.0)
-"""On the raised part and on the ground."""
+"""Places on the raised part and on the ground."""
 PALETTE = {"ground": (230, 159, 0), "raised": (86, 180, 233)}
-"""Of the first two kinds: the first without a pattern, the second with lines."""
+"""Colours of the first two kinds: the first without a pattern, the second with lines."""
 PLAIN = {"raking": 0, "eyeDome": 0, "steep": "shown", "steepDeg": 60}
 
 
@@ -30,10 +30,10 @@ def from_above(page) -> None:
     page.wait_for_function("() => window.page?.scene && window.figures.firstMs > 0")
     page.focus("#terrain")
     page.keyboard.press("Control+End")
-    settled(page)
+    wait_for_rest(page)
 
 
-def settled(page) -> None:
+def wait_for_rest(page) -> None:
     page.wait_for_function("() => !window.page.view.dirty")
     page.evaluate("new Promise((done) => setTimeout(done, 400))")  # ends after the view's own, which draws it finely
     page.wait_for_function("() => !window.page.view.dirty")
@@ -102,7 +102,7 @@ def test_layers_have_the_colours_of_their_values(url: str, open_page):
     }
     for look, colours in wanted.items():
         page.check(f"#view input[value={look}]")
-        settled(page)
+        wait_for_rest(page)
         picture = pixels(page)
         for place, colour in zip((BEHIND, BEFORE), colours, strict=True):
             found = np.median(around(page, picture, place), 0)
@@ -121,7 +121,7 @@ def test_steep_edge_is_shown_greyed_or_cut(url: str, open_page):
     seen = {}
     for steep in ("shown", "grey", "cut"):
         page.check(f"#view input[value={steep}]")
-        settled(page)
+        wait_for_rest(page)
         picture = pixels(page)
         seen[steep] = np.median(around(page, picture, edge, 1), 0)
         assert np.abs(np.median(around(page, picture, BEFORE), 0) - (30, 90, 160)).max() <= 6
@@ -132,7 +132,7 @@ def test_steep_edge_is_shown_greyed_or_cut(url: str, open_page):
 
 
 def test_large_relief_is_drawn_coarsely_and_finer_where_one_looks(opened, open_page, tmp_path: Path):
-    """Its grain is of two cells: from afar it is even, from near it is seen, and the hand knows it."""
+    """The relief has a grain of two cells: from afar it is even, from near it is seen, and the hand feels it."""
     rows, columns = np.indices((1400, 1500)) // 2
     heights = np.where((rows + columns) % 2, 1000, 0).astype(np.uint16)
     heights[0, 0] = 65535
@@ -153,7 +153,7 @@ def test_large_relief_is_drawn_coarsely_and_finer_where_one_looks(opened, open_p
     assert page.evaluate("() => window.page.scene.whole.grid.heights.length") <= 350_000
     page.evaluate("([x, y]) => window.page.view.focus([x, y, 0], 0.003)", place)
     page.wait_for_function("() => window.page.scene.detail !== null")
-    settled(page)
+    wait_for_rest(page)
     assert around(page, pixels(page), place, 20).std() > afar + 5
     pitch = 0.08 / 1500
     for row, column in [(560, 960), (560, 962), (561, 963)]:
@@ -186,7 +186,7 @@ PUT = """() => {
 def test_first_surface_compiles_no_program_and_is_drawn_coarsely_first(
     open_page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    """While it is drawn first, what is felt of it is being made, on the same processor."""
+    """The processor that draws the first surface also computes its touch."""
     built_page()
     rows, columns = 300, 400
     with PageServer(tmp_path, monkeypatch) as server:
@@ -220,10 +220,10 @@ def test_first_surface_compiles_no_program_and_is_drawn_coarsely_first(
 
 
 def test_lost_graphics_context_is_reported_and_restored(url: str, open_page, complaints: list[str]):
-    """On a screen of fine pixels, too, which are drawn where that is not slow."""
+    """The screen has fine pixels, which are drawn where that is not slow."""
     page = open_page(f"{url}&measure", reduced_motion="reduce", device_scale_factor=2)
     page.wait_for_function("() => window.page?.scene && window.figures.firstMs > 0")
-    settled(page)
+    wait_for_rest(page)
     before = pixels(page)
     assert before.std() > 10
     page.evaluate(
@@ -233,7 +233,7 @@ def test_lost_graphics_context_is_reported_and_restored(url: str, open_page, com
     page.wait_for_selector("#no-terrain:visible")
     page.evaluate("() => window.taken.restoreContext()")
     page.wait_for_selector("#no-terrain", state="hidden")
-    settled(page)
+    wait_for_rest(page)
     assert np.abs(pixels(page) - before).mean() < 2
     complaints[:] = [each for each in complaints if "ontext" not in each]
 

@@ -1,4 +1,4 @@
-"""What was edited and not saved outlives the program; what a program that is gone left behind does not."""
+"""Drafts outlive the program; temporary files of a dead program do not."""
 
 import asyncio
 import errno
@@ -130,7 +130,7 @@ class TestLeftBehind:
 
 
 class WorkerState:
-    """What a job is called with, as far as the process needs it."""
+    """Minimal state of a worker for a job."""
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.shown = folder, "abc"

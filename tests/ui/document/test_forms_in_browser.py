@@ -1,4 +1,4 @@
-"""By the keyboard alone: an option is changed, complained of, put right, made, and what is saved says just that."""
+"""An option by the keyboard alone: changed, complained of, corrected, made, and saved to the file."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,17 +25,17 @@ def test_option_typed_in_the_form_is_saved_to_the_file(serve, open_page: OpenPag
     page.keyboard.press("Enter")
     page.keyboard.press("Tab")  # the method
     page.keyboard.press("Tab")
-    assert focused(page) == STIFFNESS
-    assert "Over 0 N/m. Default: 800 N/m." in described(page, STIFFNESS)
+    assert focus_id(page) == STIFFNESS
+    assert "Over 0 N/m. Default: 800 N/m." in description_of(page, STIFFNESS)
     retype(page, "-5")
     until(lambda: field(page).get_attribute("aria-invalid") == "true")
     assert field(page).input_value() == "-5"
-    assert "greater than 0" in described(page, STIFFNESS)
+    assert "greater than 0" in description_of(page, STIFFNESS)
     complaint = page.locator("#methods .complaints button")
     assert complaint.inner_text().startswith("render.stiffness_n_per_m: ")
     complaint.focus()
     page.keyboard.press("Enter")
-    assert focused(page) == STIFFNESS
+    assert focus_id(page) == STIFFNESS
 
     felt = page.locator("#log li", has_text="Feeling penalty")
     until(lambda: felt.count() > 0)
@@ -80,12 +80,12 @@ def field(page: "Page"):
     return page.locator(f'[id="{STIFFNESS}"]')
 
 
-def focused(page: "Page") -> str:
+def focus_id(page: "Page") -> str:
     return page.evaluate("() => document.activeElement.id")
 
 
-def described(page: "Page", name: str) -> str:
-    """What a screen reader reads beside a field."""
+def description_of(page: "Page", name: str) -> str:
+    """Return the text that a screen reader reads next to a field."""
     return page.evaluate(
         """name => (document.getElementById(name).getAttribute("aria-describedby") ?? "").split(" ")
         .map(id => document.getElementById(id)).filter(each => each && !each.hidden)

@@ -1,4 +1,4 @@
-"""A beacon on the page: asked for by the number of a part, told of to all tabs, and released by a button."""
+"""A beacon on the page: requested by the number of a part, announced to all tabs, and released by a button."""
 
 import asyncio
 from pathlib import Path
@@ -34,7 +34,7 @@ def test_beacon_requested_by_a_tab_is_announced_to_all_tabs(tmp_path: Path, monk
     monkeypatch.setattr(Feeling, "running", property(lambda _: runs[0]))
     monkeypatch.setattr(Feeling, "pull_to", lambda _, beacon: pulled.append(beacon))
 
-    async def asked() -> None:
+    async def ask_for_parts() -> None:
         session = SmallSession(tmp_path, monkeypatch)
         ask = REQUESTS["beacon"]
         with pytest.raises(DeviceError, match="nothing is felt"):
@@ -57,7 +57,7 @@ def test_beacon_requested_by_a_tab_is_announced_to_all_tabs(tmp_path: Path, monk
         )
         session.session.worker.close()
 
-    asyncio.run(asked())
+    asyncio.run(ask_for_parts())
     assert set(shared_folder().glob("*.parcel")) <= before, "nothing is left of what was handed on"
 
 
@@ -72,14 +72,14 @@ def test_beacon_ends_by_a_button_a_scene_and_a_stop() -> None:
     options = {name: value for name, value in feeling.own_device.items() if name != "use"}
     device = load_method("device", "pointer")(**options)
 
-    def felt() -> LoopInput:
+    def loop_input() -> LoopInput:
         touch = pack_touch(load_method("render", "proxy")().touch(surface), device.spec())
         return LoopInput(touch, "proxy", "it", device, True, WorkspaceMapping(), Safety(ramp_s=0, passivity="off"))
 
     tag = [0]
 
     def pulls(button: int = 0) -> bool:
-        """After the hand was moved on, as a page does all the time: the tags above its buttons are no buttons."""
+        """Move the hand, as a page does all the time, and return True if it is pulled: tags are not buttons."""
         tag[0] += 1
         feeling.hand.point((-0.03, -0.03, 0.02), button, tag[0])
         assert feeling.servo is not None
@@ -89,7 +89,7 @@ def test_beacon_ends_by_a_button_a_scene_and_a_stop() -> None:
     try:
         with pytest.raises(DeviceError, match="nothing is felt"):
             feeling.pull_to(beacon)
-        feeling.feel(felt())
+        feeling.feel(loop_input())
         assert not pulls() and feeling.beacon_over() == ""
         feeling.pull_to(beacon)
         until(pulls)
@@ -102,7 +102,7 @@ def test_beacon_ends_by_a_button_a_scene_and_a_stop() -> None:
         assert feeling.beacon_over() == "", "it is said once"
         feeling.pull_to(beacon)
         until(lambda: pulls(4))
-        feeling.feel(felt())
+        feeling.feel(loop_input())
         assert feeling.beacon_over() == "scene"
         feeling.pull_to(beacon)
         until(pulls)
@@ -117,7 +117,7 @@ def test_beacon_ends_by_a_button_a_scene_and_a_stop() -> None:
 
 
 def test_beacon_that_ends_is_announced_with_the_reason() -> None:
-    """What watches over the loop asks a hundred times a second, and says each end once."""
+    """The polling of the loop asks a hundred times a second, and reports each end once."""
     told: list[dict[str, Any]] = []
     ends = iter(["", "button", "", "ended"])
     feeling = SimpleNamespace(
@@ -129,11 +129,11 @@ def test_beacon_that_ends_is_announced_with_the_reason() -> None:
         tell=lambda event, **said: told.append({"event": event, **said}),
     )
 
-    async def watched() -> None:
+    async def watch_for_ends() -> None:
         task = asyncio.ensure_future(watch(session))
         await happened(lambda: len(told) >= 2)
         task.cancel()
 
-    asyncio.run(watched())
+    asyncio.run(watch_for_ends())
     off = {"event": "beacon", "part": None, "name": ""}
     assert told == [{**off, "why": "button"}, {**off, "why": "ended"}]

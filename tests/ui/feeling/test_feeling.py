@@ -38,7 +38,7 @@ def law(k: float = 500.0) -> Touch:
     return load_method("render", "proxy")(stiffness_n_per_m=k).touch(LEVEL)
 
 
-def felt(
+def loop_input(
     feeling: Feeling,
     device: HapticDevice | None = None,
     touch: Touch | None = None,
@@ -64,7 +64,7 @@ def state(feeling: Feeling) -> tuple[float, ...]:
 
 
 class Server:
-    """What the page's server does: it hears where a page has its hand, and says that it lives."""
+    """A stand-in for the page's server: it moves the page's hand, and tells the loop that it lives."""
 
     def __init__(self, feeling: Feeling) -> None:
         self.at: Vector | None = None
@@ -91,7 +91,7 @@ class Server:
 
 @pytest.fixture
 def feeling() -> Iterator[Feeling]:
-    """One that leaves no loop behind, and no file."""
+    """A force loop that leaves no process and no file."""
     feeling = Feeling("ui-test")
     yield feeling
     feeling.stop()
@@ -121,8 +121,8 @@ class TestTheHandIsWhereThePageSays:
     def test_hand_is_where_the_page_points_under_any_mapping(
         self, feeling: Feeling, server: Server, mapping: WorkspaceMapping
     ) -> None:
-        """And let go of, it is over every surface: a metre up in the pointer's own frame may be inside one."""
-        assert feeling.feel(felt(feeling, mapping=mapping)) is not None
+        """A released hand is over every surface: a metre up in the pointer's own frame may be inside one."""
+        assert feeling.feel(loop_input(feeling, mapping=mapping)) is not None
         until(lambda: newest(feeling)[PLACE][2] > 0.4)
         server.at = at = (0.012, -0.004, LEVEL_M - 0.001)
         until(lambda: np.allclose(newest(feeling)[PLACE], at, atol=2e-5))
@@ -135,8 +135,8 @@ class TestTheHandIsWhereThePageSays:
         assert not newest(feeling)[FORCE].any()
 
     def test_hand_is_released_by_silence_of_page_or_server(self, feeling: Feeling, server: Server) -> None:
-        """Of the page; and of the server, which the loop itself watches."""
-        feeling.feel(felt(feeling))
+        """Silence of the page releases the hand, and silence of the server, which the loop itself watches."""
+        feeling.feel(loop_input(feeling))
         server.at = INSIDE
         until(lambda: newest(feeling)[FORCE][2] > 0.5)
         server.at = None
@@ -159,23 +159,23 @@ class TestSwaps:
     def test_swap_of_the_law_keeps_the_loop(self, feeling: Feeling) -> None:
         feeling.start()
         first = feeling.servo
-        feeling.feel(felt(feeling, touch=FaultyTouch()))
+        feeling.feel(loop_input(feeling, touch=FaultyTouch()))
         assert feeling.servo is first
         assert "the tick is in Python" in feeling.how
-        feeling.feel(felt(feeling))
+        feeling.feel(loop_input(feeling))
         assert feeling.servo is first
         assert "the tick is in Python" not in feeling.how
 
     def test_swap_of_the_device_starts_another_loop(self, feeling: Feeling, server: Server) -> None:
         feeling.start()
         first = feeling.servo
-        feeling.feel(felt(feeling, Failing(fault="none")))
+        feeling.feel(loop_input(feeling, Failing(fault="none")))
         assert feeling.servo is not first
         until(lambda: state(feeling)[15] > 0.4)
         server.at = INSIDE  # of no use now
         time.sleep(0.05)
         server.at = None
-        feeling.feel(felt(feeling))
+        feeling.feel(loop_input(feeling))
         until(lambda: newest(feeling)[PLACE][2] > 0.4)
         assert feeling.loop_end() is None
 
@@ -183,10 +183,10 @@ class TestSwaps:
         """Says so; it is felt once it is there."""
         device = Failing(fault="none", opens="second", record=str(tmp_path / "held"))
         with pytest.raises(DeviceError, match="in use by another program"):
-            feeling.feel(felt(feeling, device))
+            feeling.feel(loop_input(feeling, device))
         assert not feeling.running
         assert state(feeling)[9] == 1.0  # the hand is nowhere
-        assert feeling.feel(felt(feeling, device)) is not None
+        assert feeling.feel(loop_input(feeling, device)) is not None
         assert feeling.running
 
 
@@ -204,9 +204,9 @@ class TestWhatEndsByItself:
     def test_loop_that_ends_by_itself_is_reported_once_with_the_reason(
         self, feeling: Feeling, device: HapticDevice, touch: Touch | None, why: str, lost: bool
     ) -> None:
-        feeling.feel(felt(feeling))  # so that all is compiled
+        feeling.feel(loop_input(feeling))  # so that all is compiled
         with suppress(DeviceError):  # the device may be gone before the scene is swapped
-            feeling.feel(felt(feeling, device, touch))
+            feeling.feel(loop_input(feeling, device, touch))
         found = []
         until(lambda: found.append(feeling.loop_end()) or found[-1] is not None)
         assert why in found[-1].why
@@ -214,7 +214,7 @@ class TestWhatEndsByItself:
         assert found[-1].lost == lost
         assert feeling.loop_end() is None
         assert state(feeling)[13:16] == (0, 0, 0)
-        assert feeling.feel(felt(feeling)) is not None
+        assert feeling.feel(loop_input(feeling)) is not None
         assert feeling.running
 
     @pytest.mark.usefixtures("loop_in_thread")
@@ -222,7 +222,7 @@ class TestWhatEndsByItself:
         """The real driver says what happened."""
         falcon = load_method("device", "falcon-simulated")(faults=({"at": "read", "after": 200},))
         with pytest.raises(DeviceError, match="it was unplugged; check its plug"):
-            feeling.feel(felt(feeling, falcon))
+            feeling.feel(loop_input(feeling, falcon))
         assert not feeling.running
         assert state(feeling)[13:16] == (0, 0, 0)
 
@@ -250,7 +250,7 @@ class TestStop:
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_stop_of_a_running_loop_leaves_no_force_until_allowed(self, feeling: Feeling, server: Server) -> None:
-        feeling.feel(felt(feeling))
+        feeling.feel(loop_input(feeling))
         servo = feeling.servo
         assert servo is not None
         server.at = INSIDE
@@ -260,10 +260,10 @@ class TestStop:
         assert state(feeling)[13:16] == (0, 0, 0)
         until(lambda: not servo.running)
         assert feeling.loop_end() is None
-        assert feeling.feel(felt(feeling)) is None  # what is made later is not felt
+        assert feeling.feel(loop_input(feeling)) is None  # what is made later is not felt
         assert not feeling.running
         feeling.allow()
-        assert feeling.feel(felt(feeling)) is not None
+        assert feeling.feel(loop_input(feeling)) is not None
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_stop_followed_by_a_new_loop_leaves_that_loop(self, feeling: Feeling) -> None:
@@ -271,7 +271,7 @@ class TestStop:
         feeling.start()
         ended = feeling.cut()
         feeling.allow()
-        assert feeling.feel(felt(feeling)) is not None
+        assert feeling.feel(loop_input(feeling)) is not None
         ended()
         assert feeling.running
         assert feeling.loop_end() is None
@@ -280,18 +280,18 @@ class TestStop:
         assert self.stops(feeling, feeling.start) == [None]
 
     def test_stop_while_a_device_is_homed_kills_its_process(self, feeling: Feeling) -> None:
-        """It never answers: its process is killed."""
-        assert self.stops(feeling, lambda: feeling.feel(felt(feeling, Failing(opens="late")))) == [None]
+        """The device never answers: its process is killed."""
+        assert self.stops(feeling, lambda: feeling.feel(loop_input(feeling, Failing(opens="late")))) == [None]
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_stop_while_a_scene_is_swapped_ends_the_loop(self, feeling: Feeling) -> None:
         feeling.start()
-        made = felt(feeling, touch=FaultyTouch("begins slowly"))
+        made = loop_input(feeling, touch=FaultyTouch("begins slowly"))
         assert self.stops(feeling, lambda: feeling.feel(made)) == [None]
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_stop_does_not_wait_for_a_start(self, feeling: Feeling, monkeypatch: pytest.MonkeyPatch) -> None:
-        """Nor before there is a ring to write to."""
+        """The stop returns even before there is a ring to write to."""
         entering, go, entered = threading.Event(), threading.Event(), Servo.__enter__
 
         def slow(servo: Servo) -> Servo:

@@ -28,7 +28,7 @@ LEVEL = HapticSurface.from_heights(np.full((32, 32), 0.002, np.float32))
 
 
 class Page:
-    """A tab that remembers what it was told."""
+    """A tab that keeps the events that it got."""
 
     def __init__(self) -> None:
         self.told: list[dict[str, Any]] = []
@@ -220,7 +220,7 @@ class TestDevices:
 
 
 class Motor(HapticDevice):
-    """One with a motor; never opened."""
+    """A device with a motor; never opened."""
 
     def spec(self):
         return Failing(simulated=False).spec()

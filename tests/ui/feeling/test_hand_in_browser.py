@@ -39,7 +39,7 @@ class Felt:
         return float(np.linalg.norm(self.newest()[FORCE])) if self.path.exists() else 0.0
 
     def quiet_after_s(self, begun_s: float) -> float:
-        """How long after this moment the last force was given; waits until there is none for a fifth of a second."""
+        """Return the seconds from this moment to the last force; wait until there is none for a fifth of a second."""
 
         def last_s() -> float:
             rows, _ = self.ring.since(0)
@@ -54,17 +54,17 @@ class Felt:
 def page(opened, open_page) -> Any:
     """A page on which a surface is felt; nothing moves its hand yet."""
     page = open_page(f"{opened('builtin/brick')}&measure")
-    drawn(page)
+    wait_until_drawn(page)
     page.wait_for_function("() => document.getElementById('log').textContent.includes('proxy:')")
     return page
 
 
-def drawn(page: Any) -> None:
+def wait_until_drawn(page: Any) -> None:
     page.wait_for_function("() => window.figures?.firstMs > 0")
 
 
 def over(rows: np.ndarray) -> np.ndarray:
-    """Whether the hand was there, and not let go of."""
+    """Return a mask of the ticks with a hand that is not released."""
     return rows[..., Z] < 0.1
 
 
@@ -88,7 +88,7 @@ def test_mouse_gives_force_until_the_page_is_hidden_or_frozen(page: Any) -> None
     assert felt.quiet_after_s(hidden_s) < GONE_S
     page.mouse.up()
     page.reload()
-    drawn(page)
+    wait_until_drawn(page)
 
     press(page, felt)
     page.evaluate(FREEZE)

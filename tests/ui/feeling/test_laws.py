@@ -1,4 +1,4 @@
-"""Two laws on one hand: one is felt, the other's force is shown; blindly, nobody is told which."""
+"""Two laws compared: one acts, the page shows the other's force; a blind comparison hides which is which."""
 
 import asyncio
 import os
@@ -60,15 +60,15 @@ def forces(session: Session) -> tuple[float, float]:
     return values[15], values[21]
 
 
-async def pressed(session: Session, until: Callable[[], bool]) -> None:
+async def press_until(session: Session, until: Callable[[], bool]) -> None:
     """Press on the surface until something is so."""
 
-    def pressed() -> bool:
+    def press() -> bool:
         session.feeling.hand.point((0.0, 0.0, -DEPTH_M), 1, 1)
         session.laws.follow(session.feeling)
         return until()
 
-    await happened(pressed)
+    await happened(press)
 
 
 @pytest.mark.usefixtures("loop_in_thread")
@@ -76,22 +76,22 @@ def test_second_law_is_computed_on_the_same_hand(tmp_path: Path) -> None:
     async def compare() -> None:
         async with felt_session(tmp_path) as (session, told):
             await asks.compare_laws(session, None, "penalty", "{stiffness_n_per_m: 800}")
-            await pressed(session, lambda: np.allclose(forces(session), (0.4, 0.8), atol=0.02))
+            await press_until(session, lambda: np.allclose(forces(session), (0.4, 0.8), atol=0.02))
             await asks.switch_law(session, None, "b")
-            await pressed(session, lambda: np.allclose(forces(session), (0.8, 0.4), atol=0.02))
+            await press_until(session, lambda: np.allclose(forces(session), (0.8, 0.4), atol=0.02))
             assert told[-1]["named"] == ["penalty (a)", "penalty (b)"]
             assert told[-1]["felt"] == 1
             session.feeling.hand.release()
 
-            def released() -> bool:
+            def release_and_look() -> bool:
                 session.laws.follow(session.feeling)
                 return forces(session) == (0, 0)
 
-            await happened(released)
+            await happened(release_and_look)
             await asks.end_laws(session, None)
             assert session.laws.comparison.force_n == NOTHING
             assert not session.laws.comparison.running
-            await pressed(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
+            await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
 
     asyncio.run(compare())
 
@@ -109,7 +109,7 @@ def test_blind_comparison_hides_which_law_acts(tmp_path: Path, monkeypatch: pyte
             assert tally is not None
             for called in (2, 1):
                 await asks.feel_blind(session, None, called)
-                await pressed(session, lambda: forces(session)[0] > 0.1)
+                await press_until(session, lambda: forces(session)[0] > 0.1)
                 frame = STATE_FRAME.unpack(session.feeling.frame(1, 0, session.laws.other_law()) or b"")
                 assert all(np.isnan(frame[10:13]))
                 assert frame[19:22] == (0, 0, 0)
@@ -134,7 +134,7 @@ def test_invalid_law_is_refused_and_the_law_before_stays(tmp_path: Path) -> None
                 with pytest.raises(ConfigError, match=says):
                     await asks.compare_laws(session, None, use, options)
             assert session.laws.message() == {"state": "one"}
-            await pressed(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
+            await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
 
     asyncio.run(compare())
 
@@ -148,6 +148,6 @@ def test_comparison_opens_no_motor_without_consent(tmp_path: Path) -> None:
             with pytest.raises(NotConfirmed):
                 await asks.compare_laws(session, None, "penalty", "")
             assert session.laws.message() == {"state": "one"}
-            await pressed(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
+            await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
 
     asyncio.run(compare())

@@ -23,17 +23,17 @@ from page_files import ROOT, STATIC, WEB, built_page, fetched_first, hook, node
 
 PAGE = {"app.css", "app.js", "built.json", "chunk.js", "editor.js", "index.html", "LICENSES.txt", "panel.js"}
 DIGEST = re.compile(r"-[A-Z0-9]{8}(?=\.js$)")
-"""In the name of a script that another one imports."""
+"""Part of the name of a script that another one imports."""
 UNREACHABLE = "npm error code ECONNREFUSED\nnpm error syscall connect\n"
 MOST_BYTES = 250_000
-"""Of the script and style that a browser fetches first, compressed."""
+"""Limit of the script and style that a browser fetches first, compressed."""
 NAMES = {f"http://www.w3.org/{name}" for name in ("1999/xhtml", "1999/xlink", "1998/Math/MathML", "2000/svg")}
-"""What looks like an address in the bundle and is the name of something, of which nothing is requested."""
+"""Addresses in the bundle that are names, from which nothing is requested."""
 
 
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
-    """What the hook and the builders read of this tree; the page is not built."""
+    """Files of this tree that the hook and the builders read; the page is not built."""
     root = tmp_path / "tree"
     leave = shutil.ignore_patterns("node_modules", "static", "static-*", "__pycache__")
     shutil.copytree(ROOT / "plugins/ui", root / "plugins/ui", ignore=leave)
@@ -144,7 +144,7 @@ class TestHook:
     def test_missing_page_is_an_error_where_it_is_required(
         self, tree: Path, programs: Programs, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
     ):
-        """And npm is given its time: nobody waits for this one."""
+        """Give npm its time: nobody waits for this build."""
         monkeypatch.setenv("TANGIBLE_UI_REQUIRED", "1")
         programs.ends["ci"] = (1, UNREACHABLE)
         with pytest.raises(SystemExit):
@@ -222,7 +222,7 @@ class TestNpm:
         assert "registry=" not in (WEB / ".npmrc").read_text("utf-8")
 
     def test_lock_file_matches_the_packages(self):
-        """As `npm ci` demands, which would fail at a user's."""
+        """The lock file matches, as `npm ci` demands; otherwise an installation would fail."""
         wanted = json.loads((WEB / "package.json").read_text("utf-8"))
         locked = json.loads((WEB / "package-lock.json").read_text("utf-8"))["packages"][""]
         for group in ("dependencies", "devDependencies"):

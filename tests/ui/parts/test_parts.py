@@ -544,7 +544,7 @@ class TestHeights:
     def test_changed_heights_feel_as_the_saved_document(
         self, small: Callable[[Check], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        """To the bit: of surfaces, and of all that the force loop is sent."""
+        """Surfaces and the loop's whole input are the same to the bit."""
 
         async def check(small: SmallSession, ask: Any) -> None:
             sent_to_the_loop: list[bytes] = []

@@ -40,7 +40,7 @@ def photo(tmp_path: Path) -> Path:
     return tmp_path / "ball.png"
 
 
-def felt(page: "Page") -> None:
+def wait_for_force(page: "Page") -> None:
     until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
 
 
@@ -85,12 +85,12 @@ def tool(page: "Page", name: str) -> None:
 
 
 def names(page: "Page") -> list[str]:
-    """Of the parts, from front to back."""
+    """Return the names of the parts, from front to back."""
     return page.locator("#parts-list .name").all_inner_texts()
 
 
-def kept(path: Path) -> tuple[Mapping[int, PartChoice], Any]:
-    """What a pipeline file says of its parts, and the number of each pixel's."""
+def read_parts(path: Path) -> tuple[Mapping[int, PartChoice], Any]:
+    """Return a pipeline file's entries of parts, and the number of each pixel's part."""
     config = load_config(path, default_registry())
     assert isinstance(config.scene, SceneFiles) and config.parts is not None
     segments = Scene.read(config.scene, config.folder).segments
@@ -109,7 +109,7 @@ def high(page: "Page", x: float, y: float) -> float:
 def test_parts_editor_makes_five_parts_by_mouse(opened: Callable[..., str], open_page: OpenPage, photo: Path):
     (photo.parent / "ball.yaml").write_text(f"scene: {{photo: ball.png}}\ndepth: {{use: luminance}}\n{RELIEF}")
     page = open_page(opened(photo.parent / "ball.yaml") + "&measure", has_touch=True)
-    felt(page)
+    wait_for_force(page)
     fetched: list[str] = []
     page.on("request", lambda request: fetched.append(request.url))
     page.locator("#parts-edit").click()
@@ -167,7 +167,7 @@ def test_parts_editor_makes_five_parts_by_mouse(opened: Callable[..., str], open
 
     page.locator("#parts-save").click()
     until(lambda: "Saved: " in page.locator("#parts-told").inner_text(), "saved")
-    felt(page)
+    wait_for_force(page)
     until(lambda: page.evaluate("page.scene.meta.parts?.length") == 5, "felt by its parts")
 
     # a height that is dragged is felt and seen, and is not in the file yet
@@ -186,7 +186,7 @@ def test_parts_editor_makes_five_parts_by_mouse(opened: Callable[..., str], open
     until(lambda: page.locator("#parts-editor").count() == 0, "closed without a question")
     assert page.evaluate("document.activeElement.id") == "parts-edit"
 
-    parts, labels = kept(photo.parent / "ball.yaml")
+    parts, labels = read_parts(photo.parent / "ball.yaml")
     found = {parts[int(labels[y, x])].name for x, y in [(150, 90), (120, 160), (60, 50), (10, 20), (220, 20)]}
     assert found == {"wall", "ball", "table", "lamp", "door"}
     ball = parts[int(labels[90, 150])]
@@ -201,17 +201,17 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     page = open_page("about:blank")
     page.add_init_script(SPY)
     page.goto(opened(photo) + "&measure")
-    felt(page)
+    wait_for_force(page)
     keys = page.keyboard
     until(lambda: focus_on(page, "left"), "F6")
     enter(page, "#parts-edit")
     page.wait_for_selector("#parts-list [role=option]")
-    until(lambda: focused(page) == "parts-list", "the list has the focus")
-    named(page, "wall")
+    until(lambda: focus_id(page) == "parts-list", "the list has the focus")
+    name_part(page, "wall")
 
     # an outline with the crosshair: from the middle to the lower half
     press(page, "l")
-    assert focused(page) == "parts-picture"
+    assert focus_id(page) == "parts-picture"
     cross(page, 2, 140)
     press(page, " ")
     for place in ((WIDTH - 2, 140), (WIDTH - 2, HEIGHT - 2), (2, HEIGHT - 2)):
@@ -219,7 +219,7 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     press(page, "Enter")
     until(lambda: len(names(page)) == 2, "an outline is painted")
     press(page, "o")
-    named(page, "table")
+    name_part(page, "table")
     # a proposal where the crosshair stands
     press(page, "p", "t")
     cross(page, 150, 90)
@@ -228,7 +228,7 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     press(page, "Enter")
     until(lambda: len(names(page)) == 3, "accepted")
     press(page, "o")
-    named(page, "ball")
+    name_part(page, "ball")
     # the brush, thicker
     press(page, "b", "t", "]", "]")
     cross(page, 40, 40)
@@ -236,7 +236,7 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     cross(page, 40, 70)
     press(page, " ", "o")
     until(lambda: len(names(page)) == 4, "painted")
-    named(page, "lamp")
+    name_part(page, "lamp")
     # the wall, cut in two
     until(lambda: step_to(page, "wall"), "the wall is in the list")
     press(page, "x")
@@ -245,7 +245,7 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     cross(page, 80, 145)
     press(page, " ", "o")
     until(lambda: len(names(page)) == 5, "split")
-    named(page, "door")
+    name_part(page, "door")
 
     # heights, order, back and forth
     until(lambda: step_to(page, "ball"), "the ball is in the list")
@@ -284,7 +284,7 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     keys.type(str(photo.parent / "kept.yaml"))
     enter(page, "#yaml button:text-is('Save')")
     until((photo.parent / "kept.yaml").is_file, "the file is kept")
-    parts, labels = kept(photo.parent / "kept.yaml")
+    parts, labels = read_parts(photo.parent / "kept.yaml")
     assert {each.name for each in parts.values()} == {"wall", "ball", "table", "lamp", "door"}
     assert parts[int(labels[90, 150])].name == "ball"
     assert parts[int(labels[170, 20])].name == "table"
@@ -295,16 +295,16 @@ def press(page: "Page", *keys: str) -> None:
         page.keyboard.press(key)
 
 
-def focused(page: "Page") -> str:
+def focus_id(page: "Page") -> str:
     return page.evaluate("document.activeElement.id")
 
 
-def named(page: "Page", name: str) -> None:
-    """In the list: write the name of the selected part, and come back."""
+def name_part(page: "Page", name: str) -> None:
+    """Write the name of the part that is selected in the list, and come back to the list."""
     press(page, "Enter")
     page.keyboard.type(name)
     press(page, "Enter")
-    assert focused(page) == "parts-list"
+    assert focus_id(page) == "parts-list"
     assert name in names(page)
 
 
@@ -321,11 +321,11 @@ def cross(page: "Page", x: int, y: int) -> None:
 def step_to(page: "Page", name: str) -> bool:
     if page.locator("#parts-list [aria-selected=true] .name").inner_text() == name:
         return True
-    press(page, "ArrowDown" if name not in names(page)[: selected(page)] else "ArrowUp")
+    press(page, "ArrowDown" if name not in names(page)[: row_of_selection(page)] else "ArrowUp")
     return False
 
 
-def selected(page: "Page") -> int:
+def row_of_selection(page: "Page") -> int:
     rows = page.locator("#parts-list > li")
     return rows.evaluate_all("(all) => all.findIndex((each) => each.ariaSelected === 'true')")
 

@@ -27,7 +27,7 @@ def two_things() -> tuple[np.ndarray, np.ndarray]:
     return np.clip(picture, 0, 255).astype(np.uint8), inside.astype(bool)
 
 
-def placed(box: tuple[int, ...], mask: np.ndarray, shape: tuple[int, int] = SHAPE) -> np.ndarray:
+def place(box: tuple[int, ...], mask: np.ndarray, shape: tuple[int, int] = SHAPE) -> np.ndarray:
     found = np.zeros(shape, bool)
     x, y, columns, rows = box
     found[y : y + rows, x : x + columns] = mask
@@ -75,7 +75,7 @@ class TestProposals:
         picture, inside = two_things()
         picture = cv2.resize(picture, None, fx=factor, fy=factor, interpolation=cv2.INTER_CUBIC)
         box, mask = propose(picture, STROKE * factor, 12 * factor, kind)
-        found = placed(box, mask, (factor * SHAPE[0], factor * SHAPE[1]))
+        found = place(box, mask, (factor * SHAPE[0], factor * SHAPE[1]))
         assert overlap(found[factor // 2 :: factor, factor // 2 :: factor], inside) > 0.95
         assert mask[0].any()  # the box just holds it
         assert mask[-1].any()
@@ -85,17 +85,17 @@ class TestProposals:
     def test_proposal_border_is_as_fine_as_the_picture(self, monkeypatch: pytest.MonkeyPatch) -> None:
         picture, inside = two_things()
         monkeypatch.setattr(proposals, "MOST_CELLS", 2000)
-        fine = placed(*propose(picture, STROKE, 12, "grabcut"))
+        fine = place(*propose(picture, STROKE, 12, "grabcut"))
         monkeypatch.setattr(proposals, "_refine_border", lambda whole, mask: cv2.resize(
             mask.astype(np.uint8), whole.shape[1::-1], interpolation=cv2.INTER_NEAREST) > 0)  # fmt: skip
-        coarse = placed(*propose(picture, STROKE, 12, "grabcut"))
+        coarse = place(*propose(picture, STROKE, 12, "grabcut"))
         assert overlap(fine, inside) > max(0.96, overlap(coarse, inside) + 0.02)
 
     def test_proposal_finds_objects_in_photographs(self) -> None:
         """Overlap with parts drawn by hand, of one stroke along the middle of each."""
         found = {
             (name, part): overlap(
-                placed(*propose(drawn(name).picture, *stroke_along(mask), "grabcut"), mask.shape), mask
+                place(*propose(drawn(name).picture, *stroke_along(mask), "grabcut"), mask.shape), mask
             )
             for name in ("astronaut", "coffee")
             for part, mask in things(name)
@@ -107,13 +107,13 @@ class TestProposals:
     def test_proposal_stays_in_the_drawn_box(self) -> None:
         picture, _ = two_things()
         box, mask = propose(picture, STROKE, 12, "grabcut", [100, 80, 215, 160])
-        found = placed(box, mask)
+        found = place(box, mask)
         found[80:160, 100:215] = False
         assert not found.any()
 
     def test_proposal_ignores_a_box_that_the_stroke_leaves(self) -> None:
         picture, inside = two_things()
-        assert overlap(placed(*propose(picture, STROKE, 12, "grabcut", [0, 0, 20, 20])), inside) > 0.95
+        assert overlap(place(*propose(picture, STROKE, 12, "grabcut", [0, 0, 20, 20])), inside) > 0.95
 
     @pytest.mark.parametrize("kind", ["grabcut", "watershed"])
     @pytest.mark.parametrize("shape", [(1, 1), (1, 40), (3, 3), (40, 1), (60, 80)])
@@ -123,7 +123,7 @@ class TestProposals:
         picture = np.full((*shape, 3), 128, np.uint8)
         points = as_points([[0, 0], [1e9, -1e9]], picture.shape)
         box, mask = propose(picture, points, 3, kind)
-        found = placed(box, mask, shape)
+        found = place(box, mask, shape)
         assert found[0, 0]
         assert found[0, -1]
 
@@ -152,7 +152,7 @@ class TestSnapping:
         middle = points.mean(0)
         return middle + (points - middle) * (1 + by * (np.sin(5 * angle) + 0.5 * np.sin(9 * angle)))
 
-    def filled(self, points: np.ndarray, shape: tuple[int, int] = SHAPE) -> np.ndarray:
+    def fill_outline(self, points: np.ndarray, shape: tuple[int, int] = SHAPE) -> np.ndarray:
         found = np.zeros(shape, np.uint8)
         cv2.fillPoly(found, [np.round(points).astype(np.int32)], 1)
         return found.astype(bool)
@@ -161,10 +161,10 @@ class TestSnapping:
     def test_outline_moves_to_the_edges(self, factor: int) -> None:
         picture, inside = two_things()
         outline = self.wobbling(inside, 0.07)
-        assert overlap(self.filled(outline), inside) < 0.93
+        assert overlap(self.fill_outline(outline), inside) < 0.93
         picture = cv2.resize(picture, None, fx=factor, fy=factor, interpolation=cv2.INTER_CUBIC)
         found = snap(picture, outline * factor, 12.0 * factor) / factor
-        assert overlap(self.filled(found), inside) > 0.97
+        assert overlap(self.fill_outline(found), inside) > 0.97
 
     def test_outline_stays_within_reach_and_without_edges_in_place(self) -> None:
         picture, inside = two_things()
@@ -197,7 +197,7 @@ def test_jobs_return_json_data(tmp_path: Path) -> None:
     )
     x, y, columns, rows = found["box"]
     mask = np.repeat(np.arange(len(found["runs"])) % 2, found["runs"]).reshape(rows, columns)
-    assert overlap(placed((x, y, columns, rows), mask.astype(bool)), inside) > 0.95
+    assert overlap(place((x, y, columns, rows), mask.astype(bool)), inside) > 0.95
     assert all(type(each) is int for each in [*found["box"], *found["runs"]])
     found = JOBS["parts_snap"].do(worker_state, **told, points=[[80, 60], [240, 60], [240, 180]], reach_px=5)
     assert all(type(each) is float for point in found["points"] for each in point)

@@ -1,4 +1,4 @@
-"""Both ends of the websocket mean the same: frames byte by byte, names of events and of what can be asked for."""
+"""Frames on the websocket byte by byte, names of events and of requests."""
 
 import json
 import re
@@ -40,7 +40,7 @@ console.log(JSON.stringify({
 
 @cache
 def page() -> dict[str, Any]:
-    """What the page's own module writes, and reads of a state that was written here."""
+    """Return what the page's own module writes, and what it reads of a state written here."""
     frame = wire.STATE_FRAME.pack(*SAID, *VECTORS, 12.5)
     done = node("--input-type=module", "-e", SCRIPT, frame.hex(), cwd=WEB)
     assert done.returncode == 0, done.stderr
@@ -118,5 +118,5 @@ class TestNames:
 
 
 OF_THE_PAGE = {"gone", "refused"}
-"""What it says to itself when the program is gone, or is another one."""
+"""Events that the page sends to itself when the program is gone, or is another one."""
 NOT_ASKED: set[str] = set()

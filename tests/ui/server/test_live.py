@@ -1,4 +1,4 @@
-"""What a tab says, whatever it is: a frame is whole or not heard, an ask is done or refused with a sentence."""
+"""Messages of a tab: a frame is complete or ignored, a request is answered or refused with a sentence."""
 
 import json
 from typing import Any
@@ -135,7 +135,7 @@ class TestAsks:
     @given(JSON, st.sampled_from(sorted(REQUESTS)))
     @settings(suppress_health_check=[HealthCheck.too_slow])
     def test_request_of_any_json_is_parsed_or_refused(self, told: Any, name: str) -> None:
-        """It is understood, or refused; nothing else."""
+        """Every JSON is parsed or refused; nothing else happens."""
         for said in (told, {"number": 1, "ask": told}, {"number": 1, "ask": name, "path": told, "text": told}):
             try:
                 asked = parse(json.dumps(said))

@@ -1,4 +1,4 @@
-"""What Python logs is told to pages: each level, never a flood, never a fault in what logs."""
+"""Python's logging on pages: each level, never a flood, never an error in the code that logs."""
 
 import io
 import logging

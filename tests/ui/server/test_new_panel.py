@@ -42,7 +42,9 @@ class Worker:
 
 class Session:
     worker = Worker()
-    text, path, sets = document["text"], document["path"], document["sets"]
+
+    def document(self):
+        return document
 
 request = parse('{"number": 1, "ask": "statistics"}')
 print(json.dumps({"home": tangible_ui.__file__, "answer": asyncio.run(request.ask(Session(), None, **request.told))}))

@@ -1,4 +1,4 @@
-"""Who is let in to the page's server, and that nobody keeps it from its work."""
+"""Access to the page's server, and floods that must not keep it from its work."""
 
 import asyncio
 import socket
@@ -26,7 +26,7 @@ from tangible_ui.serving.live import IDLE_SPACING_S, IN_FLIGHT, MOST_ASKS
 from tangible_ui.serving.routes import WRONG_KEY
 from waiting import LONGEST_S, until
 
-NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16, "folder": "export-1"}
+NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16, "folder": "export-1", "panel": "glove"}
 
 
 @pytest.fixture
@@ -41,13 +41,13 @@ def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[PageServer
         yield page
 
 
-def keyed(path: str) -> str:
+def with_key(path: str) -> str:
     return f"{path}?token={KEY}"
 
 
 class TestWhoIsLetIn:
     def test_routes_but_the_built_page_need_the_key(self, page: PageServer) -> None:
-        """Of all that there are: a new one cannot forget it."""
+        """Every route is tried: a new one cannot forget the key."""
         seen = set()
         for route in routes.routes(lambda: page.session, KEY):
             if isinstance(route, WebSocketRoute | Mount):
@@ -72,7 +72,7 @@ class TestWhoIsLetIn:
 
     @pytest.mark.parametrize("host", ["evil.example", "127.0.0.1", "127.0.0.1:1", "", None])
     def test_host_of_another_name_is_refused(self, page: PageServer, host: str | None) -> None:
-        for path in ("/", keyed("/scene/abc/a.f32")):
+        for path in ("/", with_key("/scene/abc/a.f32")):
             answer = page.ask(path, host=host)
             assert answer.status in (400, 403)
             assert answer.status == 400 or answer.headers["content-security-policy"]  # h11 itself refuses no host
@@ -83,7 +83,7 @@ class TestWhoIsLetIn:
     def test_origin_of_another_page_is_refused(self, page: PageServer, origin: str | None) -> None:
         said = origin and origin.format(host=page.host)
         for method, path in (("PUT", f"/upload/{NAMES['batch']}/a.png"), ("POST", "/stop")):
-            assert page.ask(keyed(path), method, b"x", origin=said).text == "another page may not do that"
+            assert page.ask(with_key(path), method, b"x", origin=said).text == "another page may not do that"
         with pytest.raises(InvalidStatus, match="403"):
             page.tab(origin=said)
 
@@ -93,9 +93,9 @@ class TestWhoIsLetIn:
             ("/", 200, "no-cache"),
             ("/app.js", 200, "no-cache"),
             ("/nothing", 404, "no-store"),
-            (keyed("/scene/abc/a.f32"), 200, routes.FOREVER),
-            (keyed("/scene/abc/b.f32"), 404, "no-store"),
-            (keyed("/fails"), 500, "no-store"),
+            (with_key("/scene/abc/a.f32"), 200, routes.FOREVER),
+            (with_key("/scene/abc/b.f32"), 404, "no-store"),
+            (with_key("/fails"), 500, "no-store"),
             ("/scene/abc/a.f32", 403, "no-store"),
         ],
     )
@@ -106,7 +106,7 @@ class TestWhoIsLetIn:
         (page.folder / "abc" / "a.f32").write_bytes(b"1")
         if status == 500:
             monkeypatch.setattr(page.session, "folder", None)
-            path = keyed("/scene/abc/a.f32")
+            path = with_key("/scene/abc/a.f32")
         answer = page.ask(path)
         assert answer.status == status
         assert {name: answer.headers.get_all(name) for name in HEADERS} == {
@@ -139,28 +139,28 @@ class TestWhoIsLetIn:
         (page.folder / "export-1").mkdir()
         for name in ("link", "export-link"):
             (page.folder / name).symlink_to(tmp_path)
-        assert page.ask(keyed(path)).status == 404
+        assert page.ask(with_key(path)).status == 404
 
     @pytest.mark.parametrize("name", ["a.stl", "a.html", "ä b.svg"])
     def test_exported_file_is_downloaded_and_never_shown(self, page: PageServer, name: str) -> None:
         """A page that an exporter wrote would otherwise be one of this address, with its key."""
         (page.folder / "export-1").mkdir()
         (page.folder / "export-1" / name).write_text("<script>")
-        answer = page.ask(keyed(f"/export/export-1/{quote(name)}"))
+        answer = page.ask(with_key(f"/export/export-1/{quote(name)}"))
         assert (answer.status, answer.text) == (200, "<script>")
         assert answer.headers["content-disposition"].startswith("attachment; filename")
         assert answer.headers["cache-control"] == "no-store"
         assert page.ask(f"/export/export-1/{quote(name)}").status == 403
-        assert page.ask(keyed(f"/scene/export-1/{quote(name)}")).status == 404
+        assert page.ask(with_key(f"/scene/export-1/{quote(name)}")).status == 404
 
     def test_other_http_methods_are_refused(self, page: PageServer) -> None:
         for method in ("POST", "DELETE", "PUT", "OPTIONS", "TRACE"):
-            assert page.ask(keyed("/scene/abc/a"), method).status == 405
+            assert page.ask(with_key("/scene/abc/a"), method).status == 405
             assert page.ask("/", method).status == 405
-        assert page.ask(keyed("/stop")).status == 404
+        assert page.ask(with_key("/stop")).status == 404
 
     def test_upload_that_is_too_large_is_refused_before_it_is_sent(self, page: PageServer) -> None:
-        answer = page.ask(keyed(f"/upload/{NAMES['batch']}/a.png"), "PUT", content_length=str(MOST_BYTES + 1))
+        answer = page.ask(with_key(f"/upload/{NAMES['batch']}/a.png"), "PUT", content_length=str(MOST_BYTES + 1))
         assert (answer.status, "holds more than" in answer.text) == (413, True)
 
     def test_header_without_end_is_not_read(self, page: PageServer) -> None:
@@ -179,10 +179,10 @@ class TestWhoIsLetIn:
 
 
 def handshake(page: PageServer, host: str) -> socket.socket:
-    """What a browser sends to open a websocket, and nothing is read."""
+    """Open a websocket as a browser does, without reading."""
     raw = socket.create_connection(("127.0.0.1", page.port), timeout=LONGEST_S)
     raw.sendall(
-        f"GET {keyed('/live')} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nUpgrade: websocket\r\n"
+        f"GET {with_key('/live')} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nUpgrade: websocket\r\n"
         f"Connection: Upgrade\r\nSec-WebSocket-Key: {'A' * 22}==\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
     )
     return raw
@@ -279,7 +279,7 @@ class TestFloods:
             until(is_gone)
 
     def test_flood_of_pointers_keeps_the_hand_moving(self, page: PageServer) -> None:
-        pointers = b"".join(masked(pointer(0.01, 0.0, k * 1e-6)) for k in range(500))
+        pointers = b"".join(mask_frame(pointer(0.01, 0.0, k * 1e-6)) for k in range(500))
         with page.tab() as tab:
             tab.until(event="holding", holding=True)
             with flood(lambda: tab.socket.socket.sendall(pointers)):
@@ -334,7 +334,7 @@ class TestFloods:
 
     def test_page_with_a_hanging_websocket_can_stop(self, page: PageServer) -> None:
         with page.tab() as tab:
-            assert page.ask(keyed("/stop"), "POST", b"").status == 204
+            assert page.ask(with_key("/stop"), "POST", b"").status == 204
             tab.until(event="loop", running=False, stopped=True)
             assert page.session.feeling.stopped
 
@@ -359,6 +359,6 @@ def _frames(tab: Any) -> int:
     return tab.frames
 
 
-def masked(body: bytes) -> bytes:
+def mask_frame(body: bytes) -> bytes:
     """A binary frame of a client, with a mask of zeros."""
     return bytes([0x82, 0x80 | len(body), 0, 0, 0, 0]) + body

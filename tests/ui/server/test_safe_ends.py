@@ -1,4 +1,4 @@
-"""Whatever ends, a tab, a loop, the worker or the server: no force, one word, and nothing that is left behind."""
+"""The end of a tab, a loop, the worker or the server: no force, one sentence, and no file or process left."""
 
 import os
 import signal
@@ -33,7 +33,7 @@ HEARING = (
     "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);"
     "signal.signal(signal.SIGHUP, signal.SIG_DFL); "
 )
-"""Whatever runs the tests may ignore Ctrl-C, and nohup ignores the end of a terminal."""
+"""Default handlers, as the runner of the tests may ignore Ctrl-C, and nohup ignores the end of a terminal."""
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
 AT_ONCE_S = 20.0
 """Bound on the last force, s, for a machine that may stand still; docs/safety.md has what was measured."""
@@ -95,7 +95,7 @@ class Press:
         self._thread.start()
 
     def attach(self) -> None:
-        """To the loop that runs now."""
+        """Attach to the running loop."""
         rings = sorted((self._home.folder / "shared").glob("*.ring"), key=lambda path: path.stat().st_mtime)
         self.ring = Ring.attach(rings[-1])
 
@@ -114,7 +114,7 @@ class Press:
         self._quiet = True
 
     def let_go_s(self, fault: Callable[[], Any]) -> float:
-        """After so long there was no force any more."""
+        """Return the seconds from the fault to the last force."""
         self.press()
         at_s = time.monotonic() - self.ring.start_ns / 1e9
         fault()
@@ -137,7 +137,7 @@ class Press:
 
 
 def group_is_empty(server: UiServer) -> bool:
-    """Whether neither the server nor anything that it started is there."""
+    """Return True if neither the server nor a process that it started is alive."""
     try:
         os.killpg(server.process.pid, 0)
     except ProcessLookupError:
@@ -247,7 +247,7 @@ def test_two_servers_run_at_the_same_time(home: Home) -> None:
 
 
 def test_server_imports_nothing_that_computes_and_prints_its_key_once(home: Home) -> None:
-    """And whatever goes wrong with a request or with an ask, nothing of it is lost, and no key is printed."""
+    """A failed request leaves no warning, and no key is printed."""
     looks = f"import atexit, sys; atexit.register(lambda: print('has', [n for n in {FORBIDDEN} if n in sys.modules])); "
     server = home.server("level.yaml", "--log-level", "debug", start=HEARING + looks + START)
     press = Press(home, server)
@@ -273,7 +273,7 @@ def test_server_imports_nothing_that_computes_and_prints_its_key_once(home: Home
 def test_server_starts_with_missing_folders_or_reports_one_sentence(
     home: Home, env: dict[str, str], words: list[str], says: str
 ) -> None:
-    """It starts all the same, or says one sentence."""
+    """The server starts all the same, or prints one sentence."""
     import socket
 
     with socket.create_server(("127.0.0.1", 0)) as taken:
@@ -312,7 +312,7 @@ def test_server_starts_with_missing_folders_or_reports_one_sentence(
 
 
 def test_worker_ends_with_its_pipe_during_a_job(home: Home) -> None:
-    """It ends with its pipe, whatever it computes."""
+    """The worker ends with its pipe, whatever it computes."""
     from tangible_core.runtime.child_process import command
     from tangible_core.servo.framing import send
     from tangible_ui.worker.messages import JobRequest

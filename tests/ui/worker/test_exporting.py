@@ -1,4 +1,4 @@
-"""Handing on: files that pages fetch, whether fingers can read it, and the surface in words."""
+"""Export on the server: files that pages fetch, legibility, and the description in words."""
 
 import asyncio
 import threading

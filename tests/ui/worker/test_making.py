@@ -57,7 +57,7 @@ def small(tmp_path: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     return run
 
 
-def heard(worker_state: Any, name: str) -> list[dict[str, Any]]:
+def events(worker_state: Any, name: str) -> list[dict[str, Any]]:
     return [told for event, told in worker_state.heard if event == name]
 
 
@@ -70,20 +70,20 @@ def make(worker_state: WorkerState, text: str, path: Path, want: str = "touch", 
 
 def test_make_sends_plan_stages_and_outcome(worker_state: WorkerState, scene: Path):
     assert make(worker_state, TEXT, scene)["law"] == "penalty"
-    (plan,) = heard(worker_state, "plan")
+    (plan,) = events(worker_state, "plan")
     assert [(each["product"], each["outcome"]) for each in plan["steps"]][:2] == [
         ("views", "given"), ("disparity", "ran"),
     ]  # fmt: skip
     assert plan["slow"] == ["disparity", "segments"]
-    ended = [told["done"]["outcome"] for told in heard(worker_state, "stage") if told["done"]]
+    ended = [told["done"]["outcome"] for told in events(worker_state, "stage") if told["done"]]
     assert set(ended) == {"ran"}  # what is given stands in the plan
     assert all(
-        {"why", "notes", "seconds"} <= told["done"].keys() for told in heard(worker_state, "stage") if told["done"]
+        {"why", "notes", "seconds"} <= told["done"].keys() for told in events(worker_state, "stage") if told["done"]
     )
-    (made,) = heard(worker_state, "made")
+    (made,) = events(worker_state, "made")
     assert made["outcome"] == "made"
     assert made["digest"] == plan["digest"]
-    assert len(heard(worker_state, "materials")[0]["segments"]) == 3
+    assert len(events(worker_state, "materials")[0]["segments"]) == 3
 
 
 def test_make_with_another_law_makes_the_touch_alone(worker_state: WorkerState, scene: Path):
@@ -96,25 +96,25 @@ def test_make_with_another_law_makes_the_touch_alone(worker_state: WorkerState, 
     assert list(products) == ["views", "disparity", "relief", "segments", "materials", "surface", "touch"]
     assert (products["views"], products["disparity"], products["touch"]) == ("given", "cached", "ran")
     make(worker_state, other, scene)
-    assert {told["product"] for told in heard(worker_state, "stage")} == {"touch"}
-    assert not heard(worker_state, "scene")
+    assert {told["product"] for told in events(worker_state, "stage")} == {"touch"}
+    assert not events(worker_state, "scene")
 
 
 def test_make_of_depth_or_texture_alone_is_shown(worker_state: WorkerState, scene: Path):
     assert make(worker_state, TEXT, scene, "materials") is None
-    (shown,) = heard(worker_state, "scene")
+    (shown,) = events(worker_state, "scene")
     assert shown["height_m"] == [0.0, 0.0]  # no depth yet: flat
-    (told,) = heard(worker_state, "materials")
+    (told,) = events(worker_state, "materials")
     assert len(told["segments"]) == 3
     assert sum(each["share"] for each in told["segments"]) == pytest.approx(1)
     assert all(each["why"].startswith(f"segment {each['label']}") for each in told["segments"])
-    assert {each["product"] for each in heard(worker_state, "stage")} >= {"segments", "materials"}
-    assert "disparity" not in {each["product"] for each in heard(worker_state, "stage")}
+    assert {each["product"] for each in events(worker_state, "stage")} >= {"segments", "materials"}
+    assert "disparity" not in {each["product"] for each in events(worker_state, "stage")}
     make(worker_state, TEXT, scene, "relief")
-    low, high = heard(worker_state, "scene")[-1]["height_m"]
+    low, high = events(worker_state, "scene")[-1]["height_m"]
     assert high > low
     make(worker_state, TEXT, scene, "materials")
-    assert heard(worker_state, "scene")[-1]["height_m"][1] > 0  # on the relief, which there is now
+    assert events(worker_state, "scene")[-1]["height_m"][1] > 0  # on the relief, which there is now
 
 
 def test_make_that_fails_leaves_the_last_good_pipeline(worker_state: WorkerState, scene: Path):
@@ -130,16 +130,16 @@ def test_make_that_fails_leaves_the_last_good_pipeline(worker_state: WorkerState
     assert "gone.png" in refused["refusal"]
     worker_state.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
     make(worker_state, TEXT, scene)
-    assert {told["product"] for told in heard(worker_state, "stage")} == {"touch"}
+    assert {told["product"] for told in events(worker_state, "stage")} == {"touch"}
 
 
 def test_make_without_a_law_shows_and_keeps_the_surface(worker_state: WorkerState, scene: Path):
     with pytest.raises(ConfigError, match="`render:` is missing"):
         make(worker_state, TEXT.replace("render:", "# render:"), scene)
-    assert heard(worker_state, "scene")
+    assert events(worker_state, "scene")
     worker_state.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
     make(worker_state, TEXT.replace("render: {use: penalty, stiffness_n_per_m: 400}", "render: proxy"), scene)
-    assert {told["product"] for told in heard(worker_state, "stage")} == {"touch"}
+    assert {told["product"] for told in events(worker_state, "stage")} == {"touch"}
 
 
 @pytest.mark.parametrize(
@@ -152,7 +152,7 @@ def test_newer_job_waits_only_for_a_stage_that_it_needs_too(
     begun, go = threading.Event(), threading.Event()
     monkeypatch.setattr("tangible_depth.luminance.Luminance.estimate", _waits(begun, go))
     ended: list[BaseException | None] = []
-    old = threading.Thread(target=_kept, args=(ended, lambda: make(worker_state, TEXT, scene, number=1)))
+    old = threading.Thread(target=_keep_error, args=(ended, lambda: make(worker_state, TEXT, scene, number=1)))
     old.start()
     assert begun.wait(LONGEST_S)
     newer = {"text": TEXT.replace(said, instead), "path": scene, "sets": DEVICE, "want": "touch"}
@@ -160,12 +160,12 @@ def test_newer_job_waits_only_for_a_stage_that_it_needs_too(
     go.set()
     old.join(LONGEST_S)
     assert isinstance(ended[0], Stopped)
-    assert [each["product"] for each in heard(worker_state, "stage") if each["done"]] == ["disparity"]
+    assert [each["product"] for each in events(worker_state, "stage") if each["done"]] == ["disparity"]
     with pytest.raises(Stopped):  # nor does one begin that waited in the queue
         make(worker_state, TEXT, scene, number=1)
     worker_state.heard.clear()  # pyright: ignore[reportAttributeAccessIssue]
     assert make(worker_state, number=2, **{name: newer[name] for name in ("text", "path")})
-    again = {each["product"]: each["done"]["outcome"] for each in heard(worker_state, "stage") if each["done"]}
+    again = {each["product"]: each["done"]["outcome"] for each in events(worker_state, "stage") if each["done"]}
     assert again["disparity"] == ("ran" if at_once else "cached")
 
 
@@ -182,7 +182,7 @@ def _waits(begun: threading.Event, go: threading.Event) -> Any:
     return waits
 
 
-def _kept(ended: list[BaseException | None], do: Callable[[], Any]) -> None:
+def _keep_error(ended: list[BaseException | None], do: Callable[[], Any]) -> None:
     try:
         do()
     except BaseException as error:  # noqa: BLE001

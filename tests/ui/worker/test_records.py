@@ -1,4 +1,4 @@
-"""What is felt is kept while the loop goes on, and shown, compared and felt again as it was."""
+"""Recordings: made while the loop goes on, shown, compared, and replayed."""
 
 import asyncio
 import errno
@@ -44,7 +44,7 @@ def some(ticks: int, force_n: float = 1.0) -> Recording:
     return Recording(rows, "", About("mock", "penalty", "scene: builtin/brick\n"))
 
 
-def felt(servo: Servo, ticks: int) -> None:
+def wait_for_ticks(servo: Servo, ticks: int) -> None:
     """Wait for this many ticks more."""
     before = servo.ring.count
     until(lambda: servo.ring.count >= before + ticks)
@@ -54,9 +54,9 @@ class TestRecorder:
     def test_recorder_keeps_every_tick_once(self, servo: Servo, tmp_path: Path) -> None:
         ended: list[tuple[Path, int, str]] = []
         recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: ended.append(told))
-        felt(servo, 1)
+        wait_for_ticks(servo, 1)
         first_s = servo.ring.since(servo.ring.count - 1)[0][-1, 0]
-        felt(servo, 300)
+        wait_for_ticks(servo, 300)
         recorder.stop()
         found = Recording.load(tmp_path / "a.nc")
         assert ended == [(tmp_path / "a.nc", len(found.rows), BY_HAND)]
@@ -69,7 +69,7 @@ class TestRecorder:
 
     def test_recorder_ends_with_its_loop(self, servo: Servo, tmp_path: Path) -> None:
         recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: None)
-        felt(servo, 100)
+        wait_for_ticks(servo, 100)
         servo.stop("the device was pulled out")
         recorder._thread.join(LONGEST_S)  # pyright: ignore[reportPrivateUsage]
         found = Recording.load(tmp_path / "a.nc")

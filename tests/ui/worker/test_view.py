@@ -1,4 +1,4 @@
-"""What pages fetch of a surface: the numbers that are felt, at every level of detail."""
+"""Files of a surface for pages: the numbers of the surface, at every level of detail."""
 
 import json
 from dataclasses import replace

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import median
 
-from tangible_core.metrics.measured import measured
+from tangible_core.metrics.measured import load_measured
 
 from .plan import Measurement
 
@@ -47,7 +47,7 @@ def forecast(waiting: Sequence[Measurement]) -> Forecast:
 
 
 def _expected_s(each: Measurement) -> float:
-    figures = measured().get(each.job.kind)
+    figures = load_measured().get(each.job.kind)
     known = {} if figures is None else figures.process_s
     usual_s = known.get(each.job.use, median(known.values()) if known else UNKNOWN_S)
     calls_s = max(0.0, usual_s - START_S) * (each.job.warmups + each.job.calls) / CALLS

@@ -73,7 +73,7 @@ def _draw_panel(axes: Axes, results: Results, timed: list[Line], measure: str) -
 
     for index, line in _by_name(timed):
         x, y = _point(results, line, measure)
-        axes.plot(x, y, color=_colour(index), marker=_marker(index), markersize=7, zorder=3, **EDGE)
+        axes.plot(x, y, markersize=7, zorder=3, **_look(index))
     best = _front(results, timed, measure)
     axes.step(*zip(*best, strict=True), where="post", color=INK, linewidth=1, linestyle=(0, (4, 2)), zorder=2)
     axes.set_xscale("log")
@@ -89,10 +89,11 @@ def _draw_curve(axes: Axes, timed: list[Line], curved: list[Line], curve: Curve)
     """Draw each method's curve, and dotted its ideal one; with the colours and shapes of the other panels."""
     for index, line in _by_name(timed):
         if line in curved:
-            colour = _colour(index)
-            axes.plot(list(curve.ideal), _values(line, curve.ideal), color=colour, linewidth=1, linestyle=":")
+            look = _look(index)
+            ideal = list(curve.ideal), _values(line, curve.ideal)
+            axes.plot(*ideal, color=look["color"], linewidth=1, linestyle=":")
             at = list(curve.points), _values(line, curve.points)
-            axes.plot(*at, color=colour, marker=_marker(index), markersize=5, label=line.method, **EDGE)
+            axes.plot(*at, markersize=5, label=line.method, **look)
     axes.set(xlabel=curve.over, ylabel=curve.title)
     axes.legend(title="dotted: the best there could be", title_fontsize=8)
     _draw_grid(axes)
@@ -120,14 +121,10 @@ def _point(results: Results, line: Line, measure: str) -> tuple[float, float]:
     return results.task.clock.per_second * line.seconds, line.measures.get(measure, math.nan)
 
 
-def _colour(index: int) -> str:
+def _look(index: int) -> dict[str, Any]:
     from tangible_report.style import OKABE_ITO
 
-    return OKABE_ITO[index % len(OKABE_ITO)]
-
-
-def _marker(index: int) -> str:
-    return MARKERS[index // 8 % 8]
+    return {"color": OKABE_ITO[index % len(OKABE_ITO)], "marker": MARKERS[index // 8 % 8], **EDGE}
 
 
 def _title(results: Results) -> str:

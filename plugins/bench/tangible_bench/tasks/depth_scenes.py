@@ -18,7 +18,7 @@ from tangible_core.testing.synthetic.stereo_scenes import KnownPair, synthetic_p
 from ..datasets import SETS, MarkedPair, StandardPair, matched, pairs
 from ..datasets.choosing import SetName, Split, with_folder_of_set
 from ..datasets.standard_pair import Mask, Resolution
-from .task import SceneSpec, expand_folder, pick_pairs, with_folder_of_file
+from .task import SceneSpec, check_one_kind, expand_folder, pick_pairs, with_folder_of_file
 
 TRUTHS = ("disparity.npz", "disparity.npy", "disparity.pfm", "disparity.png")
 
@@ -78,11 +78,7 @@ class DepthScene(SceneSpec):
     def _one_kind(self) -> Self:
         given = [name for name in ("builtin", "synthetic", "set", "pairs") if getattr(self, name) is not None]
         given += ["folder"] if self.folder is not None and not {"set", "pairs"} & {*given} else []
-        if len(given) != 1:
-            raise ValueError(
-                f"a scene is one of builtin, synthetic, folder, set and pairs; this one is "
-                f"{' and '.join(given) or 'none'}"
-            )
+        check_one_kind(given, "builtin, synthetic, folder, set and pairs")
         if self.set is None and (idle := [name for name in _OF_SETS if getattr(self, name)]):
             raise ValueError(f"{' and '.join(idle)} needs a standard set; name it: `set: ...`")
         return self

@@ -17,7 +17,7 @@ from tangible_core.scene.scene import Scene
 from tangible_core.session.recording import Recording
 from tangible_core.testing.synthetic.strokes import PERIOD_S, KnownStroke, analytic_stroke, relief_stroke
 
-from .task import SceneSpec
+from .task import SceneSpec, check_one_kind
 
 Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
@@ -45,10 +45,7 @@ class RenderScene(SceneSpec):
     @model_validator(mode="after")
     def _one_surface(self) -> Self:
         given = [name for name in ("analytic", "builtin", "height") if getattr(self, name) is not None]
-        if len(given) != 1:
-            raise ValueError(
-                f"a scene is one of analytic, builtin and height; this one is {' and '.join(given) or 'none'}"
-            )
+        check_one_kind(given, "analytic, builtin and height")
         idle = ("width_m", "relief_m") if self.analytic else ("cells",)
         idle += ("depth_m",) if self.recording else ()
         if set_idle := [name for name in idle if getattr(self, name) != type(self).model_fields[name].default]:

@@ -43,6 +43,12 @@ Spec = TypeVar("Spec", bound=SceneSpec)
 Item = TypeVar("Item")
 
 
+def check_one_kind(given: list[str], kinds: str) -> None:
+    """Check the kinds of scene that are given. Raises: ValueError unless there is exactly one."""
+    if len(given) != 1:
+        raise ValueError(f"a scene is one of {kinds}; this one is {' and '.join(given) or 'none'}")
+
+
 def expand_folder(spec: Spec, folder: Path, first: str, contents: str) -> dict[str, Spec]:
     """Return a scene for each sub-folder that has the file `first`. contents: all files of a scene, in words.
 

@@ -18,7 +18,7 @@ from tangible_core.testing.synthetic.texture_scenes import (
 )
 
 from ..datasets import matched
-from .task import SceneSpec, expand_folder, pick_pairs, with_folder_of_file
+from .task import SceneSpec, check_one_kind, expand_folder, pick_pairs, with_folder_of_file
 
 PICTURE, LABELS = "picture.png", "labels.png"
 
@@ -64,10 +64,7 @@ class TextureScene(SceneSpec):
     def _one_kind(self) -> Self:
         given = [name for name in ("mosaic", "smooth", "pairs") if getattr(self, name) is not None]
         given += ["folder"] if self.folder is not None and "pairs" not in given else []
-        if len(given) != 1:
-            raise ValueError(
-                f"a scene is one of mosaic, smooth, folder and pairs; this one is {' and '.join(given) or 'none'}"
-            )
+        check_one_kind(given, "mosaic, smooth, folder and pairs")
         if self.textures is not None and self.mosaic is None:
             raise ValueError(f"textures: only a mosaic is made of them; leave them out of {given[0]}")
         return self

@@ -1,7 +1,5 @@
 """A surface in a few sentences, for people who do not see it: its size, heights, parts and materials."""
 
-import math
-
 import numpy as np
 from jaxtyping import Bool
 
@@ -11,10 +9,8 @@ from tangible_core.parts.words.languages import LANGUAGES, Language, Words
 from tangible_core.parts.words.places import NOWHERE, place_of
 from tangible_core.scene.workspace import SceneKind
 
-from .facts import median_heights_m
+from .facts import median_heights_m, step_of
 
-MOST_CELLS = 512
-"""The most cells along a side: a surface is described on a grid of at most this size."""
 ALIKE = 0.1
 """The share of the relief's height by which the highest places, or the lowest, may differ."""
 LEVEL_SLOPE = 0.02
@@ -59,7 +55,7 @@ def heights_in_words(surface: HapticSurface, say: Words) -> str:
     lowest_m, highest_m = float(surface.height_m.min()), float(surface.height_m.max())
     if highest_m - lowest_m <= FLAT_M:
         return say("all flat")
-    step = _step(surface)
+    step = step_of(surface.height_m)
     height_m = surface.height_m[::step, ::step].astype(np.float64)
     low_m, high_m = np.percentile(height_m, (1, 99)).tolist()
     if high_m - low_m < (highest_m - lowest_m) / 2:  # the raised part is small, but not a stray pixel
@@ -93,7 +89,7 @@ def materials_in_words(surface: HapticSurface, say: Words) -> str:
     """Return a sentence on the materials, their shares and places; segments of one material count together."""
     if surface.labels is None or not surface.materials:
         return ""
-    step = _step(surface)
+    step = step_of(surface.height_m)
     labels = surface.labels[::step, ::step]
     names = [each.name for each in surface.materials]
     parts = {
@@ -115,7 +111,7 @@ def materials_in_words(surface: HapticSurface, say: Words) -> str:
 
 def _parts(surface: HapticSurface, say: Words) -> str:
     """Return a sentence on the named parts, the highest first, as it is the nearest: place, height and material."""
-    names, step = surface.names or (), _step(surface)
+    names, step = surface.names or (), step_of(surface.height_m)
     assert surface.labels is not None
     labels = surface.labels[::step, ::step]
     height_m = median_heights_m(labels, surface.height_m[::step, ::step], len(names))
@@ -139,10 +135,6 @@ def _part(surface: HapticSurface, cells: Bool[np.ndarray, "h w"], number: int, h
     )
     name = shown(surface.names[number])
     return say("of a part", name=name, facts=", ".join(facts)) if facts else name
-
-
-def _step(surface: HapticSurface) -> int:
-    return math.ceil(max(surface.height_m.shape) / MOST_CELLS)
 
 
 def percent(share: float) -> str:

@@ -11,7 +11,7 @@ from tangible_core.parts.neighbours import neighbours
 from tangible_core.parts.words.places import place_of_counts
 
 MOST_CELLS = 512
-"""The most cells along a side: facts are computed on a grid of at most this size."""
+"""The most cells along a side: surfaces are described on a grid of at most this size."""
 
 
 class PartFacts(NamedTuple):
@@ -52,7 +52,7 @@ def facts(
     if (whole := surface.labels if parts is None else parts.labels) is None:
         return ()
     named = (surface.names or ()) if parts is None else names
-    step = math.ceil(max(whole.shape) / MOST_CELLS)
+    step = step_of(whole)
     labels = whole[::step, ::step]
     unique, dense = np.unique(labels, return_inverse=True)
     numbers: list[int] = unique.tolist()
@@ -76,6 +76,11 @@ def facts(
         for each, number in enumerate(numbers)
     ]
     return tuple(sorted(unsorted, key=lambda part: (-part.height_m, part.number)))
+
+
+def step_of(cells: np.ndarray) -> int:
+    """Return the n such that every n-th row and column have at most MOST_CELLS cells a side."""
+    return math.ceil(max(cells.shape) / MOST_CELLS)
 
 
 def median_heights_m(

@@ -15,12 +15,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tangible_core.data import DisparityMap, HapticSurface, MaterialMap, PartMap, Record, Relief, SegmentMap, Views
+from tangible_core.data.products import PRODUCTS
 from tangible_core.errors import OutputError, shown
 from tangible_core.files.writing import atomic_write
 from tangible_core.parts.words.languages import spoken_language
 from tangible_core.plugins import hooks
 from tangible_core.plugins.hooks import Panel
 from tangible_core.plugins.registry import default_registry
+from tangible_core.session import Recording
 
 from ..description import describe
 from .files import describe_sheet, writer
@@ -29,9 +31,6 @@ from .layout import Cell, arrange
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from tangible_core.plugins.hooks import Panel
-    from tangible_core.session import Recording
 
     from .layout import Box
 
@@ -49,6 +48,14 @@ SHAPES: dict[str, Callable[[Any], tuple[float, float]]] = {
     "relief": lambda relief: relief.extent_m[::-1],
 }
 """Product -> its height and width, for products with the scene's proportions."""
+PANEL_OF: Mapping[type[Record], str] = {
+    Views: "views",
+    **{row.record: row.panel for row in PRODUCTS.values() if row.record is not None and row.panel},
+    Recording: "recording",
+}
+"""Class of a record that can be drawn -> the product of its panel."""
+HEIGHT_IN = 3.5
+"""The height of the axes of a new figure, inches."""
 
 
 def draw_sheet(
@@ -192,3 +199,38 @@ def _guard(draw: Callable[..., str]) -> Callable[..., str]:
             return shown(f"Not drawn, {type(error).__name__}: {error}", 60)
 
     return draw_or_fail
+
+
+def show(product: Record, axes: Axes | None = None, **others: Any) -> Axes:
+    """Draw a product as its panel on the sheet, with units; return the axes, whose title is the panel's headline.
+
+    axes: the axes to draw into; by default, those of a new pyplot figure with the panel's proportions.
+    others: other products that the panel can show too, by name: `views` and `materials` with segments, `views` and
+    `surface` with parts, `relief` with a recording.
+    Raises: OutputError for a product that has no picture, such as materials without segments.
+    """
+    from matplotlib import style
+
+    from ..panels import PANELS
+    from ..style import STYLE
+
+    name = PANEL_OF.get(type(product))
+    if name is None:
+        known = ", ".join(each.__name__ for each in PANEL_OF)
+        raise OutputError(f"a {type(product).__name__} has no picture of its own; these have one: {known}")
+    run = {**others, name: product.relief if isinstance(product, HapticSurface) else product}
+    panel = next(each for each in PANELS if set(each.needs) == {name})
+    with style.context(STYLE):
+        drawn = _new_axes(panel, run) if axes is None else axes
+        drawn.set_title(panel.draw(drawn, **_products_of(panel, run)))
+    return drawn
+
+
+def _new_axes(panel: Panel, run: Mapping[str, Any]) -> Axes:
+    from matplotlib import pyplot
+
+    width_in = HEIGHT_IN * panel_aspect(panel, run)
+    size_in = width_in + panel.left_in + panel.right_in, HEIGHT_IN + panel.bottom_in + HEADLINE_IN
+    figure = pyplot.figure(figsize=size_in)
+    wide, high = size_in
+    return figure.add_axes((panel.left_in / wide, panel.bottom_in / high, width_in / wide, HEIGHT_IN / high))

@@ -204,7 +204,7 @@ class Feeling:
         self.hand.release()
         cut = [servo for servo in (self._starting, self._servo) if servo is not None]
         for servo in cut:
-            with suppress(DeviceError):  # it has no ring yet; what it begins with gives no force
+            with suppress(DeviceError):  # a loop without a ring yet begins without force
                 servo.ring.header[STOP] = 1
 
         def wait_until_gone() -> None:

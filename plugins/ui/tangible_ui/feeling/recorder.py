@@ -46,7 +46,7 @@ class Recorder:
         try:
             while not why:
                 stopped = self._stop.wait(LOOK_EVERY_S)
-                running = self._servo.running  # before the look: what it ended with is then kept
+                running = self._servo.running  # asked before the look, so that the last ticks are kept
                 self._drain.look()
                 why = BY_HAND if stopped else "" if running else self._servo.report().stopped
         except TangibleError as error:

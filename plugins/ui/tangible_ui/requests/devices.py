@@ -72,7 +72,7 @@ def _choice(kind: str, name: str, sure: bool) -> Choice:
 
 async def _about(session: Session, choice: Choice) -> dict[str, Any]:
     sets = [*session.sets, *choice.sets(session.feeling.own_device)]
-    return await session.worker.ask("about_device", text=session.text, path=session.path, sets=sets)
+    return await session.worker.ask("about_device", **session.document(sets))
 
 
 async def _wait(session: Session) -> None:
@@ -91,7 +91,7 @@ async def _wait(session: Session) -> None:
 @request()
 async def reach(session: Session, tab: Tab) -> dict[str, Any]:
     """Return the name of the document's device, and its workspace in metres; None without a device."""
-    return await session.worker.quick("reach", text=session.text, path=session.path, sets=session.sets)
+    return await session.worker.quick("reach", **session.document())
 
 
 @request()

@@ -23,7 +23,7 @@ async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bo
     if "text" not in found:
         return found
     text, path = found["text"], found["path"]
-    if session.sets:  # of the command line: the text says them from now on
+    if session.sets:  # changes of the command line become part of the text
         text, session.sets = await session.worker.quick("overridden", text=text, path=path, sets=session.sets), []
     session.drafts.remember_opened(text)
     async with session.texts.lock:
@@ -58,7 +58,7 @@ async def change(
     """Change keys of the document and nothing else: values, values in YAML, keys to remove. Raises: ConfigError."""
     async with session.texts.lock:
         told = {"changes": changes or {}, "written": written or {}, "removed": removed or []}
-        found = await session.worker.quick("change", text=session.text, path=session.path, sets=session.sets, **told)
+        found = await session.worker.quick("change", **session.document(), **told)
         return _follow_up(session, _put(session, Text(found["text"], session.path), found), apply)
 
 
@@ -83,7 +83,7 @@ async def schema(session: Session, tab: Tab | None) -> dict[str, Any]:
 @request()
 async def library(session: Session, tab: Tab | None) -> list[dict[str, Any]]:
     """List the materials that the document can name."""
-    return await session.worker.quick("library", text=session.text, path=session.path, sets=session.sets)
+    return await session.worker.quick("library", **session.document())
 
 
 async def take(session: Session, text: Text) -> dict[str, Any]:

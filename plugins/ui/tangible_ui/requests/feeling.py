@@ -28,7 +28,7 @@ async def hold(session: Session, tab: Tab) -> None:
 @request()
 async def stop(session: Session, tab: Tab | None) -> None:
     """Take all force away at once, until `feel`, whatever else is made meanwhile."""
-    wait_until_gone = session.feeling.cut()  # before anything is waited for
+    wait_until_gone = session.feeling.cut()  # before any wait
     session.tell("loop", running=False, why="stopped", stopped=True)
     session.begin(asyncio.to_thread(wait_until_gone))
 
@@ -51,8 +51,7 @@ async def beacon(session: Session, tab: Tab | None, part: int | None) -> dict[st
         return _tell(session, None, "")
     if not session.feeling.running:
         raise DeviceError("nothing is felt, so nothing can be pulled; make and feel a surface first")
-    document = {"text": session.text, "path": session.path, "sets": session.felt_sets()}
-    made = await session.worker.quick("beacon", **document, part=part)
+    made = await session.worker.quick("beacon", **session.document(session.felt_sets()), part=part)
     found: Beacon = await asyncio.to_thread(parcel.unpack, Path(made["parcel"]))
     await asyncio.to_thread(session.feeling.pull_to, found)
     return _tell(session, found.part, part_label(found.part, found.name))
@@ -158,9 +157,7 @@ async def _feel(session: Session, which: int, other: dict[str, Any] | None = Non
     if not feeling.running:
         raise DeviceError("nothing is felt; make and feel a surface first")
     blocks = [other or laws.other]
-    made = await session.worker.ask(
-        "laws", text=session.text, path=session.path, sets=session.felt_sets(), others=blocks
-    )
+    made = await session.worker.ask("laws", **session.document(session.felt_sets()), others=blocks)
     felt, shown = (LoopInput.of(made[i], feeling.channel) for i in (which, 1 - which))
     try:
         if await session.put(felt) is None:

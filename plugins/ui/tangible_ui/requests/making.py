@@ -37,10 +37,10 @@ async def try_again(session: Session, tab: Tab | None) -> None:
 
 async def foresee(session: Session, apply: bool = False) -> None:
     """Send all tabs the plan of making the document. apply: make it unless something slow has to run."""
-    digest, told = session.digest, {"text": session.text, "path": session.path, "sets": session.felt_sets()}
-    plan = await session.worker.quick("plan", **told, want="touch")
+    digest = session.digest
+    plan = await session.worker.quick("plan", **session.document(session.felt_sets()), want="touch")
     if session.digest != digest:
-        return  # of a text that was edited again: that edit has its own
+        return  # the text was edited again, and that edit sends its own plan
     session.tell("plan", **plan)
     if apply and session.long_jobs.running:
         session.long_jobs.apply_after = True
@@ -53,7 +53,7 @@ async def long_job(session: Session, job: str, needs: str, sets: list[str], **to
 
     needs: the product that it is made from. Raises: whatever the job raises.
     """
-    document = {"text": session.text, "path": session.path, "sets": sets}
+    document = session.document(sets)
     digest, earlier, number = session.digest, set(session.long_jobs.running), session.long_jobs.begin()
     try:
         if earlier and await session.worker.quick("give_way", number=number, **document, want=needs):

@@ -21,6 +21,5 @@ async def ask_panel(
     session: Session, tab: Tab | None, panel: str, request: str, arguments: dict[str, Any] | None = None
 ) -> Any:
     """Have a plugin answer a request of its panel, about the current document. Raises: whatever the plugin raises."""
-    document = {"text": session.text, "path": session.path, "sets": session.sets}
     told = {"panel": panel, "request": request, "arguments": arguments or {}}
-    return await session.worker.quick("ask_panel", **document, **told)
+    return await session.worker.quick("ask_panel", **session.document(), **told)

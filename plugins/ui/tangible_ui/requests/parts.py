@@ -14,7 +14,7 @@ from .table import request
 @request()
 async def parts_open(session: Session, tab: Tab | None) -> dict[str, Any]:
     """Return what the editor begins with: the document's picture and parts."""
-    return await session.worker.quick("parts_open", **_document(session))
+    return await session.worker.quick("parts_open", **session.document())
 
 
 @request()
@@ -37,7 +37,7 @@ async def parts_save(
         sent = await asyncio.to_thread(session.uploads.single, upload)
         try:
             found = await session.worker.quick(
-                "parts_save", **_document(session), sent=sent, parts=parts, heights=heights, of=of,
+                "parts_save", **session.document(), sent=sent, parts=parts, heights=heights, of=of,
                 words={"title": title, "language": language}, opened=session.drafts.opened_text,
                 store=user_folder("opened"), earlier=session.texts.all,
             )  # fmt: skip
@@ -67,13 +67,13 @@ async def parts_propose(
     within: first column and row, and those after the last, which bound the proposal. Raises: ConfigError.
     """
     told = {"points": points, "width_px": width_px, "kind": kind, "within": within}
-    return await session.strokes.run(lambda: session.worker.quick("parts_propose", **_document(session), **told))
+    return await session.strokes.run(lambda: session.worker.quick("parts_propose", **session.document(), **told))
 
 
 @request()
 async def parts_snap(session: Session, tab: Tab | None, points: list[list[float]], reach_px: float) -> dict[str, Any]:
     """Move a closed outline to the picture's edges within this reach. Raises: ConfigError."""
-    return await session.worker.quick("parts_snap", **_document(session), points=points, reach_px=reach_px)
+    return await session.worker.quick("parts_snap", **session.document(), points=points, reach_px=reach_px)
 
 
 @request()
@@ -92,9 +92,7 @@ async def parts_heights(
     told = {"heights_m": heights_m, "materials": materials, "heights": heights}
 
     async def feel() -> dict[str, Any]:
-        made = await session.worker.quick(
-            "parts_heights", **{**_document(session), "sets": session.felt_sets()}, **told
-        )
+        made = await session.worker.quick("parts_heights", **session.document(session.felt_sets()), **told)
         await session.feel_on(made)
         return {}
 
@@ -102,7 +100,3 @@ async def parts_heights(
     if done is not None:
         session.begin(session.drawn.run(lambda: session.worker.quick("parts_shown")))
     return done
-
-
-def _document(session: Session) -> dict[str, Any]:
-    return {"text": session.text, "path": session.path, "sets": session.sets}

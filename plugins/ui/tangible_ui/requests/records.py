@@ -24,7 +24,7 @@ async def record(session: Session, tab: Tab | None) -> str:
         raise DeviceError("nothing is felt, so there is nothing to record; make and feel a surface first")
     if session.recorder is not None and session.recorder.recording:
         raise ConfigError(f"{session.recorder.path}: is being recorded already; stop that first")
-    now = datetime.now()  # the user's own clock, as files are looked for by it
+    now = datetime.now()  # the user's own clock: people look for files by it
     path = user_folder(FOLDER) / f"{now:%Y-%m-%d %H.%M.%S} {felt.law}.nc"
     loop = asyncio.get_running_loop()
 

@@ -1,4 +1,4 @@
-"""Routes of the server: the page, the arrays it draws, and its websocket; for whoever has the key."""
+"""Routes of the server: the page, the arrays it draws, and its websocket; all but the page need the key."""
 
 import asyncio
 import secrets
@@ -100,7 +100,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
     async def upload(request: Request) -> Response:
         name = request.path_params["name"]
         said = request.headers.get("content-length", "0")
-        if int(said) > MOST_BYTES:  # before a byte of it is read
+        if int(said) > MOST_BYTES:  # before the first byte is read
             return PlainTextResponse(f"{name}: holds more than {in_words(MOST_BYTES)}; open a smaller one", 413)
         try:
             await session().uploads.put(request.path_params["batch"], name, request.stream())
@@ -118,7 +118,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
     async def live(socket: WebSocket) -> None:
         if has_key(socket):
             await LiveTab(session(), socket).live()
-        else:  # a page can tell this from a program that is gone only if it is let in first
+        else:  # only after an accept can a page tell a wrong key from a program that is gone
             await socket.accept()
             await socket.close(WRONG_KEY, NOT_YOURS)
 

@@ -28,7 +28,7 @@ from .routes import application
 
 EXAMPLE = Path("builtin/motorcycle")
 MOST_CONNECTIONS = 256
-"""Maximum number of connections at once; more are told to come again later, and the others are served on."""
+"""Maximum number of connections at once; further ones are refused for now."""
 MOST_MESSAGE_BYTES = 2**20
 """Size limit of a message, bytes; pipeline files are smaller."""
 THREADS = 32
@@ -138,7 +138,7 @@ class Served:
         session.begin(drafts.offer(session))
         session.begin(document.begin(session, None, [str(each) for each in self._files]))
         session.begin(_start(session))
-        gc.freeze()  # what was imported is never looked through again
+        gc.freeze()  # the collector skips what was imported
         try:
             yield
         finally:

@@ -54,7 +54,7 @@ class Drafts:
     async def keep(self, text: Text) -> None:
         """Write the document's text as a draft. A full disk is warned of once."""
         self._newest = text
-        async with self._lock:  # one after the other; of many edits the newest alone is written
+        async with self._lock:  # one write at a time; of many edits the newest alone
             if (text := self._newest) != self._kept:
                 await asyncio.to_thread(self._put, text)
                 self._kept = text

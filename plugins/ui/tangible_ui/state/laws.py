@@ -20,7 +20,7 @@ class Tally:
     question: str
     """The question of each trial."""
     trials: list[tuple[str, str, str]] = field(default_factory=list[tuple[str, str, str]])
-    """For each trial: the law named 1, the law named 2, and the chosen law, "" for neither."""
+    """Trials: the law named 1, the law named 2, and the chosen law, "" for neither."""
     first: int = 0
     """Index of the law that is named 1 now."""
 

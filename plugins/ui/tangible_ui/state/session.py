@@ -83,6 +83,10 @@ class Session:
         """Return the changes to the document for the loop: the page's own hand, unless a device was chosen."""
         return [*self.sets, *self.choice.sets(self.feeling.own_device)]
 
+    def document(self, sets: list[str] | None = None) -> dict[str, Any]:
+        """Return the document as jobs take it. sets: changes to it; by default those of the command line."""
+        return {"text": self.text, "path": self.path, "sets": self.sets if sets is None else sets}
+
     async def feel(self, made: dict[str, Any]) -> None:
         """Put a made touch under the hand, and end a comparison of laws. Raises: as `put`."""
         felt = LoopInput.of(made, self.feeling.channel)

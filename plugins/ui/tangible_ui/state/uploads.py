@@ -37,7 +37,7 @@ class UploadStore:
     """A store of batches of files; a complete batch gets a folder named by its content, once."""
 
     def __init__(self, folder: Path, incoming: Path) -> None:
-        """folder: of complete batches. incoming: of incomplete ones; whoever ends the program removes it."""
+        """folder: of complete batches. incoming: of incomplete ones; the end of the program removes it."""
         self._folder, self._incoming = folder, incoming
 
     def batch(self) -> str:

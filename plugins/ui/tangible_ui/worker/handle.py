@@ -51,11 +51,6 @@ class Worker:
         self._lock = threading.Lock()
         self._start()
 
-    @property
-    def busy(self) -> bool:
-        """True while somebody waits for a job."""
-        return bool(self._waiting)
-
     async def ask(self, job: str, **told: Any) -> Any:
         """Do a job, and return its result.
 
@@ -114,7 +109,7 @@ class Worker:
                 sys.stderr.write(text)
 
     def _send(self, message: Any) -> None:
-        with self._lock, suppress(OSError, ValueError):  # it was killed: whoever waits hears of it
+        with self._lock, suppress(OSError, ValueError):  # the worker was killed: those who wait get WorkerKilled
             assert self._process is not None and self._process.stdin is not None
             send(self._process.stdin, message)
 
@@ -124,7 +119,7 @@ class Worker:
             while (message := receive(replies)) is not None:
                 self._loop.call_soon_threadsafe(self._take, message)
         process.wait()
-        reading.join(1.0)  # its last words; a child of its own may hold the pipe open
+        reading.join(1.0)  # the last line; a child process may hold the pipe open
         with suppress(OSError):
             process.stdin.close()
         with suppress(RuntimeError):  # the server ended

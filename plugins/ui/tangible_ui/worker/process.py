@@ -58,7 +58,7 @@ def main() -> None:
     voice.say(Event("maker", {}))
     while (ask := receive(commands)) is not None:
         lanes[JOBS[ask.job].quick].put(ask)
-    os._exit(0)  # no thread is waited for: the server is gone
+    os._exit(0)  # threads are not joined: the server is gone
 
 
 def _work(state: Any, asks: "queue.SimpleQueue[JobRequest]", voice: Sender, quick: bool) -> None:
@@ -78,7 +78,7 @@ def give_precedence() -> None:
     tasks = Path("/proc/self/task")
     threads = {int(each.name) for each in tasks.iterdir()} if tasks.is_dir() else {0}
     for thread in threads - _keep_precedence:
-        with suppress(OSError, AttributeError):  # a thread that has ended; a system that knows no niceness
+        with suppress(OSError, AttributeError):  # the thread has ended, or the system has no niceness
             os.setpriority(os.PRIO_PROCESS, thread, NICENESS)
 
 

@@ -15,7 +15,7 @@ from ....plugins.registry import Registry
 
 
 class Unchecked:
-    """A marker of a field whose value pydantic takes as it is: whoever makes the model has checked it."""
+    """A marker of a field whose value pydantic does not check, as it was checked before."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
         return core_schema.any_schema()

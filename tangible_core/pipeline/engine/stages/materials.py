@@ -19,7 +19,7 @@ class MaterialsStage(Stage):
     product = "materials"
 
     def __init__(self, context: Context) -> None:
-        """Raises: MaterialError for a library that cannot be read."""
+        """Read the library. Raises: MaterialError for a library that cannot be read."""
         super().__init__(context)
         self._library = assignment.load_library(self.config.materials.library)
         self._rules = number_rules(self.config)

@@ -19,7 +19,7 @@ class PartsStage(Stage):
         return ("segments",)
 
     def __init__(self, context: Context) -> None:
-        """Raises: ConfigError for configured parts that the scene's own segments do not have."""
+        """Check the segments of the scene, if it has any. Raises: ConfigError for configured parts that they lack."""
         super().__init__(context)
         segments = context.scene_products.get("segments")
         if self.config.by_parts and isinstance(segments, SegmentMap):

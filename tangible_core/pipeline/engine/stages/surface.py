@@ -10,7 +10,7 @@ from ..stage import Inputs, Stage
 
 
 class SurfaceStage(Stage):
-    """Put relief, labels and materials together; by parts, the labels are the numbers of parts."""
+    """Combine relief, labels and materials; by parts, the labels are the numbers of parts."""
 
     product = "surface"
 

@@ -48,7 +48,7 @@ class TouchStage(MethodStage):
 
 
 def fit_to_device(surface: HapticSurface, config: PipelineConfig, device: HapticDevice) -> tuple[HapticSurface, str]:
-    """Return the surface as a law gets it on this device, and in words how its materials were limited."""
+    """Limit the materials to the device, and return the surface with a sentence about the limits, if any."""
     if config.materials.fit == "never":
         return surface, ""
     return fit_surface(surface, device.spec(), config.safety)

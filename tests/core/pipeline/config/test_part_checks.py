@@ -71,7 +71,7 @@ def test_file_without_parts_has_none():
         f"{SCENE}heights: depth\n",
         f"{SCENE}parts: {{}}\n",
     ],
-    ids=["all", "heights that are switched off", "heights alone", "parts of which nothing is said"],
+    ids=["all", "heights that are switched off", "heights alone", "parts without an entry"],
 )
 def test_completed_parts_are_read_back_equal(text: str):
     config = parse(text)

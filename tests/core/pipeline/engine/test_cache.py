@@ -38,7 +38,7 @@ RECORDS: list[Record] = [
 
 
 @pytest.mark.parametrize("record", RECORDS, ids=lambda each: type(each).__name__)
-def test_a_record_comes_back_as_it_was(tmp_path: Path, record: Record):
+def test_record_is_read_as_it_was_written(tmp_path: Path, record: Record):
     write_record(tmp_path / "x.npz", record)
     again = read_record(tmp_path / "x.npz")
     assert type(again) is type(record)
@@ -48,7 +48,7 @@ def test_a_record_comes_back_as_it_was(tmp_path: Path, record: Record):
 NOTES = {"disparity": (Note("views exchanged", "warning"), Note("at 1/2")), "relief": (Note("noise", "doubt"),)}
 
 
-def test_what_was_noticed_comes_back_with_the_record(tmp_path: Path):
+def test_notes_are_read_with_the_record(tmp_path: Path):
     kept = Cache(tmp_path)
     kept.put("k", RECORDS[1], NOTES)
     assert kept.entry("k") is not None and kept.entry("k").notes == kept.notes("k") == NOTES
@@ -57,7 +57,7 @@ def test_what_was_noticed_comes_back_with_the_record(tmp_path: Path):
 
 
 @pytest.mark.parametrize("tree", [["x"], {"relief": [["x", "shout"]]}, {"relief": [[1, "doubt"]]}, {"relief": ["x"]}])
-def test_notes_that_are_none_are_damage(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
+def test_entry_with_invalid_notes_is_damaged(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
     record = {"class": "SegmentMap", "fields": {"labels": {"array": "a"}}}
     packed = np.frombuffer(json.dumps(tree).encode(), np.uint8)
     entry(tmp_path / "k.npz", record, notes=packed, a=np.zeros((2, 2), np.int32))
@@ -66,25 +66,25 @@ def test_notes_that_are_none_are_damage(tmp_path: Path, tree: object, caplog: py
     assert "damaged" in caplog.text
 
 
-def test_any_program_can_read_an_entry(tmp_path: Path):
+def test_entry_is_readable_by_numpy(tmp_path: Path):
     write_record(tmp_path / "x.npz", RECORDS[4])
     with np.load(tmp_path / "x.npz", allow_pickle=False) as archive:
         assert np.array_equal(archive["relief.height_m"], HEIGHTS)
 
 
-def test_a_miss_is_none(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+def test_missing_key_gives_none(tmp_path: Path, caplog: pytest.LogCaptureFixture):
     assert Cache(tmp_path).get("nothing") is None
     assert "nothing" not in Cache(tmp_path / "no folder yet")
     assert not caplog.text
 
 
-def test_the_folder_is_the_one_that_is_asked_for(cache_dir: Path):
+def test_folder_is_that_of_the_environment_variable(cache_dir: Path):
     Cache().put("k", RECORDS[1])
     assert [each.name for each in cache_dir.glob("*.npz")] == ["k.npz"]
 
 
 @pytest.mark.parametrize("damage", [lambda b: b[: len(b) // 2], lambda b: b"", lambda b: b"PK" + bytes(len(b))])
-def test_a_damaged_entry_is_said_and_deleted(tmp_path: Path, caplog: pytest.LogCaptureFixture, damage):
+def test_damaged_entry_is_logged_and_deleted(tmp_path: Path, caplog: pytest.LogCaptureFixture, damage):
     kept = Cache(tmp_path)
     kept.put("k", RECORDS[1])
     path = tmp_path / "k.npz"
@@ -94,7 +94,7 @@ def test_a_damaged_entry_is_said_and_deleted(tmp_path: Path, caplog: pytest.LogC
     assert not path.exists()
 
 
-def test_one_flipped_bit_is_found(tmp_path: Path):
+def test_entry_with_a_flipped_bit_is_damaged(tmp_path: Path):
     kept = Cache(tmp_path)
     kept.put("k", SegmentMap(np.zeros((64, 64), np.int32)))
     path = tmp_path / "k.npz"
@@ -105,7 +105,7 @@ def test_one_flipped_bit_is_found(tmp_path: Path):
 
 
 @pytest.mark.parametrize("tree", [b'{"class": "Path", "fields": {}}', b'["a", "list"]', b"{}"])
-def test_an_entry_of_another_program_is_not_trusted(tmp_path: Path, tree: bytes, caplog: pytest.LogCaptureFixture):
+def test_entry_of_another_program_is_not_trusted(tmp_path: Path, tree: bytes, caplog: pytest.LogCaptureFixture):
     np.savez(tmp_path / "k.npz", record=np.frombuffer(tree, np.uint8))
     assert Cache(tmp_path).get("k") is None
     assert "damaged" in caplog.text
@@ -135,7 +135,7 @@ ODD = {
 
 @pytest.mark.usefixtures("unchecked_shapes")
 @pytest.mark.parametrize("tree", ODD.values(), ids=ODD)
-def test_whatever_an_entry_holds_it_is_made_again(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
+def test_entry_of_any_content_is_made_again(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
     entry(tmp_path / "k.npz", tree, a=np.zeros((2, 2), np.uint8), b=np.full((2, 2), np.nan))
     assert Cache(tmp_path).get("k") is None
     assert "damaged" in caplog.text
@@ -143,19 +143,19 @@ def test_whatever_an_entry_holds_it_is_made_again(tmp_path: Path, tree: object, 
     assert not (tmp_path / "k.npz").exists()
 
 
-def test_an_entry_that_becomes_something_large_is_not_unpacked(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+def test_entry_that_unpacks_to_something_large_is_refused(tmp_path: Path, caplog: pytest.LogCaptureFixture):
     npz_bomb(tmp_path / "k.npz", record=(20_000, 20_000))
     assert Cache(tmp_path).get("k") is None
     assert "holds more than 1424 MB" in caplog.text
 
 
 @pytest.mark.timeout(20)
-def test_a_pipe_in_the_folder_is_not_waited_for(tmp_path: Path):
+def test_pipe_in_the_folder_does_not_block(tmp_path: Path):
     os.mkfifo(tmp_path / "k.npz")
     assert Cache(tmp_path).get("k") is None
 
 
-def test_the_entries_used_longest_ago_go_first(tmp_path: Path):
+def test_pruning_deletes_the_entries_used_longest_ago(tmp_path: Path):
     kept = Cache(tmp_path)
     for age, key in enumerate(("old", "older", "oldest")):
         kept.put(key, RECORDS[1])
@@ -166,8 +166,8 @@ def test_the_entries_used_longest_ago_go_first(tmp_path: Path):
     assert {path.stem for path in tmp_path.glob("*.npz")} == {"oldest", "new"}
 
 
-def test_of_many_entries_exactly_those_used_last_stay(tmp_path: Path):
-    """In whatever order the folder lists them."""
+def test_pruning_of_many_entries_keeps_those_used_last(tmp_path: Path):
+    """The order in which the folder lists the entries does not matter."""
     cache = Cache(tmp_path)
     ages = [7, 2, 9, 4, 0, 11, 5, 1, 10, 3, 8, 6]
     for age in ages:
@@ -178,7 +178,7 @@ def test_of_many_entries_exactly_those_used_last_stay(tmp_path: Path):
     assert {path.stem for path in tmp_path.glob("*.npz")} == {"new", *(f"{age * 5 % 12:x}{age}" for age in range(5))}
 
 
-def test_a_cache_that_is_just_full_keeps_all(tmp_path: Path):
+def test_cache_that_is_just_full_keeps_all(tmp_path: Path):
     Cache(tmp_path).put("a", RECORDS[1])
     size = (tmp_path / "a.npz").stat().st_size
     Cache(tmp_path, max_bytes=2 * size).put("b", RECORDS[1])
@@ -186,37 +186,35 @@ def test_a_cache_that_is_just_full_keeps_all(tmp_path: Path):
 
 
 @pytest.mark.parametrize("counted", [False, True])
-def test_entries_that_another_process_drops_meanwhile(
+def test_pruning_survives_entries_deleted_by_another_process(
     tmp_path: Path, counted: bool, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ):
-    def used(path: Path) -> tuple[float, int]:
+    def use_and_delete(path: Path) -> tuple[float, int]:
         found = real(path) if counted else None
         path.unlink()
         return found or real(path)
 
-    real = cache._used
+    real = cache._use_and_size
     Cache(tmp_path).put("old", RECORDS[1])
-    monkeypatch.setattr(cache, "_used", used)
+    monkeypatch.setattr(cache, "_use_and_size", use_and_delete)
     Cache(tmp_path, max_bytes=0).put("new", RECORDS[1])
     assert not caplog.text
     assert not list(tmp_path.glob("*.npz"))
 
 
-def test_entries_that_cannot_be_dropped_cost_a_warning(
+def test_entries_that_cannot_be_deleted_give_a_warning(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ):
-    def denied(_: Path) -> tuple[float, int]:
+    def deny(_: Path) -> tuple[float, int]:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(cache, "_used", denied)
+    monkeypatch.setattr(cache, "_use_and_size", deny)
     Cache(tmp_path).put("k", RECORDS[1])
     assert "Permission denied" in caplog.text
 
 
 @pytest.mark.parametrize("place", ["file", "file/below", "loop"])
-def test_a_folder_that_cannot_be_written_costs_one_warning(
-    tmp_path: Path, place: str, caplog: pytest.LogCaptureFixture
-):
+def test_unwritable_folder_gives_one_warning(tmp_path: Path, place: str, caplog: pytest.LogCaptureFixture):
     """A process has many results, and several caches of one folder."""
     (tmp_path / "file").write_text("")
     (tmp_path / "loop").symlink_to("loop")
@@ -231,7 +229,7 @@ def test_a_folder_that_cannot_be_written_costs_one_warning(
     assert (tmp_path / "file").read_text() == ""
 
 
-def test_an_entry_that_is_a_folder_is_made_again(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+def test_entry_that_is_a_folder_is_made_again(tmp_path: Path, caplog: pytest.LogCaptureFixture):
     kept = Cache(tmp_path)
     (tmp_path / "k.npz").mkdir()
     assert "k" not in kept
@@ -241,7 +239,7 @@ def test_an_entry_that_is_a_folder_is_made_again(tmp_path: Path, caplog: pytest.
     assert kept.get("k") is not None
 
 
-def test_a_folder_that_holds_something_is_not_the_caches_to_remove(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+def test_folder_with_files_in_place_of_an_entry_stays(tmp_path: Path, caplog: pytest.LogCaptureFixture):
     kept, theirs = Cache(tmp_path), tmp_path / "k.npz" / "theirs"
     theirs.parent.mkdir()
     theirs.write_text("of somebody")
@@ -251,7 +249,7 @@ def test_a_folder_that_holds_something_is_not_the_caches_to_remove(tmp_path: Pat
     assert "not cached" in caplog.text
 
 
-def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog):
+def test_full_disk_leaves_no_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog):
     def full(*_: object, **__: object):
         raise OSError(28, "No space left on device")
 
@@ -261,14 +259,14 @@ def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.M
     assert list(tmp_path.iterdir()) == []
 
 
-def held(folder: Path) -> int:
+def size_of(folder: Path) -> int:
     return sum(path.stat().st_size for path in folder.glob("*.npz"))
 
 
-def test_the_folder_is_listed_only_where_it_may_be_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_folder_is_listed_only_when_it_may_be_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     looked_at: list[Path] = []
-    real = cache._used
-    monkeypatch.setattr(cache, "_used", lambda path: looked_at.append(path) or real(path))
+    real = cache._use_and_size
+    monkeypatch.setattr(cache, "_use_and_size", lambda path: looked_at.append(path) or real(path))
     kept = Cache(tmp_path)
     for number in range(40):
         kept.put(f"k{number}", RECORDS[1])
@@ -277,7 +275,7 @@ def test_the_folder_is_listed_only_where_it_may_be_full(tmp_path: Path, monkeypa
     full = Cache(tmp_path, max_bytes=32 * size)
     for number in range(40, 80):
         full.put(f"k{number}", RECORDS[1])
-        assert held(tmp_path) <= full.max_bytes
+        assert size_of(tmp_path) <= full.max_bytes
     looked_at.clear()
     for number in range(80, 120):
         full.put(f"k{number}", RECORDS[1])
@@ -287,7 +285,7 @@ def test_the_folder_is_listed_only_where_it_may_be_full(tmp_path: Path, monkeypa
 @pytest.mark.parametrize(
     "tally", [None, b"", b"torn", b"\xff" * 8, bytes(8 * (1 << 17))], ids=["none", "empty", "torn", "negative", "long"]
 )
-def test_a_folder_whose_tally_tells_nothing_is_counted(tmp_path: Path, tally: bytes | None):
+def test_folder_with_a_damaged_tally_is_counted(tmp_path: Path, tally: bytes | None):
     kept = Cache(tmp_path)
     for number in range(4):
         kept.put(f"k{number}", RECORDS[1])
@@ -298,7 +296,7 @@ def test_a_folder_whose_tally_tells_nothing_is_counted(tmp_path: Path, tally: by
         (tmp_path / ".tally").write_bytes(tally)
     Cache(tmp_path, max_bytes=3 * size).put("new", RECORDS[1])
     assert {path.stem for path in tmp_path.glob("*.npz")} == {"k3", "new"}
-    assert held(tmp_path) == int.from_bytes((tmp_path / ".tally").read_bytes(), "little")
+    assert size_of(tmp_path) == int.from_bytes((tmp_path / ".tally").read_bytes(), "little")
 
 
 USER = """
@@ -319,7 +317,7 @@ for i in range(200):
 
 
 @pytest.mark.parametrize("max_bytes", [20_000, 10_000_000], ids=["always full", "roomy"])
-def test_four_processes_share_a_folder(tmp_path: Path, max_bytes: int):
+def test_folder_is_shared_by_four_processes(tmp_path: Path, max_bytes: int):
     users = [
         subprocess.Popen(
             [sys.executable, "-c", USER, tmp_path, start, str(max_bytes)], stderr=subprocess.PIPE, text=True
@@ -330,5 +328,5 @@ def test_four_processes_share_a_folder(tmp_path: Path, max_bytes: int):
     assert said == [""] * 4
     assert [user.returncode for user in users] == [0] * 4
     assert [path.name for path in tmp_path.iterdir() if path.suffix != ".npz"] == [".tally"]
-    assert held(tmp_path) <= max_bytes + 4 * 2_000  # what each may have written while another one counted
+    assert size_of(tmp_path) <= max_bytes + 4 * 2_000  # what each may have written while another one counted
     assert (tmp_path / ".tally").stat().st_size % 8 == 0

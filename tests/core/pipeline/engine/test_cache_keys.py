@@ -1,4 +1,4 @@
-"""What a kept result depends on: each thing by itself, on methods and packages that are made up or real."""
+"""The keys of cached results: every dependency on its own, with made-up and real methods and packages."""
 
 from importlib import import_module
 from pathlib import Path
@@ -41,7 +41,7 @@ class Ramp(DepthEstimator):
 
 
 class Halves(Segmenter):
-    """Left and right."""
+    """A segmenter of a left and a right half."""
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         labels = np.zeros(picture.shape[:2], np.int32)
@@ -74,7 +74,7 @@ def pipeline(folder: Path, **parts) -> Engine:
 
 
 def keys(folder: Path, **parts) -> dict[str, str]:
-    """Of what is made, each by itself: what it is made from is left out."""
+    """Return the keys of the stages alone, without those of their inputs."""
     return {product: stage.key for product, stage in pipeline(folder, **parts).stages.items()}
 
 
@@ -86,12 +86,12 @@ def forget() -> None:
 
 
 @pytest.fixture(autouse=True)
-def _forgotten():
+def _forget():
     yield
     forget()
 
 
-class TestEachAnswerIsItsOwn:
+class TestKeys:
     """Two that differ in one thing, by what the engine says and by what it gives."""
 
     def differ(self, product: str, one: Engine, other: Engine) -> bool:
@@ -100,21 +100,21 @@ class TestEachAnswerIsItsOwn:
         other.make(product)
         return outcome(other, product) == "ran"
 
-    def test_or_else_it_is_the_one_of_before(self, folder: Path):
+    def test_keys_differ_for_every_option(self, folder: Path):
         for product in KEPT:
             assert not self.differ(product, pipeline(folder), pipeline(folder))
             for path in (folder / "cache").iterdir():
                 path.unlink()
 
     @pytest.mark.parametrize("product", ["disparity", "segments"])
-    def test_by_how_much_pictures_are_reduced(self, folder: Path, product: str):
+    def test_keys_differ_for_the_reduction_of_pictures(self, folder: Path, product: str):
         coarse, fine = (pipeline(folder, workspace=Workspace(width_m=0.03, finest_m=each)) for each in (0.01, 0))
         assert self.differ(product, coarse, fine)
         if product == "disparity":
             assert fine.make(product).disparity_px[0].tolist() == list(range(30))
 
     @pytest.mark.parametrize("product", ["disparity", "segments"])
-    def test_where_the_picture_is_known(self, folder: Path, product: str):
+    def test_keys_differ_for_the_mask_of_known_pixels(self, folder: Path, product: str):
         """The pictures are the same once they are filled."""
         whole, torn = (
             pipeline(folder, scene=SceneFiles(photo=Path(f"{each}.npy"), non_finite="mask"))
@@ -125,7 +125,7 @@ class TestEachAnswerIsItsOwn:
         assert torn.make(product).confidence[3, 5] == 0
 
     @pytest.mark.parametrize(("product", "method"), [("disparity", Ramp), ("segments", Halves)])
-    def test_the_version_of_a_method_s_class(
+    def test_keys_differ_for_the_version_of_a_method(
         self, folder: Path, monkeypatch: pytest.MonkeyPatch, product: str, method: type
     ):
         one, other = pipeline(folder), pipeline(folder)
@@ -134,7 +134,7 @@ class TestEachAnswerIsItsOwn:
         other.make(product)
         assert outcome(other, product) == "ran"
 
-    def test_an_option_without_bound_and_one_that_is_not_given(self, folder: Path):
+    def test_keys_differ_for_infinity_and_none(self, folder: Path):
         one, other = (pipeline(folder, depth=NamedMethod("ramp", "t 1", Ramp(most_px=each))) for each in (None, np.inf))
         assert self.differ("disparity", one, other)
 
@@ -143,12 +143,12 @@ class TestEachAnswerIsItsOwn:
         [{"width_m": 0.06}, {"relief_m": 0.011}, {"smooth_m": 0.001}, {"holes": "cut"}],
         ids=lambda each: next(iter(each)),
     )
-    def test_the_size_and_shape_of_a_relief(self, folder: Path, size: dict):
+    def test_keys_differ_for_the_size_of_a_relief(self, folder: Path, size: dict):
         one, other = (pipeline(folder, workspace=Workspace(**{"width_m": 0.03, **more})) for more in ({}, size))
         assert self.differ("relief", one, other)
 
     @pytest.mark.parametrize("brings", [{}, {"disparity": Path("disparity.npy")}], ids=["found", "brought"])
-    def test_the_cameras(self, folder: Path, brings: dict):
+    def test_keys_differ_for_the_cameras(self, folder: Path, brings: dict):
         np.save(folder / "disparity.npy", np.full((20, 30), 4.0, np.float32))
         pair = {"left": Path("left.npy"), "right": Path("right.npy"), "baseline_m": 0.1, **brings}
         one, other = (pipeline(folder, scene=SceneFiles(**pair, focal_px=each)) for each in (500.0, 600.0))
@@ -164,11 +164,11 @@ class TestEachAnswerIsItsOwn:
         ],
         ids=["by", "by rules", "rules", "default"],
     )
-    def test_which_materials_are_chosen(self, folder: Path, choice: dict):
+    def test_keys_differ_for_the_choice_of_materials(self, folder: Path, choice: dict):
         one = pipeline(folder, materials=MaterialChoice(by="rules" if "default" in choice else "roughness"))
         assert self.differ("materials", one, pipeline(folder, materials=MaterialChoice(**choice)))
 
-    def test_what_a_library_says(self, folder: Path):
+    def test_keys_differ_for_the_library(self, folder: Path):
         def mine(stiffness: int) -> Engine:
             (folder / "mine.yaml").write_text(FELT.format(stiffness))
             return pipeline(folder, materials=MaterialChoice(by={0: "felt", 1: "felt"}, library=folder / "mine.yaml"))
@@ -184,8 +184,8 @@ def outcome(pipe: Engine, product: str) -> str:
     return {each.product: each.outcome for each in pipe.outcomes}[product]
 
 
-def edited(monkeypatch: pytest.MonkeyPatch, module: str) -> None:
-    """As if this module said something else."""
+def edit_module(monkeypatch: pytest.MonkeyPatch, module: str) -> None:
+    """Pretend that the source of this module has changed."""
     read = closures._text.__wrapped__
 
     def text(here: places.Place):
@@ -230,11 +230,11 @@ class TestCode:
             ("tangible_texture.energies.energy_kernels", {"segments"}),
         ],
     )
-    def test_a_result_depends_on_what_makes_it_and_on_no_more(
+    def test_keys_depend_on_the_code_that_makes_the_product_only(
         self, folder: Path, monkeypatch: pytest.MonkeyPatch, module: str, products: set[str]
     ):
         before = keys(folder, **real())
-        edited(monkeypatch, module)
+        edit_module(monkeypatch, module)
         after = keys(folder, **real())
         assert {product for product in KEPT if before[product] != after[product]} == products
 
@@ -251,7 +251,7 @@ class TestCode:
             ("matplotlib", "semi-global", set()),
         ],
     )
-    def test_it_depends_on_the_versions_of_the_libraries_that_it_uses(
+    def test_keys_depend_on_the_versions_of_used_libraries(
         self, folder: Path, monkeypatch: pytest.MonkeyPatch, distribution: str, depth: str, products: set[str]
     ):
         before = keys(folder, **real(depth))
@@ -259,12 +259,12 @@ class TestCode:
         after = keys(folder, **real(depth))
         assert {product for product in KEPT if before[product] != after[product]} == products
 
-    def test_opencv_counts_by_whichever_name_it_is_installed(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_keys_depend_on_opencv_under_any_distribution_name(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
         before = keys(folder, **real())
         other_version(monkeypatch, next(name for name in versions.LIBRARIES["cv2"] if versions._version(name)))
         assert before["disparity"] != keys(folder, **real())["disparity"]
 
-    def test_a_helper_of_somebody_s_own(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_keys_depend_on_the_helpers_of_a_plugin(self, folder: Path, monkeypatch: pytest.MonkeyPatch):
         (folder / "acme_depth.py").write_text(
             "from acme_helper import SLOPE\n"
             "from tangible_core import DepthEstimator\n"
@@ -279,7 +279,7 @@ class TestCode:
         forget()
         assert before["disparity"] != keys(folder, depth=chosen)["disparity"]
 
-    def test_a_method_written_at_a_prompt_is_never_answered_by_one_of_before(self, folder: Path):
+    def test_keys_of_a_method_at_a_prompt_are_always_new(self, folder: Path):
         made = {"__name__": "__prompt__"}
         exec(PROMPT, made)
         chosen = NamedMethod("mine", "prompt", made["Mine"]())

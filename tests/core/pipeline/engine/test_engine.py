@@ -38,7 +38,7 @@ class Ramp(DepthEstimator):
 
 
 class Never(DepthEstimator, Skippable):
-    """Not needed by any scene."""
+    """A depth method that every scene skips."""
 
     def skip(self, views: Views) -> str | None:
         return "nothing to see"
@@ -48,7 +48,7 @@ class Never(DepthEstimator, Skippable):
 
 
 class Halves(Segmenter):
-    """Left and right."""
+    """A segmenter of a left and a right half."""
 
     def segment(self, picture: np.ndarray) -> SegmentMap:
         ran.append("segments")
@@ -127,7 +127,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def chosen(method, name: str = ""):
+def name_method(method, name: str = ""):
     return NamedMethod(name or type(method).__name__.lower(), "tests 1.0", method)
 
 
@@ -135,27 +135,27 @@ def pipeline(folder: Path, cached: bool = True, plugins: pluggy.PluginManager | 
     parts = {
         "scene": SceneFiles(left=Path("left.png"), right=Path("right.png")),
         "want": "touch",
-        "depth": chosen(Ramp()),
-        "texture": chosen(Halves()),
+        "depth": name_method(Ramp()),
+        "texture": name_method(Halves()),
         "materials": MaterialChoice(by={0: "ice", 1: "sand"}),
-        "render": chosen(Feel()),
+        "render": name_method(Feel()),
     } | parts
     plugins = plugins or hooks.manager()
     config = PipelineConfig(path=folder / "p.yaml", **parts)
     return Engine(config, Registry(plugins), Cache(folder / "cache") if cached else None)
 
 
-def said(pipe: Engine) -> dict[str, str]:
+def outcome_kinds(pipe: Engine) -> dict[str, str]:
     return {each.product: each.outcome for each in pipe.outcomes}
 
 
-def test_everything_that_is_needed_is_made_once(folder: Path):
+def test_make_makes_each_needed_product_once(folder: Path):
     pipe = pipeline(folder)
     surface = pipe.make().surface
     assert ran == ["disparity", "segments", "touch"]
     assert [material.name for material in surface.materials] == ["ice", "sand"]
     made = ("disparity", "relief", "segments", "materials", "surface", "touch")
-    assert said(pipe) == {"views": "given", **dict.fromkeys(made, "ran")}
+    assert outcome_kinds(pipe) == {"views": "given", **dict.fromkeys(made, "ran")}
     pipe.make("relief")
     assert ran == ["disparity", "segments", "touch"]
 
@@ -163,11 +163,11 @@ def test_everything_that_is_needed_is_made_once(folder: Path):
 @pytest.mark.parametrize(
     ("parts", "says"),
     [
-        ({"texture": chosen(Shrinks(), "halved")}, "texture method halved (tests 1.0) made labels of 30 x 10"),
-        ({"depth": chosen(Grows(), "more")}, "depth method more (tests 1.0) made disparity of 33 x 20"),
+        ({"texture": name_method(Shrinks(), "halved")}, "texture method halved (tests 1.0) made labels of 30 x 10"),
+        ({"depth": name_method(Grows(), "more")}, "depth method more (tests 1.0) made disparity of 33 x 20"),
     ],
 )
-def test_a_result_of_another_size_than_the_picture_is_not_stretched_over_it(folder: Path, parts: dict, says: str):
+def test_result_of_another_size_is_refused(folder: Path, parts: dict, says: str):
     with pytest.raises(BrokenMethod) as error:
         pipeline(folder, **parts).make("surface")
     assert str(error.value).startswith(f"{says} for a picture of 30 x 20; ")
@@ -176,7 +176,7 @@ def test_a_result_of_another_size_than_the_picture_is_not_stretched_over_it(fold
         pipeline(folder, workspace=coarse, **parts).make("surface")
 
 
-def test_what_nothing_asks_for_is_not_made(folder: Path):
+def test_make_leaves_out_products_that_nothing_needs(folder: Path):
     pipe = pipeline(folder)
     pipe.make("relief")
     assert ran == ["disparity"]
@@ -184,15 +184,15 @@ def test_what_nothing_asks_for_is_not_made(folder: Path):
     assert left == dict.fromkeys(("segments", "materials", "surface", "touch"), "not needed for what was requested")
 
 
-def test_what_a_method_notes_is_in_its_outcome(folder: Path):
-    pipe = pipeline(folder, texture=chosen(Says()))
+def test_outcome_has_the_notes_of_a_method(folder: Path):
+    pipe = pipeline(folder, texture=name_method(Says()))
     pipe.make("segments")
     [outcome] = [each for each in pipe.outcomes if each.product == "segments"]
     assert outcome.why == "requested; skipped: everything"
 
 
 class Warns(Ramp):
-    """Is not sure."""
+    """A depth method with a warning."""
 
     def estimate(self, views: Views) -> DisparityMap:
         note(logging.getLogger("tests"), "every row is strange", logging.WARNING)
@@ -200,10 +200,8 @@ class Warns(Ramp):
         return super().estimate(views)
 
 
-def test_what_a_method_noticed_is_told_again_with_what_comes_from_the_cache(
-    folder: Path, caplog: pytest.LogCaptureFixture
-):
-    parts = {"depth": chosen(Warns()), "texture": chosen(Says()), "materials": MaterialChoice(by={0: "ice"})}
+def test_outcome_of_a_cached_product_repeats_its_notes(folder: Path, caplog: pytest.LogCaptureFixture):
+    parts = {"depth": name_method(Warns()), "texture": name_method(Says()), "materials": MaterialChoice(by={0: "ice"})}
     noticed = [Note("every row is strange", "warning"), Note("hardly worth it", "doubt")]
     first = pipeline(folder, **parts)
     first.make("disparity")
@@ -214,7 +212,7 @@ def test_what_a_method_noticed_is_told_again_with_what_comes_from_the_cache(
         assert again.plan(want).steps[-1].notes == tuple(noticed)
         again.make(want)
         told = {each.product: each for each in again.outcomes}
-        assert said(again)["disparity"] == ("cached" if want == "disparity" else "skipped")
+        assert outcome_kinds(again)["disparity"] == ("cached" if want == "disparity" else "skipped")
         assert list(told["disparity"].notes) == noticed
         assert told["disparity"].why.endswith("; every row is strange; hardly worth it")
         assert [each.message for each in caplog.records] == ["every row is strange", "hardly worth it"]
@@ -223,7 +221,7 @@ def test_what_a_method_noticed_is_told_again_with_what_comes_from_the_cache(
     assert len(caplog.records) == 2  # and not told twice
 
 
-def test_what_was_noticed_in_reading_the_scene_is_told_with_the_views(folder: Path, monkeypatch: pytest.MonkeyPatch):
+def test_outcome_of_views_has_the_notes_on_their_files(folder: Path, monkeypatch: pytest.MonkeyPatch):
     def read(*_: object) -> Scene:
         note(logging.getLogger("tests"), "the first of 3 frames is taken", logging.WARNING)
         return Scene.photo(np.zeros((4, 4)))
@@ -236,36 +234,36 @@ def test_what_was_noticed_in_reading_the_scene_is_told_with_the_views(folder: Pa
     assert pipe.outcomes[0].why.endswith("; the first of 3 frames is taken")
 
 
-def test_left_and_right_that_are_named_in_order_are_not_exchanged(folder: Path):
+def test_views_ordered_as_named_are_not_exchanged(folder: Path):
     paths = {"left": Path("left.png"), "right": Path("right.png")}
-    found = pipeline(folder, scene=SceneFiles(**paths), depth=chosen(Ramp(slope=-3.0))).make("disparity")
+    found = pipeline(folder, scene=SceneFiles(**paths), depth=name_method(Ramp(slope=-3.0))).make("disparity")
     assert np.nanmax(found.disparity_px) == 87
-    found = pipeline(folder, scene=SceneFiles(**paths, order="as-named"), depth=chosen(Ramp(slope=-3.0)))
+    found = pipeline(folder, scene=SceneFiles(**paths, order="as-named"), depth=name_method(Ramp(slope=-3.0)))
     assert np.nanmax(found.make("disparity").disparity_px) == 0
 
 
-def test_a_second_run_takes_the_surface_from_the_cache_and_runs_no_stage(folder: Path):
+def test_second_run_takes_the_surface_from_the_cache(folder: Path):
     pipeline(folder).make()
     ran.clear()
     again = pipeline(folder)
     again.make()
     assert ran == ["touch"]
-    assert said(again)["surface"] == "cached"
-    assert said(again)["disparity"] == "skipped"
+    assert outcome_kinds(again)["surface"] == "cached"
+    assert outcome_kinds(again)["disparity"] == "skipped"
     assert again.make("disparity") is not None
-    assert said(again)["disparity"] == "cached"
+    assert outcome_kinds(again)["disparity"] == "cached"
 
 
 @pytest.mark.parametrize(
     "change",
     [
-        {"depth": chosen(Ramp(slope=2.0))},
+        {"depth": name_method(Ramp(slope=2.0))},
         {"depth": NamedMethod("ramp", "tests 1.1", Ramp())},
         {"scene": SceneFiles(left=Path("right.png"), right=Path("left.png"))},
     ],
     ids=["an option", "another version of its distribution", "another scene"],
 )
-def test_a_change_is_never_answered_from_the_cache(folder: Path, change: dict):
+def test_changed_input_is_never_answered_from_the_cache(folder: Path, change: dict):
     pipeline(folder).make("disparity")
     ran.clear()
     pipe = pipeline(folder, **change)
@@ -273,58 +271,58 @@ def test_a_change_is_never_answered_from_the_cache(folder: Path, change: dict):
     assert ran == ["disparity"]
 
 
-def test_options_downstream_leave_what_is_upstream_cached(folder: Path):
+def test_changed_option_keeps_earlier_products_cached(folder: Path):
     pipeline(folder).make()
     ran.clear()
     pipe = pipeline(folder, materials=MaterialChoice(by={0: "sand", 1: "ice"}))
     pipe.make()
     assert ran == ["touch"]
-    assert said(pipe)["relief"] == "cached"
-    assert said(pipe)["surface"] == "ran"
+    assert outcome_kinds(pipe)["relief"] == "cached"
+    assert outcome_kinds(pipe)["surface"] == "ran"
 
 
-def test_without_a_cache_everything_runs(folder: Path):
+def test_engine_without_a_cache_runs_everything(folder: Path):
     for _ in range(2):
         pipeline(folder, cached=False).make("disparity")
     assert ran == ["disparity"] * 2
 
 
-def test_a_scene_with_a_disparity_runs_no_stereo(folder: Path):
+def test_scene_with_a_disparity_runs_no_stereo(folder: Path):
     np.save(folder / "d.npy", np.full((20, 30), 3.0, np.float32))
     files = SceneFiles(left=Path("left.png"), right=Path("right.png"), disparity=Path("d.npy"))
     pipe = pipeline(folder, scene=files)
     pipe.make("relief")
     assert ran == []
-    assert said(pipe)["disparity"] == "given"
+    assert outcome_kinds(pipe)["disparity"] == "given"
 
 
-def test_a_scene_with_heights_runs_no_depth_and_no_texture(folder: Path):
+def test_scene_with_heights_runs_no_depth_and_no_texture(folder: Path):
     pipe = pipeline(folder, scene=SceneFiles(height=Path("heights.npy")))
     surface = pipe.make("surface")
     assert ran == []
     assert surface.height_m.max() == pytest.approx(0.02)
-    assert said(pipe)["relief"] == "given"
-    assert said(pipe)["segments"] == "skipped"
+    assert outcome_kinds(pipe)["relief"] == "given"
+    assert outcome_kinds(pipe)["segments"] == "skipped"
 
 
-def test_a_method_that_says_it_is_not_needed_is_skipped_and_the_relief_is_flat(folder: Path):
-    pipe = pipeline(folder, depth=chosen(Never()))
+def test_skipped_depth_makes_a_flat_relief(folder: Path):
+    pipe = pipeline(folder, depth=name_method(Never()))
     relief = pipe.make("relief")
     assert np.ptp(relief.height_m) == 0
     why = {each.product: each.why for each in pipe.outcomes}
     assert why["disparity"] == "nothing to see"
 
 
-def test_a_renderer_without_materials_costs_no_segmentation(folder: Path):
-    pipe = pipeline(folder, render=chosen(FeelHeights()))
+def test_law_without_materials_runs_no_texture(folder: Path):
+    pipe = pipeline(folder, render=name_method(FeelHeights()))
     assert pipe.make().surface.materials is None
     assert "segments" not in ran
 
 
 @pytest.mark.parametrize(
-    "parts", [{}, {"depth": chosen(Never())}, {"texture": None}, {"render": chosen(FeelHeights())}]
+    "parts", [{}, {"depth": name_method(Never())}, {"texture": None}, {"render": name_method(FeelHeights())}]
 )
-def test_the_plan_is_what_then_happens(folder: Path, parts: dict):
+def test_plan_equals_the_outcomes(folder: Path, parts: dict):
     foreseen = {each.product: each.outcome for each in pipeline(folder, **parts).plan().steps}
     assert ran == []
     pipe = pipeline(folder, **parts)
@@ -334,16 +332,16 @@ def test_the_plan_is_what_then_happens(folder: Path, parts: dict):
     assert {each.product: each.outcome for each in pipeline(folder, **parts).plan().steps}["surface"] == "cached"
 
 
-def test_a_failure_is_noted_and_raised_and_nothing_of_it_is_kept(folder: Path):
-    pipe = pipeline(folder, texture=chosen(Fails()))
+def test_failed_stage_is_noted_and_not_kept(folder: Path):
+    pipe = pipeline(folder, texture=name_method(Fails()))
     with pytest.raises(ZeroDivisionError):
         pipe.make()
     assert {each.product: each.why for each in pipe.outcomes}["segments"] == "ZeroDivisionError: a bug of its own"
-    assert said(pipe)["segments"] == "failed"
+    assert outcome_kinds(pipe)["segments"] == "failed"
     assert pipe.key("segments") not in pipe.cache
 
 
-def test_a_missing_method_is_a_clear_error(folder: Path):
+def test_missing_method_is_refused_with_the_cure(folder: Path):
     with pytest.raises(ConfigError, match=r"p\.yaml: `render:` is missing"):
         pipeline(folder, render=None).make()
 
@@ -358,7 +356,7 @@ class Pairs(Ramp):
     ("parts", "product", "error", "says"),
     [
         (
-            {"scene": SceneFiles(photo=Path("left.png")), "depth": chosen(Pairs(), "pairs")},
+            {"scene": SceneFiles(photo=Path("left.png")), "depth": name_method(Pairs(), "pairs")},
             "disparity",
             PictureError,
             "depth method pairs needs two views, and the scene left.png has one",
@@ -373,7 +371,7 @@ class Pairs(Ramp):
         ),
     ],
 )
-def test_a_plan_ends_with_what_is_refused_and_nothing_is_begun(folder: Path, parts: dict, product, error, says: str):
+def test_plan_ends_with_a_refusal_before_anything_runs(folder: Path, parts: dict, product, error, says: str):
     plan = pipeline(folder, **parts).plan()
     assert (plan.steps[-1].product, plan.steps[-1].outcome) == (product, "refused")
     assert says in plan.refusal
@@ -382,29 +380,29 @@ def test_a_plan_ends_with_what_is_refused_and_nothing_is_begun(folder: Path, par
         pipe.make()
     assert str(raised.value) == plan.refusal
     assert ran == []
-    assert said(pipe)[product] == "refused"
+    assert outcome_kinds(pipe)[product] == "refused"
     assert not pipeline(folder).plan().refusal
 
 
-def test_a_pair_is_no_need_where_the_scene_brings_what_is_asked_for(folder: Path):
+def test_pair_is_not_needed_for_a_product_of_the_scene(folder: Path):
     np.save(folder / "d.npy", np.full((20, 30), 3.0, np.float32))
     files = SceneFiles(photo=Path("left.png"), disparity=Path("d.npy"))
-    assert not pipeline(folder, scene=files, depth=chosen(Pairs())).plan("relief").refusal
+    assert not pipeline(folder, scene=files, depth=name_method(Pairs())).plan("relief").refusal
     assert not pipeline(folder, scene=SceneFiles(photo=Path("left.png")), depth=None).plan("segments").refusal
 
 
-def test_an_unknown_product_is_named(folder: Path):
+def test_unknown_product_is_refused(folder: Path):
     with pytest.raises(UnknownMethod, match="did you mean 'surface'"):
         pipeline(folder).make("surfaces")
 
 
-def test_a_wrong_geometry_is_the_users_to_put_right(folder: Path):
+def test_wrong_geometry_is_an_error_of_the_user(folder: Path):
     np.save(folder / "heights.npy", np.full((4, 4), np.nan))
     with pytest.raises(GeometryError):
         pipeline(folder, scene=SceneFiles(height=Path("heights.npy"))).make("relief")
 
 
-def test_observers_hear_every_moment_and_one_that_fails_harms_nobody(folder: Path, caplog: pytest.LogCaptureFixture):
+def test_observers_are_called_though_one_fails(folder: Path, caplog: pytest.LogCaptureFixture):
     heard: list[tuple[str, str]] = []
 
     class Good:
@@ -435,7 +433,7 @@ def test_observers_hear_every_moment_and_one_that_fails_harms_nobody(folder: Pat
     assert "tangible_stage_finished" in caplog.text
 
 
-def test_pictures_finer_than_can_be_felt_are_matched_smaller_and_it_is_said(folder: Path):
+def test_fine_pictures_are_matched_smaller_with_a_note(folder: Path):
     pipe = pipeline(folder, workspace=Workspace(width_m=0.03, finest_m=0.002))  # 30 columns of 1 mm
     disparity = pipe.make("disparity")
     assert disparity.disparity_px.shape == (20, 30)
@@ -448,7 +446,7 @@ def test_pictures_finer_than_can_be_felt_are_matched_smaller_and_it_is_said(fold
     assert "of the size" not in "".join(each.why for each in whole.outcomes)
 
 
-def test_a_photo_finer_than_can_be_felt_is_segmented_smaller_and_it_is_said(folder: Path):
+def test_fine_photo_is_segmented_smaller_with_a_note(folder: Path):
     parts = {"scene": SceneFiles(photo=Path("left.png")), "depth": None}
     pipe = pipeline(folder, **parts, workspace=Workspace(width_m=0.03, finest_m=0.002))  # 30 columns of 1 mm
     segments = pipe.make("segments")
@@ -462,12 +460,12 @@ def test_a_photo_finer_than_can_be_felt_is_segmented_smaller_and_it_is_said(fold
     assert "of the size" not in "".join(each.why for each in whole.outcomes)
 
 
-class TestFelt:
+class TestWorkingGrid:
     """Thirty columns of 1 mm, of which 2 mm are felt."""
 
     COARSE = Workspace(width_m=0.03, relief_m=0.01, smooth_m=0, finest_m=0.002)
 
-    def test_what_is_felt_is_as_coarse_and_as_large_in_metres(self, folder: Path):
+    def test_surface_is_as_coarse_and_as_large_in_metres(self, folder: Path):
         surface = pipeline(folder, workspace=self.COARSE).make("surface")
         assert surface.height_m.shape == surface.labels.shape == (10, 15)
         assert surface.extent_m == (0.03, 0.02)
@@ -478,11 +476,11 @@ class TestFelt:
         pairs = whole.height_m.reshape(10, 2, 15, 2).mean(axis=(1, 3))
         np.testing.assert_allclose(surface.height_m, pairs, atol=0.01 / 15)
 
-    def test_disparity_on_the_coarse_grid_is_in_pixels_of_the_picture(self, folder: Path):
+    def test_disparity_on_the_grid_is_in_pixels_of_the_picture(self, folder: Path):
         found = pipeline(folder, workspace=self.COARSE).make_on_grid("disparity")
         assert found.disparity_px.tolist() == [[2.0 * column for column in range(15)]] * 10
 
-    def test_what_a_scene_brings_at_full_size_is_felt_as_coarsely(self, folder: Path):
+    def test_full_size_products_of_the_scene_make_an_equally_coarse_surface(self, folder: Path):
         labels = np.zeros((20, 30), np.uint8)
         labels[:, 20:], labels[3, 4] = 2, 1  # one is smaller than can be felt, and keeps its material
         write_png(folder / "labels.png", labels)
@@ -499,7 +497,7 @@ class TestFelt:
         np.testing.assert_allclose(surface.height_m[0], np.linspace(0, 0.01, 15), atol=1e-8)
         assert pipe.make("segments").labels.shape == (20, 30)
 
-    def test_heights_are_felt_as_coarsely_and_holes_stay_holes(self, folder: Path):
+    def test_heights_are_reduced_and_holes_stay_holes(self, folder: Path):
         heights = np.tile(np.arange(30.0), (20, 1))
         heights[4:6, 10:12], heights[8, 20] = np.nan, np.nan
         np.save(folder / "torn.npy", heights)
@@ -510,7 +508,7 @@ class TestFelt:
         np.testing.assert_allclose(surface.height_m, wanted, atol=0.0002)
 
 
-def test_what_is_not_finite_is_an_error_or_a_mask_as_asked_for(folder: Path):
+def test_pixels_not_finite_are_an_error_or_a_mask_on_request(folder: Path):
     picture = np.random.default_rng(0).random((20, 30))
     np.save(folder / "whole.npy", picture)
     picture[3, 5] = np.nan

@@ -24,7 +24,7 @@ COUNT = 8
 
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
-    """A folder of pairs side by side: a box walks over a ground."""
+    """Write a folder of pairs side by side, in which a box walks over a ground."""
     folder, generator = tmp_path_factory.mktemp("walk"), np.random.default_rng(8)
     for number in range(COUNT):
         views = layered(number, 1.0, generator)
@@ -33,27 +33,27 @@ def walk(tmp_path_factory):
 
 
 @pytest.fixture
-def filmed(walk):
-    """A pipeline on it."""
+def film_pipeline(walk):
+    """Return a function that makes a pipeline of the video."""
 
-    def made(**changed):
+    def make(**changed):
         scene = Scene.video(walk, layout="side-by-side", fps=20, repeat=False)
         methods = {"depth": SemiGlobal(resolution="half", max_disparity_px=32), "render": Proxy()}
         return Pipeline(scene, **methods | changed, cached=False)
 
-    return made
+    return make
 
 
-def test_the_first_frame_is_the_relief_of_the_still(filmed):
-    pipeline = filmed()
+def test_first_frame_equals_the_relief_of_the_still(film_pipeline):
+    pipeline = film_pipeline()
     with pipeline.reliefs as reliefs:
         first = next(iter(reliefs))
     assert np.array_equal(first.relief.height_m, pipeline.relief.height_m)
 
 
-def test_each_frame_is_what_the_still_makes_of_its_disparity_and_range(filmed, walk):
-    """Where nothing is averaged: a still of a later frame, its range that of the first."""
-    pipeline = filmed()
+def test_each_frame_equals_the_still_of_its_disparity_and_range(film_pipeline, walk):
+    """A later frame is a still with the range of the first frame, as nothing is averaged."""
+    pipeline = film_pipeline()
     later = Pipeline(Scene.pair(walk / "004.png", layout="side-by-side"), depth=pipeline.config.depth.method)
     spans = nearness_range(pipeline.disparity, None)
     maker = PipelineFrames(pipeline.config, pipeline.scene)
@@ -65,8 +65,8 @@ def test_each_frame_is_what_the_still_makes_of_its_disparity_and_range(filmed, w
     assert np.array_equal(maker.relief(disparity, spans).height_m, still.height_m)
 
 
-def test_the_box_walks(filmed):
-    pipeline = filmed(workspace={"smooth_m": 0})
+def test_box_of_the_video_walks_in_the_reliefs(film_pipeline):
+    pipeline = film_pipeline(workspace={"smooth_m": 0})
     with pipeline.reliefs as reliefs:
         film = [each.relief.height_m for each in reliefs]
     assert len(film) == COUNT
@@ -76,7 +76,7 @@ def test_the_box_walks(filmed):
         assert (film[number] > 0.008)[~box].mean() < 0.1
 
 
-def test_exchanged_views_stay_exchanged(walk, tmp_path):
+def test_exchanged_views_stay_exchanged_in_later_frames(walk, tmp_path):
     for path in walk.iterdir():
         left, right = np.split(cv2.imread(str(path)), 2, axis=1)
         cv2.imwrite(str(tmp_path / path.name), np.hstack([right, left]))
@@ -88,9 +88,9 @@ def test_exchanged_views_stay_exchanged(walk, tmp_path):
     assert all(each.max() > 0.009 for each in film)
 
 
-def test_it_is_felt_by_the_clock_of_a_simulated_device(filmed):
+def test_film_runs_by_the_clock_of_a_simulated_device(film_pipeline):
     reports = []
-    recording = filmed().feel(Mock(path="circle"), 0.6, in_real_time=False, on_report=reports.append)
+    recording = film_pipeline().feel(Mock(path="circle"), 0.6, in_real_time=False, on_report=reports.append)
     frames = recording.frame
     assert np.array_equal(np.unique(frames[np.isfinite(frames)]), np.arange(COUNT))
     assert np.all(np.diff(frames[np.isfinite(frames)]) >= 0)
@@ -98,15 +98,15 @@ def test_it_is_felt_by_the_clock_of_a_simulated_device(filmed):
     assert reports[-1].film.shown == COUNT and reports[-1].film.skipped == 0
 
 
-def test_the_same_film_is_the_same_recording(filmed):
-    first, again = (filmed().feel(Mock(path="circle"), 0.3, in_real_time=False) for _ in range(2))
+def test_film_gives_the_same_recording_again(film_pipeline):
+    first, again = (film_pipeline().feel(Mock(path="circle"), 0.3, in_real_time=False) for _ in range(2))
     assert np.array_equal(first.rows, again.rows, equal_nan=True)
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_it_is_felt_in_real_time_and_recorded(filmed, tmp_path):
+def test_film_in_real_time_is_recorded(film_pipeline, tmp_path):
     reports, file = [], tmp_path / "hand.nc"
-    recording = filmed().feel(Mock(path="circle"), 1.5, on_report=reports.append, record=file)
+    recording = film_pipeline().feel(Mock(path="circle"), 1.5, on_report=reports.append, record=file)
     film = reports[-1].film
     assert film.shown + film.skipped >= 2 and film.damaged == 0
     assert film.age_ms > 0
@@ -116,10 +116,10 @@ def test_it_is_felt_in_real_time_and_recorded(filmed, tmp_path):
 
 
 @pytest.mark.usefixtures("loop_in_thread")
-def test_films_and_stills_are_felt_in_turn_and_a_film_begins_anew(filmed, walk):
+def test_films_and_stills_in_turn_start_each_film_again(film_pipeline, walk):
     still = Pipeline(Scene.photo(walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
     reports = []
-    recording = filmed().feel(Mock(path="circle"), 2.4, then=[still], each_s=0.6, on_report=reports.append)
+    recording = film_pipeline().feel(Mock(path="circle"), 2.4, then=[still], each_s=0.6, on_report=reports.append)
     frames = recording.frame
     stood = np.isnan(frames)
     turns = np.flatnonzero(np.diff(stood.astype(int)))
@@ -129,26 +129,26 @@ def test_films_and_stills_are_felt_in_turn_and_a_film_begins_anew(filmed, walk):
     assert any(each.film is None for each in reports) and any(each.film is not None for each in reports)
 
 
-def test_a_beacon_pulls_over_a_film(filmed):
-    pipeline = filmed(texture=Histogram(segments=2), parts={0: "ground"})
+def test_beacon_pulls_over_a_film(film_pipeline):
+    pipeline = film_pipeline(texture=Histogram(segments=2), parts={0: "ground"})
     reports = []
     pipeline.feel(Mock(path="circle"), 0.3, in_real_time=False, beacon="ground", on_report=reports.append)
     assert reports[-1].ticks == 300
 
 
-def test_a_law_that_feels_no_film_is_refused_in_one_line_that_names_those_that_do(filmed):
-    with pytest.raises(ConfigError, match=r"penalty feels no surface that moves.*proxy") as refused:
-        filmed(render=Penalty()).feel(Mock(), 0.1, in_real_time=False)
+def test_law_without_films_is_refused_and_others_are_named(film_pipeline):
+    with pytest.raises(ConfigError, match=r"penalty does not support moving surfaces.*proxy") as refused:
+        film_pipeline(render=Penalty()).feel(Mock(), 0.1, in_real_time=False)
     assert "\n" not in str(refused.value)
 
 
-def test_a_relief_of_parts_is_refused(filmed):
-    pipeline = filmed(texture=Histogram(segments=2), heights="guess")
+def test_film_of_a_relief_of_parts_is_refused(film_pipeline):
+    pipeline = film_pipeline(texture=Histogram(segments=2), heights="guess")
     with pytest.raises(ConfigError, match="leave `heights:` out"):
         pipeline.feel(Mock(), 0.1, in_real_time=False)
 
 
-def test_a_scene_that_stands_still_is_no_film(walk):
+def test_film_of_a_still_scene_is_refused(walk):
     still = Pipeline(Scene.photo(walk / "000.png"), depth=Luminance(), render=Proxy(), cached=False)
     with pytest.raises(ConfigError, match="does not move"):
         _ = still.reliefs
@@ -156,8 +156,8 @@ def test_a_scene_that_stands_still_is_no_film(walk):
         still.film()
 
 
-def test_a_film_is_had_in_python(filmed):
-    pipeline = filmed()
+def test_film_is_made_in_python(film_pipeline):
+    pipeline = film_pipeline()
     film = pipeline.film()
     assert isinstance(film, Film)
     with pipeline.reliefs as reliefs:
@@ -170,7 +170,7 @@ class Shrinks(DepthEstimator):
     """Makes a smaller map of every frame but the first."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """A map."""
+        """Make a smaller map of every frame but the first."""
         shape = views.shape if views.left.mean() == FIRST_MEAN else (3, 4)
         return DisparityMap(np.tile(np.arange(shape[1], dtype=np.float32), (shape[0], 1)))
 
@@ -180,8 +180,8 @@ FIRST_MEAN = 0.0
 
 @pytest.mark.parametrize("in_real_time", [True, False])
 @pytest.mark.usefixtures("loop_in_thread")
-def test_a_plugins_fault_ends_the_session(filmed, monkeypatch, in_real_time):
-    pipeline = filmed(depth=Shrinks())
+def test_film_with_a_plugin_fault_ends_the_session(film_pipeline, monkeypatch, in_real_time):
+    pipeline = film_pipeline(depth=Shrinks())
     monkeypatch.setitem(globals(), "FIRST_MEAN", pipeline.views.left.mean())
     began = time.monotonic()
     with pytest.raises(BrokenMethod, match="made disparity of 4 x 3"):
@@ -191,15 +191,15 @@ def test_a_plugins_fault_ends_the_session(filmed, monkeypatch, in_real_time):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("loop_in_thread")
-def test_stop_ends_it_soon_and_leaves_no_thread(filmed):
+def test_film_is_stopped_soon_and_leaves_no_thread(film_pipeline):
     stop, began = threading.Event(), time.monotonic()
 
-    def heard(report):
+    def listen(report):
         nonlocal began
         if not stop.is_set() and report.film and report.film.shown:
             began = time.monotonic()
             stop.set()
 
-    recording = filmed().feel(Mock(path="circle"), 60.0, stop=stop, on_report=heard)
+    recording = film_pipeline().feel(Mock(path="circle"), 60.0, stop=stop, on_report=listen)
     assert recording.stopped and time.monotonic() - began < 10
     assert not [each for each in threading.enumerate() if each.name == "film"]

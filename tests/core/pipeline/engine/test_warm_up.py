@@ -1,4 +1,4 @@
-"""What is rehearsed beside a pipeline: all that it compiles after its depth, and nothing that it has begun."""
+"""The warm-up of a pipeline: all kernels after its depth are compiled, and no stage that has begun is run again."""
 
 import json
 import subprocess
@@ -37,30 +37,30 @@ from dataclasses import replace
 config = load_config(Path(sys.argv[1]), default_registry(), ())
 engine = Engine(config, default_registry())
 work = _work(engine, "touch")
-said = list(work.function(*work.arguments))
+steps = list(work.function(*work.arguments))
 added = []
 add = Dispatcher.add_overload
-def told(self, result):
+def record_overload(self, result):
     added.append(f"{self.py_func.__module__}.{self.py_func.__qualname__}")
     add(self, result)
-Dispatcher.add_overload = told
+Dispatcher.add_overload = record_overload
 views = engine.scene.views
 rows, columns = np.indices(views.shape, np.float32)
 scene = replace(engine.scene, disparity=DisparityMap(6 + 40 * (rows / rows.max()) * (columns / columns.max())))
 real = Engine(config.with_values(scene=scene), default_registry())
 touch = real.make("touch")
 recording = run_simulated(touch, config.felt_device, 1.0, limits=config.safety)
-print(json.dumps([said, added, bool(np.any(recording.force_n))]))
+print(json.dumps([steps, added, bool(np.any(recording.force_n))]))
 """
 
 
-def test_the_rehearsal_of_the_demo_compiles_all_that_comes_after_its_depth():
+def test_warm_up_of_the_demo_compiles_every_kernel_after_depth():
     words = [sys.executable, "-c", COMPILED, str(ROOT / "configs" / "demo.yaml")]
     done = subprocess.run(words, capture_output=True, text=True, check=True)
-    said, added, felt = json.loads(done.stdout)
-    assert said == ["segments", "touch", FELT]
+    steps, added, has_force = json.loads(done.stdout)
+    assert steps == ["segments", "touch", FELT]
     assert added == []
-    assert felt
+    assert has_force
 
 
 def pipeline(**methods) -> Pipeline:
@@ -69,13 +69,13 @@ def pipeline(**methods) -> Pipeline:
 
 
 class TestWork:
-    def test_all_that_can_be_rehearsed(self):
+    def test_work_has_segments_touch_and_session(self):
         work = _work(pipeline().engine, "touch")
         assert work is not None
         assert list(run_stages(*work.arguments)) == ["segments", "touch", FELT]
         assert work.names == {"segments", "touch", FELT}
 
-    def test_what_was_begun_is_not(self):
+    def test_work_leaves_out_stages_that_have_begun(self):
         made = pipeline()
         assert made.segments is not None
         work = _work(made.engine, "touch")
@@ -84,32 +84,32 @@ class TestWork:
         assert made.touch is not None
         assert _work(made.engine, "touch") is None
 
-    def test_what_is_not_wanted_is_not(self):
+    def test_work_leaves_out_products_that_are_not_wanted(self):
         work = _work(pipeline().engine, "segments")
         assert work is not None
         assert list(run_stages(*work.arguments)) == ["segments"]
         assert _work(pipeline(texture=None).engine, "surface") is None
 
-    def test_what_the_scene_brings_is_not(self):
+    def test_work_leaves_out_products_of_the_scene(self):
         scene = Scene.photo(PICTURE, segments=(PICTURE > 40).astype(np.uint8))
         work = _work(Pipeline(scene, depth=Luminance(), texture=Gradient(), cached=False).engine, "segments")
         assert work is None
 
-    def test_a_scene_without_a_picture_is_not(self):
+    def test_work_of_a_scene_without_a_picture_is_none(self):
         scene = Scene.heights(np.eye(8))
         assert _work(Pipeline(scene, render=Penalty(), cached=False).engine, "touch") is None
 
-    def test_one_processor_has_no_room_beside(self, monkeypatch: pytest.MonkeyPatch):
+    def test_work_on_one_processor_is_none(self, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 1)
         assert _work(pipeline().engine, "touch") is None
 
-    def test_the_middle_of_a_large_picture_is_enough(self, monkeypatch: pytest.MonkeyPatch):
+    def test_work_crops_the_middle_of_a_large_picture(self, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr(module, "MOST_PX", 20)
         work = _work(pipeline().engine, "touch")
         assert work is not None
         assert np.array_equal(work.arguments[1].left, PICTURE[14:34, 14:34])
 
-    def test_a_law_without_materials_and_a_device_that_is_real(self):
+    def test_work_of_a_law_without_materials_and_a_real_device(self):
         work = _work(pipeline(render=GreyLevel(), device=None, texture=None).engine, "touch")
         assert work is not None
         assert list(run_stages(*work.arguments)) == ["touch", FELT]
@@ -123,12 +123,12 @@ class Loud(DepthEstimator):
         return Luminance().estimate(views)
 
 
-def test_a_run_is_the_same_with_a_process_beside_it_and_without(tmp_path: Path):
+def test_run_is_the_same_with_and_without_warm_up(tmp_path: Path):
     alone = pipeline().run(tmp_path / "alone", seconds=0.5)
     made = pipeline(depth=Loud())
     beside = made.run(tmp_path / "beside", seconds=0.5)
-    assert made.engine.beside is not None
-    child = made.engine.beside._child
+    assert made.engine.compiler is not None
+    child = made.engine.compiler._child
     assert child is not None
     assert child.returncode is not None
     for product in ("disparity", "segments", "surface"):
@@ -138,15 +138,15 @@ def test_a_run_is_the_same_with_a_process_beside_it_and_without(tmp_path: Path):
     assert np.array_equal(beside.recording.rows, alone.recording.rows, equal_nan=True)
 
 
-def test_a_run_that_compiles_nothing_starts_no_process(tmp_path: Path):
+def test_run_without_compiling_starts_no_process(tmp_path: Path):
     pipeline().run(tmp_path / "first", seconds=0.1)
     made = pipeline()
     made.run(tmp_path / "second", seconds=0.1)
-    assert made.engine.beside is not None
-    assert made.engine.beside._child is None
+    assert made.engine.compiler is not None
+    assert made.engine.compiler._child is None
 
 
-def test_what_is_made_without_a_run_has_a_process_beside_it_too(monkeypatch: pytest.MonkeyPatch):
+def test_make_has_a_warm_up_too(monkeypatch: pytest.MonkeyPatch):
     asked: list[str] = []
     monkeypatch.setattr(module, "_work", lambda _, want: asked.append(want))
     assert pipeline(depth=Loud()).touch is not None

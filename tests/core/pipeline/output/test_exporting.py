@@ -1,4 +1,4 @@
-"""Handing on: what exporters get, where their files come to, and what becomes of whatever goes wrong."""
+"""Exports: what exporters get, where their files come to, and what becomes of whatever goes wrong."""
 
 import json
 from collections.abc import Callable
@@ -32,7 +32,7 @@ SAID: Any = {"parts": {0: "wall", 1: {"name": "box", "height_m": 0.004}, 2: {"he
 
 
 class Report(Exporter):
-    """What it was given, as JSON."""
+    """An exporter that writes its work as JSON."""
 
     needs: ClassVar[tuple[str, ...]] = ("relief",)
     width_m: float | None = None
@@ -48,7 +48,7 @@ class Report(Exporter):
 
 
 class Does(Exporter):
-    """Whatever it is told to, with the stem."""
+    """An exporter that calls a function with the stem."""
 
     do: Callable[[Path], Any]
 
@@ -80,7 +80,7 @@ class Flat(DepthEstimator):
 
 
 class Counted(Segmenter):
-    """Remembers, for a test, the sizes that it was asked for."""
+    """A segmenter that records the sizes of its pictures."""
 
     seen: ClassVar[list[tuple[int, ...]]] = []
 
@@ -89,7 +89,7 @@ class Counted(Segmenter):
         return SegmentMap((picture > 80).astype(np.int32) + (picture > 170))
 
 
-def written(path: Path, text: str = "x") -> tuple[Path, ...]:
+def write_file(path: Path, text: str = "x") -> tuple[Path, ...]:
     path.write_text(text)
     return (path,)
 
@@ -102,21 +102,21 @@ def report_of(folder: Path) -> dict[str, Any]:
     return json.loads(next(folder.glob("*.report")).read_text())
 
 
-class TestWhatAnExporterGets:
-    def test_products_and_words(self, tmp_path: Path):
+class TestWork:
+    def test_work_has_products_and_words(self, tmp_path: Path):
         done = pipeline(**SAID, title="Ein Stück", language="de-AT").export(tmp_path, [Report()])
         said = report_of(tmp_path)
         assert (said["title"], said["language"], said["names"]) == ("Ein Stück", "de-AT", ["wall", "box", ""])
         assert [each.outcome for each in done.outcomes] == ["ran"]
         assert done.files == {"Report": (tmp_path / "Ein Stück.report",)}
 
-    def test_without_a_title_it_is_called_after_its_scene(self, tmp_path: Path):
+    def test_work_without_a_title_has_the_name_of_the_scene(self, tmp_path: Path):
         np.save(tmp_path / "old harbour.v2.npy", np.eye(8))
         Pipeline(Scene.heights(tmp_path / "old harbour.v2.npy"), cached=False).export(tmp_path / "out", [Report()])
         assert report_of(tmp_path / "out")["title"] == "old harbour.v2"
         assert (tmp_path / "out/old harbour-v2.report").is_file()
 
-    def test_products_are_made_as_wide_as_it_writes_them(self, tmp_path: Path):
+    def test_work_has_the_width_of_the_exporter(self, tmp_path: Path):
         exporters = [Report(), Report(width_m=0.16), Report(width_m=0.16)]
         done = pipeline(**SAID).export(tmp_path, exporters)
         widths = [json.loads(each.files[0].read_text())["extent_m"][0] for each in done.exports]
@@ -124,8 +124,8 @@ class TestWhatAnExporterGets:
         made = [[each.product for each in one.made if each.outcome == "ran"] for one in done.exports]
         assert made == [["parts", "relief"], ["relief"], []]
 
-    def test_what_is_found_in_the_picture_does_not_depend_on_the_width(self, tmp_path: Path):
-        """Else the numbers of parts, by which names are given, would be those of other parts."""
+    def test_parts_do_not_depend_on_the_width_of_the_exporter(self, tmp_path: Path):
+        """Names are given by the numbers of parts, which would be those of other parts."""
         Counted.seen.clear()
         scene = Scene.photo(PHOTO)
         said = {**SAID, "workspace": {"width_m": 0.0096, "finest_m": 3e-4}}
@@ -136,7 +136,7 @@ class TestWhatAnExporterGets:
         assert cells == {(24, 36)}
         assert Counted.seen == [(24, 36)]
 
-    def test_no_more_is_made_than_is_needed(self, tmp_path: Path):
+    def test_work_makes_only_the_needed_products(self, tmp_path: Path):
         """A print of a photo by its brightness needs no texture, and is not judged by parts either."""
         Counted.seen.clear()
         photo = Pipeline(Scene.photo(PHOTO), depth=Flat(), texture=Counted(), cached=False)
@@ -147,31 +147,31 @@ class TestWhatAnExporterGets:
         assert {each.product: each.outcome for each in one.made} == {"relief": "given"}
         assert Counted.seen == []
 
-    def test_simplified_parts_are_there_where_nothing_is_said_of_them(self, tmp_path: Path):
+    def test_simplified_parts_without_a_key_follow_the_usual_rules(self, tmp_path: Path):
         class Parts(Fingers):
             def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
                 assert isinstance(work.simplified, PartMap)
-                return written(stem.with_suffix(".txt"), f"{work.simplified.count} {work.names}")
+                return write_file(stem.with_suffix(".txt"), f"{work.simplified.count} {work.names}")
 
         (one,) = pipeline(**SAID).export(tmp_path, [Parts()]).exports
         assert one.files[0].read_text() == "3 ('wall', 'box', '')"
         (one,) = (
             Pipeline(Scene.heights(np.eye(8)), cached=False)
-            .export(tmp_path, [Does(do=lambda stem: written(stem.with_suffix(".txt")))])
+            .export(tmp_path, [Does(do=lambda stem: write_file(stem.with_suffix(".txt")))])
             .exports
         )
         assert one.outcome.outcome == "ran"
 
-    def test_without_segments_there_are_no_parts(self, tmp_path: Path):
+    def test_work_without_segments_has_no_parts(self, tmp_path: Path):
         class Parts(Fingers):
             def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
-                return written(stem.with_suffix(".txt"), str(work.simplified))
+                return write_file(stem.with_suffix(".txt"), str(work.simplified))
 
         (one,) = Pipeline(Scene.heights(np.eye(8)), cached=False).export(tmp_path, [Parts()]).exports
         assert one.files[0].read_text() == "None"
         assert one.legible.sentence == "Illegible, because the picture is not divided into parts."
 
-    def test_whether_fingers_read_it_is_said_at_the_width_of_the_files(self, tmp_path: Path):
+    def test_legibility_is_judged_at_the_width_of_the_files(self, tmp_path: Path):
         class Small(Fingers):
             width_m: float | None = 0.01
 
@@ -186,12 +186,12 @@ class TestWhatAnExporterGets:
         assert thing.legible("swell", 0.16).readable
         assert not thing.legible("swell", 0.01).readable
 
-    def test_a_product_may_be_needed_if_it_is_a_record(self):
+    def test_exportable_products_are_the_records(self):
         assert tuple(each for each in PRODUCTS if each != "touch") == EXPORTABLE
 
 
 class TestSimplify:
-    def test_relief_labels_and_materials_are_of_simplified_parts(self):
+    def test_simplify_applies_to_relief_labels_and_materials(self):
         labels = np.zeros((60, 80), np.int32)
         labels[10:40, 10:40], labels[20:24, 60:64] = 1, 2
         said = {"parts": {0: "ground", 1: {"height_m": 0.004}, 2: {"height_m": 0.003}}, "heights": "given"}
@@ -205,7 +205,7 @@ class TestSimplify:
         assert len(simple.materials.materials) == simple.parts.count == simple.simplified.count == 3
         assert simple.part_heights.heights_m == plain.part_heights.heights_m
 
-    def test_simplified_parts_are_felt_where_they_are(self):
+    def test_simplified_parts_are_felt_in_their_places(self):
         """Cell by cell of the nearest, though their grid is another one; and no more of them than are there."""
         parts = PartMap(np.int32([[0, 3, 2]]), (0, 1, 2, 3))
         felt = parts_on_grid(parts, (1, 8), "simplified")
@@ -213,24 +213,24 @@ class TestSimplify:
         assert parts_on_grid(parts, (1, 2), "parts").labels.tolist() == [[0, 2]]
         assert reduced_parts(PartMap(np.int32([[0, 0, 0, 2]]), (0, 1, 2)), (1, 2)).labels.tolist() == [[0, 2]]
 
-    def test_it_needs_parts(self):
+    def test_simplify_without_segments_is_refused(self):
         with pytest.raises(ConfigError, match=r"simplify: parts are pieces of segments, and the scene has none"):
             Pipeline(Scene.photo(PHOTO), simplify={}, cached=False).make("simplified")
 
-    def test_what_is_said_of_parts_is_checked_though_they_come_from_the_cache(self, tmp_path: Path):
-        def made(height_m: float) -> Pipeline:
+    def test_cached_simplified_parts_are_checked(self, tmp_path: Path):
+        def pipeline_with(height_m: float) -> Pipeline:
             said = {**SAID, "parts": {1: {"height_m": height_m}}}
             found = Pipeline(Scene.photo(PHOTO), texture=Counted(), simplify={}, cached=False, **said)
             found.engine.cache = Cache(tmp_path)
             return found
 
-        assert made(0.004).relief.height_m.max() > 0
+        assert pipeline_with(0.004).relief.height_m.max() > 0
         with pytest.raises(ConfigError, match="the highest can be"):
-            _ = made(0.4).relief
+            _ = pipeline_with(0.4).relief
 
 
 class TestFiles:
-    def test_a_later_export_takes_the_place_of_an_earlier_one(self, tmp_path: Path):
+    def test_later_export_replaces_an_earlier_one(self, tmp_path: Path):
         np.save(tmp_path / "map.npy", np.eye(8))
         for title in ("one", "two"):
             said = [f"title={title}"]
@@ -240,12 +240,12 @@ class TestFiles:
         assert json.loads((tmp_path / "coins-heights.json").read_text())["title"] == "two"
 
     @pytest.mark.parametrize("before", ["somebody's", "edited", "of another"])
-    def test_what_no_export_of_this_left_is_not_written_over(self, tmp_path: Path, before: str):
+    def test_other_file_is_not_overwritten_unless_forced(self, tmp_path: Path, before: str):
         path, out = tmp_path / "still life.report", tmp_path
         if before == "edited":
             pipeline(**SAID).export(out, [Report()])
         elif before == "of another":
-            pipeline(**SAID).export(out, [Does(do=lambda stem: written(stem.with_suffix(".report")))])
+            pipeline(**SAID).export(out, [Does(do=lambda stem: write_file(stem.with_suffix(".report")))])
         if before != "of another":
             path.write_text("mine")
         kept = path.read_text()
@@ -259,29 +259,29 @@ class TestFiles:
         assert one.files == (path,)
         assert path.read_text() != kept
 
-    def test_none_of_several_files_is_moved_if_one_cannot_be(self, tmp_path: Path):
+    def test_files_are_moved_all_or_none(self, tmp_path: Path):
         (tmp_path / "still life.b").mkdir()
 
         def both(stem: Path) -> tuple[Path, ...]:
-            return (*written(stem.with_suffix(".a")), *written(stem.with_suffix(".b")))
+            return (*write_file(stem.with_suffix(".a")), *write_file(stem.with_suffix(".b")))
 
         (one,) = pipeline().export(tmp_path, [Does(do=both)], force=True).exports
         assert one.outcome.outcome == "refused"
         assert sorted(path.name for path in tmp_path.iterdir()) == ["still life.b"]
 
-    def test_two_of_one_name_do_not_write_over_each_other(self, tmp_path: Path):
+    def test_exporters_of_one_name_have_numbered_files(self, tmp_path: Path):
         done = pipeline(**SAID).export(tmp_path, [Report(), Report(width_m=0.1)])
         assert {name: files[0].name for name, files in done.files.items()} == {
             "Report": "still life.report",
             "Report-2": "still life-2.report",
         }
 
-    def test_exports_into_one_folder_at_once_lose_nothing_of_its_list(self, tmp_path: Path):
+    def test_concurrent_exports_keep_the_whole_list(self, tmp_path: Path):
         names = [f"{letter}{number}" for letter in "ab" for number in range(20)]
         for folder in ("from", "to"):
             (tmp_path / folder).mkdir()
         for name in names:
-            written(tmp_path / "from" / name)
+            write_file(tmp_path / "from" / name)
 
         def bring(letter: str) -> None:
             for number in range(20):
@@ -291,7 +291,7 @@ class TestFiles:
             list(both.map(bring, "ab"))
         assert sorted(read_list(tmp_path / "to")) == sorted(names)
 
-    def test_files_are_as_open_to_others_as_any_new_file(self, tmp_path: Path):
+    def test_files_have_the_permissions_of_new_files(self, tmp_path: Path):
         (one,) = pipeline(**SAID).export(tmp_path, [Report()]).exports
         beside = tmp_path / "beside"
         beside.write_text("")
@@ -307,28 +307,28 @@ class TestFiles:
             ("ß" * 200, "ß" * (MOST_STEM_BYTES // 2)),
         ],
     )
-    def test_any_title_makes_a_name_of_a_file(self, title: str, stem: str):
+    def test_stem_of_any_title_is_a_file_name(self, title: str, stem: str):
         config = pipeline(title=title[:200]).config
         assert stem_of(config, Scene("x" * 300) if title[:2] == "xx" else LABELLED) == stem[: len(stem)]
 
 
-class TestWhatGoesWrong:
+class TestFailures:
     FAULTS: ClassVar[dict[str, tuple[Callable[[Path], Any], str, str]]] = {
         "raises": (lambda stem: 1 / 0, "failed", "Does failed in write: ZeroDivisionError"),
         "exits": (lambda stem: exit(3), "failed", "called sys.exit"),
         "no tuple": (lambda stem: str(stem), "failed", "write gave the str"),
-        "nothing": (lambda stem: (), "failed", "write gave no path"),
-        "no path": (lambda stem: (7,), "failed", "write gave 7 for a path"),
+        "nothing": (lambda stem: (), "failed", "write returned no path"),
+        "no path": (lambda stem: (7,), "failed", "write returned 7 for a path"),
         "no such file": (lambda stem: (stem.with_suffix(".txt"),), "failed", "there is no such file"),
-        "outside": (lambda stem: written(stem.parent.parent / "x.txt"), "failed", "is not the stem"),
-        "another name": (lambda stem: written(stem.with_name("x.txt")), "failed", "is not the stem"),
-        "a way out": (lambda stem: (stem.parent / f"{stem.name}/../../etc",), "failed", "is not the stem"),
+        "outside": (lambda stem: write_file(stem.parent.parent / "x.txt"), "failed", "is not the given stem"),
+        "another name": (lambda stem: write_file(stem.with_name("x.txt")), "failed", "is not the given stem"),
+        "a way out": (lambda stem: (stem.parent / f"{stem.name}/../../etc",), "failed", "is not the given stem"),
         "refuses": (lambda stem: (_ for _ in ()).throw(PictureError("no part is big enough; take A3")), "refused",
                     "no part is big enough; take A3"),
     }  # fmt: skip
 
     @pytest.mark.parametrize("fault", FAULTS)
-    def test_is_said_in_a_line_and_the_others_write(self, tmp_path: Path, fault: str):
+    def test_failure_is_one_line_and_the_others_write(self, tmp_path: Path, fault: str):
         do, became, why = self.FAULTS[fault]
         first, other = pipeline(**SAID).export(tmp_path / "out", [Does(do=do), Report()]).exports
         assert (first.outcome.outcome, first.files) == (became, ())
@@ -340,7 +340,7 @@ class TestWhatGoesWrong:
             "still life.report",
         }
 
-    def test_a_link_is_no_file(self, tmp_path: Path):
+    def test_link_in_place_of_a_file_is_refused(self, tmp_path: Path):
         def link(stem: Path) -> tuple[Path, ...]:
             path = stem.with_suffix(".txt")
             path.symlink_to(__file__)
@@ -349,17 +349,17 @@ class TestWhatGoesWrong:
         (one,) = pipeline().export(tmp_path, [Does(do=link)]).exports
         assert one.outcome.outcome == "failed"
 
-    def test_what_it_does_not_need_is_not_read(self, tmp_path: Path):
+    def test_product_that_is_not_needed_cannot_be_read(self, tmp_path: Path):
         (one,) = pipeline(**SAID).export(tmp_path, [NeedsMore()]).exports
         assert one.outcome.outcome == "failed"
         assert "reads parts, which it does not name in `needs`" in one.outcome.why
 
-    def test_it_needs_what_is_made(self, tmp_path: Path):
+    def test_need_of_an_unknown_product_is_a_fault(self, tmp_path: Path):
         (one,) = pipeline(**SAID).export(tmp_path, [NeedsATouch()]).exports
         assert one.outcome.outcome == "failed"
         assert "needs 'touch'; an exporter may need disparity," in one.outcome.why
 
-    def test_a_product_that_cannot_be_made_is_its_refusal(self, tmp_path: Path):
+    def test_refused_product_refuses_the_exporter(self, tmp_path: Path):
         (one,) = pipeline().export(tmp_path, [Report()]).exports
         assert (one.outcome.outcome, one.outcome.why) == (
             "refused",
@@ -367,13 +367,13 @@ class TestWhatGoesWrong:
         )
 
     @pytest.mark.parametrize("width_m", [0.0, -1.0, float("nan"), 1e9])
-    def test_a_width_that_is_none(self, tmp_path: Path, width_m: float):
+    def test_invalid_width_is_refused(self, tmp_path: Path, width_m: float):
         (one,) = pipeline(**SAID).export(tmp_path, [Report(width_m=width_m)]).exports
         assert one.outcome.outcome == "refused"
         assert "a width is from" in one.outcome.why
 
-    def test_a_disk_runs_full(self, tmp_path: Path):
-        big = Does(do=lambda stem: written(stem.with_suffix(".txt"), "x" * 100_000))
+    def test_full_disk_is_refused_with_the_cure(self, tmp_path: Path):
+        big = Does(do=lambda stem: write_file(stem.with_suffix(".txt"), "x" * 100_000))
         with files_up_to(10_000):
             first, other = pipeline(**SAID).export(tmp_path, [big, Report()]).exports
         assert first.outcome.outcome == "refused"
@@ -381,19 +381,19 @@ class TestWhatGoesWrong:
         assert other.files
         assert sorted(path.name for path in tmp_path.iterdir()) == [".exports.json", "still life.report"]
 
-    def test_a_folder_that_cannot_be_written(self, tmp_path: Path):
+    def test_unwritable_folder_is_refused(self, tmp_path: Path):
         (tmp_path / "file").write_text("")
         with pytest.raises(OutputError, match="choose another folder"):
             pipeline().export(tmp_path / "file" / "out", [Report()])
 
     @pytest.mark.parametrize("content", ["", "{}", '{"files": {"a": 1}}', "[[", '{"files": {"a": {"b": 1}}}'])
-    def test_a_list_that_is_somebody_elses(self, tmp_path: Path, content: str):
+    def test_list_of_another_program_is_refused(self, tmp_path: Path, content: str):
         (tmp_path / ".exports.json").write_text(content)
-        with pytest.raises(OutputError, match="is no list of exports; take it away, or choose another folder"):
+        with pytest.raises(OutputError, match="is not a list of exports; move or delete it"):
             pipeline(**SAID).export(tmp_path, [Report()])
         assert (tmp_path / ".exports.json").read_text() == content
 
-    def test_names(self, tmp_path: Path):
+    def test_names_of_exporters_are_checked(self, tmp_path: Path):
         with pytest.raises(UnknownMethod, match=r"no export method is named 'hights' \(did you mean 'heights'\?\)"):
             pipeline().export(tmp_path, ["hights"])
         with pytest.raises(ConfigError, match=r"no exporter is named; .* installed: .*heights"):
@@ -403,9 +403,9 @@ class TestWhatGoesWrong:
 
 class TestEnding:
     @pytest.mark.parametrize("error", [KeyboardInterrupt, Stopped])
-    def test_it_ends_with_nothing_half_written(self, tmp_path: Path, error: type[BaseException]):
+    def test_interrupted_export_leaves_no_partial_files(self, tmp_path: Path, error: type[BaseException]):
         def halfway(stem: Path) -> Any:
-            written(stem.with_suffix(".txt"))
+            write_file(stem.with_suffix(".txt"))
             raise error
 
         done = [Report(), Does(do=halfway), Report()]
@@ -413,21 +413,21 @@ class TestEnding:
             pipeline(**SAID).export(tmp_path, done)
         assert sorted(path.name for path in tmp_path.iterdir()) == [".exports.json", "still life.report"]
 
-    def test_it_can_be_stopped_from_another_thread(self, tmp_path: Path):
+    def test_export_is_stopped_from_another_thread(self, tmp_path: Path):
         stop = Event()
-        halfway = Does(do=lambda stem: stop.set() or written(stem.with_suffix(".txt")))
+        halfway = Does(do=lambda stem: stop.set() or write_file(stem.with_suffix(".txt")))
         with pytest.raises(Stopped):
             pipeline(**SAID).export(tmp_path, [halfway, Report()], stop=stop)
         assert list(tmp_path.iterdir()) == []
 
-    def test_nothing_is_written_after_a_stop(self, tmp_path: Path):
+    def test_stopped_export_writes_nothing_more(self, tmp_path: Path):
         stop, begun = Event(), list[Path]()
         stop.set()
         with pytest.raises(Stopped):
             pipeline().export(tmp_path, [Does(do=begun.append)], stop=stop)
         assert begun == []
 
-    def test_its_progress_is_heard(self, tmp_path: Path):
+    def test_progress_has_each_exporter(self, tmp_path: Path):
         heard = list[tuple[str, str | None]]()
         pipeline(**SAID).export(
             tmp_path, [Report()], lambda stage: heard.append((stage.product, stage.outcome and stage.outcome.outcome))
@@ -436,7 +436,7 @@ class TestEnding:
 
 
 class TestDocument:
-    def test_the_list_of_a_file(self, tmp_path: Path):
+    def test_exporters_of_a_file_are_listed(self, tmp_path: Path):
         config = parse_config(
             "scene: builtin/coins\nsimplify: {gap_m: 4 mm}\nexport: [heights, {use: heights, width_m: 160 mm}]",
             tmp_path / "p.yaml", default_registry(),
@@ -459,12 +459,12 @@ class TestDocument:
             ("simplify: {gap_m: -1}", r"p.yaml:2:12: simplify.gap_m: Input should be greater than or equal to 0"),
         ],
     )
-    def test_what_is_wrong_has_its_place(self, tmp_path: Path, text: str, says: str):
+    def test_wrong_exporters_are_refused_with_their_places(self, tmp_path: Path, text: str, says: str):
         with pytest.raises(ConfigError, match=says):
             parse_config(f"scene: builtin/coins\n{text}", tmp_path / "p.yaml", default_registry())
 
     @pytest.mark.parametrize("text", ["export:", "simplify:", "export: []", ""])
-    def test_nothing_is_said(self, tmp_path: Path, text: str):
+    def test_file_without_exporters_has_none(self, tmp_path: Path, text: str):
         config = parse_config(f"scene: builtin/coins\n{text}", tmp_path / "p.yaml", default_registry())
         assert config.export == ()
         assert config.simplify is None
@@ -479,7 +479,9 @@ class TestDocument:
             ("export: [heights]", ["export=[]"], []),
         ],
     )
-    def test_an_option_is_set_by_the_name_of_its_exporter(self, tmp_path: Path, before: str, sets: list[str], after):
+    def test_override_by_the_name_of_an_exporter_sets_its_option(
+        self, tmp_path: Path, before: str, sets: list[str], after
+    ):
         text = f"scene: builtin/coins\n{before}"
         config = parse_config(text, tmp_path / "p.yaml", default_registry(), sets)
         assert [each.method.width_m for each in config.export] == after
@@ -493,18 +495,18 @@ class TestDocument:
             ("export.9.width_m=1", "no export method is named '9'"),
         ],
     )
-    def test_what_is_wrong_in_an_override_is_said_with_it(self, tmp_path: Path, override: str, says: str):
+    def test_wrong_override_is_named_in_the_complaint(self, tmp_path: Path, override: str, says: str):
         with pytest.raises(ConfigError, match=says):
             parse_config("scene: builtin/coins", tmp_path / "p.yaml", default_registry(), [override])
 
-    def test_a_name_has_the_options_of_the_list(self, tmp_path: Path):
+    def test_exporter_by_name_has_the_options_of_the_list(self, tmp_path: Path):
         np.save(tmp_path / "map.npy", np.eye(8))
         text = "scene: {height: map.npy}\nexport: [{use: heights, width_m: 0.16}]"
         config = parse_config(text, tmp_path / "p.yaml", default_registry())
         Pipeline.from_config(config, default_registry(), None).export(tmp_path, ["heights"])
         assert json.loads((tmp_path / "p-heights.json").read_text())["width_mm"] == 160
 
-    def test_a_pipeline_made_in_python_lists_them_too(self, tmp_path: Path):
+    def test_pipeline_in_python_lists_exporters(self, tmp_path: Path):
         done = pipeline(**SAID, export=[Report(width_m=0.1)]).export(tmp_path)
         assert "still life.report" in repr(done)
         assert "still life.report</td>" in done._repr_html_()
@@ -518,13 +520,13 @@ class TestCommand:
         (tmp_path / "map.yaml").write_text("scene: {height: map.npy}\nexport: [heights]\n")
         return tmp_path
 
-    def test_a_file_and_its_list(self, place: Path):
+    def test_command_writes_the_exporters_of_a_file(self, place: Path):
         ran = tangible("export", "map.yaml", cwd=place)
         assert ran.returncode == 0, ran.stderr
         assert "map.npy is written as heights." in " ".join(ran.stdout.split())
         assert (place / "out/map/map-heights.tif").is_file()
 
-    def test_a_picture_and_names(self, place: Path):
+    def test_command_exports_a_picture_by_names(self, place: Path):
         ran = tangible("export", "map.npy", "--to", "heights", "--out", "here", "--json", cwd=place)
         assert ran.returncode == 0, ran.stderr
         said = json.loads(ran.stdout)
@@ -532,7 +534,7 @@ class TestCommand:
         assert said["exports"][0]["files"] == [f"here/map-heights.{end}" for end in ("json", "png", "tif")]
         assert said["exports"][0]["legible"] is None
 
-    def test_a_recording_is_written_as_csv(self, place: Path):
+    def test_command_exports_a_recording_as_csv(self, place: Path):
         rows = np.arange(3.0 * len(TICK_COLUMNS)).reshape(3, -1)
         Recording(rows).save(place / "felt.nc")
         ran = tangible("export", "felt.nc", "--to", "csv", "--out", "here", cwd=place)
@@ -544,7 +546,7 @@ class TestCommand:
         ])  # fmt: skip
         assert tangible("export", "map.npy", "--to", "csv", cwd=place).returncode == 2
 
-    def test_exit_codes(self, place: Path, monkeypatch: pytest.MonkeyPatch):
+    def test_command_exit_codes_tell_refusal_and_fault(self, place: Path, monkeypatch: pytest.MonkeyPatch):
         from tangible_export.heights import Heights
 
         (place / "out").mkdir()

@@ -1,4 +1,4 @@
-"""What a run leaves in its folder: its own, all of it, and whatever was no run's."""
+"""The folder of a run: all of its files, none of an earlier run, and every other file untouched."""
 
 import json
 import shutil
@@ -16,7 +16,7 @@ from tangible_core import Pipeline, Scene
 from tangible_core.data.products import Product
 from tangible_core.errors import OutputError
 from tangible_core.pipeline.output import runs
-from tangible_core.pipeline.output.run_folder import NAMES, default_folder, read_manifest, rewritten
+from tangible_core.pipeline.output.run_folder import NAMES, default_folder, read_manifest, rewriting
 from tangible_devices import Mock
 from tangible_render import Penalty
 
@@ -42,7 +42,7 @@ def digests(folder: Path) -> dict[str, bytes]:
     return {each.name: each.read_bytes() for each in folder.iterdir()}
 
 
-def test_what_an_earlier_run_made_and_this_one_did_not_is_gone_and_all_else_stays(tmp_path: Path):
+def test_run_deletes_only_the_files_of_earlier_runs(tmp_path: Path):
     (tmp_path / "notes.txt").write_text("my own")
     first = run(tmp_path)
     assert names(tmp_path) == {each.name for each in first.files} | {"manifest.json", "notes.txt"}
@@ -55,18 +55,18 @@ def test_what_an_earlier_run_made_and_this_one_did_not_is_gone_and_all_else_stay
 
 
 @pytest.mark.parametrize("name", ["surface.npz", "outcomes.json"])
-def test_a_file_that_no_run_left_so_stops_the_run_before_the_work(tmp_path: Path, name: str):
+def test_changed_file_stops_the_run_before_the_work(tmp_path: Path, name: str):
     (tmp_path / name).write_text("my own")
-    with pytest.raises(OutputError, match=f"{name}: no run left it so"):
+    with pytest.raises(OutputError, match=f"{name}: exists, and is not an unchanged file of a run"):
         run(tmp_path)
     assert digests(tmp_path) == {name: b"my own"}
     run(tmp_path / "x")
     (tmp_path / "x" / name).write_text("changed")
-    with pytest.raises(OutputError, match="no run left it so"):
+    with pytest.raises(OutputError, match="exists, and is not an unchanged file of a run"):
         run(tmp_path / "x", "relief")
 
 
-def test_the_folder_of_a_version_without_manifests_is_a_runs(tmp_path: Path):
+def test_folder_of_a_version_without_manifests_is_overwritten(tmp_path: Path):
     run(tmp_path)
     (tmp_path / "manifest.json").unlink()
     run(tmp_path, "relief")
@@ -74,17 +74,17 @@ def test_the_folder_of_a_version_without_manifests_is_a_runs(tmp_path: Path):
 
 
 @pytest.mark.parametrize("text", ["", "[1]"])
-def test_a_folder_whose_manifest_is_damaged_is_not_written_over(tmp_path: Path, text: str):
+def test_folder_with_a_damaged_manifest_is_not_overwritten(tmp_path: Path, text: str):
     run(tmp_path)
     (tmp_path / "surface.npz").write_text("changed")
     (tmp_path / "manifest.json").write_text(text)
     before = digests(tmp_path)
-    with pytest.raises(OutputError, match="no run left it so"):
+    with pytest.raises(OutputError, match="exists, and is not an unchanged file of a run"):
         run(tmp_path)
     assert digests(tmp_path) == before
 
 
-def test_a_copied_folder_is_still_a_runs(tmp_path: Path):
+def test_copied_folder_is_overwritten(tmp_path: Path):
     run(tmp_path / "a")
     shutil.copytree(tmp_path / "a", tmp_path / "b", copy_function=shutil.copy)
     run(tmp_path / "b", "relief")
@@ -92,16 +92,14 @@ def test_a_copied_folder_is_still_a_runs(tmp_path: Path):
 
 
 class Killed(BaseException):
-    """Nothing hears of it."""
+    """An end that no `except Exception` catches."""
 
 
 @pytest.mark.parametrize("written", range(4))
-def test_a_run_that_is_killed_while_it_writes_leaves_nothing_that_is_described_wrongly(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, written: int
-):
+def test_killed_run_leaves_no_wrong_description(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, written: int):
     @contextmanager
-    def killed(*words: Any) -> Iterator[Callable[[str], Path]]:
-        with rewritten(*words) as place:
+    def stop_midway(*words: Any) -> Iterator[Callable[[str], Path]]:
+        with rewriting(*words) as place:
             yield lambda name: place(name) if len(names(tmp_path) & set(NAMES)) < written else end()
 
     def end() -> Path:
@@ -109,7 +107,7 @@ def test_a_run_that_is_killed_while_it_writes_leaves_nothing_that_is_described_w
 
     run(tmp_path)
     with monkeypatch.context() as patch:
-        patch.setattr(runs, "rewritten", killed)
+        patch.setattr(runs, "rewriting", stop_midway)
         with pytest.raises(Killed):
             run(tmp_path, "surface", HEIGHTS[::-1])
     manifest = read_manifest(tmp_path)
@@ -120,7 +118,7 @@ def test_a_run_that_is_killed_while_it_writes_leaves_nothing_that_is_described_w
     assert names(tmp_path) == {each.name for each in done.files} | {"manifest.json"}
 
 
-def test_a_run_that_fails_leaves_the_results_of_before(tmp_path: Path):
+def test_failed_run_keeps_the_earlier_results(tmp_path: Path):
     run(tmp_path)
     before = digests(tmp_path)
     with pytest.raises(Exception, match="seconds"):
@@ -131,7 +129,7 @@ def test_a_run_that_fails_leaves_the_results_of_before(tmp_path: Path):
 @pytest.mark.parametrize(
     "text", ["", "[]", "{}", '{"source": "", "complete": true, "files": {"../mine": "x", "a": 3}}', "\0", "[" * 9999]
 )
-def test_a_manifest_that_is_none_takes_nothing_away(tmp_path: Path, text: str):
+def test_invalid_manifest_deletes_nothing(tmp_path: Path, text: str):
     (tmp_path / "mine").write_text("my own")
     (tmp_path / "x").mkdir()
     (tmp_path / "x" / "manifest.json").write_text(text)
@@ -140,7 +138,7 @@ def test_a_manifest_that_is_none_takes_nothing_away(tmp_path: Path, text: str):
 
 
 class TestDefault:
-    def test_other_results_are_kept_and_the_same_file_comes_back_to_its_own(self, tmp_path: Path):
+    def test_default_folder_is_that_of_the_same_file_or_a_new_one(self, tmp_path: Path):
         np.save(tmp_path / "h.npy", HEIGHTS)
         for folder in ("a", "b"):
             (tmp_path / folder).mkdir()
@@ -156,14 +154,14 @@ class TestDefault:
         again = tangible("run", "out/mine/config.yaml", "--out", "out/mine", cwd=tmp_path)
         assert again.returncode == 0, again.stderr
 
-    def test_a_folder_of_ones_own_is_not_written_into(self, tmp_path: Path):
+    def test_default_folder_avoids_a_folder_with_other_files(self, tmp_path: Path):
         (tmp_path / "out/mine").mkdir(parents=True)
         source = tmp_path / "mine.yaml"
         assert default_folder(source, tmp_path / "out") == tmp_path / "out/mine"
         (tmp_path / "out/mine/sheet.png").write_text("my own")
         assert default_folder(source, tmp_path / "out") == tmp_path / "out/mine-2"
 
-    def test_an_edited_configuration_may_be_run_in_its_place(self, tmp_path: Path):
+    def test_edited_configuration_is_run_in_its_folder(self, tmp_path: Path):
         np.save(tmp_path / "h.npy", HEIGHTS)
         (tmp_path / "mine.yaml").write_text("scene: {height: h.npy}\n")
         assert tangible("run", "mine.yaml", cwd=tmp_path).returncode == 0

@@ -14,7 +14,7 @@ def report(stopped: str = "", part: str = "", material: str = "") -> ServoReport
 
 def test_log_has_a_line_for_each_hook(caplog: pytest.LogCaptureFixture):
     caplog.set_level(logging.DEBUG, "tangible_core.plugins.observers.log")
-    ran = Outcome("relief", "ran", "asked for", "core", 0.25)
+    ran = Outcome("relief", "ran", "requested", "core", 0.25)
     log.tangible_plan_made(Plan("relief", (ran,)))
     log.tangible_stage_started("relief", "core")
     log.tangible_stage_finished(ran)
@@ -25,7 +25,7 @@ def test_log_has_a_line_for_each_hook(caplog: pytest.LogCaptureFixture):
     assert lines == [
         ("INFO", "plan for relief: relief ran"),
         ("DEBUG", "making relief with core"),
-        ("INFO", "relief: ran, asked for (0.250 s)"),
+        ("INFO", "relief: ran, requested (0.250 s)"),
         ("INFO", "segments: failed, a bug (0.000 s)"),
         ("DEBUG", "servo: 100 ticks, 0.1 s, force 1.50 N"),
         ("DEBUG", "servo: 100 ticks, 0.1 s, force 1.50 N, on helmet, glass"),
@@ -34,7 +34,7 @@ def test_log_has_a_line_for_each_hook(caplog: pytest.LogCaptureFixture):
 
 def test_progress_without_a_terminal_writes_nothing(capsys: pytest.CaptureFixture[str]):
     progress.tangible_stage_started("relief", "core")
-    progress.tangible_stage_finished(Outcome("relief", "ran", "asked for"))
+    progress.tangible_stage_finished(Outcome("relief", "ran", "requested"))
     assert capsys.readouterr() == ("", "")
 
 
@@ -53,6 +53,6 @@ def test_progress_shows_one_spinner_until_the_loop_stops(monkeypatch: pytest.Mon
     (spinner,) = progress._shown
     assert "0.1 s" in str(spinner.status)
     progress.tangible_servo_report(report(part="[bold] sign\n", material="moss"))
-    assert str(spinner.status).endswith(r"peak 1.50 N, on [bold] sign\n, moss"), "its breaks are no commands"
+    assert str(spinner.status).endswith(r"peak 1.50 N, on [bold] sign\n, moss"), "breaks of lines in names are escaped"
     progress.tangible_servo_report(report("the time is over"))
     assert progress._shown == []

@@ -109,10 +109,10 @@ class TestScene:
 class TestFiles:
     def test_repeating_file_gives_frames_in_order_and_again(self, film: Path):
         with Scene.video(film).frames.open() as frames:
-            found = [frames.next() for _ in range(23)]
-        assert [each.number for each in found] == list(range(23))
-        assert [shown(each.views) for each in found] == [number % 10 for number in range(23)]
-        np.testing.assert_allclose([each.time_s for each in found], np.arange(23) / 25, atol=1e-9)
+            read = [frames.next() for _ in range(23)]
+        assert [each.number for each in read] == list(range(23))
+        assert [shown(each.views) for each in read] == [number % 10 for number in range(23)]
+        np.testing.assert_allclose([each.time_s for each in read], np.arange(23) / 25, atol=1e-9)
 
     def test_file_without_repeat_ends(self, film: Path):
         with Scene.video(film, repeat=False).frames.open() as frames:
@@ -203,8 +203,8 @@ class TestFiles:
         shapes = [(24, 32), (48, 64), (24, 32)]
         path = jpegs(tmp_path / "film.mjpeg", (grey(number, shape) for number, shape in enumerate(shapes)))
         with Scene.video(path).frames.open() as frames:
-            found = [frames.next().views for _ in shapes]
-        assert [shown(each) for each in found] == [0, 1, 2] and {each.shape for each in found} == {(24, 32)}
+            read = [frames.next().views for _ in shapes]
+        assert [shown(each) for each in read] == [0, 1, 2] and {each.shape for each in read} == {(24, 32)}
 
     def test_damaged_frame_raises_once_and_is_left_out(self, monkeypatch: pytest.MonkeyPatch):
         captures = [Played([grey(0), None, None, grey(3)]) for _ in range(2)]
@@ -217,8 +217,12 @@ class TestFiles:
     def test_file_of_only_damaged_frames_raises_at_every_call(self, monkeypatch: pytest.MonkeyPatch):
         captures = [Played([grey(0)]), *(Played([None, None]) for _ in range(3))]
         with play(monkeypatch, *captures, repeat=True).frames.open() as frames:
-            for said in ("frame 0 is damaged", "none of its frames can be played", "none of its frames can be played"):
-                with pytest.raises(PictureError, match=said):
+            for message in (
+                "frame 0 is damaged",
+                "none of its frames can be played",
+                "none of its frames can be played",
+            ):
+                with pytest.raises(PictureError, match=message):
                     frames.next()
 
     def test_file_cut_short_raises_once_and_starts_again(self, tmp_path: Path, capfd: pytest.CaptureFixture[str]):
@@ -274,10 +278,10 @@ class TestFolders:
             cv2.imwrite(str(tmp_path / f"{number}.png"), values)
         scene = Scene.video(tmp_path)
         with scene.frames.open() as frames:
-            found = [frames.next().views.left for _ in range(3)]
-        assert all(each.shape == (4, 6, 3) and each.dtype == np.uint8 for each in found)
-        assert [int(each.min()) for each in found] == [90, 128, 9], "what is hidden looks like what is"
-        np.testing.assert_array_equal(found[0], scene.views.left)
+            read = [frames.next().views.left for _ in range(3)]
+        assert all(each.shape == (4, 6, 3) and each.dtype == np.uint8 for each in read)
+        assert [int(each.min()) for each in read] == [90, 128, 9], "what is hidden looks like what is"
+        np.testing.assert_array_equal(read[0], scene.views.left)
         np.testing.assert_array_equal(scene.shown, np.repeat([[True, False]], 4, 0).repeat(3, 1))
 
     def test_folder_reports_pictures_of_another_size_and_damaged_ones(self, folder: Path):
@@ -291,14 +295,14 @@ class TestFolders:
             assert frames.next().number == 3
             with pytest.raises(PictureError, match=r"f4.png: the picture is damaged or cut short"):
                 frames.next()
-            assert frames.next().number == 6, "a second damaged one is not said"
+            assert frames.next().number == 6, "a second damaged one does not raise"
 
     def test_folder_that_lost_its_pictures_raises_at_every_call(self, folder: Path):
         with Scene.video(folder).frames.open() as frames:
             for each in folder.glob("f*.png"):
                 each.unlink()
-            for said in ("f0.png: there is no such file", "none of its 12 pictures can be read", "none of its 12"):
-                with pytest.raises(PictureError, match=said):
+            for message in ("f0.png: there is no such file", "none of its 12 pictures can be read", "none of its 12"):
+                with pytest.raises(PictureError, match=message):
                     frames.next()
 
 
@@ -325,10 +329,12 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("name", "make", "said"), BAD.values(), ids=BAD)
-def test_unplayable_file_raises_one_line(tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str, make, said: str):
+@pytest.mark.parametrize(("name", "make", "message"), BAD.values(), ids=BAD)
+def test_unplayable_file_raises_one_line(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str, make, message: str
+):
     make(tmp_path / name)
-    with pytest.raises(PictureError, match=said) as error:
+    with pytest.raises(PictureError, match=message) as error:
         Scene.video(tmp_path / name)
     assert "\n" not in str(error.value) and str(error.value).startswith(str(tmp_path))
     assert capfd.readouterr().err == "", "OpenCV and FFmpeg say nothing themselves"
@@ -377,9 +383,9 @@ class TestPipelineFile:
         "value", ["video=-1", "video=[1]", "fps=0", "fps=.nan", "layout=diagonal", "video=http://a/b.ts"]
     )
     def test_wrong_video_option_is_one_line_with_its_place(self, film: Path, value: str):
-        with pytest.raises(ConfigError) as said:
+        with pytest.raises(ConfigError) as message:
             parse_config("scene: {video: film.avi}", film.parent / "p.yaml", default_registry(), [f"scene.{value}"])
-        assert len(said.value.args) == 1 and str(said.value).startswith(f"--set scene.{value}: scene.")
+        assert len(message.value.args) == 1 and str(message.value).startswith(f"--set scene.{value}: scene.")
 
     def test_cache_key_depends_on_the_first_frame_only(self, tmp_path: Path):
         text = "scene: {video: film.avi}\nwant: relief\ndepth: luminance\n"
@@ -432,13 +438,13 @@ class TestOptions:
             SceneFiles.model_validate({"video": "film.avi", **options})
 
     def test_video_options_without_a_video_are_refused(self):
-        for options, said in (
+        for options, message in (
             ({"fps": 30}, "fps needs video"),
             ({"repeat": False}, "repeat needs video"),
             ({"layout": "mono"}, "mono is for a video"),
             ({"layout": "top-bottom"}, "layout needs stereo"),
         ):
-            with pytest.raises(ValidationError, match=said):
+            with pytest.raises(ValidationError, match=message):
                 SceneFiles.model_validate({"photo": "a.png", **options})
         with pytest.raises(ValidationError, match="mono is for a video"):
             SceneFiles.model_validate({"stereo": "a.png", "layout": "mono"})

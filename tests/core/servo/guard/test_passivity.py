@@ -1,5 +1,6 @@
 """The passivity observer and controller, in every direction and at other periods than a millisecond."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,6 +15,7 @@ DAMPING = 1.5
 SPEC = DeviceSpec(8.0, 3000.0, DAMPING, (0.08, 0.08, 0.08), 3e-5)
 STRICT = Safety(passivity="strict", ramp_s=0, max_step_n=10)
 COUPLED = Safety(passivity="coupled", ramp_s=0, max_step_n=10, stiffness_margin=0.5)
+AT_ONCE = {"ramp_s": 0, "max_step_n": 10}
 AXES = pytest.mark.parametrize("axis", range(3))
 REST = (0.0, 0.0, 0.0)
 
@@ -109,3 +111,109 @@ class TestController:
         left, flags = tick(arrays, REST, (0.1, 0.0, 0.0), REST)
         assert not left.any()
         assert not flags
+
+
+class TestPassivity:
+    def energies(self, moves, **options):
+        """Yield the energy after each (x, law's force along x), with velocity zero, so that nothing is damped."""
+        settings, memory = Safety(**AT_ONCE, **options).arrays(SPEC, 0.0)
+        for x, fx in moves:
+            guard(settings, memory, 0.001, x, 0.0, 0.0, 0.0, 0.0, 0.0, fx, 0.0, 0.0)
+            yield memory[ENERGY_J]
+
+    @pytest.mark.parametrize("delay", [0, 1, 3])
+    def test_work_of_held_force_is_exact(self, delay: int):
+        random = np.random.default_rng(0)
+        x, fx = np.cumsum(random.uniform(-1e-3, 1e-3, 50)), random.uniform(0.1, 1, 50)
+        held = np.concatenate([np.zeros(1 + delay), fx])[:50]
+        work = np.cumsum(held * np.diff(x, prepend=x[0]))
+        found = list(self.energies(zip(x, fx, strict=True), passivity="strict", delay_ticks=delay))
+        np.testing.assert_allclose(found, -work, atol=1e-15)
+
+    @pytest.mark.parametrize("delay", [0, 2])
+    def test_work_counts_along_every_axis(self, delay: int):
+        random = np.random.default_rng(1)
+        places, forces = np.cumsum(random.uniform(-1e-3, 1e-3, (40, 3)), axis=0), random.uniform(0.1, 1, (40, 3))
+        held = np.concatenate([np.zeros((1 + delay, 3)), forces])[:40]
+        work = np.cumsum(np.sum(held * np.diff(places, axis=0, prepend=places[:1]), axis=1))
+        settings, memory = Safety(passivity="strict", delay_ticks=delay, **AT_ONCE).arrays(SPEC, 0.0)
+        found = []
+        for place, force in zip(places, forces, strict=True):
+            guard(settings, memory, 0.001, *place, 0.0, 0.0, 0.0, *force)
+            found.append(memory[ENERGY_J])
+        np.testing.assert_allclose(found, -work, atol=1e-15)
+
+    @pytest.mark.parametrize("axis", [0, 1, 2])
+    def test_jump_along_any_axis_is_not_work(self, axis: int):
+        settings, memory = Safety(passivity="strict", **AT_ONCE).arrays(SPEC, 0.0)
+        for way, found in ((0.0, 0.0), (0.009, -0.0045), (0.0201, -0.0045)):
+            place = way * np.eye(3)[axis]
+            guard(settings, memory, 0.001, *place, 0.0, 0.0, 0.0, 0.5, 0.5, 0.5)
+            assert memory[ENERGY_J] == pytest.approx(found)
+
+    @pytest.mark.parametrize("axis", [0, 1, 2])
+    def test_energy_credit_lasts_while_the_force_falls(self, axis: int):
+        """0.5 N over 1 mm; then the law's force ends, and the sent force is zero one tick later."""
+        settings, memory = Safety(passivity="strict", ramp_s=0, max_step_n=0.5).arrays(SPEC, 0.0)
+        along, found = np.eye(3)[axis], []
+        for way, push in ((0.0, 1.0), (-0.001, 0.0), (-0.001, 0.0)):
+            guard(settings, memory, 0.001, *(way * along), 0.0, 0.0, 0.0, *(push * along))
+            found.append(memory[ENERGY_J])
+        assert found == pytest.approx([0.0, 5e-4, 0.0])
+
+    @pytest.mark.parametrize("axis", [0, 1, 2])
+    @pytest.mark.parametrize(
+        ("passivity", "gained_j", "left_n"),
+        [("strict", 0.0, 0.0), ("strict", 1e-5, 0.1), ("strict", 2.1e-5, 0.2), ("coupled", 0.0, 0.12)],
+    )
+    def test_brake_predicts_the_energy_of_this_tick(self, axis: int, passivity: str, gained_j: float, left_n: float):
+        """0.2 N at 0.1 m/s give 20 uJ in a tick; of that the handle's damping of 1.2 N s/m takes 12 uJ."""
+        settings, memory = Safety(passivity=passivity, **AT_ONCE).arrays(SPEC, 0.0)
+        memory[ENERGY_J] = gained_j
+        along = np.eye(3)[axis]
+        *force, flags = guard(settings, memory, 0.001, 0.0, 0.0, 0.0, *(0.1 * along), *(0.2 * along))
+        assert force == pytest.approx(left_n * along, abs=1e-15)
+        assert bool(flags & TickFlag.DAMPED) == (left_n < 0.2)
+
+    def test_slow_hand_is_damped(self):
+        settings, memory = Safety(passivity="strict", **AT_ONCE).arrays(SPEC, 0.0)
+        memory[ENERGY_J] = -1e-3
+        fx, _, fz, _ = guard(settings, memory, 0.001, 0.0, 0.0, 0.0, 2e-5, 0.0, 0.0, 0.0, 0.0, 0.2)
+        assert (fx, fz) == pytest.approx((-7.5 * 2e-5, 0.2))
+
+    def test_damped_force_is_at_most_the_maximum(self):
+        settings, memory = Safety(passivity="strict", **AT_ONCE).arrays(SPEC, 0.0)
+        memory[ENERGY_J] = -8e-3
+        left = guard(settings, memory, 0.001, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 8.0)
+        assert left[:3] == pytest.approx(np.array([0.0, -7.5, 8.0]) * 8 / math.hypot(7.5, 8))
+
+    def test_handle_damping_counts_up_to_the_margin(self):
+        *_, energy = self.energies([(0.0, 1e-9), (0.002, 1e-9)], stiffness_margin=0.5)
+        assert energy == pytest.approx(0.5 * 1.5 * 2.0**2 * 0.001, rel=1e-6)
+
+    def test_energy_credit_ends_in_free_air_but_debt_stays(self):
+        gained = list(self.energies([(0.0, 1.0), (-0.001, 0.0), (-0.001, 0.0)], passivity="strict"))
+        assert gained == pytest.approx([0.0, 1e-3, 0.0])
+        owed = list(self.energies([(0.0, 1.0), (0.001, 0.0), (0.001, 0.0)], passivity="strict"))
+        assert owed == pytest.approx([0.0, -1e-3, -1e-3])
+
+    def test_energy_debt_is_at_most_the_greatest_force_over_a_millimetre(self):
+        moves = [(0.005 * i, 8.0) for i in range(10)]
+        assert list(self.energies(moves, passivity="strict"))[-1] == pytest.approx(-0.008)
+
+    def test_jump_of_the_sensor_is_not_work(self):
+        assert list(self.energies([(0.0, 1.0), (0.011, 1.0)], passivity="strict")) == [0.0, 0.0]
+
+    @pytest.mark.parametrize(("owed_j", "damping"), [(1e-6, 0.1), (1e-5, 1.0), (1e-3, 7.5)])
+    def test_brake_follows_the_formula_up_to_five_times_the_device_damping(self, owed_j: float, damping: float):
+        settings, memory = Safety(passivity="strict", **AT_ONCE).arrays(SPEC, 0.0)
+        memory[ENERGY_J] = -owed_j
+        fx, fy, fz, flags = guard(settings, memory, 0.001, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0, 0.2)
+        assert (fx, fy, fz) == pytest.approx((-0.1 * damping, 0.0, 0.2))
+        assert flags == TickFlag.TOUCHING | TickFlag.DAMPED
+
+    @pytest.mark.parametrize("speed", [0.0, 1e-6, 11.0, 1e200])
+    def test_noise_and_impossible_speeds_are_not_damped(self, speed: float):
+        settings, memory = Safety(passivity="strict", **AT_ONCE).arrays(SPEC, 0.0)
+        memory[ENERGY_J] = -1e-3
+        assert guard(settings, memory, 0.001, 0.0, 0.0, 0.0, speed, 0.0, 0.0, 0.0, 0.0, 0.2)[:3] == (0.0, 0.0, 0.2)

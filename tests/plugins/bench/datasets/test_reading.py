@@ -206,10 +206,10 @@ def test_folder_without_permission_is_refused(tmp_path: Path, monkeypatch: pytes
     make_set("kitti-2015", tmp_path, k)
 
     def deny(path: str) -> None:
-        raise PermissionError(13, "Permission deny")
+        raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(folders.os, "scandir", deny)  # root may list anything
-    with pytest.raises(PictureError, match="cannot be listed: Permission deny; check its permissions"):
+    with pytest.raises(PictureError, match="cannot be listed: Permission denied; check its permissions"):
         pairs("kitti-2015", tmp_path)
 
 

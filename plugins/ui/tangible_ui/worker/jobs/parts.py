@@ -192,7 +192,7 @@ def parts_heights(
     kept.surface, device = surface, config.felt_device
     if device is not None:
         surface = fit_to_device(surface, config, device)[0]
-    with silently():  # what the device limits would be said at every step of a height
+    with silently():  # else every step of a height would log the device's limits
         return parcel_of(made.make("touch"), surface, config)
 
 

@@ -6,7 +6,7 @@ from time import perf_counter
 from typing import Any
 
 from tangible_core.pipeline.feeling import Feeling
-from tangible_core.pipeline.fixing import AT_ONCE, cured
+from tangible_core.pipeline.fixing import AT_ONCE, cure
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.interfaces import Medium
 from tangible_core.preflight import Hand, Loop, Preflight, judge
@@ -57,7 +57,7 @@ def fix(
         pipeline.make("touch", stage_reporter(state, work), work.stop)
         lateness = None if late is None else Lateness(*late)
         with stoppable(work.stop):
-            found = cured(text, path, pipeline, Hand(), _loop(late), [*sets, own] if is_own else sets, lateness)
+            found = cure(text, path, pipeline, Hand(), _loop(late), [*sets, own] if is_own else sets, lateness)
     state.tell("made", want="preflight", digest=digest_of(text), outcome="made", why="", seconds=0.0)
     settings = {key: change.setting for key, change in found.changes.items()}
     return {"changes": settings, "safe": found.verdicts.safe, "sentence": found.verdicts.sentence}

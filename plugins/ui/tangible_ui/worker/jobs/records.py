@@ -70,7 +70,7 @@ def _lay_out(state: WorkerState, found: Recording, path: str) -> dict[str, Any]:
     rows = found.rows[::every].copy()
     start_s = float(found.time_s[0]) if len(rows) else 0.0
     rows[:, AT_FLAGS] = found.flags[::every] & FLAG_BITS
-    rows[:, 0] -= start_s  # what float32 holds of a clock that has run for days
+    rows[:, 0] -= start_s  # float32 cannot hold the time of a clock that has run for days
     digest = digest_of(found.rows)
     at = state.folder / digest
     at.mkdir(exist_ok=True)

@@ -115,10 +115,10 @@ def _places(parts: PartMap) -> list[tuple[int, int]]:
     far = np.asarray(cv2.distanceTransform(inside, cv2.DIST_L2, 3)) + inside
     order = np.argsort(far, axis=None)
     best = np.full(parts.count + 1, -1, np.int64)
-    best[labels.ravel()[order]] = order  # the last one stays: the farthest
+    best[labels.ravel()[order]] = order  # the last assignment stays: the farthest
     rows, columns = np.divmod(best[: parts.count], labels.shape[1])
     found = [(int(column), int(row)) for row, column in zip((rows - 1) * step, (columns - 1) * step, strict=True)]
-    lost = np.flatnonzero(best[: parts.count] < 0)  # between the pixels that were looked at
+    lost = np.flatnonzero(best[: parts.count] < 0)  # parts between the sampled pixels
     if lost.size:
         flat = parts.labels.ravel()
         first = np.empty(parts.count, np.int64)

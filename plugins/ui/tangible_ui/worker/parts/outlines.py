@@ -88,5 +88,5 @@ def _cheapest(cost: Float32[np.ndarray, "m k"]) -> Int[np.ndarray, " m"]:
     path[-1] = int(np.argmin(total))
     for row in range(2 * rows - 1, 0, -1):
         path[row - 1] = path[row] + turns[came[row, path[row]]]
-    half = rows // 2  # neither end of the path knows its other side
+    half = rows // 2  # both ends of the path lack a neighbour
     return np.roll(path[half : half + rows], half)

@@ -97,7 +97,7 @@ def _window(shape: tuple[int, ...], points: np.ndarray, width_px: float, within:
     if within is not None and len(within) == 4 and np.isfinite(within).all():
         inner = np.clip(within, [0, 0, 0, 0], bounds[[2, 3, 2, 3]])
         over = inner[:2].max() >= 0 and bool((points >= inner[:2]).all() and (points < inner[2:]).all())
-        bounds = inner if over else bounds  # a stroke that leaves the box is not held to it
+        bounds = inner if over else bounds  # a stroke that leaves the box is not bounded by it
     x0, y0 = np.maximum(np.floor(low - reach), bounds[:2]).astype(int).tolist()
     x1, y1 = np.minimum(np.ceil(high + reach), bounds[2:]).astype(int).tolist()
     return Window(x0, y0, max(1, x1 - x0), max(1, y1 - y0))
@@ -136,7 +136,7 @@ def _segment(small: np.ndarray, stroke: np.ndarray, rim: np.ndarray, width: floa
     state[far <= max(NEAR * width, 1)] = cv2.GC_PR_FGD
     state[rim], state[stroke] = cv2.GC_BGD, cv2.GC_FGD
     if (state == cv2.GC_PR_FGD).sum() + stroke.sum() == state.size:
-        return state != cv2.GC_BGD  # all of it is near: nothing tells what is outside
+        return state != cv2.GC_BGD  # all pixels are near: nothing tells what is outside
     cv2.setRNGSeed(0)
     lab = cv2.cvtColor(small, cv2.COLOR_RGB2Lab)
     cv2.grabCut(lab, state, (0, 0, 0, 0), np.zeros((1, 65)), np.zeros((1, 65)), ROUNDS, cv2.GC_INIT_WITH_MASK)

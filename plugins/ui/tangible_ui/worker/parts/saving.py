@@ -36,10 +36,10 @@ def warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> N
     segments = {each.segment for each in rules if each.segment is not None} | set(by if isinstance(by, dict) else ())
     named = {each.part for each in rules if isinstance(each.part, int)}
     labels = np.array(before.parts.segments)[before.parts.labels]
-    there = before.scene.segments is not None  # else a method found others
+    there = before.scene.segments is not None  # otherwise a method computes the segments
 
     def is_elsewhere(number: int, before: Int32[np.ndarray, "h w"]) -> bool:
-        now = found.labels[before == number]  # a border that was moved a little makes no other part of it
+        now = found.labels[before == number]  # a slightly moved border does not make it another part
         return not now.size or int(np.bincount(now).argmax()) != number
 
     moved = {each for each in segments if not there or is_elsewhere(each, labels)}
@@ -204,6 +204,6 @@ def write(place: Path, picture: bytes, document: Path | None, text: str) -> None
     """Write the labels and the document, both or neither. Raises: OutputError."""
     with atomic_write(place) as file:
         file.write(picture)
-        file.flush()  # what there is no room for shows before the document is touched
+        file.flush()  # a full disk shows before the document is touched
         if document is not None:
             write_text(document, text)

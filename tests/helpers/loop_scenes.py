@@ -1,0 +1,19 @@
+"""A level scene of a force loop, and the force that its device holds."""
+
+from pathlib import Path
+
+import numpy as np
+
+from tangible_core import HapticSurface, load_method
+from tangible_core.plugins.interfaces import Touch
+
+
+def proxy(height_m: float = 0.002) -> Touch:
+    level = HapticSurface.from_heights(np.full((16, 16), height_m, np.float32))
+    return load_method("render", "proxy")().touch(level)
+
+
+def held_force(path: Path) -> float:
+    """Return the force that the device holds; NaN if it was never open."""
+    text = path.read_text() if path.exists() else ""
+    return float(text) if text else float("nan")

@@ -41,7 +41,6 @@ COMMANDS = {
     "replay": Command(f"{ROOM}.replay:replay", "Re-run a recorded hand path with another force law."),
     "plugins": Command(f"{ROOM}.plugins:app", "List the installed methods and devices; show one of them."),
     "check": Command(f"{ROOM}.plugins:check", "Test an installed method with the conformance kit."),
-    "devices": Command(f"{ROOM}.devices:app", "List devices; examine, home or calibrate one."),
     "cache": Command(f"{ROOM}.cache:app", "Print the size of the cache of results; clear it."),
     "schema": Command(f"{ROOM}.schema:schema", "Print the JSON Schema of pipeline files."),
 }

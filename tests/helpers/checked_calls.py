@@ -28,7 +28,7 @@ OURS = (
     "tangible_export", "tangible_authoring", "tangible_batch", "tangible_bench", "tangible_report", "tangible_ui",
 )  # fmt: skip
 UNCHECKED = {
-    "tangible_core.cli.commands.devices": "typer's Context, as its documentation has it, is given another class's",
+    "tangible_devices.commands.devices": "typer's Context, as its documentation has it, is given another class's",
     "tangible_core.cli.commands.cache": "likewise",
     "tangible_report.commands.materials": "likewise",
     "tangible_core.cli.commands.plugins": "likewise",

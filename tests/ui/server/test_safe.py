@@ -26,7 +26,7 @@ from tangible_ui.serving.live import IDLE_SPACING_S, IN_FLIGHT, MOST_ASKS
 from tangible_ui.serving.routes import WRONG_KEY
 from waiting import LONGEST_S, until
 
-NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16, "folder": "export-1"}
+NAMES = {"digest": "abc", "name": "a.f32", "batch": "0" * 16, "folder": "export-1", "panel": "glove"}
 
 
 @pytest.fixture

@@ -9,7 +9,8 @@ from jaxtyping import Float64
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tangible_core.data import DeviceSpec
-from tangible_core.mapping.device_calibrations import load_calibration
+
+from ..device_calibrations import load_calibration
 
 Axis = Literal["x", "-x", "y", "-y", "z", "-z"]
 Angle = Annotated[float, Field(ge=-90, le=90)]

@@ -7,8 +7,8 @@ from typing import Any
 
 from tangible_core.data import NO_FORCE
 from tangible_core.errors import DeviceError
-from tangible_core.mapping.device_calibrations import any_calibration
 
+from ..device_calibrations import any_calibration
 from .calibration import Settings
 from .link import FalconLink
 from .usb.firmware import open_running

@@ -48,9 +48,10 @@ class SolidExporter(Exporter):
 
         Raises: GeometryError for a flat relief, BrailleError or OutputError for a title that cannot be written.
         """
-        from .making import make_solid
+        from .making import PlateOptions, make_solid
 
-        solid, layout = make_solid(self, work)
+        options = PlateOptions(**{name: getattr(self, name) for name in PlateOptions._fields})
+        solid, layout = make_solid(options, work)
         path = stem.with_name(f"{stem.name}.{self.ending}")
         with path.open("wb") as file:
             self.write_solid(file, solid, layout, work)

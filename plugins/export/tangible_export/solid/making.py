@@ -2,6 +2,7 @@
 
 import logging
 from importlib.util import find_spec
+from typing import NamedTuple
 
 from tangible_core.data import Relief, Work
 from tangible_core.errors import GeometryError, OutputError, quoted
@@ -9,7 +10,6 @@ from tangible_core.plugins.notes import note
 
 from ..braille import Cells, width_m, wrapped, written_by
 from .closed import Solid, close_solid
-from .exporter import SolidExporter
 from .plate import LEAST_RIM_M, Layout, plate
 from .printable import note_print_problems
 from .triangles import Triangles, all_triangles, few_triangles, sample_nodes
@@ -31,7 +31,18 @@ MOST_LINES = 6
 """Largest number of lines of braille: nobody reads a longer text on a plate."""
 
 
-def make_solid(options: SolidExporter, work: Work) -> tuple[Solid, Layout]:
+class PlateOptions(NamedTuple):
+    """The options of a `SolidExporter` that shape its plate."""
+
+    error_m: float
+    base_m: float
+    rim_m: float
+    corner_mark: bool
+    braille: bool
+    braille_language: str | None
+
+
+def make_solid(options: PlateOptions, work: Work) -> tuple[Solid, Layout]:
     """Return a closed solid of the relief, and its layout.
 
     Raises: GeometryError if the relief has no height, BrailleError for a title that cannot be written, OutputError for
@@ -75,7 +86,7 @@ def _check_height(relief: Relief, error_m: float) -> None:
         )
 
 
-def _layout(options: SolidExporter, work: Work) -> Layout:
+def _layout(options: PlateOptions, work: Work) -> Layout:
     picture_m = work.relief.extent_m
     rim_m = options.rim_m if options.rim_m >= NARROWEST_M else 0.0
     has_title = options.braille and bool(work.title.strip())
@@ -88,7 +99,7 @@ def _layout(options: SolidExporter, work: Work) -> Layout:
     return Layout(picture_m, rim_m, _title(options, work) if has_title else (), options.corner_mark)
 
 
-def _title(options: SolidExporter, work: Work) -> tuple[Cells, ...]:
+def _title(options: PlateOptions, work: Work) -> tuple[Cells, ...]:
     """Return the title in lines of braille."""
     language, room_m = options.braille_language or work.language, work.relief.extent_m[0]
     if room_m < LEAST_LINE_M:

@@ -10,8 +10,8 @@ import pytest
 from falcon_bus import held_bus, open_on
 from tangible_core.data import NO_FORCE, Finding, Force, HapticState, Unit
 from tangible_core.errors import DeviceAbsent, DeviceError
-from tangible_core.mapping.device_calibrations import save_calibration
 from tangible_core.plugins.interfaces import Link
+from tangible_devices.device_calibrations import save_calibration
 from tangible_devices.falcon import measuring
 from tangible_devices.falcon.calibration import Calibration
 from tangible_devices.falcon.falcon import Falcon

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ..data import NO_FORCE
-from ..plugins.interfaces import HapticDevice
+from tangible_core.data import NO_FORCE
+from tangible_core.plugins.interfaces import HapticDevice
 
 WARM_UP = 100
 """Number of cycles before the measurement."""

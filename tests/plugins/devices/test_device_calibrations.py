@@ -7,7 +7,7 @@ import pytest
 from pydantic import BaseModel
 
 from tangible_core.errors import DeviceError, OutputError
-from tangible_core.mapping.device_calibrations import calibration_path, load_calibration, save_calibration
+from tangible_devices.device_calibrations import calibration_path, load_calibration, save_calibration
 
 
 class Measured(BaseModel):

@@ -10,12 +10,12 @@ import pytest
 import typer
 
 from command_line import tangible
-from tangible_core.cli.commands import devices as command
 from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.mapping.device_calibrations import calibration_path
 from tangible_core.plugins.devices import examine_device, installed_devices
 from tangible_core.plugins.registry import Registry
-from tangible_core.session.stress import stress_device
+from tangible_devices.commands import devices as command
+from tangible_devices.commands.stress import stress_device
+from tangible_devices.device_calibrations import calibration_path
 from tangible_devices.mock import Mock
 
 ALONE = SimpleNamespace(invoked_subcommand=None)

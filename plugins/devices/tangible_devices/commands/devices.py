@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ...errors import ConfigError
-from .. import completing
-from ..options import FAILED, Json, is_listing
+from tangible_core.cli import completing
+from tangible_core.cli.options import FAILED, Json, is_listing
+from tangible_core.errors import ConfigError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...data import Finding
-    from ...plugins.interfaces import Adjustable
+    from tangible_core.data import Finding
+    from tangible_core.plugins.interfaces import Adjustable
 
 COLOURS = {"fine": "green", "failed": "red", "not asked": "dim"}
 Device = Annotated[
@@ -37,9 +37,9 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
 
     from rich.markup import escape
 
-    from ...plugins.devices import installed_devices
-    from ...plugins.registry import default_registry
-    from .. import sentences, show
+    from tangible_core.cli import sentences, show
+    from tangible_core.plugins.devices import installed_devices
+    from tangible_core.plugins.registry import default_registry
 
     rows = [asdict(each) for each in installed_devices(default_registry())]
     if as_json:
@@ -65,8 +65,8 @@ def doctor(
     """
     from dataclasses import asdict
 
-    from ...plugins.registry import default_registry
-    from .. import sentences, show
+    from tangible_core.cli import sentences, show
+    from tangible_core.plugins.registry import default_registry
 
     if name is None and sets:
         raise ConfigError("--set: name the device that has this option")
@@ -85,7 +85,7 @@ def doctor(
 @app.command()
 def home(name: Device, sets: DeviceSets = None) -> None:
     """Guide your hand until the device knows its position."""
-    from .. import show
+    from tangible_core.cli import show
 
     _adjustable(name, sets or []).home(show.note)
     show.say(f"{name} is homed")
@@ -97,8 +97,9 @@ def calibrate(name: Device, sets: DeviceSets = None) -> None:
 
     The calibration is saved under its serial number.
     """
-    from ...mapping.device_calibrations import save_calibration
-    from .. import show
+    from tangible_core.cli import show
+
+    from ..device_calibrations import save_calibration
 
     serial, values = _adjustable(name, sets or []).calibrate(_ask)
     path = save_calibration(name, serial, values)
@@ -117,10 +118,11 @@ def stress(
 
     No force is given. Rate, and percentiles of the time of one cycle.
     """
-    from ...plugins.devices import make_device
-    from ...plugins.registry import default_registry
-    from ...session.stress import stress_device
-    from .. import sentences, show
+    from tangible_core.cli import sentences, show
+    from tangible_core.plugins.devices import make_device
+    from tangible_core.plugins.registry import default_registry
+
+    from .stress import stress_device
 
     if not 0 < seconds <= 3600:
         raise ConfigError(f"--seconds {seconds}: must be above 0 and at most 3600")
@@ -134,10 +136,10 @@ def stress(
 
 
 def _adjustable(name: str, sets: Sequence[str]) -> Adjustable:
-    from ...errors import DeviceError
-    from ...plugins.devices import make_device
-    from ...plugins.interfaces import Adjustable
-    from ...plugins.registry import default_registry
+    from tangible_core.errors import DeviceError
+    from tangible_core.plugins.devices import make_device
+    from tangible_core.plugins.interfaces import Adjustable
+    from tangible_core.plugins.registry import default_registry
 
     device = make_device(default_registry(), name, sets)
     if not isinstance(device, Adjustable):
@@ -147,7 +149,7 @@ def _adjustable(name: str, sets: Sequence[str]) -> Adjustable:
 
 def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
     """Return a row for each unit of a device, or one with the reason why there is none."""
-    from ...data import Unit
+    from tangible_core.data import Unit
 
     units = [Unit(**unit) for unit in row["units"]]
     if units:
@@ -156,10 +158,10 @@ def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
 
 
 def _findings(name: str, sets: Sequence[str], named: bool) -> Sequence[Finding]:
-    from ...data import Finding
-    from ...errors import TangibleError
-    from ...plugins.devices import examine_device
-    from ...plugins.registry import default_registry
+    from tangible_core.data import Finding
+    from tangible_core.errors import TangibleError
+    from tangible_core.plugins.devices import examine_device
+    from tangible_core.plugins.registry import default_registry
 
     try:
         return examine_device(default_registry(), name, sets)
@@ -172,7 +174,7 @@ def _findings(name: str, sets: Sequence[str], named: bool) -> Sequence[Finding]:
 def _print_findings(results: dict[str, Sequence[Finding]]) -> None:
     from rich.markup import escape
 
-    from .. import show
+    from tangible_core.cli import show
 
     rows = [
         (name, each.check, f"[{COLOURS[each.verdict]}]{each.verdict}[/]", escape(each.says))
@@ -188,8 +190,8 @@ def _print_findings(results: dict[str, Sequence[Finding]]) -> None:
 
 
 def _ask(text: str) -> str:
-    from ...errors import ConfigError
-    from .. import show
+    from tangible_core.cli import show
+    from tangible_core.errors import ConfigError
 
     show.note(text)
     try:

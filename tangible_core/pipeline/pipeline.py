@@ -179,7 +179,7 @@ class Pipeline:
         Raises: TangibleError for mistakes of the user, Stopped after `stop`, and whatever a plugin raises.
         """
         compiling = warm_up(self.engine, want or self.config.want)
-        with self.engine.watching(progress, stop), compiling as self.engine.beside:
+        with self.engine.watching(progress, stop), compiling as self.engine.compiler:
             return self.engine.make(want)
 
     @property

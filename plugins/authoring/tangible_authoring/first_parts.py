@@ -30,7 +30,7 @@ from .parts_starter import RELIEF_MM, parts_starter, title_of
 
 LABELS, NUMBERED = "parts.png", "parts-numbered.png"
 MOST_PARTS = 12
-"""The most parts by default: a person names so many in a few minutes, and fingers can tell them apart."""
+"""The most parts by default: a person names these in a few minutes, and fingers can tell them apart."""
 SMALLEST_MM = 5.0
 """The diameter of a disc, mm, that each part must hold: a narrower part is felt as an edge rather than as a thing."""
 SEGMENTS_PER_PART = 2

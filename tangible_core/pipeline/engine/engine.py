@@ -43,7 +43,7 @@ class Engine:
         self.cache = cache
         self.threads = threads
         """The most threads at once, on which no result depends; None for the limit of `TANGIBLE_THREADS`, if any."""
-        self.beside: BackgroundCompiler | None = None
+        self.compiler: BackgroundCompiler | None = None
         """A process that compiles in the background; a stage waits for what is compiled for it."""
         self.begun: set[str] = set()
         """The products whose making has begun."""
@@ -83,10 +83,9 @@ class Engine:
     @cached_property
     def _read(self) -> tuple[Scene, tuple[Note, ...]]:
         """The scene, and the notes from reading it."""
-        if isinstance(self.config.scene, Scene):
-            return self.config.scene, tuple(map(Note, self.config.scene.notes))
+        given = self.config.scene
         with collect_notes() as notes:
-            scene = Scene.read(self.config.scene, self.config.folder)
+            scene = given if isinstance(given, Scene) else Scene.read(given, self.config.folder)
         return scene, (*notes, *map(Note, scene.notes))
 
     @cached_property
@@ -149,7 +148,7 @@ class Engine:
             if name not in products
         }
         other._substituted = self._substituted | dependent | products.keys()
-        other.begun, other.beside, other._progress = set(), None, ignore_event
+        other.begun, other.compiler, other._progress = set(), None, ignore_event
         for each in ("_made", "_finished", "_full_size", "_keys", "_outcomes", "_notes"):
             kept = {name: value for name, value in getattr(self, each).items() if name not in other._substituted}
             setattr(other, each, kept)
@@ -235,8 +234,8 @@ class Engine:
         if stage.product not in self._substituted:
             hooks.tell(self.registry.plugins, "tangible_stage_started", product=stage.product, method=stage.method)
         self.begun.add(stage.product)
-        if self.beside is not None:
-            self.beside.wait(stage.product)
+        if self.compiler is not None:
+            self.compiler.wait(stage.product)
         start = perf_counter()
         try:
             with collect_notes() as notes, limited_threads(self.threads):

@@ -101,7 +101,7 @@ def make_run(
     """
     engine.check(want)
     check_folder(out, engine.config.path)
-    with warm_up(engine, want) as engine.beside:
+    with warm_up(engine, want) as engine.compiler:
         value = engine.make_on_grid(want)
         products = {name: engine.make_on_grid(name) for name in IN_REPORT if name in engine.inputs_of(want)}
         products[want] = value
@@ -182,8 +182,8 @@ def _run_touch(
     if device is None or not device.spec().simulated:
         return None
     description = about(engine).with_versions()
-    if engine.beside is not None:
-        engine.beside.wait(FELT)
+    if engine.compiler is not None:
+        engine.compiler.wait(FELT)
     listener = with_parts(engine.make_on_grid("surface"), on_report) if on_report else None
     recording = run_simulated(touch, device, seconds, listener, engine.config.safety)
     return replace(recording, about=description)

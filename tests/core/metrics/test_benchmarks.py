@@ -10,7 +10,7 @@ NAN = np.nan
 
 @pytest.fixture(scope="module")
 def maps() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """An estimate, its truth with a fifth unknown, and a foreground."""
+    """Make an estimate, its truth with a fifth unknown, and a foreground."""
     random = np.random.default_rng(17)
     truth = random.uniform(2, 120, (60, 80)).astype(np.float32)
     found = (truth + random.normal(0, 4, truth.shape)).astype(np.float32)

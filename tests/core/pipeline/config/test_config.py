@@ -122,7 +122,7 @@ def test_mistake_gives_one_line_with_its_place(text: str, place: str, what: str)
 
 
 def located_complaints(text: str, *overrides: str) -> list[Complaint]:
-    """The complaints as a program has them, the same as in the sentences."""
+    """Return the complaints for a program, and check that they equal the sentences."""
     with pytest.raises(ConfigError) as error:
         parse(text, *overrides)
     found = list(error.value.complaints)

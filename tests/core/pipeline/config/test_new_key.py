@@ -81,7 +81,7 @@ print(json.dumps({
 
 @pytest.fixture(scope="module")
 def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """The answers of a copy of the core, in which one file has one more key."""
+    """Return the answers of a copy of the core, in which one file has one more key."""
     copy = tmp_path_factory.mktemp("copy")
     shutil.copytree(ROOT / "tangible_core", copy / "tangible_core", ignore=shutil.ignore_patterns("__pycache__"))
     model = (copy / MODEL).read_text(encoding="utf-8")

@@ -24,7 +24,7 @@ COUNT = 8
 
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
-    """A folder of pairs side by side: a box walks over a ground."""
+    """Write a folder of pairs side by side, in which a box walks over a ground."""
     folder, generator = tmp_path_factory.mktemp("walk"), np.random.default_rng(8)
     for number in range(COUNT):
         views = layered(number, 1.0, generator)
@@ -34,7 +34,7 @@ def walk(tmp_path_factory):
 
 @pytest.fixture
 def film_pipeline(walk):
-    """A pipeline on it."""
+    """Return a function that makes a pipeline of the video."""
 
     def make(**changed):
         scene = Scene.video(walk, layout="side-by-side", fps=20, repeat=False)
@@ -170,7 +170,7 @@ class Shrinks(DepthEstimator):
     """Makes a smaller map of every frame but the first."""
 
     def estimate(self, views: Views) -> DisparityMap:
-        """A map."""
+        """Make a smaller map of every frame but the first."""
         shape = views.shape if views.left.mean() == FIRST_MEAN else (3, 4)
         return DisparityMap(np.tile(np.arange(shape[1], dtype=np.float32), (shape[0], 1)))
 

@@ -64,7 +64,7 @@ def test_product_of_the_contributing_page_is_known_everywhere_with_two_files(tmp
 
 
 def _example() -> tuple[str, str, str]:
-    """The example of CONTRIBUTING.md: the product's name, its row, and the file of its stage."""
+    """Read the example of CONTRIBUTING.md: the product's name, its row, and the file of its stage."""
     section = (ROOT / "CONTRIBUTING.md").read_text().partition("## A new product")[2].partition("\n## ")[0]
     blocks = [block.partition("\n")[2] for block in section.split("```")[1::2]]
     row, stage = blocks

@@ -127,8 +127,8 @@ def test_run_is_the_same_with_and_without_warm_up(tmp_path: Path):
     alone = pipeline().run(tmp_path / "alone", seconds=0.5)
     made = pipeline(depth=Loud())
     beside = made.run(tmp_path / "beside", seconds=0.5)
-    assert made.engine.beside is not None
-    child = made.engine.beside._child
+    assert made.engine.compiler is not None
+    child = made.engine.compiler._child
     assert child is not None
     assert child.returncode is not None
     for product in ("disparity", "segments", "surface"):
@@ -142,8 +142,8 @@ def test_run_without_compiling_starts_no_process(tmp_path: Path):
     pipeline().run(tmp_path / "first", seconds=0.1)
     made = pipeline()
     made.run(tmp_path / "second", seconds=0.1)
-    assert made.engine.beside is not None
-    assert made.engine.beside._child is None
+    assert made.engine.compiler is not None
+    assert made.engine.compiler._child is None
 
 
 def test_make_has_a_warm_up_too(monkeypatch: pytest.MonkeyPatch):

@@ -40,10 +40,10 @@ VERBS = frozenset(_VERBS.split())
 """Participles that are imperatives as well, and words on -ed that are not participles."""
 
 PLAINER = {
-    r"(is|are|was|were|be|been) told(?! apart)": "log, report, print, show",
+    r"(is|are|was|were|be|been) told(?! apart| from)": "log, report, print, show",
     r"(is|are|was|were|be|been) said(?! to)": "log, report, print, show",
     r"puts? right": "correct",
-    r"(?<!there )(?<!here )(is|are|was|were) no(?! \w+er\b| more\b| less\b| worse\b)": "is not a",
+    r"(?<!there )(?<!here )(is|are|was|were) no(?= \w)(?! \w+er\b| more\b| less\b| worse\b)": "is not a",
     r"(?<!there )(?<!here )(is|are|was|were) none of (its|his|theirs|ours)": "is not one of",
     r"of one's own": "custom",
     r"so many(?! that)": "n",

@@ -108,7 +108,7 @@ class Stopped(TangibleError):
     """Work that was stopped from another thread."""
 
     def __init__(self) -> None:
-        super().__init__("stopped by the program that asked for it; what was finished is kept")
+        super().__init__("stopped on request; what was finished is kept")
 
 
 class ResultsError(TangibleError):

@@ -156,7 +156,7 @@ def _judge_steps(data: LegibilityInput, check: str, pairs: np.ndarray, worse: st
 def _measure_pair(data: LegibilityInput, pair: int, value: float) -> Measurement:
     steps = data.steps
     high, low = (data.describe_part(int(each[pair])) for each in (steps.high, steps.low))
-    return Measurement(f"{high} beside {low}", value, data.share_of_picture(*map(int, steps.at[pair])))
+    return Measurement(f"{high} next to {low}", value, data.share_of_picture(*map(int, steps.at[pair])))
 
 
 def height(data: LegibilityInput) -> Iterator[Verdict]:
@@ -201,13 +201,13 @@ def pins(data: LegibilityInput) -> Iterator[Verdict]:
         return [Change("simplify.part_m", over(2 * PIN_PITCH_M * 1.5), "at least"), ", ", FEWER_PARTS]
 
     yield from data.judge("pins", measured, cure, none=0, of="parts", worse="has hardly a pin or two")
-    kept = [Measurement("the borders of parts", display.kept)]
+    borders = [Measurement("the borders of parts", display.kept)]
 
     def finer(share: float) -> Cure:
         return [Change("simplify.gap_m", over(2 * PIN_PITCH_M), "at least"), ", a larger display, " + FEWER_PARTS]
 
     worse = "are partly not shown by any pin"
-    yield from data.judge("kept borders", kept, finer, none=1, of="the borders of parts", worse=worse)
+    yield from data.judge("kept borders", borders, finer, none=1, of="the borders of parts", worse=worse)
 
 
 Check = Callable[[LegibilityInput], Iterator[Verdict]]

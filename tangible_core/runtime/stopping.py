@@ -19,7 +19,7 @@ def stoppable(stop: Event | None) -> Generator[None]:
     >>> with stoppable(stop):
     ...     check_stopped()
     Traceback (most recent call last):
-    tangible_core.errors.Stopped: stopped by the program that asked for it; what was finished is kept
+    tangible_core.errors.Stopped: stopped on request; what was finished is kept
     """
     token = _stop.set(_stop.get() if stop is None else stop)
     try:

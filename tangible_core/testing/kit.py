@@ -132,11 +132,11 @@ def _declared_failures(registry: Registry, kind: str, name: str) -> Mapping[str,
 
 def _unknown(kind: str, reasons: Mapping[str, str]) -> str:
     """Return a complaint about the first name that is not a check of this kind; empty if all are."""
-    known = [check.__name__ for check in checks(kind)]
-    unknown = next((each for each in reasons if each not in known), None)
+    names = [check.__name__ for check in checks(kind)]
+    unknown = next((each for each in reasons if each not in names), None)
     if unknown is None:
         return ""
-    return f"expected_failures: no {kind} check is named {unknown!r}{did_you_mean(unknown, known)}"
+    return f"expected_failures: no {kind} check is named {unknown!r}{did_you_mean(unknown, names)}"
 
 
 def _demand(check: Check) -> str:

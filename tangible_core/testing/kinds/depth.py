@@ -17,14 +17,14 @@ WALL_PX = 6.0
 def map_is_well_formed(method: DepthEstimator) -> None:
     """Check that disparity and confidence are read-only float32 (h, w) of the left view's size, confidence in 0..1."""
     views = wall(WALL_PX)
-    found = method.estimate(views)
-    demand(type(found) is DisparityMap, f"estimate returns {type(found).__name__}, not DisparityMap")
-    for name, values in (("disparity_px", found.disparity_px), ("confidence", found.confidence)):
+    result = method.estimate(views)
+    demand(type(result) is DisparityMap, f"estimate returns {type(result).__name__}, not DisparityMap")
+    for name, values in (("disparity_px", result.disparity_px), ("confidence", result.confidence)):
         demand(values.dtype == np.float32, f"{name} is {values.dtype}, not float32")
         demand(values.shape == views.shape, f"{name} is {values.shape}, the left view {views.shape}")
         demand(not values.flags.writeable, f"{name} can be written to")
-    demand(not np.isinf(found.disparity_px).any(), "a disparity is infinite; write NaN where it is unknown")
-    low, high = float(found.confidence.min()), float(found.confidence.max())
+    demand(not np.isinf(result.disparity_px).any(), "a disparity is infinite; write NaN where it is unknown")
+    low, high = float(result.confidence.min()), float(result.confidence.max())
     demand(low >= 0 and high <= 1, f"confidence runs from {low:g} to {high:g}, not within 0..1")  # NaN fails too
 
 
@@ -33,11 +33,11 @@ def wall_is_found(method: DepthEstimator) -> None:
 
     A method for one picture cannot see the shift: its map must lie within 0..1, where 1 is nearest.
     """
-    found = method.estimate(wall(WALL_PX))
-    known = found.disparity_px[np.isfinite(found.disparity_px)]
-    share = known.size / found.disparity_px.size
+    result = method.estimate(wall(WALL_PX))
+    known = result.disparity_px[np.isfinite(result.disparity_px)]
+    share = known.size / result.disparity_px.size
     demand(share >= 0.5, f"{share:.0%} of the wall is known; a texture this clear allows at least half")
-    if found.unit == "relative":
+    if result.unit == "relative":
         demand(
             known.min() >= 0 and known.max() <= 1, f"nearness runs from {known.min():g} to {known.max():g}, not 0..1"
         )
@@ -82,10 +82,10 @@ def any_size_is_taken(method: DepthEstimator) -> None:
     """
     for shape in TINY:
         try:
-            found = method.estimate(wall(1.0, shape))
+            result = method.estimate(wall(1.0, shape))
         except TangibleError:
             continue
-        demand(found.disparity_px.shape == shape, f"views of {shape} give a map of {found.disparity_px.shape}")
+        demand(result.disparity_px.shape == shape, f"views of {shape} give a map of {result.disparity_px.shape}")
 
 
 def flat_pair_claims_nothing(method: DepthEstimator) -> None:
@@ -94,11 +94,11 @@ def flat_pair_claims_nothing(method: DepthEstimator) -> None:
     A method for one picture claims no shift; it must only give finite values or NaN.
     """
     flat = np.full((64, 160, 3), 128, np.uint8)
-    found = method.estimate(Views(flat, flat.copy()))
-    demand(not np.isinf(found.disparity_px).any(), "a disparity is infinite; write NaN where it is unknown")
-    claimed = float(np.mean(np.isfinite(found.disparity_px) & (found.confidence > 0)))
+    result = method.estimate(Views(flat, flat.copy()))
+    demand(not np.isinf(result.disparity_px).any(), "a disparity is infinite; write NaN where it is unknown")
+    claimed = float(np.mean(np.isfinite(result.disparity_px) & (result.confidence > 0)))
     demand(
-        found.unit == "relative" or claimed <= 0.05,
+        result.unit == "relative" or claimed <= 0.05,
         f"{claimed:.0%} of a pair without any texture is claimed as known; give NaN or confidence 0",
     )
 
@@ -109,7 +109,7 @@ def one_view_is_answered(method: DepthEstimator) -> None:
     A plan reads `needs_pair`.
     """
     try:
-        found = method.estimate(Views(wall().left))
+        result = method.estimate(Views(wall().left))
     except ModelAbsent:
         raise
     except TangibleError:
@@ -118,7 +118,7 @@ def one_view_is_answered(method: DepthEstimator) -> None:
         )
         return
     demand(not method.needs_pair, "one view gives a map, though the class has `needs_pair = True`; leave that out")
-    demand(found.unit == "relative", "one view gives a map in px; without a second view only relative is known")
+    demand(result.unit == "relative", "one view gives a map in px; without a second view only relative is known")
 
 
 def nan_is_refused(method: DepthEstimator) -> None:
@@ -136,13 +136,13 @@ def _variants(
         yield name, Views(one, other)
 
 
-def _demand_agreement(expected: DisparityMap, found: DisparityMap, name: str) -> None:
-    known, again = np.isfinite(expected.disparity_px), np.isfinite(found.disparity_px)
+def _demand_agreement(expected: DisparityMap, result: DisparityMap, name: str) -> None:
+    known, again = np.isfinite(expected.disparity_px), np.isfinite(result.disparity_px)
     differ = float(np.mean(np.logical_xor(known, again)))
     demand(differ <= 0.05, f"as {name}, {differ:.0%} of the pixels change between known and unknown")
     both = np.logical_and(known, again)
     if both.any():
-        apart = float(np.median(np.abs(expected.disparity_px[both] - found.disparity_px[both])))
+        apart = float(np.median(np.abs(expected.disparity_px[both] - result.disparity_px[both])))
         most = 0.02 if expected.unit == "relative" else 0.5
         demand(apart <= most, f"as {name}, the median disparity differs by {apart:.3g} ({expected.unit})")
 

@@ -13,13 +13,13 @@ from ..variants import TINY, coarse_variants, exact_variants
 def labels_are_well_formed(method: Segmenter) -> None:
     """Check that labels are read-only int32 of the picture's size, 0..n-1 without a gap, and confidence in 0..1."""
     picture, _ = two_textures()
-    found = method.segment(picture)
-    demand(type(found) is SegmentMap, f"segment returns {type(found).__name__}, not SegmentMap")
-    demand(found.labels.dtype == np.int32, f"labels are {found.labels.dtype}, not int32")
-    demand(not found.labels.flags.writeable, "labels can be written to")
-    _demand_labels(found.labels, picture.shape[:2], "the picture")
-    demand(found.confidence.dtype == np.float32, f"confidence is {found.confidence.dtype}, not float32")
-    low, high = float(found.confidence.min()), float(found.confidence.max())
+    result = method.segment(picture)
+    demand(type(result) is SegmentMap, f"segment returns {type(result).__name__}, not SegmentMap")
+    demand(result.labels.dtype == np.int32, f"labels are {result.labels.dtype}, not int32")
+    demand(not result.labels.flags.writeable, "labels can be written to")
+    _demand_labels(result.labels, picture.shape[:2], "the picture")
+    demand(result.confidence.dtype == np.float32, f"confidence is {result.confidence.dtype}, not float32")
+    low, high = float(result.confidence.min()), float(result.confidence.max())
     demand(low >= 0 and high <= 1, f"confidence runs from {low:g} to {high:g}, not within 0..1")  # NaN fails too
 
 
@@ -53,8 +53,8 @@ def picture_is_not_written_to(method: Segmenter) -> None:
 def one_colour_is_one_segment(method: Segmenter) -> None:
     """Check that a picture of one colour is one segment, whatever the number of segments requested."""
     for name, colour in (("black", (0, 0, 0)), ("grey", (128, 128, 128)), ("blue", (20, 40, 250))):
-        found = method.segment(np.full((48, 64, 3), colour, np.uint8))
-        demand(found.count == 1, f"a picture all {name} is divided into {found.count} segments")
+        result = method.segment(np.full((48, 64, 3), colour, np.uint8))
+        demand(result.count == 1, f"a picture all {name} is divided into {result.count} segments")
 
 
 def every_picture_type_is_segmented(method: Segmenter) -> None:

@@ -22,11 +22,11 @@ HOSTILE = (0.0, -0.0, 1e-310, 0.01, -0.03, 5.0, 1e30, -1e300, 1.7e308, np.inf, -
 
 def broken_state_gives_no_force(method: ForceRenderer) -> None:
     """Check that a position that is NaN or infinite gives zero force: a device that fails must not push."""
-    known = plane()
-    x, y, z = known.at(0, 0, 0.001)
+    scene = plane()
+    x, y, z = scene.at(0, 0, 0.001)
     for bad in (np.nan, np.inf, -np.inf):
         for position in ((bad, y, z), (x, bad, z), (x, y, bad)):
-            force = method.touch(known.surface).force(HapticState(position))
+            force = method.touch(scene.surface).force(HapticState(position))
             demand(tuple(force) == NO_FORCE, f"at {position} the force is {force}, not zero")
 
 
@@ -35,9 +35,9 @@ def path_is_force_by_force(method: ForceRenderer) -> None:
 
     The velocity is the step from the previous position over the period; 0 at the first and where it is not finite.
     """
-    known = sphere_cap()
-    path = _path(known)
-    together, touch = method.touch(known.surface).path(path, PERIOD_S), method.touch(known.surface)
+    scene = sphere_cap()
+    path = _path(scene)
+    together, touch = method.touch(scene.surface).path(path, PERIOD_S), method.touch(scene.surface)
     demand(together.shape == path.shape, f"{path.shape} positions give {together.shape} forces")
     singly = np.array([touch.force(state) for state in _states(path)])
     demand(np.isfinite(together).all(), "a force along the path is not finite")
@@ -47,27 +47,30 @@ def path_is_force_by_force(method: ForceRenderer) -> None:
         apart[worst] <= 1e-6 * (1 + np.abs(singly).max()),
         f"at step {worst}, {path[worst]}, path gives {together[worst]} N and force {singly[worst]} N",
     )
-    nothing = method.touch(known.surface).path(path[:0], PERIOD_S)
+    nothing = method.touch(scene.surface).path(path[:0], PERIOD_S)
     demand(nothing.shape == (0, 3), f"a path of no positions gives {nothing.shape} forces")
 
 
 def same_path_same_forces(method: ForceRenderer) -> None:
     """Check that two touches of a surface along one path agree to the last bit: random numbers must be seeded."""
-    known = sphere_cap()
-    first, second = (method.touch(known.surface).path(_path(known), PERIOD_S) for _ in range(2))
+    scene = sphere_cap()
+    first, second = (method.touch(scene.surface).path(_path(scene), PERIOD_S) for _ in range(2))
     demand(first.tobytes() == second.tobytes(), "the same path gives different forces the second time")
 
 
 def touches_are_apart(method: ForceRenderer) -> None:
     """Check that touches are independent: a new one starts without contact, and two do not affect each other."""
-    known = sphere_cap()
-    states = _states(_path(known))
-    alone, busy, quiet = (method.touch(known.surface) for _ in range(3))
+    scene = sphere_cap()
+    states = _states(_path(scene))
+    alone, busy, quiet = (method.touch(scene.surface) for _ in range(3))
     for state in states:
-        busy.force(HapticState(known.at(0.02, -0.02, 0.004), (0.1, 0.1, -0.1), state.time_s))
-        expected, found = alone.force(state), quiet.force(state)
-        demand(tuple(found) == tuple(expected), f"next to another touch {state} gives {found}, alone {expected}")
-    new, first = method.touch(known.surface).force(states[0]), method.touch(known.surface).path(_path(known)[:1])
+        busy.force(HapticState(scene.at(0.02, -0.02, 0.004), (0.1, 0.1, -0.1), state.time_s))
+        expected, second_force = alone.force(state), quiet.force(state)
+        demand(
+            tuple(second_force) == tuple(expected),
+            f"next to another touch {state} gives {second_force}, alone {expected}",
+        )
+    new, first = method.touch(scene.surface).force(states[0]), method.touch(scene.surface).path(_path(scene)[:1])
     demand(tuple(new) == tuple(first[0].tolist()), f"a new touch gives {new}, an earlier one gave {first[0].tolist()}")
 
 
@@ -82,14 +85,14 @@ def surface_is_not_written_to(method: ForceRenderer) -> None:
 def forces_are_always_finite(method: ForceRenderer) -> None:
     """Check that huge, tiny, infinite and NaN positions, velocities and times, and leaps, give finite forces."""
     random = np.random.default_rng(0)
-    known = sphere_cap()
-    touch = method.touch(known.surface)
+    scene = sphere_cap()
+    touch = method.touch(scene.surface)
     for _ in range(1000):
         position, velocity = random.choice(HOSTILE, (2, 3)).tolist()
         state = HapticState(tuple(position), tuple(velocity), float(random.choice(HOSTILE)))
         force = touch.force(state)
         demand(np.isfinite(force).all(), f"{state} gives {force}")
-    forces = method.touch(known.surface).path(random.choice(HOSTILE, (1000, 3)), PERIOD_S)
+    forces = method.touch(scene.surface).path(random.choice(HOSTILE, (1000, 3)), PERIOD_S)
     demand(np.isfinite(forces).all(), "a path of leaps gives a force that is not finite")
 
 
@@ -132,12 +135,12 @@ def stiffness_is_no_less_than_felt(method: ForceRenderer) -> None:
             )
 
 
-def _path(known: KnownSurface) -> Float64[np.ndarray, "n 3"]:
+def _path(scene: KnownSurface) -> Float64[np.ndarray, "n 3"]:
     """Return a wavy stroke in and out of contact, with a leap, a NaN and a standstill in it."""
     turns = np.linspace(0, 6 * np.pi, 300)
     places = zip(0.02 * np.cos(turns / 3), 0.02 * np.sin(turns / 2), 0.001 * np.sin(turns), strict=True)
-    path = np.array([known.at(float(x), float(y), float(depth)) for x, y, depth in places])
-    path[120] = known.at(-0.03, 0.03, 0.003)
+    path = np.array([scene.at(float(x), float(y), float(depth)) for x, y, depth in places])
+    path[120] = scene.at(-0.03, 0.03, 0.003)
     path[180] = np.nan
     path[240:260] = path[240]
     return path

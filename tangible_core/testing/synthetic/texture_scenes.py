@@ -48,17 +48,17 @@ def texture_mosaic(
     picture too small for all of the regions has fewer segments.
     Raises: PictureError if there are fewer textures than segments.
     """
-    known = builtin_textures() if textures is None else textures
-    if len(known) < segments:
-        raise PictureError(f"a mosaic of {segments} needs as many textures, but there are {len(known)}; add some")
+    available = builtin_textures() if textures is None else textures
+    if len(available) < segments:
+        raise PictureError(f"a mosaic of {segments} needs as many textures, but there are {len(available)}; add some")
     random = np.random.default_rng(seed)
-    chosen = random.choice(sorted(known), segments, replace=False)
+    chosen = random.choice(sorted(available), segments, replace=False)
     count = max(segments + 2, 8 * segments // 5)
     of_region = random.permutation(np.arange(count) % segments)
     labels = in_order(of_region[curvy_regions(shape, count, random)])
     picture = np.empty(shape)
     for label, name in enumerate(chosen[: labels.max() + 1]):
-        np.copyto(picture, without_grey(known[name](shape, random)), where=labels == label)
+        np.copyto(picture, without_grey(available[name](shape, random)), where=labels == label)
     return KnownSegments(_bytes(picture), labels)
 
 

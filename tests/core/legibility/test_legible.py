@@ -20,7 +20,7 @@ DOCS = Path(__file__).parents[3] / "docs"
 PITCH_M = 1e-4
 
 
-def beside(left: int = 300, right: int = 300, rows: int = 400) -> PartMap:
+def two_parts(left: int = 300, right: int = 300, rows: int = 400) -> PartMap:
     """Return two parts side by side, in tenths of a millimetre."""
     labels = np.zeros((rows, left + right), np.int32)
     labels[:, left:] = 1
@@ -48,7 +48,7 @@ def grades(medium, parts, **known) -> dict[str, str]:
 
 
 def test_legibility_two_large_parts_pass_in_every_medium():
-    parts = beside()
+    parts = two_parts()
     relief = relief_of(parts, 0.001, 0.003)
     for medium in PROFILES:
         found = legibility(medium, parts, width_m(parts), relief=relief)
@@ -57,7 +57,7 @@ def test_legibility_two_large_parts_pass_in_every_medium():
 
 
 def test_verdict_has_part_place_bound_source_and_cure():
-    labels = beside().labels.copy()
+    labels = two_parts().labels.copy()
     labels[100:140, 100:140] = 2
     parts = PartMap(labels, (0, 1, 2))
     (small,) = verdicts("swell", parts, names=("", "", "moon"))["part"]
@@ -78,7 +78,7 @@ def test_verdict_has_part_place_bound_source_and_cure():
 
 
 def test_legibility_width_of_the_cure_passes():
-    labels = beside().labels.copy()
+    labels = two_parts().labels.copy()
     labels[150:250, 60:110] = 2
     parts = PartMap(labels, (0, 1, 2))
     found = legibility("swell", parts, width_m(parts))
@@ -105,8 +105,8 @@ def test_legibility_one_part_or_none_fails():
     one = PartMap(np.zeros((200, 300), np.int32), (0,))
     assert grades("swell", one)["parts"] == "illegible"
     assert legibility("swell", None, 0.1).grade == "illegible"
-    assert legibility("print", None, 0.1, relief=relief_of(beside(), 0, 0.004)).grade == "warn"
-    assert legibility("print", None, 0.1, relief=relief_of(beside(), 0.004, 0.004)).grade == "illegible"
+    assert legibility("print", None, 0.1, relief=relief_of(two_parts(), 0, 0.004)).grade == "warn"
+    assert legibility("print", None, 0.1, relief=relief_of(two_parts(), 0.004, 0.004)).grade == "illegible"
 
 
 @pytest.mark.parametrize("medium", PROFILES)
@@ -128,13 +128,13 @@ def test_textures_named_parts_are_not_counted():
     ("step_m", "grade", "named"), [(0.0004, "illegible", "ok"), (0.0007, "ok", "warn"), (0.0012, "ok", "ok")]
 )
 def test_step_bounds_of_a_print_with_and_without_names(step_m, grade, named):
-    parts = beside()
+    parts = two_parts()
     found = grades("print", parts, relief=relief_of(parts, 0.002 + step_m, 0.002), names=("sea", "shore"))
     assert (found["step"], found["named step"]) == (grade, named)
 
 
 def test_step_is_measured_at_the_border_on_any_grid():
-    parts = beside()
+    parts = two_parts()
     x = np.linspace(0, 1, 211, dtype=np.float32)
     heights = np.where(x < 0.5, np.float32(0.003) * x, np.float32(0.0015) + np.float32(0.0008))
     relief = Relief(np.broadcast_to(heights, (97, 211)).copy(), (0.06, 0.04))
@@ -143,7 +143,7 @@ def test_step_is_measured_at_the_border_on_any_grid():
 
 
 def test_print_flat_relief_fails():
-    parts = beside()
+    parts = two_parts()
     found = verdicts("print", parts, relief=relief_of(parts, 0.002, 0.002))
     assert found["height"][0].verdict == "illegible"
     assert found["unfelt borders"][0].verdict == "warn"
@@ -151,7 +151,7 @@ def test_print_flat_relief_fails():
 
 
 def test_materials_neighbours_must_differ_in_material_or_height():
-    parts, library = beside(), shipped()
+    parts, library = two_parts(), shipped()
     wood, rubber = library["wood"], library["rubber"]
     same, other = (MaterialMap((wood, each), ("", "")) for each in (wood, rubber))
     flat, stepped = relief_of(parts, 0.002, 0.002), relief_of(parts, 0.002, 0.003)

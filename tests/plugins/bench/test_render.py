@@ -13,6 +13,7 @@ from tangible_bench.measuring.run import look, run
 from tangible_bench.results.plot import draw_plot
 from tangible_bench.results.summary import cells
 from tangible_bench.results.table import Results, tables
+from tangible_bench.strokes.strokes import SURFACES, KnownStroke, analytic_stroke
 from tangible_bench.tasks.render import PERTURBATIONS, TASK, feel, limits, measure, prepare
 from tangible_bench.tasks.render_scenes import RenderScene
 from tangible_core.errors import ConfigError, OutputError
@@ -21,7 +22,6 @@ from tangible_core.plugins.registry import Registry, load_method
 from tangible_core.servo.guard.safety import stiffness_limit_n_per_m
 from tangible_core.session import Recording
 from tangible_core.testing.synthetic.scenes import ramp
-from tangible_core.testing.synthetic.strokes import SURFACES, KnownStroke, analytic_stroke
 
 CELLS = 64
 RISE = math.hypot(0.2, 0.1)

@@ -142,7 +142,7 @@ class TestExport:
         panel.locator("summary", has_text="3D print (STL)").nth(1).press("Enter")
         panel.get_by_role("button", name="Remove 3D print (STL)").press("Enter")
         until(lambda: lines.count() == count - 1, "one")
-        assert page.evaluate("document.activeElement.type") == "checkbox"
+        until(lambda: page.evaluate("document.activeElement.type") == "checkbox", "the focus")
 
 
 class TestLegible:

@@ -161,10 +161,10 @@ class TestSnapping:
     def test_outline_moves_to_the_edges(self, factor: int) -> None:
         picture, inside = two_things()
         outline = self.wobbling(inside, 0.07)
-        assert overlap(self.filled(outline), inside) < 0.93
+        assert overlap(self.fill_outline(outline), inside) < 0.93
         picture = cv2.resize(picture, None, fx=factor, fy=factor, interpolation=cv2.INTER_CUBIC)
         found = snap(picture, outline * factor, 12.0 * factor) / factor
-        assert overlap(self.filled(found), inside) > 0.97
+        assert overlap(self.fill_outline(found), inside) > 0.97
 
     def test_outline_stays_within_reach_and_without_edges_in_place(self) -> None:
         picture, inside = two_things()

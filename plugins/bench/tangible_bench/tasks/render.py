@@ -11,9 +11,9 @@ from tangible_core.data import HapticSurface
 from tangible_core.metrics import force_errors, force_steps, loop_works, proxy_lag, stiffness_limit
 from tangible_core.metrics.stability import Law
 from tangible_core.plugins.interfaces import ForceRenderer, Touch
-from tangible_core.testing.synthetic.strokes import KnownStroke
 
 from ..memory import held_bytes
+from ..strokes.strokes import KnownStroke
 from .render_scenes import RenderScene
 from .task import Clock, Measure, Perturbation, Task
 

@@ -15,8 +15,8 @@ from tangible_core.scene.formats.pictures import read_map
 from tangible_core.scene.geometry import scale_heights
 from tangible_core.scene.scene import Scene
 from tangible_core.session.recording import Recording
-from tangible_core.testing.synthetic.strokes import PERIOD_S, KnownStroke, analytic_stroke, relief_stroke
 
+from ..strokes.strokes import PERIOD_S, KnownStroke, analytic_stroke, relief_stroke
 from .task import SceneSpec, check_one_kind
 
 Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]

@@ -29,11 +29,11 @@ def step(far: float, near: float, edge: int = 60) -> list[Surface]:
 def test_visible_occluded_strip_at_a_step_is_as_wide_as_the_jump(far: float, near: float):
     hidden = ~truly_visible(step(far, near), SHAPE)
     columns = np.arange(SHAPE[1])
-    beside = (columns - far >= 59.5 - near) & (columns < 60)
+    occluded = (columns - far >= 59.5 - near) & (columns < 60)
     outside = columns - far < -0.5
-    np.testing.assert_array_equal(hidden, np.tile(beside | outside, (SHAPE[0], 1)))
+    np.testing.assert_array_equal(hidden, np.tile(occluded | outside, (SHAPE[0], 1)))
     if float(near - far).is_integer():
-        assert beside.sum() == near - far
+        assert occluded.sum() == near - far
 
 
 def test_views_whole_disparities_match_exactly():
@@ -87,7 +87,7 @@ def test_synthetic_pair_is_repeatable_and_well_formed(name: str):
     assert pair.truth_px.min() > 0
     assert pair.truth_px.max() < 0.2 * 160
     assert 0.8 < pair.visible.mean() < 1
-    # The mask that is made from pixels alone agrees with the exact one but beside edges.
+    # The mask that is made from pixels alone agrees with the exact one except next to edges.
     assert (visible_pixels(pair.truth_px) == pair.visible).mean() > 0.98
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tangible_core.testing.synthetic import nearest
-from tangible_core.testing.synthetic.strokes import LOOP_TICKS, LOOPS, SURFACES, analytic_stroke, relief_stroke
+from tangible_bench.strokes import nearest
+from tangible_bench.strokes.strokes import LOOP_TICKS, LOOPS, SURFACES, analytic_stroke, relief_stroke
 
 SMOOTH = ("plane", "ramp", "sphere", "sine", "cone")
 

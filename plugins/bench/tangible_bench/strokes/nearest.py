@@ -72,10 +72,10 @@ def on_waves(hands_m: Points, amplitude_m: float, wavelength_m: float) -> Points
         places = places + step
         if np.abs(step).max(initial=0.0) < CONVERGED_M:
             break
-    found = np.column_stack([places, _waves(places, amplitude_m, wavelength_m)[0]])
+    points = np.column_stack([places, _waves(places, amplitude_m, wavelength_m)[0]])
     curve_m = (wavelength_m / (2 * np.pi)) ** 2 / amplitude_m
-    only = (np.abs(step).max(axis=1) < CONVERGED_M) & (np.linalg.norm(found - hands_m, axis=1) < curve_m)
-    return np.where(only[:, None], found, np.nan)
+    only = (np.abs(step).max(axis=1) < CONVERGED_M) & (np.linalg.norm(points - hands_m, axis=1) < curve_m)
+    return np.where(only[:, None], points, np.nan)
 
 
 def _waves(

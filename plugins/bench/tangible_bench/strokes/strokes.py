@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float64
 
-from ...data import HapticSurface, Record, Relief
-from ...scene.geometry import smooth, workspace_to_picture
+from tangible_core.data import HapticSurface, Record, Relief
+from tangible_core.scene.geometry import smooth, workspace_to_picture
+from tangible_core.testing.synthetic.reliefs import cliff, cone, ridge, waves
+from tangible_core.testing.synthetic.scenes import KnownSurface, plane, ramp, sphere_cap
+
 from . import nearest
-from .reliefs import cliff, cone, ridge, waves
-from .scenes import KnownSurface, plane, ramp, sphere_cap
 
 Points = Float64[np.ndarray, "n 3"]
 Heights = Callable[[Float64[np.ndarray, "n"], Float64[np.ndarray, "n"]], Float64[np.ndarray, "n"]]

@@ -1,0 +1,1 @@
+"""Strokes of a hand over surfaces, and the exact nearest points along them."""

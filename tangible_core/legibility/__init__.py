@@ -7,5 +7,5 @@ from .neighbours import apart as apart
 from .rules import PROFILES as PROFILES
 from .rules import Profile as Profile
 from .rules import Rule as Rule
-from .simplifying import SimplifyChoice as SimplifyChoice
-from .simplifying import simplify as simplify
+from .simplifying.choice import SimplifyChoice as SimplifyChoice
+from .simplifying.simplify import simplify as simplify

@@ -1,25 +1,14 @@
 """Checks before a motor moves: of the surface, the force law, the device and this machine; a verdict a line."""
 
-from .checks import CHECKS, judge
-from .fitting import fit_surface
-from .flight import Flight, Hand, Loop
-from .preflight import Preflight
-from .survey import survey
-from .timing import PERCENTILES
-from .verdict import Change, Verdict
-from .wording import relation
-
-__all__ = [
-    "CHECKS",
-    "PERCENTILES",
-    "Change",
-    "Flight",
-    "Hand",
-    "Loop",
-    "Preflight",
-    "Verdict",
-    "fit_surface",
-    "judge",
-    "relation",
-    "survey",
-]
+from .checks import CHECKS as CHECKS
+from .checks import judge as judge
+from .fitting import fit_surface as fit_surface
+from .flight import Flight as Flight
+from .flight import Hand as Hand
+from .flight import Loop as Loop
+from .preflight import Preflight as Preflight
+from .survey import survey as survey
+from .timing import PERCENTILES as PERCENTILES
+from .verdict import Change as Change
+from .verdict import Verdict as Verdict
+from .wording import relation as relation

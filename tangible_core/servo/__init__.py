@@ -1,27 +1,13 @@
 """The force loop in its own process: a thousand ticks a second, and no force when anything goes wrong."""
 
-from .beacon import Beacon, BeaconState, beacon_to
-from .child import TERMINATED
-from .guard.safety import Safety
-from .host import Servo
-from .packed_touch import Packed, pack_touch
-from .ring import Ring
-from .supervisor import OVER
-from .ticks.null_law import null_touch
-
-packed, still = pack_touch, null_touch
-"""Former names of these two functions."""
-
-__all__ = [
-    "OVER",
-    "TERMINATED",
-    "Beacon",
-    "BeaconState",
-    "Packed",
-    "Ring",
-    "Safety",
-    "Servo",
-    "beacon_to",
-    "null_touch",
-    "pack_touch",
-]
+from .beacon import Beacon as Beacon
+from .beacon import BeaconState as BeaconState
+from .beacon import beacon_to as beacon_to
+from .child import TERMINATED as TERMINATED
+from .guard.safety import Safety as Safety
+from .host import Servo as Servo
+from .packed_touch import Packed as Packed
+from .packed_touch import pack_touch as pack_touch
+from .ring import Ring as Ring
+from .supervisor import OVER as OVER
+from .ticks.null_law import null_touch as null_touch

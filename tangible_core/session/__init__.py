@@ -1,68 +1,37 @@
 """A session joins a touch and a device: the loop, and what it records."""
 
-from .guard_summary import guard_summary
-from .kiosk import Slot, run_kiosk
-from .live import RingDrain, figures, keeping, run_in_real_time
-from .parts_felt import (
-    BeaconFelt,
-    PartFelt,
-    beacons_felt,
-    material_under,
-    materials_text,
-    names_in,
-    names_of,
-    names_text,
-    part_label,
-    part_under,
-    parts_felt,
-    with_parts,
-)
-from .recording import INTERRUPTED, STOPPED, Recording, failure
-from .recording.comparison import compare_recordings
-from .recording.files import check_record_path
-from .recording.replay import compare_replay, replay, unaltered_forces
-from .recording.tick_file import About
-from .recording.writer import Writer
-from .simulated import run_simulated
-from .tracking_error import EVERY, TickSampler, TrackingError, tracking_error
-
-beside, Keeper, Turn, run_in_turn = compare_recordings, RingDrain, Slot, run_kiosk
-"""Former names of these four."""
-
-__all__ = [
-    "EVERY",
-    "INTERRUPTED",
-    "STOPPED",
-    "About",
-    "BeaconFelt",
-    "PartFelt",
-    "Recording",
-    "RingDrain",
-    "Slot",
-    "TickSampler",
-    "TrackingError",
-    "Writer",
-    "beacons_felt",
-    "check_record_path",
-    "compare_recordings",
-    "compare_replay",
-    "failure",
-    "figures",
-    "guard_summary",
-    "keeping",
-    "material_under",
-    "materials_text",
-    "names_in",
-    "names_of",
-    "names_text",
-    "part_label",
-    "part_under",
-    "parts_felt",
-    "replay",
-    "run_in_real_time",
-    "run_kiosk",
-    "run_simulated",
-    "tracking_error",
-    "unaltered_forces",
-    "with_parts",
-]
+from .guard_summary import guard_summary as guard_summary
+from .kiosk import Slot as Slot
+from .kiosk import run_kiosk as run_kiosk
+from .live import RingDrain as RingDrain
+from .live import figures as figures
+from .live import keeping as keeping
+from .live import run_in_real_time as run_in_real_time
+from .parts_felt import BeaconFelt as BeaconFelt
+from .parts_felt import PartFelt as PartFelt
+from .parts_felt import beacons_felt as beacons_felt
+from .parts_felt import material_under as material_under
+from .parts_felt import materials_text as materials_text
+from .parts_felt import names_in as names_in
+from .parts_felt import names_of as names_of
+from .parts_felt import names_text as names_text
+from .parts_felt import part_label as part_label
+from .parts_felt import part_under as part_under
+from .parts_felt import parts_felt as parts_felt
+from .parts_felt import with_parts as with_parts
+from .recording import INTERRUPTED as INTERRUPTED
+from .recording import STOPPED as STOPPED
+from .recording import Recording as Recording
+from .recording import failure as failure
+from .recording.comparison import compare_recordings as compare_recordings
+from .recording.files import check_record_path as check_record_path
+from .recording.replay import compare_replay as compare_replay
+from .recording.replay import replay as replay
+from .recording.replay import unaltered_forces as unaltered_forces
+from .recording.tick_file import About as About
+from .recording.writer import Writer as Writer
+from .simulated import run_simulated as run_simulated
+from .tracking_error import EVERY as EVERY
+from .tracking_error import TickSampler as TickSampler
+from .tracking_error import TrackingError as TrackingError
+from .tracking_error import tracking_error as tracking_error

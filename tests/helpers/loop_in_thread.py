@@ -4,6 +4,7 @@ The host speaks to it over two pipes as to a process, and it takes scenes out of
 signals, of kills, of laws that block and of what a process leaves behind need the process.
 """
 
+import copyreg
 import io
 import os
 import subprocess
@@ -74,3 +75,7 @@ def loops_in_threads(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(child, "gc", SimpleNamespace(freeze=lambda: None, collect=lambda: None))
     asked = priority._c
     patch.setattr(priority, "_c", lambda name: (lambda *_: -1) if name == "mlockall" else asked(name))
+    # A loop's process has not imported distributed, which teaches pickle every error that there is.
+    errors = [each for each in copyreg.dispatch_table if isinstance(each, type) and issubclass(each, BaseException)]
+    for each in errors:
+        patch.delitem(copyreg.dispatch_table, each)

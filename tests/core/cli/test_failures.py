@@ -75,6 +75,7 @@ POINTS = {
     "tangible.texture": {"texture": "acme:Texture"},
     "tangible.render": {"law": "acme:Law"},
     "tangible.device": {"device": "acme:Device", "mock": "tangible_devices:Mock"},
+    "tangible.hooks": {"devices": "tangible_devices.commands", "report": "tangible_report.commands"},
 }
 
 

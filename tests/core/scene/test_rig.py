@@ -282,4 +282,4 @@ class TestScene:
 
     def test_rig_without_a_pair_raises(self, folder: Path):
         with pytest.raises(ConfigError, match="rig needs left"):
-            Scene.photo(BLANK, rig=folder / "rig.yml")
+            Scene.of(photo=BLANK, rig=folder / "rig.yml")

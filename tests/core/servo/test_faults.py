@@ -1,6 +1,5 @@
 """Faults around a force loop: each one leaves no force, in bounded time, and is reported."""
 
-import copyreg
 import os
 import signal
 import subprocess
@@ -14,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from faulty_touch import FaultyTouch, OddError
+from faulty_touch import FaultyTouch
 from loop_devices import Circling, Failing
 from loop_scenes import held_force, proxy
 from tangible_core.errors import BrokenMethod, DeviceError
@@ -262,11 +261,7 @@ def handle_signal(number: int, how: signal.Handlers) -> Iterator[None]:
 @pytest.mark.usefixtures("patient")
 @pytest.mark.usefixtures("loop_in_thread")
 class TestPluginErrors:
-    def test_error_that_cannot_be_unpickled_keeps_its_text(
-        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        # distributed, which other tests of this process may have imported, teaches pickle every error that there is.
-        monkeypatch.delitem(copyreg.dispatch_table, OddError, raising=False)
+    def test_error_that_cannot_be_unpickled_keeps_its_text(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
         with (
             pytest.raises(BrokenMethod, match="OddError: a fault in the law"),

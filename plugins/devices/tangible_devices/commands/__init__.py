@@ -15,5 +15,7 @@ def tangible_commands(app: Typer) -> None:
     """Add `tangible devices` and `tangible pointer`."""
     from tangible_core.cli.command_table import add
 
+    from .pointer import pointer
+
     add("devices", f"{__package__}.devices:app", "List devices; examine, home or calibrate one.")
-    add("pointer", f"{__package__}.pointer:pointer", "Move a `pointer` device by hand and see the forces.")
+    app.command()(pointer)

@@ -213,7 +213,7 @@ class TestCode:
     @pytest.mark.parametrize(
         ("module", "products"),
         [
-            ("tangible_core.scene.scaling", {"disparity", "segments", "simplified"}),
+            ("tangible_core.scene.scaling", {"disparity", "segments", "parts", "simplified"}),
             ("tangible_core.scene.geometry", {"relief", "simplified"}),
             ("tangible_core.materials.rules", {"materials"}),
             ("tangible_core.data.surface", set(KEPT) - {"parts"}),

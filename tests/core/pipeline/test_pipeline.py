@@ -260,7 +260,7 @@ class TestWatching:
         left, right = pair()
         stop = threading.Event()
         pipeline = Pipeline(Scene.pair(left, right), depth=Flat(), cached=False)
-        with pytest.raises(Stopped, match="stopped by the program"):
+        with pytest.raises(Stopped, match="stopped on request"):
             pipeline.make("surface", progress=lambda stage: stop.set(), stop=stop)
         assert pipeline.surface.height_m.shape == SHAPE
 

@@ -84,7 +84,7 @@ def rows(seconds: Mapping[str, float]) -> Iterable[tuple[str, ...]]:
 def room(test: str) -> str:
     """Two folders below `tests`, or one where there is one alone; the package for what is tested in docstrings."""
     parts = Path(test.partition("::")[0]).parent.parts
-    return "/".join(parts[:3] if parts[0] == "tests" else parts[:2])
+    return "/".join(parts[:3] if parts[1:2] in (("core",), ("plugins",)) else parts[:2])
 
 
 def _environment(folder: str) -> dict[str, str]:

@@ -25,15 +25,16 @@ def test_processor_time_of_children_that_ended_and_of_those_that_run_is_counted(
 
 
 def test_rooms_that_miss_their_bound_are_marked():
-    spent = {"tests/ui/test_a.py::test_b[x]": 10_000.0, "tests/test_house.py::test_c": 1.0}
+    spent = {"tests/ui/test_a.py::test_b[x]": 9_999.0, "tests/test_house.py::test_c": 1.0}
+    spent |= {"tests/ui/browser/test_h.py::test_i": 1.0}
     spent |= {"tests/core/parts/deep/test_d.py::T::test_e": 3.0, "tests/core/parts/test_f.py::test_g": 4.5}
     spent |= {"plugins/depth/tangible_depth/ssd.py::tangible_depth.ssd.Ssd": 0.5}
     assert list(tests.rows(spent)) == [
-        ("`tests/ui`", "1", "10000.0", "150", "missed"),
+        ("`tests/ui`", "2", "10000.0", "150", "missed"),
         ("`tests/core/parts`", "2", "7.5", "8", ""),
         ("`tests`", "1", "1.0", "50", ""),
         ("`plugins/depth`", "1", "0.5", "8", ""),
-        ("all", "5", "10009.0", "600", "missed"),
+        ("all", "6", "10009.0", "600", "missed"),
     ]
 
 

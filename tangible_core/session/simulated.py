@@ -5,7 +5,7 @@ import math
 from array import array
 from collections.abc import Callable
 from threading import Event
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from ..servo.beacon import BeaconMemory
 from ..servo.guard.stiffness import stiffness_of
 from ..servo.reports import brief_report
 from ..servo.ticks.python_tick import GuardedForce, guard_touch
+from .live import ignore
 from .recording import INTERRUPTED, STOPPED, Recording
 from .recording.replay import proxy_of
 
@@ -58,11 +59,11 @@ def run_simulated(
     settings, memory = (limits or Safety()).arrays(spec, stiffness_of(touch, spec).n_per_m)
     pull = None if beacon is None else BeaconMemory.of(beacon).arrays
     allowed_force = guard_touch(touch, settings, memory, pull)
-    tape = _Tape(touch, on_report or _ignore)
+    tape = _Tape(touch, on_report or ignore)
     link = device.open()
     try:
         with stoppable(stop), link:
-            _feel(allowed_force, link, seconds, tape, frames or _ignore)
+            _feel(allowed_force, link, seconds, tape, frames or ignore)
     except DeviceError as error:  # also when the device is gone before its force could be made zero
         tape.stopped = tape.stopped or str(error)
     if tape.stopped:
@@ -146,7 +147,3 @@ class _Tape:
     def recording(self) -> Recording:
         """Return all ticks."""
         return Recording(np.array(self._numbers, np.float64).reshape(-1, len(TICK_COLUMNS)), self.stopped)
-
-
-def _ignore(_: Any) -> None:
-    pass

@@ -5,15 +5,13 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
 from ctrl_c import HEARING
 from distributions import distribution
-from tangible_bench.measuring.worker import answer
+from measuring_here import measure_here
 from tangible_core.plugins.registry import Registry
-from tangible_core.runtime.child_process import Place
 
 FAKES = """
 import os, signal, time
@@ -146,15 +144,9 @@ def registry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Registry:
 
 @pytest.fixture
 def cells_here(registry: Registry, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Measure in this process, not each cell in its own: the rows and their choice are the same."""
+    """Measure in this process, not each cell in its own, but for cells of `dies`."""
     monkeypatch.setattr("tangible_core.plugins.registry.default_registry", lambda: registry)
     measure_here(monkeypatch)
-
-
-def measure_here(patch: pytest.MonkeyPatch) -> None:
-    """Measure in this process, with the installed methods, as `cells_here` does."""
-    patch.setattr("tangible_bench.measuring.worker.gc", SimpleNamespace(collect=lambda: None, freeze=lambda: None))
-    patch.setattr("tangible_bench.measuring.run._outcome", lambda wanted, _: answer(Place(*wanted.place), wanted.job))
 
 
 Command = Callable[..., "subprocess.Popen[str]"]

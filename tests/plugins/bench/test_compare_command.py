@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from command_line import tangible
 from tangible_bench.config.reading import load_comparison
 from tangible_bench.measuring.rows import Row, append, read_rows
 from tangible_core.plugins.registry import default_registry
@@ -29,15 +30,16 @@ def test_sample_comparisons_are_valid(path: Path):
 
 
 @pytest.mark.slow
-def test_command_measures_shows_and_finds_regressions(tangible, tmp_path: Path):
-    config, rows = tmp_path / "c.yaml", tmp_path / "out" / "results.jsonl"
-    config.write_text(TEXT)
-    process = tangible("compare", config)
-    said, noise = process.communicate()
-    assert process.returncode == 1, noise
-    assert "no result on any scene: raises" in noise
-    for word in ("constant", "half", "raises", "baseline", "no result", "PictureError: not this picture", str(rows)):
-        assert word in said
+@pytest.mark.usefixtures("cells_here")
+def test_command_measures_shows_and_finds_regressions(tmp_path: Path):
+    rows = tmp_path / "out" / "results.jsonl"
+    (tmp_path / "c.yaml").write_text(TEXT)
+    done = tangible("compare", "c.yaml", cwd=tmp_path)
+    assert done.returncode == 1, done.stderr
+    assert "no result on any scene: raises" in done.stderr
+    failure = "PictureError: not this picture"
+    for word in ("constant", "half", "raises", "baseline", "no result", failure, "out/results.jsonl"):
+        assert word in done.stdout
     assert (tmp_path / "out" / "plot.png").is_file()
 
     # A method that failed on one scene of several has results; without the one that failed on all of them, so has all.
@@ -48,25 +50,22 @@ def test_command_measures_shows_and_finds_regressions(tangible, tmp_path: Path):
             append(
                 good, replace(row, scene="elsewhere", key=row.key + "2", error="no" if row.method == "half" else None)
             )
-    process = tangible("compare", good)
-    _, noise = process.communicate()
-    assert process.returncode == 0, noise
+    done = tangible("compare", good, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
 
     # The same file against itself: nothing is measured, nothing is worse.
     rows.write_text(good.read_text())
-    process = tangible("compare", rows, "--against", rows)
-    said, noise = process.communicate()
-    assert process.returncode == 0, noise
-    assert "4 cells compared, times as ratios to constant; 0 figures got worse" in said
+    done = tangible("compare", rows, "--against", rows, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "4 cells compared, times as ratios to constant; 0 figures got worse" in done.stdout
 
     # Against results that were better.
     better = tmp_path / "better.jsonl"
     for row in read_rows(rows).values():
         append(better, better_than(row) if row.method == "half" else row)
-    process = tangible("compare", rows, "--against", better, "--json")
-    said, noise = process.communicate()
-    assert process.returncode == 1, noise
-    worse = json.loads(said)["against"]["worse"]
+    done = tangible("compare", rows, "--against", better, "--json", cwd=tmp_path)
+    assert done.returncode == 1, done.stderr
+    worse = json.loads(done.stdout)["against"]["worse"]
     assert {each["method"] for each in worse} == {"half"}
     assert "bad2 %" in {each["what"] for each in worse}
 
@@ -85,13 +84,13 @@ def better_than(row: Row) -> Row:
         (["good.yaml", "--against", "missing.jsonl"], "cannot be read as results"),
     ],
 )
-def test_command_with_a_mistake_exits_with_2_and_a_message(tangible, tmp_path: Path, words: list[str], why: str):
+@pytest.mark.usefixtures("cells_here")
+def test_command_with_a_mistake_exits_with_2_and_a_message(tmp_path: Path, words: list[str], why: str):
     (tmp_path / "empty.jsonl").write_text("")
     (tmp_path / "wrong.yaml").write_text("compare: nothing\n")
     (tmp_path / "good.yaml").write_text(TEXT)
-    process = tangible("compare", *(word if word.startswith("-") else tmp_path / word for word in words))
-    _, noise = process.communicate()
-    assert process.returncode == 2, noise
-    assert why in noise
-    assert "Traceback" not in noise
+    done = tangible("compare", *words, cwd=tmp_path)
+    assert done.returncode == 2, done.stderr
+    assert why in done.stderr
+    assert "Traceback" not in done.stderr
     assert not (tmp_path / "out").exists()

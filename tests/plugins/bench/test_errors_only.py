@@ -1,11 +1,14 @@
 """Errors without times, from workers that stay warm: the same to the last digit as those of a timed comparison."""
 
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from typing import Any, ClassVar
 
 import pytest
 
 import dask_imported  # noqa: F401
 from command_line import tangible
+from tangible_batch.farm import Done
 from tangible_bench.comparing import ComparisonOutcome, Step, compare
 from tangible_bench.config.reading import errors_only, parse_comparison
 from tangible_bench.measuring.rows import read_rows
@@ -30,6 +33,7 @@ def run_comparison(registry: Registry, folder: Path, without_times: bool, **how)
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("cells_here")
 def test_errors_alone_equal_those_of_timed_measurements(registry: Registry, tmp_path: Path):
     timed = run_comparison(registry, tmp_path, False)
     heard: list[Step] = []
@@ -54,12 +58,32 @@ def test_errors_alone_equal_those_of_timed_measurements(registry: Registry, tmp_
     run_comparison(registry, tmp_path, True, progress=lambda step: pytest.fail("nothing is left to measure"))
 
 
-@pytest.mark.slow
-def test_command_with_errors_only_reports_no_times(registry: Registry, tmp_path: Path):
-    words = f"methods: [ssd]\nscenes: [synthetic/steps]\nout: {tmp_path}/out\n"
+class FarmHere:
+    """A farm that works in this process; `started` holds the workers and threads of each."""
+
+    started: ClassVar[list[tuple[int, int]]] = []
+
+    def __init__(self, workers: int, threads: int) -> None:
+        self.started.append((workers, threads))
+
+    def __enter__(self) -> "FarmHere":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def map(self, work: Callable[[Any], Any], jobs: Iterable[Any], timeout_s: float) -> Iterator[Done[Any, Any]]:
+        return (Done(job, work(job)) for job in jobs)
+
+
+def test_command_with_errors_only_reports_no_times(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("tangible_bench.measuring.side_by_side.Farm", FarmHere)
+    monkeypatch.setattr(FarmHere, "started", [])
+    words = f"methods: [ssd]\nscenes: [synthetic/steps, synthetic/bars]\nout: {tmp_path}/out\n"
     (tmp_path / "c.yaml").write_text(f"compare: depth\n{words}")
     done = tangible("compare", "c.yaml", "--errors-only", "--workers", 1, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
+    assert [workers for workers, _ in FarmHere.started] == [1]
     said = " ".join(done.stdout.split())
     assert "ssd is the most exact" in said
     assert "times were not measured" in said

@@ -106,6 +106,7 @@ def test_output_of_a_method_does_not_disturb_its_row(registry: Registry, tmp_pat
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("cells_here")
 def test_failing_methods_are_rows_and_stop_no_other(registry: Registry, tmp_path: Path, log_dir: Path):
     methods = "raises, fails, dies, {use: dies, label: leaves, how: exit}, relative, constant"
     rows = {row.method: row for row in measure_rows(registry, tmp_path / "r.jsonl", methods)}

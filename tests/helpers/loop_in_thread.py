@@ -9,6 +9,7 @@ import io
 import os
 import subprocess
 import threading
+from contextlib import closing
 from types import SimpleNamespace
 from typing import Any
 
@@ -34,9 +35,8 @@ class LoopThread(subprocess.Popen[bytes]):
         self._thread.start()
 
     def _live(self) -> None:
-        with self._replies:
+        with closing(self._commands), self._replies:
             child.Child(self._commands, self._replies).main()
-        self._commands.close()
 
     def poll(self) -> int | None:
         return None if self._thread.is_alive() else 0

@@ -15,6 +15,7 @@ import pytest
 
 from faulty_touch import FaultyTouch
 from loop_devices import Circling, Failing
+from loop_in_thread import loops_in_threads
 from loop_scenes import held_force, proxy
 from tangible_core.errors import BrokenMethod, DeviceError
 from tangible_core.plugins.interfaces import Touch
@@ -61,11 +62,16 @@ class Interrupt:
 
 
 class TestInterruptedStart:
-    def test_interrupt_at_any_line_of_the_start_leaves_no_force(self, tmp_path: Path) -> None:
-        """Every line of the start, one run each: few ticks more, no force, no process, no file."""
-        before, ran_through, line = left_behind(), False, 0
+    @pytest.mark.parametrize("every", [1, 6])
+    def test_interrupt_at_any_line_of_the_start_leaves_no_force(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, every: int
+    ) -> None:
+        """Every line of the start, one run each: few ticks more, no force, no loop, no file; some with a process."""
+        if every == 1:
+            loops_in_threads(monkeypatch)
+        before, ran_through, line = left_behind(), False, 1 - every
         while not ran_through:
-            line += 1
+            line += every
             record = tmp_path / f"force {line}"
             servo = Servo(proxy(), Failing(fault="none", record=str(record)), AT_ONCE)
             interrupt = Interrupt(line, servo)
@@ -86,7 +92,9 @@ class TestInterruptedStart:
             assert left_behind() == before, line
         assert line > 25
 
-    @pytest.mark.parametrize("delay_s", [0.05, 0.3, 0.6, 0.9])
+    @pytest.mark.parametrize(
+        "delay_s", [0.05, 0.6, *(pytest.param(each, marks=pytest.mark.nightly) for each in (0.3, 0.9))]
+    )
     def test_ctrl_c_during_the_start_ends_both_processes(self, tmp_path: Path, delay_s: float) -> None:
         """As by the keyboard, even if the program was started with SIGINT ignored."""
         record, ready = tmp_path / "force", tmp_path / "ready"

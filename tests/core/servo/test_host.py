@@ -40,6 +40,7 @@ def ticks(servo: Servo) -> np.ndarray:
 
 
 class TestTicks:
+    @pytest.mark.usefixtures("loop_in_thread")
     @pytest.mark.parametrize(
         ("device", "how"),
         [

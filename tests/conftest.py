@@ -31,6 +31,8 @@ settings.register_profile("nightly", settings.get_profile("default"), max_exampl
 settings.load_profile("ci" if os.environ.get("CI") else "default")
 
 Install = Callable[..., Path]
+OWN = ("cache", "runtime", "config", "log")
+"""Folders that each test has of its own, told by an environment variable each."""
 STANDSTILL_S = 30.0
 """Longer than any machine lets a loop stand still, however busy it is."""
 STARTS_PROCESSES = {"subprocess", "Popen", "Servo", "Program", "UiServer"}
@@ -80,11 +82,21 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.fixture(autouse=True)
-def own_dir(folders: Iterator[Path]) -> Path:
-    """A folder for what a test would read from, and leave in, the developer's own."""
+def own_dir(folders: Iterator[Path]) -> Iterator[Path]:
+    """A folder for what a test would read from, and leave in, the developer's own; one fixture, as all pay it."""
     folder = next(folders)
-    folder.mkdir()
-    return folder
+    os.mkdir(folder)  # noqa: PTH102 - pathlib would take most of the time
+    told = {f"TANGIBLE_{kind.upper()}_DIR": f"{folder}/{kind}" for kind in OWN}
+    before = {name: os.environ.get(name) for name in told}
+    for path in told.values():
+        os.mkdir(path)  # noqa: PTH102
+    os.environ.update(told)
+    yield folder
+    for name, value in before.items():
+        if value is None:
+            os.environ.pop(name, None)
+        else:
+            os.environ[name] = value
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -113,34 +125,28 @@ def own_memory(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         yield
 
 
-@pytest.fixture(autouse=True)
-def cache_dir(own_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty cache for each test."""
-    return _told("TANGIBLE_CACHE_DIR", own_dir / "cache", monkeypatch)
+@pytest.fixture
+def cache_dir(own_dir: Path) -> Path:
+    """The cache of this test, empty at first."""
+    return own_dir / "cache"
 
 
-@pytest.fixture(autouse=True)
-def runtime_dir(own_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Shared memory of its own for each test: two at a time do not meet on one channel."""
-    return _told("TANGIBLE_RUNTIME_DIR", own_dir / "runtime", monkeypatch)
+@pytest.fixture
+def runtime_dir(own_dir: Path) -> Path:
+    """Shared memory of this test: two at a time do not meet on one channel."""
+    return own_dir / "runtime"
 
 
-@pytest.fixture(autouse=True)
-def config_dir(own_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """No calibration of a developer's own device is read or written."""
-    return _told("TANGIBLE_CONFIG_DIR", own_dir / "config", monkeypatch)
+@pytest.fixture
+def config_dir(own_dir: Path) -> Path:
+    """The configuration of this test: no calibration of a developer's own device is read or written."""
+    return own_dir / "config"
 
 
-@pytest.fixture(autouse=True)
-def log_dir(own_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Tracebacks of failures on purpose are kept in no developer's log."""
-    return _told("TANGIBLE_LOG_DIR", own_dir / "log", monkeypatch)
-
-
-def _told(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    folder.mkdir()
-    monkeypatch.setenv(name, str(folder))
-    return folder
+@pytest.fixture
+def log_dir(own_dir: Path) -> Path:
+    """The log of this test: tracebacks of failures on purpose are kept in no developer's log."""
+    return own_dir / "log"
 
 
 @pytest.fixture

@@ -76,10 +76,12 @@ class FarmHere:
         return (Done(job, work(job)) for job in jobs)
 
 
+@pytest.mark.slow
 def test_command_with_errors_only_reports_no_times(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("tangible_bench.measuring.side_by_side.Farm", FarmHere)
     monkeypatch.setattr(FarmHere, "started", [])
-    words = f"methods: [ssd]\nscenes: [synthetic/steps, synthetic/bars]\nout: {tmp_path}/out\n"
+    scenes = "{synthetic: steps, width_px: 64, height_px: 48}, {synthetic: bars, width_px: 64, height_px: 48}"
+    words = f"methods: [ssd]\nscenes: [{scenes}]\nout: {tmp_path}/out\n"
     (tmp_path / "c.yaml").write_text(f"compare: depth\n{words}")
     done = tangible("compare", "c.yaml", "--errors-only", "--workers", 1, cwd=tmp_path)
     assert done.returncode == 0, done.stderr

@@ -108,6 +108,7 @@ def test_relief_stroke_nearest_points_are_unknown():
     surface = SURFACES["sine"].known((64, 32)).surface
     stroke = relief_stroke(surface)
     assert np.isnan(stroke.nearest_m).all()
-    depths = [SURFACES["sine"].known((16, 16)).height_m(x, y) - z for x, y, z in stroke.position_m]
+    known = SURFACES["sine"].known((16, 16))
+    depths = [known.height_m(x, y) - z for x, y, z in stroke.position_m]
     assert 0.0005 < np.percentile(depths, 90) < 0.0015
     assert np.abs(stroke.position_m[:, :2]).max(axis=0) == pytest.approx([0.03, 0.06], rel=1e-3)

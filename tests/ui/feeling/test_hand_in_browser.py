@@ -53,7 +53,7 @@ class Felt:
 @pytest.fixture
 def page(opened, open_page) -> Any:
     """A page on which a surface is felt; nothing moves its hand yet."""
-    page = open_page(f"{opened('builtin/brick')}&measure")
+    page = open_page(f"{opened('builtin/brick')}&measure", draws=True)
     wait_until_drawn(page)
     page.wait_for_function("() => document.getElementById('log').textContent.includes('proxy:')")
     return page

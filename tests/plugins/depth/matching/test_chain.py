@@ -9,10 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from stereo_scenes import slanted, step, texture
+from stereo_scenes import known_pair, slanted, step, texture
 from tangible_core.compiled import threads
 from tangible_core.data import Views
-from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.dense.confidence import confidence, flat_pixels
 from tangible_depth.dense.edges import median, sharpen_edges
 from tangible_depth.dense.filling.four_directions import GEODESIC, choose_of_four, fill_from_four_directions
@@ -311,7 +310,7 @@ def test_estimated_range_covers_all_disparities_and_little_more(offset):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_thin_object_before_a_wall_widens_the_range(seed):
-    pair = synthetic_pair("bars", 480, 360, seed)
+    pair = known_pair("bars", 480, 360, seed)
     span = find_disparity_range(grey_pair(pair.views, "test"), "auto", "auto").span
     assert np.mean((pair.truth_px >= span.low) & (pair.truth_px <= span.high)) >= 0.999
     assert span.lanes <= 64

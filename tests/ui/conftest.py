@@ -55,9 +55,8 @@ def chromium() -> Iterator[Chromium]:
     found = [path for name in BROWSERS if (path := shutil.which(name))]
     path = os.environ.get("TANGIBLE_UI_BROWSER") or next(iter(found), "")
     if not path:
-        lacking(
-            "no Chromium is installed (on Debian: apt-get install chromium-headless-shell), and TANGIBLE_UI_BROWSER names none"
-        )
+        install = "apt-get install chromium-headless-shell"
+        lacking(f"no Chromium is installed (on Debian: {install}), and TANGIBLE_UI_BROWSER names none")
     from playwright.sync_api import sync_playwright
 
     playwright = sync_playwright().start()

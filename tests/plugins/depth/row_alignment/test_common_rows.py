@@ -210,7 +210,7 @@ def test_chance_matches_do_not_widen_the_verified_range(monkeypatch: pytest.Monk
     found_px = np.concatenate([random.uniform(0, 60, 21600), random.uniform(-270, 200, 2400)]).reshape(24, 1000)
     bands = Bands(np.arange(24), np.rint(16 * found_px).astype(np.int16), 1, found_px.size, 0.3)
     monkeypatch.setattr(disparity_range, "find_range", lambda pair: RangeEstimate(Span(-273, 200), bands, False))
-    pair = Pair(*[np.zeros((24, 1000), np.uint8)] * 2)
+    pair = Pair.of(*[np.zeros((24, 1000), np.uint8)] * 2)
     assert find_disparity_range(pair, "auto", "auto").span.low == -273
     found = find_disparity_range(pair, "auto", "auto", (3, 40)).span
     assert -16 <= found.low <= 0

@@ -48,7 +48,7 @@ def test_squared_differences_of_bytes_do_not_wrap():
 
 def small_pair():
     views, _, _ = step(shape=(12, 48), back=2, front=6, box=(3, 9, 14, 34))
-    return Pair(np.asarray(views.left), np.asarray(views.right))
+    return Pair.of(np.asarray(views.left), np.asarray(views.right))
 
 
 WIDEST = Span(-9, 40)

@@ -1,4 +1,7 @@
-"""The pictures of the page in the docs: always made and looked at, and with TANGIBLE_UI_PICTURES=1 written there."""
+"""The pictures of the page in the docs: made and looked at, one of them daily, the others in the nightly tests.
+
+TANGIBLE_UI_PICTURES=1 pytest tests/ui/browser/test_screenshots.py -m "nightly or not nightly"   # writes them there
+"""
 
 import io
 import os
@@ -41,7 +44,9 @@ def url(opened: Callable[..., str]) -> str:
     return opened("builtin/motorcycle")
 
 
-@pytest.mark.parametrize("name", PICTURES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(each, marks=() if each == "ui" else pytest.mark.nightly) for each in PICTURES]
+)
 def test_screenshot_of_the_page(open_page: Callable[..., Any], url: str, tmp_path: Path, name: str):
     page = open_page(url, draws=True, **PICTURES[name])
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
@@ -53,6 +58,7 @@ def test_screenshot_of_the_page(open_page: Callable[..., Any], url: str, tmp_pat
     keep(picture, tmp_path, name)
 
 
+@pytest.mark.nightly
 def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_path: Path):
     """Each panel has its contents once a surface is felt; a long panel is cut."""
     size = {"width": 1440, "height": 1100}
@@ -75,6 +81,7 @@ def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_p
         panel.evaluate("(each) => (each.open = false)")
 
 
+@pytest.mark.nightly
 def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: Callable[..., Any], tmp_path: Path):
     """A photograph with parts that were drawn by hand; and one that is proposed."""
     astronaut = drawn("astronaut")

@@ -83,6 +83,17 @@ class TestCoupling:
             assert left == (0.0, 0.0, 0.0, 0)
 
     @pytest.mark.parametrize("axis", [0, 1, 2])
+    @pytest.mark.parametrize("speed", [1e308, -1e308])
+    def test_tool_pulled_by_a_velocity_that_overflows_returns_to_the_device(self, axis: int, speed: float):
+        safety = Safety(coupling=Coupling(stiffness_n_per_m=1000, damping_n_s_per_m=4), **BARE)
+        settings, memory = safety.arrays(SPEC, 500.0)
+        velocity = speed * np.eye(3)[axis]
+        couple(settings, memory, 0.001, *[0.0] * 6)
+        assert couple(settings, memory, 0.001, 0.0, 0.0, 0.0, *velocity) == (0.0, 0.0, 0.0, *velocity)
+        left = guard(settings, memory, 0.001, 0.0, 0.0, 0.0, *velocity, 0.0, 0.0, 0.0)
+        assert left == (0.0, 0.0, 0.0, 0)
+
+    @pytest.mark.parametrize("axis", [0, 1, 2])
     def test_tool_force_that_overflows_is_zero(self, axis: int):
         """A heavy tool keeps its velocity while the device's is opposite: their difference overflows."""
         safety = Safety(coupling=Coupling(stiffness_n_per_m=1000, damping_n_s_per_m=1.5), **BARE)

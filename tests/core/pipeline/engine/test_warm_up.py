@@ -127,13 +127,16 @@ class TestWork:
         monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 1)
         assert _work(pipeline().engine, "touch") is None
 
-    def test_work_of_a_depth_that_has_begun_rehearses_it_first(self):
+    def test_work_of_a_depth_that_has_begun_rehearses_it_first(self, monkeypatch: pytest.MonkeyPatch):
         engine = pipeline(depth=SemiGlobal()).engine
         engine.begun.add("disparity")
+        rehearsed: list[SemiGlobal] = []
+        monkeypatch.setattr(SemiGlobal, "rehearse", lambda self: rehearsed.append(self))
         work = _work(engine, "segments")
         assert work is not None
         assert work.names == {LATE_STEPS, "segments"}
         assert next(run_stages(*work.arguments)) == LATE_STEPS
+        assert rehearsed == [SemiGlobal()]
 
     def test_work_crops_the_middle_of_a_large_picture(self, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr(module, "MOST_PX", 20)

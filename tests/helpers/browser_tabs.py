@@ -13,6 +13,25 @@ if TYPE_CHECKING:
 HERE = ("http://127.0.0.1:", "ws://127.0.0.1:", "http://localhost:", "ws://localhost:", "data:", "blob:", "about:")
 OPTIONS = {"locale": "en-GB", "viewport": {"width": 1180, "height": 720}}
 
+FEWER_FRAMES = """(() => {
+  const next = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (act) => setTimeout(() => next(act), 80);
+  window.cancelAnimationFrame = clearTimeout;
+})()"""
+"""A dozen frames a second: without a graphics card, sixty take a whole processor, and no test looks at them."""
+NO_WEBGL = """(() => {
+  const { prototype } = HTMLCanvasElement;
+  const real = prototype.getContext;
+  prototype.getContext = function (kind, ...more) {
+    return kind.startsWith("webgl") ? null : real.call(this, kind, ...more);
+  };
+})()"""
+"""As where a browser has no WebGL: the surface is not drawn, and all else works."""
+
+SETTLED = """new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))).then(
+  () => Promise.allSettled(document.getAnimations().map((each) => each.finished)))"""
+"""Laid out anew, marks turned, colours changed."""
+
 OpenPage = Callable[..., "Page"]
 
 
@@ -38,12 +57,16 @@ class Chromium:
 
 @contextmanager
 def tabs(browser: "Browser", complaints: list[str]) -> Iterator[OpenPage]:
-    """Yield a function that opens an address in a context of its own; at the end no page may have complained."""
+    """Yield a function that opens an address in a context of its own; at the end no page may have complained.
+
+    A page draws its surface only if it is opened so: shaders and frames in software are most of a page's time.
+    """
     contexts = []
 
-    def open_page(url: str, **options: Any) -> "Page":
+    def open_page(url: str, draws: bool = False, **options: Any) -> "Page":
         context = browser.new_context(**{**OPTIONS, **options})
         contexts.append(context)
+        context.add_init_script(FEWER_FRAMES if draws else NO_WEBGL)
         context.set_default_timeout(LONGEST_MS)
         context.on("page", lambda page: watch(page, complaints))  # those that a page opens too
         page = context.new_page()

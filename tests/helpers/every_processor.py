@@ -59,6 +59,9 @@ Found = Iterator[tuple[str, Any]]
 SIZE = slice(90, 346), slice(200, 520)
 """Of the motorcycle: the part that has most in it."""
 
+SLOW = {"kornia-report", "kornia-zncc", "report"}
+"""Methods by which others are measured."""
+
 
 @cache
 def scene(name: str) -> Scene:
@@ -152,6 +155,8 @@ def depth() -> Found:
     yield "rectified, lenses taken out", warp_pair(noisy_pair(), straight, "", 0, (-0.1, -0.08)).views
     for name, cls, options in ours("depth"):
         for of, views in (("pair", pair()), ("noisy pair", noisy_pair())):
+            if of == "pair" and name in SLOW:  # on the way to the noisy one's map lies all of this one's
+                continue
             found = cls(**options).estimate(views)
             yield f"{name}: disparity of the {of}", found.disparity_px
             yield f"{name}: confidence of the {of}", found.confidence
@@ -164,11 +169,10 @@ def depth() -> Found:
 
 def texture() -> Found:
     for name, cls, options in ours("texture"):
-        for of, picture in (("mosaic", mosaic()), ("colour picture", pair().left)):
-            for segments in (4, "auto"):
-                found = cls(segments=segments, **options).segment(picture)
-                yield f"{name}: labels of the {of}, {segments}", found.labels
-                yield f"{name}: confidence of the {of}, {segments}", found.confidence
+        for of, picture, segments in (("mosaic", mosaic(), 4), ("colour picture", pair().left, "auto")):
+            found = cls(segments=segments, **options).segment(picture)
+            yield f"{name}: labels of the {of}, {segments}", found.labels
+            yield f"{name}: confidence of the {of}, {segments}", found.confidence
 
 
 def reliefs() -> Found:

@@ -1,5 +1,8 @@
 """Two cameras that look at points, and rendered pairs whose every pixel is known."""
 
+from dataclasses import dataclass
+from functools import lru_cache
+
 import numpy as np
 
 from tangible_depth.rectify.epipolar import homogeneous, lines_in_left
@@ -32,31 +35,26 @@ def some_wrong(left, right, share, seed=1):
     return left, right
 
 
+@dataclass(frozen=True)
 class Scene:
-    """A wall and a box before it, each with a texture that is a function of place: nothing is resampled.
+    """A wall and a box before it, each with a texture that is a function of place: nothing is resampled."""
 
-    slope: by how much the wall's disparity grows with each column and row; box: half its size, as shares of the
-    picture's.
-    """
-
-    def __init__(self, shape=(150, 200), wall_px=6.0, box_px=14.0, seed=0, slope=(0.0, 0.0), box=(0.2, 0.25)):
-        self.shape, self.wall_px, self.box_px, self.slope, self.box = shape, wall_px, box_px, slope, box
-        random = np.random.default_rng(seed)
-        self._waves = random.uniform(-0.2, 0.2, (2, 80, 2)) * 2 * np.pi
-        self._phases = random.uniform(0, 2 * np.pi, (2, 80))
+    shape: tuple[int, int] = (150, 200)
+    wall_px: float = 6.0
+    box_px: float = 14.0
+    seed: int = 0
+    slope: tuple[float, float] = (0.0, 0.0)
+    """By how much the wall's disparity grows with each column and row."""
+    box: tuple[float, float] = (0.2, 0.25)
+    """Half the size of the box, as shares of the picture's."""
 
     def left(self, warp=None):
         """As the left camera sees it, then moved by a homography."""
-        x, y = self._grid(warp)
-        return self._paint(x, y, self._in_box(x, y))
+        return _draw(self, False, _plain(warp)).copy()
 
     def right(self, warp=None):
         """As the right camera sees it, then moved by a homography."""
-        x, y = self._grid(warp)
-        box = self._in_box(x + self.box_px, y)
-        across, down = self.slope
-        wall = (x + self.wall_px + down * y) / (1 - across)
-        return self._paint(np.where(box, x + self.box_px, wall), y, box)
+        return _draw(self, True, _plain(warp)).copy()
 
     def disparity_px(self):
         x, y = self._grid()
@@ -92,14 +90,30 @@ class Scene:
         across, down = self.box
         return (abs(x - 0.55 * columns) < across * columns) & (abs(y - 0.5 * rows) < down * rows)
 
-    def _paint(self, x, y, box):
-        layers = []
-        for waves, phases in zip(self._waves, self._phases, strict=True):
-            total = np.zeros(x.shape)
-            for (u, v), phase in zip(waves, phases, strict=True):
-                total += np.cos(u * x + v * y + phase)
-            layers.append(0.5 + 0.04 * total)
-        return np.clip(np.where(box, layers[1], layers[0]), 0, 1).astype(np.float32)
+
+def _plain(warp):
+    """Return the numbers of a homography, by which a view is kept."""
+    return None if warp is None else tuple(np.ravel(warp).tolist())
+
+
+@lru_cache(64)
+def _draw(scene, right, warp):
+    """Draw a view once for all tests that look at it."""
+    x, y = scene._grid(None if warp is None else np.reshape(warp, (3, 3)))
+    box = scene._in_box(x + scene.box_px if right else x, y)
+    if right:
+        across, down = scene.slope
+        x = np.where(box, x + scene.box_px, (x + scene.wall_px + down * y) / (1 - across))
+    random = np.random.default_rng(scene.seed)
+    waves = random.uniform(-0.2, 0.2, (2, 80, 2)) * 2 * np.pi
+    phases = random.uniform(0, 2 * np.pi, (2, 80))
+    total = np.zeros(scene.shape)
+    for shown, *layer in zip((~box, box), waves, phases, strict=True):
+        columns, rows, sums = x[shown], y[shown], np.zeros(np.count_nonzero(shown))
+        for (u, v), phase in zip(*layer, strict=True):
+            sums += np.cos(u * columns + v * rows + phase)
+        total[shown] = sums
+    return np.clip(0.5 + 0.04 * total, 0, 1).astype(np.float32)
 
 
 def roll_and_tilt(shape, degrees=2.0, tilt=(2e-5, -3e-5)):

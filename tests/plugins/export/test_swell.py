@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
+import cv2
 import numpy as np
 import pytest
 from scipy import ndimage
@@ -18,6 +19,8 @@ from tangible_export.swell import Swell
 
 PER_MM = 10
 GAP_MM = 3.2
+ROUNDING_MM = 1e-5
+"""Of single precision; the next smaller distance between pixels is a hundred times as far off."""
 SIZES_MM = {"a4": (210, 297), "letter": (215.9, 279.4), "a3": (297, 420)}
 
 
@@ -48,6 +51,11 @@ def braille_dots(root) -> list[np.ndarray]:
     return [np.array([(float(dot.get("cx")), float(dot.get("cy"))) for dot in group]) for group in groups]
 
 
+def distances(free: np.ndarray) -> np.ndarray:
+    """From each pixel to the nearest that is not free, exact; OpenCV takes a tenth of scipy's time."""
+    return cv2.distanceTransform(free.astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+
+
 def least_gap_mm(svg: Path) -> float:
     """Between any two blots of ink but the dots of one text. Outlines that touch are one."""
     root = ElementTree.parse(svg).getroot()
@@ -67,7 +75,7 @@ def least_gap_mm(svg: Path) -> float:
         if text_of[number]:
             others &= text_of[here] != text_of[number]
         if others.any():
-            far = ndimage.distance_transform_edt(~others)[here == number].min()
+            far = distances(~others)[here == number].min()
             least = min(least, (far - 1) / PER_MM)
     return least
 
@@ -75,7 +83,7 @@ def least_gap_mm(svg: Path) -> float:
 def test_page_marks_keep_the_gap_of_a_finger(exported):
     _, files, _ = exported
     for svg in svgs(files):
-        assert least_gap_mm(svg) >= GAP_MM - 1e-9, svg.name
+        assert least_gap_mm(svg) >= GAP_MM - ROUNDING_MM, svg.name
 
 
 def test_page_outlines_leave_room_for_a_finger(exported):
@@ -89,8 +97,8 @@ def test_page_outlines_leave_room_for_a_finger(exported):
     alone = files[0].with_name("outlines.svg")
     ElementTree.ElementTree(root).write(alone)
     free = pixels(alone, 25.4 * PER_MM) >= 128
-    room = ndimage.distance_transform_edt(free) >= GAP_MM / 2 * PER_MM
-    beyond = ndimage.distance_transform_edt(~room) / PER_MM - GAP_MM / 2
+    room = distances(free) >= GAP_MM / 2 * PER_MM
+    beyond = distances(~room) / PER_MM - GAP_MM / 2
     assert beyond[free].max() <= GAP_MM + 0.5
     assert (beyond[free] > 0.2).mean() < 0.02
 
@@ -237,7 +245,7 @@ def test_page_marks_drawn_too_near_are_moved_or_left_out(tmp_path, monkeypatch, 
     labels = np.zeros((300, 450), np.int32)
     labels[:, 260:], labels[100:200, 100:180] = 1, 2
     svg = Swell().write(labels_work(labels, ("land", "sea", "isle")), tmp_path / "map")[0]
-    assert least_gap_mm(svg) >= GAP_MM - 1e-9
+    assert least_gap_mm(svg) >= GAP_MM - ROUNDING_MM
 
 
 def test_page_long_title_is_complete_on_the_key(tmp_path):

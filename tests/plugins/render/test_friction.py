@@ -110,12 +110,12 @@ class TestFriction:
     @pytest.mark.slow
     def test_damping_acts_along_the_normal_at_the_proxy(self):
         """The normal is that after the last step, the only one under a slow hand, not that before."""
-        surface = waves().surface
-        coefficients, _, _, across, down = spline_surface(surface, "auto")
-        touch, without = Proxy(damping_n_s_per_m=4.0).touch(surface), Proxy().touch(surface)
+        known = waves()
+        coefficients, _, _, across, down = spline_surface(known.surface, "auto")
+        touch, without = Proxy(damping_n_s_per_m=4.0).touch(known.surface), Proxy().touch(known.surface)
         worst = 0.0
         for x in np.linspace(0.003, 0.0034, 200).tolist():
-            hand = x, 0.5 * x, waves().height_m(x, 0.5 * x) - 0.0008
+            hand = known.at(x, 0.5 * x, 0.0008)
             damped = np.subtract(at(touch, *hand, (0.0, 0.0, -0.1)), at(without, *hand))
             _, hx, hy = spline.slope(coefficients, across, down, *touch.memory[:2])
             worst = max(worst, float(np.linalg.norm(np.cross(damped, (-hx, -hy, 1))) / np.linalg.norm(damped)))

@@ -1,6 +1,6 @@
 """Millions of ticks on surfaces that break a careless law: nothing runs away, gains energy or loses its track.
 
-CI feels ten million ticks in all; `pytest -m nightly tests/plugins/render/test_stability.py` ten times as many.
+CI feels four million ticks in all; `pytest -m nightly tests/plugins/render/test_stability.py` forty times as many.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ LAWS = (
     "tangible-mask",
 )
 HOW_MANY = [
-    pytest.param(400_000, id="400 thousand"),
+    pytest.param(150_000, id="150 thousand"),
     pytest.param(4_000_000, id="4 million", marks=pytest.mark.nightly),
 ]
 
@@ -91,7 +91,7 @@ def test_proxy_never_loses_the_exact_nearest_point(ticks: int):
     assert worst.lost == 0 and worst.touched > 0.1 * ticks
 
 
-@pytest.mark.parametrize("ticks", [30_000, pytest.param(1_000_000, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize("ticks", [15_000, pytest.param(1_000_000, marks=pytest.mark.nightly)])
 @pytest.mark.parametrize("name", MAPS)
 @pytest.mark.parametrize("law", LAWS)
 def test_other_force_laws_are_bounded(law: str, name: str, ticks: int):

@@ -49,7 +49,7 @@ class TestWatch:
 class TestServed:
     def test_page_is_served_and_drawn(self, opened, open_page):
         """The policy lets script and style in, WebGL is there, the surface is drawn."""
-        page = open_page(f"{opened('builtin/brick')}&measure")
+        page = open_page(f"{opened('builtin/brick')}&measure", draws=True)
         page.wait_for_function("() => window.figures?.firstMs > 0")
         assert page.title().endswith("Tangible Images")
         assert page.evaluate("document.styleSheets.length") == 1

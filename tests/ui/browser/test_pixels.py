@@ -106,7 +106,7 @@ def shown(chromium: Chromium, lasting: LastingServer, tmp_path_factory: pytest.T
     with ExitStack() as pages:
         with chromium.used() as browser:
             open_page = pages.enter_context(tabs(browser, []))
-            page = open_page(f"{url}&measure", viewport={"width": 1400, "height": 800})
+            page = open_page(f"{url}&measure", draws=True, viewport={"width": 1400, "height": 800})
             page.wait_for_function("() => window.page?.scene && figures.firstMs > 0")
             page.context.grant_permissions(["clipboard-read", "clipboard-write"])
             page.evaluate(

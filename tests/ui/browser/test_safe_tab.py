@@ -23,7 +23,7 @@ def test_tab_that_is_frozen_or_closed_gives_no_force(serve, open_page, browser, 
     shared = tmp_path / "shared"
     shared.mkdir()
     server = serve("level.yaml", cwd=tmp_path, TANGIBLE_SHARED_DIR=str(shared))
-    page = open_page(f"{server.url}&measure")
+    page = open_page(f"{server.url}&measure", draws=True)
     page.wait_for_function("() => window.figures?.firstMs > 0")
     assert "token" not in page.url
     assert "measure" in page.url

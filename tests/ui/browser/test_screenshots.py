@@ -1,4 +1,7 @@
-"""The pictures of the page in the docs: always made and looked at, and with TANGIBLE_UI_PICTURES=1 written there."""
+"""The pictures of the page in the docs: made and looked at, one of them daily, the others in the nightly tests.
+
+TANGIBLE_UI_PICTURES=1 pytest tests/ui/browser/test_screenshots.py -m "nightly or not nightly"   # writes them there
+"""
 
 import io
 import os
@@ -10,6 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from browser_tabs import SETTLED
 from drawn_parts import drawn
 from page_files import ROOT
 
@@ -18,6 +22,7 @@ if TYPE_CHECKING:
 
 DOCS = ROOT / "docs"
 MOST_BYTES = 150_000
+KEPT = bool(os.environ.get("TANGIBLE_UI_PICTURES"))
 COLOURS = 200
 """Colours of a palette: the photograph is small, and the rest has few."""
 PICTURES: dict[str, dict[str, Any]] = {
@@ -39,9 +44,11 @@ def url(opened: Callable[..., str]) -> str:
     return opened("builtin/motorcycle")
 
 
-@pytest.mark.parametrize("name", PICTURES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(each, marks=() if each == "ui" else pytest.mark.nightly) for each in PICTURES]
+)
 def test_screenshot_of_the_page(open_page: Callable[..., Any], url: str, tmp_path: Path, name: str):
-    page = open_page(url, **PICTURES[name])
+    page = open_page(url, draws=True, **PICTURES[name])
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
     if name == "ui-dark":
         page.locator("#view input[value=materials]").check()
@@ -51,9 +58,11 @@ def test_screenshot_of_the_page(open_page: Callable[..., Any], url: str, tmp_pat
     keep(picture, tmp_path, name)
 
 
+@pytest.mark.nightly
 def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_path: Path):
     """Each panel has its contents once a surface is felt; a long panel is cut."""
-    page = open_page(url, viewport={"width": 1440, "height": 1100}, color_scheme="light")
+    size = {"width": 1440, "height": 1100}
+    page = open_page(url, draws=KEPT, viewport=size, color_scheme="light", reduced_motion="reduce")
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
     page.evaluate("document.querySelectorAll('details.panel').forEach((each) => (each.open = false))")
     names = page.evaluate("[...document.querySelectorAll('#left > .panel, #right > .panel')].map(({ id }) => id)")
@@ -72,6 +81,7 @@ def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_p
         panel.evaluate("(each) => (each.open = false)")
 
 
+@pytest.mark.nightly
 def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: Callable[..., Any], tmp_path: Path):
     """A photograph with parts that were drawn by hand; and one that is proposed."""
     astronaut = drawn("astronaut")
@@ -82,7 +92,9 @@ def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: 
     text = "scene: {photo: astronaut.png, segments: parts.png}\nworkspace: {width_m: 0.1, relief_m: 0.0064}\n"
     text += f"render: {{use: penalty, stiffness_n_per_m: 400}}\nheights: {{by: given}}\nparts:\n{''.join(parts)}"
     (tmp_path / "astronaut.yaml").write_text(text)
-    page = open_page(opened(tmp_path / "astronaut.yaml"), viewport={"width": 1180, "height": 720}, color_scheme="light")
+    page = open_page(
+        opened(tmp_path / "astronaut.yaml"), draws=True, viewport={"width": 1180, "height": 720}, color_scheme="light"
+    )
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
     page.locator("#parts-edit").click()
     page.locator("#parts-list [role=option]", has_text="helmet").first.click()
@@ -127,13 +139,13 @@ def prepare(page: "Page", name: str) -> None:
         page.evaluate(HERE)
     elif name == "materials":
         page.wait_for_function("() => document.querySelector('#materials select, #materials td')")
-    page.wait_for_timeout(300)  # until marks have turned
+    page.evaluate(SETTLED)
 
 
 def keep(picture: Image.Image, folder: Path, name: str) -> None:
     """Write the picture, small, if the environment wants it; it is not empty."""
     assert np.asarray(picture).std() > 5
-    path = (DOCS if os.environ.get("TANGIBLE_UI_PICTURES") else folder) / f"{name}.png"
+    path = (DOCS if KEPT else folder) / f"{name}.png"
     path.parent.mkdir(exist_ok=True)
     picture.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(path, optimize=True)
     assert path.stat().st_size < MOST_BYTES

@@ -86,7 +86,7 @@ def viridis(share: float) -> np.ndarray:
 
 
 def test_layers_have_the_colours_of_their_values(url: str, open_page):
-    page = open_page(f"{url}&measure", reduced_motion="reduce")
+    page = open_page(f"{url}&measure", draws=True, reduced_motion="reduce")
     settings(page)
     page.reload()
     from_above(page)
@@ -113,7 +113,7 @@ def test_layers_have_the_colours_of_their_values(url: str, open_page):
 
 
 def test_steep_edge_is_shown_greyed_or_cut(url: str, open_page):
-    page = open_page(f"{url}&measure", reduced_motion="reduce")
+    page = open_page(f"{url}&measure", draws=True, reduced_motion="reduce")
     settings(page, look="photo")
     page.reload()
     from_above(page)
@@ -141,7 +141,7 @@ def test_large_relief_is_drawn_coarsely_and_finer_where_one_looks(opened, open_p
         f"scene: {{height: {tmp_path}/height.png}}\nworkspace: {{width_m: 0.08, relief_m: 0.002, finest_m: 0}}\n"
         "render: {use: penalty}\n"
     )
-    page = open_page(f"{opened(tmp_path / 'p.yaml')}&measure", reduced_motion="reduce")
+    page = open_page(f"{opened(tmp_path / 'p.yaml')}&measure", draws=True, reduced_motion="reduce")
     settings(page, look="relief", raking=1)
     page.reload()
     from_above(page)
@@ -190,7 +190,7 @@ def test_first_surface_compiles_no_program_and_is_drawn_coarsely_first(
     built_page()
     rows, columns = 300, 400
     with PageServer(tmp_path, monkeypatch) as server:
-        page = open_page("about:blank")
+        page = open_page("about:blank", draws=True)
         page.add_init_script(LINKED)
         page.goto(f"http://{server.host}/?token={KEY}&measure")
         page.wait_for_function("() => window.page?.view.prepared")
@@ -221,7 +221,7 @@ def test_first_surface_compiles_no_program_and_is_drawn_coarsely_first(
 
 def test_lost_graphics_context_is_reported_and_restored(url: str, open_page, complaints: list[str]):
     """The screen has fine pixels, which are drawn where that is not slow."""
-    page = open_page(f"{url}&measure", reduced_motion="reduce", device_scale_factor=2)
+    page = open_page(f"{url}&measure", draws=True, reduced_motion="reduce", device_scale_factor=2)
     page.wait_for_function("() => window.page?.scene && window.figures.firstMs > 0")
     wait_for_rest(page)
     before = pixels(page)
@@ -260,7 +260,7 @@ POSE = "() => window.page.view.eye.pose"
 
 
 def test_camera_takes_its_own_gestures_and_leaves_others_to_the_hand(url: str, open_page):
-    page = open_page(f"{url}&measure", reduced_motion="reduce", has_touch=True)
+    page = open_page(f"{url}&measure", draws=True, reduced_motion="reduce", has_touch=True)
     page.wait_for_function("() => window.page?.scene && window.figures.firstMs > 0")
     page.evaluate(
         "() => { window.heard = []; for (const kind of ['pointerdown', 'pointercancel', 'wheel'])"
@@ -319,7 +319,7 @@ def test_camera_takes_its_own_gestures_and_leaves_others_to_the_hand(url: str, o
 
 def test_fine_texture_is_drawn_in_the_magnifier_and_from_near(url: str, open_page):
     """The scene is flat there: whatever is seen is the cloth's texture."""
-    page = open_page(f"{url}&measure", reduced_motion="reduce")
+    page = open_page(f"{url}&measure", draws=True, reduced_motion="reduce")
     settings(page, look="relief", raking=1, lensMm=10)
     page.reload()
     from_above(page)

@@ -53,14 +53,18 @@ class Felt:
 @pytest.fixture
 def page(opened, open_page) -> Any:
     """A page on which a surface is felt; nothing moves its hand yet."""
-    page = open_page(f"{opened('builtin/brick')}&measure")
-    wait_until_drawn(page)
+    return felt_page(opened, open_page)
+
+
+def felt_page(opened, open_page, **options: Any) -> Any:
+    page = open_page(f"{opened('builtin/brick')}&measure", **options)
+    wait_for_surface(page)
     page.wait_for_function("() => document.getElementById('log').textContent.includes('proxy:')")
     return page
 
 
-def wait_until_drawn(page: Any) -> None:
-    page.wait_for_function("() => window.figures?.firstMs > 0")
+def wait_for_surface(page: Any) -> None:
+    page.wait_for_function("() => window.page?.scene")
 
 
 def over(rows: np.ndarray) -> np.ndarray:
@@ -88,7 +92,7 @@ def test_mouse_gives_force_until_the_page_is_hidden_or_frozen(page: Any) -> None
     assert felt.quiet_after_s(hidden_s) < GONE_S
     page.mouse.up()
     page.reload()
-    wait_until_drawn(page)
+    wait_for_surface(page)
 
     press(page, felt)
     page.evaluate(FREEZE)
@@ -96,7 +100,9 @@ def test_mouse_gives_force_until_the_page_is_hidden_or_frozen(page: Any) -> None
     page.mouse.up()
 
 
-def test_resting_hand_is_drawn_again_when_it_moves(page: Any) -> None:
+def test_resting_hand_is_drawn_again_when_it_moves(opened, open_page) -> None:
+    page = felt_page(opened, open_page, draws=True)
+    page.wait_for_function("() => window.figures?.firstMs > 0")
     page.evaluate(
         "() => { const { view, overlay } = window.page; overlay.settings.seconds = 0.2; window.drawn = 0;"
         "const draw = view.draw.bind(view); view.draw = (wait) => { window.drawn++; draw(wait); }; }"

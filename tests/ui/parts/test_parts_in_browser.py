@@ -314,8 +314,10 @@ def cross(page: "Page", x: int, y: int) -> None:
     across, down = (int(each.split(" %")[0]) for each in page.locator("#parts-told").inner_text().split(", ")[:2])
     steps = [(x - round(across * WIDTH / 100), "Right", "Left"), (y - round(down * HEIGHT / 100), "Down", "Up")]
     for by, forward, back in steps:
+        page.keyboard.down("Shift")
         for _ in range(abs(by)):
-            page.keyboard.press(f"Shift+Arrow{forward if by > 0 else back}")
+            page.keyboard.press(f"Arrow{forward if by > 0 else back}")
+        page.keyboard.up("Shift")
 
 
 def step_to(page: "Page", name: str) -> bool:

@@ -69,7 +69,7 @@ def rows_correspond(pair: Pair, disparity_px: Float32[np.ndarray, "h w"], matche
     sixteenths = np.where(matched[rows], np.rint(16 * disparity_px[rows]), UNKNOWN).astype(np.int16)
     with plain_opencv():
         left, right = (cv2.GaussianBlur(each, (0, 0), SMOOTHING_PX) for each in pair)
-    votes = row_votes(Pair(left, right), rows, sixteenths)  # pyright: ignore[reportArgumentType]
+    votes = row_votes(Pair.of(left, right), rows, sixteenths)
     row_offset_px = _agreed_offset_px(votes, LEAST_AGREED_OF_MAP, MOST_SPREAD_OF_MAP_PX)
     return row_offset_px is not None and abs(row_offset_px) <= MOST_OFF_PX
 

@@ -72,7 +72,7 @@ def shift_rows(pair: Pair, row_offset_px: float) -> Pair:
         moved = cv2.warpAffine(
             pair.right, move, pair.right.shape[::-1], flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
         )
-    return Pair(pair.left, moved)  # pyright: ignore[reportArgumentType]
+    return Pair.of(pair.left, moved)
 
 
 @njit(**KERNEL)

@@ -12,10 +12,18 @@ from tangible_core.errors import PictureError
 
 
 class Pair(NamedTuple):
-    """Two grey pictures (h, w) of one size, each contiguous in memory."""
+    """Two grey pictures (h, w) of one size, each contiguous in memory and read-only."""
 
     left: UInt8[np.ndarray, "h w"]
     right: UInt8[np.ndarray, "h w"]
+
+    @classmethod
+    def of(cls, *pictures: np.ndarray) -> "Pair":
+        """Hold read-only views of both pictures: kernels are compiled anew for arrays that can be written."""
+        views = [each.view() for each in pictures]
+        for each in views:
+            each.flags.writeable = False
+        return cls(*views)
 
     @property
     def width(self) -> int:
@@ -24,11 +32,11 @@ class Pair(NamedTuple):
 
     def downsample(self, factor: int) -> "Pair":
         """Average factor x factor pixels into one; the edge is repeated to complete the last ones."""
-        return self if factor == 1 else Pair(*(_downsample(each, factor) for each in self))
+        return self if factor == 1 else Pair.of(*(_downsample(each, factor) for each in self))
 
     def mirror(self) -> "Pair":
         """Mirror each picture sideways; a disparity d becomes -d."""
-        return Pair(*(np.ascontiguousarray(each[:, ::-1]) for each in self))
+        return Pair.of(*(np.ascontiguousarray(each[:, ::-1]) for each in self))
 
 
 def grey_pair(views: Views, method: str) -> Pair:
@@ -42,12 +50,12 @@ def grey_pair(views: Views, method: str) -> Pair:
         raise PictureError(f"{method} needs two views, but the right one is missing; give both, or use luminance")
     pictures = (views.left, views.right)
     if all(each.dtype == np.uint8 and (each.ndim == 2 or each.shape[2] == 3) for each in pictures):
-        return Pair(*(_grey8(each) for each in pictures))
+        return Pair.of(*(_grey8(each) for each in pictures))
     greys = [to_grey(each) for each in pictures]
     low = min(0.0, *(float(each.min()) for each in greys))
     peak = max(float(each.max()) for each in greys) - low
     gain = 255 * 2.0 ** floor(-log2(peak)) if peak > 0 else 0.0
-    return Pair(*(np.rint((each - np.float32(low)) * np.float32(gain)).astype(np.uint8) for each in greys))
+    return Pair.of(*(np.rint((each - np.float32(low)) * np.float32(gain)).astype(np.uint8) for each in greys))
 
 
 def _grey8(picture: np.ndarray) -> UInt8[np.ndarray, "h w"]:

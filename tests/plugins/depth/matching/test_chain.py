@@ -9,10 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from stereo_scenes import slanted, step, texture
+from stereo_scenes import known_pair, slanted, step, texture
 from tangible_core.compiled import threads
 from tangible_core.data import Views
-from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.dense.confidence import confidence, flat_pixels
 from tangible_depth.dense.edges import median, sharpen_edges
 from tangible_depth.dense.filling.four_directions import GEODESIC, choose_of_four, fill_from_four_directions
@@ -311,7 +310,7 @@ def test_estimated_range_covers_all_disparities_and_little_more(offset):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_thin_object_before_a_wall_widens_the_range(seed):
-    pair = synthetic_pair("bars", 480, 360, seed)
+    pair = known_pair("bars", 480, 360, seed)
     span = find_disparity_range(grey_pair(pair.views, "test"), "auto", "auto").span
     assert np.mean((pair.truth_px >= span.low) & (pair.truth_px <= span.high)) >= 0.999
     assert span.lanes <= 64
@@ -326,19 +325,19 @@ def test_rods_of_four_pixels_widen_the_range():
         at, near_px = rng.integers(200, 600), rng.integers(30, 80)
         for view, column in ((left, at), (right, at - near_px)):
             view[:, column : column + 4] = rod[:, :4]
-        found = find_range(Pair(left, right))
+        found = find_range(Pair.of(left, right))
         covered += found.span.low <= wall_px and near_px <= found.span.high
     assert covered >= 18
 
 
 def test_pair_without_matches_has_no_range():
-    assert find_range(Pair(np.zeros((40, 60), np.uint8), np.zeros((40, 60), np.uint8))) is None
+    assert find_range(Pair.of(np.zeros((40, 60), np.uint8), np.zeros((40, 60), np.uint8))) is None
 
 
 @pytest.mark.parametrize("rows", [-1.0, 0.0, 0.5, 1.0])
 def test_row_offset_is_measured_and_corrected(rows):
     y, x = np.indices((160, 240), float)
-    pair = Pair(texture(x, y), texture(x + 5, y - rows))
+    pair = Pair.of(texture(x, y), texture(x + 5, y - rows))
     at, disparity = np.arange(6, 160, 12), np.full((13, 240), 80, np.int16)
     measured = row_offset(pair, at, disparity)
     assert measured == pytest.approx(rows, abs=0.12)
@@ -347,7 +346,7 @@ def test_row_offset_is_measured_and_corrected(rows):
 
 
 def test_row_offset_without_votes_is_zero():
-    pair = Pair(*np.full((2, 60, 60), 9, np.uint8))
+    pair = Pair.of(*np.full((2, 60, 60), 9, np.uint8))
     assert row_offset(pair, np.arange(6, 60, 12), np.zeros((5, 60), np.int16)) == 0
 
 

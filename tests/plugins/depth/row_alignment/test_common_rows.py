@@ -5,9 +5,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from stereo_scenes import known_pair
 from tangible_core.data import Calibration, Views
 from tangible_core.plugins.notes import collected
-from tangible_core.testing.synthetic.stereo_scenes import SCENES, synthetic_pair
+from tangible_core.testing.synthetic.stereo_scenes import SCENES
 from tangible_depth.dense.span import Span
 from tangible_depth.matching import chain
 from tangible_depth.row_alignment.common_rows import common_row_offset, rows_correspond
@@ -22,9 +23,11 @@ from tangible_depth.semi_global import SemiGlobal
 from tangible_depth.zncc import Zncc
 from two_cameras import Scene, roll_and_tilt
 
+SCENE = Scene((240, 320), 8.0, 20.0)
+LARGE = Scene((720, 1280), 20.0, 40.0)
 
-def roll_camera(degrees: float, scene: Scene | None = None) -> Views:
-    scene = scene or Scene((240, 320), 8.0, 20.0)
+
+def roll_camera(degrees: float, scene: Scene = SCENE) -> Views:
     return Views(scene.left(), scene.right(roll_and_tilt(scene.shape, degrees)))
 
 
@@ -51,15 +54,14 @@ look = pytest.mark.parametrize("correspond", [corners_correspond, bands_correspo
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("width", [160, 320, 480])
 def test_rows_of_a_rectified_pair_correspond(scene: str, width: int, correspond: Look):
-    pair = grey_pair(synthetic_pair(scene, width, width * 3 // 4).views, "")
+    pair = grey_pair(known_pair(scene, width, width * 3 // 4).views, "")
     assert correspond(pair)
 
 
 @look
 @pytest.mark.parametrize("damage", [lambda z: 0.5 * z + 0.2, lambda z: z**1.6])
 def test_rows_correspond_with_another_exposure(damage, correspond: Look):
-    scene = Scene((240, 320), 8.0, 20.0)
-    assert correspond(grey_pair(Views(scene.left(), damage(scene.right())), ""))
+    assert correspond(grey_pair(Views(SCENE.left(), damage(SCENE.right())), ""))
 
 
 @look
@@ -71,13 +73,12 @@ def test_rotated_camera_is_detected(degrees: float, correspond: Look):
 @look
 @pytest.mark.slow
 def test_large_pair_has_a_tolerance_of_a_pixel(correspond: Look):
-    scene = Scene((720, 1280), 20.0, 40.0)
-    assert not correspond(grey_pair(roll_camera(0.5, scene), ""))
-    assert correspond(grey_pair(synthetic_pair("planes", 960, 720).views, ""))
+    assert not correspond(grey_pair(roll_camera(0.5, LARGE), ""))
+    assert correspond(grey_pair(known_pair("planes", 960, 720).views, ""))
 
 
 def test_common_offset_within_the_matchers_limit_is_accepted():
-    views = synthetic_pair("planes", 320, 240).views
+    views = known_pair("planes", 320, 240).views
     assert not corners_correspond(grey_pair(shift_right_view(views, 1), ""))
     assert corners_correspond(grey_pair(shift_right_view(views, 1), ""), most_row_offset_px=1)
     assert not corners_correspond(grey_pair(shift_right_view(views, 3), ""), most_row_offset_px=1)
@@ -86,12 +87,12 @@ def test_common_offset_within_the_matchers_limit_is_accepted():
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("rows", [-1, 0, 1])
 def test_common_offset_is_measured(scene: str, rows: int):
-    views = synthetic_pair(scene, 320, 240, seed=3).views
+    views = known_pair(scene, 320, 240, seed=3).views
     assert offset(grey_pair(shift_right_view(views, rows), "")) == pytest.approx(rows, abs=0.1)
 
 
 def test_common_offset_is_corrected_without_rectification():
-    views = synthetic_pair("planes", 320, 240).views
+    views = known_pair("planes", 320, 240).views
     with collected() as notes:
         found = Zncc().estimate(shift_right_view(views, 1)).disparity_px
     assert any(each.startswith("rows realigned by") for each in notes)
@@ -107,24 +108,23 @@ def test_pair_without_corners_is_taken_as_rectified(shape: tuple[int, int], corr
     assert correspond(grey_pair(Views(flat, flat), ""))
 
 
-def share_right(found: np.ndarray, scene: Scene) -> float:
-    return float(np.mean(np.abs(found - scene.disparity_px())[scene.visible()] <= 2))
+def share_right(found: np.ndarray) -> float:
+    return float(np.mean(np.abs(found - SCENE.disparity_px())[SCENE.visible()] <= 2))
 
 
 @pytest.mark.slow
 def test_raw_pair_is_matched_nearly_as_well_as_a_rectified_one():
-    scene = Scene((240, 320), 8.0, 20.0)
-    straight = Zncc().estimate(Views(scene.left(), scene.right())).disparity_px
+    straight = Zncc().estimate(Views(SCENE.left(), SCENE.right())).disparity_px
     with collected() as notes:
-        raw = Zncc().estimate(roll_camera(2, scene)).disparity_px
+        raw = Zncc().estimate(roll_camera(2)).disparity_px
     assert any(each.startswith("rectified: ") for each in notes)
-    assert share_right(raw, scene) >= share_right(straight, scene) - 0.03
-    never = Zncc(rectify="never").estimate(roll_camera(2, scene)).disparity_px
-    assert share_right(never, scene) < 0.8
+    assert share_right(raw) >= share_right(straight) - 0.03
+    never = Zncc(rectify="never").estimate(roll_camera(2)).disparity_px
+    assert share_right(never) < 0.8
 
 
 def test_rectified_pair_gives_the_same_map_with_rectify_never():
-    views = synthetic_pair("planes", 320, 240).views
+    views = known_pair("planes", 320, 240).views
     assert Zncc().estimate(views).digest() == Zncc(rectify="never").estimate(views).digest()
 
 
@@ -175,7 +175,7 @@ def test_repeating_courses_do_not_pass_as_aligned(rows_lower: int):
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_rows_of_a_rectified_pair_match_at_their_own_height(scene: str):
-    views = synthetic_pair(scene, 320, 240).views
+    views = known_pair(scene, 320, 240).views
     assert not rows_match_elsewhere(grey_pair(views, ""))
     assert rows_match_elsewhere(grey_pair(shift_right_view(views, 10), ""))
 
@@ -183,22 +183,20 @@ def test_rows_of_a_rectified_pair_match_at_their_own_height(scene: str):
 def test_map_of_low_confidence_is_retried_with_rectification(monkeypatch: pytest.MonkeyPatch):
     """The rows do not correspond, but the tests are patched to accept them."""
     monkeypatch.setattr(chain, "align_rows", lambda pair, *_: pair)
-    scene = Scene((240, 320), 8.0, 20.0)
     with collected() as notes:
-        found = Zncc().estimate(roll_camera(6, scene)).disparity_px
+        found = Zncc().estimate(roll_camera(6)).disparity_px
     assert any(each.startswith("retried with rectification") for each in notes)
     assert any(each.startswith("rectified: ") for each in notes)
-    assert share_right(found, scene) >= 0.9
+    assert share_right(found) >= 0.9
 
 
 @pytest.mark.parametrize("noise_sd", [12, 50])
 def test_noisy_pair_is_not_retried_with_rectification(noise_sd: int):
     """Noise leaves most pixels unmatched, but the matched ones lie in their own rows; otherwise the pair is retried."""
-    scene = Scene((240, 320), 8.0, 20.0)
-    pair = [roll_camera(degrees, scene) for degrees in (0, 1)]
+    pair = [roll_camera(degrees) for degrees in (0, 1)]
     for views, correspond in zip(pair, (True, False), strict=True):
         rng = np.random.default_rng(3)
-        noise = rng.normal(0, noise_sd, (2, *scene.shape))
+        noise = rng.normal(0, noise_sd, (2, *SCENE.shape))
         noisy = Views(
             *(np.clip(a + b, 0, 255).astype(np.uint8) for a, b in zip(grey_pair(views, ""), noise, strict=True))
         )
@@ -212,7 +210,7 @@ def test_chance_matches_do_not_widen_the_verified_range(monkeypatch: pytest.Monk
     found_px = np.concatenate([random.uniform(0, 60, 21600), random.uniform(-270, 200, 2400)]).reshape(24, 1000)
     bands = Bands(np.arange(24), np.rint(16 * found_px).astype(np.int16), 1, found_px.size, 0.3)
     monkeypatch.setattr(disparity_range, "find_range", lambda pair: RangeEstimate(Span(-273, 200), bands, False))
-    pair = Pair(*[np.zeros((24, 1000), np.uint8)] * 2)
+    pair = Pair.of(*[np.zeros((24, 1000), np.uint8)] * 2)
     assert find_disparity_range(pair, "auto", "auto").span.low == -273
     found = find_disparity_range(pair, "auto", "auto", (3, 40)).span
     assert -16 <= found.low <= 0
@@ -220,7 +218,7 @@ def test_chance_matches_do_not_widen_the_verified_range(monkeypatch: pytest.Monk
 
 
 def test_band_matches_widen_the_verified_range():
-    scene = synthetic_pair("planes", 480, 360)
+    scene = known_pair("planes", 480, 360)
     found = find_disparity_range(grey_pair(scene.views, ""), "auto", "auto", (20, 24)).span
     assert found.low <= scene.truth_px.min()
     assert found.high >= scene.truth_px.max()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import os
 import sys
 from traceback import walk_tb
@@ -56,6 +58,8 @@ def options(
 
 def main() -> None:
     """Run the command line: one clear message for a user's mistake, and an exit code that tells whose fault it is."""
+    gc.set_threshold(10_000)  # Python's 700 would look through what each import brings, many times
+    atexit.register(gc.freeze)  # the process gives all memory back: no cycle must be found in it first
     with signals.end_as_ctrl_c():
         try:
             code = _exit_code(_run_and_leave)

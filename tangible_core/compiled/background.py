@@ -5,6 +5,7 @@ be needed later, and reports each one that is ready. It is started when a kernel
 are on disk, and it never outlives this process. This module does not import numba.
 """
 
+import gc
 import logging
 import os
 import pickle
@@ -14,12 +15,14 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from types import TracebackType
-from typing import IO, Any, NamedTuple, Self, final
+from typing import Any, NamedTuple, Self, final
 
 from ..runtime.child_process import command, dumps
 from ..runtime.stopping import check_stopped
 
 log = logging.getLogger(__name__)
+LATE_STEPS = "late steps of the depth"
+"""The name of the steps that `DepthEstimator.rehearse` runs."""
 LOOK_EVERY_S = 0.1
 """The period, s, at which a waiting thread checks whether it shall stop."""
 
@@ -43,6 +46,12 @@ def start_waiting() -> None:
         each.begin()
 
 
+def wait_for(what: str) -> None:
+    """Wait until this is compiled wherever a background process compiles it. Raises: Stopped."""
+    for each in tuple(_waiting):
+        each.wait(what)
+
+
 @final
 class BackgroundCompiler:
     """A block with a process that compiles in the background, from the first kernel compiled in it to its end.
@@ -53,7 +62,7 @@ class BackgroundCompiler:
     def __init__(self, work: Callable[[], Work | None]) -> None:
         """Prepare the block; work: called when the process starts, returns None if there is nothing to do."""
         self._work: Callable[[], Work | None] | None = work
-        self._child: subprocess.Popen[bytes] | None = None
+        self._child: Any = None
         self._due: frozenset[str] = frozenset()
         """The names that the process has yet to compile."""
         self._lock, self._progress = threading.Lock(), threading.Condition()
@@ -76,8 +85,8 @@ class BackgroundCompiler:
             if self._listener is not None:
                 self._listener.join()
             with suppress(OSError):  # unsent data are not needed
-                _pipe(child.stdin).close()
-            _pipe(child.stdout).close()
+                child.stdin.close()
+            child.stdout.close()
 
     def begin(self) -> None:
         """Start the process, once, if there is work for it."""
@@ -109,11 +118,11 @@ class BackgroundCompiler:
                 self._progress.wait(LOOK_EVERY_S)
                 check_stopped()
 
-    def _listen(self, child: "subprocess.Popen[bytes]", data: bytes) -> None:
+    def _listen(self, child: Any, data: bytes) -> None:
         with suppress(OSError, ValueError):  # the process has ended
-            _pipe(child.stdin).write(data)
-            _pipe(child.stdin).flush()
-        for line in _pipe(child.stdout):
+            child.stdin.write(data)
+            child.stdin.flush()
+        for line in child.stdout:
             with self._progress:
                 self._due -= {line.decode(errors="replace").strip()}
                 self._progress.notify_all()
@@ -122,13 +131,9 @@ class BackgroundCompiler:
             self._progress.notify_all()
 
 
-def _pipe(pipe: IO[bytes] | None) -> IO[bytes]:
-    assert pipe is not None
-    return pipe
-
-
 def main() -> None:
     """Do the work that arrives on standard input, in the background process, and end when that is closed."""
+    gc.disable()  # the process ends soon
     work, arguments = pickle.load(sys.stdin.buffer)
     threading.Thread(target=_exit_with_parent, daemon=True).start()
     for ready in work(*arguments):

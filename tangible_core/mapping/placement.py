@@ -34,12 +34,6 @@ class Placement(NamedTuple):
     clutch: float = 0.0
     """The bit of the button that moves the picture; 0 for none."""
 
-    def on_picture(self, hand_m: Vector) -> Vector:
-        """Return the point of the picture at a point of the hand, if no clutch has moved the picture."""
-        x, y, z = hand_m
-        x, y = self.rotate_back(x - self.offset_x_m, y - self.offset_y_m)
-        return self.centre_x_m + x / self.scale, self.centre_y_m + y / self.scale, (z - self.offset_z_m) / self.scale
-
     def under_hand(self, picture_m: Vector) -> Vector:
         """Return the point of the hand at a point of the picture, if no clutch has moved the picture."""
         x, y, z = picture_m

@@ -121,6 +121,9 @@ class DepthEstimator(Method):
     def estimate(self, views: Views) -> DisparityMap:
         """Estimate the disparity of the left view. Raises: TangibleError if these views do not allow it."""
 
+    def rehearse(self) -> None:
+        """Run late steps, which begin by `wait_for(LATE_STEPS)`, on made-up matches: another process compiles them."""
+
 
 class Segmenter(Method):
     """The interface of a method that divides a picture into segments of one texture each."""

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple, Self, cast, final
 import numpy as np
 from jaxtyping import Float32, Float64
 
-from ..data import HapticSurface, TickFlag
+from ..data import HapticSurface
 from ..data.records import Record
-from ..data.ticks import BEACON_SHIFT, MOST_BEACON_PARTS
+from ..data.ticks import MOST_BEACON_PARTS
 from ..errors import ConfigError, GeometryError, did_you_mean, quoted
 
 PULL_N, MOST_N = 0.8, 1.0
@@ -138,11 +138,6 @@ class BeaconMemory:
         if request and request != self.words[LET_GO]:
             return BeaconState(int(self.words[PART]))
         return BeaconState(None, REASONS[int(self.words[WHY])] if request else "")
-
-
-def beacon_flags(part: int) -> int:
-    """Return the flags of a tick in which a beacon to this part was on."""
-    return int(TickFlag.BEACON) | part << BEACON_SHIFT
 
 
 def part_number(surface: HapticSurface, part: str | int) -> int:

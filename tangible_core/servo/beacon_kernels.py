@@ -12,14 +12,14 @@ import numpy as np
 from numba import float32, float64, int64, njit, types
 
 from ..compiled.compiling import KERNEL, inner
-from ..data import TickFlag
+from ..data.ticks import BEACON_SHIFT, TickFlag
 from . import beacon as at
 from .guard import layout
 from .guard.coupling import FASTEST_M_PER_S, WRITTEN
 from .guard.vectors import clip
 
 INTEGERS, FIELD = types.Array(int64, 1, "C"), types.Array(float32, 1, "C", readonly=True)
-FLAG, SHIFT = int(TickFlag.BEACON), at.BEACON_SHIFT
+FLAG, SHIFT = int(TickFlag.BEACON), BEACON_SHIFT
 
 
 @inner(forceinline=True)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...compiled.background import BackgroundCompiler, Work
+from ...compiled.background import LATE_STEPS, BackgroundCompiler, Work
 from ...data import DisparityMap, SegmentMap, Views
 from ...plugins.registry import default_registry
 from ...scene.scene import Scene
@@ -22,8 +22,6 @@ STRIPES = 6
 """Segments of the made-up map: enough for every material that a rule may choose."""
 FELT = "felt"
 """The name of the simulated session, the last step of the warm-up."""
-SECONDS = 0.02
-"""The length of the simulated session, s: some ticks are enough to compile its loop."""
 
 
 def warm_up(engine: Engine, want: str) -> BackgroundCompiler:
@@ -41,13 +39,17 @@ def _work(engine: Engine, want: str) -> Work | None:
         return None
     rows, columns = (slice(max(0, (size - MOST_PX) // 2), (size + MOST_PX) // 2) for size in views.shape)
     part = Views(np.ascontiguousarray(views.left[rows, columns]))
-    names = frozenset(["segments"] * segments + ["touch", FELT] * touch)
+    depth = config.depth is not None and "disparity" in engine.begun
+    names = frozenset([LATE_STEPS] * depth + ["segments"] * segments + ["touch", FELT] * touch)
     crop_config = config.with_values(scene=Scene("rehearsal", part), simplify=None)
-    return Work(names, run_stages, (crop_config, part, segments, touch))
+    return Work(names, run_stages, (crop_config, part, segments, touch, depth))
 
 
-def run_stages(config: PipelineConfig, views: Views, segments: bool, touch: bool) -> Iterator[str]:
-    """Segment, make the touch of a made-up surface, and run it; yield the name of each step when it is done."""
+def run_stages(config: PipelineConfig, views: Views, segments: bool, touch: bool, depth: bool = False) -> Iterator[str]:
+    """Rehearse depth, segment, make the touch of a made-up surface, run it; yield each step's name when it is done."""
+    if depth and config.depth is not None:
+        config.depth.method.rehearse()
+        yield LATE_STEPS
     if segments and config.texture is not None:
         config.texture.method.segment(views.left)
         yield "segments"
@@ -61,5 +63,5 @@ def run_stages(config: PipelineConfig, views: Views, segments: bool, touch: bool
     yield "touch"
     device = config.felt_device
     if device is not None and device.spec().simulated:
-        run_simulated(made, device, SECONDS, limits=config.safety)
+        run_simulated(made, device, 0.02, limits=config.safety)  # s: some ticks are enough to compile the loop
     yield FELT

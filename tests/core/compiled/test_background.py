@@ -13,7 +13,7 @@ import pytest
 
 from ctrl_c import hearing
 from tangible_core.compiled import background
-from tangible_core.compiled.background import BackgroundCompiler, Work, start_waiting
+from tangible_core.compiled.background import BackgroundCompiler, Work, start_waiting, wait_for
 from tangible_core.errors import Stopped
 from tangible_core.runtime.stopping import stoppable
 
@@ -102,6 +102,15 @@ def test_wait_for_names_already_compiled_returns():
         for name in "cab":
             block.wait(name)
     assert not is_alive(process_of(block).pid)
+
+
+def test_wait_from_anywhere_lasts_until_the_process_has_compiled_it():
+    wait_for("begun")  # without a block, too
+    with BackgroundCompiler(lambda: Work(frozenset(["begun"]), yield_names, ("begun",))) as block:
+        start_waiting()
+        assert block._due == {"begun"}
+        wait_for("begun")
+        assert not block._due
 
 
 def test_wait_for_a_failed_process_returns():

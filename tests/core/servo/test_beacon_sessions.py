@@ -14,6 +14,7 @@ from beacon_ground import NAMES, SURFACE, faded_in, pulls
 from faulty_touch import FaultyTouch
 from loop_devices import Circling, Failing
 from tangible_core.data import HapticSurface, ServoReport, TickFlag, beacon_part
+from tangible_core.data.ticks import BEACON_SHIFT
 from tangible_core.errors import ConfigError, DeviceError, GeometryError
 from tangible_core.plugins.registry import load_method
 from tangible_core.servo import Beacon, Safety, Servo, beacon_to, null_touch
@@ -23,7 +24,6 @@ from tangible_core.servo.beacon import (
     SEEN,
     BeaconMemory,
     BeaconState,
-    beacon_flags,
 )
 from tangible_core.servo.ring import Ring
 from tangible_core.session import (
@@ -185,9 +185,9 @@ class TestSessionsAndRecordings:
         again = replay(load_method("render", "penalty")().touch(SURFACE), felt)
         assert compare_replay(felt, again)["compared"] == 0
         in_air = felt.rows.copy()
-        in_air[:, 14] = beacon_flags(4)
+        in_air[:, 14] = TickFlag.BEACON | 4 << BEACON_SHIFT
         assert parts_felt(Recording(in_air), SURFACE) == ()
-        in_air[:, 14] = beacon_flags(4) | TickFlag.TOUCHING
+        in_air[:, 14] = TickFlag.BEACON | 4 << BEACON_SHIFT | TickFlag.TOUCHING
         assert parts_felt(Recording(in_air), SURFACE)
 
     def test_beacon_without_memory_is_one_error(self, monkeypatch: pytest.MonkeyPatch):

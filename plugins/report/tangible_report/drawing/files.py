@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 from xml.sax.saxutils import escape
 
+import numpy as np
+
 from tangible_core.errors import OutputError
 
 if TYPE_CHECKING:
@@ -17,8 +19,9 @@ if TYPE_CHECKING:
 
 Write = Callable[["Figure", IO[bytes], str, str], None]
 
-COMPRESSION = 1
-"""The level of PNG's compression: it takes a third of the time of matplotlib's 6, for files a sixth larger."""
+RUNS = 3
+"""zlib's strategy for PNG, Z_RLE: runs of one value. At level 1 it takes a sixth of the time of matplotlib's PNG, for a
+smaller file; the sheet is opaque, so that its alpha is left out."""
 
 
 def describe_sheet(figure: Figure) -> str:
@@ -43,10 +46,16 @@ def writer(path: Path) -> Write:
 
 def _png(figure: Figure, file: IO[bytes], title: str, says: str) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from PIL import Image
+    from PIL.PngImagePlugin import PngInfo
 
-    FigureCanvasAgg(figure).print_png(
-        file, metadata={"Title": title, "Description": says}, pil_kwargs={"compress_level": COMPRESSION}
-    )
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    words = PngInfo()
+    for key, text in (("Title", title), ("Description", says)):
+        words.add_text(key, text)
+    opaque = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])
+    opaque.save(file, "png", pnginfo=words, dpi=(figure.dpi, figure.dpi), compress_level=1, compress_type=RUNS)
 
 
 def _svg(figure: Figure, file: IO[bytes], title: str, says: str) -> None:

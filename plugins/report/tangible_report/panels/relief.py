@@ -107,7 +107,8 @@ def _draw_block(axes: Axes, relief: Relief, paint: np.ndarray) -> None:
     top = facets(points_m)
     corners: Any = top.corners  # matplotlib takes arrays of polygons; its types know only lists of them
     colours = lit[top.row, top.column]
-    axes.add_collection(PolyCollection(corners, facecolors=colours, edgecolors="face", linewidths=0.3, rasterized=True))
+    cells = PolyCollection(corners, facecolors=colours, edgecolors="face", linewidths=0.3, rasterized=True)
+    axes.add_collection(cells, autolim=False)  # `_leave_room` sets the limits
     for edge_m, grey in ((points_m[-1], "0.72"), (points_m[:, -1], "0.55")):
         wall_m = np.concatenate([edge_m, edge_m[::-1] * (1, 1, 0)])
         axes.add_patch(Polygon(on_paper(wall_m), facecolor=grey, edgecolor=INK, linewidth=0.4))

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from tangible_core import Pipeline, Scene, Workspace
-from tangible_core.compiled.background import start_waiting
+from tangible_core.compiled.background import LATE_STEPS, start_waiting
 from tangible_core.pipeline.engine import warm_up as module
 from tangible_core.pipeline.engine.warm_up import FELT, _work, run_stages
 from tangible_core.plugins import DepthEstimator
-from tangible_depth import Luminance
+from tangible_depth import Luminance, SemiGlobal
 from tangible_devices import Mock
 from tangible_render import GreyLevel, Penalty
 from tangible_texture import Gradient
@@ -63,6 +63,30 @@ def test_warm_up_of_the_demo_compiles_every_kernel_after_depth():
     assert has_force
 
 
+FILLED = """
+import json
+import numpy as np
+from numba.core.dispatcher import Dispatcher
+from tangible_depth import SemiGlobal
+from tangible_depth.dense.filling.gaps import fill_gaps
+
+SemiGlobal(effort=EFFORT).rehearse()
+added = []
+Dispatcher.add_overload = lambda self, result: added.append(self.py_func.__qualname__)
+matched = np.full((300, 400), -32768, np.int16)
+matched[::3, 40:300:5], matched[20:90, 50:80] = 320, 480
+fill_gaps(matched, np.arange(120_000).reshape(300, 400).astype(np.uint8), EFFORT)
+print(json.dumps(added))
+"""
+
+
+@pytest.mark.parametrize("effort", ["balanced", "best"])
+def test_rehearsal_compiles_every_kernel_that_fills_gaps(effort: str):
+    words = [sys.executable, "-c", FILLED.replace("EFFORT", repr(effort))]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout) == []
+
+
 def pipeline(**methods) -> Pipeline:
     given = {"depth": Luminance(), "texture": Gradient(segments=4), "render": Penalty(), "device": Mock()} | methods
     return Pipeline(Scene.photo(PICTURE), workspace=Workspace(width_m=0.04), cached=False, **given)
@@ -102,6 +126,17 @@ class TestWork:
     def test_work_on_one_processor_is_none(self, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr("tangible_core.compiled.threads.thread_count", lambda: 1)
         assert _work(pipeline().engine, "touch") is None
+
+    def test_work_of_a_depth_that_has_begun_rehearses_it_first(self, monkeypatch: pytest.MonkeyPatch):
+        engine = pipeline(depth=SemiGlobal()).engine
+        engine.begun.add("disparity")
+        rehearsed: list[SemiGlobal] = []
+        monkeypatch.setattr(SemiGlobal, "rehearse", lambda self: rehearsed.append(self))
+        work = _work(engine, "segments")
+        assert work is not None
+        assert work.names == {LATE_STEPS, "segments"}
+        assert next(run_stages(*work.arguments)) == LATE_STEPS
+        assert rehearsed == [SemiGlobal()]
 
     def test_work_crops_the_middle_of_a_large_picture(self, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr(module, "MOST_PX", 20)

@@ -13,6 +13,9 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Int16, UInt8
 
+from tangible_core.compiled.background import LATE_STEPS, wait_for
+
+from ..span import UNKNOWN
 from .eight_directions import fill_from_eight_directions
 from .four_directions import fill_from_four_directions
 from .planes import fit_planes
@@ -31,6 +34,14 @@ def fill_gaps(
     matched: the map (h, w); it is not changed, and a map without any known pixel is returned as it is.
     grey: the left view. Returns: a new map (h, w).
     """
+    wait_for(LATE_STEPS)
     if effort == "best":
         return fit_planes(matched, fill_from_eight_directions(matched, grey), grey)
     return fill_from_four_directions(matched, grey)
+
+
+def made_up_matches() -> tuple[Int16[np.ndarray, "h w"], UInt8[np.ndarray, "h w"]]:
+    """Return a small map with gaps of all kinds, and a left view: what `fill_gaps` needs to be compiled."""
+    rows, columns = np.indices((64, 96))
+    gaps = (rows // 5 + columns // 7) % 3 == 0
+    return np.where(gaps, UNKNOWN, 16 + columns // 20 * 32).astype(np.int16), (rows + columns).astype(np.uint8)

@@ -34,6 +34,8 @@ BUDGET_S = {
 """Processor seconds of a room's tests, of 600 in all; "tests" holds the modules that lie in no room."""
 OTHERS_S = 8
 """Of every other room."""
+SLOW_S = 0.25
+"""Tests of more processor seconds are none of the fast ones: ROOT/tests/slow.txt has their names."""
 
 
 def section() -> str:
@@ -57,6 +59,7 @@ def figures(whole: dict[str, float]) -> Iterator[Figure]:
             seconds, processor_s = time.monotonic() - begun, _processor_s() - before_s
             if not words:
                 whole |= seconds_of_tests(Path(folder))
+                (ROOT / "tests" / "slow.txt").write_text("\n".join([*slow_tests(whole), ""]))
         sys.stderr.write("".join(line for line in done.stdout.splitlines(True) if line.startswith(("FAILED", "ERROR"))))
         summary = re.sub(r" in [\d.]+s.*", "", done.stdout.strip().splitlines()[-1].strip("= "))
         said = f"{seconds:.0f} s, {processor_s:.0f} s of processor time; {summary}"
@@ -67,6 +70,11 @@ def seconds_of_tests(folder: Path) -> dict[str, float]:
     """Read what the plugin `processor_time` wrote: seconds by the id of each test."""
     lines = [line for path in sorted(folder.iterdir()) for line in path.read_text().splitlines()]
     return dict(map(json.loads, lines))
+
+
+def slow_tests(seconds: Mapping[str, float]) -> list[str]:
+    """Return the names of tests of which a case takes more than `SLOW_S`."""
+    return sorted({test.partition("[")[0] for test, each_s in seconds.items() if each_s > SLOW_S})
 
 
 def rows(seconds: Mapping[str, float]) -> Iterable[tuple[str, ...]]:

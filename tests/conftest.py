@@ -37,6 +37,8 @@ STANDSTILL_S = 30.0
 """Longer than any machine lets a loop stand still, however busy it is."""
 STARTS_PROCESSES = {"subprocess", "Popen", "Servo", "Program", "UiServer"}
 """A test module that has one of these names starts processes, and is none of the fast ones."""
+SLOW = set(Path(__file__).with_name("slow.txt").read_text().splitlines())
+"""Tests that took long when they were last measured, as `python -m benchmarks tests` wrote them."""
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
@@ -69,7 +71,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         name = item.nodeid.partition("[")[0]
         names = vars(getattr(item, "module", item)).keys()
         marks = {mark.name for mark in item.iter_markers()}
-        if name not in seen and not names & STARTS_PROCESSES and not marks & {"slow", "nightly"}:
+        quick = name not in SLOW and not names & STARTS_PROCESSES
+        if quick and name not in seen and not marks & {"slow", "nightly"}:
             item.add_marker("fast")
         seen.add(name)
 

@@ -48,3 +48,8 @@ def test_bounds_of_rooms_leave_time_for_the_others():
     root = Path(tests.__file__).parents[1]
     assert all(root.joinpath(name).is_dir() for name in tests.BUDGET_S)
     assert sum(tests.BUDGET_S.values()) < 600
+
+
+def test_test_with_one_slow_case_is_slow():
+    spent = {"tests/test_a.py::test_b[x]": 0.1, "tests/test_a.py::test_b[y]": 0.3, "tests/test_a.py::test_c": 0.2}
+    assert tests.slow_tests(spent) == ["tests/test_a.py::test_b"]

@@ -1,6 +1,5 @@
 """Simplified parts: they pass, a second simplification changes nothing, and lost parts are noted."""
 
-
 import cv2
 import numpy as np
 import pytest

@@ -68,14 +68,17 @@ import json
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 from tangible_depth import SemiGlobal
+from tangible_core.data import Views
 from tangible_depth.dense.filling.gaps import fill_gaps
+from tangible_depth.search.pairs import grey_pair
 
 SemiGlobal(effort=EFFORT).rehearse()
 added = []
 Dispatcher.add_overload = lambda self, result: added.append(self.py_func.__qualname__)
 matched = np.full((300, 400), -32768, np.int16)
 matched[::3, 40:300:5], matched[20:90, 50:80] = 320, 480
-fill_gaps(matched, np.arange(120_000).reshape(300, 400).astype(np.uint8), EFFORT)
+picture = np.arange(120_000).reshape(300, 400).astype(np.uint8)
+fill_gaps(matched, grey_pair(Views(picture, picture), "semi-global").left, EFFORT)
 print(json.dumps(added))
 """
 

@@ -41,7 +41,9 @@ def fill_gaps(
 
 
 def made_up_matches() -> tuple[Int16[np.ndarray, "h w"], UInt8[np.ndarray, "h w"]]:
-    """Return a small map with gaps of all kinds, and a left view: what `fill_gaps` needs to be compiled."""
+    """Return a small map with gaps, and a left view that is read-only as that of a `Pair`: kernels depend on it."""
     rows, columns = np.indices((64, 96))
     gaps = (rows // 5 + columns // 7) % 3 == 0
-    return np.where(gaps, UNKNOWN, 16 + columns // 20 * 32).astype(np.int16), (rows + columns).astype(np.uint8)
+    grey = (rows + columns).astype(np.uint8)
+    grey.flags.writeable = False
+    return np.where(gaps, UNKNOWN, 16 + columns // 20 * 32).astype(np.int16), grey

@@ -4,10 +4,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from .scenes import KEPT, KnownSurface, sample_surface
+from .scenes import KnownSurface, sample_surface
 
 
-@lru_cache(KEPT)
+@lru_cache
 def waves(amplitude_m: float = 0.004, wavelength_m: float = 0.02, shape: tuple[int, int] = (256, 256)) -> KnownSurface:
     """Return an egg box: h = A + A sin(2 pi x / L) sin(2 pi y / L), with slopes up to 2 pi A / L."""
     k = 2 * np.pi / wavelength_m
@@ -21,13 +21,13 @@ def waves(amplitude_m: float = 0.004, wavelength_m: float = 0.02, shape: tuple[i
     )
 
 
-@lru_cache(KEPT)
+@lru_cache
 def ridge(slope: float = 0.5, top_m: float = 0.03, shape: tuple[int, int] = (256, 256)) -> KnownSurface:
     """Return two planes that meet in a sharp edge along y."""
     return sample_surface(lambda x, y: top_m - slope * abs(x), lambda x, y: (-slope * float(np.sign(x)), 0.0), shape)
 
 
-@lru_cache(KEPT)
+@lru_cache
 def cone(slope: float = 0.5, top_m: float = 0.04, shape: tuple[int, int] = (256, 256)) -> KnownSurface:
     """Return a cone with its tip over the centre."""
 
@@ -38,7 +38,7 @@ def cone(slope: float = 0.5, top_m: float = 0.04, shape: tuple[int, int] = (256,
     return sample_surface(lambda x, y: top_m - slope * float(np.hypot(x, y)), gradient, shape)
 
 
-@lru_cache(KEPT)
+@lru_cache
 def cliff(high_m: float = 0.004, shape: tuple[int, int] = (256, 256)) -> KnownSurface:
     """Return level ground that steps up by `high_m` at x = 0."""
     return sample_surface(lambda x, y: high_m * float(x > 0), lambda x, y: (0.0, 0.0), shape)

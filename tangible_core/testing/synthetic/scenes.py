@@ -10,11 +10,9 @@ from jaxtyping import Float64, Int32, UInt8
 from ...data import HapticSurface, Views
 
 GREY, CONTRAST = 127.5, 40.0
-KEPT = 32
-"""Scenes of a kind that are kept: they are read-only, and a check after another starts from the same one."""
 
 
-@lru_cache(KEPT)
+@lru_cache
 def wall(disparity_px: float = 6.0, shape: tuple[int, int] = (96, 320), seed: int = 0) -> Views:
     """Return views of a textured wall that faces both cameras: all pixels have one disparity, of either sign.
 
@@ -61,13 +59,13 @@ class KnownSurface:
         return np.array((-across, -along, 1.0)) / np.sqrt(1 + across**2 + along**2)
 
 
-@lru_cache(KEPT)
+@lru_cache
 def plane(height_m: float = 0.01, shape: tuple[int, int] = (65, 65)) -> KnownSurface:
     """Return a level plane."""
     return ramp((0.0, 0.0), height_m, shape)
 
 
-@lru_cache(KEPT)
+@lru_cache
 def ramp(
     slope: tuple[float, float] = (0.2, 0.1), height_m: float = 0.015, shape: tuple[int, int] = (65, 65)
 ) -> KnownSurface:
@@ -75,7 +73,7 @@ def ramp(
     return sample_surface(lambda x, y: height_m + slope[0] * x + slope[1] * y, lambda x, y: slope, shape)
 
 
-@lru_cache(KEPT)
+@lru_cache
 def sphere_cap(radius_m: float = 0.1, base_m: float = 0.08, shape: tuple[int, int] = (65, 65)) -> KnownSurface:
     """Return the part of a sphere more than `base_m` over its centre; its top is at the picture's centre."""
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 def page(opened, open_page: OpenPage, tmp_path: Path) -> "Page":
     page = open_page(opened(small_scene(tmp_path)))
     until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
+    until(lambda: "mine" in (page.locator("#terrain").get_attribute("aria-label") or ""))  # keys find the surface
     return page
 
 

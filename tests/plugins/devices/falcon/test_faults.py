@@ -20,6 +20,7 @@ WORDS = {
     "stall": "refused the request \\(stall\\)",
     "overflow": "sent more than was requested \\(overflow\\)",
 }
+CALLS = ("read", "write", "exchange")
 PUSH = Force(0.0, 0.0, 3.0)
 OPENING = [
     *[("look", 0), ("open", 0), ("configure", 0), ("configure", 1), ("driver", 0), ("driver", 1), ("claim", 0)],
@@ -37,6 +38,15 @@ def opening_faults() -> Iterator[object]:
             for column, error in enumerate(ERRORS):
                 by_day = row % len(ERRORS) == column or column % len(places) == row
                 yield pytest.param(kind, after, error, marks=() if by_day else pytest.mark.nightly)
+
+
+def running_faults() -> Iterator[object]:
+    """Yield every error of every transfer under every call; by day each error of a transfer under one call."""
+    for shift, at in enumerate(("write", "read")):
+        for row, error in enumerate(ERRORS):
+            for column, call in enumerate(CALLS):
+                by_day = (row + shift) % len(CALLS) == column
+                yield pytest.param(at, error, call, marks=() if by_day else pytest.mark.nightly)
 
 
 def check_at_rest(bus: Bus) -> None:
@@ -76,9 +86,7 @@ def test_fault_while_opening_leaves_no_force_and_one_message(
     check_opens_again(bus, clock)
 
 
-@pytest.mark.parametrize("error", list(ERRORS))
-@pytest.mark.parametrize("at", ["write", "read"])
-@pytest.mark.parametrize("call", ["read", "write", "exchange"])
+@pytest.mark.parametrize(("at", "error", "call"), list(running_faults()))
 def test_fault_while_running_leaves_no_force_and_one_message(
     at: str, error: str, call: str, caplog: pytest.LogCaptureFixture
 ):

@@ -97,6 +97,7 @@ def test_plan_of_a_scene_that_cannot_run_reports_the_refusal(folder: Path):
     assert json.loads(table.stdout)[-1]["outcome"] == "refused"
 
 
+@pytest.mark.usefixtures("loop_in_thread")
 def test_feel_records_every_tick(folder: Path):
     done = tangible("feel", "p.yaml", "--seconds", 0.5, "--record", "hand.npz", "--json", cwd=folder)
     assert done.returncode == 0, done.stderr

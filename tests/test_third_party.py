@@ -33,10 +33,10 @@ class Environment:
         self.site = Path(sysconfig.get_path("purelib", vars=paths))
         self.site.joinpath("borrowed.pth").write_text("\n".join(HERE))
 
-    def install(self, wheel: Path) -> None:
-        """Install a wheel, with nothing fetched from anywhere."""
+    def install(self, *wheels: Path) -> None:
+        """Install wheels, with nothing fetched from anywhere."""
         pip = [self.python, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index"]
-        subprocess.run([*pip, wheel], check=True)
+        subprocess.run([*pip, *wheels], check=True)
 
     def run(self, *words: str | Path, cwd: Path, **variables: str) -> subprocess.CompletedProcess[str]:
         """`tangible ...` as its user would call it."""
@@ -57,9 +57,7 @@ def build(project: Path, out: Path) -> Path:
 def environment(tmp_path_factory: pytest.TempPathFactory) -> Environment:
     folder = tmp_path_factory.mktemp("fresh")
     environment = Environment(folder / "venv")
-    environment.install(build(ROOT, folder / "ours"))
-    for example in EXAMPLES:
-        environment.install(build(example, folder / example.name))
+    environment.install(*(build(project, folder / project.name) for project in (ROOT, *EXAMPLES)))
     return environment
 
 
@@ -79,11 +77,14 @@ def test_third_party_plugin_conforms(environment, tmp_path):
     assert "0 failed" in ran.stdout
 
 
-@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name)
-def test_third_party_tests_pass(environment, tmp_path, example):
-    command = [environment.python, "-m", "pytest", "-q", "-p", "no:cacheprovider", example / "tests"]
+def test_third_party_tests_pass(environment, tmp_path):
+    """Those of all examples, in one process."""
+    folders = [example / "tests" for example in EXAMPLES]
+    command = [environment.python, "-m", "pytest", "-v", "-p", "no:cacheprovider", *folders]
     ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stdout + ran.stderr
+    for file in (file for folder in folders for file in folder.glob("test_*.py")):
+        assert f"{file.name}::" in ran.stdout
 
 
 def test_third_party_force_law_and_device_work_together(environment, tmp_path):

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from command_line import tangible
+from farm_here import Here
 from full_disk import files_up_to
 from pictures import write_png
 from tangible_batch import batch, running
-from tangible_batch.farm import Done
 from tangible_batch.job import Job, make_scene
 from tangible_batch.manifest import rows_of
 from tangible_core import Pipeline, Scene
@@ -21,23 +21,6 @@ from tangible_core.errors import ArgumentError, BatchError, OutputError, Stopped
 from videos import greys
 
 CONFIG = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
-
-
-class Here:
-    """A farm without processes: for what does not depend on them."""
-
-    def __init__(self, *_: object) -> None:
-        self.workers = 1
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        pass
-
-    def map(self, work, jobs, chunk=1, timeout_s=1.0):
-        for job in jobs:
-            yield Done(job, work(job))
 
 
 @pytest.fixture

@@ -16,10 +16,13 @@ import pytest
 
 import dask_imported  # noqa: F401
 import farm_work
+from command_line import tangible
 from ctrl_c import HEARING
 from distributions import distribution
+from farm_here import Here
 from pictures import write_png
 from tangible_batch import batch, farm
+from tangible_batch import running as running_batch
 from tangible_batch.farm import Farm
 from tangible_core import Pipeline
 from tangible_core.errors import BatchError
@@ -110,7 +113,9 @@ def test_farm_without_a_scheduler_at_the_address_is_refused(monkeypatch: pytest.
 
 
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGINT])
-def test_ended_batch_leaves_no_worker_and_continues(tmp_path: Path, end: signal.Signals):
+def test_ended_batch_leaves_no_worker_and_continues(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, end: signal.Signals
+):
     """The program that hands out the scenes is killed, and its workers end by themselves; or Ctrl-C, which all hear."""
     archive(tmp_path, 60)
     rows = tmp_path / "out/mine-batch/rows.jsonl"
@@ -134,7 +139,8 @@ def test_ended_batch_leaves_no_worker_and_continues(tmp_path: Path, end: signal.
     assert 3 <= kept < 60
     with rows.open("a") as file:
         file.write('{"id": "torn')
-    second = subprocess.run(command("--json"), cwd=tmp_path, capture_output=True, text=True, timeout=200)
+    monkeypatch.setattr(running_batch, "Farm", Here)  # the same whoever makes the rest
+    second = tangible("batch", "mine.yaml", "--over", "archive", "--json", cwd=tmp_path)
     assert second.returncode == 0, second.stderr
     found = rows_in(rows.parent)
     assert len(found) == len({row["id"] for row in found}) == 60

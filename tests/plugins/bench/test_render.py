@@ -217,9 +217,9 @@ def recording(count: int = 50) -> Recording:
 @pytest.mark.slow
 def test_recording_gives_the_path_of_the_scene(tmp_path: Path, registry: Registry, suffix: str):
     recording().save(tmp_path / f"hand{suffix}")
-    text = f"compare: render\nmethods: [proxy]\nscenes: [{{analytic: plane, recording: hand{suffix}}}]\n"
+    text = f"compare: render\nmethods: [proxy]\nscenes: [{{analytic: plane, cells: 64, recording: hand{suffix}}}]\n"
     ((name, scene),) = parse_comparison(text, tmp_path / "c.yaml", registry).scenes.items()
-    assert name == f"plane 256x256, hand{suffix}"
+    assert name == f"plane 64x64, hand{suffix}"
     stroke = scene.open()
     np.testing.assert_array_equal(stroke.position_m, recording().position_m)
     assert stroke.period_s == pytest.approx(0.002)

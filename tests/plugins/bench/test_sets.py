@@ -3,6 +3,7 @@
 import csv
 import io
 import math
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -28,11 +29,17 @@ from tangible_core.plugins.registry import Registry
 from tangible_core.scene.formats.pictures import read_map, read_truth
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def sets(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("sets")
     for name in ("kitti-2015", "middlebury-eval3", "middlebury-2014", "eth3d", "kitti-2012"):
-        LAYOUTS[name].make(tmp_path / name, known())
-    return tmp_path
+        LAYOUTS[name].make(made / name, known())
+    return made
+
+
+@pytest.fixture
+def folder(tmp_path: Path, sets: Path) -> Path:
+    return Path(shutil.copytree(sets, tmp_path, dirs_exist_ok=True))
 
 
 def parse(registry: Registry, folder: Path, scenes: str, methods: str = "constant", more: str = "") -> Comparison:

@@ -1,6 +1,7 @@
 """A Falcon whose USB fails at any step: no force stays, one message gives the cure, and it can be opened again."""
 
 import logging
+from collections.abc import Iterator
 
 import pytest
 
@@ -19,6 +20,7 @@ WORDS = {
     "stall": "refused the request \\(stall\\)",
     "overflow": "sent more than was requested \\(overflow\\)",
 }
+CALLS = ("read", "write", "exchange")
 PUSH = Force(0.0, 0.0, 3.0)
 OPENING = [
     *[("look", 0), ("open", 0), ("configure", 0), ("configure", 1), ("driver", 0), ("driver", 1), ("claim", 0)],
@@ -26,6 +28,25 @@ OPENING = [
     *[("write", nth) for nth in (0, 10, 11, 12, 80, 300, 1100)],
     *[("read", nth) for nth in (0, 60, 61, 63, 80, 300, 1100)],
 ]
+
+
+def opening_faults() -> Iterator[object]:
+    """Yield every error at every place; by day each error once at each kind of place, and each place once."""
+    for kind in dict(OPENING):
+        places = [after for at, after in OPENING if at == kind]
+        for row, after in enumerate(places):
+            for column, error in enumerate(ERRORS):
+                by_day = row % len(ERRORS) == column or column % len(places) == row
+                yield pytest.param(kind, after, error, marks=() if by_day else pytest.mark.nightly)
+
+
+def running_faults() -> Iterator[object]:
+    """Yield every error of every transfer under every call; by day each error of a transfer under one call."""
+    for shift, at in enumerate(("write", "read")):
+        for row, error in enumerate(ERRORS):
+            for column, call in enumerate(CALLS):
+                by_day = (row + shift) % len(CALLS) == column
+                yield pytest.param(at, error, call, marks=() if by_day else pytest.mark.nightly)
 
 
 def check_at_rest(bus: Bus) -> None:
@@ -53,8 +74,7 @@ def loud(caplog: pytest.LogCaptureFixture) -> list[str]:
     ]
 
 
-@pytest.mark.parametrize("error", list(ERRORS))
-@pytest.mark.parametrize(("at", "after"), OPENING)
+@pytest.mark.parametrize(("at", "after", "error"), list(opening_faults()))
 def test_fault_while_opening_leaves_no_force_and_one_message(
     at: str, after: int, error: str, caplog: pytest.LogCaptureFixture
 ):
@@ -66,9 +86,7 @@ def test_fault_while_opening_leaves_no_force_and_one_message(
     check_opens_again(bus, clock)
 
 
-@pytest.mark.parametrize("error", list(ERRORS))
-@pytest.mark.parametrize("at", ["write", "read"])
-@pytest.mark.parametrize("call", ["read", "write", "exchange"])
+@pytest.mark.parametrize(("at", "error", "call"), list(running_faults()))
 def test_fault_while_running_leaves_no_force_and_one_message(
     at: str, error: str, call: str, caplog: pytest.LogCaptureFixture
 ):

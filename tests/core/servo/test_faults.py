@@ -62,7 +62,7 @@ class Interrupt:
 
 
 class TestInterruptedStart:
-    @pytest.mark.parametrize("every", [1, 12])
+    @pytest.mark.parametrize("every", [1, 6])
     def test_interrupt_at_any_line_of_the_start_leaves_no_force(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, every: int
     ) -> None:

@@ -51,5 +51,5 @@ def test_bounds_of_rooms_leave_time_for_the_others():
 
 
 def test_test_with_one_slow_case_is_slow():
-    spent = {"tests/test_a.py::test_b[x]": 0.1, "tests/test_a.py::test_b[y]": 0.3, "tests/test_a.py::test_c": 0.2}
+    spent = {"tests/test_a.py::test_b[x]": 0.05, "tests/test_a.py::test_b[y]": 0.3, "tests/test_a.py::test_c": 0.05}
     assert tests.slow_tests(spent) == ["tests/test_a.py::test_b"]

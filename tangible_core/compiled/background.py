@@ -15,7 +15,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from types import TracebackType
-from typing import Any, NamedTuple, Self, final
+from typing import IO, Any, NamedTuple, Self, final
 
 from ..runtime.child_process import command, dumps
 from ..runtime.stopping import check_stopped
@@ -62,7 +62,7 @@ class BackgroundCompiler:
     def __init__(self, work: Callable[[], Work | None]) -> None:
         """Prepare the block; work: called when the process starts, returns None if there is nothing to do."""
         self._work: Callable[[], Work | None] | None = work
-        self._child: Any = None
+        self._child: subprocess.Popen[bytes] | None = None
         self._due: frozenset[str] = frozenset()
         """The names that the process has yet to compile."""
         self._lock, self._progress = threading.Lock(), threading.Condition()
@@ -85,8 +85,8 @@ class BackgroundCompiler:
             if self._listener is not None:
                 self._listener.join()
             with suppress(OSError):  # unsent data are not needed
-                child.stdin.close()
-            child.stdout.close()
+                _pipe(child.stdin).close()
+            _pipe(child.stdout).close()
 
     def begin(self) -> None:
         """Start the process, once, if there is work for it."""
@@ -118,17 +118,22 @@ class BackgroundCompiler:
                 self._progress.wait(LOOK_EVERY_S)
                 check_stopped()
 
-    def _listen(self, child: Any, data: bytes) -> None:
+    def _listen(self, child: "subprocess.Popen[bytes]", data: bytes) -> None:
         with suppress(OSError, ValueError):  # the process has ended
-            child.stdin.write(data)
-            child.stdin.flush()
-        for line in child.stdout:
+            _pipe(child.stdin).write(data)
+            _pipe(child.stdin).flush()
+        for line in _pipe(child.stdout):
             with self._progress:
                 self._due -= {line.decode(errors="replace").strip()}
                 self._progress.notify_all()
         with self._progress:
             self._due = frozenset()
             self._progress.notify_all()
+
+
+def _pipe(pipe: IO[bytes] | None) -> IO[bytes]:
+    assert pipe is not None
+    return pipe
 
 
 def main() -> None:

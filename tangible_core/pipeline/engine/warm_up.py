@@ -22,6 +22,8 @@ STRIPES = 6
 """Segments of the made-up map: enough for every material that a rule may choose."""
 FELT = "felt"
 """The name of the simulated session, the last step of the warm-up."""
+SECONDS = 0.02
+"""The length of the simulated session, s: some ticks are enough to compile its loop."""
 
 
 def warm_up(engine: Engine, want: str) -> BackgroundCompiler:
@@ -63,5 +65,5 @@ def run_stages(config: PipelineConfig, views: Views, segments: bool, touch: bool
     yield "touch"
     device = config.felt_device
     if device is not None and device.spec().simulated:
-        run_simulated(made, device, 0.02, limits=config.safety)  # s: some ticks are enough to compile the loop
+        run_simulated(made, device, SECONDS, limits=config.safety)
     yield FELT

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from importlib import metadata
 from itertools import count
 from pathlib import Path
+from unittest.mock import patch
 
 import jaxtyping
 import pytest
@@ -90,16 +91,10 @@ def own_dir(folders: Iterator[Path]) -> Iterator[Path]:
     folder = next(folders)
     os.mkdir(folder)  # noqa: PTH102 - pathlib would take most of the time
     told = {f"TANGIBLE_{kind.upper()}_DIR": f"{folder}/{kind}" for kind in OWN}
-    before = {name: os.environ.get(name) for name in told}
     for path in told.values():
         os.mkdir(path)  # noqa: PTH102
-    os.environ.update(told)
-    yield folder
-    for name, value in before.items():
-        if value is None:
-            os.environ.pop(name, None)
-        else:
-            os.environ[name] = value
+    with patch.dict(os.environ, told):
+        yield folder
 
 
 @pytest.fixture(scope="session", autouse=True)

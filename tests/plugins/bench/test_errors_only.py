@@ -1,14 +1,13 @@
 """Errors without times, from workers that stay warm: the same to the last digit as those of a timed comparison."""
 
-from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import pytest
 
 import dask_imported  # noqa: F401
 from command_line import tangible
-from tangible_batch.farm import Done
+from farm_here import Here
 from tangible_bench.comparing import ComparisonOutcome, Step, compare
 from tangible_bench.config.reading import errors_only, parse_comparison
 from tangible_bench.measuring.rows import read_rows
@@ -58,22 +57,14 @@ def test_errors_alone_equal_those_of_timed_measurements(registry: Registry, tmp_
     run_comparison(registry, tmp_path, True, progress=lambda step: pytest.fail("nothing is left to measure"))
 
 
-class FarmHere:
+class FarmHere(Here):
     """A farm that works in this process; `started` holds the workers and threads of each."""
 
     started: ClassVar[list[tuple[int, int]]] = []
 
     def __init__(self, workers: int, threads: int) -> None:
+        super().__init__()
         self.started.append((workers, threads))
-
-    def __enter__(self) -> "FarmHere":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        pass
-
-    def map(self, work: Callable[[Any], Any], jobs: Iterable[Any], timeout_s: float) -> Iterator[Done[Any, Any]]:
-        return (Done(job, work(job)) for job in jobs)
 
 
 @pytest.mark.slow

@@ -238,21 +238,13 @@ def test_lost_graphics_context_is_reported_and_restored(url: str, open_page, com
     complaints[:] = [each for each in complaints if "ontext" not in each]
 
 
-def test_page_without_webgl_says_so_and_works(url: str, browser, complaints: list[str]):
-    context = browser.new_context(locale="en-GB")
-    page = context.new_page()
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.add_init_script(
-        "const real = HTMLCanvasElement.prototype.getContext; HTMLCanvasElement.prototype.getContext ="
-        " function (kind, ...more) { return kind.startsWith('webgl') ? null : real.call(this, kind, ...more) }"
-    )
-    page.goto(f"{url}&measure")
+def test_page_without_webgl_says_so_and_works(url: str, open_page, complaints: list[str]):
+    page = open_page(f"{url}&measure")
     page.wait_for_function("() => window.page?.scene")
     assert "no WebGL" in page.inner_text("#no-terrain")
     page.check("#view input[value=height]")
     assert "mm" in page.inner_text("#view .legend")
     assert page.evaluate("() => window.page.scene.pick([0.016, 0, 1], [0, 0, -1])[2]") == pytest.approx(0.004, abs=1e-6)
-    context.close()
     assert complaints == []
 
 

@@ -378,3 +378,14 @@ def test_blocks_cover_every_row_once(monkeypatch):
 
     threads.in_blocks(50, work)
     assert (seen == 1).all()
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16, np.float32])
+@pytest.mark.parametrize("colour", [False, True])
+def test_pictures_of_a_pair_are_read_only_however_they_came(kind: type, colour: bool):
+    """Kernels are compiled for each kind of array: there is one."""
+    picture = texture(*np.indices((24, 40))[::-1]).astype(kind)
+    view = np.dstack([picture] * 3) if colour else picture
+    pair = grey_pair(Views(view, view), "test")
+    for each in (pair, pair.mirror(), pair.downsample(2), shift_rows(pair, 0.5)):
+        assert not any(picture.flags.writeable for picture in each)

@@ -18,6 +18,7 @@ from faulty_touch import FaultyTouch
 from loop_devices import Circling, Failing
 from loop_scenes import proxy
 from tangible_core.errors import DeviceError
+from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Safety, Servo
 from tangible_core.servo.child import Child
 from tangible_core.servo.framing import Start, StartReply, Swap, SwapReply, receive, send
@@ -58,14 +59,15 @@ class TestSwaps:
         assert not left_behind()
 
     @pytest.mark.parametrize(
-        "device",
+        ("device", "few", "many"),
         [
-            Circling(),
-            pytest.param(Circling(exchanges=True), marks=pytest.mark.nightly),  # dear: Python ticks all the while
-            Failing(fault="none"),
+            (Circling(), 200, 500),
+            (Circling(exchanges=True), 20, 60),  # dear: Python ticks all the while
+            pytest.param(Circling(exchanges=True), 200, 500, marks=pytest.mark.nightly),
+            (Failing(fault="none"), 200, 500),
         ],
     )
-    def test_hundreds_of_swaps_leave_no_descriptors_or_memory(self, device) -> None:
+    def test_swaps_leave_no_descriptors_or_memory(self, device: HapticDevice, few: int, many: int) -> None:
         """Checks descriptors, mappings and memory of the loop's process, and that its threads still respond."""
         scenes = [proxy(), proxy(0.003)]
         with Servo(scenes[0], device, AT_ONCE) as servo:
@@ -75,8 +77,8 @@ class TestSwaps:
                     servo.swap(scenes[i % 2])
                 return usage(servo.process_id)
 
-            first = swap(200)
-            last = swap(500)
+            first = swap(few)
+            last = swap(many)
             descriptors, mappings, kibibytes = np.subtract(last, first)
             assert abs(descriptors) <= 2
             assert abs(mappings) <= 10

@@ -1,4 +1,4 @@
-"""Signals that end the program: SIGTERM and SIGHUP act as Ctrl-C, so that everything is closed in order."""
+"""Signals that end the program: SIGTERM, SIGHUP and SIGQUIT act as Ctrl-C, so that everything is closed in order."""
 
 import signal
 import threading
@@ -6,8 +6,8 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from types import FrameType
 
-ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
-"""The signals sent by `kill`, by a system that shuts down and by a terminal that is closed."""
+ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP", "SIGQUIT") if hasattr(signal, name))
+"""The signals sent by `kill`, by a system that shuts down, by a terminal that is closed, and by Ctrl-\\."""
 _received: list[signal.Signals] = []
 
 

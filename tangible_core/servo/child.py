@@ -53,6 +53,10 @@ class Child:
             self._reply(End(str(failure) if isinstance(failure, DeviceError) else "", failure))
         else:
             self._reply(End(self._stopped))
+        finally:
+            if self._ring is not None:
+                with suppress(OSError):  # Windows keeps the name of a file that is mapped
+                    self._ring.remove()  # the host has mapped it too, or was killed and cannot remove it
 
     def _open(self, start: Start) -> None:
         self._ring = ring = Ring.attach(Path(start.ring))

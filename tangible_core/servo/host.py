@@ -127,6 +127,8 @@ class Servo:
         memory.words[ASKED] = 0
         if beacon is None:
             return
+        if not self.running:
+            raise self._loop.failure()
         self.ring.allocate_beacon()
         until_s = time.monotonic() + STOPPING_S
         while memory.words[SEEN]:  # until then, the loop may read the field of the beacon before

@@ -52,7 +52,7 @@ def feel(
     from ... import session
     from ...errors import check_positive
     from ...pipeline.feeling import Feeling
-    from ...servo import OVER, TERMINATED
+    from ...servo import OVER
     from .. import sentences, show
 
     check_positive("--each", each)
@@ -112,7 +112,7 @@ def feel(
         for text in (session.guard_summary(report.flagged), hand and hand.says):
             if text:
                 show.plain(f"\n{text}")
-    if report.stopped in (session.INTERRUPTED, TERMINATED):
+    if report.stopped == session.INTERRUPTED:
         raise KeyboardInterrupt
     if report.stopped != OVER:
         show.flush()

@@ -16,6 +16,7 @@ from command_line import tangible
 from ctrl_c import HEARING
 from tangible_core.data import TickFlag
 from tangible_core.session import INTERRUPTED, Recording
+from waiting import until
 
 FILE = """
 scene: {{height: {height}.npy, relief_m: 0.004}}
@@ -74,7 +75,7 @@ def test_feel_with_an_unmoved_pointer_warns_once(folder: Path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("number", "group"), [(signal.SIGTERM, False), (signal.SIGHUP, True)])
+@pytest.mark.parametrize(("number", "group"), [(signal.SIGTERM, False), (signal.SIGHUP, True), (signal.SIGQUIT, True)])
 def test_endless_feel_stops_at_a_signal_with_a_complete_recording(folder: Path, number: signal.Signals, group: bool):
     """The signal goes to the program alone, as by `kill`, or to its loop as well, as by systemd or a terminal."""
     words = ["feel", "a.yaml", "b.yaml", "--each", "0.2", "--seconds", "inf", "--wait", "--record", "hand.nc"]
@@ -101,6 +102,31 @@ def test_endless_feel_stops_at_a_signal_with_a_complete_recording(folder: Path, 
     recording = Recording.load(grown)
     assert recording.stopped in (INTERRUPTED, "the process received a signal to end")
     assert (len(recording.rows) > 500, (np.diff(recording.time_s) > 0).all()) == (True, True)
+
+
+@pytest.mark.slow
+def test_loop_ended_alone_is_a_failure_and_not_an_interruption(folder: Path):
+    """Somebody ended the loop's process: the user did not stop the program, and is told what happened."""
+    words = ["feel", "a.yaml", "--seconds", "inf", "--record", "hand.nc"]
+    program = subprocess.Popen(
+        [TANGIBLE, *words],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    grown = folder / "hand.nc"
+    try:
+        until(lambda: program.poll() is not None or (grown.exists() and grown.stat().st_size > 60_000))
+        [loop] = subprocess.check_output(["pgrep", "-g", str(program.pid), "-f", "servo.child"], text=True).split()
+        os.kill(int(loop), signal.SIGTERM)
+        _, errors = program.communicate(timeout=60)
+    finally:
+        program.kill()
+    assert program.returncode == 2, errors
+    assert "the process received a signal to end" in errors
+    assert "interrupted" not in errors
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""SIGTERM and SIGHUP end a program as Ctrl-C does, with their own exit codes."""
+"""SIGTERM, SIGHUP and SIGQUIT end a program as Ctrl-C does, with their own exit codes."""
 
 import os
 import signal
@@ -59,7 +59,7 @@ def test_signals_in_another_thread_are_left_alone():
     assert handlers == [signal.SIG_DFL]
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129), (signal.SIGQUIT, 131)])
 def test_signal_ends_a_plugin_that_hangs_at_its_import(tmp_path: Path, number: signal.Signals, code: int):
     hang = "import sys, time; print('imported', file=sys.stderr, flush=True); time.sleep(600)"
     site = distribution(tmp_path / "site", "hang", {"tangible.depth": {"hang": "hang:Hang"}}, hang=hang)

@@ -196,7 +196,7 @@ class TestNoForceIsLeft:
             assert held_force(record) == 0
 
     @pytest.mark.parametrize("killed_by", [signal.SIGKILL, signal.SIGINT])
-    def test_killed_host_leaves_no_force(self, tmp_path: Path, killed_by: signal.Signals) -> None:
+    def test_killed_host_leaves_no_force_and_no_memory(self, tmp_path: Path, killed_by: signal.Signals) -> None:
         record = tmp_path / "force"
         script = [*HEARING, sys.executable, "-c", HOST.format(record=str(record))]
         host = subprocess.Popen(script, stderr=subprocess.DEVNULL, start_new_session=True)
@@ -208,6 +208,7 @@ class TestNoForceIsLeft:
                 os.kill(host.pid, killed_by)
             until(lambda: held_force(record) == 0)
             host.wait(60)
+            until(lambda: not list(shared_folder().glob(f"tangible-{host.pid}-*")))
         finally:
             host.kill()
 

@@ -59,7 +59,7 @@ class PageServer:
         with Address.of(0) as address:
             self.port = address.port
             self.host = f"{HOST}:{self.port}"
-            app = application(lambda: self.session, KEY, frozenset({self.host}), self._lifespan)
+            app = application(lambda: self.session, KEY, address.hosts, self._lifespan)
             self.server = Server(settings(app), lambda: None)
             self.server.run(sockets=[address.listening])
 

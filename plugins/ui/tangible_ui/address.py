@@ -18,6 +18,8 @@ from typing import Self
 from tangible_core.errors import ConfigError
 
 HOST = "127.0.0.1"
+HTTP_PORT = 80
+"""The port that an address may leave out."""
 
 
 @dataclass(frozen=True)
@@ -52,8 +54,9 @@ class Address:
 
     @property
     def hosts(self) -> frozenset[str]:
-        """The host names under which a browser may reach the server."""
-        return frozenset({f"{HOST}:{self.port}", f"localhost:{self.port}"})
+        """The names of this machine under which a browser may reach the server, in small letters, with the port."""
+        ports = (f":{self.port}", "") if self.port == HTTP_PORT else (f":{self.port}",)
+        return frozenset(f"{name}{port}" for name in (HOST, "localhost", "[::1]") for port in ports)
 
     def announce(self, browser: bool) -> None:
         """Print the address. browser: open it too."""

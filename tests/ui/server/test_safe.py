@@ -17,11 +17,11 @@ from websockets.exceptions import InvalidStatus
 
 from page_server import KEY, PageServer
 from tangible_core.files.reading import MOST_BYTES
-from tangible_ui.address import new_key
+from tangible_ui.address import Address, new_key
 from tangible_ui.framing import ACK, ACK_FRAME, POINTER, POINTER_FRAME
-from tangible_ui.serving import routes, serve
+from tangible_ui.serving import connection, routes, serve
 from tangible_ui.serving.access import HEADERS
-from tangible_ui.serving.connection import AT_ONCE_BYTES
+from tangible_ui.serving.connection import AT_ONCE_BYTES, MOST_STRANGERS
 from tangible_ui.serving.live import IDLE_SPACING_S, IN_FLIGHT, MOST_ASKS
 from tangible_ui.serving.routes import WRONG_KEY
 from waiting import LONGEST_S, until
@@ -78,6 +78,22 @@ class TestWhoIsLetIn:
             assert answer.status == 400 or answer.headers["content-security-policy"]  # h11 itself refuses no host
         with handshake(page, host or "x") as raw:
             assert raw.recv(100).startswith(b"HTTP/1.1 403")
+
+    @pytest.mark.parametrize("name", ["127.0.0.1", "localhost", "LocalHost", "[::1]"])
+    def test_every_name_of_this_machine_is_served(self, page: PageServer, name: str) -> None:
+        host = f"{name}:{page.port}"
+        assert page.ask("/", host=host).status == 200
+        for origin in (f"http://{host}", f"http://{page.host}"):
+            assert page.ask(with_key("/stop"), "POST", b"", host=host, origin=origin).status == 204
+        assert page.ask("/", host=name).status == 403
+
+    def test_port_that_addresses_leave_out_is_optional(self) -> None:
+        class Port80:
+            def getsockname(self) -> tuple[str, int]:
+                return "127.0.0.1", 80
+
+        hosts = Address(Port80(), "").hosts  # type: ignore[arg-type]
+        assert hosts == {f"{name}{port}" for name in ("127.0.0.1", "localhost", "[::1]") for port in ("", ":80")}
 
     @pytest.mark.parametrize("origin", [None, "null", "http://evil.example", "https://{host}", "http://{host}.evil"])
     def test_origin_of_another_page_is_refused(self, page: PageServer, origin: str | None) -> None:
@@ -341,16 +357,45 @@ class TestFloods:
     def test_unfinished_connections_stop_nobody(self, page: PageServer) -> None:
         with page.tab() as tab:
             tab.until(event="holding", holding=True)
-            slow = [socket.create_connection(("127.0.0.1", page.port)) for _ in range(300)]
+            slow = [socket.create_connection(("127.0.0.1", page.port)) for _ in range(MOST_STRANGERS + 44)]
             for each in slow:
                 each.sendall(b"GET / HT")
             tab.socket.send(pointer(0.01, 0, 0))
             tab.ask("nothing")
             tab.until(event="refused")
             assert page.done(lambda: page.session.feeling.hand.holding)
+            assert page.ask(with_key("/stop"), "POST", b"").status == 204
+            tab.until(event="loop", running=False, stopped=True)
+            assert page.ask("/").status == 200
+            slow[0].settimeout(LONGEST_S)
+            assert is_closed(slow[0])  # the one that was open longest
+            assert not is_closed(slow[-1])
+            tab.until(event="answer", number=tab.ask("stop"))
             for each in slow:
                 each.close()
-        until(lambda: page.ask("/").status == 200)
+
+    def test_head_of_a_request_has_a_time_limit(self, page: PageServer, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(connection, "HEAD_S", 0.2)
+        for said in (b"", b"GET / HT", f"GET / HTTP/1.1\r\nHost: {page.host}\r\n\r\nGET / HT".encode()):
+            with socket.create_connection(("127.0.0.1", page.port), timeout=LONGEST_S) as raw:
+                raw.sendall(said)
+                assert is_closed(raw)
+        with page.tab() as tab:
+            tab.next(0.5)
+            tab.until(event="answer", number=tab.ask("examples"))
+
+
+def is_closed(raw: socket.socket) -> bool:
+    """Read all that is sent; return False if nothing more comes within the socket's time, or for a moment without."""
+    raw.settimeout(raw.gettimeout() or 0.2)
+    try:
+        while raw.recv(4096):
+            pass
+    except TimeoutError:
+        return False
+    except ConnectionError:
+        pass
+    return True
 
 
 def _frames(tab: Any) -> int:

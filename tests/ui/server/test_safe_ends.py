@@ -2,10 +2,12 @@
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 import threading
 import time
+import urllib.request
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -152,6 +154,13 @@ def children(server: UiServer, name: str) -> list[int]:
     return [int(word) for word in found.stdout.split()]
 
 
+def post_stop(url: str) -> None:
+    origin, _, query = url.partition("/?")
+    request = urllib.request.Request(f"{origin}/stop?{query}", b"", {"Origin": origin}, method="POST")
+    with urllib.request.urlopen(request, timeout=LONGEST_S) as answer:
+        assert answer.status == 204
+
+
 def test_force_ends_with_the_tab_the_loop_and_a_frozen_server(home: Home) -> None:
     """The page and its parts, one after the other on one server, which goes on."""
     server = home.server("level.yaml")
@@ -180,6 +189,18 @@ def test_force_ends_with_the_tab_the_loop_and_a_frozen_server(home: Home) -> Non
     number = press.tab.ask("feel")
     press.tab.until(event="answer", number=number)
     press.attach()
+    host, port = server.url.split("/")[2].split(":")
+    unfinished = [socket.create_connection((host, int(port))) for _ in range(300)]
+    for each in unfinished:
+        each.sendall(b"GET / HT")
+    found["stop beside unfinished connections"] = press.let_go_s(lambda: press.tab.ask("stop"))
+    press.tab.until(event="answer", number=press.tab.ask("feel"))
+    press.attach()
+    found["stop by a request beside them"] = press.let_go_s(lambda: post_stop(server.url))
+    for each in unfinished:
+        each.close()
+    press.tab.until(event="answer", number=press.tab.ask("feel"))
+    press.attach()
     [loop] = children(server, "servo.child")
     found["loop killed"] = press.let_go_s(lambda: os.kill(loop, signal.SIGKILL))
     assert press.tab.until(event="loop", running=False)["why"]
@@ -190,7 +211,7 @@ def test_force_ends_with_the_tab_the_loop_and_a_frozen_server(home: Home) -> Non
     assert not home.left()
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT"])
 def test_server_ended_by_a_signal_leaves_no_force_and_no_file(home: Home, name: str) -> None:
     server, number = home.server("level.yaml"), getattr(signal, name)
     press = Press(home, server)
@@ -274,8 +295,6 @@ def test_server_starts_with_missing_folders_or_reports_one_sentence(
     home: Home, env: dict[str, str], words: list[str], says: str
 ) -> None:
     """The server starts all the same, or prints one sentence."""
-    import socket
-
     with socket.create_server(("127.0.0.1", 0)) as taken:
         told = {"port": str(taken.getsockname()[1]), "file": str(home.folder / "level.yaml")}
         env = {**home.env, **{name: value.format(**told) for name, value in env.items()}}

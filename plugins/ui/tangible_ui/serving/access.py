@@ -23,7 +23,9 @@ class Guarded:
     """An ASGI app that refuses foreign hosts and origins, and adds strict headers to every answer."""
 
     def __init__(self, app: ASGIApp, hosts: frozenset[str]) -> None:
+        """hosts: all names of this server, with the port, in small letters."""
         self._app, self._hosts = app, hosts
+        self._origins = frozenset(f"http://{host}" for host in hosts)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request; errors have the headers too."""
@@ -50,11 +52,10 @@ class Guarded:
         A foreign name that was made to lead here (DNS rebinding) shows in the host; a foreign page that sends requests
         here shows in the origin, which browsers send with every change and every websocket.
         """
-        host = connection.headers.get("host", "")
-        if host not in self._hosts:
+        if connection.headers.get("host", "").lower() not in self._hosts:
             return "this address is not served"
         reads = connection.scope["type"] == "http" and connection.scope["method"] in READING
-        if not reads and connection.headers.get("origin") != f"http://{host}":
+        if not reads and connection.headers.get("origin", "").lower() not in self._origins:
             return "another page may not do that"
         return ""
 

@@ -1,12 +1,20 @@
-"""A bounded websocket connection of uvicorn: small reads, and a way to cut off a tab that reads nothing."""
+"""Bounded connections: strangers cannot keep the holder of the key out, and a tab that reads nothing is cut off."""
 
-from asyncio import BaseTransport
+from asyncio import BaseTransport, TimerHandle
 from collections.abc import Callable
+from functools import partial
 from typing import Any, final
 
+import h11
+from starlette.requests import HTTPConnection
 from starlette.websockets import WebSocket
+from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
+MOST_STRANGERS = 256
+"""Maximum number of connections that have not shown the key."""
+HEAD_S = 10.0
+"""Time within which the head of a request must be complete, s."""
 AT_ONCE_BYTES = 8192
 """Bytes of one read: of a flood of small messages, what is handled before anything else has its turn."""
 PING_S = 5.0
@@ -14,14 +22,85 @@ PING_S = 5.0
 
 
 @final
+class Strangers:
+    """The connections that have not shown the key; of too many, the one that has been open longest is cut off.
+
+    So the holder of the key gets through whatever others open: the newest connection is never the one that is cut.
+    """
+
+    def __init__(self) -> None:
+        self._open: dict[BaseTransport, None] = {}
+
+    def add(self, transport: BaseTransport) -> None:
+        """Add a new connection."""
+        self._open[transport] = None
+        if len(self._open) > MOST_STRANGERS:
+            longest: Any = next(iter(self._open))
+            self.remove(longest)
+            longest.abort()
+
+    def remove(self, transport: BaseTransport) -> None:
+        """Remove a connection that has shown the key, or is closed."""
+        self._open.pop(transport, None)
+
+
+@final
+class Exchange(H11Protocol):
+    """A connection for requests; it is a stranger's until one of them shows the key."""
+
+    def __init__(self, strangers: Strangers, **told: Any) -> None:
+        super().__init__(**told)
+        self._strangers = strangers
+        self._limit: TimerHandle | None = None
+
+    def connection_made(self, transport: Any) -> None:
+        """Note the stranger, and wait for a request."""
+        super().connection_made(transport)
+        self.app_state = {**self.app_state, "show_key": partial(self._strangers.remove, transport)}
+        self._strangers.add(transport)
+        self._limit_head()
+
+    def data_received(self, data: bytes) -> None:
+        """Read what came, and go on waiting if the head of a request is not complete."""
+        super().data_received(data)
+        self._limit_head()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Forget the connection."""
+        self._end_limit()
+        self._strangers.remove(self.transport)
+        super().connection_lost(exc)
+
+    def _limit_head(self) -> None:
+        if self.conn.their_state is not h11.IDLE:
+            self._end_limit()
+        elif self._limit is None:
+            self._limit = self.loop.call_later(HEAD_S, self.transport.abort)
+
+    def _end_limit(self) -> None:
+        if self._limit is not None:
+            self._limit.cancel()
+            self._limit = None
+
+
+@final
 class Connection(WebSocketsSansIOProtocol):
-    """A connection that reads little at once and can be cut off."""
+    """A websocket that reads little at once and can be cut off."""
+
+    def __init__(self, strangers: Strangers, **told: Any) -> None:
+        super().__init__(**told)
+        self._strangers = strangers
 
     def connection_made(self, transport: BaseTransport) -> None:
         """Bound the reads: by default one read takes a quarter of a megabyte, thousands of messages."""
         super().connection_made(transport)
         bounded: Any = transport
         bounded.max_size = AT_ONCE_BYTES
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Forget the connection."""
+        self._strangers.remove(self.transport)
+        super().connection_lost(exc)
 
     async def run_asgi(self) -> None:
         """Run the app, with a function that cuts the connection off: a regular close first reads all that waits."""
@@ -33,6 +112,12 @@ class Connection(WebSocketsSansIOProtocol):
         """Cut the connection off: nobody would read the rest."""
         super().keepalive_timeout()
         self.transport.abort()
+
+
+def show_key(connection: HTTPConnection) -> None:
+    """Note that a connection belongs to the holder of the key."""
+    shown: Callable[[], None] = connection.scope["state"]["show_key"]
+    shown()
 
 
 def cut_off(socket: WebSocket) -> None:

@@ -21,6 +21,7 @@ from ..address import static
 from ..requests import feeling
 from ..state.session import Session
 from .access import Guarded
+from .connection import show_key
 from .live import LiveTab
 
 FOREVER = "private, max-age=31536000, immutable"
@@ -57,7 +58,10 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
     """Return the routes; all but the built page need the key."""
 
     def has_key(connection: HTTPConnection) -> bool:
-        return secrets.compare_digest(connection.query_params.get("token", "").encode(), key.encode())
+        has = secrets.compare_digest(connection.query_params.get("token", "").encode(), key.encode())
+        if has:
+            show_key(connection)
+        return has
 
     def require_key(answer: Answer) -> Answer:
         async def check_key(request: Request) -> Response:

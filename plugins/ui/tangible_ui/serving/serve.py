@@ -23,17 +23,15 @@ from ..requests import document
 from ..requests import document as drafts
 from ..stale_files import channel_of_this_process, folder_of_this_process
 from ..state.session import Session
-from .connection import PING_S, Connection
+from .connection import PING_S, Connection, Exchange, Strangers
 from .routes import application
 
 EXAMPLE = Path("builtin/motorcycle")
-MOST_CONNECTIONS = 256
-"""Maximum number of connections at once; further ones are refused for now."""
 MOST_MESSAGE_BYTES = 2**20
 """Size limit of a message, bytes; pipeline files are smaller."""
 THREADS = 32
 """Threads for waiting calls: a disk, a pipe, a loop that ends. Such a call must not wait for another one of them."""
-ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT") if hasattr(signal, name))
 
 KEEP_S = 0.01
 """Interval at which the server polls the loop, s: it proves that it lives, and moves the hand of a compared law."""
@@ -55,11 +53,14 @@ def serve(files: list[Path], sets: list[str], address: Address) -> None:
 
 def settings(app: ASGIApp) -> uvicorn.Config:
     """Return settings with which nobody can block the server, fill its memory, or find the key in a log."""
+    strangers = Strangers()
+    http: Any = partial(Exchange, strangers)
+    sockets: Any = partial(Connection, strangers)
     return uvicorn.Config(
-        app, log_level="warning", access_log=False, server_header=False, loop="asyncio", http="h11", lifespan="on",
-        ws=Connection, ws_per_message_deflate=False, ws_max_size=MOST_MESSAGE_BYTES,
+        app, log_level="warning", access_log=False, server_header=False, loop="asyncio", http=http, lifespan="on",
+        ws=sockets, ws_per_message_deflate=False, ws_max_size=MOST_MESSAGE_BYTES,
         ws_ping_interval=PING_S, ws_ping_timeout=PING_S,
-        limit_concurrency=MOST_CONNECTIONS, timeout_graceful_shutdown=1,
+        timeout_graceful_shutdown=1,
     )  # fmt: skip
 
 

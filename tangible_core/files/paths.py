@@ -1,22 +1,39 @@
 """Paths as people write them: `~` stands for a home folder."""
 
-from os import PathLike
+from os import PathLike, fsencode
 from pathlib import Path
 from typing import cast
 
 from ..errors import ConfigError, quoted, wrong_argument
+
+MOST_NAME_BYTES = 255
+"""The most bytes of a file's name; every common file system allows as many and no more."""
 
 
 def as_path(value: object, name: str = "path") -> Path:
     """Return a value as a path; a leading `~` or `~user` becomes that user's home folder.
 
     name: the argument's name in messages.
-    Raises: ArgumentError if the value is not a path, ConfigError if there is no such user.
+    Raises: ArgumentError if the value is not a path; ConfigError if there is no such user, or if no file can have the
+    name, so that nobody has to catch what the system says of it.
     """
     if not isinstance(value, str | PathLike):
         raise wrong_argument(name, value, "a path")
     path = Path(cast("str | PathLike[str]", value))
+    _check_name(path)
     try:
         return path.expanduser()
     except RuntimeError as error:
         raise ConfigError(f"{path}: no user here is named {quoted(path.parts[0][1:])}, and `~` names a home") from error
+
+
+def _check_name(path: Path) -> None:
+    """Raise a ConfigError for a name that no file can have."""
+    try:
+        sizes = [len(fsencode(part)) for part in path.parts]
+    except UnicodeEncodeError:  # half a character, which JSON can express
+        sizes = []
+    if "\0" in str(path) or (path.parts and not sizes):
+        raise ConfigError(f"{quoted(str(path))}: no file can have this name; use letters, digits and other characters")
+    if max(sizes, default=0) > MOST_NAME_BYTES:
+        raise ConfigError(f"{quoted(str(path))}: a file's name has at most {MOST_NAME_BYTES} bytes; use a shorter one")

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tangible_core.errors import ArgumentError, ConfigError
-from tangible_core.files.paths import as_path
+from tangible_core.files.paths import MOST_NAME_BYTES, as_path
 
 
 def test_path_with_a_tilde_starts_in_that_users_home(monkeypatch: pytest.MonkeyPatch):
@@ -22,3 +22,22 @@ def test_path_with_a_tilde_starts_in_that_users_home(monkeypatch: pytest.MonkeyP
 def test_value_that_is_not_a_path_is_refused_by_name(other: object):
     with pytest.raises(ArgumentError, match=r"record: is .*; it must be a path"):
         as_path(other, "record")
+
+
+@pytest.mark.parametrize("name", ["a\0b", "\0", "a/\ud800.png"])
+def test_name_that_no_file_can_have_is_refused(name: str):
+    with pytest.raises(ConfigError, match="no file can have this name"):
+        as_path(name)
+
+
+@pytest.mark.parametrize("letter", ["a", "ä", "漢", "🙂"])
+def test_longest_name_is_counted_in_bytes(letter: str):
+    most = MOST_NAME_BYTES // len(letter.encode())
+    assert as_path("b/" + letter * most) == Path("b") / (letter * most)
+    for name in (letter * (most + 1), letter * (most + 1) + "/b"):
+        with pytest.raises(ConfigError, match="has at most 255 bytes; use a shorter one"):
+            as_path(name)
+
+
+def test_path_of_no_part_is_the_current_folder():
+    assert as_path("") == as_path(".") == Path()

@@ -19,7 +19,7 @@ async def begin(session: Session, tab: Tab | None, files: list[str], make_it: bo
 
     Returns: the path of a recording, if it is one, for the panel of recordings.
     """
-    found = await session.worker.quick("begin", files=[Path(each) for each in files])
+    found = await session.worker.quick("begin", files=[as_path(each) for each in files])
     if "text" not in found:
         return found
     text, path = found["text"], found["path"]

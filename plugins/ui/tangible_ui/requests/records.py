@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from tangible_core.errors import ConfigError, DeviceError
+from tangible_core.files.paths import as_path
 from tangible_core.session import About, names_in
 
 from ..feeling.recorder import Recorder
@@ -56,13 +57,13 @@ async def records(session: Session, tab: Tab | None) -> list[dict[str, Any]]:
 @request()
 async def show_record(session: Session, tab: Tab | None, path: str) -> dict[str, Any]:
     """Write a recording's ticks for pages to fetch; return its description and figures."""
-    return await session.worker.quick("show_record", path=Path(path))
+    return await session.worker.quick("show_record", path=as_path(path))
 
 
 @request()
 async def compare_records(session: Session, tab: Tab | None, path: str, other: str) -> dict[str, Any]:
     """Compare two recordings: figures of both, and the distance between them."""
-    return await session.worker.quick("compare_records", path=Path(path), other=Path(other))
+    return await session.worker.quick("compare_records", path=as_path(path), other=as_path(other))
 
 
 @request()
@@ -70,7 +71,7 @@ async def try_law(session: Session, tab: Tab | None, path: str) -> dict[str, Any
     """Replay a recording with the document's force law: write the result as a recording, and compare both."""
     return await session.worker.ask(
         "try_law",
-        path=Path(path),
+        path=as_path(path),
         text=session.text,
         document=session.path,
         sets=session.felt_sets(),

@@ -2,7 +2,6 @@
 
 import os
 import sys
-import tempfile
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
 from io import FileIO
@@ -15,24 +14,26 @@ BINARY = getattr(os, "O_BINARY", 0)
 """The flag that makes `os.open` open a file as binary; Windows alone has it."""
 
 
+MOST_OF_NAME = 60
+"""Number of characters of a file's name in the name of its temporary file: of four bytes each, they still fit."""
+
+
 @contextmanager
-def atomic_write(path: Path) -> Generator[IO[bytes]]:
+def atomic_write(path: Path, *, private: bool = False) -> Generator[IO[bytes]]:
     """Open a binary file that appears under its name only if the block ends without an error.
 
     The content goes to a temporary file in the same folder, which is then renamed: readers, a second writer, a full
-    disk or a kill never leave half a file. Missing parent folders are created.
+    disk or a kill never leave half a file. Missing parent folders are created. private: for this user alone.
     Raises: OutputError if the file cannot be written.
     """
+    part = path.with_name(f".{path.name[:MOST_OF_NAME]}.{os.urandom(6).hex()}")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        handle = _create(part, os.O_WRONLY | os.O_EXCL, private)
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {error.strerror}; choose another folder") from error
-    part = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:
             yield file
-        part.chmod(0o666 & ~_umask())
         part.replace(path)
     except OSError as error:
         raise OutputError(
@@ -42,21 +43,21 @@ def atomic_write(path: Path) -> Generator[IO[bytes]]:
         part.unlink(missing_ok=True)
 
 
-def write_text(path: Path, text: str) -> None:
+def write_text(path: Path, text: str, *, private: bool = False) -> None:
     """Write a text file, whole or not at all (see `atomic_write`)."""
-    with atomic_write(path) as file:
+    with atomic_write(path, private=private) as file:
         file.write(text.encode())
 
 
-def open_alone(path: Path) -> FileIO:
+def open_alone(path: Path, *, private: bool = False) -> FileIO:
     """Open an empty, unbuffered binary file that no other call can open until it is closed or this process has ended.
 
-    Missing parent folders are created. Earlier content is lost, unless another process holds the file.
+    Missing parent folders are created. Earlier content is lost, unless another process holds the file. private: for
+    this user alone, if the file is new.
     Raises: OutputError if the file cannot be written, or another process holds it.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT | BINARY, 0o666), "r+")
+        file = FileIO(_create(path, os.O_RDWR, private), "r+")
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {error.strerror}; choose another folder") from error
     try:
@@ -107,7 +108,7 @@ def folder_lock(folder: Path) -> Generator[None]:
             os.close(number)
 
 
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def _create(path: Path, flags: int, private: bool) -> int:
+    """Create a file with its folders, and open it. The system applies the umask. Raises: OSError."""
+    path.parent.mkdir(0o700 if private else 0o777, parents=True, exist_ok=True)
+    return os.open(path, flags | os.O_CREAT | BINARY, 0o600 if private else 0o666)

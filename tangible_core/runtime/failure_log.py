@@ -24,7 +24,7 @@ def log_folder() -> Path:
 
 
 def keep(error: BaseException) -> Path:
-    """Append an error's traceback with the time and the command, and return the file.
+    """Append an error's traceback with the time and the command, and return the file, which is this user's alone.
 
     Raises: OutputError if it cannot be written.
     """
@@ -32,14 +32,18 @@ def keep(error: BaseException) -> Path:
     when = datetime.now().astimezone().isoformat(timespec="seconds")
     text = f"{when} {shlex.join(sys.argv)}\n{''.join(traceback.format_exception(error))}\n"
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        path.parent.mkdir(0o700, parents=True, exist_ok=True)
         if path.exists() and path.stat().st_size > MOST_BYTES:
             path.replace(path.with_name(OLDER))
-        with path.open("a", encoding="utf-8", errors="backslashreplace") as file:
+        with open(path, "a", encoding="utf-8", errors="backslashreplace", opener=_private) as file:
             file.write(text)
     except OSError as failed:
         raise OutputError(f"{path}: cannot be written: {failed.strerror}") from failed
     return path
+
+
+def _private(path: str, flags: int) -> int:
+    return os.open(path, flags, 0o600)
 
 
 def where_kept(error: BaseException) -> str:

@@ -24,14 +24,15 @@ class Writer:
     Raises: OutputError if the place cannot be written, or has another writer.
     """
 
-    def __init__(self, path: Path, about: About | None = None) -> None:
+    def __init__(self, path: Path, about: About | None = None, *, private: bool = False) -> None:
+        """private: a new file is for this user alone."""
         start = tick_file.header((about or NO_INFORMATION).with_versions())
         self.path = path
         self.ticks = 0
         """Number of ticks in the file."""
         self._stopped_at = start.index(tick_file.CUT_OFF.encode())
         self._ticks_at = len(start)
-        self._file = open_alone(path)
+        self._file = open_alone(path, private=private)
         self._write(start, 0)
 
     @property

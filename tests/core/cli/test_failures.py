@@ -1,5 +1,6 @@
 """Failures of plugins: one sentence for the user, and the traceback in a file that the sentence names."""
 
+import stat
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from command_line import Done, tangible
 from tangible_core.cli import app
 from tangible_core.errors import ConfigError
 from tangible_core.plugins.registry import default_registry
+from tangible_core.runtime.failure_log import keep
 
 ACME = """
 import numpy as np
@@ -185,6 +187,13 @@ def test_failure_log_that_cannot_be_written_is_mentioned(folder: Path, monkeypat
     assert "KeyError" in message and message.endswith("--log-level debug shows it")
     logged = tangible("run", "p.yaml", "--log-level", "tangible_core.plugins.failures=debug", cwd=folder)
     assert "Traceback" in logged.stderr
+
+
+def test_failure_log_and_its_folder_are_the_users_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """A traceback has paths and values of a user's work in it."""
+    monkeypatch.setenv("TANGIBLE_LOG_DIR", str(tmp_path / "logs"))
+    path = keep(ValueError("secret"))
+    assert [stat.S_IMODE(each.stat().st_mode) for each in (path.parent, path)] == [0o700, 0o600]
 
 
 def test_failure_log_that_grew_large_is_rotated(folder: Path, log_dir: Path, monkeypatch: pytest.MonkeyPatch):

@@ -92,12 +92,10 @@ def test_folder_that_cannot_be_created_is_an_output_error(tmp_path):
 
 
 def test_folder_without_permission_is_an_output_error(tmp_path, monkeypatch):
-    def denied(**_):
+    def denied(*_):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
-    monkeypatch.setattr(
-        "tangible_core.files.writing.tempfile.mkstemp", denied
-    )  # root may write anywhere, so no chmod here
+    monkeypatch.setattr("tangible_core.files.writing.os.open", denied)  # root may write anywhere, so no chmod here
     with pytest.raises(OutputError, match="Permission denied; choose another folder"):
         write_text(tmp_path / "c.txt", "new")
 
@@ -117,6 +115,25 @@ def test_written_file_has_the_permissions_of_the_umask(tmp_path):
     finally:
         os.umask(before)
     assert stat.S_IMODE((tmp_path / "c.txt").stat().st_mode) == 0o640
+
+
+@pytest.mark.parametrize("write", [write_text, lambda path, text, private: open_alone(path, private=private).close()])
+def test_private_file_and_its_new_folder_are_the_users_alone(tmp_path, write):
+    (tmp_path / "there").mkdir(mode=0o755)
+    write(tmp_path / "there" / "new" / "c.txt", "mine", private=True)
+    modes = [
+        stat.S_IMODE(path.stat().st_mode) for path in (tmp_path / "there" / "new", tmp_path / "there" / "new" / "c.txt")
+    ]
+    assert modes == [0o700, 0o600]
+    write(tmp_path / "there" / "d.txt", "mine", private=True)
+    assert stat.S_IMODE((tmp_path / "there").stat().st_mode) == 0o755  # somebody else's folder is left alone
+
+
+def test_file_of_the_longest_name_is_written(tmp_path):
+    for letter in "aä🙂":
+        path = tmp_path / (letter * (255 // len(letter.encode())))
+        write_text(path, "new")
+        assert path.read_text() == "new"
 
 
 def test_concurrent_writers_leave_one_whole_file(tmp_path):

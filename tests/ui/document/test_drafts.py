@@ -3,6 +3,7 @@
 import asyncio
 import errno
 import os
+import stat
 import subprocess
 import sys
 from pathlib import Path
@@ -44,6 +45,11 @@ def after_a_crash(folder: Path, gone: int) -> Drafts:
 
 
 class TestDrafts:
+    def test_draft_and_its_folder_are_the_users_alone(self, tmp_path: Path) -> None:
+        keep(Drafts(tmp_path / "unsaved"), "mine")
+        (file,) = (tmp_path / "unsaved").iterdir()
+        assert [stat.S_IMODE(each.stat().st_mode) for each in (file.parent, file)] == [0o700, 0o600]
+
     def test_draft_survives_a_crash(self, tmp_path: Path, gone: int) -> None:
         kept = Drafts(tmp_path)
         kept.remember_opened(OPENED)
@@ -85,7 +91,7 @@ class TestDrafts:
     def test_full_disk_is_warned_of_once(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
     ) -> None:
-        def full(file: Path, text: str) -> None:
+        def full(file: Path, text: str, private: bool) -> None:
             raise OutputError("no space left on device")
 
         monkeypatch.setattr(drafts, "write_text", full)

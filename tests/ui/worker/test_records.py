@@ -3,6 +3,7 @@
 import asyncio
 import errno
 import os
+import stat
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -53,13 +54,15 @@ def wait_for_ticks(servo: Servo, ticks: int) -> None:
 class TestRecorder:
     def test_recorder_keeps_every_tick_once(self, servo: Servo, tmp_path: Path) -> None:
         ended: list[tuple[Path, int, str]] = []
-        recorder = Recorder(servo, tmp_path / "a.nc", About(), lambda *told: ended.append(told))
+        recorder = Recorder(servo, tmp_path / "mine" / "a.nc", About(), lambda *told: ended.append(told))
+        modes = [stat.S_IMODE(each.stat().st_mode) for each in (recorder.path.parent, recorder.path)]
+        assert modes == [0o700, 0o600]
         wait_for_ticks(servo, 1)
         first_s = servo.ring.since(servo.ring.count - 1)[0][-1, 0]
         wait_for_ticks(servo, 300)
         recorder.stop()
-        found = Recording.load(tmp_path / "a.nc")
-        assert ended == [(tmp_path / "a.nc", len(found.rows), BY_HAND)]
+        found = Recording.load(recorder.path)
+        assert ended == [(recorder.path, len(found.rows), BY_HAND)]
         assert found.stopped == ""
         assert len(found.rows) >= 250
         steps = np.diff(found.time_s)

@@ -25,7 +25,7 @@ class Recorder:
         """
         self.path = path
         self._servo, self._ended = servo, ended
-        self._writer = Writer(path, about)
+        self._writer = Writer(path, about, private=True)
         self._drain = RingDrain(servo, self._writer.append, servo.ring.count)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._record, daemon=True)

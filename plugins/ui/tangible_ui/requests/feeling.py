@@ -134,7 +134,8 @@ async def end_blind(session: Session, tab: Tab | None) -> dict[str, Any]:
     session.laws.tally = None
     if tally.trials:
         path = user_folder("comparisons") / f"{datetime.now():%Y-%m-%d %H.%M.%S} {' and '.join(tally.laws)}.json"
-        await asyncio.to_thread(write_text, path, json.dumps({**found, "document": session.text}, indent=2) + "\n")
+        text = json.dumps({**found, "document": session.text}, indent=2) + "\n"
+        await asyncio.to_thread(write_text, path, text, private=True)
         found["path"] = str(path)
     await _feel(session, 0)
     return found

@@ -78,7 +78,7 @@ class Drafts:
             _remove(self._file)
             return
         try:
-            write_text(self._file, json.dumps({"text": text.text, "path": str(text.path)}))
+            write_text(self._file, json.dumps({"text": text.text, "path": str(text.path)}), private=True)
             self._failed = False
         except OutputError as error:
             if not self._failed:

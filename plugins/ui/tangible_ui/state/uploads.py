@@ -77,7 +77,7 @@ class UploadStore:
         names = sorted(path.name for path in here.iterdir())
         there = self._folder / _digest([here / name for name in names])
         try:
-            self._folder.mkdir(parents=True, exist_ok=True)
+            self._folder.mkdir(0o700, parents=True, exist_ok=True)
             if not there.is_dir():
                 part = there.with_name(f".{there.name}-{os.getpid()}")
                 shutil.rmtree(part, ignore_errors=True)

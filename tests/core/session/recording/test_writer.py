@@ -168,7 +168,7 @@ def test_file_is_whole_between_and_within_writes(tmp_path: Path, monkeypatch: py
             writes.append((self.tell(), bytes(data)))
             return super().write(data)
 
-    monkeypatch.setattr(writer, "open_alone", lambda path: Noted(path, "w"))
+    monkeypatch.setattr(writer, "open_alone", lambda path, private: Noted(path, "w"))
     with Writer(tmp_path / "stroke.nc") as written:
         for end in (10, 11, 50):
             written.append(ROWS[written.ticks : end])

@@ -6,9 +6,11 @@ from typing import Any, cast, final
 
 from ruamel.yaml.constructor import RoundTripConstructor
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.scanner import RoundTripScanner
 
 MOST_DEPTH = 20
 """The most levels of nested blocks; files for this program need six."""
+TOO_DEEP = f"more than {MOST_DEPTH} blocks are nested"
 MOST_NODES = 40_000
 """The most keys, values and blocks with aliases expanded: enough for a rule for each of 4,096 segments."""
 MOST_DIGITS = 64
@@ -61,7 +63,7 @@ def _open(count: _Count, event: Any, is_mapping: bool) -> None:
     if count.open and _is_key(count.open[-1]):
         raise _refusal(event, "a key must be a word or a number, not a list or a mapping")
     if len(count.open) >= MOST_DEPTH:
-        raise _refusal(event, f"more than {MOST_DEPTH} blocks are nested")
+        raise _refusal(event, TOO_DEEP)
     count.open.append(_Block(event.anchor, is_mapping))
 
 
@@ -92,6 +94,22 @@ def _is_key(block: _Block) -> bool:
 
 def _refusal(event: Any, problem: str) -> MarkedYAMLError:
     return MarkedYAMLError(None, None, problem, event.start_mark)
+
+
+@final
+class BoundedScanner(RoundTripScanner):
+    """A scanner that refuses the first bracket that is too deep.
+
+    The parser's events come too late for it: to find a key, the scanner reads a thousand characters ahead, in a time
+    that grows with the square of the open brackets.
+    """
+
+    def fetch_flow_collection_start(self, TokenClass: Any, to_push: str) -> None:
+        """Read an opening bracket. Raises: MarkedYAMLError if it is too deep."""
+        scanner: Any = self
+        if len(scanner.flow_context) >= MOST_DEPTH:
+            raise MarkedYAMLError(None, None, TOO_DEEP, scanner.reader.get_mark())
+        cast(Any, super()).fetch_flow_collection_start(TokenClass, to_push)
 
 
 @final

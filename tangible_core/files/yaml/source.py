@@ -15,7 +15,7 @@ from ruamel.yaml.error import YAMLError
 from ...errors import Complaint, ConfigError, did_you_mean, quoted, shown
 from ..paths import as_path
 from ..reading import MOST_TEXT_BYTES, in_words, read_bytes
-from .bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, check_events
+from .bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, BoundedScanner, check_events
 from .validation import Location as Location
 from .validation import has, model_at, plain_errors
 
@@ -210,8 +210,10 @@ def parse_value(text: str) -> Any:
         raise YAMLError(f"it holds more than {in_words(MOST_TEXT_BYTES)}")
     yaml: Any = YAML(typ="rt")  # the one loader of ruamel that keeps lines and columns
     yaml.Constructor = BoundedConstructor
+    parser: Any = YAML(typ="rt")
+    parser.Scanner = BoundedScanner
     with warnings.catch_warnings(action="ignore"):  # about anchors that occur twice
-        check_events(cast(Any, YAML(typ="rt")).parse(text))
+        check_events(parser.parse(text))
         try:
             return yaml.load(text)
         except YAMLError:

@@ -23,16 +23,19 @@ ORDINARY = {
         "3a 12k 4J", "NASA", "HMS Victory", "MacDonald", "ABCdef", "THE BIG RED CAR", "the THE BIG RED CAR is",
         "1 000 000", "it's", '"Hi", he said', "Café, Łódź, ærø, Málaga, Besançon, São, Åbo, Straße, naïve",
         "a/b + c = d & e", "well-known: yes", "At 45°",
+        "98 \u00d7 74 cm", "Untitled #3 [detail] — © 1990", "~5 m², ±1 < 2 > 1", "9½ Weeks", "¿Dónde?",
     ),
     "de": (
         "Überfluß, Äpfel, Öl", "Teil 3", "Der Raumanzug (1990), 160 mal 90 mm.", "5 % von A4; 2,5 mm",
         "Ist es hoch? Ja!", "3a 12k 4J 5B", "NASA-Foto", "z. B. um 5:", '"Hallo", sagte er', "„Hallo“", "»5«",
         "Café, Besançon, Ærø, Łódź", "a/b + c = d", "(5)", "45°",
+        "Ohne Titel [Ausschnitt]", "Nr. #3", "5 m²", "Brâncuși",
     ),
     "fr": (
         "Nature morte aux pommes", "partie 3", "Le casque (1990), 160 sur 90 mm.", "5 % de A4 ; 2,5 mm : oui",
         "Où ? Là !", "3e 12 B", "« L\u2019été à Besançon »", "Œuvre, cœur, Noël, île, août, maïs, Curaçao, ex æquo",
         "NASA", "ABCdef", "(15 %)", "12-15, 3/4", '"oui"', "peut-être", "Düsseldorf & Köln", "45°",
+        "98 \u00d7 74 cm", "Sans titre [détail] — © 1990", "n° #3", "5 m²", "1 ± 2 < 3", "Joan Miró, España, Århus",
     ),
 }  # fmt: skip
 
@@ -74,15 +77,24 @@ def test_liblouis_and_our_tables_agree_on_every_letter_and_digit(installed: Loui
     """Small and capital, within words; accents of all languages where theirs stand before the letter."""
     letters = [
         *LETTERS,
-        *filter(str.isalpha, code_of(language).signs),
+        *(each for each in code_of(language).signs if each.isalpha() and each.upper().lower() == each),
         *("éèêñčōŭïåç" if code_of(language).marks else ""),
     ]
     for word in (word for each in letters for word in (f"a{each}a", f"{each.upper()}a", f"m{each}")):
         if language == "en" and word[0] in "ÆŒ":  # liblouis repeats the sign of capitals within the ligature
             continue
+        if language == "fr" and word[0] == "Ø":  # liblouis has another letter for the capital
+            continue
         assert as_unicode(translate(word, language)) == as_unicode(translate_by_table(word, language)), word
     for number in range(1100):
         assert translate(str(number), language) == translate_by_table(str(number), language), number
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_our_tables_have_every_sign_of_a_keyboard_and_of_usual_titles(language: str):
+    signs = [chr(code) for code in range(32, 127)] + list("×±²³½¼¾©®™€£¥§°…–—‘’“”„«»¿¡→←éèêëàâäáåãçíîïñóôöúûüœæøß")  # noqa: RUF001
+    for sign in signs:
+        assert translate_by_table(translation._plain(f"a {sign} b", language), language)
 
 
 @pytest.mark.parametrize(("language", "text", "braille"), [

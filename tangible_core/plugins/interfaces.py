@@ -116,6 +116,8 @@ class DepthEstimator(Method):
 
     needs_pair: ClassVar[bool] = False
     """True for a method that finds nothing without a right view: the plan then refuses it before anything is made."""
+    finds_depth: ClassVar[bool] = True
+    """False for a method that takes one picture's brightness for nearness: its surface is low and smooth by default."""
 
     @abstractmethod
     def estimate(self, views: Views) -> DisparityMap:

@@ -30,6 +30,11 @@ class Auto(DepthEstimator, Following):
     Source: that of the chosen method.
     """
 
+    @property
+    def finds_depth(self) -> bool:  # pyright: ignore[reportIncompatibleVariableOverride] - it depends on the folder
+        """True where there is a network: of a pair, depth is found by all methods."""
+        return _network() is not None
+
     def reads(self) -> tuple[Path, ...]:
         """Return the network and its card; empty without a network."""
         network = _network()

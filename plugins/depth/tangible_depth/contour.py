@@ -1,6 +1,6 @@
 """Method `contour`: relief from one picture, its edges kept, its shading and texture levelled."""
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from jaxtyping import Bool, Float32
@@ -24,6 +24,8 @@ class Contour(DepthEstimator):
     Source: the role of contours is that of Vasudevan & Manivannan, Tangible Images, 2008; the integration that of
     Frankot & Chellappa, PAMI 1988.
     """
+
+    finds_depth: ClassVar[bool] = False
 
     smoothing_px: Annotated[float, Field(ge=0, le=20)] = 1.0
     """Standard deviation of the Gaussian that removes noise first; 0 for none."""

@@ -1,6 +1,6 @@
 """Relief from one picture: lighter is nearer."""
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from jaxtyping import Float32, Float64
@@ -20,6 +20,8 @@ class Luminance(DepthEstimator):
 
     Source: He, Sun & Tang, Guided image filtering, PAMI 2013, sec. 3; luma from ITU-R BT.601.
     """
+
+    finds_depth: ClassVar[bool] = False
 
     smoothing_px: Annotated[int, Field(ge=0, le=1000)] = 2
     """Radius of the smoothing window; 0 for no smoothing."""

@@ -99,6 +99,7 @@ class Onnx(DepthEstimator, Skippable):
         takes, gives = card.input, card.output
         shape: tuple[int, int] = views[0].shape[:2]
         fit = fit_size(shape, takes, most_px)
+        _note_size(fit.resized, takes.trained_px)
         names = (takes.left, takes.right) if len(views) == 2 else (takes.left,)
         inputs = {name: tensor(view, takes, fit) for name, view in zip(names, views, strict=True)}
         wanted = [gives.name, gives.confidence] if gives.confidence else [gives.name]
@@ -126,6 +127,22 @@ class Onnx(DepthEstimator, Skippable):
         path = Path(self.card) if self.card else model.with_suffix(".yaml")
         next_to_model = model.parent / path
         return next_to_model if next_to_model.is_file() else path
+
+
+FAR = 1.4
+"""Ratio of sides from which a network sees things much larger or smaller than those it was trained with."""
+
+
+def _note_size(size: tuple[int, int], trained_px: tuple[int, int] | None) -> None:
+    if trained_px is None:
+        return
+    ratio = (size[0] * size[1] / (trained_px[0] * trained_px[1])) ** 0.5
+    if not 1 / FAR <= ratio <= FAR:
+        note(
+            log,
+            f"the network was trained with pictures of {trained_px[0]} x {trained_px[1]} pixels and sees this one at "
+            f"{size[0]} x {size[1]}; if near and far are confused, try `most_px: {trained_px[0] * trained_px[1]}`",
+        )
 
 
 def _right(views: Views, card: Card) -> Colours | None:

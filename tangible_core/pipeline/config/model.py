@@ -24,7 +24,7 @@ from ...plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, Hapti
 from ...scene.formats.height_maps import MeasuredSize
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
-from ...scene.workspace import FeltSize, Workspace, kind_of
+from ...scene.workspace import FeltSize, ReliefKind, Workspace, kind_of
 from ...servo.guard.safety import Safety
 from .keys import (
     NULL_IS_DEFAULT,
@@ -151,12 +151,20 @@ class PipelineConfig(BaseModel):
     @property
     def size(self) -> FeltSize:
         """The workspace, with sizes that suit the scene or its parts where the file leaves them open."""
-        size = self.workspace.size("parts" if self.heights else kind_of(self.scene))
+        size = self.workspace.size(self.relief_kind)
         if self.measured is None:
             return size
         width_m = size.width_m if "width_m" in self.workspace.model_fields_set else self.measured.width_m
         relief_m = self.workspace.relief_m or self.measured.high_m or size.relief_m
         return size._replace(width_m=width_m, relief_m=relief_m)
+
+    @property
+    def relief_kind(self) -> ReliefKind:
+        """What the relief is made of: one picture's brightness, or depth where the method finds it in one picture."""
+        if self.heights:
+            return "parts"
+        kind = kind_of(self.scene)
+        return "depth" if kind == "photograph" and self.depth and self.depth.method.finds_depth else kind
 
     @property
     def felt_device(self) -> HapticDevice | None:

@@ -12,9 +12,11 @@ from tangible_core import Pipeline, Scene
 from tangible_core.data import Calibration, Views
 from tangible_core.errors import BrokenMethod, ConfigError, ModelAbsent, PictureError
 from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.scene.workspace import SUITS, FeltSize
 from tangible_core.testing import run_checks
 from tangible_core.testing.synthetic.scenes import wall
-from tangible_depth import Auto, Luminance, Onnx, SemiGlobal
+from tangible_depth import Auto, Contour, Luminance, Onnx, SemiGlobal
+from tangible_depth.network.card import PRESETS
 
 RUNTIMES = ("opencv", "onnxruntime")
 STEREO = "input: {left: left, right: right}\noutput: {means: disparity-px}\n"
@@ -269,6 +271,58 @@ def test_changed_network_or_card_changes_the_result(tmp_path: Path):
     outcome, found = create()
     assert outcome == "ran"
     np.testing.assert_allclose(found, nearness(1 / seen.mean(axis=2)), atol=1e-4)
+
+
+@pytest.mark.parametrize("runtime", RUNTIMES)
+@pytest.mark.parametrize(("size", "only"), [((48, 64), "48 x 64"), ((48, "w"), "48 x any"), (("h", 64), "any x 64")])
+def test_network_of_one_size_is_refused_with_another(tmp_path: Path, card, runtime, size, only: str):
+    """OpenCV would run it, and give numbers that mean nothing."""
+    model = onnx_models.stereo(tmp_path / "m.onnx", 4, size)
+    with pytest.raises(ConfigError, match=rf"takes pictures of {only} pixels alone.*write `size_px: \["):
+        card(model, STEREO, runtime=runtime).estimate(wall(2.0))
+    told = STEREO.replace("right: right", "right: right, size_px: [48, 64]")
+    assert card(model, told, runtime=runtime).estimate(wall(2.0)).unit == "px"
+
+
+def test_size_far_from_that_of_the_training_is_reported(networks: Path, card, caplog: pytest.LogCaptureFixture):
+    def reported(rows: int, columns: int) -> bool:
+        caplog.clear()
+        method = card(networks / "mono.onnx", "input: {trained_px: [40, 50]}\noutput: {means: inverse-depth}")
+        with caplog.at_level(logging.INFO):
+            method.estimate(Views(picture(rows, columns)))
+        return f"trained with pictures of 40 x 50 pixels and sees this one at {rows} x {columns}" in caplog.text
+
+    assert [reported(*size) for size in ((28, 34), (29, 36), (40, 50), (56, 69), (57, 71))] == [
+        True,
+        *[False] * 3,
+        True,
+    ]
+
+
+def test_card_of_midas_leaves_the_colours_to_the_network():
+    """Its file begins with the subtraction of the mean and the division by the deviation."""
+    takes = PRESETS["midas-v2.1-small"].input
+    assert (takes.mean, takes.std, takes.white) == ((0, 0, 0), (1, 1, 1), 1)
+
+
+class TestReliefOfOnePicture:
+    def size(self, depth: object, **workspace: float) -> FeltSize:
+        return Pipeline(Scene.photo(picture()), depth=depth, workspace=workspace).config.size
+
+    def test_depth_of_a_network_gets_depths_height_and_smoothing(self, networks: Path):
+        assert self.size(Onnx(model=networks / "mono.onnx"))[1:3] == SUITS["depth"]
+        assert self.size(Onnx(model=networks / "mono.onnx"), relief_m=0.006)[1:3] == (0.006, SUITS["depth"][1])
+
+    @pytest.mark.parametrize("method", [Luminance(), Contour(), None])
+    def test_brightness_gets_those_of_a_photograph(self, method: object):
+        assert self.size(method)[1:3] == SUITS["photograph"]
+
+    def test_auto_gets_those_of_what_it_chooses(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setenv("TANGIBLE_MODELS_DIR", str(tmp_path))
+        assert self.size(Auto())[1:3] == SUITS["photograph"]
+        onnx_models.mono(tmp_path / "a.onnx")
+        (tmp_path / "a.yaml").write_text("output: {means: inverse-depth}")
+        assert self.size(Auto())[1:3] == SUITS["depth"]
 
 
 class TestAuto:

@@ -43,6 +43,8 @@ class NetworkInput(_Part):
     """Way to reach a multiple: `pad` repeats the last row and column, `resize` changes the picture's size a little."""
     size_px: tuple[Annotated[int, Field(ge=1, le=20_000)], Annotated[int, Field(ge=1, le=20_000)]] | None = None
     """Height and width of a network with a fixed input size, to which each picture is resized."""
+    trained_px: tuple[Annotated[int, Field(ge=1, le=20_000)], Annotated[int, Field(ge=1, le=20_000)]] | None = None
+    """Height and width of the pictures that the network was trained with, if known; a size far from it is reported."""
 
     @model_validator(mode="after")
     def _two_inputs(self) -> Self:
@@ -118,7 +120,7 @@ PRESETS = {
         "depth_anything_v2_vits_dynamic.onnx",
         "https://github.com/fabio-sim/Depth-Anything-ONNX/releases/tag/v2.0.0",
         "Apache-2.0 (larger ones: CC-BY-NC-4.0)",
-        NetworkInput(multiple=14, fit="resize", mean=MEAN, std=STD),
+        NetworkInput(multiple=14, fit="resize", mean=MEAN, std=STD, trained_px=(518, 518)),
         "inverse-depth",
     ),
     "depth-anything-3-small": _preset(
@@ -126,7 +128,7 @@ PRESETS = {
         "an export of it to ONNX",
         "https://github.com/ByteDance-Seed/Depth-Anything-3",
         "Apache-2.0 (larger ones differ)",
-        NetworkInput(multiple=14, fit="resize", mean=MEAN, std=STD),
+        NetworkInput(multiple=14, fit="resize", mean=MEAN, std=STD, trained_px=(504, 504)),
         "depth",
     ),
     "midas-v2.1-small": _preset(
@@ -134,7 +136,7 @@ PRESETS = {
         "model-small.onnx",
         "https://github.com/isl-org/MiDaS/releases/tag/v2_1",
         "MIT",
-        NetworkInput(fit="resize", size_px=(256, 256), mean=MEAN, std=STD),
+        NetworkInput(fit="resize", size_px=(256, 256)),  # the file begins with the mean and the deviation
         "inverse-depth",
     ),
 }

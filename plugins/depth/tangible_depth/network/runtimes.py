@@ -2,12 +2,13 @@
 # OpenCV's `dnn` and onnxruntime have no types.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
+import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
 from threading import Lock
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, Protocol, TypeAlias
 
 import numpy as np
 from jaxtyping import Float32
@@ -21,8 +22,17 @@ _lock = Lock()
 """Lock for one network at a time: none is thread-safe, and each uses all threads itself."""
 
 
+Shape: TypeAlias = tuple[int | None, ...]
+"""Declared size of an input; None for a dimension of any size."""
+
+
 class Network(Protocol):
     """A loaded network."""
+
+    @property
+    def inputs(self) -> Mapping[str, Shape]:
+        """The inputs and the size that the file declares for each, in their order; empty if they cannot be read."""
+        ...
 
     def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
         """Return the named outputs. An empty name is the first output, or the only input."""
@@ -40,6 +50,7 @@ def run(
     with _lock:
         try:
             network = _load(model, status.st_mtime_ns, status.st_size, runtime)
+            _check_sizes(model, network.inputs, inputs)
             return network.run(inputs, outputs)
         except (BrokenMethod, ConfigError, MemoryError):
             raise
@@ -49,6 +60,19 @@ def run(
                 f"model: {model} cannot be run by {runtime} on {sizes}: {shown(' '.join(str(error).split()), 300)}; "
                 f"check the card's inputs and outputs, or try `runtime: {_other_runtime(runtime)}`"
             ) from error
+
+
+def _check_sizes(model: Path, declared: Mapping[str, Shape], given: Mapping[str, np.ndarray]) -> None:
+    """Raise a ConfigError for an input of another size than the network's only one: OpenCV would compute nonsense."""
+    for name, values in given.items():
+        takes = declared.get(name, ()) if name else next(iter(declared.values()), ())
+        rows, columns = takes[2:] if len(takes) == 4 else (None, None)
+        if rows not in (None, values.shape[2]) or columns not in (None, values.shape[3]):
+            raise ConfigError(
+                f"model: {model} takes pictures of {rows or 'any'} x {columns or 'any'} pixels alone, and would be run "
+                f"on {values.shape[2]} x {values.shape[3]}; write `size_px: [{rows or 'ROWS'}, "
+                f"{columns or 'COLUMNS'}]` below `input:` in its card"
+            )
 
 
 def _other_runtime(runtime: Runtime) -> Runtime:
@@ -70,6 +94,7 @@ class _OpenCV:
                 "pip install -U opencv-contrib-python-headless, or use `runtime: onnxruntime`"
             )
         self._net: Any = cv2.dnn.readNetFromONNX(str(model))
+        self.inputs = _declared(self._net.dump())
 
     def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
         for name, values in inputs.items():
@@ -94,9 +119,25 @@ class _OnnxRuntime:
         options.add_session_config_entry("session.intra_op.allow_spinning", "0")
         options.log_severity_level = 3
         self._session: Any = library.InferenceSession(str(model), options, providers=library.get_available_providers())
+        self.inputs = {each.name: tuple(map(_as_size, each.shape)) for each in self._session.get_inputs()}
 
     def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
         own = [each.name for each in self._session.get_inputs()]
         names = [each.name for each in self._session.get_outputs()]
         feed = {name or own[0]: values for name, values in inputs.items()}
         return [np.array(each) for each in self._session.run([name or names[0] for name in outputs], feed)]
+
+
+_INPUT = re.compile(r'"([^"]*)",? // <Input> \w+ \[([^]]*)\]')
+"""An input in the description that OpenCV gives of a network, which has no other way to ask for its size."""
+
+
+def _declared(described: str) -> dict[str, Shape]:
+    """Return the inputs of a network in OpenCV's description."""
+    head = described.partition("outputs:")[0]
+    return {name: tuple(map(_as_size, sizes.split(" x "))) for name, sizes in _INPUT.findall(head)}
+
+
+def _as_size(size: Any) -> int | None:
+    """Return a fixed size; None for a name, or what stands for any size."""
+    return int(size) if str(size).isdecimal() and int(size) > 0 else None

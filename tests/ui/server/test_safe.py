@@ -88,11 +88,12 @@ class TestWhoIsLetIn:
         assert page.ask("/", host=name).status == 403
 
     def test_port_that_addresses_leave_out_is_optional(self) -> None:
-        class Port80:
+        class Port80(socket.socket):
             def getsockname(self) -> tuple[str, int]:
                 return "127.0.0.1", 80
 
-        hosts = Address(Port80(), "").hosts  # type: ignore[arg-type]
+        with Port80() as listening:
+            hosts = Address(listening, "").hosts
         assert hosts == {f"{name}{port}" for name in ("127.0.0.1", "localhost", "[::1]") for port in ("", ":80")}
 
     @pytest.mark.parametrize("origin", [None, "null", "http://evil.example", "https://{host}", "http://{host}.evil"])

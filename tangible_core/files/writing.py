@@ -26,18 +26,18 @@ def atomic_write(path: Path, *, private: bool = False) -> Generator[IO[bytes]]:
     disk or a kill never leave half a file. Missing parent folders are created. private: for this user alone.
     Raises: OutputError if the file cannot be written.
     """
-    part = path.with_name(f".{path.name[:MOST_OF_NAME]}.{os.urandom(6).hex()}")
+    part = path.parent / f".{path.name[:MOST_OF_NAME]}.{os.urandom(6).hex()}"
     try:
         handle = _create(part, os.O_WRONLY | os.O_EXCL, private)
     except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror}; choose another folder") from error
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}; choose another folder") from error
     try:
         with os.fdopen(handle, "wb") as file:
             yield file
         part.replace(path)
     except OSError as error:
         raise OutputError(
-            f"{path}: cannot be written: {error.strerror}; free some space or choose another folder"
+            f"{path}: cannot be written: {error.strerror or error}; free some space or choose another folder"
         ) from error
     finally:
         part.unlink(missing_ok=True)
@@ -59,7 +59,7 @@ def open_alone(path: Path, *, private: bool = False) -> FileIO:
     try:
         file = FileIO(_create(path, os.O_RDWR, private), "r+")
     except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror}; choose another folder") from error
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}; choose another folder") from error
     try:
         lock(file)
         file.truncate(0)
@@ -68,7 +68,7 @@ def open_alone(path: Path, *, private: bool = False) -> FileIO:
         if isinstance(error, BlockingIOError | PermissionError):
             cure = "another program is writing to it; end that one or choose another name"
         else:
-            cure = f"cannot be written: {error.strerror}; choose another folder"
+            cure = f"cannot be written: {error.strerror or error}; choose another folder"
         raise OutputError(f"{path}: {cure}") from error
     return file
 

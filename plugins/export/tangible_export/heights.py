@@ -2,6 +2,7 @@
 
 import json
 import logging
+from io import BytesIO
 from pathlib import Path
 from typing import Annotated, ClassVar, final
 
@@ -76,6 +77,8 @@ def _write_tiff(path: Path, relief: Relief, description: HeightsMetadata) -> Non
     from PIL import Image
 
     text = json.dumps(description.model_dump(), ensure_ascii=True)  # a tag of plain letters
+    heights_mm = (relief.height_m.astype(np.float64) * MM).astype(np.float32)
+    encoded = BytesIO()  # the library would not say why it cannot write a file
+    Image.fromarray(heights_mm).save(encoded, "TIFF", compression="tiff_adobe_deflate", description=text)
     with atomic_write(path) as file:
-        heights_mm = (relief.height_m.astype(np.float64) * MM).astype(np.float32)
-        Image.fromarray(heights_mm).save(file, "TIFF", compression="tiff_adobe_deflate", description=text)
+        file.write(encoded.getbuffer())

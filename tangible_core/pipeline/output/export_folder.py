@@ -6,6 +6,7 @@ other files.
 
 import json
 import os
+import re
 import tempfile
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
@@ -20,6 +21,10 @@ from .run_folder import make_writable
 
 LISTED = ".exports.json"
 """The list of exported files; the name of no exporter's file begins with a dot."""
+
+
+SCRATCH = ".export-"
+"""Prefix of the temporary folder in which files are written."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +47,17 @@ def check_writable(folder: Path) -> None:
 @contextmanager
 def scratch(folder: Path) -> Generator[Path]:
     """Make a temporary folder for a block, on the same disk as the place of the files."""
-    with tempfile.TemporaryDirectory(prefix=".export-", dir=folder, ignore_cleanup_errors=True) as name:
+    with tempfile.TemporaryDirectory(prefix=SCRATCH, dir=folder, ignore_cleanup_errors=True) as name:
         yield Path(name)
+
+
+def without_scratch(text: str) -> str:
+    """Return a message that names files by their place, and not by the temporary folder in which they are written.
+
+    >>> without_scratch("out/.export-1a_b/x.stl: cannot be written")
+    'out/x.stl: cannot be written'
+    """
+    return re.sub(rf"{re.escape(SCRATCH)}\w+[/\\\\]", "", text)
 
 
 def check_written(written: Sequence[object], place: Path, who: str) -> tuple[Path, ...]:
@@ -82,12 +96,13 @@ def _replace(written: Sequence[Path], folder: Path, source: str, exporter: str, 
                 f"another folder{'' if place.is_dir() else ', --force overwrites it'}"
             )
     new = {place.name: Listed(source, exporter, content_digest(path)) for path, place in places.items()}
-    for path, place in places.items():
+    listed = written[0].with_name(LISTED)  # beside the files, so that a full disk shows before any of them is moved
+    _write_list(listed, {name: each for name, each in before.items() if (folder / name).is_file()} | new)
+    for path, place in {**places, listed: folder / LISTED}.items():
         try:
             path.replace(place)
         except OSError as error:
             raise OutputError(f"{place}: cannot be written: {error.strerror}; choose another folder") from error
-    _write_list(folder, {**before, **new})
     return tuple(places.values())
 
 
@@ -104,9 +119,9 @@ def _read_list(folder: Path) -> dict[str, Listed] | None:
         return None
 
 
-def _write_list(folder: Path, files: Mapping[str, Listed]) -> None:
-    there = {name: asdict(files[name]) for name in sorted(files) if (folder / name).is_file()}
-    write_text(folder / LISTED, json.dumps({"files": there}, indent=2, ensure_ascii=False) + "\n")
+def _write_list(path: Path, files: Mapping[str, Listed]) -> None:
+    plain = {name: asdict(files[name]) for name in sorted(files)}
+    write_text(path, json.dumps({"files": plain}, indent=2, ensure_ascii=False) + "\n")
 
 
 def _is_ours(place: Path, before: Mapping[str, Listed], source: str, exporter: str) -> bool:

@@ -29,7 +29,7 @@ from ..config.model import PipelineConfig
 from ..engine.engine import Engine
 from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
-from .export_folder import check_writable, check_written, move, scratch
+from .export_folder import check_writable, check_written, move, scratch, without_scratch
 from .legible import judge_products, names_of_parts, with_width
 from .run_folder import default_name, relative_source
 
@@ -287,7 +287,7 @@ def _fault(error: BaseException, folder: Path) -> tuple[OutcomeKind, str]:
     if isinstance(error, SystemExit):
         return "failed", str(exit_error(error))
     if isinstance(error, TangibleError):
-        return "failed" if isinstance(error, BrokenMethod) else "refused", str(error)
+        return "failed" if isinstance(error, BrokenMethod) else "refused", without_scratch(str(error))
     if isinstance(error, OSError) and error.errno in NO_ROOM:
         return "refused", f"{folder}: cannot be written: {error.strerror}; free some space or choose another folder"
     return "failed", failures.sentence(error)

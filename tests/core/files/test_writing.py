@@ -100,6 +100,14 @@ def test_folder_without_permission_is_an_output_error(tmp_path, monkeypatch):
         write_text(tmp_path / "c.txt", "new")
 
 
+@pytest.mark.parametrize("path", ["", ".", "/", ".."])
+def test_path_without_a_name_is_an_output_error(tmp_path, monkeypatch, path):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(OutputError, match="cannot be written"):
+        write_text(Path(path), "new")
+    assert names_in(tmp_path) == []
+
+
 def test_name_of_a_folder_is_an_output_error(tmp_path):
     (tmp_path / "c.txt").mkdir()
     with pytest.raises(OutputError, match=r"c\.txt: cannot be written"):

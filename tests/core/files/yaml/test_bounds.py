@@ -53,6 +53,13 @@ def deep(levels: int) -> str:
     return "x: " + "[" * (levels - 1) + "1" + "]" * (levels - 1)
 
 
+def test_brackets_beyond_the_depth_limit_are_refused_where_they_are_read():
+    """The parser's events would be a thousand brackets late."""
+    assert (
+        complaint("scene: " + "[" * 500) == f"here/p.yaml:1:{8 + MOST_DEPTH}: more than {MOST_DEPTH} blocks are nested"
+    )
+
+
 def test_nested_blocks_beyond_the_depth_limit_are_refused():
     assert parse(deep(MOST_DEPTH)).tree
     assert complaint(deep(MOST_DEPTH + 1)) == f"here/p.yaml:1:23: more than {MOST_DEPTH} blocks are nested"

@@ -20,6 +20,7 @@ from tangible_core.parts import reduced_parts
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.working_grid import parts_on_grid
+from tangible_core.pipeline.output import export_folder
 from tangible_core.pipeline.output.export_folder import move, read_list
 from tangible_core.pipeline.output.exporting import EXPORTABLE, MOST_STEM_BYTES, stem_of
 from tangible_core.plugins import DepthEstimator, Exporter, Segmenter, Work
@@ -380,6 +381,17 @@ class TestFailures:
         assert "free some space or choose another folder" in first.outcome.why
         assert other.files
         assert sorted(path.name for path in tmp_path.iterdir()) == [".exports.json", "still life.report"]
+
+    def test_full_disk_at_the_list_leaves_no_file(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+        """A file that no list names would be in the way of the next export."""
+
+        def full(path: Path, text: str) -> None:
+            raise OutputError(f"{path}: cannot be written: No space left on device")
+
+        monkeypatch.setattr(export_folder, "write_text", full)
+        (one,) = pipeline(**SAID).export(tmp_path, [Report()]).exports
+        assert one.outcome.why == f"{tmp_path / '.exports.json'}: cannot be written: No space left on device"
+        assert not list(tmp_path.iterdir())
 
     def test_unwritable_folder_is_refused(self, tmp_path: Path):
         (tmp_path / "file").write_text("")

@@ -1,7 +1,10 @@
 """Atomic writes, and files that only one process writes to at a time."""
 
 import os
+import re
+import shutil
 import sys
+import time
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
 from io import FileIO
@@ -14,8 +17,12 @@ BINARY = getattr(os, "O_BINARY", 0)
 """The flag that makes `os.open` open a file as binary; Windows alone has it."""
 
 
-MOST_OF_NAME = 60
+MOST_OF_NAME = 50
 """Number of characters of a file's name in the name of its temporary file: of four bytes each, they still fit."""
+TEMPORARY = re.compile(r"\..*\.[0-9a-f]{12}\.tangible")
+"""Pattern of the names of temporary files and folders."""
+LEFT_S = 60.0
+"""Age from which a temporary file that nobody has locked was left by a process that was killed, seconds."""
 
 
 @contextmanager
@@ -26,13 +33,14 @@ def atomic_write(path: Path, *, private: bool = False) -> Generator[IO[bytes]]:
     disk or a kill never leave half a file. Missing parent folders are created. private: for this user alone.
     Raises: OutputError if the file cannot be written.
     """
-    part = path.parent / f".{path.name[:MOST_OF_NAME]}.{os.urandom(6).hex()}"
+    part = _temporary(path)
     try:
         handle = _create(part, os.O_WRONLY | os.O_EXCL, private)
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {error.strerror or error}; choose another folder") from error
     try:
         with os.fdopen(handle, "wb") as file:
+            _lock(handle)
             yield file
         part.replace(path)
     except OSError as error:
@@ -41,6 +49,27 @@ def atomic_write(path: Path, *, private: bool = False) -> Generator[IO[bytes]]:
         ) from error
     finally:
         part.unlink(missing_ok=True)
+
+
+@contextmanager
+def temporary_folder(path: Path) -> Generator[Path]:
+    """Make a folder beside this path, named after it, for a block. Raises: OSError if it cannot be made."""
+    folder = _temporary(path)
+    folder.mkdir()
+    try:
+        with folder_lock(folder):
+            yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def sweep(folder: Path) -> None:
+    """Delete temporary files and folders that killed processes left in a folder; on Windows, none, as nobody knows."""
+    for path in folder.glob(".*.tangible"):
+        with suppress(OSError):
+            state = path.lstat()
+            if TEMPORARY.fullmatch(path.name) and time.time() - state.st_mtime > LEFT_S and not _is_locked(path):
+                shutil.rmtree(path) if path.is_dir() else path.unlink()
 
 
 def write_text(path: Path, text: str, *, private: bool = False) -> None:
@@ -97,15 +126,40 @@ def folder_lock(folder: Path) -> Generator[None]:
             msvcrt.locking(file.fileno(), msvcrt.LK_LOCK, 1)
             yield
     else:
-        import fcntl
-
         number = os.open(folder, os.O_RDONLY)
         try:
-            with suppress(OSError):
-                fcntl.flock(number, fcntl.LOCK_EX)
+            _lock(number)
             yield
         finally:
             os.close(number)
+
+
+def _temporary(path: Path) -> Path:
+    return path.parent / f".{path.name[:MOST_OF_NAME]}.{os.urandom(6).hex()}.tangible"
+
+
+def _lock(number: int) -> None:
+    """Lock an open file or folder until it is closed, where the system can; wait while another process holds it."""
+    if sys.platform != "win32":
+        import fcntl
+
+        with suppress(OSError):
+            fcntl.flock(number, fcntl.LOCK_EX)
+
+
+def _is_locked(path: Path) -> bool:
+    if sys.platform == "win32":
+        return True
+    import fcntl
+
+    number = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
+    try:
+        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(number)
+    return False
 
 
 def _create(path: Path, flags: int, private: bool) -> int:

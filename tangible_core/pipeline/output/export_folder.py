@@ -7,9 +7,7 @@ other files.
 import json
 import os
 import re
-import tempfile
-from collections.abc import Generator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, cast
@@ -23,8 +21,8 @@ LISTED = ".exports.json"
 """The list of exported files; the name of no exporter's file begins with a dot."""
 
 
-SCRATCH = ".export-"
-"""Prefix of the temporary folder in which files are written."""
+SCRATCH = "export"
+"""Name of the temporary folder in which files are written, on the same disk as their place."""
 
 
 @dataclass(frozen=True)
@@ -44,20 +42,13 @@ def check_writable(folder: Path) -> None:
         raise OutputError(f"{folder / LISTED}: is not a list of exports; move or delete it, or choose another folder")
 
 
-@contextmanager
-def scratch(folder: Path) -> Generator[Path]:
-    """Make a temporary folder for a block, on the same disk as the place of the files."""
-    with tempfile.TemporaryDirectory(prefix=SCRATCH, dir=folder, ignore_cleanup_errors=True) as name:
-        yield Path(name)
-
-
 def without_scratch(text: str) -> str:
     """Return a message that names files by their place, and not by the temporary folder in which they are written.
 
-    >>> without_scratch("out/.export-1a_b/x.stl: cannot be written")
+    >>> without_scratch("out/.export.0123456789ab.tangible/x.stl: cannot be written")
     'out/x.stl: cannot be written'
     """
-    return re.sub(rf"{re.escape(SCRATCH)}\w+[/\\\\]", "", text)
+    return re.sub(rf"\.{SCRATCH}\.[0-9a-f]{{12}}\.tangible[/\\\\]", "", text)
 
 
 def check_written(written: Sequence[object], place: Path, who: str) -> tuple[Path, ...]:

@@ -15,6 +15,7 @@ from ...data import Note, Outcome, Outcomes, Record, Work
 from ...data.outcome import HEADINGS, OutcomeKind, html_table, text_table
 from ...data.products import EXPORTABLE
 from ...errors import BrokenMethod, ConfigError, Stopped, TangibleError, exit_error, quoted, wrong_argument
+from ...files.writing import temporary_folder
 from ...legibility import Legibility
 from ...plugins import failures, hooks
 from ...plugins.interfaces import Exporter
@@ -29,7 +30,7 @@ from ..config.model import PipelineConfig
 from ..engine.engine import Engine
 from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
-from .export_folder import check_writable, check_written, move, scratch, without_scratch
+from .export_folder import SCRATCH, check_writable, check_written, move, without_scratch
 from .legible import judge_products, names_of_parts, with_width
 from .run_folder import default_name, relative_source
 
@@ -191,7 +192,7 @@ class _ExportRun:
             self.progress(StageEvent(product, chosen.name))
             hooks.tell(self.engine.registry.plugins, "tangible_stage_started", product=product, method=chosen.name)
             start = perf_counter()
-            with scratch(self.folder) as place, collect_notes() as notes:
+            with temporary_folder(self.folder / SCRATCH) as place, collect_notes() as notes:
                 files = self._write(chosen, work, place / stem)
             seconds = perf_counter() - start
             kind: OutcomeKind = "ran"

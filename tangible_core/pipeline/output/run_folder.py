@@ -18,7 +18,7 @@ from typing import Any, cast
 from ...data.products import PRODUCTS
 from ...errors import OutputError
 from ...files.reading import MOST_TEXT_BYTES, content_digest, read_bytes
-from ...files.writing import write_text
+from ...files.writing import sweep, write_text
 
 MANIFEST = "manifest.json"
 CONFIG, NO_CONFIG, OUTCOMES = "config.yaml", "config.txt", "outcomes.json"
@@ -91,11 +91,11 @@ def relative_source(source: Path | None, folder: Path) -> str:
 
 
 def make_writable(folder: Path) -> None:
-    """Make a folder, and try to write a file in it. Raises: OutputError if that fails."""
+    """Make a folder, try to write a file in it, and delete what killed processes left. Raises: OutputError."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
-            pass
+            sweep(folder)
     except OSError as error:
         raise OutputError(f"{folder}: cannot be written: {error.strerror}; choose another folder") from error
 

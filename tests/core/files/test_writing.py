@@ -1,13 +1,14 @@
 import errno
 import os
 import stat
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
 from tangible_core.errors import OutputError
-from tangible_core.files.writing import atomic_write, open_alone, write_text
+from tangible_core.files.writing import atomic_write, open_alone, sweep, temporary_folder, write_text
 
 
 class FullDisk:
@@ -135,6 +136,30 @@ def test_private_file_and_its_new_folder_are_the_users_alone(tmp_path, write):
     assert modes == [0o700, 0o600]
     write(tmp_path / "there" / "d.txt", "mine", private=True)
     assert stat.S_IMODE((tmp_path / "there").stat().st_mode) == 0o755  # somebody else's folder is left alone
+
+
+def test_sweep_removes_what_killed_processes_left_and_nothing_else(tmp_path):
+    """Who writes holds a lock; what is new may be made this moment."""
+
+    def leave(path: Path, age_s: float) -> None:
+        os.utime(path, (time.time() - age_s,) * 2)
+
+    left, new, others = ".a.0123456789ab.tangible", ".new.0123456789ab.tangible", [".a.0123456789ab", "a.tangible"]
+    for name in (left, new, *others):
+        (tmp_path / name).write_text("x")
+        leave(tmp_path / name, 0 if "new" in name else 61)
+    (tmp_path / ".b.abcdefabcdef.tangible" / "in").mkdir(parents=True)
+    (tmp_path / ".link.abcdefabcdef.tangible").symlink_to(tmp_path)
+    leave(tmp_path / ".b.abcdefabcdef.tangible", 61)
+    os.utime(tmp_path / ".link.abcdefabcdef.tangible", (1, 1), follow_symlinks=False)
+    with atomic_write(tmp_path / "c.txt") as file, temporary_folder(tmp_path / "d") as folder:
+        (part,) = tmp_path.glob(".c.txt.*")
+        leave(part, 61)
+        leave(folder, 61)
+        sweep(tmp_path)
+        assert part.exists() and folder.is_dir()
+        file.write(b"whole")
+    assert names_in(tmp_path) == sorted([".link.abcdefabcdef.tangible", new, "c.txt", *others])
 
 
 def test_file_of_the_longest_name_is_written(tmp_path):

@@ -1,6 +1,7 @@
 """Exports: what exporters get, where their files come to, and what becomes of whatever goes wrong."""
 
 import json
+import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -392,6 +393,13 @@ class TestFailures:
         (one,) = pipeline(**SAID).export(tmp_path, [Report()]).exports
         assert one.outcome.why == f"{tmp_path / '.exports.json'}: cannot be written: No space left on device"
         assert not list(tmp_path.iterdir())
+
+    def test_folder_of_a_killed_export_is_swept_by_the_next(self, tmp_path: Path):
+        left = tmp_path / ".export.0123456789ab.tangible"
+        left.mkdir()
+        os.utime(left, (1, 1))
+        pipeline(**SAID).export(tmp_path, [Report()])
+        assert sorted(path.name for path in tmp_path.iterdir()) == [".exports.json", "still life.report"]
 
     def test_unwritable_folder_is_refused(self, tmp_path: Path):
         (tmp_path / "file").write_text("")

@@ -94,13 +94,16 @@ class Ring:
     def create(cls, slots: int = 8192) -> Self:
         """Create a ring of zeros, with slots for this number of ticks. Raises: DeviceError if there is no room."""
         _delete_stale_files()
-        folder = shared_folder()
+        folder, name = shared_folder(), ""
         try:
             number, name = tempfile.mkstemp(".ring", f"{PREFIX}{os.getpid()}-", folder)
             with os.fdopen(number, "r+b") as file:
                 file.truncate(_size(slots))
+                _allocate(file.fileno(), 0, _size(slots) - _padded_size(4 * MOST_CELLS))
                 ring = cls(Path(name), mmap.mmap(file.fileno(), 0), slots)
         except OSError as error:
+            if name:
+                Path(name).unlink(missing_ok=True)
             raise DeviceError(f"{folder}: no room for the loop's shared memory: {error.strerror or error}") from error
         ring.header[[IS_MAGIC, IS_LAYOUT, SLOTS]] = MAGIC, LAYOUT, slots
         ring.beacon.words[HELD] = -1
@@ -124,12 +127,10 @@ class Ring:
 
         Raises: DeviceError if there is no room.
         """
-        if not hasattr(os, "posix_fallocate"):
-            return
         size = self.beacon.field.nbytes
         try:
             with self.path.open("r+b") as file:
-                os.posix_fallocate(file.fileno(), _size(len(self.stamps)) - size, size)
+                _allocate(file.fileno(), _size(len(self.stamps)) - size, size)
         except OSError as error:
             raise DeviceError(f"{self.path.parent}: no room for a beacon: {error.strerror or error}") from error
 
@@ -212,6 +213,15 @@ def _padded_size(size: int) -> int:
 
 def _size(slots: int) -> int:
     return sum(_padded_size(np.dtype(kind).itemsize * int(np.prod(shape))) for kind, shape in _sections(slots).values())
+
+
+def _allocate(number: int, start: int, size: int) -> None:
+    """Allocate a part of a file in memory: where there is no room, a process that writes to it would be killed.
+
+    Raises: OSError if there is no room.
+    """
+    if hasattr(os, "posix_fallocate"):
+        os.posix_fallocate(number, start, size)
 
 
 def _delete_stale_files() -> None:

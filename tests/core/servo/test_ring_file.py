@@ -60,6 +60,29 @@ class TestFile:
         with pytest.raises(DeviceError, match="no force loop runs there"):
             Ring.attach(tmp_path / "none.ring")
 
+    @pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="this system does not allocate files")
+    @pytest.mark.usefixtures("own_memory")
+    def test_all_but_the_beacons_field_has_memory_from_the_start(self) -> None:
+        """A process that writes to memory that the system cannot give any more is killed, with its force on."""
+        made = Ring.create(8192)
+        try:
+            field, about = made.beacon.field.nbytes, made.path.stat()
+            assert about.st_size - field <= 512 * about.st_blocks < about.st_size - field + 2**16
+            made.allocate_beacon()
+            assert 512 * made.path.stat().st_blocks >= about.st_size
+        finally:
+            made.remove()
+
+    @pytest.mark.usefixtures("own_memory")
+    def test_ring_without_room_leaves_no_file(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        def full(*_: object) -> None:
+            raise OSError(28, "No space left on device")
+
+        monkeypatch.setattr("os.posix_fallocate", full, raising=False)
+        with pytest.raises(DeviceError, match="no room for the loop's shared memory: No space left"):
+            Ring.create(64)
+        assert not list(shared_folder().iterdir())
+
     def test_ring_without_room_is_an_error(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
         monkeypatch.setattr(ring, "shared_folder", lambda: tmp_path / "missing")
         with pytest.raises(DeviceError, match="no room"):

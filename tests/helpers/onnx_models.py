@@ -59,6 +59,30 @@ def stereo(path: Path, disparities: int = 16, size: tuple[int, int] | None = Non
     return _save(path, nodes, {name: [1, 3, h, w] for name in ("left", "right")}, {"disparity": [1, 1, h, w]}, given)
 
 
+def endless(path: Path) -> Path:
+    """The same, after a loop that never ends."""
+    body = helper.make_graph(
+        [_node("Identity", ["on"], "still"), _node("Identity", ["before"], "after")],
+        "body",
+        [
+            helper.make_tensor_value_info("count", TensorProto.INT64, []),
+            helper.make_tensor_value_info("on", TensorProto.BOOL, []),
+            helper.make_tensor_value_info("before", TensorProto.FLOAT, None),
+        ],
+        [
+            helper.make_tensor_value_info("still", TensorProto.BOOL, []),
+            helper.make_tensor_value_info("after", TensorProto.FLOAT, None),
+        ],
+    )
+    nodes = [
+        _node("Conv", ["image", "grey"], "g"),
+        _node("Loop", ["most", "yes", "g"], "looped", body=body),
+        _node("Squeeze", ["looped", "one"], "inverse_depth"),
+    ]
+    given = {"grey": GREY, "one": np.array([1]), "most": np.array(2**62), "yes": np.array(True)}
+    return _save(path, nodes, {"image": [1, 3, "h", "w"]}, {"inverse_depth": [1, "h", "w"]}, given)
+
+
 def vit_like(path: Path) -> Path:
     """Patches of 14 pixels, attention, GELU, cubic positions, a transposed convolution: what a transformer has."""
     import torch

@@ -212,16 +212,22 @@ def _quiet() -> Generator[None]:
 
 def _cluster(distributed: Any, workers: int, threads: int) -> Any:
     with _environment({name: str(threads) for name in LIMITS}):  # the workers inherit it
-        return distributed.LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            processes=True,
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",  # with None, a port is open to everybody
-            memory_limit=0,
-            silence_logs=logging.CRITICAL,
-            preload=[f"{__package__}.dask_preload"],
-        )
+        try:
+            return distributed.LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                host="127.0.0.1",
+                dashboard_address="127.0.0.1:0",  # with None, a port is open to everybody
+                memory_limit=0,
+                silence_logs=logging.CRITICAL,
+                preload=[f"{__package__}.dask_preload"],
+            )
+        except (RuntimeError, OSError) as error:
+            raise BatchError(
+                f"a worker process cannot be started ({error}): it was ended, or the system allows no more; start the "
+                "same command again, with fewer --workers if need be"
+            ) from error
 
 
 @contextmanager

@@ -2,18 +2,20 @@
 # OpenCV's `dnn` and onnxruntime have no types.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
-import re
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
 from threading import Lock
-from typing import Any, Literal, Protocol, TypeAlias
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from jaxtyping import Float32
 
 from tangible_core.errors import BrokenMethod, ConfigError, shown
+
+from .onnx_file import Shape, read_declared
 
 Runtime = Literal["opencv", "onnxruntime"]
 OLDEST_OPENCV = 5
@@ -22,17 +24,8 @@ _lock = Lock()
 """Lock for one network at a time: none is thread-safe, and each uses all threads itself."""
 
 
-Shape: TypeAlias = tuple[int | None, ...]
-"""Declared size of an input; None for a dimension of any size."""
-
-
 class Network(Protocol):
     """A loaded network."""
-
-    @property
-    def inputs(self) -> Mapping[str, Shape]:
-        """The inputs and the size that the file declares for each, in their order; empty if they cannot be read."""
-        ...
 
     def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
         """Return the named outputs. An empty name is the first output, or the only input."""
@@ -49,8 +42,8 @@ def run(
     status = model.stat()
     with _lock:
         try:
+            _check_sizes(model, _inputs(model, status.st_mtime_ns, status.st_size), inputs)
             network = _load(model, status.st_mtime_ns, status.st_size, runtime)
-            _check_sizes(model, network.inputs, inputs)
             return network.run(inputs, outputs)
         except (BrokenMethod, ConfigError, MemoryError):
             raise
@@ -80,6 +73,11 @@ def _other_runtime(runtime: Runtime) -> Runtime:
 
 
 @lru_cache(maxsize=1)
+def _inputs(model: Path, changed_ns: int, size: int) -> Mapping[str, Shape]:
+    return read_declared(model).inputs
+
+
+@lru_cache(maxsize=1)
 def _load(model: Path, changed_ns: int, size: int, runtime: Runtime) -> Network:
     return _OpenCV(model) if runtime == "opencv" else _OnnxRuntime(model)
 
@@ -94,7 +92,6 @@ class _OpenCV:
                 "pip install -U opencv-contrib-python-headless, or use `runtime: onnxruntime`"
             )
         self._net: Any = cv2.dnn.readNetFromONNX(str(model))
-        self.inputs = _declared(self._net.dump())
 
     def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
         for name, values in inputs.items():
@@ -119,25 +116,17 @@ class _OnnxRuntime:
         options.add_session_config_entry("session.intra_op.allow_spinning", "0")
         options.log_severity_level = 3
         self._session: Any = library.InferenceSession(str(model), options, providers=library.get_available_providers())
-        self.inputs = {each.name: tuple(map(_as_size, each.shape)) for each in self._session.get_inputs()}
+        self._options: type[Any] = library.RunOptions
 
     def run(self, inputs: Mapping[str, Float32[np.ndarray, "1 3 _ _"]], outputs: Sequence[str]) -> list[np.ndarray]:
         own = [each.name for each in self._session.get_inputs()]
         names = [each.name for each in self._session.get_outputs()]
         feed = {name or own[0]: values for name, values in inputs.items()}
-        return [np.array(each) for each in self._session.run([name or names[0] for name in outputs], feed)]
-
-
-_INPUT = re.compile(r'"([^"]*)",? // <Input> \w+ \[([^]]*)\]')
-"""An input in the description that OpenCV gives of a network, which has no other way to ask for its size."""
-
-
-def _declared(described: str) -> dict[str, Shape]:
-    """Return the inputs of a network in OpenCV's description."""
-    head = described.partition("outputs:")[0]
-    return {name: tuple(map(_as_size, sizes.split(" x "))) for name, sizes in _INPUT.findall(head)}
-
-
-def _as_size(size: Any) -> int | None:
-    """Return a fixed size; None for a name, or what stands for any size."""
-    return int(size) if str(size).isdecimal() and int(size) > 0 else None
+        wanted, options = [name or names[0] for name in outputs], self._options()
+        with ThreadPoolExecutor(1) as beside:  # this thread hears Ctrl-C meanwhile, also of a network without end
+            found = beside.submit(self._session.run, wanted, feed, options)
+            try:
+                return [np.array(each) for each in found.result()]
+            except BaseException:
+                options.terminate = True
+                raise

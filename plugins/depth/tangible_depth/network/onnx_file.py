@@ -1,0 +1,151 @@
+"""What an ONNX file declares, read before a runtime reads it, as runtimes trust the file.
+
+OpenCV 5 ends the program at a negative size, and reads weights from any file of the machine that the network names.
+Only the wire format of Protocol Buffers is read: https://protobuf.dev/programming-guides/encoding/; the numbers of the
+fields are those of onnx.proto of ONNX 1.17.
+"""
+
+import math
+import mmap
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple, TypeAlias
+
+from tangible_core.errors import ConfigError, quoted
+
+Shape: TypeAlias = tuple[int | None, ...]
+"""Declared size of an input; None for a dimension of any size."""
+Value: TypeAlias = int | memoryview
+MOST_NUMBERS = 2**31
+"""Largest number of numbers of one weight: more than the largest file holds."""
+
+GRAPH, NODES, WEIGHTS, INPUTS = 7, 1, 5, 11
+"""Fields of a model (the first) and of a graph."""
+ATTRIBUTES, TENSOR, SUBGRAPH = 5, 5, 6
+"""Fields of a node (the first) and of an attribute."""
+SIZES, NAME, PLACES = 1, 8, 13
+"""Fields of a tensor: its dimensions, its name, the file with its numbers."""
+VARINT, EIGHT_BYTES, BYTES, FOUR_BYTES = 0, 1, 2, 5
+
+
+class Declared(NamedTuple):
+    """The declarations that matter here."""
+
+    inputs: Mapping[str, Shape]
+    """Inputs that are no weights, in their order."""
+
+
+def read_declared(model: Path) -> Declared:
+    """Read a network's file. Raises: ConfigError if it is damaged, or names weights that cannot be; OSError."""
+    damaged = ConfigError(f"model: {model} is not an ONNX file, or is damaged; fetch it again")
+    if not model.stat().st_size:  # nothing can be mapped
+        raise damaged
+    with model.open("rb") as file:
+        whole = memoryview(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))
+    try:
+        return _declared(model, whole)
+    except (IndexError, ValueError) as error:
+        raise damaged from error
+
+
+def _declared(model: Path, whole: memoryview) -> Declared:
+    graphs = list(_parts(whole, GRAPH))
+    weights = {name for graph in graphs for name in _checked_weights(model, graph)}
+    inputs = dict(_input(each) for graph in graphs for each in _parts(graph, INPUTS))
+    return Declared({name: shape for name, shape in inputs.items() if name not in weights})
+
+
+def _checked_weights(model: Path, graph: memoryview) -> Iterator[str]:
+    """Yield the names of a graph's weights, checked, and check those of its nodes and of graphs in these."""
+    for tensor in _parts(graph, WEIGHTS):
+        yield _check_tensor(model, tensor)
+    for node in _parts(graph, NODES):
+        for attribute in _parts(node, ATTRIBUTES):
+            for tensor in _parts(attribute, TENSOR):
+                _check_tensor(model, tensor)
+            for below in _parts(attribute, SUBGRAPH):
+                yield from _checked_weights(model, below)
+
+
+def _check_tensor(model: Path, tensor: memoryview) -> str:
+    """Return a weight's name. Raises: ConfigError for an impossible size, or numbers in a file that is elsewhere."""
+    name = next((_text(each) for each in _parts(tensor, NAME)), "")
+    sizes = [size for number, value in _fields(tensor) if number == SIZES for size in _numbers(value)]
+    if min(sizes, default=0) < 0 or math.prod(sizes) > MOST_NUMBERS:
+        raise ConfigError(f"model: {model}: the weight {quoted(name)} has the impossible size {quoted(sizes)}")
+    for entry in _parts(tensor, PLACES):
+        key, value = ("".join(map(_text, _parts(entry, number))) for number in (1, 2))
+        if key == "location" and not (model.parent / value).resolve().is_relative_to(model.parent.resolve()):
+            raise ConfigError(
+                f"model: {model} takes weights from {quoted(value)}, which is outside its folder; use a network whose "
+                "files lie together"
+            )
+    return name
+
+
+def _input(value: memoryview) -> tuple[str, Shape]:
+    """Return the name and the size of an input, from a ValueInfoProto."""
+    name = next((_text(each) for each in _parts(value, 1)), "")
+    shapes = [shape for kind in _parts(value, 2) for tensor in _parts(kind, 1) for shape in _parts(tensor, 2)]
+    return name, tuple(_size(each) for shape in shapes[:1] for each in _parts(shape, 1))
+
+
+def _size(dimension: memoryview) -> int | None:
+    size = next((value for number, value in _fields(dimension) if number == 1), None)
+    return size if isinstance(size, int) and size > 0 else None
+
+
+def _parts(message: memoryview, number: int) -> Iterator[memoryview]:
+    """Yield the messages and texts in one field."""
+    return (value for found, value in _fields(message) if found == number and isinstance(value, memoryview))
+
+
+def _fields(message: memoryview) -> Iterator[tuple[int, Value]]:
+    """Yield number and value of each field: an integer, or its bytes. Raises: IndexError, ValueError if damaged."""
+    at = 0
+    while at < len(message):
+        key, at = _varint(message, at)
+        kind, length = key & 7, {EIGHT_BYTES: 8, FOUR_BYTES: 4}.get(key & 7, 0)
+        if kind == VARINT:
+            value, at = _varint(message, at)
+            yield key >> 3, value
+            continue
+        if kind == BYTES:
+            length, at = _varint(message, at)
+        elif not length:
+            raise ValueError(f"wire type {kind}")
+        if not 0 <= length <= len(message) - at:
+            raise IndexError("a field ends behind the file")
+        yield key >> 3, message[at : at + length]
+        at += length
+
+
+def _numbers(value: Value) -> Iterator[int]:
+    """Yield the integers of a repeated field, packed or one by one."""
+    if isinstance(value, int):
+        yield value
+        return
+    at = 0
+    while at < len(value):
+        number, at = _varint(value, at)
+        yield number
+
+
+def _varint(message: memoryview, at: int) -> tuple[int, int]:
+    """Return a signed integer of 64 bits, and the place after it."""
+    value, shift = 0, 0
+    while True:
+        byte = message[at]
+        at += 1
+        value |= (byte & 0x7F) << shift
+        shift += 7
+        if byte < 0x80:
+            break
+        if shift > 63:
+            raise ValueError("a number of more than ten bytes")
+    value &= 2**64 - 1
+    return value - (value >> 63 << 64), at
+
+
+def _text(value: memoryview) -> str:
+    return bytes(value).decode()

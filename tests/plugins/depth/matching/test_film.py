@@ -95,7 +95,7 @@ def test_unrectified_film_is_rectified_by_its_first_frame(monkeypatch):
     for each in rolled:
         alone = SemiGlobal().estimate(each).disparity_px
         apart = np.abs(estimate(each).disparity_px - alone)
-        assert np.nanmedian(apart) < 1
+        assert np.mean(apart < 0.5) > 0.98
     assert counted == [1]
 
 

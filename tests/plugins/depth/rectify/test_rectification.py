@@ -487,3 +487,16 @@ def test_disparities_without_similar_neighbours_do_not_widen_the_range():
 def test_logarithm_is_accurate():
     values = np.concatenate([[0.0, 1.0, 3.0], np.geomspace(1e-18, 1e9, 500)])
     assert least_squares._log1p(values) == pytest.approx([math.log1p(each) for each in values], rel=4e-15, abs=0)
+
+
+@pytest.mark.parametrize("radials", [(0.0, 0.0), (0.1, -0.05)])
+def test_later_frames_are_warped_as_the_first(radials: tuple[float, float]):
+    """Each view by its own homography and lens: that of the left is the identity in most pairs, and not in all."""
+    random = np.random.default_rng(8)
+    first, later = (Views(*random.integers(0, 256, (2, 24, 32), np.uint8)) for _ in range(2))
+    left, right = (np.array([[1, turn, 0], [-turn, 1, 0], [0, 0, 1.0]]) for turn in (0.1, -0.05))
+    pair = warp_pair(first, (left, right), "", start_px=-2, radials=radials)
+    again, other = pair.warp(first).views, pair.warp(later).views
+    assert np.array_equal(again.left, pair.views.left) and np.array_equal(again.right, pair.views.right)
+    wanted = warp_pair(later, (left, right), "", start_px=-2, radials=radials).views
+    assert np.array_equal(other.left, wanted.left) and np.array_equal(other.right, wanted.right)

@@ -125,12 +125,14 @@ class Ring:
     def allocate_beacon(self) -> None:
         """Allocate memory for the field: otherwise a process that writes there while memory is full would be killed.
 
-        Raises: DeviceError if there is no room.
+        Raises: DeviceError if there is no room, or the loop has ended.
         """
         size = self.beacon.field.nbytes
         try:
             with self.path.open("r+b") as file:
                 _allocate(file.fileno(), _size(len(self.stamps)) - size, size)
+        except FileNotFoundError as error:  # the loop deletes it as it ends
+            raise DeviceError("the force loop has ended") from error
         except OSError as error:
             raise DeviceError(f"{self.path.parent}: no room for a beacon: {error.strerror or error}") from error
 

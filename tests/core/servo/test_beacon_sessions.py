@@ -203,6 +203,12 @@ class TestSessionsAndRecordings:
         finally:
             ring.remove()
 
+    def test_beacon_of_a_loop_that_ended_is_refused(self):
+        ring = Ring.create(64)
+        ring.remove()
+        with pytest.raises(DeviceError, match="the force loop has ended"):
+            ring.allocate_beacon()
+
     def test_beacon_ends_with_swapped_scene(self):
         memory = faded_in(1)
         memory.leave()

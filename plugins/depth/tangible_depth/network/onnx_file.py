@@ -32,7 +32,7 @@ class Declared(NamedTuple):
     """The declarations that matter here."""
 
     inputs: Mapping[str, Shape]
-    """Inputs that are no weights, in their order."""
+    """Inputs without the weights, in their order."""
 
 
 def read_declared(model: Path) -> Declared:

@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float32
 from numpy.typing import ArrayLike
 
 from ..data import Calibration, DisparityMap, Record, Relief, SegmentMap, Views
-from ..errors import ConfigError, PictureError
+from ..errors import ConfigError, GeometryError, PictureError
 from .formats.height_maps import MeasuredSize
 from .formats.pairs import Layout
 from .formats.pictures import NonFinite, TruthScale
@@ -223,6 +223,8 @@ class Scene:
             factor = felt_factor(self.height.shape[1], width_m, finest_m)
             height = reduced_map(self.height, reduced_shape(self.shape, factor))
             relief_m = self.relief_m or relief_m
+            if not np.isfinite(height).any():
+                raise GeometryError(f"{self.name} holds only NaN or infinity; use heights of which some are known")
             if self.measured is None:
                 relief = scale_heights(height, width_m, relief_m, holes)
             else:

@@ -34,6 +34,8 @@ settings.load_profile("ci" if os.environ.get("CI") else "default")
 Install = Callable[..., Path]
 OWN = ("cache", "runtime", "config", "log")
 """Folders that each test has of its own, told by an environment variable each."""
+FIRST = ("test_every_processor.py", "test_third_party.py")
+"""Files of the tests that take longest, minutes each: at the end, all other workers would wait for them."""
 STANDSTILL_S = 30.0
 """Longer than any machine lets a loop stand still, however busy it is."""
 STARTS_PROCESSES = {"subprocess", "Popen", "Servo", "Program", "UiServer"}
@@ -70,7 +72,8 @@ def pytest_collection_finish() -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark as `fast` the first case of every test that is quick and starts no process."""
+    """Put first what takes minutes, and mark as `fast` the first case of each quick test that starts no process."""
+    items.sort(key=lambda item: item.path.name not in FIRST)
     seen: set[str] = set()
     for item in items:
         name = item.nodeid.partition("[")[0]

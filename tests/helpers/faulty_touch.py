@@ -7,10 +7,10 @@ from typing import Any, Literal, NoReturn, final
 
 import numpy as np
 
-from tangible_core.data import NO_FORCE, Force, HapticState
-from tangible_core.plugins.touch import PlainTouch
+from tangible_core.data import NO_FORCE, Force, HapticState, Relief
+from tangible_core.plugins.touch import Film, PlainTouch, Touch
 
-Fault = Literal["none", "blocks", "exits", "odd error", "does not arrive", "begins slowly", "knows itself"]
+Fault = Literal["none", "blocks", "exits", "odd error", "does not arrive", "begins slowly", "knows itself", "no number"]
 
 
 class OddError(Exception):
@@ -25,7 +25,7 @@ class FaultyTouch(PlainTouch):
     """A force of 1 N upwards below the height 0, until a tick in which the force law blocks, exits or raises.
 
     The fault "does not arrive": it can be pickled but not unpickled. "begins slowly": its first call takes half a
-    second, as if it were compiled then. "knows itself": it refers to itself.
+    second, as if it were compiled then. "knows itself": it refers to itself. "no number": forces are NaN from then on.
     """
 
     stiffness_n_per_m = 0.0
@@ -50,6 +50,8 @@ class FaultyTouch(PlainTouch):
         self._ticks += 1
         if self._ticks == self._at:
             self._fail()
+        if self._fault == "no number" and self._ticks >= self._at:
+            return Force(float("nan"), 0.0, float("inf"))
         return Force(0.0, 0.0, 1.0)
 
     def _fail(self) -> None:
@@ -59,6 +61,37 @@ class FaultyTouch(PlainTouch):
             sys.exit(3)
         if self._fault == "odd error":
             raise OddError("a fault", "the law")
+
+
+@final
+class FaultyFilm(Film):
+    """The same law as a film, whose frames change nothing."""
+
+    def __init__(self, fault: Fault, at: int = 100) -> None:
+        self._fault: Fault = fault
+        self._at = at
+        self._touch = FaultyTouch(fault, at)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return FaultyFilm, (self._fault, self._at)
+
+    @property
+    def touch(self) -> Touch:
+        """The law."""
+        return self._touch
+
+    def show(self, relief: Relief, frame: int) -> None:
+        """Show nothing."""
+
+    @property
+    def arrived(self) -> bool:
+        """Always."""
+        return True
+
+    @property
+    def dropped(self) -> int:
+        """None."""
+        return 0
 
 
 def _raise_lost(*_: object) -> NoReturn:

@@ -5,19 +5,22 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import nullcontext, suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from faulty_touch import Fault, FaultyFilm
 from loop_devices import Circling, Failing
+from loop_scenes import held_force
 from moving_plane import MovingPlane, level
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
-from tangible_core.data import TICK_COLUMNS
-from tangible_core.errors import ConfigError, DeviceError
+from tangible_core.data import TICK_COLUMNS, Relief
+from tangible_core.errors import BrokenMethod, ConfigError, DeviceError
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.servo import Packed, Safety, Servo, null_touch, pack_touch, parcel
+from tangible_core.servo import Packed, Safety, Servo, beacon_to, null_touch, pack_touch, parcel
 from tangible_core.servo.guard.layout import GIVEN_J
 from tangible_core.servo.ring import shared_folder
 from tangible_core.session import run_simulated
@@ -169,6 +172,28 @@ class TestFaults:
                     servo.show(level(0.01 + 0.001 * (number % 3)), number)
                     time.sleep(0.001)
             assert float(record.read_text()) == 0
+        assert not left_behind()
+
+    @pytest.mark.parametrize("fault", ["blocks", "exits", "odd error", "no number"])
+    def test_law_that_fails_under_a_film_and_a_beacon_leaves_no_force(self, tmp_path: Path, fault: Fault) -> None:
+        """While frames are shown, and the beacon pulls to a part that the hand is not on."""
+        record, labels = tmp_path / "force", np.zeros((64, 64), np.int32)
+        labels[:8, :8] = 1
+        surface = HapticSurface(Relief(np.zeros((64, 64), np.float32), (0.08, 0.08)), labels, None, ("wall", "door"))
+        beacon = beacon_to(surface, "door")
+        servo = Servo(FaultyFilm(fault, at=400), Failing(fault="none", record=str(record), simulated=False), AT_ONCE)
+        expected = nullcontext() if fault in ("blocks", "no number") else pytest.raises(BrokenMethod)
+        with expected, servo:
+            servo.pull_to(beacon)
+            until(lambda: held_force(record) > 0)
+            with suppress(DeviceError, BrokenMethod):  # as the loop ends
+                while servo.running and "NOT_FINITE" not in servo.report().flagged:
+                    servo.show(level(0.011), 1)
+                    time.sleep(0.01)
+            if fault == "no number":  # the loop goes on, and lets none of it through
+                until(lambda: not any(servo.report().force))
+                assert servo.running
+        assert held_force(record) == 0
         assert not left_behind()
 
     def test_host_killed_during_a_film_leaves_no_force(self, tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from tangible_core.data import PartMap, Relief
 from tangible_core.errors import PictureError, TangibleError
 from tangible_core.plugins.notes import collected
 from tangible_export.pin_display import raising
+from tangible_export.pin_display.displays import Display
 from tangible_export.pins import Pins
 
 SIZES = {"monarch": (96, 40, 1), "graphiti": (60, 40, 4), "dotpad": (60, 40, 1)}
@@ -132,6 +133,13 @@ def test_pin_has_the_part_of_most_of_its_cell_or_the_lower_number():
     assert most([1, 1, 0, 0] * 3, 3) == [0, 0, 0]
     assert most([1, 1, 1, 0, 0, 0, 0, 1, 0, 1, 0, 1], 3) == [1, 0, 0]
     assert most([1, 0, 0, 0, 0], 3) == [1, 0, 0]  # the first pin has a whole cell and two thirds of the next
+
+
+@pytest.mark.parametrize(
+    ("aspect", "size"), [(0.3, (2, 8)), (1.0, (8, 8)), (1.25, (10, 8)), (4.0, (10, 2)), (99.0, (10, 1)), (0.01, (1, 8))]
+)
+def test_picture_on_a_display_is_as_large_as_it_can_be(aspect: float, size: tuple[int, int]):
+    assert Display(columns=10, rows=8).picture_size(aspect) == size
 
 
 @pytest.mark.parametrize(("aspect", "width_m"), [(1.0, 0.1), (2.4, 0.24), (3.0, 0.24)])

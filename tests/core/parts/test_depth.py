@@ -69,6 +69,15 @@ def test_part_of_unknown_depth_lies_behind():
     assert "known nowhere" in heights.reasons[2]
 
 
+def test_reasons_tell_how_much_is_known_and_pixels_of_pixels_alone():
+    parts, disparity = stripes(30, 20)
+    half = disparity.disparity_px.copy()
+    half[:5, :10], half[:, :5] = np.nan, np.nan  # 15 of 20 rows in 5 of 10 columns are left
+    for unit, said in (("px", "30 px"), ("relative", "30")):
+        heights = depth_heights(parts, DisparityMap(half, unit=unit), 0.003)
+        assert heights.reasons[0] == f"its median disparity is {said}, known of 38 % of it"
+
+
 @pytest.mark.parametrize("disparity_px", [7.0, np.nan])
 def test_equal_or_unknown_depths_give_heights_of_zero(disparity_px):
     assert depth_heights(*stripes(disparity_px, disparity_px), 0.004).heights_m == (0, 0)

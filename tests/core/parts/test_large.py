@@ -30,6 +30,32 @@ def test_speck_joins_its_most_similar_neighbour():
     assert unmerged.count == 4, "it is as wide as a part must be"
 
 
+def test_speck_of_a_colour_between_joins_along_its_longest_border():
+    labels = np.repeat([[0, 1]], 20, axis=1).repeat(30, 0).astype(np.int32)
+    labels[10:13, 18:26] = 2  # 2 columns on the left, 6 on the right
+    picture = np.array([(60, 60, 60), (140, 140, 140), (100, 100, 100)], np.uint8)[labels]
+    merged = large_parts(SegmentMap(labels), picture, least_px=6, most=12)
+    assert merged.count == 2
+    assert (merged.labels[11, 18:26] == merged.labels[0, 39]).all()
+
+
+def test_part_as_wide_as_the_least_is_no_speck():
+    labels = np.zeros((30, 40), np.int32)
+    labels[10:15, 10:15] = 1
+    (_, width_px) = disc_widths(find_parts(SegmentMap(labels)))
+    picture = np.full((30, 40, 3), 99, np.uint8)
+    assert large_parts(SegmentMap(labels), picture, least_px=width_px, most=12).count == 2
+    assert large_parts(SegmentMap(labels), picture, least_px=width_px + 0.1, most=12).count == 1
+
+
+def test_small_part_joins_before_large_ones_that_are_more_alike():
+    """What counts is the spread of colours that a pair adds, and few pixels add little."""
+    labels = np.repeat([0, 1, 2], [30, 30, 3]).astype(np.int32)[None].repeat(20, 0)
+    picture = np.array([(100,) * 3, (112,) * 3, (130,) * 3], np.uint8)[labels]
+    merged = large_parts(SegmentMap(labels), picture, least_px=2, most=2)
+    assert (merged.labels == np.array([0, 1, 1])[labels]).all()
+
+
 def test_specks_that_are_large_together_become_one_part():
     rows, columns = np.indices((40, 40)) // 4
     mosaic = (rows * 10 + columns).astype(np.int32)

@@ -65,6 +65,9 @@ def test_inverse_depth_becomes_nearness(networks: Path, runtime):
     assert found.unit == "relative"
     np.testing.assert_allclose(found.disparity_px, nearness(seen.mean(axis=2)), atol=1e-5)
     assert (found.confidence == 1).all()
+    assert (
+        Onnx(model=networks / "mono.onnx", runtime=runtime).estimate(Views(seen, 1 - seen)).digest() == found.digest()
+    )
 
 
 @pytest.mark.parametrize("runtime", RUNTIMES)
@@ -117,6 +120,16 @@ def test_resized_pair_gives_pixels_of_the_picture(tmp_path: Path, card, text: st
     assert abs(np.median(found.disparity_px) - 6) < 1
 
 
+def test_padded_pair_gives_its_own_pixels(tmp_path: Path, card):
+    model = onnx_models.stereo(tmp_path / "s.onnx")
+    told = card(model, "input: {left: left, right: right, multiple: 128}\noutput: {means: disparity-px}")
+    assert np.median(np.abs(told.estimate(wall(6.0, (90, 150))).disparity_px - 6)) < 0.2
+
+
+def test_card_that_is_named_goes_before_the_one_next_to_the_network(networks: Path, card):
+    assert card(networks / "mono.onnx", "output: {means: disparity-px}").estimate(Views(picture())).unit == "px"
+
+
 def test_strips_bound_the_input_and_blend(networks: Path, monkeypatch: pytest.MonkeyPatch):
     from tangible_depth import onnx as method
 
@@ -141,6 +154,7 @@ def test_strips_bound_the_input_and_blend(networks: Path, monkeypatch: pytest.Mo
     near = Onnx(model=networks / "mono.onnx", most_px=9_000).estimate(Views(views.left))
     assert near.disparity_px.shape == (400, 90)
     assert max(sizes) <= 9_000 * 1.02
+    assert len(sizes) == 1, "nearness of strips would have no common scale"
 
 
 class TestMeaning:
@@ -297,7 +311,8 @@ def test_size_far_from_that_of_the_training_is_reported(networks: Path, card, ca
         method = card(networks / "mono.onnx", "input: {trained_px: [40, 50]}\noutput: {means: inverse-depth}")
         with caplog.at_level(logging.INFO):
             method.estimate(Views(picture(rows, columns)))
-        return f"trained with pictures of 40 x 50 pixels and sees this one at {rows} x {columns}" in caplog.text
+        said = f"trained with pictures of 40 x 50 pixels and sees this one at {rows} x {columns}; if near and far are "
+        return f"{said}confused, try `most_px: 2000`" in caplog.text
 
     assert [reported(*size) for size in ((28, 34), (29, 36), (40, 50), (56, 69), (57, 71))] == [
         True,
@@ -340,6 +355,17 @@ class TestAuto:
 
     def test_pair_is_matched_by_semi_global(self):
         assert Auto().estimate(wall(6.0)).digest() == SemiGlobal().estimate(wall(6.0)).digest()
+
+    def test_pair_is_matched_though_there_is_a_network(self, folder: Path):
+        folder.mkdir()
+        onnx_models.mono(folder / "a.onnx")
+        (folder / "a.yaml").write_text("output: {means: inverse-depth}")
+        assert Auto().estimate(wall(6.0)).digest() == SemiGlobal().estimate(wall(6.0)).digest()
+
+    def test_film_of_pairs_is_followed_at_half_the_size(self):
+        found = Auto().follow(wall(6.0))(wall(6.0)).digest()
+        assert found == SemiGlobal(resolution="half").follow(wall(6.0))(wall(6.0)).digest()
+        assert found != SemiGlobal().follow(wall(6.0))(wall(6.0)).digest()
 
     def test_picture_without_a_network_is_luminance_with_a_warning(self, caplog: pytest.LogCaptureFixture):
         with caplog.at_level(logging.WARNING):

@@ -13,9 +13,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from exported_pictures import PICTURES, alpha, labels_work, work_of
-from tangible_core.data import Relief
+from tangible_core.data import PartMap, Relief
 from tangible_core.errors import PictureError, TangibleError
 from tangible_core.plugins.notes import collected
+from tangible_export.pin_display import raising
+from tangible_export.pin_display.displays import Display
 from tangible_export.pins import Pins
 
 SIZES = {"monarch": (96, 40, 1), "graphiti": (60, 40, 4), "dotpad": (60, 40, 1)}
@@ -99,6 +101,70 @@ def test_pins_with_heights_keep_areas_below_borders(tmp_path):
     assert set(heights[:, :29].ravel()) == {0}
     assert set(heights[:, 29]) == {4}
     assert set(heights[:, 30:].ravel()) == {3}
+    text = pins.write(work, tmp_path / "step")
+    [patterns] = [each.read_text() for each in text if each.suffix == ".txt"]
+    assert patterns == ("\u2800" * 14 + "⢸" + "⣿" * 15 + "\n") * 10
+    [svg] = [each.read_text() for each in text if each.suffix == ".svg"]
+    assert re.findall(r'fill-opacity="([\d.]+)" d="M(\d+) 0h(\d+)', svg) == [("0.75", "30", "30")]
+
+
+def test_pins_with_heights_show_a_picture_of_one_part(tmp_path):
+    work = labels_work(FLAT)
+    work.products["relief"] = Relief(
+        np.linspace(0.002, 0.004, 40, dtype=np.float32)[:, None].repeat(60, 1), (0.15, 0.1)
+    )
+    heights = heights_in(Pins(display="graphiti").write(work, tmp_path / "slope"))
+    assert (heights[0, 0], heights[-1, 0]) == (0, 3)
+    work.products["relief"] = Relief(np.full((40, 60), 0.002, np.float32), (0.15, 0.1))
+    with pytest.raises(PictureError, match="no pin would rise, as one part fills the display"):
+        Pins(display="graphiti").write(work, tmp_path / "flat")
+
+
+def test_pin_heights_are_counted_from_the_lowest_and_rounded():
+    relief = Relief(np.float32([[2, 3.8, 5.4, 8]]) / 1000, (0.04, 0.01))
+    assert raising.heights(relief, 1, 4, 3).tolist() == [[0, 1, 2, 3]]
+
+
+def test_pin_has_the_part_of_most_of_its_cell_or_the_lower_number():
+    def most(columns: list[int], pins: int) -> list[int]:
+        labels = np.tile(np.int32(columns), (len(columns), 1))
+        return raising.most_of(PartMap(labels, (0, 1)), pins, pins)[0].tolist()
+
+    assert most([1, 1, 0, 0] * 3, 3) == [0, 0, 0]
+    assert most([1, 1, 1, 0, 0, 0, 0, 1, 0, 1, 0, 1], 3) == [1, 0, 0]
+    assert most([1, 0, 0, 0, 0], 3) == [1, 0, 0]  # the first pin has a whole cell and two thirds of the next
+
+
+@pytest.mark.parametrize(
+    ("aspect", "size"), [(0.3, (2, 8)), (1.0, (8, 8)), (1.25, (10, 8)), (4.0, (10, 2)), (99.0, (10, 1)), (0.01, (1, 8))]
+)
+def test_picture_on_a_display_is_as_large_as_it_can_be(aspect: float, size: tuple[int, int]):
+    assert Display(columns=10, rows=8).picture_size(aspect) == size
+
+
+@pytest.mark.parametrize(("aspect", "width_m"), [(1.0, 0.1), (2.4, 0.24), (3.0, 0.24)])
+def test_pins_picture_width_is_that_on_the_display(aspect: float, width_m: float):
+    assert Pins().picture_width_m(aspect) == pytest.approx(width_m)
+
+
+def test_pins_note_tells_size_and_share_of_raised_pins(tmp_path):
+    labels = np.zeros((60, 90), np.int32)
+    labels[:30, :45] = 1
+    with collected() as notes:
+        Pins().write(labels_work(labels), tmp_path / "quarter")
+    assert notes == ["60 x 40 of 96 x 40 pins; 1 % are up"]
+
+
+def test_pins_layers_have_the_borders_above_and_to_the_left(tmp_path):
+    labels = np.zeros((40, 40), np.int32)
+    labels[20:, 20:] = 1
+    files = Pins(display={"columns": 6, "rows": 4}).write(labels_work(labels), tmp_path / "map")
+    assert [each.name for each in files] == [
+        f"map-pins-6x4{end}" for end in (".png", ".json", ".txt", ".svg", "-graphic.json")
+    ]
+    [svg] = [each for each in files if each.suffix == ".svg"]
+    paths = [[path.get("d") for path in layer] for layer in ElementTree.parse(svg).getroot()[1:]]
+    assert paths == [["M3 1h2v1h-2zM2 2h1v1h-1zM2 3h1v1h-1z"]] * 2
 
 
 def test_pins_png_has_a_pixel_a_pin(tmp_path):
@@ -166,8 +232,18 @@ def test_pins_note_names_part_without_a_pin(tmp_path):
     labels = np.zeros((400, 600), np.int32)
     labels[:, 300:], labels[10:12, 10:12] = 1, 2
     with collected() as notes:
-        Pins().write(labels_work(labels, ("left", "right", "speck")), tmp_path / "map")
-    assert any(note.endswith("speck") for note in notes)
+        files = Pins().write(labels_work(labels, ("left", "right", "speck")), tmp_path / "map")
+    [svg] = [each for each in files if each.suffix == ".svg"]
+    assert [layer.get("aria-label") for layer in ElementTree.parse(svg).getroot()[1:]] == ["left", "right"]
+    assert notes[0] == "too small for a pin: speck"
+
+
+def test_pins_part_of_one_pin_is_not_called_too_small(tmp_path):
+    labels = np.zeros((40, 96), np.int32)
+    labels[:, 48:], labels[10, 10] = 1, 2
+    with collected() as notes:
+        Pins().write(labels_work(labels), tmp_path / "map")
+    assert len(notes) == 1
 
 
 FLAT = np.zeros((40, 60), np.int32)
@@ -195,6 +271,13 @@ def test_pins_without_border_are_refused_in_one_line(tmp_path: Path, labels, mes
     assert re.search(message, str(refusal.value))
     assert "\n" not in str(refusal.value)
     assert not list(tmp_path.iterdir())
+
+
+def test_pins_picture_of_three_pins_is_written_and_of_two_refused(tmp_path):
+    pins, labels = Pins(display={"columns": 30, "rows": 3}), np.arange(2, dtype=np.int32).repeat(150)[None]
+    assert heights_in(pins.write(labels_work(labels.repeat(30, 0)), tmp_path / "map"))[:, 14].tolist() == [1, 1, 1]
+    with pytest.raises(PictureError, match="30 pins wide and 2 long"):
+        pins.write(labels_work(labels.repeat(20, 0)), tmp_path / "map")
 
 
 def test_pins_without_parts_are_refused(tmp_path):

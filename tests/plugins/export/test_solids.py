@@ -36,7 +36,7 @@ from tangible_core.errors import BrailleError, GeometryError, OutputError
 from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import collected
 from tangible_depth import Luminance
-from tangible_export import Glb, Stl, ThreeMF
+from tangible_export import Glb, Stl, ThreeMF, three_mf
 from tangible_export.solid import making
 
 EVERY = pytest.mark.parametrize("cls", FORMATS.values(), ids=FORMATS)
@@ -327,6 +327,17 @@ class TestThreeMF:
         assert body.IsManifoldAndOriented()
         assert model.GetBuildItems().Count() == 1
 
+    def test_3mf_is_the_same_however_many_rows_are_written_at_once(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ):
+        sample = work(rough(), 0.05, "")
+        first = ThreeMF(braille=False).write(sample, tmp_path / "a")[0].read_bytes()
+        monkeypatch.setattr(three_mf, "ROWS_AT_ONCE", 7)
+        (path,) = ThreeMF(braille=False).write(sample, tmp_path / "b")
+        is_same = path.read_bytes() == first
+        assert is_same
+        assert read_3mf(path)[1][0].GetName() == "tangible-images"
+
     def test_3mf_is_smaller_than_stl(self, tmp_path: Path):
         sample = work(rough(80, 100), 0.1)
         sizes = [cls().write(sample, tmp_path / "s")[0].stat().st_size for cls in (ThreeMF, Stl)]
@@ -370,6 +381,14 @@ class TestGlb:
         assert "images" not in head and "textures" not in head and len(head["accessors"]) == 2
         assert int.from_bytes(data[8:12], "little") == len(data)
         assert read_glb(path).is_volume
+
+    @pytest.mark.parametrize("title", ["a", "bc", "def", "ghij"])
+    def test_glb_chunks_are_whole_words(self, tmp_path: Path, title: str):
+        (path,) = Glb(braille=False).write(work(rough(), 0.05, title), tmp_path / "g")
+        data = path.read_bytes()
+        length = int.from_bytes(data[12:16], "little")
+        assert length % 4 == 0
+        assert data[24 + length : 28 + length] == b"BIN\0"
 
     def test_glb_is_in_metres_about_its_centre(self, tmp_path: Path):
         (path,) = Glb().write(work(rough(), 0.05), tmp_path / "g")

@@ -14,7 +14,8 @@ from tangible_core.plugins import ForceRenderer
 from tangible_core.plugins.notes import collected
 from tangible_core.plugins.registry import load_method
 from tangible_devices import Mock
-from tangible_render.borders import lines
+from tangible_render.borders import distance, lines
+from tangible_render.borders.distance import border_distance
 from tangible_render.engraved import Engraved
 from tangible_render.proxy import Proxy
 from tangible_render.with_materials import WithMaterials
@@ -109,6 +110,40 @@ class TestSection:
         assert len(at) == sum(np.count_nonzero(np.diff(labels, axis=axis)) for axis in (0, 1))
         away = np.abs(at - lines._sides(labels)[0])
         assert 0.49 < away.max() <= 0.5 and beside.min() >= 0 and beside.max() < len(at)
+
+    def test_lines_end_at_the_rim_and_where_three_labels_meet(self):
+        at, beside = lines._sides(np.int32([[0, 0, 1], [0, 0, 1], [2, 2, 2]]))
+        assert at.tolist() == [[1.5, 0], [1.5, 1], [0, 1.5], [1, 1.5], [2, 1.5]]
+        assert beside.tolist() == [[0, 1], [0, 1], [2, 3], [2, 3], [4, 4]]
+        assert lines._sides(np.int32([[0, 0], [1, 1], [2, 2]]))[1].tolist() == [[0, 1], [0, 1], [2, 3], [2, 3]]
+
+    def test_ends_of_a_line_stay_on_the_cells(self):
+        row, column = np.indices((30, 40))
+        labels = (column > 0.7 * row + 5).astype(np.int32)
+        (at, beside), (points, _) = lines.border_lines(labels), lines._sides(labels)
+        ends = (beside == np.arange(len(at))[:, None]).any(axis=1)
+        assert ends.sum() == 2
+        assert np.array_equal(at[ends], points[ends])
+        assert not np.array_equal(at[~ends], points[~ends])
+
+    @pytest.mark.parametrize("axis", [0, 1], ids=["rows", "columns"])
+    def test_distance_on_long_cells_is_exact_in_both_directions(self, axis: int):
+        labels = (np.indices((60, 50))[axis] >= 20).astype(np.int32)
+        away_m = np.abs(np.indices(labels.shape)[axis] - 19.5) * (1e-3, 4e-3)[axis]
+        found = border_distance(labels, (4e-3, 1e-3), 0.01)
+        assert found == pytest.approx(np.minimum(away_m, 0.01), abs=1e-8)
+
+    def test_distance_is_to_the_segments_on_both_sides_of_a_point(self):
+        line = lines.Borders(np.array([[0.0, 0], [1, 0], [2, 0]]), np.array([[0, 1], [0, 2], [1, 2]]))
+        places_m = np.array([[0.6, 0.3], [1.4, 0.3], [1.0, 0.3], [2.4, 0.3], [9.0, 9.0]])
+        found = distance._distance_to_lines(places_m, line, np.ones(2), 1.0)
+        assert found == pytest.approx([0.3, 0.3, 0.3, 0.5, np.inf])
+
+    def test_grid_too_coarse_along_one_side_is_reported(self):
+        labels = (np.indices((100, 800))[1] > 400).astype(np.int32)
+        with collected() as notes:
+            GROOVE.felt(HapticSurface(Relief(np.full((100, 800), HIGH_M, np.float32), (SIDE_M, SIDE_M)), labels))
+        assert ["3 mm is 3.8 cells wide" in each for each in notes] == [True]
 
     def test_grid_too_coarse_for_a_groove_is_reported(self):
         surface = straight(100, 30)[0]

@@ -14,8 +14,11 @@ from tangible_core.materials.assignment import library
 from tangible_core.plugins.registry import load_method
 from tangible_core.testing.synthetic.reliefs import waves
 from tangible_core.testing.synthetic.scenes import ramp
+from tangible_render.effects.effects_table import effects_table, split_textures
+from tangible_render.effects.material_table import material_table
 from tangible_render.haptic_textures import compile_textures
 from tangible_render.haptic_textures.heights import texture_height
+from tangible_render.haptic_textures.table import STIFFNESS
 from tangible_render.with_materials import WithMaterials
 
 MAPS = rough_surfaces()
@@ -80,6 +83,14 @@ class TestFriction:
             found = WithMaterials(law=law).touch(level(material)).path(path @ turned)
             assert np.allclose(found, expected @ turned, rtol=0, atol=1e-6)
 
+    def test_material_is_that_under_the_hand_on_a_long_surface(self):
+        """2 by 8 cm, sticky along the far quarter."""
+        labels = np.repeat(np.int32([1, 0, 0, 0]), 20)[:, None].repeat(20, 1)
+        surface = HapticSurface.from_heights(np.full((80, 20), 0.01), 0.02, labels, (PLAIN, STICKY))
+        for y, pull_n in ((0.03, 0.5 * K * 0.001), (0.015, 0.0), (-0.03, 0.0)):
+            force = WithMaterials(law="penalty").touch(surface).path(stroke(0.008) + np.array([0, y, 0]))
+            assert -force[-1, 0] == pytest.approx(pull_n, rel=1e-3)
+
     @pytest.mark.parametrize("law", PUSHING + LATERAL)
     def test_friction_outside_of_the_surface_is_zero(self, law: str):
         touch = WithMaterials(law=law).touch(level(STICKY))
@@ -107,6 +118,38 @@ class TestFriction:
             touch.force(HapticState((0.0, 0.0, 0.011)))
         assert touch.force(HapticState(tuple(again[0]))) == alone.force(HapticState(tuple(again[0])))
         assert np.allclose([touch.force(HapticState(tuple(at))) for at in again[1:]], fresh[1:], rtol=0, atol=1e-12)
+
+
+def test_table_leaves_out_what_is_off_and_friction_of_textures_that_stick():
+    halves = np.int32([[0, 1]])
+    surface = HapticSurface.from_heights(np.zeros((1, 2)), 0.02, halves, (STICKY, RUBBER))
+    labels, table = effects_table(surface)
+    assert labels.tolist() == halves.tolist()
+    assert table[:, -4:].tolist() == [[K, 0, 0.8, 0.5], [K, 0, 0, 0]]
+    assert (table[:, STIFFNESS] > 0).tolist() == [False, True]
+    _, smooth = effects_table(surface, friction=False)
+    assert smooth[:, -4:].tolist() == [[K, 0, 0, 0]] * len(smooth)
+    assert not smooth[:, STIFFNESS].any()
+
+
+def test_table_of_one_material_is_one_row():
+    """Of the labels that occur; those of two materials are kept where they differ in anything."""
+    whole, halves = np.int32([[1, 1]]), np.int32([[0, 1]])
+    for labels, size in ((whole, 1), (halves, 2)):
+        surface = HapticSurface.from_heights(np.zeros((1, 2)), 0.02, labels, (STICKY, PLAIN))
+        for found, table in (effects_table(surface), material_table(surface, (1.0, 1.0, 1.0, 1.0))):
+            assert found.shape == (1, size)
+            assert table[:, -4:].tolist() == [[K, 0, 0.8, 0.5], [K, 0, 0, 0]][-size:]
+
+
+def test_textures_are_split_from_what_the_law_renders_itself():
+    rough = replace(STICKY, roughness_m=1e-4, damping_n_s_per_m=3.0)
+    split = split_textures(level(rough), friction=True)
+    assert split is not None
+    _, with_friction, table, _ = split
+    assert with_friction.tolist() == [[K, 3, 0.8, 0.5]]
+    assert table[:, -4:].tolist() == [[K, 0, 0, 0]]
+    assert split_textures(level(STICKY), friction=True) is None
 
 
 class TestTexture:

@@ -4,11 +4,21 @@ from io import BytesIO
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageDraw
 
-from tangible_core.data import SegmentMap
+from tangible_core.data import PartMap, SegmentMap
 from tangible_core.parts import find_parts
-from tangible_report.numbered_parts import LONGEST_PX, SHORTEST_PX, numbered_parts
+from tangible_report.numbered_parts import (
+    LONGEST_PX,
+    SHORTEST_PX,
+    Before,
+    Drawn,
+    _coarse,
+    _fits,
+    _font,
+    _largest_disc,
+    numbered_parts,
+)
 
 
 def draw(picture: np.ndarray, labels: np.ndarray, names: tuple[str, ...] = ()) -> np.ndarray:
@@ -59,3 +69,40 @@ def test_names_are_written_if_there_is_room():
 def test_line_of_pixels_is_drawn(shape: tuple[int, int]):
     labels = (np.arange(shape[0] * shape[1]) // 7).reshape(shape)
     assert draw(np.zeros(shape, np.uint8), labels).size
+
+
+def parts(*rows: list[int]) -> PartMap:
+    labels = np.int32(rows)
+    return PartMap(labels, tuple(range(int(labels.max()) + 1)))
+
+
+def test_parts_are_the_same_that_cover_most_of_each_other():
+    drawn = Drawn(np.int32([[0, 0, 0, 1]]))
+    assert drawn.before(parts([0, 0, 0, 1])) == (Before(0, 0), Before(1, 1))
+    assert drawn.before(parts([0, 0, 1, 2])) == (Before(0, 0), Before(None, 0), Before(1, 1))
+    assert drawn.before(parts([0, 0, 0, 0])) == (Before(0, 0),)
+    assert Drawn(np.int32([[1, 1]])).before(parts([1, 1])) == (Before(None, 0), Before(1, 1))
+
+
+def test_parts_of_another_shape_are_of_another_picture():
+    assert Drawn(np.int32([[0, 0, 1, 1]])).before(parts([0], [0], [1], [1])) is None
+
+
+def test_coarse_grid_has_the_middles_of_its_cells():
+    assert _coarse(np.arange(12, dtype=np.int32)[None], 4).tolist() == [[1, 4, 7, 10]]
+
+
+def test_text_fits_into_a_disc_by_its_diagonal():
+    draw, font = ImageDraw.Draw(Image.new("RGB", (400, 100))), _font(40)
+    left, top, right, bottom = draw.textbbox((0, 0), "12", font, anchor="mm")
+    half = float(np.hypot(right - left, bottom - top)) / 2
+    assert _fits(draw, "12", font, half)
+    assert not _fits(draw, "12", font, half - 0.5)
+
+
+def test_number_of_a_bar_is_in_its_middle():
+    bar = np.zeros((20, 60), bool)
+    bar[3:8, 10:51] = True
+    disc = _largest_disc(bar)
+    assert disc is not None
+    assert (disc.column, disc.row) == (30, 5)

@@ -99,6 +99,23 @@ def test_braille_has_the_lines_and_pages_of_embossers(tmp_path: Path):
     starts = [line for line in later if not line.startswith(" ")]
     assert sum(line.startswith(as_ascii(translate(f"{n}.", "fr"))) for line in starts for n in (1, 2, 3, 4)) == 4
     assert all(line.startswith("  ") for line in later if line not in starts)
+    told = texts[".txt"].splitlines()
+    assert 1 + len(starts) == sum(map(bool, told)), "a line begins at the margin for each line of the text"
+    assert lines[:-1].count("") == told.count("") > 0
+
+
+def test_braille_is_in_the_language_of_the_text(tmp_path: Path):
+    brf = write_texts(work("ciel", "lac", "île", "eau"), Text(braille=True, language="de"), tmp_path)[0][".brf"]
+    assert f"\n{as_ascii(translate('1. eau.', 'de'))} " in brf
+
+
+def test_text_of_heights_lists_parts_from_high_to_low(tmp_path: Path):
+    names = "ciel", "lac", "île", "eau"
+    heights = replace(work(*names), picture=None)
+    assert "\nParties, de la plus haute à la plus basse\n" in write_texts(heights, Text(), tmp_path)[0][".txt"]
+    assert (
+        "\nParties, de la plus proche à la plus lointaine\n" in write_texts(work(*names), Text(), tmp_path)[0][".txt"]
+    )
 
 
 def test_name_without_braille_is_refused_for_braille_only(tmp_path: Path):

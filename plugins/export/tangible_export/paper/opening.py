@@ -45,7 +45,9 @@ def open_parts(work: Work, parts: PartMap, width_m: float) -> PartMap:
     before = np.ascontiguousarray(fine[::COARSE, ::COARSE])
     after = _open(before, COARSE * pitch_m)
     changed, coarse = (_enlarge(each, fine.shape) for each in (before != after, after))
-    labels = _without_crumbs(np.where(changed, coarse, fine), pitch_m)
+    # An edge of a part may lie in the coarse cells of its neighbour: it would be left as a thread.
+    near = cv2.dilate(changed.astype(np.uint8), np.ones((2 * COARSE - 1, 2 * COARSE - 1), np.uint8)) > 0
+    labels = _without_crumbs(np.where(near, coarse, fine), pitch_m)
     _note_lost(work, fine, labels, parts.count)
     return PartMap(labels, parts.segments)
 

@@ -50,6 +50,13 @@ def test_wrapped_later_lines_are_indented():
     assert all(line[:2] == (0, 0) and line[2] and len(line) <= 16 for line in others)
 
 
+def test_wrapped_lines_have_room_for_their_indent_and_a_single_one_has_none():
+    first, *others = wrapped("abcd abcd abc abcd", "en", width_m((0,) * 9), indent=2)
+    assert first == translate("abcd abcd", "en")
+    assert others == [(0, 0, *translate(word, "en")) for word in ("abc", "abcd")]
+    assert wrapped("abcd abcd", "en", width_m((0,) * 9), indent=2) == [first]
+
+
 def test_wrapped_wide_word_is_broken_after_a_hyphen():
     ten = width_m((0,) * 10)
     lines = wrapped("extraordinarily", "en", ten)

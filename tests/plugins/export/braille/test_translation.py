@@ -15,7 +15,7 @@ from tangible_core.errors import BrailleError
 from tangible_core.plugins.notes import collected
 from tangible_export.braille import as_ascii, as_unicode, translate, translation, written_by
 from tangible_export.braille.latin import LANGUAGES, LETTERS, code_of, translate_by_table
-from tangible_export.braille.louis import NAMES, TABLES, Louis, louis
+from tangible_export.braille.louis import NAMES, TABLES, Louis, _units, louis
 
 ORDINARY = {
     "en": (
@@ -24,10 +24,11 @@ ORDINARY = {
         "1 000 000", "it's", '"Hi", he said', "Café, Łódź, ærø, Málaga, Besançon, São, Åbo, Straße, naïve",
         "a/b + c = d & e", "well-known: yes", "At 45°",
         "98 \u00d7 74 cm", "Untitled #3 [detail] — © 1990", "~5 m², ±1 < 2 > 1", "9½ Weeks", "¿Dónde?",
+        "ABcd", "AB cd", '("Hi")', 'a " b', '["x"]',
     ),
     "de": (
         "Überfluß, Äpfel, Öl", "Teil 3", "Der Raumanzug (1990), 160 mal 90 mm.", "5 % von A4; 2,5 mm",
-        "Ist es hoch? Ja!", "3a 12k 4J 5B", "NASA-Foto", "z. B. um 5:", '"Hallo", sagte er', "„Hallo“", "»5«",
+        "Ist es hoch? Ja!", "3a 12k 4J 5B", "NASA-Foto", "z. B. um 5:", '"Hallo", sagte er', "„Hallo“", "»5«", '("ja")',
         "Café, Besançon, Ærø, Łódź", "a/b + c = d", "(5)", "45°",
         "Ohne Titel [Ausschnitt]", "Nr. #3", "5 m²", "Brâncuși",
     ),
@@ -70,6 +71,34 @@ def without(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[object], None
 def test_liblouis_and_our_tables_agree_on_texts(installed: Louis, language: str, text: str):
     plain = translation._plain(text, language)
     assert as_unicode(translate(text, language)) == as_unicode(translate_by_table(plain, language))
+
+
+@pytest.mark.parametrize(("text", "braille"), [
+    ("1 000", "⠼⠁⠐⠚⠚⠚"),
+    ("1 0000", "⠼⠁⠀⠼⠚⠚⠚⠚"),
+    ("12 345 6", "⠼⠁⠃⠐⠉⠙⠑⠀⠼⠋"),
+    ("3 12", "⠼⠉⠀⠼⠁⠃"),
+])  # fmt: skip
+def test_groups_of_three_digits_alone_are_of_one_number(text: str, braille: str):
+    """Liblouis takes any two numbers for one."""
+    assert as_unicode(translate_by_table(text, "en")) == braille
+
+
+def test_quotation_mark_between_spaces_closes():
+    """More often a space was left before the closing mark than after the opening one."""
+    assert as_unicode(translate_by_table('a " b', "de")) == "⠁⠀⠴⠀⠃"
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_letter_with_an_accent_that_the_code_lacks_is_refused(language: str):
+    """A circumflex and a dot below."""
+    with pytest.raises(BrailleError, match="character 2, 'ệ'"):
+        translate_by_table("aệ", language)
+
+
+def test_characters_beyond_two_bytes_are_written_in_two_units():
+    assert _units("a", 2) == _units("a", 4) == [97]
+    assert (_units("🙂", 2), _units("🙂", 4)) == ([0xD83D, 0xDE42], [0x1F642])
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -116,14 +145,17 @@ def test_translation_matches_the_books_of_the_codes(
 
 
 def test_written_by_names_the_translator(installed: Louis, without: Callable[[object], None]):
-    assert written_by("de-AT") == f"liblouis {installed.version}, de-g0.utb"
+    assert written_by("de-AT") == written_by("DE") == f"liblouis {installed.version}, de-g0.utb"
     assert written_by("pt") == f"liblouis {installed.version}, en-ueb-g1.ctb, for want of one for 'pt'"
     without(OSError("not found"))
     assert written_by("de-AT") == "our own table of the German Basisschrift (liblouis is not installed)"
 
 
-def odd(size: int = 4, cells: tuple[int, ...] = (1, 3, 9), works: int = 10**9) -> object:
-    """A library with liblouis's names that writes these cells whatever it is given, so many times."""
+def odd(size: int = 4, cells: tuple[int, ...] = (1, 3, 9), works: int = 10**9, unread: int = 0) -> object:
+    """A library with liblouis's names that writes these cells whatever it is given, so many times.
+
+    unread: the number of characters that it leaves unread.
+    """
 
     class Library:
         def __init__(self) -> None:
@@ -141,6 +173,7 @@ def odd(size: int = 4, cells: tuple[int, ...] = (1, 3, 9), works: int = 10**9) -
             self.left -= 1
             target[: len(cells)] = cells
             written._obj.value = len(cells)
+            read._obj.value -= unread
             return self.left >= 0
 
     return Library()
@@ -153,6 +186,7 @@ def odd(size: int = 4, cells: tuple[int, ...] = (1, 3, 9), works: int = 10**9) -
         (odd(size=3), "its characters have 3 bytes"),
         (odd(cells=(7, 7)), "it writes abc as (7, 7)"),
         (odd(works=0), "cannot use its table en-ueb-g1.ctb"),
+        (odd(unread=1), "cannot use its table en-ueb-g1.ctb"),
     ],
 )
 def test_broken_liblouis_is_not_used(without: Callable[[object], None], library: object, why: str):

@@ -23,6 +23,7 @@ def test_key_letters_are_different_for_all_names(names):
 def test_key_letter_is_the_first_free_letter_of_the_name():
     assert key_letters(["table", "spoon", "saucer", "Übung"]) == ["t", "s", "c", "u"]
     assert key_letters(["apple", "bear"]) == ["p", "b"]  # a finger takes a single dot for a stray one
+    assert key_letters(["spoon", "sun", "under"]) == ["s", "n", "u"]
 
 
 @given(st.integers(0, 1000), st.integers(4, 60))
@@ -52,4 +53,14 @@ def test_fills_that_cannot_differ_are_reported():
     everyone = [set(range(6)) - {n} for n in range(6)]
     kinds, alike = choose_fills(everyone, [list(KINDS)] * 6, [1.0] * 6)
     assert len(set(kinds)) == 5
+    assert len(alike) == 1
+
+
+def test_fills_that_cannot_differ_leave_the_others_different():
+    """Six that all touch each other, of which two must be alike, and two more beside some of them."""
+    beside = [set(range(6)) - {n} for n in range(6)] + [{0, 2, 4}, {2, 3, 4}]
+    for number in (6, 7):
+        for other in beside[number]:
+            beside[other].add(number)
+    _, alike = choose_fills(beside, [list(KINDS)] * 8, [1.0] * 8)
     assert len(alike) == 1

@@ -10,8 +10,9 @@ import pytest
 from tangible_core.data import HapticSurface, MaterialMap, PartMap
 from tangible_core.materials.assignment import library
 from tangible_core.parts.words.languages import LANGUAGES
-from tangible_report.description import describe_at_length, facts, page_of
+from tangible_report.description import PartFacts, describe_at_length, facts, page_of
 from tangible_report.description.at_length import MOST_PARTS
+from tangible_report.description.facts import step_of
 
 Y, X = np.mgrid[0:60, 0:80] / np.array([60, 80]).reshape(2, 1, 1)
 LABELS = np.where(Y >= 0.6, 1, 0).astype(np.int32)
@@ -55,6 +56,76 @@ def test_facts_of_parts_on_another_grid_are_known():
         each._replace(name="", share=pytest.approx(each.share, rel=0.02), size_m=pytest.approx(each.size_m, rel=0.02))
         for each in facts(still_life())
     ]
+
+
+def test_facts_of_parts_of_one_height_are_in_their_order():
+    flat = HapticSurface.from_heights(np.zeros((4, 6)), 0.06, np.int32([[0, 0, 1, 1, 2, 2]]).repeat(4, 0))
+    assert [each.number for each in facts(flat)] == [0, 1, 2]
+
+
+def test_facts_of_a_part_in_pieces_have_its_whole_extent_and_median():
+    labels = np.int32([[1, 0, 0, 0, 1, 0]]).repeat(3, 0)
+    height_m = np.where(labels == 1, np.array([[1], [1], [7]]) * 1e-3, 0)
+    part, _ = facts(HapticSurface.from_heights(height_m, 0.06, labels))
+    assert part.size_m == pytest.approx((0.05, 0.03))
+    assert part.height_m == pytest.approx(0.001)
+
+
+def test_facts_of_coarse_parts_have_the_heights_at_the_middles_of_their_cells():
+    surface = HapticSurface.from_heights(np.arange(4.0)[None].repeat(2, 0) * 1e-3, 0.04)
+    right, left = facts(surface, parts=PartMap(np.int32([[0, 1]]), (0, 1)))
+    assert (left.height_m, right.height_m) == pytest.approx((0.001, 0.003))
+
+
+@pytest.mark.parametrize(("shape", "step"), [((512, 3), 1), ((3, 513), 2), ((1025, 512), 3)])
+def test_grid_has_at_most_512_cells_a_side(shape: tuple[int, int], step: int):
+    assert step_of(np.zeros(shape)) == step
+
+
+def told(number: int, name: str = "", share: float = 0.2, height_m: float = 0.0, beside: tuple[int, ...] = ()):
+    return PartFacts(number, name, "- -", share, (0.01, 0.02), height_m, "", beside)
+
+
+def lines_of(*parts: PartFacts) -> list[str]:
+    return [*describe_at_length(HapticSurface.from_heights(np.zeros((4, 4))), "x", "en", parts)[5:]]
+
+
+@pytest.mark.parametrize(
+    ("share", "says"),
+    [
+        (0.5, "More than half of the picture (50 %)"),
+        (0.25, "A large part of the picture (25 %)"),
+        (0.08, "A medium-sized part of the picture (8 %)"),
+        (0.004, "A small part of the picture (0.4 %)"),
+        (0.001, "A small part of the picture (0.1 %)"),
+        (0.0002, "A small part of the picture (0.1 %)"),
+    ],
+)
+def test_description_has_words_for_shares(share: float, says: str):
+    [line] = lines_of(told(1, "Who?", share))
+    assert line == f"1. Who? {says}, 10 mm wide and 20 mm long."
+
+
+def test_description_has_a_part_without_a_name_of_the_least_share():
+    [line] = lines_of(told(1, share=0.001))
+    assert line.startswith("1. part 1. A small part of the picture (0.1 %)")
+
+
+def test_description_of_the_ground_has_no_height():
+    assert [", 0." in line for line in lines_of(told(0, height_m=4.9e-5), told(1, height_m=5.1e-5))] == [False, True]
+
+
+def test_description_names_four_neighbours():
+    line = lines_of(told(0, beside=(5, 4, 3, 2, 1)), *map(told, range(1, 6)))[0]
+    assert line.endswith("Beside it: part 5, part 4, part 3, part 2.")
+
+
+def test_description_leaves_out_the_smallest_parts():
+    shares = [0.001 + 0.0001 * (number * 7 % 62) for number in range(62)]
+    lines = lines_of(*(told(number, share=share) for number, share in enumerate(shares)), told(62, share=0.00099))
+    assert lines[-1].startswith("3 smaller parts")
+    left = {number for number in range(62) if not any(f". part {number}. " in line for line in lines)}
+    assert left == {0, 9}  # of 0.1 and 0.11 %
 
 
 def test_facts_use_materials_that_the_surface_lacks():
@@ -185,6 +256,11 @@ def test_page_has_the_words_of_the_lines(language: Any):
     lines = describe_at_length(surface, 'A "still" <life>', language, facts(surface))
     told = " ".join(line.split(". ", 1)[1] if line[:1].isdigit() else line for line in lines if line)
     assert body == told
+
+
+def test_page_tells_what_is_left_out():
+    page = page_of(HapticSurface.from_heights(np.zeros((4, 4))), "x", "en", [told(0), told(1, share=0.0005)])
+    assert "</ol>\n<p>One smaller part, 0.1 % of the picture, is left out.</p>\n</main>" in page
 
 
 def test_page_marks_names_in_another_language():

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tangible_core.data import HapticSurface
+from tangible_core.data import HapticSurface, Relief
 from tangible_core.errors import ArgumentError
 from tangible_core.materials.assignment import library
 from tangible_report.description import describe
@@ -42,6 +42,26 @@ def test_sentence_names_high_and_low_places(height: np.ndarray, says: str):
     assert says in describe(surface(height), "it")
 
 
+def test_sentence_is_the_same_for_a_surface_far_above_its_base():
+    assert describe(surface(100 + 10 * X), "it") == describe(surface(10 * X), "it")
+
+
+def test_sentence_takes_slopes_along_the_sides_of_cells():
+    """Six in a hundred on cells four times as long as wide; and one and a half on a grid of every other cell."""
+    oblong = Relief((np.arange(80) * 6e-5 * np.ones((20, 1))).astype(np.float32), (0.08, 0.08))
+    assert "; hardly any of it is flat" in describe(HapticSurface(oblong), "it")
+    fine = HapticSurface.from_heights(np.arange(600) * 1.5e-5 * np.ones((4, 1)), 0.6)
+    assert "; nearly all of it is flat" in describe(fine, "it")
+
+
+def test_sentence_says_everywhere_else_of_more_than_half_alone():
+    row, column = np.indices((60, 80))
+    height = np.where(X < 0.1, 10, np.where((row + column) % 3, 5, 0))
+    assert "highest on the left" in describe(surface(height), "it")
+    assert "nearly everywhere else" not in describe(surface(height), "it")
+    assert "nearly everywhere else" in describe(surface(np.where(height == 5, 0, height)), "it")
+
+
 def test_sentence_names_a_pin_as_the_highest_place():
     pin = np.zeros((60, 80))
     pin[50, 70] = 9
@@ -75,6 +95,25 @@ def test_sentence_has_materials_with_shares_and_places():
     many = (np.arange(4800) % 7).reshape(60, 80).astype(np.int32)
     names = ("ice", "wood", "sand", "foam", "glass", "metal", "skin")
     assert re.search(r"7 materials: .* and 3 others on 43 %\.$", describe(surface(flat, *names, labels=many), "it"))
+
+
+def test_sentence_leaves_out_materials_without_a_place_and_counts_one_more():
+    flat, few = np.zeros((60, 80)), (X >= 0.5).astype(np.int32)
+    assert describe(surface(flat, "ice", "wood", "sand", labels=few), "it").endswith(
+        "It has 2 materials: ice on 50 % (on the left) and wood on 50 % (on the right)."
+    )
+    five = (np.arange(4800) % 5).reshape(60, 80).astype(np.int32)
+    names = ("ice", "wood", "sand", "foam", "glass")
+    assert describe(surface(flat, *names, labels=five), "it").endswith("and one other on 20 %.")
+    speck = np.zeros((60, 80), np.int32)
+    speck[:2, :2] = 1
+    assert "wood on 1 % (" in describe(surface(flat, "ice", "wood", labels=speck), "it")
+
+
+def test_sentence_lists_parts_of_one_height_in_their_order_and_none_without_cells():
+    labels = np.where(X < 0.5, 0, 2).astype(np.int32)
+    flat = replace(surface(np.zeros((60, 80)), labels=labels), names=("land", "", "sea"))
+    assert describe(flat, "it").endswith("are land (on the left) and sea (on the right).")
 
 
 def in_parts(names: tuple[str, ...], *materials: str) -> HapticSurface:

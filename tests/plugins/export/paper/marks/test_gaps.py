@@ -32,6 +32,23 @@ def test_gap_is_measured_within_a_pixel_in_any_direction(gap_mm, x, y):
         assert [each.gap_mm for each in pairs] == pytest.approx([gap_mm], abs=0.11)
 
 
+def stroke(*at: tuple[float, float]) -> str:
+    path = "M" + "L".join(f"{x} {y}" for x, y in at)
+    return f'<path data-mark="fill" aria-label="{path}" fill="none" stroke="#000" stroke-width="1" d="{path}"/>'
+
+
+def test_gap_is_exact_along_the_pixels_and_has_its_place():
+    [pair] = near(stroke((40, 10), (40, 20)) + stroke((44, 10), (44, 20)))
+    assert pair.gap_mm == pytest.approx(3)
+    assert pair.place_mm[0] == pytest.approx(42, abs=0.2)
+    assert 9.5 <= pair.place_mm[1] <= 20.5
+
+
+def test_gap_of_long_marks_is_the_narrowest():
+    [pair] = near(stroke((10, 20), (70, 20)) + stroke((10, 23), (70, 25)))
+    assert pair.gap_mm == pytest.approx(2, abs=0.1)
+
+
 def test_gap_between_dots_counts_between_texts_only():
     dots = '<circle cx="40" cy="30" r="0.72"/><circle cx="42.34" cy="30" r="0.72"/>'
     assert not near(f'<g data-mark="braille">{dots}</g>')
@@ -55,6 +72,13 @@ def test_gap_within_one_net_of_outlines_is_measured():
     assert pairs
     assert min(each.gap_mm for each in pairs) == pytest.approx(2, abs=0.4)
     assert all(each.between_outlines for each in pairs)
+
+
+def test_gap_within_a_part_names_this_part_and_not_one_around_it():
+    frame = line((2, 2), (78, 2), (78, 58), (2, 58)).replace('"part"', '"frame"')
+    upper, lower = [(10, 10), (30, 10), (30, 28.5), (50, 28.5), (50, 10), (70, 10)], [(70, 50), (50, 50), (50, 31.5)]
+    pairs = near(frame + line(*upper, *lower, (30, 31.5), (30, 50), (10, 50)))
+    assert {mark.label for each in pairs for mark in each.marks} == {"part"}
 
 
 def test_gap_of_enclosed_outline_is_measured_to_its_frame():

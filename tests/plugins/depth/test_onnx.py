@@ -21,6 +21,7 @@ from tangible_core.scene.workspace import SUITS, FeltSize
 from tangible_core.testing import run_checks
 from tangible_core.testing.synthetic.scenes import wall
 from tangible_depth import Auto, Contour, Luminance, Onnx, SemiGlobal
+from tangible_depth.network import onnx_file
 from tangible_depth.network.card import PRESETS
 from tangible_depth.network.onnx_file import read_declared
 from tangible_depth.network.runtimes import Runtime
@@ -450,9 +451,33 @@ class TestHostileFiles:
         assert read_declared(model).inputs == {"left": (1, 3, 48, None), "right": (1, 3, 48, None)}
         old = onnx.load(model)
         old.graph.input.append(onnx.helper.make_tensor_value_info("grey", onnx.TensorProto.FLOAT, [1, 3, 1, 1]))
-        model.write_bytes(old.SerializeToString())  # as files before ONNX 1.4 list their weights
-        assert list(read_declared(model).inputs) == ["left", "right"]
+        # as files before ONNX 1.4 list their weights
+        old.graph.input[1].type.tensor_type.shape.dim[2].dim_value = 0
+        model.write_bytes(old.SerializeToString())
+        assert read_declared(model).inputs == {"left": (1, 3, 48, None), "right": (1, 3, None, None)}
 
+    def test_weights_of_a_loops_own_graph_are_checked(self, tmp_path: Path, card):
+        """A loop's body has weights of its own, and a node has constants."""
+        bad = onnx.numpy_helper.from_array(np.zeros(1, np.float32), "bad")
+        bad.dims[0] = -1
+        model = onnx.load(onnx_models.endless(tmp_path / "m.onnx"))
+        (loop,) = (node for node in model.graph.node if node.op_type == "Loop")
+        loop.attribute[0].g.initializer.append(bad)
+        (tmp_path / "m.onnx").write_bytes(model.SerializeToString())
+        assert "'bad' has the impossible size [-1]" in self.refusal(tmp_path / "m.onnx", card, "opencv")
+        del loop.attribute[0].g.initializer[:]
+        model.graph.node.append(onnx.helper.make_node("Constant", [], ["k"], value=bad))
+        (tmp_path / "m.onnx").write_bytes(model.SerializeToString())
+        assert "'bad' has the impossible size [-1]" in self.refusal(tmp_path / "m.onnx", card, "opencv")
+
+    def test_integers_are_those_of_the_encoding(self):
+        """https://protobuf.dev/programming-guides/encoding/#varints; negative ones take ten bytes."""
+        for number, encoded in ((1, b"\x01"), (150, b"\x96\x01"), (-2, b"\xfe" + b"\xff" * 8 + b"\x01")):
+            assert onnx_file._varint(memoryview(encoded + b"\0"), 0) == (number, len(encoded))
+        with pytest.raises(ValueError, match="ten bytes"):
+            onnx_file._varint(memoryview(b"\xff" * 20 + b"\0"), 0)
+
+    @pytest.mark.timeout(60)
     def test_network_without_end_hears_ctrl_c(self, tmp_path: Path):
         model = onnx_models.endless(tmp_path / "m.onnx")
         (tmp_path / "m.yaml").write_text("output: {means: inverse-depth}")

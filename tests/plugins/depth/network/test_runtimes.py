@@ -1,4 +1,4 @@
-"""Sizes that networks declare, as OpenCV and onnxruntime write them."""
+"""Sizes that networks declare, and the pictures that they get."""
 
 from pathlib import Path
 
@@ -7,17 +7,6 @@ import pytest
 
 from tangible_core.errors import ConfigError
 from tangible_depth.network import runtimes
-
-DESCRIBED = """
-name: net
-inputs: "left", // <Input> float [1 x 3 x 48 x 0]
-        "right" // <Input> float [1 x 3 x h x 64]
-outputs: "map" // <Input> float [1 x 1 x 48 x 64]
-"""
-
-
-def test_inputs_have_the_sizes_of_a_description():
-    assert runtimes._declared(DESCRIBED) == {"left": (1, 3, 48, None), "right": (1, 3, None, 64)}
 
 
 @pytest.mark.parametrize(

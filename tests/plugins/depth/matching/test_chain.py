@@ -87,8 +87,8 @@ def test_speckle_filter_removes_small_islands(disparity, largest):
 
 @pytest.mark.parametrize("turned", [False, True])
 def test_island_of_steps_of_a_whole_pixel_is_one(turned: bool):
-    for step, left in ((16, 12), (17, 0)):
-        disparity = np.arange(0, 12 * step, step, dtype=np.int16)[None]
+    for apart, left in ((16, 12), (17, 0)):
+        disparity = np.arange(0, 12 * apart, apart, dtype=np.int16)[None]
         disparity = np.ascontiguousarray(disparity.T if turned else disparity)
         remove_speckles(disparity, 11)
         assert np.count_nonzero(disparity != UNKNOWN) == left
@@ -339,17 +339,18 @@ def test_plane_is_enlarged_exactly():
 
 
 def test_steps_within_a_pixel_are_enlarged_to_a_slope_and_larger_ones_to_a_step():
-    for step, beside in ((16, [208, 216, 232, 240]), (17, [208, 208, 242, 242])):
+    for apart, beside in ((16, [208, 216, 232, 240]), (17, [208, 208, 242, 242])):
         small = np.full((4, 6), np.int16(104))
-        small[:, 3:] += np.int16(step)
+        small[:, 3:] += np.int16(apart)
         large = enlarge(DenseMatches(small, np.ones(small.shape, np.float32)), np.full((8, 12), 9, np.uint8))
         assert large.disparity[4, 4:8].tolist() == beside
 
 
-def test_disparity_beyond_16_bits_is_enlarged_to_the_largest():
-    small = np.full((4, 6), np.int16(20000))
-    large = enlarge(DenseMatches(small, np.ones(small.shape, np.float32)), np.full((8, 12), 9, np.uint8))
-    assert (large.disparity == 32767).all()
+@pytest.mark.parametrize(("value", "large"), [(20000, 32767), (-20000, -32767), (-16384, -32767), (-16383, -32766)])
+def test_disparity_beyond_16_bits_is_enlarged_to_the_largest(value: int, large: int):
+    """Of either sign, and next to the value of unknown ones."""
+    small = DenseMatches(np.full((4, 6), np.int16(value)), np.ones((4, 6), np.float32))
+    assert (enlarge(small, np.full((8, 12), 9, np.uint8)).disparity == large).all()
 
 
 def test_enlarged_map_in_pixels_is_the_same_with_any_number_of_threads(monkeypatch):

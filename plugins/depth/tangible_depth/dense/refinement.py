@@ -137,7 +137,7 @@ def _enlarge(padded, trust, y0, out, out_trust):
             for x in range((out.shape[1] + 1 - odd) >> 1):
                 own = int32(near[x + 1])
                 total = 4 * own + _step(own, near[x + 2 * odd]) + _step(own, other[x + 1])
-                out[i, 2 * x + odd] = UNKNOWN if own == UNKNOWN else min(total >> 1, 32767)
+                out[i, 2 * x + odd] = UNKNOWN if own == UNKNOWN else max(min(total >> 1, 32767), -32767)
                 out_trust[i, 2 * x + odd] = trust[y >> 1, x]
 
 

@@ -29,6 +29,8 @@ def test_inconsistent_slopes_are_fitted_by_least_squares():
         return ((along_x - x) ** 2).sum() + ((along_y - y) ** 2).sum()
 
     best = integrate(x, y)
+    beyond = np.full(15, 7.0)
+    assert np.array_equal(best, integrate(np.hstack([x[:, :-1], beyond[:12, None]]), np.vstack([y[:-1], beyond])))
     assert all(cost(best) < cost(best + 1e-3 * random.normal(size=best.shape)) for _ in range(20))
 
 

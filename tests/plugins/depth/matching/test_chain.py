@@ -14,6 +14,8 @@ from tangible_core.compiled import threads
 from tangible_core.data import Views
 from tangible_depth.dense.confidence import confidence, flat_pixels
 from tangible_depth.dense.edges import median, sharpen_edges
+from tangible_depth.dense.filling.candidates import project_to_right
+from tangible_depth.dense.filling.eight_directions import fill_from_eight_directions
 from tangible_depth.dense.filling.four_directions import GEODESIC, choose_of_four, fill_from_four_directions
 from tangible_depth.dense.refinement import Cleaning, DenseMatches, complete, enlarge, to_disparity_map
 from tangible_depth.dense.span import UNKNOWN
@@ -83,6 +85,15 @@ def test_speckle_filter_removes_small_islands(disparity, largest):
     assert np.array_equal(cleaned, expected)
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_island_of_steps_of_a_whole_pixel_is_one(turned: bool):
+    for apart, left in ((16, 12), (17, 0)):
+        disparity = np.arange(0, 12 * apart, apart, dtype=np.int16)[None]
+        disparity = np.ascontiguousarray(disparity.T if turned else disparity)
+        remove_speckles(disparity, 11)
+        assert np.count_nonzero(disparity != UNKNOWN) == left
+
+
 @pytest.mark.parametrize(("far_px", "alone_px", "left"), [(50, 60, 0), (50, 100, 0), (80, 60, 80), (80, 100, 0)])
 def test_island_is_removed_by_size_and_share_of_matches_near_it(far_px: int, alone_px: int, left: int):
     """The same islands among many matches and far from any."""
@@ -94,6 +105,26 @@ def test_island_is_removed_by_size_and_share_of_matches_near_it(far_px: int, alo
     remove_specks(disparity, Specks(20, 60, alone_px))
     assert np.count_nonzero(disparity[:, :150] == 300) == far_px
     assert np.count_nonzero(disparity[:, 200:] == 300) == left
+
+
+def test_preview_counts_matches_near_an_island_in_fewer_pixels():
+    """Many are matched within 10 pixels of the preview, few within 20."""
+    disparity = np.full((60, 60), UNKNOWN)
+    disparity[20:41, 20:41] = 100
+    disparity[30:32, 28:33] = 300
+    for factor, left in ((2, 10), (1, 0)):
+        cleaned = disparity.copy()
+        remove_specks(cleaned, Specks(5 * factor**2, 15 * factor**2, 15 * factor**2), factor)
+        assert np.count_nonzero(cleaned == 300) == left
+
+
+def test_preview_is_cleaned_of_smaller_islands():
+    matched, grey = np.full((50, 50), np.int16(100)), np.zeros((50, 50), np.uint8)
+    matched[20:22, 20:25] = 300
+    for factor, left in ((1, 0), (2, 10)):
+        cleaned = matched.copy()
+        complete(cleaned, grey, np.ones(256), grey, Cleaning(specks=Specks(20, 60, 60), factor=factor))
+        assert np.count_nonzero(cleaned == 300) == left
 
 
 def test_small_island_among_few_matches_is_removed():
@@ -116,7 +147,8 @@ def test_filling_keeps_known_pixels_and_leaves_none_unknown(disparity, seed):
     assert set(np.unique(filled)) <= set(np.unique(disparity))
 
 
-def test_filling_with_any_number_of_threads_is_the_same(monkeypatch):
+@pytest.mark.parametrize("fill", [fill_from_four_directions, fill_from_eight_directions])
+def test_filling_with_any_number_of_threads_is_the_same(fill, monkeypatch):
     rng = np.random.default_rng(3)
     disparity = np.where(rng.random((130, 70)) < 0.6, UNKNOWN, rng.integers(0, 900, (130, 70))).astype(np.int16)
     disparity[40:80] = UNKNOWN
@@ -124,7 +156,7 @@ def test_filling_with_any_number_of_threads_is_the_same(monkeypatch):
     maps = []
     for count in (1, 2, 7):
         monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
-        maps.append(fill_from_four_directions(disparity, grey))
+        maps.append(fill(disparity, grey))
     assert np.array_equal(maps[0], maps[1])
     assert np.array_equal(maps[0], maps[2])
 
@@ -136,6 +168,20 @@ def test_candidate_contradicted_by_both_views_is_not_taken():
     disparity[3:6, 26:34] = UNKNOWN
     filled = fill_from_four_directions(disparity, np.full(disparity.shape, 100, np.uint8))
     assert (filled[3:6, 26:34] == 64).all()
+
+
+def test_right_view_shows_the_nearest_surface_at_each_column():
+    """Of either sign; what lies beyond the picture is nearest of all, and two pixels may be seen at one column."""
+    row = np.array([UNKNOWN, 16, -40, 39, 40, 80, -48, UNKNOWN, 16], np.int16)
+    seen, columns = np.empty(row.size + 2, np.int16), np.empty(row.size, np.int32)
+    project_to_right(row, columns, seen)
+    expected = np.full(row.size, UNKNOWN)
+    for x, value in enumerate(row.tolist()):
+        column = x - (value + 8) // 16
+        if value != UNKNOWN and 0 <= column < row.size:
+            expected[column] = max(expected[column], value)
+    assert expected.tolist()[:2] == [80, 40]
+    assert seen.tolist() == [32767, *expected.tolist(), 32767]
 
 
 def score(value, path, farthest, row_farthest, there):
@@ -150,10 +196,10 @@ def test_gap_takes_the_candidate_of_the_best_score():
     width, told = 60, 0
     for _ in range(3000):
         x = int(random.integers(20, 40))
-        values = random.choice([16, 32, 64, 70, 120, 200, 320], 5).astype(np.int16)
+        values = random.choice([16, 32, 64, 70, 72, 96, 120, 200, 320], 5).astype(np.int16)
         values[random.random(5) < 0.2] = UNKNOWN
         paths = random.integers(0, 150, 5).astype(np.int32) * random.integers(0, 2, 5).astype(np.int32)
-        seen = random.choice([UNKNOWN, 16, 100, 200, 330, 32767], width + 2).astype(np.int16)
+        seen = random.choice([UNKNOWN, 16, 96, 100, 200, 330, 32767], width + 2).astype(np.int16)
         seen[0] = seen[-1] = 32767
         chosen = choose_of_four(values[:, None].repeat(width, 1), paths[:, None].repeat(width, 1), x, seen)
         known = values[values != UNKNOWN].astype(int)
@@ -179,8 +225,9 @@ def test_gap_takes_the_candidate_of_the_best_score():
     assert told > 2000
 
 
+@pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize(("gap", "filled_in"), [(1, 64), (2, 64), (3, 0)])
-def test_short_gap_between_similar_ends_takes_the_farther(gap, filled_in):
+def test_short_gap_between_similar_ends_takes_the_farther(gap, filled_in, mirrored):
     """Short gaps ignore the rows above if the picture has no edge; longer ones do not."""
     disparity = np.zeros((9, 40), np.int16)
     disparity[4] = 80
@@ -189,7 +236,10 @@ def test_short_gap_between_similar_ends_takes_the_farther(gap, filled_in):
     grey = np.full(disparity.shape, 100, np.uint8)
     grey[4, 20 + gap :] = 200  # the right end lies behind an edge
     grey[4, :20] = 0
-    assert (fill_from_four_directions(disparity, grey)[4, 20 : 20 + gap] == filled_in).all()
+    row = np.s_[4, 20 : 20 + gap]
+    if mirrored:
+        disparity, grey, row = disparity[:, ::-1].copy(), grey[:, ::-1].copy(), np.s_[4, 20 - gap : 20]
+    assert (fill_from_four_directions(disparity, grey)[row] == filled_in).all()
 
 
 @pytest.mark.parametrize(("left", "right", "levels", "near"), [(320, 64, 60, [0, 1, 2, 3]), (64, 320, 120, [11])])
@@ -232,7 +282,10 @@ def test_confidence_of_a_kept_match_is_read_from_the_table():
     table = 1 - np.arange(256) / 255
     quality = np.tile(np.array([0, 51, 255], np.uint8), 20)[None]
     assert np.allclose(confidence(matched, matched + np.int16(10), quality, table), np.tile([1, 0.8, 0], 20))
-    assert np.allclose(confidence(matched, matched + np.int16(40), quality, table), 0.1)
+    assert np.allclose(confidence(matched, matched - np.int16(16), quality, table), np.tile([1, 0.8, 0], 20))
+    assert np.allclose(confidence(matched, matched + np.int16(17), quality, table), 0.1)
+    nothing = np.full((1, 60), UNKNOWN)
+    assert confidence(nothing, nothing, quality, table).max() <= 0.1
 
 
 def test_confidence_next_to_depth_steps_and_in_gaps_falls():
@@ -283,6 +336,43 @@ def test_plane_is_enlarged_exactly():
     exact = 2 * (4 * (columns - 0.5) / 2 + 2 * (rows - 0.5) / 2 + 100)
     assert np.abs(large.disparity - exact)[1:-1, 1:-1].max() <= 1
     assert large.confidence.shape == (39, 60)
+
+
+def test_steps_within_a_pixel_are_enlarged_to_a_slope_and_larger_ones_to_a_step():
+    for apart, beside in ((16, [208, 216, 232, 240]), (17, [208, 208, 242, 242])):
+        small = np.full((4, 6), np.int16(104))
+        small[:, 3:] += np.int16(apart)
+        large = enlarge(DenseMatches(small, np.ones(small.shape, np.float32)), np.full((8, 12), 9, np.uint8))
+        assert large.disparity[4, 4:8].tolist() == beside
+
+
+@pytest.mark.parametrize(("value", "large"), [(20000, 32767), (-20000, -32767), (-16384, -32767), (-16383, -32766)])
+def test_disparity_beyond_16_bits_is_enlarged_to_the_largest(value: int, large: int):
+    """Of either sign, and next to the value of unknown ones."""
+    small = DenseMatches(np.full((4, 6), np.int16(value)), np.ones((4, 6), np.float32))
+    assert (enlarge(small, np.full((8, 12), 9, np.uint8)).disparity == large).all()
+
+
+def test_enlarged_map_in_pixels_is_the_same_with_any_number_of_threads(monkeypatch):
+    rng = np.random.default_rng(4)
+    small = DenseMatches(rng.choice([0, 64, 400], (70, 30)).astype(np.int16), rng.random((70, 30)).astype(np.float32))
+    grey = (rng.integers(0, 2, (140, 60)) * 3).astype(np.uint8)
+    grey[60:80] = 5
+    maps = []
+    for count in (1, 7):
+        monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
+        maps.append(to_disparity_map(enlarge(small, grey), grey, fill=True))
+    assert maps[0].digest() == maps[1].digest()
+
+
+def test_flat_pixels_keep_their_disparity_without_trust():
+    grey = np.full((9, 12), 40, np.uint8)
+    grey[:, 8:] = np.arange(4) * 20
+    dense = DenseMatches(np.full(grey.shape, np.int16(40)), np.full(grey.shape, np.float32(0.7)))
+    for fill in (True, False):
+        found = to_disparity_map(dense, grey, fill)
+        assert np.array_equal(found.confidence > 0, ~flat_pixels(grey))
+        assert np.array_equal(np.isnan(found.disparity_px), flat_pixels(grey) & (not fill))
 
 
 def test_map_in_pixels_has_nan_where_unknown():

@@ -1,3 +1,5 @@
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -5,7 +7,14 @@ from hypothesis import strategies as st
 
 from tangible_core.errors import GeometryError
 from tangible_depth.rectify.epipolar import sampson_distance
-from tangible_depth.rectify.fundamental import DegenerateMatches, eight_point, normalise, robust_fundamental
+from tangible_depth.rectify.fundamental import (
+    DegenerateMatches,
+    check_matches,
+    eight_point,
+    normalise,
+    pixel_weights,
+    robust_fundamental,
+)
 from tangible_depth.rectify.parallax import best_plane, fundamental_from_plane
 from two_cameras import seen_points, some_wrong, symmetric_epipolar_distance
 
@@ -62,9 +71,13 @@ def test_same_matches_give_the_same_matrix():
 
 
 def reason(call, *matches):
+    return refusal(call, *matches).reason
+
+
+def refusal(call, *matches):
     with pytest.raises(DegenerateMatches) as caught:
         call(*matches)
-    return caught.value.reason
+    return caught.value
 
 
 @pytest.mark.parametrize("call", [eight_point, robust_fundamental])
@@ -76,6 +89,9 @@ class TestDegeneracies:
     def test_duplicate_matches_are_refused(self, call):
         left, right = seen_points(count=5)
         assert reason(call, np.tile(left, (9, 1)), np.tile(right, (9, 1))) == "duplicate"
+        seven, eight = (np.tile(seen_points(count=count)[0], (2, 1)) for count in (7, 8))
+        assert "7 different points in 14" in str(refusal(call, seven, seven))
+        assert reason(call, eight, eight) == "homography"
         assert reason(call, np.ones((30, 2)), np.ones((30, 2))) == "duplicate"
 
     def test_collinear_matches_are_refused(self, call):
@@ -83,6 +99,8 @@ class TestDegeneracies:
         line = np.column_stack([along, 0.5 * along + 3])
         assert reason(call, line, line + np.array([5, 1])) == "collinear"
         assert reason(call, seen_points(count=40)[0], line) == "collinear"
+        assert "the right points" in str(refusal(call, seen_points(count=40)[0], line))
+        assert "the left points" in str(refusal(call, line, seen_points(count=40)[0]))
 
     def test_flat_scene_is_degenerate(self, call):
         assert reason(call, *seen_points(flat=True)) == "homography"
@@ -95,6 +113,8 @@ class TestDegeneracies:
         left, right = seen_points()
         right[7, 1] = value
         assert reason(call, left, right) == "not finite"
+        left[7, 0], right[9] = value, value
+        assert f"2 of {len(left)} matches are" in str(refusal(call, left, right))
 
     def test_matches_of_wrong_shapes_are_refused(self, call):
         with pytest.raises(GeometryError, match="two arrays"):
@@ -174,3 +194,24 @@ def test_dozen_good_matches_are_enough():
 def test_rectified_pair_gives_its_geometry():
     matrix = robust_fundamental(*seen_points(turn=(0, 0, 0), move_m=(-0.3, 0, 0))).matrix
     assert abs(matrix) == pytest.approx(np.array([[0, 0, 0], [0, 0, 1], [0, 1, 0]]) / np.sqrt(2), abs=1e-6)
+
+
+def test_equations_are_weighed_by_the_lengths_of_both_lines():
+    left, right = seen_points(count=30)
+    matrix = np.random.default_rng(0).normal(size=(3, 3))
+    rows = [np.column_stack([each, np.ones(30)]) for each in (left, right)]
+    value = np.abs(np.einsum("ni,ij,nj->n", rows[0], matrix, rows[1]))
+    weights = pixel_weights(matrix, left, right)
+    assert weights.max() == 1
+    ratio = weights * value / sampson_distance(matrix, left, right)
+    assert ratio == pytest.approx(np.full(30, ratio[0]))
+
+
+@pytest.mark.parametrize(("share", "refused"), [(0.0045, True), (0.0055, False)])
+def test_points_within_half_a_percent_of_a_line_are_collinear(share, refused):
+    along, across = np.linspace(-300, 300, 40), np.random.default_rng(0).normal(size=40)
+    across -= across.mean() + along * (along @ across) / (along @ along)
+    across *= share * np.linalg.norm(along) / np.linalg.norm(across)
+    turn = np.array([[0.8, -0.6], [0.6, 0.8]])
+    with pytest.raises(DegenerateMatches, match="collinear") if refused else nullcontext():
+        check_matches(np.column_stack([along, across]) @ turn + 400, seen_points(count=40)[0])

@@ -234,6 +234,14 @@ class TestSkippedPair:
         rectify(Views(BLANK, BLANK), matches=Matches(left, left - np.column_stack([disparity, 0 * disparity])))
         assert ("seem to be exchanged" in caplog.text) == said
 
+    @pytest.mark.parametrize("exchanged", [False, True])
+    def test_exchanged_views_that_are_rectified_are_said(self, exchanged, monkeypatch):
+        left, right = offset_matches(0.9, 0.0, monkeypatch)
+        shift = np.array([[900.0 if exchanged else 0.0, 0]])
+        with collected() as notes:
+            rectify(Views(BLANK, BLANK), matches=Matches(left, right + shift))
+        assert any("every disparity is negative" in each for each in notes) == exchanged
+
     def test_pair_with_another_exposure_is_skipped(self):
         scene = Scene()
         assert rectify(Views(scene.left(), 0.2 + 0.5 * scene.right() ** 1.4)).skipped
@@ -341,8 +349,9 @@ class TestHomographyCheck:
         ],
     )
     def test_distorting_homographies_are_refused(self, homography, words):
-        with pytest.raises(RectificationError, match=words):
-            check_homographies((np.eye(3), homography), (100, 200), np.zeros(5))
+        for side, pair in (("right", (np.eye(3), homography)), ("left", (homography, np.eye(3)))):
+            with pytest.raises(RectificationError, match=f"the {side} picture.*{words}"):
+                check_homographies(pair, (100, 200), np.zeros(5))
 
     @pytest.mark.parametrize(
         ("share", "offset_px", "refused"), [(0.04, 9.0, False), (0.06, 3.1, True), (0.06, 2.9, False)]
@@ -459,6 +468,16 @@ def test_distortion_is_removed_and_restored(radial):
     points = np.random.default_rng(0).uniform(0, [WIDTH, HEIGHT], (200, 2))
     straight = undistort(points, radial, (HEIGHT, WIDTH))
     assert distort(straight, radial, (HEIGHT, WIDTH)) == pytest.approx(points)
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(200, 400), (400, 200)])
+def test_distortion_keeps_the_middle_and_a_circle_of_half_the_longer_side_over_root_two(rows, columns):
+    """At the radius r, in half the longer side, a point moves to r (1 + k / 2) / (1 + k r^2)."""
+    middle = np.array([(columns - 1) / 2, (rows - 1) / 2])
+    points = middle + np.array([[0, 0], [100, 100], [0, 50], [-200, 0]])
+    moved = undistort(points, -0.2, (rows, columns)) - middle
+    expected = [[0, 0], [100, 100], [0, 50 * 0.9 / (1 - 0.2 / 16)], [-200 * 0.9 / 0.8, 0]]
+    assert moved == pytest.approx(np.array(expected))
 
 
 def test_map_to_original_applies_the_lens():

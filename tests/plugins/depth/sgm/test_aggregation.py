@@ -5,84 +5,14 @@ import os
 import numpy as np
 import pytest
 
+from semi_global_plainly import plain_disparity, plain_sums
 from stereo_scenes import step
 from tangible_core.compiled.threads import thread_count
-from tangible_depth.dense.span import UNKNOWN, Span
+from tangible_depth.dense.span import Span
 from tangible_depth.sgm import strips
 from tangible_depth.sgm.census import census, census_with_levels
 from tangible_depth.sgm.costs import LEVELS, SHARP, p2_by_grey_step
 from tangible_depth.sgm.strips import sweep, unknown_matches
-
-
-def plain_census(grey):
-    """Bits of the 5 x 5 window, in any order: whether a neighbour is darker."""
-    padded = np.pad(grey, 2, mode="edge")
-    h, w = grey.shape
-    around = [padded[dy : dy + h, dx : dx + w] for dy in range(5) for dx in range(5) if (dy, dx) != (2, 2)]
-    return np.stack([each < grey for each in around], axis=-1)
-
-
-def plain_costs(left, right, span, neutral):
-    """Differing bits by row, column and disparity low..high."""
-    a, b = plain_census(left), plain_census(right)
-    h, w = left.shape
-    costs = np.full((h, w, span.high - span.low + 1), neutral, int)
-    for i, d in enumerate(range(span.low, span.high + 1)):
-        for x in range(w):
-            if 0 <= x - d < w:
-                costs[:, x, i] = (a[:, x] != b[:, x - d]).sum(axis=-1)
-    return costs
-
-
-def plain_path(costs, steps, penalties):
-    """Costs (n, ..., d) summed along the first axis, each kept relative to the minimum before it."""
-    before = np.zeros(costs.shape[1:], int)
-    out = []
-    for cost, step_here in zip(costs, steps, strict=True):
-        least = before.min(axis=-1, keepdims=True)
-        wall = np.full((*before.shape[:-1], 1), 255)
-        up = np.concatenate([wall, before[..., :-1]], axis=-1)
-        down = np.concatenate([before[..., 1:], wall], axis=-1)
-        jumped = least + penalties.p2_by_step.astype(int)[step_here][..., None]
-        best = np.minimum(np.minimum(before, jumped), np.minimum(up, down) + int(penalties.p1))
-        before = np.minimum(cost + best - least, 255)
-        out.append(before)
-    return np.stack(out)
-
-
-def plain_sums(left, right, span, penalties):
-    costs = plain_costs(left, right, span, int(penalties.neutral))
-    grey = left.astype(int)
-    total = np.zeros_like(costs)
-    for axis in (0, 1):
-        c, g = np.moveaxis(costs, axis, 0), np.moveaxis(grey, axis, 0)
-        steps = np.abs(np.diff(g, axis=0, prepend=g[:1]))
-        back = np.abs(np.diff(g[::-1], axis=0, prepend=g[-1:]))
-        total += np.moveaxis(plain_path(c, steps, penalties) + plain_path(c[::-1], back, penalties)[::-1], 0, axis)
-    return np.minimum(total, 255)
-
-
-def plain_disparity(sums, span, tolerance):
-    h, w, count = sums.shape
-    out = np.full((h, w), UNKNOWN, np.int16)
-    right_best = np.full((h, w), 255)
-    for i, d in enumerate(range(span.low, span.high + 1)):
-        for x in range(max(0, d), min(w, w + d)):
-            right_best[:, x - d] = np.minimum(right_best[:, x - d], sums[:, x, i])
-    for y, x in np.ndindex(h, w):
-        s = sums[y, x]
-        i = count - 1 - int(np.argmin(s[::-1]))  # of equals the largest disparity
-        d = span.low + i
-        if not 0 <= x - d < w or s[i] == 255 or s[i] > np.float32(tolerance) * np.float32(right_best[y, x - d]):
-            continue
-        offset = 0.0
-        if 0 < i < count - 1:
-            before, after = float(s[i + 1]), float(s[i - 1])  # lanes run downwards
-            if before == after == s[i]:
-                continue
-            offset = (before - after) / (2 * (max(before, after) - s[i]))
-        out[y, x] = np.floor(16 * (d - offset) + 0.5)
-    return out
 
 
 @pytest.mark.parametrize("span", [Span(0, 15), Span(0, 10), Span(-5, 6), Span(3, 20), Span(-9, -2)])
@@ -96,6 +26,19 @@ def test_sweep_equals_plain_semi_global_matching(span, tolerance):
     sums = plain_sums(left, right, span, SHARP.penalties)
     assert np.array_equal(out.sums, sums.min(axis=-1))
     assert np.array_equal(out.disparity, plain_disparity(sums, span, tolerance))
+
+
+@pytest.mark.parametrize("span", [Span(0, 15), Span(-6, 9)])
+def test_sweep_of_noise_equals_plain_semi_global_matching(span):
+    """Few greys, so that sums are often equal, and as large as they can be."""
+    left, right = np.random.default_rng(1).choice([0, 90, 255], (2, 14, 37)).astype(np.uint8)
+    dear = SHARP.penalties._replace(p1=np.uint8(200), p2_by_step=p2_by_grey_step(230, 200, 0.1))
+    for penalties in (SHARP.penalties, dear):
+        out = unknown_matches(left.shape)
+        sweep((census(left), census(right)), left, span, penalties, 1.08, [(0, 14)], out)
+        sums = plain_sums(left, right, span, penalties)
+        assert np.array_equal(out.sums, sums.min(axis=-1))
+        assert np.array_equal(out.disparity, plain_disparity(sums, span, 1.08))
 
 
 @pytest.mark.parametrize("span", [Span(0, 46), Span(-1, 69), Span(-3, 104)])
@@ -150,6 +93,26 @@ def test_volumes_stay_within_their_bound(shape, span):
     assert highest <= 8 or volumes <= strips.VOLUME_BYTES
 
 
+def test_strips_of_a_very_wide_picture_have_eight_rows():
+    assert strips.strips((17, 90000), Span(0, 511)) == [(0, 8), (8, 16), (16, 17)]
+    assert strips.strips((130, 90), Span(0, 15)) == [(0, 128), (128, 130)]
+
+
+@pytest.mark.parametrize("rows", [(0, 20), (21, 38), (40, 59)])
+def test_strip_whose_paths_begin_at_the_ends_of_the_picture_is_part_of_the_whole(rows):
+    """Its own rows alone would be matched otherwise."""
+    left, right = np.random.default_rng(2).choice([0, 90, 255], (2, 59, 41)).astype(np.uint8)
+    found = []
+    for only, warm in (((0, 59), 0), (rows, 59), (rows, 0)):
+        out = unknown_matches(left.shape)
+        sweep((census(left), census(right)), left, Span(0, 15), SHARP.penalties, 1.0, [only], out, warm)
+        found.append(out)
+    part = slice(*rows)
+    assert np.array_equal(found[0].sums[part], found[1].sums[part])
+    assert np.array_equal(found[0].disparity[part], found[1].disparity[part])
+    assert not np.array_equal(found[0].sums[part], found[2].sums[part])
+
+
 @pytest.mark.parametrize("processors", [1, 3, 64])
 def test_strips_with_any_number_of_threads_are_the_same(processors, monkeypatch):
     expected = strips.strips((3000, 4500), Span(0, 511))
@@ -158,14 +121,15 @@ def test_strips_with_any_number_of_threads_are_the_same(processors, monkeypatch)
     assert strips.strips((3000, 4500), Span(0, 511)) == expected
 
 
-def test_threads_are_limited_by_memory(monkeypatch):
-    monkeypatch.setattr(strips, "VOLUME_BYTES", 3 * 16 * 64 * 32)
+@pytest.mark.parametrize(("volumes", "most"), [(3, 3), (3.9, 3), (1, 1), (0.5, 1)])
+def test_threads_are_limited_by_memory(volumes, most, monkeypatch):
+    monkeypatch.setattr(strips, "VOLUME_BYTES", int(volumes * 16 * 64 * 32))
     at_work = []
     monkeypatch.setattr(strips, "in_turns", lambda tasks, work, most: at_work.append(most))
     rows = [(y, y + 16) for y in range(0, 160, 16)]
     codes = np.empty((160, 3, 64), np.uint8)
     sweep((codes, codes), codes[:, 0], Span(0, 31), SHARP.penalties, 1.0, rows, unknown_matches((160, 64)))
-    assert at_work == [3]
+    assert at_work == [most]
 
 
 def test_highest_strips_are_matched_first(monkeypatch):
@@ -189,6 +153,8 @@ def test_span_fits_lanes_and_pictures():
     assert Span(2, 68).fill_lanes() == Span(2, 81)
     assert Span(2, 68).widen() == Span(2, 129)
     assert Span(-3, 3).lanes == 16
+    assert Span(0, 3).widen() == Span(0, 15)
     assert Span(-50, 500).clip(100) == Span(-50, 99)
+    assert Span(-500, 50).clip(100) == Span(-99, 50)
     assert Span(500, 900).clip(1) == Span(0, 0)
     assert Span(-5, 5).downsample(2) == Span(-3, 3)

@@ -117,3 +117,12 @@ def test_small_islands_are_erased_and_large_ones_kept():
     left = erase_speckles(disparity)
     assert np.all(left[:10, :10] == 5.5)
     assert np.isnan(left[10:]).all()
+
+
+def test_island_of_just_the_size_is_erased():
+    disparity = np.full(SHAPE, np.nan, np.float32)
+    disparity[5:10, 5:10] = disparity[20:25, 20:25] = 3
+    disparity[25, 20] = 3.5
+    left = erase_speckles(disparity, 25)
+    assert np.isfinite(left).sum() == 26
+    assert np.isfinite(left[20:26, 20:25]).sum() == 26

@@ -38,3 +38,10 @@ def test_range_of_a_pair_covers_its_disparities():
     assert -25 <= low <= -7
     assert 13 <= high <= 30
     assert range_of_pair(scene.left(), scene.right(), 40) == (0, 40)
+
+
+@pytest.mark.parametrize(("count", "range_px"), [(19, (0, 50)), (20, (0, 44))])
+def test_twenty_matches_within_two_rows_make_a_range(count, range_px):
+    assert range_of_shifts(shifts(np.full(count, 40.0), vertical=2.0), 200) == range_px
+    assert range_of_shifts(shifts(np.full(count, 40.0), vertical=-2.0), 200) == range_px
+    assert range_of_shifts(shifts(np.full(count, 40.0), vertical=2.1), 200) == (0, 50)

@@ -70,3 +70,11 @@ def test_flat_picture_has_no_features(shape):
     assert response.shape == shape
     assert len(corners(response, least_response(0.001), 10)) == 0
     assert len(row_edges(response, least_response(0.001))) == 0
+
+
+def test_corner_is_over_the_least_and_an_edge_of_equal_columns_is_their_last():
+    """Left of a valley of two equal columns an equal one is allowed, right of it none."""
+    response = np.array([[0, 3, 0, 0, 5, 0, 0, 4, 0]], np.float32)
+    assert corners(response, 3.0, 9).tolist() == [[4, 0], [7, 0]]
+    valley = np.array([[0, -4, -4, 0, -2, -5, -4, -4, -4]], np.float32)
+    assert row_edges(valley, 3.0).tolist() == [[2, 0], [5, 0], [8, 0]]

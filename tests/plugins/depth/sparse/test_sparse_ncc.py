@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from stereo_scenes import texture
 from tangible_depth.sparse.matches import inverse_lengths
 from tangible_depth.sparse.sparse_ncc import match_rows
 from two_cameras import Scene
@@ -56,3 +57,21 @@ def test_flat_windows_and_ranges_beyond_the_picture_are_unknown():
 def test_search_without_points_is_empty():
     grey = np.zeros((5, 5), np.float32)
     assert search(grey, grey, np.empty((0, 2), np.int64), 0, 3)[0].size == 0
+
+
+@pytest.mark.parametrize("shift", [-4.3, -2.0, 0.25, 3.3, 5.7])
+def test_fraction_of_a_disparity_has_its_sign(shift):
+    """Of a wave that both views show; its peak is found to a tenth of a pixel."""
+    rows, columns = np.indices((11, 60))
+    left, right = (np.sin((columns + by) / 3 + rows / 5).astype(np.float32) for by in (0, shift))
+    disparity, _ = search(left, right, np.array([[30, 5], [25, 4]]), -8, 8)
+    assert disparity == pytest.approx([shift, shift], abs=0.1)
+
+
+def test_match_whose_right_window_finds_the_next_pixel_is_kept():
+    """Between two whole disparities either may be the best, so that a few windows lead back to the next pixel."""
+    rows, columns = np.indices((40, 160), float)
+    left, right = (texture(columns + by, rows) / np.float32(255) for by in (0, 2.5))
+    disparity, _ = search(left, right, every((40, 160), 1, 12), 0, 8)
+    assert np.isfinite(disparity).all()
+    assert disparity == pytest.approx(np.full(disparity.shape, 2.5), abs=0.3)

@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from tangible_core.compiled.small_matrices import eigen, solve
+from tangible_core.plugins.notes import collected
 from tangible_texture.clusters import planes as matrices
+from tangible_texture.clusters.classes import _clearest_division, _resample_labels
 from tangible_texture.clusters.discriminants import discriminant_axes, evidence, principal_axes, scatters
 from tangible_texture.clusters.dividing import divide, one_hot
 from tangible_texture.clusters.full_size import pixel_labels
-from tangible_texture.clusters.joining import join_clusters, joining_costs
-from tangible_texture.clusters.neighbourhood import INSIDE_CELLS, smooth_memberships
+from tangible_texture.clusters.joining import Step, join_clusters, joining_costs
+from tangible_texture.clusters.neighbourhood import INSIDE_CELLS, mean_field, refit_labels, smooth_memberships
 from tangible_texture.clusters.planes import (
     combine_planes,
     inner_products,
@@ -17,6 +19,7 @@ from tangible_texture.clusters.planes import (
     scatter_matrix_in_kernel,
 )
 from tangible_texture.features.patterns import COUNTERS, RADII, pattern_frequencies
+from tangible_texture.signal.smoothing import gaussian
 
 
 @pytest.fixture
@@ -195,9 +198,150 @@ def test_patterns_of_a_negative_are_exchanged(random: np.random.Generator):
     np.testing.assert_array_equal(negative[:2, exchanged, 1:-1, 1:-1], plain[:2, :, 1:-1, 1:-1])
 
 
-def test_border_of_pixels_lies_between_the_centres_of_cells():
+def plain_patterns(grey: np.ndarray, radius: int) -> np.ndarray:
+    """Count classes and agreements pixel by pixel; neighbours in turn from the right, upwards."""
+    near = round(radius * np.sqrt(0.5))
+    places = [(0, radius), (-near, near), (-radius, 0), (-near, -near)]
+    places += [(-down, -right) for down, right in places]
+    h, w = grey.shape
+    framed = np.pad(grey, radius, mode="edge")
+    found = np.zeros((COUNTERS, -(-h // 4), -(-w // 4)))
+    for y, x in np.ndindex(h, w):
+        bright = [bool(framed[y + radius + v, x + radius + u] >= grey[y, x] - 1e-3) for v, u in places]
+        changes = sum(bright[i] != bright[i - 1] for i in range(8))
+        here = found[:, y // 4, x // 4]
+        here[sum(bright) if changes <= 2 else 9] += 1
+        for i in range(4):
+            here[10 + i] += not (bright[i] or bright[i + 4])
+            here[14 + i] += bright[i] and bright[i + 4]
+            here[18 + i] += ((bright[i] == bright[i + 2]) + (bright[i + 4] == bright[(i + 6) % 8])) / 2
+    pixels = [np.bincount(np.arange(side) // 4) for side in (h, w)]
+    return found / (pixels[0][:, None] * pixels[1])
+
+
+@pytest.mark.parametrize("step", [5e-4, 0.4])
+def test_frequencies_are_those_of_patterns_counted_one_by_one(random: np.random.Generator, step: float):
+    """Of greys that often are equal, or differ by rounding."""
+    grey = (step * random.integers(0, 4, (14, 11))).astype(np.float32)
+    found = pattern_frequencies(grey).reshape(len(RADII), COUNTERS, 4, 3)
+    np.testing.assert_allclose(found[0], plain_patterns(grey, 1), atol=1e-6)
+    np.testing.assert_allclose(found[1], plain_patterns(grey, 3), atol=1e-6)
+
+
+def test_far_neighbours_are_taken_from_a_smoothed_picture(random: np.random.Generator):
+    grey = random.standard_normal((24, 20)).astype(np.float32)
+    found = pattern_frequencies(grey).reshape(len(RADII), COUNTERS, 6, 5)[2]
+    smooth = gaussian(np.pad(grey, 12, mode="reflect")[..., None], 1.5)[12:-12, 12:-12, 0]
+    np.testing.assert_allclose(found, plain_patterns(smooth, 5), atol=1e-6)
+
+
+def test_evidence_is_the_log_likelihood_up_to_a_common_term(random: np.random.Generator):
+    planes, labels = two_groups(random)
+    planes = planes + np.float32(3)
+    fit = scatters(planes, one_hot(labels, 2))
+    found = evidence(planes, fit)
+    away = [planes.T - mean for mean in fit.means]
+    logs = [-0.5 * np.einsum("nd,nd->n", each, np.linalg.solve(fit.within, each.T).T) for each in away]
+    np.testing.assert_allclose(found[0] - found[1], logs[0] - logs[1], rtol=1e-3, atol=1e-3)
+
+
+def test_cluster_of_the_largest_sum_of_squares_is_halved_next():
+    """300 cells that spread by 1, and 100 that spread by 1.5: halved again is the larger one."""
+    planes = np.concatenate([np.linspace(-1, 1, 300), np.linspace(38.5, 41.5, 100)]).astype(np.float32)[None]
+    found = divide(planes, 3)
+    assert len(set(found[:300].tolist())) == 2
+    assert len(set(found[300:].tolist())) == 1
+
+
+def test_divided_cells_lie_in_the_cluster_of_the_nearest_mean(random: np.random.Generator):
+    planes = random.permutation(np.concatenate([random.normal(at, 1, (60, 3)) for at in (5, 30, 70)])).T
+    found = divide(planes.astype(np.float32), 3)
+    means = np.stack([planes[:, found == each].mean(axis=1) for each in range(3)])
+    away = np.square(planes.T[:, None] - means).sum(axis=2)
+    assert np.array_equal(away.argmin(axis=1), found)
+
+
+@pytest.mark.parametrize("shape", [(7, 12), (40, 41)])
+def test_neighbours_are_averaged_by_a_gaussian_of_four_deviations(shape: tuple[int, int], random: np.random.Generator):
+    from scipy.ndimage import gaussian_filter
+
+    memberships = random.random((2, shape[0] * shape[1])).astype(np.float32)
+    found = smooth_memberships(memberships, shape, 1.5)
+    for one, other in zip(found, memberships, strict=True):
+        expected = gaussian_filter(other.reshape(shape), 1.5, mode="reflect", truncate=4)
+        np.testing.assert_allclose(one.reshape(shape), expected, atol=1e-5)
+
+
+@pytest.mark.parametrize("offset", [0.0, -500.0, 500.0])
+def test_memberships_are_those_of_evidence_and_four_times_the_neighbours(offset: float, random: np.random.Generator):
+    """More cells than are processed at once; evidence far from 0 in all classes alike changes nothing."""
+    shape = (40, 60)
+    towards = random.normal(0, 2, (3, 2400)).astype(np.float32)
+    own = one_hot(random.integers(0, 3, 2400), 3)
+    expected = own
+    for _ in range(2):
+        logs = towards + 4 * smooth_memberships(expected, shape, 1.5)
+        expected = np.exp(logs - logs.max(axis=0))
+        expected = (expected / expected.sum(axis=0)).astype(np.float32)
+    found = mean_field(towards + np.float32(offset), own, shape, 1.5, 2)
+    np.testing.assert_allclose(found, expected, atol=1e-3)
+
+
+def test_labels_stay_without_gaps_where_a_class_vanishes(random: np.random.Generator):
+    """The class in the middle is single cells, whose neighbours take them."""
+    labels = (2 * (np.arange(30 * 20) % 30 >= 15)).astype(np.int32)
+    planes = (random.normal(0, 0.1, (2, 600)) + labels).astype(np.float32)
+    truth = labels.copy()
+    labels[[100, 250, 400]] = 1
+    found = refit_labels(planes, labels, (20, 30), 4, 1)
+    assert np.array_equal(found, truth // 2)
+
+
+def test_coarse_cells_lie_under_the_middles_of_finer_ones():
+    assert _resample_labels(np.arange(3, dtype=np.int32), (1, 3), (2, 5)).tolist() == [0, 0, 1, 2, 2] * 2
+    assert _resample_labels(np.arange(6, dtype=np.int32), (2, 3), (4, 3)).tolist() == [0, 1, 2] * 2 + [3, 4, 5] * 2
+
+
+@pytest.mark.parametrize(
+    ("costs", "segments", "said"),
+    [
+        ([1, 2, 1.5, 6, np.inf], 2, "confidence 0.57: joining two of them costs 3.0 times"),
+        ([1, 2, 10, 11, np.inf], 3, "confidence 0.86: joining two of them costs 5.0 times"),
+        ([2, 4, 7.6, 9, np.inf], 4, "confidence 0.26: joining two of them costs 2.0 times"),
+        ([5, 1, 10, 15, np.inf], 3, "confidence 0.48: joining two of them costs 2.0 times"),
+    ],
+)
+def test_clearest_division_is_the_one_before_the_greatest_leap(costs: list[float], segments: int, said: str):
+    """Over the dearest joining before, of five clusters and fewer; the second greatest leap lowers the confidence."""
+    counts = range(len(costs), 0, -1)
+    steps = [Step(np.arange(9, dtype=np.int32) % count, count, cost) for count, cost in zip(counts, costs, strict=True)]
+    with collected() as notes:
+        assert _clearest_division(steps).max() + 1 == segments
+    [note] = notes
+    assert note.startswith(f"segments: {segments}, estimated with {said} as much as any joining before")
+
+
+def test_lone_leap_is_of_the_least_confidence():
+    steps = [Step(np.arange(9, dtype=np.int32) % count, count, cost) for count, cost in ((3, 1), (2, 5), (1, np.inf))]
+    with collected() as notes:
+        assert _clearest_division(steps).max() == 1
+    assert "confidence 0.20" in notes[0]
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_border_of_pixels_lies_between_the_centres_of_cells(turned: bool):
     memberships = np.array([[[0.9, 0.1]], [[0.1, 0.9]]], np.float32)
-    labels, confidence = pixel_labels(memberships, 4, (2, 8))
+    if turned:
+        labels, confidence = (each.T for each in pixel_labels(memberships.transpose(0, 2, 1).copy(), 4, (8, 2)))
+    else:
+        labels, confidence = pixel_labels(memberships, 4, (2, 8))
     np.testing.assert_array_equal(labels, [[0, 0, 0, 0, 1, 1, 1, 1]] * 2)
     np.testing.assert_allclose(confidence[0], confidence[0, ::-1], rtol=1e-5)
     assert confidence[0, 0] == pytest.approx(1 - 1 / 9)
+
+
+def test_pixel_half_way_between_two_classes_is_of_the_first():
+    alike = np.full((2, 1, 2), 0.5, np.float32)
+    labels, confidence = pixel_labels(alike, 3, (2, 6))
+    assert not labels.any()
+    assert not confidence.any()

@@ -21,6 +21,7 @@ def test_strongest_filters_are_the_fewest_holding_the_share():
     assert are_strongest(energies, 0.95).tolist() == [False, True, False, True]
     assert are_strongest(energies, 0.96).tolist() == [False, True, True, True]
     assert are_strongest(energies, 0.5).tolist() == [False, True, False, False]
+    assert are_strongest(np.array([50.0, 25.0, 25.0]), 0.75).tolist() == [True, True, False]
     assert are_strongest(energies, 1.0).all()
     assert are_strongest(np.zeros(3)).all()
 

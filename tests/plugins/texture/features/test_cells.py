@@ -27,3 +27,11 @@ def test_roots_are_standardised_and_a_constant_plane_is_zero():
     standardise_roots(planes)
     np.testing.assert_allclose(planes[0], (roots - roots.mean()) / roots.std(), atol=1e-4)
     assert (planes[1] == 0).all()
+
+
+@pytest.mark.parametrize(("apart", "zero"), [(3e-7, True), (1e-5, False)])
+def test_plane_that_differs_by_rounding_is_zero(apart: float, zero: bool):
+    planes = np.float32([[1, 1 + apart] * 500])
+    assert np.ptp(planes) > 0
+    standardise_roots(planes)
+    assert (planes == 0).all() == zero

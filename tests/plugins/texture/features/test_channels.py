@@ -30,3 +30,13 @@ class TestChannels:
     def test_transparency_lies_over_white(self):
         clear = np.array([[[0, 0, 0, 0], [0, 0, 255, 255]]], np.uint8)
         assert channels(clear, colour=True).tolist() == [[[1, 1, 1], [0, 0, 1]]]
+
+    @pytest.mark.parametrize("channel", [0, 1, 2])
+    def test_picture_whose_one_channel_differs_has_colour(self, channel: int):
+        picture = np.full((2, 3, 3), 100, np.uint8)
+        picture[0, 1, channel] = 101
+        assert channels(picture, colour=True).shape == (2, 3, 3)
+        assert channels(picture, colour=False).shape == (2, 3, 1)
+
+    def test_picture_of_negative_values_is_scaled_by_the_most_negative(self):
+        assert channels(np.array([[-4.0, 1.0, 2.0]]), colour=True)[0, :, 0].tolist() == [-1, 0.25, 0.5]

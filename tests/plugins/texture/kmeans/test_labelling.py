@@ -63,6 +63,13 @@ def test_features_equal_or_too_coarse_are_one_texture():
     assert not is_one_texture(folded, 1, framed)
 
 
+@pytest.mark.parametrize(("spread", "one"), [(0.02, True), (0.05, False), (0.16, False)])
+def test_features_spread_by_under_three_percent_are_one_texture(spread: float, one: bool):
+    grey = np.random.default_rng(0).random((64, 64)).astype(np.float32)
+    checks = np.indices((16, 16)).sum(axis=0) % 2 * 2 - 1
+    assert is_one_texture((1 + spread * checks)[None].astype(np.float32), 0.25, grey) == one
+
+
 def test_a_narrow_strip_goes_to_its_neighbours():
     labels = np.repeat([0, 2, 1], [20, 4, 20]).astype(np.int32)[None].repeat(30, axis=0)
     found, same = remove_seams(labels, 3)

@@ -124,6 +124,44 @@ def test_count_of_distant_groups_is_exact(count):
     assert str(count) in guess.reason
 
 
+def silhouette(rows: np.ndarray, labels: np.ndarray) -> float:
+    """Return the mean silhouette by its definition; 0 for a row alone in its cluster."""
+    found = []
+    for row, label in zip(rows.astype(float), labels, strict=True):
+        away = np.linalg.norm(rows - row, axis=1)
+        own = np.count_nonzero(labels == label)
+        others = [away[labels == each].mean() for each in np.unique(labels) if each != label]
+        a, b = away[labels == label].sum() / max(own - 1, 1), min(others)
+        found.append((b - a) / max(a, b) if own > 1 else 0)
+    return float(np.mean(found))
+
+
+def test_confidence_of_a_count_is_where_its_silhouette_lies_between_a_quarter_and_one():
+    for rows, most in (
+        (blobs(3, each=30, apart=9.0)[0], 5),
+        (np.vstack([blobs(2, each=5)[0], np.full((1, 5), 90)]), 3),
+    ):
+        rows = rows.astype(np.float32)
+        every = {count: silhouette(rows, kmeans(rows, count, 3, seed=2).labels) for count in range(2, most + 1)}
+        shuffled = rows[np.random.default_rng(2).permutation(len(rows))]
+        every = {count: silhouette(shuffled, kmeans(shuffled, count, 3, seed=2).labels) for count in every}
+        best = max(every, key=every.__getitem__)
+        found = choose_count(rows, most, seed=2)
+        assert found.segments == best
+        assert found.confidence == pytest.approx((every[best] - 0.25) / 0.75, abs=1e-4)
+        assert found.reason.endswith(f"silhouette, {every[best]:.2f}")
+
+
+def test_row_between_two_centres_goes_to_the_first():
+    rows = np.array([[0, 0], [2, 0], [4, 0], [2, 5]], np.float32)
+    assert module._settle(rows, np.array([[0, 0], [4, 0]], np.float32), 1).labels.tolist() == [0, 0, 1, 0]
+
+
+def test_least_of_several_numbers_that_are_as_good_is_chosen(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("tangible_texture.kmeans.count._silhouette", lambda rows, labels: 0.5)
+    assert choose_count(blobs(3, each=20)[0], 6).segments == 2
+
+
 def test_count_of_one_group_is_one():
     rows = np.random.default_rng(0).normal(size=(4000, 12)).astype(np.float32)
     assert choose_count(rows, 8).segments == 1
@@ -135,6 +173,8 @@ def test_count_of_one_group_is_one():
 def test_count_with_a_bound_stays_within_it():
     assert choose_count(blobs(5)[0], 3).segments <= 3
     assert choose_count(blobs(5)[0], 1).segments == 1
+    for most in (2, 3, 4):
+        assert choose_count(blobs(5, each=20)[0], most).segments <= most
 
 
 def test_count_of_one_seed_is_the_same():

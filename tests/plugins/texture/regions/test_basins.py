@@ -28,5 +28,9 @@ class TestBasins:
         assert count == 2
         assert found.tolist() == [[0, 0, -1, 1, 1, -1, -1]] * 2 + [[-1] * 7]
 
+    def test_part_smaller_than_asked_for_is_no_basin(self):
+        for smallest_px, count in ((1, 3), (2, 3), (3, 2), (4, 2), (5, 0)):
+            assert basins(self.HEIGHT, [3], smallest_px)[1] == count
+
     def test_corners_do_not_connect(self):
         assert basins(np.array([[0, 1], [1, 0]], np.float32), [0], 1)[1] == 2

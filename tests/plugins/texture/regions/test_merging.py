@@ -5,7 +5,7 @@ import numpy as np
 from tangible_texture.regions import merging
 from tangible_texture.regions.borders import Border, borders
 from tangible_texture.regions.landscape import Landscape
-from tangible_texture.regions.merging import merge, number_in_reading_order
+from tangible_texture.regions.merging import merge, number_in_reading_order, weakest_border
 
 
 class TestMerging:
@@ -55,6 +55,26 @@ class TestMerging:
     def test_borders_of_merged_regions_add_up(self):
         found = {(0, 1): Border(10, 10, 0), (0, 2): Border(9, 90, 2), (1, 2): Border(1, 9, 1)}
         assert merge([50] * 3, found, most=9).tolist() == [0, 0, 0]  # 3 of 10 pairs: neither holds
+
+    def test_border_with_six_edges_of_ten_holds(self):
+        for edges, merged in ((6, [0, 1]), (5.9, [0, 0])):
+            assert merge([50, 50], {(0, 1): Border(10, 50, edges)}, most=2).tolist() == merged
+
+    def test_weakest_border_is_that_of_the_merged_regions(self):
+        """Regions 0 and 1 are one: with 2 it has 3 of 10 and 9 of 10, with 3 it has 7 of 10."""
+        found = {(0, 1): Border(10, 0, 0), (0, 2): Border(10, 0, 3), (1, 2): Border(10, 0, 9), (1, 3): Border(10, 0, 7)}
+        assert weakest_border(found, np.array([0, 0, 2, 3], np.int32)) == 0.6
+        assert weakest_border(found, np.array([0, 0, 2, 0], np.int32)) == 0.6
+        assert weakest_border(found, np.array([3, 3, 2, 0], np.int32)) == 0.6
+        assert weakest_border(found, np.array([0, 0, 0, 3], np.int32)) == 0.7
+        assert weakest_border(found, np.zeros(4, np.int32)) == 0
+
+    def test_small_region_is_weighed_by_the_product_of_areas_over_their_sum(self):
+        found = {(0, 1): Border(10, 50, 9), (1, 2): Border(10, 60, 9), (2, 3): Border(10, 45, 9)}
+        assert merge([100, 100, 100, 1000], found, most=3).tolist() == [0, 0, 2, 3]
+        assert merge([1000, 100, 60, 1000], found, most=3).tolist() == [0, 1, 1, 3]
+        alike = {(0, 1): Border(10, 50, 9), (2, 3): Border(10, 50, 9)}
+        assert merge([100, 100, 1000, 20], alike, most=3).tolist() == [0, 1, 2, 2]
 
     def test_labels_renumbered_are_in_reading_order(self):
         labels = np.array([[3, 3, 1], [0, 2, 1]], np.int32)

@@ -27,6 +27,12 @@ class TestWatershed:
         markers[0, 0], markers[0, 4] = 7, 8
         assert watershed(height, markers)[:, [0, 4]].tolist() == [[7, 8]] * 5
 
+    @pytest.mark.parametrize("high", [100, 10_000])
+    def test_low_heights_are_told_apart_beside_a_high_one(self, high: float):
+        height = np.array([[0, 1, 2, 1, 1, 1, 1, 1, 0, high]], np.float32)
+        markers = np.array([[0, -1, -1, -1, -1, -1, -1, -1, 1, -1]], np.int32)
+        assert np.delete(watershed(height, markers)[0], 2).tolist() == [0, 0, 1, 1, 1, 1, 1, 1, 1]
+
     def test_landscape_without_a_marker_is_not_flooded(self):
         assert np.all(watershed(np.ones((3, 4), np.float32), np.full((3, 4), -1, np.int32)) == -1)
 

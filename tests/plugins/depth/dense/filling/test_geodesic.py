@@ -37,6 +37,11 @@ def test_path_length_is_its_steps_and_grey_changes():
     assert found.lengths[:, :3].tolist() == [[3 + 35, 2 + 5, 1]]
 
 
+def test_of_ways_of_equal_length_the_straight_one_is_taken():
+    disparity = np.array([[UNKNOWN, 16], [UNKNOWN, 32], [UNKNOWN, 48]], np.int16)
+    assert geodesic_candidates(disparity, np.zeros((3, 2), np.uint8)).values[:, 0].tolist() == [16, 32, 48]
+
+
 def test_paths_avoid_rows_without_matches_and_other_gaps():
     disparity = np.full((3, 6), UNKNOWN)
     disparity[0, 2:], disparity[2, 3] = 48, 96

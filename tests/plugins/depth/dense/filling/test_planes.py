@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tangible_depth.dense.filling.eight_directions import fill_from_eight_directions
+from tangible_depth.dense.filling.gaps import fill_gaps
 from tangible_depth.dense.filling.planes import fit_planes
 from tangible_depth.dense.span import UNKNOWN
 
@@ -13,7 +13,7 @@ Y, X = np.indices(SHAPE)
 
 def fill_on_planes(disparity: np.ndarray, grey: np.ndarray) -> np.ndarray:
     """Fill a map and fit planes."""
-    return fit_planes(disparity, fill_from_eight_directions(disparity, grey), grey)
+    return fill_gaps(disparity, grey, "best")
 
 
 def plane(across: float, down: float, offset: float = 400.0) -> np.ndarray:
@@ -67,3 +67,46 @@ def test_values_stay_within_16_bits(value: int):
 def test_unknown_values_stay_unknown():
     unknown = np.full((9, 9), UNKNOWN)
     assert (fit_planes(unknown, unknown, np.zeros((9, 9), np.uint8)) == UNKNOWN).all()
+
+
+def written_out(disparity: np.ndarray, grey: np.ndarray, y: int, x: int, value: int) -> float:
+    """Return the plane at (y, x) through every fourth pixel within 12 of its cell that is like it, with a ridge."""
+    found = []
+    for row, column in np.ndindex(disparity[2::4, 2::4].shape):
+        v, u = 4 * row + 2, 4 * column + 2
+        j, i = 2 * (row - y // 4) + 1, 2 * (column - x // 4) + 1  # half samples from the middle of the samples
+        alike = abs(int(disparity[v, u]) - value) <= 36 and abs(int(grey[v, u]) - int(grey[y, x])) <= 30
+        if abs(j) < 12 and abs(i) < 12 and disparity[v, u] != UNKNOWN and alike:
+            found.append((i, j, int(disparity[v, u]) - value))
+    if len(found) < 4:
+        return value
+    means = np.mean(found, axis=0)
+    i, j, more = (np.array(found) - means).T
+    spread = np.array([[np.mean(i * i) + 1, np.mean(i * j)], [np.mean(i * j), np.mean(j * j) + 1]])
+    slopes = np.linalg.solve(spread, [np.mean(i * more), np.mean(j * more)])
+    return value + means[2] + slopes @ (np.array([x % 4, y % 4]) / 2 - means[:2])
+
+
+@pytest.mark.parametrize("share", [0.1, 0.8])
+def test_planes_are_those_of_the_formula(share: float):
+    """Values of a whole and of a negative map, at the ends of what counts, and where few samples are known."""
+    random = np.random.default_rng(7)
+    truth = random.choice([-136, -100, -64, -63, 300], (26, 39)).astype(np.int16)
+    grey = random.choice([60, 90, 120, 121], truth.shape).astype(np.uint8)
+    disparity = np.where(random.random(truth.shape) < share, truth, UNKNOWN)
+    filled = np.where(disparity == UNKNOWN, np.int16(-100), disparity)
+    found = fit_planes(disparity, filled, grey)
+    gaps = disparity == UNKNOWN
+    expected = [written_out(disparity, grey, y, x, -100) for y, x in zip(*np.nonzero(gaps), strict=True)]
+    assert np.abs(found[gaps] - np.array(expected)).max() <= 0.5 + 1e-6
+    assert np.array_equal(found[~gaps], disparity[~gaps])
+
+
+@pytest.mark.parametrize(("count", "slanted"), [(3, False), (4, True)])
+def test_four_samples_make_a_plane(count: int, slanted: bool):
+    disparity = np.full((24, 24), UNKNOWN)
+    for place, value in list(zip([(10, 10), (10, 18), (18, 10), (18, 18)], [90, 100, 110, 120], strict=True))[:count]:
+        disparity[place] = value
+    filled = np.where(disparity == UNKNOWN, np.int16(100), disparity)
+    found = fit_planes(disparity, filled, np.zeros((24, 24), np.uint8))
+    assert (len(np.unique(found[disparity == UNKNOWN])) > 1) == slanted

@@ -90,7 +90,6 @@ class Pipeline:
         config = config_of(
             scene,
             registry,
-            want="surface" if render is None else "touch",
             depth=depth,
             texture=texture,
             materials=materials,
@@ -105,7 +104,7 @@ class Pipeline:
             export=export,
             title=title,
             language=language,
-            **others,
+            **{"want": "surface" if render is None else "touch", **others},
         )
         self.engine = Engine(config, registry, Cache() if cached else None, threads)
 

@@ -53,7 +53,7 @@ def parse_config(text: str, path: Path, registry: Registry, overrides: Iterable[
     return PipelineConfig(path=path, source=source, **values)
 
 
-def config_of(scene: Scene, registry: Registry, **arguments: Any) -> PipelineConfig:
+def config_of(scene: Scene, registry: Registry, /, **arguments: Any) -> PipelineConfig:
     """Check arguments in Python, by the names of keys: objects, or what a file may have; None for the default.
 
     Raises: ConfigError with every complaint; ArgumentError for what is not a key.

@@ -9,7 +9,15 @@ import pytest
 
 from tangible_core import Calibration, DisparityMap, Pipeline, Recording, Scene, Views, Workspace, load_pipeline, show
 from tangible_core.data import HapticSurface, Plan
-from tangible_core.errors import ConfigError, DeviceError, OutputError, PictureError, Stopped, UnknownMethod
+from tangible_core.errors import (
+    ArgumentError,
+    ConfigError,
+    DeviceError,
+    OutputError,
+    PictureError,
+    Stopped,
+    UnknownMethod,
+)
 from tangible_core.pipeline.engine.stage import StageEvent
 from tangible_core.plugins import DepthEstimator
 from tangible_core.session import STOPPED, compare_replay
@@ -199,6 +207,14 @@ class TestMethods:
         with pytest.raises(ConfigError, match=said) as error:
             Pipeline(Scene.builtin("coins"), **block)
         assert error.value.complaints[0].location == tuple(said.partition(":")[0].split("."))
+
+    def test_other_keys_of_a_file_are_taken_and_unknown_ones_refused(self):
+        scene = Scene.photo(pair()[0])
+        for more, want in (({}, "surface"), ({"render": Proxy()}, "touch"), ({"want": "parts"}, "parts")):
+            assert Pipeline(scene, **more).config.want == want
+        for name in ("wants", "registry"):
+            with pytest.raises(ArgumentError, match=f"{name}: is not a key of the pipeline file"):
+                Pipeline(scene, **{name: "parts"})
 
     def test_unknown_product_is_refused_with_the_nearest(self):
         with pytest.raises(UnknownMethod, match="no product method is named 'surfaces'"):

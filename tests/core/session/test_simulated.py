@@ -3,6 +3,7 @@
 import logging
 import math
 from collections.abc import Callable
+from threading import Event
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from tangible_core.plugins.interfaces import HapticDevice, Link, PlainTouch
 from tangible_core.servo import Safety
 from tangible_core.servo.guard.safety import gain
 from tangible_core.session import INTERRUPTED, failure, run_simulated, simulated
+from tangible_core.session.recording import STOPPED
 from tangible_devices.mock import Mock
 from tangible_render.penalty_gradient import PenaltyGradient
 from tangible_render.proxy import Proxy
@@ -134,10 +136,18 @@ class TestRun:
         assert last.work_j == pytest.approx(2.0 * 0.999)
         assert recording.work_j == pytest.approx(last.work_j, rel=1e-12)
 
+    def test_frames_are_told_the_time_since_the_first_tick(self):
+        told: list[float] = []
+        LINKS[:] = [Scripted()]
+        run_simulated(Says(lambda _: PUSH), Bench(), 0.004, limits=FREE, frames=told.append)
+        assert told == pytest.approx([0.0, 0.001, 0.002, 0.003])
+
     def test_work_of_a_force_counts_from_its_tick_to_the_next(self):
         """1 N at tick 0, 2 N at tick 1, ...: the last one has not worked yet."""
-        recording, _ = feel(lambda tick: Force(0.0, 0.0, tick + 1.0), 0.004)
+        reports: list[ServoReport] = []
+        recording, _ = feel(lambda tick: Force(0.0, 0.0, tick + 1.0), 0.004, on_report=reports.append)
         assert recording.work_j == pytest.approx((1 + 2 + 3) * 0.001)
+        assert reports[-1].work_j == pytest.approx(recording.work_j)
 
     def test_forces_over_the_maximum_are_scaled_down_and_counted(self):
         recording, _ = feel(lambda tick: Force(30.0, 0.0, 40.0) if tick % 2 else PUSH, 0.01)
@@ -210,7 +220,22 @@ class TestEndings:
         assert recording.stopped == INTERRUPTED == reports[-1].stopped
         assert recording.time_s.size == 50
         assert (link.held, link.closed) == (NO_FORCE, 1)
-        assert "stopped after 50 ticks" in caplog.text
+        assert [(each.levelname, each.message.split(":")[0]) for each in caplog.records] == [
+            ("INFO", "stopped after 50 ticks")
+        ]
+
+    def test_stop_from_another_thread_ends_the_session_without_force(self):
+        stop, link = Event(), Scripted()
+
+        def answer(tick: int) -> Force:
+            if tick == 20:
+                stop.set()
+            return PUSH
+
+        LINKS[:] = [link]
+        recording = run_simulated(Says(answer), Bench(), 1.0, limits=FREE, stop=stop)
+        assert (recording.stopped, recording.time_s.size) == (STOPPED, 21)
+        assert (link.held, link.closed) == (NO_FORCE, 1)
 
     def test_ctrl_c_in_a_report_ends_the_session_without_force(self):
         def report(report: ServoReport) -> None:

@@ -1,6 +1,7 @@
 """The tracking error of hands that were held, and of hands that were not."""
 
 import json
+from importlib import import_module
 from pathlib import Path
 
 import cv2
@@ -100,11 +101,79 @@ def test_configured_path_size_stays():
     assert over(Mock(), (0.08, 0.08)) == mock
 
 
-def test_tick_sampler_takes_every_tenth_tick():
+def test_tick_sampler_takes_every_tenth_tick(monkeypatch: pytest.MonkeyPatch):
     rows, looks = np.arange(1000.0)[:, None] * np.ones(len(TICK_COLUMNS)), TickSampler()
     for part in np.split(rows, [3, 4, 17, 120, 121, 500]):
         looks.keep(part)
     assert np.array_equal(looks.recording().rows, rows[::EVERY])
+    monkeypatch.setattr(import_module("tangible_core.session.tracking_error"), "MOST_LOOKS", 50)
+    looks = TickSampler()
+    for part in np.split(rows, 10):
+        looks.keep(part)
+    assert np.array_equal(looks.recording().rows, rows[: 50 * EVERY : EVERY])
+
+
+def seen(at_m: np.ndarray, force_n: np.ndarray) -> Recording:
+    """A recording of every tenth tick, with these places and forces."""
+    rows = np.zeros((len(at_m), len(TICK_COLUMNS)))
+    rows[:, 0] = 0.001 * EVERY * np.arange(len(at_m))
+    rows[:, 2:5], rows[:, 8:11], rows[:, 11:14] = at_m, np.nan, force_n
+    return Recording(rows)
+
+
+@pytest.mark.parametrize(("heights", "most_m"), [(FLAT, 0.01), (FLAT[:16], 0.0025), (FLAT[:, :16], 0.01)])
+@pytest.mark.parametrize(("times", "told"), [(5, False), (6, True)])
+def test_tracking_error_counts_ticks_off_the_path_by_more_than_the_surface_allows(
+    heights: np.ndarray, most_m: float, times: int, told: bool
+):
+    at_m, wanted_m = np.zeros((100, 3)), np.zeros((100, 3))
+    at_m[:, 2] = 0.02
+    at_m[10:30, 0] = 0.9 * most_m
+    at_m[50 : 50 + times, 0] = -1.1 * most_m
+    found = tracking_error(seen(at_m, np.zeros((100, 3))), wanted_m, HapticSurface.from_heights(heights))
+    assert (found.off_share, found.farthest_m) == pytest.approx((times / 100, 1.1 * most_m))
+    assert bool(found.says) == told
+    if told:
+        assert f"for 6 % of the time it was more than {1000 * most_m:.2g} mm off, {1100 * most_m:.0f} mm at most" in (
+            found.says
+        )
+
+
+@pytest.mark.parametrize(("times", "told"), [(5, False), (6, True)])
+def test_tracking_error_counts_contacts_that_began_beside_the_surface(times: int, told: bool):
+    at_m, force_n = np.zeros((100, 3)), np.zeros((100, 3))
+    at_m[:60, 0] = 0.045  # beside the surface, which ends at 40 mm
+    force_n[20 : 20 + times] = 0.2, 0.1, -0.1
+    force_n[30:40] = 0.0, 0.1, 0.3  # from below
+    force_n[55:60] = force_n[61:70] = 0.4, 0.0, 0.0
+    at_m[54:60, 0] = 0.039
+    at_m[61:70, 0] = 0.041  # it left over the rim
+    at_m[60] = 0.0, 0.0, 0.02
+    found = tracking_error(seen(at_m, force_n), None, HapticSurface.from_heights(FLAT))
+    assert found.beside_share == times / 100
+    assert bool(found.says) == told
+    if told:
+        assert "under its rim, and was held off there for 6 % of the time" in found.says
+
+
+@pytest.mark.parametrize(
+    ("goal_m", "held_n", "says"),
+    [
+        ((0.006, 0.03), 0.6, "stuck behind a wall 12 mm high at x 6 mm, y 4 mm"),
+        ((0.006, 0.03), 0.4, "too slow for its path"),
+        ((0.006, -0.03), 0.6, "a level force of 0.6 N held it"),
+    ],
+)
+def test_tracking_error_finds_the_wall_on_the_way_of_a_hand_that_is_held(
+    goal_m: tuple[float, float], held_n: float, says: str
+):
+    heights = np.where((ROWS >= 20) & (ROWS < 24), 0.015, 0.003)  # a wall from 10 to 15 mm behind the middle
+    at_m = np.tile([0.006, 0.004, 0.003], (100, 1))
+    wanted_m = np.tile([*goal_m, 0.003], (100, 1))
+    force_n = np.tile([0.0, held_n, 0.5], (100, 1))
+    found = tracking_error(seen(at_m, force_n), wanted_m, HapticSurface.from_heights(heights))
+    assert found.off_share == 1
+    assert says in found.says
 
 
 def test_run_prints_and_stores_the_tracking_error(tmp_path: Path):

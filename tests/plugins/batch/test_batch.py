@@ -13,7 +13,7 @@ from command_line import tangible
 from farm_here import Here
 from full_disk import files_up_to
 from pictures import write_png
-from tangible_batch import batch, running
+from tangible_batch import batch, job, results, running
 from tangible_batch.job import Job, make_scene
 from tangible_batch.manifest import rows_of
 from tangible_core import Pipeline, Scene
@@ -170,17 +170,31 @@ class TestScenes:
         write_png(archive / "p1.png", picture(9, (30, 30)))
         assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 1
         assert json.loads(self.run(archive.parent, "--json", "--set", "want=surface").stdout)["made"] == 4
+        words = ("--json", "--set", "want=surface", "--sheets")
+        assert json.loads(self.run(archive.parent, *words).stdout)["made"] == 4
+
+    def test_batch_of_a_newer_program_makes_all_scenes_again(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+        from tangible_batch import job_maker
+
+        self.run(archive.parent)
+        monkeypatch.setattr(job_maker.metadata, "version", lambda name: "1000.0")
+        assert json.loads(self.run(archive.parent, "--json").stdout)["made"] == 4
 
     def test_failed_scenes_are_made_again_with_retry(self, archive: Path):
         whole = (archive / "p1.png").read_bytes()
         (archive / "p1.png").write_bytes(b"no")
         stamp = (archive / "p1.png").stat()
         self.run(archive.parent)
-        assert json.loads(self.run(archive.parent, "--json").stdout)["failed"] == 1
+        tally = json.loads(self.run(archive.parent, "--json").stdout)
+        assert (tally["made"], tally["kept"], tally["failed"]) == (0, 4, 1)
         (archive / "p1.png").write_bytes(whole)
         os.utime(archive / "p1.png", ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
         done = json.loads(self.run(archive.parent, "--json", "--retry").stdout)
         assert (done["made"], done["failed"]) == (1, 0)
+        import pyarrow.parquet as pq
+
+        table = pq.read_table(archive.parent / "out/mine-batch/index.parquet").to_pydict()
+        assert (sorted(table["id"]), set(table["outcome"])) == (["p0", "p1", "p2", "p3"], {"ok"})
 
     def test_torn_last_line_is_removed_and_its_scene_made_again(self, archive: Path):
         out = archive.parent / "out/mine-batch"
@@ -191,8 +205,6 @@ class TestScenes:
         assert sorted(by_id(rows_in(out))) == ["p0", "p1", "p2", "p3"]
 
     def test_full_disk_ends_the_batch_which_then_continues(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
-        from tangible_batch import job
-
         def full(*_: object) -> None:
             raise OutputError("relief.npz: cannot be written") from OSError(28, "No space left on device")
 
@@ -259,6 +271,44 @@ class TestScenes:
         with pytest.raises(ArgumentError, match="workers: is the int 0"):
             list(batch(pipeline, [photo], out, workers=0))
         assert list(batch(pipeline, [], out)) == []
+
+    def test_row_in_python_with_a_relative_file_is_made_in_its_time(
+        self, archive: Path, monkeypatch: pytest.MonkeyPatch
+    ):
+        monkeypatch.chdir(archive)  # not the folder of the pipeline file
+        limits: list[float] = []
+
+        class Timed(Here):
+            def map(self, work, jobs, chunk=1, timeout_s=1.0):
+                limits.append(timeout_s)
+                return super().map(work, jobs, chunk, timeout_s)
+
+        monkeypatch.setattr(running, "Farm", Timed)
+        pipeline = Pipeline.from_yaml(archive.parent / "mine.yaml")
+        [row] = batch(pipeline, [{"scene.photo": "p0.png"}], archive.parent / "out", timeout_s=7.0)
+        assert (row["id"], row["scene"], limits) == ("0", str(archive / "p0.png"), [7.0])
+
+    def test_row_with_another_picture_keeps_the_options_of_the_scene(self, archive: Path):
+        (archive.parent / "mine.yaml").write_text(
+            CONFIG.replace("builtin/brick", "{left: l.png, right: r.png, rotate: 90}")
+        )
+        assert self.run(archive.parent).returncode == 0
+        from tangible_core.pipeline.engine.cache import read_record
+
+        found = read_record(archive.parent / "out/mine-batch/scenes/p2/relief.npz")
+        assert found.height_m.shape == (32, 24)
+
+    def test_scene_with_a_truth_has_the_figures_of_its_disparity(self, archive: Path):
+        depth = np.linspace(1, 9, 24 * 32).reshape(24, 32)
+        np.save(archive / "found.npy", depth)
+        np.save(archive / "truth.npy", depth + 1.5)
+        scene = "{photo: archive/p0.png, disparity: archive/found.npy, truth: archive/truth.npy}"
+        (archive.parent / "mine.yaml").write_text(f"scene: {scene}\nwant: relief\n")
+        (archive / "rows.csv").write_text("id,workspace.width_m\none,0.05\n")
+        done = tangible("batch", "mine.yaml", "--over", archive / "rows.csv", cwd=archive.parent)
+        assert done.returncode == 0, done.stderr
+        [row] = rows_in(archive.parent / "out/mine-batch")
+        assert row["figures"]["disparity"]["average_px"] == pytest.approx(1.5)
 
     def test_mistake_in_the_file_ends_the_batch_before_the_first_scene(self, archive: Path):
         (archive.parent / "mine.yaml").write_text(CONFIG + "textur: gabor\n")
@@ -392,6 +442,7 @@ class TestScenes:
         made = list(batch(Pipeline.from_yaml(tmp_path / "mine.yaml"), rows, tmp_path / "out"))
         folders = {row["folder"] for row in made}
         assert len(folders) == len(rows)
+        assert [row["error"] for row in made] == [None] * len(rows)
         assert all(Path(tmp_path / "out", each).resolve().parent == tmp_path / "out/scenes" for each in folders)
 
 
@@ -402,6 +453,32 @@ def test_workforce_uses_all_cores_by_default(monkeypatch: pytest.MonkeyPatch):
     assert {said: (each.workers_here, each.threads_each) for said, each in who.items()} == shares
     elsewhere = running.Workforce(scheduler="tcp://host:8786")
     assert elsewhere.threads_each is None  # of cores that are not here
+
+
+def test_gallery_has_every_scene_once_and_its_error_as_text(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(results, "PER_PAGE", 2)
+    names = [f"s{number}" for number in range(5)]
+    lines = [{"id": name, "outcome": "failed", "error": "<b>no</b> & never", "folder": name} for name in names]
+    (tmp_path / "rows.jsonl").write_text("".join(f"{json.dumps(each)}\n" for each in lines))
+    pages = [path.read_text() for path in results.write_gallery(tmp_path, names)]
+    assert [[name for name in names if f"<figcaption>{name} " in page] for page in pages] == [
+        ["s0", "s1"], ["s2", "s3"], ["s4"],
+    ]  # fmt: skip
+    assert all("&lt;b&gt;no&lt;/b&gt; &amp; never" in page for page in pages)
+
+
+def test_table_column_with_a_text_is_text(tmp_path: Path):
+    import pyarrow.parquet as pq
+
+    lines = [{"id": "a", "figures": {"of": "n/a"}}, {"id": "b", "figures": {"of": 2.5}}, {"id": "c"}]
+    (tmp_path / "rows.jsonl").write_text("".join(f"{json.dumps(each)}\n" for each in lines))
+    table = pq.read_table(results.write_index(tmp_path, "abc"))
+    assert table["figures.of"].to_pylist() == ["n/a", "2.5", None]
+
+
+def test_figures_that_are_not_finite_are_none_in_a_row():
+    found = job._plain({"a": float("nan"), "b": {"c": float("inf"), "d": 1.5}, 2: -float("inf")})  # pyright: ignore[reportPrivateUsage]
+    assert found == {"a": None, "b": {"c": None, "d": 1.5}, "2": None}
 
 
 def test_scene_that_raises_is_a_row(tmp_path: Path):

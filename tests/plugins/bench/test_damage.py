@@ -18,6 +18,12 @@ def test_noise_has_its_standard_deviation_and_seed():
     assert (noisy != damage.noise(GREY, 5, 1)).any()
 
 
+def test_noise_is_independent_in_each_channel():
+    changes = damage.noise(np.full((64, 64, 3), 100, np.uint8), 5, 0).astype(float) - 100
+    correlations = np.corrcoef(changes.reshape(-1, 3).T)
+    assert np.abs(correlations - np.eye(3)).max() < 0.1
+
+
 def test_gain_and_gamma_follow_their_formulas():
     assert (damage.gain(GREY, 0.8) == 80).all()
     assert (damage.gain(GREY, 5) == 255).all()

@@ -2,6 +2,7 @@
 
 import asyncio
 import errno
+import json
 import os
 import stat
 import subprocess
@@ -82,11 +83,12 @@ class TestDrafts:
             file = tmp_path / f"{number}.json"
             file.write_text(f'{{"text": "{number}", "path": "/a"}}')
             os.utime(file, (number, number))
-        (tmp_path / "999.json").write_text("no draft")
+        for number, wrong in ((999, "no draft"), (998, "null"), (997, '{"text": "x"}')):
+            (tmp_path / f"{number}.json").write_text(wrong)
         draft = Drafts(tmp_path).look()
         assert draft is not None
         assert (draft.text.text, draft.at_s) == (str(MOST_LEFT + 3), MOST_LEFT + 3)
-        assert len(list(tmp_path.glob("*.json"))) == MOST_LEFT + 1
+        assert len(list(tmp_path.glob("*.json"))) == MOST_LEFT + 3
 
     def test_full_disk_is_warned_of_once(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
@@ -94,13 +96,23 @@ class TestDrafts:
         def full(file: Path, text: str, private: bool) -> None:
             raise OutputError("no space left on device")
 
-        monkeypatch.setattr(drafts, "write_text", full)
         kept = Drafts(tmp_path)
-        for text in ("one", "two"):
-            keep(kept, text)
-        assert [record.message for record in caplog.records] == [
-            "unsaved edits are not kept for the next start: no space left on device"
-        ]
+        warning = "unsaved edits are not kept for the next start: no space left on device"
+        for count in (1, 2):  # it is told again once there was room in between
+            with monkeypatch.context() as patch:
+                patch.setattr(drafts, "write_text", full)
+                for text in ("one", "two"):
+                    keep(kept, text)
+            keep(kept, "three")
+            assert [record.message for record in caplog.records] == [warning] * count
+
+    def test_draft_of_many_edits_at_once_skips_those_that_a_newer_one_replaced(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        written: list[str] = []
+        monkeypatch.setattr(drafts, "write_text", lambda file, text, private: written.append(json.loads(text)["text"]))
+        keep(Drafts(tmp_path), *(f"edit {number}" for number in range(20)))
+        assert written == ["edit 0", "edit 19"]
 
 
 class TestLeftBehind:

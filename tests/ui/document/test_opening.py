@@ -48,26 +48,49 @@ def picture(path: Path, columns: int = 8) -> Path:
 
 class TestUploadStore:
     def test_batch_is_stored_once_by_its_content(self, store: UploadStore) -> None:
-        def kept() -> list[Path]:
-            batch = store.batch()
-            put(store, batch, "b.png", b"right", b" hand")
-            put(store, batch, "a.png", b"left")
+        def kept(*names: str) -> list[Path]:
+            batch, contents = store.batch(), {"a.png": [b"left"], "b.png": [b"right", b" hand"], "c.png": [b""]}
+            for name in names:
+                put(store, batch, name, *contents[name])
             return store.keep(batch)
 
-        first = kept()
-        assert [path.name for path in first] == ["a.png", "b.png"]
+        first = kept("b.png", "c.png", "a.png")
+        assert [path.name for path in first] == ["a.png", "b.png", "c.png"]
         assert first[1].read_bytes() == b"right hand"
-        assert kept() == first
+        assert kept("a.png", "c.png", "b.png") == first
 
-    def test_batch_of_other_content_gets_another_folder(self, store: UploadStore) -> None:
+    def test_batch_of_other_content_or_names_gets_another_folder(self, store: UploadStore) -> None:
         places = set[Path]()
-        for contents in (b"one", b"two"):
+        for name, contents in (("a.png", b"one"), ("a.png", b"two"), ("b.png", b"one")):
             batch = store.batch()
-            put(store, batch, "a.png", contents)
-            places.add(store.keep(batch)[0])
-        assert len(places) == 2
+            put(store, batch, name, contents)
+            (found,) = store.keep(batch)
+            assert (found.name, found.read_bytes()) == (name, contents)
+            places.add(found.parent)
+        assert len(places) == 3
 
-    @pytest.mark.parametrize("name", ["", ".", "..", "../a.png", "a/b.png", "a\\b.png", "a\0b", "a\nb", "x" * 200, " "])
+    def test_batch_of_a_single_file_has_one_until_it_is_dropped(self, store: UploadStore) -> None:
+        batch = store.batch()
+        with pytest.raises(ConfigError, match="0 files were sent where one is wanted"):
+            store.single(batch)
+        put(store, batch, "labels.gz", b"x")
+        assert store.single(batch).read_bytes() == b"x"
+        put(store, batch, "more.gz", b"y")
+        with pytest.raises(ConfigError, match="2 files were sent where one is wanted"):
+            store.single(batch)
+        store.drop(batch)
+        with pytest.raises(ConfigError, match="send them again"):
+            store.single(batch)
+
+    def test_upload_in_many_pieces_is_whole(self, store: UploadStore, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr("tangible_ui.state.uploads.AT_ONCE_BYTES", 4)
+        batch = store.batch()
+        put(store, batch, "a.png", b"ab", b"cde", b"", b"fghijk", b"l")
+        assert store.single(batch).read_bytes() == b"abcdefghijkl"
+
+    @pytest.mark.parametrize(
+        "name", ["", ".", "..", "../a.png", "a/b.png", "a\\b.png", "a\0b", "a\nb", "x" * 200, "\N{AMPHORA}" * 40, " "]
+    )
     def test_upload_name_that_leads_elsewhere_is_refused(self, store: UploadStore, name: str, tmp_path: Path) -> None:
         batch = store.batch()
         with pytest.raises(ConfigError, match="cannot be kept"):
@@ -100,14 +123,15 @@ class TestUploadStore:
             put(store, batch, "more.png", b"x")
         monkeypatch.setattr("tangible_ui.state.uploads.MOST_BYTES", 10)
         with pytest.raises(ConfigError, match="holds more than"):
-            put(store, batch, "0.png", b"x" * 6, b"x" * 6)
+            put(store, batch, "0.png", b"x" * 6, b"x" * 5)
+        put(store, batch, "1.png", b"x" * 6, b"x" * 4)
 
 
 class TestBegin:
     def test_picture_opens_with_a_new_pipeline(self, worker_state: WorkerState, tmp_path: Path) -> None:
         found = opening.begin(worker_state, [picture(tmp_path / "cat.png")])
         assert "photo:" in found["text"]
-        assert found["path"].name == "cat.yaml"
+        assert found["path"] == Path.cwd() / "cat.yaml"
 
     def test_video_opens_with_a_new_pipeline(self, worker_state: WorkerState, tmp_path: Path) -> None:
         path = greys(tmp_path / "walk.avi", 3)
@@ -130,10 +154,15 @@ class TestBegin:
         found = opening.begin(worker_state, [picture(tmp_path / "cat.png"), tmp_path / "mine.yaml"])
         assert found == {"text": "scene: {photo: cat.png}\n", "path": tmp_path / "mine.yaml"}
 
-    @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv"])
+    def test_two_pipeline_files_are_refused(self, worker_state: WorkerState, tmp_path: Path) -> None:
+        with pytest.raises(ConfigError, match=r"a.yaml, b.YML: open one pipeline file at a time"):
+            opening.begin(worker_state, [tmp_path / "a.yaml", picture(tmp_path / "cat.png"), tmp_path / "b.YML"])
+
+    @pytest.mark.parametrize("suffix", [".nc", ".npz", ".csv", ".NC"])
     def test_recording_opens_as_its_path(self, worker_state: WorkerState, tmp_path: Path, suffix: str) -> None:
-        path = tmp_path / f"felt{suffix}"
-        Recording(np.zeros((3, 17)), "", About("mock", "penalty", "scene: x")).save(path)
+        written = tmp_path / f"felt{suffix.lower()}"
+        Recording(np.zeros((3, 17)), "", About("mock", "penalty", "scene: x")).save(written)
+        path = written.rename(tmp_path / f"felt{suffix}")
         assert opening.begin(worker_state, [path]) == {"recording": str(path)}
 
     def test_array_opens_as_a_height_map(self, worker_state: WorkerState, tmp_path: Path) -> None:
@@ -168,7 +197,9 @@ class TestSave:
         assert (tmp_path / "mine.yaml").read_text() == text
 
 
-def test_folder_lists_what_can_be_opened(worker_state: WorkerState, tmp_path: Path) -> None:
+def test_folder_lists_what_can_be_opened(
+    worker_state: WorkerState, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     for name in ("b.PNG", "a.yaml", ".hidden.png", "note.txt", "felt.nc", "hill.npy"):
         (tmp_path / name).touch()
     (tmp_path / "more").mkdir()
@@ -180,5 +211,9 @@ def test_folder_lists_what_can_be_opened(worker_state: WorkerState, tmp_path: Pa
         ("hill.npy", "heights"),
         ("more", "folder"),
     ]
+    assert found["more"] == 0
+    monkeypatch.setattr(opening, "MOST", 3)
+    bounded = opening.folder(worker_state, tmp_path)
+    assert (bounded["entries"], bounded["more"]) == (found["entries"][:3], 2)
     with pytest.raises(ConfigError, match="name a folder"):
         opening.folder(worker_state, tmp_path / "missing")

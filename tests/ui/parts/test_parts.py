@@ -18,11 +18,14 @@ from tangible_core import load_pipeline
 from tangible_core.data import SegmentMap
 from tangible_core.errors import ConfigError, OutputError, TangibleError
 from tangible_core.parts import find_parts
+from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.formats.pictures import read_labels
 from tangible_ui.requests import REQUESTS
 from tangible_ui.state.scheduling import LatestWins
 from tangible_ui.state.session import Session
 from tangible_ui.worker.jobs import JOBS, making
+from tangible_ui.worker.parts.heights import coarse
 from tangible_ui.worker.parts.label_files import as_png, is_ours, unpack
 from tangible_ui.worker.parts.opening import _places
 from tangible_ui.worker.parts.saving import document_with_parts, number_parts
@@ -146,7 +149,7 @@ class TestNumbers:
 
     def test_label_in_pieces_names_the_largest_piece(self) -> None:
         numbers = np.array([[0, 1, 2, 2, 1, 3]], np.int32)
-        told = [{"label": 7, "name": "leaf", "material": "wood"}, {"label": 8, "name": "leaf 2"}]
+        told = [{"label": 7, "name": "leaf", "material": "wood"}, {"label": 8, "name": " Leaf 2"}]
         choices, found = number_parts(told, [7, 8, 7, 7], numbers)
         assert choices[2] == {"name": "leaf", "material": "wood"}
         assert choices[0] == {"name": "leaf 3", "material": "wood"}
@@ -311,11 +314,14 @@ class TestOpening:
             grey = np.asarray(picture.convert("L"))
         assert grey[-1, -1] > 240
         assert grey[0, 1] < 30
+        assert grey[0, 0] < 60  # unknown
 
     def test_places_lie_in_their_parts(self) -> None:
         labels = np.random.default_rng(0).integers(0, 30, (900, 1100)).astype(np.int32)
         labels[100:800, 200:900] = 40
         found = find_parts(SegmentMap(np.unique(labels, return_inverse=True)[1].reshape(labels.shape).astype(np.int32)))
+        x, y = _places(found)[found.labels[450, 550]]
+        assert (x, y) == (pytest.approx(549.5, abs=4), pytest.approx(449.5, abs=4))  # far from all borders
         for number, (x, y) in enumerate(_places(found)):
             assert found.labels[y, x] == number
             if number > 200_000:
@@ -621,6 +627,36 @@ class TestHeights:
             assert load_pipeline(small.session.path).surface.height_m.shape == SHAPE
 
         small(check)
+
+    def test_changed_heights_feel_by_the_law_of_the_document(
+        self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
+            felt: list[bytes] = []
+
+            async def feel_on(_: Any, made: dict[str, Any]) -> None:
+                felt.append(Path(made["parcel"]).read_bytes())
+                Path(made["parcel"]).unlink()
+
+            await saved(small, ask)
+            await small.tab.until("touch")
+            monkeypatch.setattr(Session, "feel_on", feel_on)
+            for law in ("penalty", "penalty-gradient", "penalty"):
+                await ask("set", written={"render": law})
+                await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])
+            assert felt[0] == felt[2] != felt[1]
+
+        small(check)
+
+    @pytest.mark.parametrize(("cells", "factor"), [(768, 1), (767, 1.5), (342, 1.5), (341, 2), (100, 3)])
+    def test_coarse_grid_has_steps_of_half_a_pixel(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cells: int, factor: float
+    ) -> None:
+        monkeypatch.setattr("tangible_ui.worker.parts.heights.MOST_CELLS", cells)
+        config = parse_config(TEXT, small_scene(tmp_path), default_registry())
+        found = coarse(config, SHAPE)
+        finest_m = (factor + 0.01) * 0.06 / 32
+        assert found.size.finest_m == (config.size.finest_m if factor == 1 else pytest.approx(finest_m))
 
     def test_changed_height_recomputes_only_what_depends_on_it(
         self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch

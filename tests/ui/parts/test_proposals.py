@@ -104,12 +104,29 @@ class TestProposals:
         assert {part for (_, part), share in found.items() if share > 0.75} >= good, found
         assert np.median(list(found.values())) > 0.75
 
-    def test_proposal_stays_in_the_drawn_box(self) -> None:
+    @pytest.mark.parametrize(
+        ("within", "over_px"), [((100, 80, 215, 160), 0), ((100, 80, 201, 144), 7), ((120, 97, 215, 160), 7)]
+    )
+    def test_proposal_stays_in_the_drawn_box(self, within: tuple[int, int, int, int], over_px: int) -> None:
+        """A stroke may end at the box's last column and row; half of its own width is then beside the box."""
         picture, _ = two_things()
-        box, mask = propose(picture, STROKE, 12, "grabcut", [100, 80, 215, 160])
+        x0, y0, x1, y1 = within
+        box, mask = propose(picture, STROKE, 12, "grabcut", within)
         found = place(box, mask)
-        found[80:160, 100:215] = False
+        assert found[y0:y1, x0:x1].sum() > 1500
+        found[y0 - over_px : y1 + over_px, x0 - over_px : x1 + over_px] = False
         assert not found.any()
+
+    def test_rim_is_where_the_picture_goes_on(self) -> None:
+        none = np.zeros((9, 12), bool)
+        for window, sides in (
+            (proposals.Window(0, 0, 320, 240), [False, False, False, False]),
+            (proposals.Window(0, 100, 320, 140), [True, False, False, False]),
+            (proposals.Window(100, 0, 220, 200), [False, True, True, False]),
+            (proposals.Window(0, 0, 300, 240), [False, False, False, True]),
+        ):
+            rim = proposals._rim(window, none, SHAPE)
+            assert [bool(each) for each in (rim[0, 5], rim[-1, 5], rim[5, 0], rim[5, -1])] == sides
 
     def test_proposal_ignores_a_box_that_the_stroke_leaves(self) -> None:
         picture, inside = two_things()
@@ -175,6 +192,12 @@ class TestSnapping:
         still = snap(np.full((*SHAPE, 3), 90, np.uint8), outline, 12.0)
         far = np.min(np.hypot(*(still[:, None] - outline[None]).transpose(2, 0, 1)), axis=1)
         assert far.max() < 1.0
+
+    def test_outline_in_the_corner_of_a_wide_picture_stays_there(self) -> None:
+        corner = np.array([[290.0, 200.0], [325.0, 200.0], [325.0, 245.0], [290.0, 245.0]])
+        found = snap(np.full((*SHAPE, 3), 90, np.uint8), corner, 3.0)
+        assert np.ptp(found, axis=0) == pytest.approx([29, 39], abs=3)
+        assert found.max(axis=0).tolist() == [319, 239]
 
     @pytest.mark.parametrize(
         "points", [[[5, 5]], [[5, 5], [5, 5], [5, 5]], [[0, 0], [319, 0]], [[1, 1], [2, 1], [2, 2]]]

@@ -1,6 +1,8 @@
 """Messages of a tab: a frame is complete or ignored, a request is answered or refused with a sentence."""
 
 import json
+import math
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,7 +14,7 @@ from tangible_ui import framing as wire
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.requests import REQUESTS
 from tangible_ui.serving import parsing as asking
-from tangible_ui.serving.live import LiveTab
+from tangible_ui.serving.live import LiveTab, _as_json
 from tangible_ui.serving.parsing import BadRequest, parse
 
 JSON = st.recursive(
@@ -147,3 +149,9 @@ class TestAsks:
     def test_request_functions_declare_their_arguments(self) -> None:
         for name, work in REQUESTS.items():
             assert asking._arguments(work).model_fields.keys().isdisjoint({"desk", "tab"}), name
+
+
+def test_event_with_numbers_that_json_lacks_is_sent() -> None:
+    event = {"a": [1.5, math.nan, {"b": (math.inf, 2)}], "c": -math.inf, "d": Path("/x")}
+    found = json.loads(_as_json(event), parse_constant=lambda constant: pytest.fail(f"{constant} is not JSON"))
+    assert found == {"a": [1.5, None, {"b": [None, 2]}], "c": None, "d": "/x"}

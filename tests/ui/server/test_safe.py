@@ -375,6 +375,16 @@ class TestFloods:
             for each in slow:
                 each.close()
 
+    def test_closed_connections_cut_nobody_off(self, page: PageServer) -> None:
+        with socket.create_connection(("127.0.0.1", page.port)) as slow:
+            slow.sendall(b"GET / HT")
+            for _ in range(MOST_STRANGERS + 4):
+                with socket.create_connection(("127.0.0.1", page.port)) as other:
+                    other.sendall(b"no request\r\n\r\n")
+                    other.settimeout(LONGEST_S)
+                    assert is_closed(other)
+            assert not is_closed(slow)
+
     def test_head_of_a_request_has_a_time_limit(self, page: PageServer, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(connection, "HEAD_S", 0.2)
         for said in (b"", b"GET / HT", f"GET / HTTP/1.1\r\nHost: {page.host}\r\n\r\nGET / HT".encode()):

@@ -92,6 +92,9 @@ def test_make_with_another_law_makes_the_touch_alone(worker_state: WorkerState, 
     other = TEXT.replace("400", "500")
     plan = JOBS["plan"].do(worker_state, text=other, path=scene, sets=DEVICE, want="touch")
     assert (plan["slow"], plan["refusal"]) == ([], "")
+    lower = JOBS["plan"].do(worker_state, text=TEXT.replace("0.004", "0.003"), path=scene, sets=DEVICE, want="touch")
+    found = {each["product"]: each["outcome"] for each in lower["steps"]}
+    assert (found["disparity"], found["relief"], lower["slow"]) == ("cached", "ran", [])
     products = {each["product"]: each["outcome"] for each in plan["steps"]}
     assert list(products) == ["views", "disparity", "relief", "segments", "materials", "surface", "touch"]
     assert (products["views"], products["disparity"], products["touch"]) == ("given", "cached", "ran")

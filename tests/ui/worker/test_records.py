@@ -17,6 +17,7 @@ from tangible_core.errors import OutputError
 from tangible_core.servo import Servo
 from tangible_core.session import About, Recording, Writer
 from tangible_ui.feeling.recorder import BY_HAND, Recorder
+from tangible_ui.framing import FLAG_BITS
 from tangible_ui.requests.records import record
 from tangible_ui.worker.jobs import records
 from tangible_ui.worker.state import WorkerState
@@ -114,9 +115,14 @@ class TestShown:
         self, worker_state: WorkerState, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(records, "MOST_ROWS", 20)
-        some(50).save(tmp_path / "a.nc")
+        long, flags = some(50), np.arange(50) % 8 + 8 * (FLAG_BITS + 1)  # with some of a later version
+        rows = long.rows.copy()
+        rows[:, records.AT_FLAGS] = flags
+        Recording(rows, "", long.about).save(tmp_path / "a.nc")
         shown = records.show_record(worker_state, tmp_path / "a.nc")
         assert (shown["rows"], shown["every"]) == (17, 3)
+        rows = np.fromfile(tmp_path / shown["digest"] / "ticks.f32", "<f4").reshape(17, shown["columns"])
+        np.testing.assert_array_equal(rows[:, records.AT_FLAGS], flags[::3] & FLAG_BITS)
 
     def test_shown_recording_may_be_empty(self, worker_state: WorkerState, tmp_path: Path) -> None:
         some(0).save(tmp_path / "a.nc")
@@ -168,5 +174,7 @@ def test_replay_with_another_law_uses_the_same_states(worker_state: WorkerState,
     shown = records.try_law(worker_state, tmp_path / "a.nc", text, tmp_path / "p.yaml", [], tmp_path)
     after = Recording.load(shown["path"])
     assert Path(shown["path"]).name == "a with penalty.nc"
+    again = records.try_law(worker_state, tmp_path / "a.nc", text, tmp_path / "p.yaml", [], tmp_path)
+    assert Path(again["path"]).name == "a with penalty 1.nc"
     assert np.allclose(after.force_n[1:-1, 2], 0.5, atol=0.05)
     assert shown["compared"]["worst_error_n"] == pytest.approx(0.5, abs=0.05)

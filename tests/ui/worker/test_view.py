@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from tangible_core import load_method
 from tangible_core.data import Material, Relief
@@ -15,6 +16,7 @@ from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.scene import Scene
 from tangible_render.haptic_textures import compile_textures
 from tangible_render.haptic_textures.heights import texture_height
+from tangible_ui.serving import routes
 from tangible_ui.serving.routes import read_window
 from tangible_ui.worker.jobs import making
 from tangible_ui.worker.jobs import surface as textures
@@ -77,7 +79,7 @@ class TestLevels:
 
 class TestShow:
     def test_finest_level_is_the_surface_and_a_coarser_one_its_mean(self, tmp_path: Path):
-        height_m = 0.02 * RANDOM.random((700, 900)).astype(np.float32)
+        height_m = 0.001 + 0.02 * RANDOM.random((700, 900)).astype(np.float32)
         labels = RANDOM.integers(0, 3, (700, 900)).astype(np.int32)
         about = show(seen(height_m, labels=labels, materials=(WOOD, ICE, WOOD)), tmp_path)
         assert [each["step"] for each in about["levels"]] == [1, 2]
@@ -85,6 +87,7 @@ class TestShow:
         np.testing.assert_allclose(array(tmp_path, about, "height-1.f32", "<f4", 1), blocks(height_m, 2), rtol=1e-6)
         np.testing.assert_array_equal(array(tmp_path, about, "labels-0.u", "<u2"), labels)
         assert about["labels"] == 3
+        assert about["height_m"] == [float(height_m.min()), float(height_m.max())]
         assert [each["name"] for each in about["materials"]] == ["wood", "ice"]
         kinds = np.frombuffer((tmp_path / about["digest"] / "materials.u16").read_bytes(), "<u2")
         assert kinds.tolist() == [0, 1, 0]
@@ -134,8 +137,22 @@ class TestShow:
         assert len(json.dumps(about)) < 3000
         assert about["labels"] == 65_000
         np.testing.assert_array_equal(array(tmp_path, about, "labels-0.u", "<u2"), labels)
-        more = show(seen(np.zeros((250, 260)), labels=labels + 5000), tmp_path)
-        np.testing.assert_array_equal(array(tmp_path, more, "labels-0.u", "<u4"), labels + 5000)
+        for up, kind, size in ((536, "<u2", 2), (537, "<u4", 4), (5000, "<u4", 4)):  # 65535 and 65536 are the largest
+            more = show(seen(np.zeros((250, 260)), labels=labels + up), tmp_path)
+            assert more["label_bytes"] == size
+            np.testing.assert_array_equal(array(tmp_path, more, "labels-0.u", kind), labels + up)
+
+    def test_layer_and_picture_are_drawn_as_wide_as_they_are(self, tmp_path: Path):
+        layer = Layer.of(np.arange(12.0).reshape(3, 4), "px", (1.0, 9.0))
+        grey = np.repeat([[0.0, 0.5, 1.0]], 8, 0).repeat(8, 1)
+        about = show(seen(np.zeros((3, 4)), layers={"disparity": layer}, picture=grey), tmp_path)
+        assert about["layers"] == {"disparity": {"unit": "px", "low": 1.0, "high": 9.0, "rows": 3, "columns": 4}}
+        values = np.frombuffer((tmp_path / about["digest"] / "disparity.f32").read_bytes(), "<f4")
+        np.testing.assert_array_equal(values, np.arange(12))
+        with Image.open(tmp_path / about["digest"] / "photo.jpg") as picture:
+            pixels = np.asarray(picture.convert("L")).astype(int)
+        assert pixels.shape == (8, 24)
+        np.testing.assert_allclose(pixels[4, [3, 12, 20]], [0, 128, 255], atol=4)
 
     def test_large_picture_is_written_twice(self, tmp_path: Path):
         about = show(seen(np.zeros((2, 3)), picture=np.zeros((1000, 1500), np.uint8)), tmp_path)
@@ -174,7 +191,9 @@ def pair() -> Scene:
     picture = (255 * np.random.default_rng(5).random((48, 64))).astype(np.uint8)
     disparity = np.full((48, 64), 3.0, np.float32)
     disparity[16:32, 24:44] = 6.0
-    return Scene.pair(left=picture, right=np.roll(picture, -3, 1), disparity=disparity, truth=disparity + 0.5)
+    truth = disparity + 0.5
+    truth[0, :9] += 20.0  # wrong in three of a thousand places
+    return Scene.pair(left=picture, right=np.roll(picture, -3, 1), disparity=disparity, truth=truth)
 
 
 class TestSee:
@@ -186,6 +205,12 @@ class TestSee:
         np.testing.assert_array_equal(found.layers["disparity"].values, pair.disparity.disparity_px)
         error_px = absolute_error(pair.disparity.disparity_px, pair.truth)
         np.testing.assert_array_equal(found.layers["error"].values, error_px.astype(np.float32))
+        spans = {name: (each.unit, each.low, each.high) for name, each in found.layers.items()}
+        assert spans == {
+            "disparity": ("px", 3.0, 6.0),
+            "confidence": ("", 0.0, 1.0),
+            "error": ("px", 0.0, pytest.approx(np.percentile(error_px, 98))),
+        }
         np.testing.assert_array_equal(found.relief.height_m, pipeline.surface.height_m)
 
     def test_segments_are_viewed_flat_without_a_depth(self):
@@ -213,6 +238,11 @@ class TestSee:
         assert found.shows == "relief"
         assert found.relief.height_m.max() == pytest.approx(0.01, rel=0.2)
         assert not is_there(pipeline, "touch")
+
+    def test_relative_depth_has_no_unit(self):
+        pipeline = of_photo(np.random.default_rng(1).integers(0, 255, (40, 60)).astype(np.uint8))
+        pipeline.make("disparity")
+        assert view_of(pipeline, "disparity").layers["disparity"].unit == ""
 
     def test_materials_of_a_view_are_limited_to_the_device(self):
         segments = np.repeat([[0, 1]], 8, 0).repeat(8, 1).astype(np.int32)
@@ -243,6 +273,7 @@ class TestTexture:
     @pytest.fixture
     def digest(self, worker_state: WorkerState) -> str:
         labels = np.repeat([[0, 1]], 30, 0).repeat(20, 1).astype(np.int32)
+        labels[20:] = 1  # the near rows
         return show(seen(np.zeros((30, 40)), labels=labels, materials=(WOOD, ICE)), worker_state.folder)["digest"]
 
     def test_texture_patch_is_what_a_law_renders(self, worker_state: WorkerState, digest: str):
@@ -265,9 +296,9 @@ class TestTexture:
         assert not np.fromfile(worker_state.folder / bare / found["file"], "<f4").any()
 
     def test_texture_patches_beyond_the_limit_are_removed(self, worker_state: WorkerState, digest: str):
-        for each in range(20):
-            textures.texture_patch(worker_state, digest, 1e-3 * each, 0.0, 0.01, 4)
-        assert len(list((worker_state.folder / digest).glob("texture-*"))) == textures.KEPT
+        made = [textures.texture_patch(worker_state, digest, 1e-3 * each, 0.0, 0.01, 4)["file"] for each in range(20)]
+        left = {each.name for each in (worker_state.folder / digest).glob("texture-*")}
+        assert left == set(made[-textures.KEPT :])
 
     @pytest.mark.parametrize("wrong", [{"digest": "../x"}, {"digest": "0" * 32}, {"side_m": 0.0}, {"pixels": 10**6}])
     def test_texture_patch_that_is_invalid_is_refused(self, worker_state: WorkerState, digest: str, wrong: dict):
@@ -289,6 +320,18 @@ class TestWindow:
     def test_window_is_the_rectangle(self, path: Path):
         found = np.frombuffer(read_window(path, ASKED), "<u2").reshape(3, 4)
         np.testing.assert_array_equal(found, np.arange(77).reshape(7, 11)[2:5, 5:9])
+
+    def test_window_at_the_corners_of_the_file_is_read(self, path: Path):
+        whole = np.arange(77).reshape(7, 11)
+        for row, column in ((0, 0), (0, 7), (4, 0), (4, 7)):
+            found = np.frombuffer(read_window(path, ASKED | {"row": row, "column": column}), "<u2").reshape(3, 4)
+            np.testing.assert_array_equal(found, whole[row : row + 3, column : column + 4])
+
+    def test_window_of_too_many_items_is_refused(self, path: Path, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setattr(routes, "MOST_ITEMS", 12)
+        assert len(read_window(path, ASKED)) == 24
+        with pytest.raises(ValueError, match="no such window"):
+            read_window(path, ASKED | {"columns": 5})
 
     @pytest.mark.parametrize(
         "wrong", [{"row": 5}, {"column": 8}, {"row": -1}, {"column": -1}, {"rows": 0}, {"bytes": 0}, {"of": 10**9}]

@@ -65,6 +65,24 @@ def test_player_shows_the_latest_frame_and_counts_skipped_ones(play):
     assert felt.age_ms >= 30
 
 
+@pytest.mark.parametrize(("cores", "asked", "threads"), [(4, None, 3), (4, 2, 2), (4, 9, 3), (1, None, 1)])
+def test_player_leaves_a_processor_to_the_loop(monkeypatch, cores, asked, threads):
+    monkeypatch.setattr("tangible_core.session.film.player.processors", lambda: cores)
+    monkeypatch.setattr("tangible_core.session.film.player.thread_limit", lambda: None)
+    player = Player(Reliefs(lambda: GivenFrames(greys(BOX)), NearnessOfGrey()), Seen(), asked)
+    assert player._threads == threads
+
+
+def test_age_of_a_frame_counts_from_when_it_was_due(monkeypatch):
+    player = Player(Reliefs(lambda: GivenFrames(greys(BOX)), NearnessOfGrey()), Seen())
+    player._began_s = 100.0
+    times = iter([103.25, 104.5, 107.0])
+    monkeypatch.setattr("tangible_core.session.film.player.time.monotonic", lambda: next(times))
+    for due_s in (3.0, 4.0, 5.0):
+        player._note(due_s)
+    assert player.counts.age_ms == pytest.approx(500)
+
+
 def test_player_repeats_a_relief_until_the_surface_arrives(play):
     film = Seen(arrives=3)
     play(greys(BOX, BOX), film)

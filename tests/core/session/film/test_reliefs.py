@@ -40,8 +40,8 @@ def test_scale_follows_with_its_time_constant_at_any_rate():
     for step_s in (0.1, 1.0):
         scale = Scale(ValueRange(0, 10))
         for number in range(1, round(ADAPTS_S / step_s) + 1):
-            scale.look(ValueRange(0, 20), number * step_s)
-        assert scale.spans.high == pytest.approx(20 - 10 / np.e)
+            scale.look(ValueRange(-5, 20), number * step_s)
+        assert scale.spans == pytest.approx((-5 + 5 / np.e, 20 - 10 / np.e))
 
 
 def test_scale_of_film_that_begins_dark_adopts_the_first_range():

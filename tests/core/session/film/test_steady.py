@@ -4,7 +4,7 @@ import pytest
 from films import layered, true_disparity
 from tangible_core.data import DisparityMap
 from tangible_core.session.film import Steady
-from tangible_core.session.film.steady import MOST_DOUBTS, MOST_MISSING
+from tangible_core.session.film.steady import GATE_PX, MOST_DOUBTS, MOST_MISSING
 from tangible_depth import SemiGlobal
 
 FLAT = np.full((6, 8), 10, np.float32)
@@ -70,6 +70,19 @@ def test_cut_adopts_the_second_frame_as_a_whole():
     assert [each.cut for each in felt] == [False, False, True, False]
     assert np.array_equal(felt[1].disparity.disparity_px, FLAT), "a flash of one frame is not felt"
     assert np.array_equal(felt[2].disparity.disparity_px, noisy), "no pixel of the scene before it is left"
+
+
+def test_value_that_differs_by_the_gate_is_noise():
+    felt = [each[2, 3] for each in filter_maps(FLAT, at(10 + GATE_PX), FLAT, at(10.18 + GATE_PX))]
+    assert felt == pytest.approx([10, 10.2, 10.16, 10.16])
+
+
+@pytest.mark.parametrize(("columns", "cut"), [(4, False), (5, True)])
+def test_change_of_half_the_picture_is_no_cut(columns, cut):
+    steady, other = Steady(), FLAT.copy()
+    other[:, :columns] = 40
+    felt = [steady.next(DisparityMap(each)) for each in (FLAT, other, other)]
+    assert [each.cut for each in felt] == [False, False, cut]
 
 
 def test_relative_map_has_a_gate_relative_to_its_range():

@@ -1,0 +1,52 @@
+"""Scenes of folders, globs and tables: their names, their files, and what a cell changes."""
+
+from pathlib import Path
+
+import pytest
+
+from tangible_batch.manifest import rows_from, rows_of
+
+
+def touch(folder: Path, *names: str) -> None:
+    for name in names:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).touch()
+
+
+def scenes(over: Path | str) -> dict[str, tuple[str, ...]]:
+    return {row.id: row.sets for row in rows_of(str(over))}
+
+
+@pytest.mark.parametrize("ends", [("_left", "_right"), ("_l", "_r"), ("-left", "-right"), ("_L", "_R")])
+def test_pair_has_its_left_view_on_the_left(tmp_path: Path, ends: tuple[str, str]):
+    left, right = (f"vase{end}.png" for end in ends)
+    touch(tmp_path, left, right)
+    assert scenes(tmp_path) == {"vase": (f'scene.left="{tmp_path / left}"', f'scene.right="{tmp_path / right}"')}
+
+
+def test_folder_is_searched_to_its_depth_and_scenes_are_named_by_their_place(tmp_path: Path):
+    touch(tmp_path, "a/one.png", "a/deep/one.JPG", "two.png", "notes.txt")
+    assert list(scenes(tmp_path)) == ["a/deep/one", "a/one", "two"]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "names"),
+    [("*/one.png", ["a/one", "b/one"]), ("a/*.png", ["one", "two"]), ("a/one.png", ["one"])],
+)
+def test_glob_names_scenes_from_the_folder_before_its_first_star(tmp_path: Path, pattern: str, names: list[str]):
+    touch(tmp_path, "a/one.png", "a/two.png", "b/one.png")
+    assert list(scenes(tmp_path / pattern)) == names
+
+
+def test_table_with_the_mark_of_excel_is_read(tmp_path: Path):
+    (tmp_path / "rows.csv").write_text("id,workspace.width_m\nwide,0.1\n", encoding="utf-8-sig")
+    assert scenes(tmp_path / "rows.csv") == {"wide": ("workspace.width_m=0.1",)}
+
+
+def test_row_without_a_name_has_its_number_and_a_cell_of_zero_counts(tmp_path: Path):
+    rows = [{"depth.smoothing_px": 0, "want": None}, {"id": "own", "want": ""}, {"want": "relief"}]
+    assert [tuple(row) for row in rows_from(rows, tmp_path)] == [
+        ("0", ("depth.smoothing_px=0",)),
+        ("own", ()),
+        ("2", ("want=relief",)),
+    ]

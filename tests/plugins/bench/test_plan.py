@@ -1,0 +1,54 @@
+"""The plan of a comparison: keys of the same content, and scenes that cannot be read; and the row of a key."""
+
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tangible_bench.config.reading import Comparison, parse_comparison
+from tangible_bench.measuring.plan import measurements
+from tangible_bench.measuring.rows import Row, append, read_rows
+from tangible_core.errors import ConfigError
+from tangible_core.plugins.registry import Registry
+
+ROW = Row("k", "depth", "m", "m", {}, "d 1", "s", "digest", "none", (), 0, {}, {"processor": "p"})
+
+
+def parse(registry: Registry, folder: Path, *scenes: str) -> Comparison:
+    text = f"compare: depth\nmethods: [constant]\nscenes: [{', '.join(scenes)}]\nrepeats: 1\nwarmups: 0\ncalls: 1\n"
+    return parse_comparison(text, folder / "c.yaml", registry)
+
+
+def pair(folder: Path, name: str) -> str:
+    """A scene of two files of this name, whose pictures are always the same."""
+    for side, seed in (("left", 0), ("right", 1)):
+        grey = np.random.default_rng(seed).integers(0, 255, (24, 32), np.uint8)
+        Image.fromarray(grey).save(folder / f"{name}{name}_{side}.png")
+    return f"{{pairs: {{left: '{name}*_left.png', right: '{name}*_right.png'}}}}"
+
+
+def test_same_pictures_under_another_name_are_measured_once(registry: Registry, tmp_path: Path):
+    one, other = (measurements(parse(registry, tmp_path, pair(tmp_path, name))) for name in ("a", "b"))
+    assert [each.row.key for each in one] == [each.row.key for each in other]
+    assert one[0].row.scene != other[0].row.scene
+
+
+def test_all_scenes_that_cannot_be_read_are_named(registry: Registry, tmp_path: Path):
+    scenes = [pair(tmp_path, name) for name in ("a", "b", "c")]
+    for name in ("aa_left", "cc_right"):
+        (tmp_path / f"{name}.png").write_bytes(b"no picture")
+    with pytest.raises(ConfigError) as error:
+        measurements(parse(registry, tmp_path, *scenes))
+    assert len(error.value.args) == 2
+    assert "aa_left.png" in error.value.args[0] and "cc_right.png" in error.value.args[1]
+
+
+def test_last_row_of_a_key_counts(tmp_path: Path):
+    path = tmp_path / "rows.jsonl"
+    for row in (replace(ROW, error="no"), replace(ROW, key="other"), replace(ROW, seconds=2.0)):
+        append(path, row)
+    found = read_rows(path)
+    assert {key: (row.seconds, row.error) for key, row in found.items()} == {"k": (2.0, None), "other": (None, None)}
+    assert asdict(found["k"]) == asdict(replace(ROW, seconds=2.0))

@@ -1,0 +1,142 @@
+"""The worker's state and its quick jobs: what is read again, what devices can do, and who waits for a worker."""
+
+import asyncio
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from sessions import TEXT, small_scene
+from tangible_core.parts.words.languages import LANGUAGES
+from tangible_core.pipeline.engine.cache import Cache
+from tangible_ui.worker import handle
+from tangible_ui.worker.handle import MOST_DEATHS, Worker, WorkerAbsent, WorkerKilled
+from tangible_ui.worker.jobs import JOBS
+from tangible_ui.worker.messages import Event
+from tangible_ui.worker.state import WorkerState
+
+
+@pytest.fixture
+def worker_state(tmp_path: Path) -> WorkerState:
+    """A state whose events are in `worker_state.heard`."""
+    heard: list[tuple[str, dict[str, Any]]] = []
+    made = WorkerState(tmp_path, lambda event, **told: heard.append((event, told)), Cache(tmp_path / "cache"))
+    made.heard = heard  # pyright: ignore[reportAttributeAccessIssue]
+    return made
+
+
+def test_picture_that_was_changed_is_read_again_and_others_are_not(worker_state: WorkerState, tmp_path: Path) -> None:
+    path = small_scene(tmp_path).with_name("mine.yaml")
+    for number, grey in enumerate((10, 200)):
+        Image.fromarray(np.full((24, 32), grey, np.uint8)).save(tmp_path / "mine.bmp")  # always of the same size
+        text = TEXT.replace("mine.png", "mine.bmp")
+        worker_state.pipeline = worker_state.pipeline_of(text, path, [])
+        scene = worker_state.pipeline.scene
+        assert scene.views is not None and scene.views.left[0, 0] == grey, number
+        assert worker_state.pipeline_of(text.replace("400", "500"), path, []).scene is scene
+
+
+def test_document_is_parsed_again_with_other_changes_of_the_command_line(
+    worker_state: WorkerState, tmp_path: Path
+) -> None:
+    path = small_scene(tmp_path)
+    for relief_m in (0.001, 0.002):
+        config = worker_state.config_of(TEXT, path, [f"workspace.relief_m={relief_m}"])
+        assert config.size.relief_m == relief_m
+        assert worker_state.config_of(TEXT, path, [f"workspace.relief_m={relief_m}"]) is config
+
+
+@pytest.mark.parametrize(("limit_n", "most_n"), [(None, 8.0), (2.0, 2.0), (100.0, 8.0)])
+def test_device_presses_with_no_more_than_document_and_motor_allow(
+    worker_state: WorkerState, tmp_path: Path, limit_n: float | None, most_n: float
+) -> None:
+    sets = ["device={use: mock}", *([] if limit_n is None else [f"safety.max_force_n={limit_n}"])]
+    found = JOBS["about_device"].do(worker_state, text=TEXT, path=small_scene(tmp_path), sets=sets)
+    assert (found["name"], found["simulated"], found["relief_m"]) == ("mock", True, 0.004)
+    assert found["most_force_n"] == most_n
+
+
+def test_materials_of_the_surface_alone_are_named_in_each_language(worker_state: WorkerState, tmp_path: Path) -> None:
+    told = {"number": 1, "text": TEXT, "path": small_scene(tmp_path), "sets": [], "want": "surface"}
+    JOBS["make"].do(worker_state, **told)
+    heard: list[tuple[str, dict[str, Any]]] = worker_state.heard  # pyright: ignore[reportAttributeAccessIssue]
+    (described,) = [said for event, said in heard if event == "described"]
+    (scene,) = [said for event, said in heard if event == "scene"]
+    there = {each["name"] for each in scene["materials"]}
+    assert all(described["names"][each].keys() <= there for each in LANGUAGES)
+    assert any(described["names"]["de"])
+    assert set(described["says"]) == set(LANGUAGES)
+
+
+class TestHandle:
+    @pytest.fixture
+    def started(self, monkeypatch: pytest.MonkeyPatch) -> list[Worker]:
+        """Starts of workers that have no process."""
+        starts: list[Worker] = []
+
+        def start(self: Worker) -> None:
+            self._ready = self._killed = False  # pyright: ignore[reportPrivateUsage]
+            starts.append(self)
+
+        monkeypatch.setattr(handle.Worker, "_start", start)
+        monkeypatch.setattr(handle.Worker, "_send", lambda self, message: None)
+        return starts
+
+    def die(self, worker: Worker, *, ready: bool = False, killed: bool = False) -> None:
+        if ready:
+            worker._take(Event("maker", {}))  # pyright: ignore[reportPrivateUsage]
+        if killed:
+            worker._process = SimpleNamespace(kill=lambda: None)  # pyright: ignore[reportPrivateUsage, reportAttributeAccessIssue]
+            worker.kill()
+        worker._handle_exit()  # pyright: ignore[reportPrivateUsage]
+
+    @pytest.mark.parametrize("last", [{"ready": True}, {"killed": True}])
+    def test_worker_is_given_up_after_failed_starts_in_a_row_alone(
+        self, started: list[Worker], tmp_path: Path, last: dict[str, bool]
+    ) -> None:
+        async def check() -> None:
+            heard: list[Event] = []
+            worker = Worker(tmp_path, heard.append)
+            for _ in range(MOST_DEATHS - 1):
+                self.die(worker)
+            self.die(worker, **last)
+            assert len(started) == MOST_DEATHS + 1
+            assert "maker_gone" not in [each.event for each in heard]
+            for _ in range(MOST_DEATHS - 1 if "ready" in last else 0):
+                self.die(worker)
+            self.die(worker)
+            assert heard[-1] == Event(
+                "maker_gone", {"why": "the process that computes does not start: it printed nothing"}
+            )
+            with pytest.raises(WorkerAbsent, match="does not start"):
+                await worker.ask("schema")
+            count = len(started)
+            worker.try_again()
+            assert len(started) == count + 1
+            for _ in range(MOST_DEATHS - 1):
+                self.die(worker)
+            assert len(started) == count + MOST_DEATHS
+
+        asyncio.run(check())
+
+    def test_requests_of_a_killed_worker_are_told_and_quick_ones_repeated(
+        self, started: list[Worker], tmp_path: Path
+    ) -> None:
+        async def check() -> None:
+            worker = Worker(tmp_path, lambda event: None)
+            asked = [asyncio.ensure_future(worker.ask("make")), asyncio.ensure_future(worker.quick("plan"))]
+            while len(worker._waiting) < 2:  # pyright: ignore[reportPrivateUsage]
+                await asyncio.sleep(0.01)
+            self.die(worker, ready=True, killed=True)
+            with pytest.raises(WorkerKilled):
+                await asked[0]
+            while not worker._waiting:  # pyright: ignore[reportPrivateUsage]
+                await asyncio.sleep(0.01)
+            (number,) = worker._waiting  # pyright: ignore[reportPrivateUsage]
+            worker._take(handle.JobResult(number, "the plan"))  # pyright: ignore[reportPrivateUsage]
+            assert await asked[1] == "the plan"
+
+        asyncio.run(asyncio.wait_for(check(), 60))

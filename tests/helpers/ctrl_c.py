@@ -9,7 +9,7 @@ from contextlib import contextmanager
 HEARING = (
     sys.executable,
     "-c",
-    "import os, signal, sys; [signal.signal(each, signal.SIG_DFL) for each in (signal.SIGINT, signal.SIGHUP)]; "
+    "import os, signal, sys; [signal.signal(each, signal.SIG_DFL) for each in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)]; "
     "os.execv(sys.argv[1], sys.argv[1:])",
 )
 """Before the words of a command: it runs in the same process, and hears Ctrl-C."""

@@ -13,6 +13,7 @@ import onnx
 import pytest
 
 import onnx_models
+from ctrl_c import hearing
 from tangible_core import Pipeline, Scene
 from tangible_core.data import Calibration, Views
 from tangible_core.errors import BrokenMethod, ConfigError, ModelAbsent, PictureError
@@ -484,7 +485,7 @@ class TestHostileFiles:
         main = threading.main_thread().ident
         assert main is not None
         threading.Timer(0.5, signal.pthread_kill, [main, signal.SIGINT]).start()
-        with pytest.raises(KeyboardInterrupt):
+        with hearing(), pytest.raises(KeyboardInterrupt):
             Onnx(model=model, runtime="onnxruntime").estimate(Views(picture()))
 
 

@@ -33,7 +33,7 @@ safety: {ramp_s: 0}
 """
 HEARING = (
     "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);"
-    "signal.signal(signal.SIGHUP, signal.SIG_DFL); "
+    "[signal.signal(each, signal.SIG_DFL) for each in (signal.SIGHUP, signal.SIGQUIT)]; "
 )
 """Default handlers, as the runner of the tests may ignore Ctrl-C, and nohup ignores the end of a terminal."""
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)

@@ -1,5 +1,5 @@
 """Ctrl-C in tests, whatever runs them: what is started in the background or under nohup, and all that it starts,
-begins with SIGINT ignored, and Python then raises no KeyboardInterrupt."""
+begins with SIGINT and SIGQUIT ignored, and Python then raises no KeyboardInterrupt."""
 
 import signal
 import sys
@@ -9,7 +9,8 @@ from contextlib import contextmanager
 HEARING = (
     sys.executable,
     "-c",
-    "import os, signal, sys; [signal.signal(each, signal.SIG_DFL) for each in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)]; "
+    "import os, signal, sys; "
+    "[signal.signal(each, signal.SIG_DFL) for each in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)]; "
     "os.execv(sys.argv[1], sys.argv[1:])",
 )
 """Before the words of a command: it runs in the same process, and hears Ctrl-C."""

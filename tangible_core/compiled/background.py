@@ -15,9 +15,9 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from types import TracebackType
-from typing import IO, Any, NamedTuple, Self, final
+from typing import Any, NamedTuple, Self, final
 
-from ..runtime.child_process import command, dumps
+from ..runtime.child_process import command, dumps, pipe_of
 from ..runtime.stopping import check_stopped
 
 log = logging.getLogger(__name__)
@@ -85,8 +85,8 @@ class BackgroundCompiler:
             if self._listener is not None:
                 self._listener.join()
             with suppress(OSError):  # unsent data are not needed
-                _pipe(child.stdin).close()
-            _pipe(child.stdout).close()
+                pipe_of(child.stdin).close()
+            pipe_of(child.stdout).close()
 
     def begin(self) -> None:
         """Start the process, once, if there is work for it."""
@@ -120,20 +120,15 @@ class BackgroundCompiler:
 
     def _listen(self, child: "subprocess.Popen[bytes]", data: bytes) -> None:
         with suppress(OSError, ValueError):  # the process has ended
-            _pipe(child.stdin).write(data)
-            _pipe(child.stdin).flush()
-        for line in _pipe(child.stdout):
+            pipe_of(child.stdin).write(data)
+            pipe_of(child.stdin).flush()
+        for line in pipe_of(child.stdout):
             with self._progress:
                 self._due -= {line.decode(errors="replace").strip()}
                 self._progress.notify_all()
         with self._progress:
             self._due = frozenset()
             self._progress.notify_all()
-
-
-def _pipe(pipe: IO[bytes] | None) -> IO[bytes]:
-    assert pipe is not None
-    return pipe
 
 
 def main() -> None:

@@ -15,7 +15,7 @@ from importlib.machinery import ModuleSpec
 from operator import attrgetter
 from pathlib import Path
 from types import FunctionType, ModuleType
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple
 
 from ..errors import BrokenMethod
 
@@ -53,6 +53,12 @@ def python(code: str) -> list[str]:
     """Return the command that runs code in a Python that finds modules where this process finds them."""
     flags = [flag for name, flag in FLAGS.items() if getattr(sys.flags, name)]
     return [sys.executable, "-P", *flags, "-c", f"import sys; sys.path[:] = {search_path()!r}; {code}"]
+
+
+def pipe_of(end: IO[bytes] | None) -> IO[bytes]:
+    """Return an end of a pipe of a process that was started with pipes."""
+    assert end is not None
+    return end
 
 
 def search_path() -> list[str]:

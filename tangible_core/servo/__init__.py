@@ -3,7 +3,6 @@
 from .beacon import Beacon as Beacon
 from .beacon import BeaconState as BeaconState
 from .beacon import beacon_to as beacon_to
-from .child import TERMINATED as TERMINATED
 from .guard.safety import Safety as Safety
 from .host import Servo as Servo
 from .packed_touch import Packed as Packed

@@ -15,14 +15,13 @@ from typing import IO, final
 
 from ..errors import DeviceError
 from ..plugins.interfaces import Link, Touch, touch_of
+from ..runtime.signals import ENDING
 from . import parcel
 from .framing import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
 from .ring import STOP, SWAP, Ring
 from .ticks import loop, priority
 
 TERMINATED = "the process received a signal to end"
-ENDING = ("SIGTERM", "SIGHUP", "SIGQUIT")
-"""Signals of `kill`, of a closed terminal, and of Ctrl-\\: they reach the loop too, but must not end it at once."""
 PAUSED = "the program was paused from the keyboard"
 SWITCH_S = 1e-4
 """Time after which a thread passes Python's lock to a waiting one, such as a loop that needs Python."""
@@ -140,7 +139,7 @@ def main() -> None:
     sys.setswitchinterval(SWITCH_S)
     commands = open(0, "rb", buffering=0)  # noqa: SIM115 - a buffer's lock would outlive the thread that waits
     child = Child(commands, replies)
-    for number in (getattr(signal, name) for name in ENDING if hasattr(signal, name)):
+    for number in ENDING:  # they reach the loop too, but must not end it at once
         if signal.getsignal(number) != signal.SIG_IGN:  # nohup ignores it: the program goes on, and so does its loop
             signal.signal(number, lambda _number, _frame: child.stop(TERMINATED))
     if hasattr(signal, "SIGTSTP"):  # Ctrl-Z: a suspended process would leave its force on

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import DeviceError
 from ..plugins.interfaces import HapticDevice
-from ..runtime.child_process import command
+from ..runtime.child_process import command, pipe_of
 from .framing import End, Refusal, Start, receive, send, sendable
 from .ring import COUNT, LAST, STOP, Ring
 
@@ -71,7 +71,7 @@ class LoopProcess:
     def send(self, message: Any) -> None:
         """Send a message. Raises: DeviceError, or a plugin's error, if the loop has ended."""
         try:
-            send(_pipe(self.child.stdin), message)
+            send(pipe_of(self.child.stdin), message)
         except (OSError, ValueError) as error:  # the process is gone, or the host closed the pipe
             self._over.wait()  # then the reason is known
             raise self.failure() from error
@@ -98,7 +98,7 @@ class LoopProcess:
     def _close_pipe(self) -> None:
         if self._child is not None:
             with suppress(OSError):  # messages that were not sent are not needed any more
-                _pipe(self._child.stdin).close()
+                pipe_of(self._child.stdin).close()
 
     def _kill(self, why: str) -> None:
         if self._child is not None and self._child.poll() is None:
@@ -124,11 +124,11 @@ class LoopProcess:
             self._child = child = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         except OSError as error:
             raise DeviceError(f"no process can be started for the force loop: {error.strerror or error}") from error
-        with _pipe(child.stdout) as replies:
+        with pipe_of(child.stdout) as replies:
             if ring.header[STOP]:
                 self._close_pipe()
             with suppress(OSError, ValueError):  # the process is gone, or the pipe was closed
-                send(_pipe(child.stdin), start)
+                send(pipe_of(child.stdin), start)
             ended = self._receive_until_end(replies)
             ring.header[STOP] = 1
             self._close_pipe()
@@ -185,8 +185,3 @@ def _open_and_close(device: HapticDevice, done: threading.Event) -> None:
         log.warning("the device may still hold its last force: %s; switch it off", error)
     finally:
         done.set()
-
-
-def _pipe(end: IO[bytes] | None) -> IO[bytes]:
-    assert end is not None  # the process was started with both pipes
-    return end

@@ -16,11 +16,12 @@ from typing import Any, final
 import uvicorn
 from starlette.types import ASGIApp
 
+from tangible_core.runtime.signals import ENDING
+
 from ..address import Address
 from ..feeling.feeling import Feeling
 from ..logs import silence, tell_pages
 from ..requests import document
-from ..requests import document as drafts
 from ..stale_files import channel_of_this_process, folder_of_this_process
 from ..state.session import Session
 from .connection import PING_S, Connection, Exchange, Strangers
@@ -31,7 +32,6 @@ MOST_MESSAGE_BYTES = 2**20
 """Size limit of a message, bytes; pipeline files are smaller."""
 THREADS = 32
 """Threads for waiting calls: a disk, a pipe, a loop that ends. Such a call must not wait for another one of them."""
-ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT") if hasattr(signal, name))
 
 KEEP_S = 0.01
 """Interval at which the server polls the loop, s: it proves that it lives, and moves the hand of a compared law."""
@@ -77,7 +77,7 @@ class Server(uvicorn.Server):
     def capture_signals(self) -> Generator[None]:
         """Handle the signals that were not ignored before, as by nohup."""
         here = threading.current_thread() is threading.main_thread()
-        before = {each: signal.getsignal(each) for each in ENDING if here}
+        before = {each: signal.getsignal(each) for each in (signal.SIGINT, *ENDING) if here}
         mine = {each: handler for each, handler in before.items() if handler != signal.SIG_IGN}
         for each in mine:
             signal.signal(each, self.handle_exit)
@@ -136,7 +136,7 @@ class Served:
         telling = tell_pages(tell)
         loop.set_exception_handler(partial(_unforeseen, session))
         session.begin(watch(session))
-        session.begin(drafts.offer(session))
+        session.begin(document.offer(session))
         session.begin(document.begin(session, None, [str(each) for each in self._files]))
         session.begin(_start(session))
         gc.freeze()  # the collector skips what was imported

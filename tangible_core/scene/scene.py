@@ -223,12 +223,13 @@ class Scene:
             factor = felt_factor(self.height.shape[1], width_m, finest_m)
             height = reduced_map(self.height, reduced_shape(self.shape, factor))
             relief_m = self.relief_m or relief_m
-            if not np.isfinite(height).any():
-                raise GeometryError(f"{self.name} holds only NaN or infinity; use heights of which some are known")
-            if self.measured is None:
-                relief = scale_heights(height, width_m, relief_m, holes)
-            else:
-                relief = _measured_relief(height, self.measured, width_m, relief_m)
+            try:
+                if self.measured is None:
+                    relief = scale_heights(height, width_m, relief_m, holes)
+                else:
+                    relief = _measured_relief(height, self.measured, width_m, relief_m)
+            except GeometryError as error:
+                raise GeometryError(f"{self.name}: {error}") from error
         products = {"views": self.views, "relief": relief, "disparity": self.disparity, "segments": self.segments}
         return {product: record for product, record in products.items() if record is not None}
 

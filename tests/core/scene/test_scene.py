@@ -202,7 +202,7 @@ def test_height_map_holes_are_filled_or_cut(folder):
 
 def test_height_map_without_known_heights_is_refused(folder):
     np.save(folder / "nothing.npy", np.full((3, 3), NAN))
-    with pytest.raises(GeometryError, match=r"nothing\.npy holds only NaN or infinity"):
+    with pytest.raises(GeometryError, match=r"nothing\.npy: the height map holds only NaN or infinity"):
         Scene.read(SceneFiles(height="nothing.npy"), folder).brings(**SIZE)
 
 

@@ -6,7 +6,6 @@ other files.
 
 import json
 import os
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -19,10 +18,6 @@ from .run_folder import make_writable
 
 LISTED = ".exports.json"
 """The list of exported files; the name of no exporter's file begins with a dot."""
-
-
-SCRATCH = "export"
-"""Name of the temporary folder in which files are written, on the same disk as their place."""
 
 
 @dataclass(frozen=True)
@@ -40,15 +35,6 @@ def check_writable(folder: Path) -> None:
     make_writable(folder)
     if os.path.lexists(folder / LISTED) and _read_list(folder) is None:
         raise OutputError(f"{folder / LISTED}: is not a list of exports; move or delete it, or choose another folder")
-
-
-def without_scratch(text: str) -> str:
-    """Return a message that names files by their place, and not by the temporary folder in which they are written.
-
-    >>> without_scratch("out/.export.0123456789ab.tangible/x.stl: cannot be written")
-    'out/x.stl: cannot be written'
-    """
-    return re.sub(rf"\.{SCRATCH}\.[0-9a-f]{{12}}\.tangible[/\\\\]", "", text)
 
 
 def check_written(written: Sequence[object], place: Path, who: str) -> tuple[Path, ...]:

@@ -30,7 +30,7 @@ from ..config.model import PipelineConfig
 from ..engine.engine import Engine
 from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
-from .export_folder import SCRATCH, check_writable, check_written, move, without_scratch
+from .export_folder import check_writable, check_written, move
 from .legible import judge_products, names_of_parts, with_width
 from .run_folder import default_name, relative_source
 
@@ -176,7 +176,7 @@ class _ExportRun:
     def export(self, name: str, stem: str, chosen: NamedMethod[Exporter]) -> Exported:
         """Make the products for an exporter, and run it."""
         made, product, seconds = Outcomes(), f"{PREFIX}{name}", 0.0
-        files, legible, notes = (), None, list[Note]()
+        files, legible, notes, place = (), None, list[Note](), None
 
         def listen(stage: StageEvent) -> None:
             if stage.outcome is not None:
@@ -192,7 +192,7 @@ class _ExportRun:
             self.progress(StageEvent(product, chosen.name))
             hooks.tell(self.engine.registry.plugins, "tangible_stage_started", product=product, method=chosen.name)
             start = perf_counter()
-            with temporary_folder(self.folder / SCRATCH) as place, collect_notes() as notes:
+            with temporary_folder(self.folder / "export") as place, collect_notes() as notes:
                 files = self._write(chosen, work, place / stem)
             seconds = perf_counter() - start
             kind: OutcomeKind = "ran"
@@ -202,6 +202,8 @@ class _ExportRun:
             raise
         except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever a plugin raises, the others still write
             kind, why = _fault(error, self.folder)
+            if place is not None:  # the user has never seen where files are written before they are moved
+                why = why.replace(str(place), str(self.folder))
         outcome = Outcome(product, kind, why, chosen.name, seconds, tuple(notes))
         self.progress(StageEvent(product, chosen.name, outcome))
         hooks.tell(self.engine.registry.plugins, "tangible_stage_finished", outcome=outcome)
@@ -288,7 +290,7 @@ def _fault(error: BaseException, folder: Path) -> tuple[OutcomeKind, str]:
     if isinstance(error, SystemExit):
         return "failed", str(exit_error(error))
     if isinstance(error, TangibleError):
-        return "failed" if isinstance(error, BrokenMethod) else "refused", without_scratch(str(error))
+        return "failed" if isinstance(error, BrokenMethod) else "refused", str(error)
     if isinstance(error, OSError) and error.errno in NO_ROOM:
         return "refused", f"{folder}: cannot be written: {error.strerror}; free some space or choose another folder"
     return "failed", failures.sentence(error)

@@ -394,6 +394,13 @@ class TestFailures:
         assert one.outcome.why == f"{tmp_path / '.exports.json'}: cannot be written: No space left on device"
         assert not list(tmp_path.iterdir())
 
+    def test_error_names_the_place_of_a_file_and_not_the_temporary_folder(self, tmp_path: Path):
+        def refuse(stem: Path) -> tuple[Path, ...]:
+            raise OutputError(f"{stem.with_suffix('.txt')}: cannot be written")
+
+        (one,) = pipeline(**SAID).export(tmp_path, [Does(do=refuse)]).exports
+        assert one.outcome.why == f"{tmp_path / 'still life.txt'}: cannot be written"
+
     def test_folder_of_a_killed_export_is_swept_by_the_next(self, tmp_path: Path):
         left = tmp_path / ".export.0123456789ab.tangible"
         left.mkdir()

@@ -5,6 +5,7 @@ from functools import cached_property
 from ....data import DisparityMap, PartMap, Relief
 from ....parts import Layering, PartHeights
 from ....scene import geometry, scaling
+from ....scene.workspace import FeltSize
 from .. import part_heights
 from ..part_heights import warn_missing_heights
 from ..stage import Inputs, Stage
@@ -25,8 +26,13 @@ class ReliefStage(Stage):
         return "views", self.config.felt_parts, *by_depth
 
     @cached_property
+    def size(self) -> FeltSize:
+        """The decided workspace, once: a depth method may look into a folder for it, and a film has many frames."""
+        return self.config.size
+
+    @cached_property
     def key(self) -> str:
-        config, size = self.config, self.config.size
+        config, size = self.config, self.size
         if config.heights is None:
             return f"{self.code(geometry.__name__)} {size!r}{self.reduction}"
         code = self.code(part_heights.__name__, Layering.__module__, geometry.__name__)
@@ -44,12 +50,12 @@ class ReliefStage(Stage):
             return self._from_parts(inputs[self.config.felt_parts], inputs.get("disparity"))
         disparity: DisparityMap | None = inputs["disparity"]
         if disparity is None:
-            return geometry.flat_relief(self.views.shape, self.config.size.width_m)
+            return geometry.flat_relief(self.views.shape, self.size.width_m)
         return self.from_disparity(scaling.reduced_disparity(disparity, self.grid.shape))
 
     def from_disparity(self, disparity: DisparityMap, spans: geometry.ValueRange | None = None) -> Relief:
         """Return the relief of a disparity map on the working grid. spans: as `geometry.make_relief`."""
-        views, size = self.context.scene.views, self.config.size
+        views, size = self.context.scene.views, self.size
         calibration = views.calibration if views else None
         relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes, spans)
         return flatten_transparent(geometry.smooth(relief, size.smooth_m), self.grid.opaque_mask)
@@ -69,5 +75,5 @@ class ReliefStage(Stage):
         views, heights = self.views, self.part_heights(parts, disparity)
         warn_missing_heights(heights, config.heights, config.given_heights_m)
         on_grid = grid.parts(parts, config.felt_parts)
-        layering = Layering(on_grid, config.size.width_m, config.heights, views.left)
-        return relief_of_layers(layering, heights.heights_m, config.size, grid.opaque_mask)
+        layering = Layering(on_grid, self.size.width_m, config.heights, views.left)
+        return relief_of_layers(layering, heights.heights_m, self.size, grid.opaque_mask)

@@ -90,6 +90,8 @@ class Onnx(DepthEstimator, Skippable):
 
         def work(rows: slice) -> list[Map]:
             views = [each[rows] for each in (left, right) if each is not None]
+            if rows.start == 0:  # once: strips are alike
+                _note_size(fit_size(views[0].shape[:2], card.input, limit).resized, card.input.trained_px)
             return self._run(model, card, views, limit)
 
         maps = map_in_strips((height, width), most_px if in_pixels else height * width, card.input.multiple, work)
@@ -99,7 +101,6 @@ class Onnx(DepthEstimator, Skippable):
         takes, gives = card.input, card.output
         shape: tuple[int, int] = views[0].shape[:2]
         fit = fit_size(shape, takes, most_px)
-        _note_size(fit.resized, takes.trained_px)
         names = (takes.left, takes.right) if len(views) == 2 else (takes.left,)
         inputs = {name: tensor(view, takes, fit) for name, view in zip(names, views, strict=True)}
         wanted = [gives.name, gives.confidence] if gives.confidence else [gives.name]

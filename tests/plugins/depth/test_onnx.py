@@ -18,13 +18,14 @@ from tangible_core import Pipeline, Scene
 from tangible_core.data import Calibration, Views
 from tangible_core.errors import BrokenMethod, ConfigError, ModelAbsent, PictureError
 from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.plugins.notes import collected
 from tangible_core.scene.workspace import SUITS, FeltSize
 from tangible_core.testing import run_checks
 from tangible_core.testing.synthetic.scenes import wall
 from tangible_depth import Auto, Contour, Luminance, Onnx, SemiGlobal
 from tangible_depth.network import onnx_file
 from tangible_depth.network.card import PRESETS
-from tangible_depth.network.onnx_file import read_declared
+from tangible_depth.network.onnx_file import read_inputs
 from tangible_depth.network.runtimes import Runtime
 
 RUNTIMES = ("opencv", "onnxruntime")
@@ -323,6 +324,14 @@ def test_size_far_from_that_of_the_training_is_reported(networks: Path, card, ca
     ]
 
 
+def test_size_far_from_that_of_the_training_is_reported_once_for_all_strips(networks: Path, card):
+    text = STEREO.replace("right: right", "right: right, trained_px: [1000, 1000]")
+    pair = Views(picture(400, 50, 1), picture(400, 50, 2))
+    with collected() as notes:
+        card(networks / "stereo.onnx", text, most_px=4096).estimate(pair)
+    assert len([each for each in notes if "trained with pictures" in each]) == 1
+
+
 def test_card_of_midas_leaves_the_colours_to_the_network():
     """Its file begins with the subtraction of the mean and the division by the deviation."""
     takes = PRESETS["midas-v2.1-small"].input
@@ -399,10 +408,10 @@ def test_networks_conform(networks: Path, name: str, kept: list[str]):
 class TestHostileFiles:
     """A network from somewhere is as little to be trusted as a picture: OpenCV dies of some of these."""
 
-    def altered(self, folder: Path, alter: Callable[[onnx.TensorProto], None], name: str = "grey") -> Path:
+    def altered(self, folder: Path, alter: Callable[[onnx.TensorProto], None]) -> Path:
         """A copy of the network for one picture, with one of its weights altered."""
         model = onnx.load(onnx_models.mono(folder / "m.onnx"))
-        (weight,) = (each for each in model.graph.initializer if each.name == name)
+        (weight,) = (each for each in model.graph.initializer if each.name == "grey")
         alter(weight)
         (folder / "m.onnx").write_bytes(model.SerializeToString())
         return folder / "m.onnx"
@@ -449,13 +458,13 @@ class TestHostileFiles:
 
     def test_declared_inputs_are_those_of_the_library(self, tmp_path: Path):
         model = onnx_models.stereo(tmp_path / "m.onnx", 4, (48, "w"))
-        assert read_declared(model).inputs == {"left": (1, 3, 48, None), "right": (1, 3, 48, None)}
+        assert read_inputs(model) == {"left": (1, 3, 48, None), "right": (1, 3, 48, None)}
         old = onnx.load(model)
         old.graph.input.append(onnx.helper.make_tensor_value_info("grey", onnx.TensorProto.FLOAT, [1, 3, 1, 1]))
         # as files before ONNX 1.4 list their weights
         old.graph.input[1].type.tensor_type.shape.dim[2].dim_value = 0
         model.write_bytes(old.SerializeToString())
-        assert read_declared(model).inputs == {"left": (1, 3, 48, None), "right": (1, 3, None, None)}
+        assert read_inputs(model) == {"left": (1, 3, 48, None), "right": (1, 3, None, None)}
 
     def test_weights_of_a_loops_own_graph_are_checked(self, tmp_path: Path, card):
         """A loop's body has weights of its own, and a node has constants."""

@@ -9,7 +9,7 @@ import math
 import mmap
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from tangible_core.errors import ConfigError, quoted
 
@@ -28,31 +28,27 @@ SIZES, NAME, PLACES = 1, 8, 13
 VARINT, EIGHT_BYTES, BYTES, FOUR_BYTES = 0, 1, 2, 5
 
 
-class Declared(NamedTuple):
-    """The declarations that matter here."""
+def read_inputs(model: Path) -> Mapping[str, Shape]:
+    """Check a network's file, and return the inputs that it declares, without the weights, in their order.
 
-    inputs: Mapping[str, Shape]
-    """Inputs without the weights, in their order."""
-
-
-def read_declared(model: Path) -> Declared:
-    """Read a network's file. Raises: ConfigError if it is damaged, or names weights that cannot be; OSError."""
+    Raises: ConfigError if it is damaged, or names weights that cannot be; OSError.
+    """
     damaged = ConfigError(f"model: {model} is not an ONNX file, or is damaged; fetch it again")
     if not model.stat().st_size:  # nothing can be mapped
         raise damaged
     with model.open("rb") as file:
         whole = memoryview(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))
     try:
-        return _declared(model, whole)
+        return _inputs(model, whole)
     except (IndexError, ValueError) as error:
         raise damaged from error
 
 
-def _declared(model: Path, whole: memoryview) -> Declared:
+def _inputs(model: Path, whole: memoryview) -> Mapping[str, Shape]:
     graphs = list(_parts(whole, GRAPH))
     weights = {name for graph in graphs for name in _checked_weights(model, graph)}
     inputs = dict(_input(each) for graph in graphs for each in _parts(graph, INPUTS))
-    return Declared({name: shape for name, shape in inputs.items() if name not in weights})
+    return {name: shape for name, shape in inputs.items() if name not in weights}
 
 
 def _checked_weights(model: Path, graph: memoryview) -> Iterator[str]:

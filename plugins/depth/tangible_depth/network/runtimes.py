@@ -15,7 +15,7 @@ from jaxtyping import Float32
 
 from tangible_core.errors import BrokenMethod, ConfigError, shown
 
-from .onnx_file import Shape, read_declared
+from .onnx_file import Shape, read_inputs
 
 Runtime = Literal["opencv", "onnxruntime"]
 OLDEST_OPENCV = 5
@@ -74,7 +74,7 @@ def _other_runtime(runtime: Runtime) -> Runtime:
 
 @lru_cache(maxsize=1)
 def _inputs(model: Path, changed_ns: int, size: int) -> Mapping[str, Shape]:
-    return read_declared(model).inputs
+    return read_inputs(model)
 
 
 @lru_cache(maxsize=1)

@@ -2,6 +2,7 @@
 
 import asyncio
 import threading
+from collections.abc import Callable, Coroutine, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -133,6 +134,19 @@ class Heard:
         """Return the newest event of a name, as soon as there are `count` of them."""
         await happened(lambda: self.names().count(name) >= count, f"no {name}")
         return self.last(name)
+
+
+def run_in_session(
+    folder: Path, check: Callable[[Session, Heard], Coroutine[Any, Any, None]], sets: Sequence[str] = ()
+) -> None:
+    """Run a check with a session and a tab; what still runs afterwards is cancelled."""
+
+    async def run() -> None:
+        session, tab = Session(folder, Feeling("none"), [*sets]), Heard()
+        session.enter(tab)
+        await check(session, tab)
+
+    asyncio.run(run())
 
 
 class SmallSession:

@@ -11,7 +11,7 @@ import shutil
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -23,6 +23,8 @@ from ui_server import UiServer
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
+
+    from tangible_ui.worker.state import WorkerState
 
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 """The first that is installed; the shell is the same without windows, at two thirds of the processor time."""
@@ -129,3 +131,15 @@ def open_page(browser: "Browser", complaints: list[str]) -> Iterator[OpenPage]:
     """
     with tabs(browser, complaints) as opened:
         yield opened
+
+
+@pytest.fixture
+def worker_state(tmp_path: Path) -> "WorkerState":
+    """A worker's state, whose events are in `worker_state.heard`."""
+    from tangible_core.pipeline.engine.cache import Cache
+    from tangible_ui.worker.state import WorkerState
+
+    heard: list[tuple[str, dict[str, Any]]] = []
+    made = WorkerState(tmp_path, lambda event, **told: heard.append((event, told)), Cache(tmp_path / "cache"))
+    made.heard = heard  # pyright: ignore[reportAttributeAccessIssue]
+    return made

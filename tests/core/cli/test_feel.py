@@ -6,6 +6,8 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from unittest.mock import patch
 
@@ -16,7 +18,6 @@ from command_line import tangible
 from ctrl_c import HEARING
 from tangible_core.data import TickFlag
 from tangible_core.session import INTERRUPTED, Recording
-from waiting import until
 
 FILE = """
 scene: {{height: {height}.npy, relief_m: 0.004}}
@@ -25,6 +26,27 @@ render: {{use: proxy}}
 device: {{use: {device}}}
 """
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
+
+
+@contextmanager
+def recording(folder: Path, *words: str) -> Iterator["subprocess.Popen[str]"]:
+    """Start the program in a group of its own, and wait until its recording `hand.nc` has grown."""
+    program = subprocess.Popen(
+        [*HEARING, TANGIBLE, *words],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    grown, end = folder / "hand.nc", time.monotonic() + 60
+    try:
+        while not grown.exists() or grown.stat().st_size < 60_000:
+            assert program.poll() is None and time.monotonic() < end
+            time.sleep(0.05)
+        yield program
+    finally:
+        program.kill()
 
 
 @pytest.fixture
@@ -79,51 +101,25 @@ def test_feel_with_an_unmoved_pointer_warns_once(folder: Path):
 def test_endless_feel_stops_at_a_signal_with_a_complete_recording(folder: Path, number: signal.Signals, group: bool):
     """The signal goes to the program alone, as by `kill`, or to its loop as well, as by systemd or a terminal."""
     words = ["feel", "a.yaml", "b.yaml", "--each", "0.2", "--seconds", "inf", "--wait", "--record", "hand.nc"]
-    program = subprocess.Popen(
-        [*HEARING, TANGIBLE, *words],
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    grown, end = folder / "hand.nc", time.monotonic() + 60
-    try:
-        while not grown.exists() or grown.stat().st_size < 60_000:
-            assert program.poll() is None and time.monotonic() < end
-            time.sleep(0.05)
+    with recording(folder, *words) as program:
         (os.killpg if group else os.kill)(program.pid, number)
         out, errors = program.communicate(timeout=60)
-    finally:
-        program.kill()
     assert program.returncode == 128 + number, errors
     assert "Traceback" not in errors
     assert "contact_share" in out
-    recording = Recording.load(grown)
-    assert recording.stopped in (INTERRUPTED, "the process received a signal to end")
-    assert (len(recording.rows) > 500, (np.diff(recording.time_s) > 0).all()) == (True, True)
+    kept = Recording.load(folder / "hand.nc")
+    assert kept.stopped in (INTERRUPTED, "the process received a signal to end")
+    assert (len(kept.rows) > 500, (np.diff(kept.time_s) > 0).all()) == (True, True)
 
 
 @pytest.mark.slow
 def test_loop_ended_alone_is_a_failure_and_not_an_interruption(folder: Path):
     """Somebody ended the loop's process: the user did not stop the program, and is told what happened."""
     words = ["feel", "a.yaml", "--seconds", "inf", "--record", "hand.nc"]
-    program = subprocess.Popen(
-        [TANGIBLE, *words],
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    grown = folder / "hand.nc"
-    try:
-        until(lambda: program.poll() is not None or (grown.exists() and grown.stat().st_size > 60_000))
+    with recording(folder, *words) as program:
         [loop] = subprocess.check_output(["pgrep", "-g", str(program.pid), "-f", "servo.child"], text=True).split()
         os.kill(int(loop), signal.SIGTERM)
         _, errors = program.communicate(timeout=60)
-    finally:
-        program.kill()
     assert program.returncode == 2, errors
     assert "the process received a signal to end" in errors
     assert "interrupted" not in errors

@@ -21,11 +21,6 @@ from videos import greys
 
 
 @pytest.fixture
-def worker_state(tmp_path: Path) -> WorkerState:
-    return WorkerState(tmp_path, lambda event, **told: None)
-
-
-@pytest.fixture
 def store(tmp_path: Path) -> UploadStore:
     return UploadStore(tmp_path / "kept", tmp_path / "incoming")
 

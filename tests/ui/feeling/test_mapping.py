@@ -18,11 +18,6 @@ CASES = Path(__file__).parents[3] / "plugins/ui/web/test/placement.json"
 PATH = Path("p.yaml")
 
 
-@pytest.fixture
-def worker_state(tmp_path: Path) -> WorkerState:
-    return WorkerState(tmp_path, lambda event, **told: None)
-
-
 def test_mapping_reference_of_the_page_is_the_core_s():
     """web/test/placement.test.ts computes the same cases in the page's language."""
     cases = json.loads(CASES.read_text())["cases"]

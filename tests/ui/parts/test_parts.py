@@ -546,6 +546,19 @@ def test_scene_event_has_the_names_of_parts(small: Callable[[Check], None], tmp_
     small(check)
 
 
+def kept_parcels(monkeypatch: pytest.MonkeyPatch, *methods: str) -> list[bytes]:
+    """What these methods of sessions are given for the loop from now on, byte by byte."""
+    kept: list[bytes] = []
+
+    async def feel(_: Any, made: dict[str, Any]) -> None:
+        kept.append(Path(made["parcel"]).read_bytes())
+        Path(made["parcel"]).unlink()
+
+    for each in methods:
+        monkeypatch.setattr(Session, each, feel)
+    return kept
+
+
 class TestHeights:
     def test_changed_heights_feel_as_the_saved_document(
         self, small: Callable[[Check], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -553,14 +566,7 @@ class TestHeights:
         """Surfaces and the loop's whole input are the same to the bit."""
 
         async def check(small: SmallSession, ask: Any) -> None:
-            sent_to_the_loop: list[bytes] = []
-
-            async def feel(_: Any, made: dict[str, Any]) -> None:
-                sent_to_the_loop.append(Path(made["parcel"]).read_bytes())
-                Path(made["parcel"]).unlink()
-
-            monkeypatch.setattr(Session, "feel", feel)
-            monkeypatch.setattr(Session, "feel_on", feel)
+            sent_to_the_loop = kept_parcels(monkeypatch, "feel", "feel_on")
             for render in ("{use: penalty}", "{use: proxy}"):
                 await ask("set", written={"render": render})
                 await saved(small, ask)
@@ -632,15 +638,9 @@ class TestHeights:
         self, small: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
     ) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
-            felt: list[bytes] = []
-
-            async def feel_on(_: Any, made: dict[str, Any]) -> None:
-                felt.append(Path(made["parcel"]).read_bytes())
-                Path(made["parcel"]).unlink()
-
             await saved(small, ask)
             await small.tab.until("touch")
-            monkeypatch.setattr(Session, "feel_on", feel_on)
+            felt = kept_parcels(monkeypatch, "feel_on")
             for law in ("penalty", "penalty-gradient", "penalty"):
                 await ask("set", written={"render": law})
                 await ask("parts_heights", heights_m=[0.0, 0.002, 0.001])

@@ -10,7 +10,7 @@ from unittest.mock import Mock
 import numpy as np
 import pytest
 
-from sessions import Heard
+from sessions import Heard, run_in_session
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import ConfigError, DeviceError, Stopped, TangibleError
 from tangible_core.servo.ring import PERIOD_NS, SPINS
@@ -65,19 +65,15 @@ def with_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[C
     monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path / "data"))
 
     def run(check: Check) -> None:
-        async def all_of_it() -> None:
-            session, tab = Session(tmp_path, Feeling("none"), []), Heard()
-            session.enter(tab)
+        async def with_requests(session: Session, tab: Heard) -> None:
             session.path = tmp_path / "mine.yaml"
 
             async def ask(request: str, /, **told: Any) -> Any:
                 return await REQUESTS[request](session, tab, **told)
 
             await check(session, tab, ask)
-            for task in list(session._tasks):  # pyright: ignore[reportPrivateUsage]
-                task.cancel()
 
-        asyncio.run(all_of_it())
+        run_in_session(tmp_path, with_requests)
 
     return run
 

@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Coroutine
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,11 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sessions import Heard, InlineWorker
+from sessions import Heard, InlineWorker, run_in_session
 from tangible_core import load_method
 from tangible_core.errors import DeviceError, OutputError
 from tangible_ui.feeling.choice import Choice, NotConfirmed
-from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.state.scheduling import LatestWins, LongJobs
 from tangible_ui.state.session import Session
 
@@ -26,15 +26,7 @@ def with_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[C
     monkeypatch.setattr("tangible_ui.state.session.Worker", InlineWorker)
     monkeypatch.setenv("TANGIBLE_DATA_DIR", str(tmp_path / "data"))
 
-    def run(check: Check) -> None:
-        async def all_of_it() -> None:
-            session, tab = Session(tmp_path, Feeling("none"), ["device={use: mock}"]), Heard()
-            session.enter(tab)
-            await check(session, tab)
-
-        asyncio.run(all_of_it())
-
-    return run
+    return partial(run_in_session, tmp_path, sets=["device={use: mock}"])
 
 
 class Touch(SimpleNamespace):

@@ -11,21 +11,11 @@ from PIL import Image
 
 from sessions import TEXT, small_scene
 from tangible_core.parts.words.languages import LANGUAGES
-from tangible_core.pipeline.engine.cache import Cache
 from tangible_ui.worker import handle
 from tangible_ui.worker.handle import MOST_DEATHS, Worker, WorkerAbsent, WorkerKilled
 from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.messages import Event
 from tangible_ui.worker.state import WorkerState
-
-
-@pytest.fixture
-def worker_state(tmp_path: Path) -> WorkerState:
-    """A state whose events are in `worker_state.heard`."""
-    heard: list[tuple[str, dict[str, Any]]] = []
-    made = WorkerState(tmp_path, lambda event, **told: heard.append((event, told)), Cache(tmp_path / "cache"))
-    made.heard = heard  # pyright: ignore[reportAttributeAccessIssue]
-    return made
 
 
 def test_picture_that_was_changed_is_read_again_and_others_are_not(worker_state: WorkerState, tmp_path: Path) -> None:

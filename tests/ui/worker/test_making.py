@@ -11,7 +11,6 @@ import pytest
 
 from sessions import TEXT, SmallSession, small_scene
 from tangible_core.errors import ConfigError, Stopped, TangibleError
-from tangible_core.pipeline.engine.cache import Cache
 from tangible_ui.requests import REQUESTS
 from tangible_ui.requests import making as asks_making
 from tangible_ui.worker.jobs import JOBS
@@ -21,15 +20,6 @@ from waiting import LONGEST_S, happened
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]
 DEVICE = ["device={use: mock}"]
-
-
-@pytest.fixture
-def worker_state(tmp_path: Path) -> WorkerState:
-    """A worker_state whose events are in `worker_state.heard`."""
-    heard: list[tuple[str, dict[str, Any]]] = []
-    made = WorkerState(tmp_path, lambda event, **told: heard.append((event, told)), Cache(tmp_path / "cache"))
-    made.heard = heard  # pyright: ignore[reportAttributeAccessIssue]
-    return made
 
 
 @pytest.fixture

@@ -25,11 +25,6 @@ from waiting import LONGEST_S, until
 
 
 @pytest.fixture
-def worker_state(tmp_path: Path) -> WorkerState:
-    return WorkerState(tmp_path, lambda event, **told: None)
-
-
-@pytest.fixture
 def servo(loop_in_thread: None) -> Any:
     surface = HapticSurface.from_heights(np.zeros((8, 8), np.float32))
     touch = load_method("render", "penalty")().touch(surface)

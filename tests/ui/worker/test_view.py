@@ -267,10 +267,6 @@ def test_every_product_can_be_requested_and_is_shown_once(tmp_path: Path):
 
 class TestTexture:
     @pytest.fixture
-    def worker_state(self, tmp_path: Path) -> WorkerState:
-        return WorkerState(tmp_path, lambda event, **told: None)
-
-    @pytest.fixture
     def digest(self, worker_state: WorkerState) -> str:
         labels = np.repeat([[0, 1]], 30, 0).repeat(20, 1).astype(np.int32)
         labels[20:] = 1  # the near rows

@@ -20,6 +20,7 @@ from ..servo.guard.safety import (
     stiffness_limit_n_per_m,
 )
 from .probes import Probes
+from .strokes import Strokes
 from .timing import Lateness, TickCost
 
 PASSIVE = "Colgate & Schenkel 1997: 2 b / (T (1 + 2 d))"
@@ -94,6 +95,8 @@ class Flight:
     """Relief height, metres."""
     smoothed: bool
     """True if `workspace.smooth_m` rounds the relief; a relief that the scene brings is not rounded."""
+    slope: float | None
+    """Greatest slope, `relief.slope`, 0 for none; None for a relief whose slopes that key does not limit."""
     law_name: str
     """Name of the force law in the configuration."""
     fitted: bool
@@ -102,6 +105,7 @@ class Flight:
     hand: Hand
     period_s: float
     probes: Probes
+    strokes: Strokes
     lateness: Lateness
     cost: TickCost
 

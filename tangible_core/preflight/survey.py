@@ -15,6 +15,7 @@ from ..servo.guard.safety import Safety
 from ..servo.guard.stiffness import stiffness_of
 from .flight import Flight, Hand, Loop
 from .probes import Probes, probe
+from .strokes import stroke
 from .timing import TICKS, measure_lateness, measure_ticks
 
 
@@ -29,6 +30,7 @@ def survey(
     scene_relief_m: float | None = None,
     of_parts: bool = False,
     smoothed: bool = True,
+    slope: float | None = None,
     law_name: str = "",
     fitted: bool = False,
     hand: Hand | None = None,
@@ -37,8 +39,8 @@ def survey(
     """Gather facts and measurements of a surface and its touch under a force law, on a device that is not opened.
 
     scene_relief_m: height of the relief if the scene sets it and not the workspace. of_parts: heights are per part.
-    smoothed: `workspace.smooth_m` rounds the relief. law_name: of the force law in the configuration. fitted: the
-    materials were limited to the device.
+    smoothed: `workspace.smooth_m` rounds the relief. slope: `relief.slope`, where it limits this relief. law_name: of
+    the force law in the configuration. fitted: the materials were limited to the device.
     Takes `loop.seconds`, in which this machine's lateness is measured, and a moment more.
     Raises: BrokenMethod if the touch gives a force that is not finite, as a bound cannot be computed then.
     """
@@ -57,12 +59,14 @@ def survey(
         relief_key="" if of_parts else "workspace.relief_m" if scene_relief_m is None else "scene.relief_m",
         relief_m=scene_relief_m or size.relief_m,
         smoothed=smoothed,
+        slope=slope,
         law_name=law_name,
         fitted=fitted,
         safety=safety,
         hand=hand,
         period_s=period_s,
         probes=probes,
+        strokes=stroke(touch, surface, hand.press_n, hand.speed_m_per_s, period_s),
         lateness=measure_lateness(loop.seconds, period_s),
         cost=measure_ticks(touch, _stroke(surface, probes, hand.speed_m_per_s * period_s), period_s),
     )

@@ -108,6 +108,16 @@ def make_relief(
     return _relief(nearness, width_m, relief_m, holes, spans or _range_of(nearness, RANGE_PERCENT))
 
 
+def unit_nearness(
+    disparity: DisparityMap, calibration: Calibration | None, spans: ValueRange
+) -> Float32[np.ndarray, "h w"]:
+    """Return nearness from 0 (`spans.low` or farther) to 1 (`spans.high` or nearer), its holes filled from behind.
+
+    calibration: as `nearness_range`. Raises: GeometryError if no depth is known.
+    """
+    return _unit_range(fill_rows(_nearness(disparity, calibration)), spans).astype(np.float32, copy=False)
+
+
 def nearness_range(disparity: DisparityMap, calibration: Calibration | None) -> ValueRange:
     """Return the range of known nearness between RANGE_PERCENT: disparity, or, with a calibration, negative depth.
 
@@ -145,8 +155,7 @@ def scale_heights(heights: Shaped[np.ndarray, "h w"], width_m: float, relief_m: 
 
 def flat_relief(shape: tuple[int, int], width_m: float) -> Relief:
     """Make a relief of height 0 with (h, w) square cells. Raises: GeometryError if empty or width_m is not positive."""
-    rows, columns = shape
-    return Relief(np.zeros(shape, np.float32), (width_m, width_m * rows / max(columns, 1)))
+    return Relief(np.zeros(shape, np.float32), extent_of(shape, width_m))
 
 
 def _relief(
@@ -154,13 +163,17 @@ def _relief(
 ) -> Relief:
     if not (0 < width_m < np.inf and 0 < relief_m < np.inf):
         raise GeometryError(f"width_m and relief_m must be positive lengths in metres, not {width_m} and {relief_m}")
-    rows, columns = values.shape
     whole = fill_rows(values) if holes == "fill" else values
     heights = _unit_range(whole, spans)
     heights *= relief_m
     if holes == "cut":
         heights = np.nan_to_num(heights, nan=0.0)
-    return Relief(heights.astype(np.float32, copy=False), (width_m, width_m * rows / columns))
+    return Relief(heights.astype(np.float32, copy=False), extent_of(values.shape, width_m))
+
+
+def extent_of(shape: tuple[int, ...], width_m: float) -> tuple[float, float]:
+    """Return width and length of a surface of (h, w) square cells that is this wide, m."""
+    return width_m, width_m * shape[0] / max(shape[1], 1)
 
 
 def _range_of(values: Float[np.ndarray, "h w"], percent: tuple[float, float]) -> ValueRange:

@@ -16,13 +16,13 @@ ReliefKind = SceneKind | Literal["parts"]
 
 SUITS: dict[ReliefKind, tuple[float, float]] = {
     "photograph": (0.004, 0.0015),
-    "depth": (0.01, 0.002),
+    "depth": (0.005, 0.00025),
     "heights": (0.02, 0.0),
     "parts": (0.006, 0.0005),
 }
 """Default height and smoothing, metres. An edge from black to white is then no steeper than h / (s sqrt(2 pi)): 1.06
-in a photograph, where every line is such an edge, and 2 between the nearest and the farthest place of a pair. A height
-map is not smoothed, and the borders of parts only enough to soften a wall's edge."""
+in a photograph, where every line is such an edge. The slopes of depth are limited (`relief:`) and only their edges are
+rounded. A height map is not smoothed, and the borders of parts only enough to soften a wall's edge."""
 
 
 class Section(Quantities):
@@ -48,10 +48,10 @@ class Workspace(Section):
     """Width of the surface under the hand."""
     relief_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
     """Height of the nearest point above the farthest; null for a default by the scene: 0.004 for a photograph, whose
-    brightness is not depth, 0.01 for depth, 0.02 for a height map, 0.006 for parts with `heights:`."""
+    brightness is not depth, 0.005 for depth, 0.02 for a height map, 0.006 for parts with `heights:`."""
     smooth_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] | None = None
     """Standard deviation of a Gaussian that smooths an estimated relief, whose matching noise would feel like grit;
-    null for a default by the scene: 0.0015 for a photograph, 0.002 for depth, 0.0005 for parts with `heights:`. A
+    null for a default by the scene: 0.0015 for a photograph, 0.00025 for depth, 0.0005 for parts with `heights:`. A
     height map is never smoothed."""
     finest_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 3e-5
     """Finest detail to keep: larger pictures are first reduced to it. A Falcon resolves 0.03 mm; 0 keeps all pixels."""

@@ -8,7 +8,9 @@ import numpy as np
 from tangible_core.data import DisparityMap, Relief, Views
 from tangible_core.errors import PictureError
 from tangible_core.plugins.interfaces import Film, Touch
-from tangible_core.scene.geometry import ValueRange, make_relief, nearness_range
+from tangible_core.relief import ReliefScale
+from tangible_core.relief.tones import STRAIGHT
+from tangible_core.scene.geometry import make_relief, nearness_range
 from tangible_core.scene.video.frames import VideoFrame, VideoFrames
 from tangible_core.session.film import FrameMaker
 
@@ -62,11 +64,11 @@ class NearnessOfGrey(FrameMaker):
         values = views.left.astype(np.float32)
         return DisparityMap(np.where(values == 255, np.float32(np.nan), values))
 
-    def nearness(self, disparity: DisparityMap) -> ValueRange:
-        return nearness_range(disparity, None)
+    def scale(self, disparity: DisparityMap) -> ReliefScale:
+        return ReliefScale(nearness_range(disparity, None), STRAIGHT)
 
-    def relief(self, disparity: DisparityMap, spans: ValueRange) -> Relief:
-        return make_relief(disparity, None, 0.08, 0.01, "fill", spans)
+    def relief(self, disparity: DisparityMap, scale: ReliefScale) -> Relief:
+        return make_relief(disparity, None, 0.08, 0.01, "fill", scale.spans)
 
 
 class Seen(Film):

@@ -12,6 +12,7 @@ from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import DeviceSpec, Material
 from tangible_core.preflight.flight import Flight, Hand
 from tangible_core.preflight.probes import probe
+from tangible_core.preflight.strokes import stroke
 from tangible_core.preflight.timing import Lateness, TickCost
 from tangible_core.preflight.verdict import Verdict
 from tangible_core.scene.workspace import Workspace
@@ -46,10 +47,12 @@ def fly(surface: HapticSurface, law: str = "proxy", device: Any = None, **change
         "relief_key": "workspace.relief_m",
         "relief_m": 0.02,
         "smoothed": True,
+        "slope": None,
         "law_name": law,
         "fitted": False,
         "safety": Safety(),
         "probes": probe(touch, surface, hand.press_n, stiffness, spec.workspace_m[2], period_s),
+        "strokes": stroke(touch, surface, hand.press_n, hand.speed_m_per_s, period_s),
         "lateness": Lateness(np.full(1000, 1e-5), period_s, True),
         "cost": TickCost(np.full(1000, 2e-6), 1e-6),
     } | changes

@@ -21,6 +21,7 @@ from ...legibility import SimplifyChoice
 from ...mapping import WorkspaceMapping, map_device
 from ...parts import HeightChoice, PartChoice
 from ...plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter
+from ...relief import ReliefChoice
 from ...scene.formats.height_maps import MeasuredSize
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
@@ -86,6 +87,10 @@ class PipelineConfig(BaseModel):
     labels are made of the parts; the numbers stay."""
     workspace: Annotated[Workspace, Block()] = Workspace()
     """The size of the surface under the hand."""
+    relief: Annotated[
+        ReliefChoice, Block("A word alone is `by` (`relief: depth`), or ([more](relief.md)):", word="by")
+    ] = ReliefChoice()
+    """How depth becomes height: which depths get most of it, how steep it may be, and what counts as noise."""
     mapping: Annotated[WorkspaceMapping, Block()] = WorkspaceMapping()
     """The place of the surface in the device's workspace, and how the hand moves over it."""
     materials: Annotated[

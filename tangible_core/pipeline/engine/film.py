@@ -11,8 +11,7 @@ from ...errors import BrokenMethod, ConfigError
 from ...plugins.interfaces import DepthEstimator, Film, Filming, Following, HapticDevice
 from ...plugins.notes import note
 from ...plugins.registry import Registry
-from ...scene import geometry
-from ...scene.geometry import ValueRange
+from ...relief import ReliefScale
 from ...scene.scene import Scene
 from ...session.film import FrameMaker, Reliefs
 from ..config.model import PipelineConfig
@@ -60,14 +59,13 @@ class PipelineFrames(FrameMaker):
         stage = self._stage(views)
         return stage.in_picture_pixels(stage.estimate(self._estimate, stage.views), self._exchanged)
 
-    def nearness(self, disparity: DisparityMap) -> ValueRange:
-        """Return the range of nearness of the known pixels of a map."""
-        views = self._scene.views
-        return geometry.nearness_range(disparity, views.calibration if views else None)
+    def scale(self, disparity: DisparityMap) -> ReliefScale:
+        """Return the scale of the relief of a map alone."""
+        return self._relief.scale(disparity)
 
-    def relief(self, disparity: DisparityMap, spans: ValueRange) -> Relief:
-        """Return the relief of a map within a range of nearness, made as that of a still scene."""
-        return self._relief.from_disparity(disparity, spans)
+    def relief(self, disparity: DisparityMap, scale: ReliefScale) -> Relief:
+        """Return the relief of a map by a scale, made as that of a still scene."""
+        return self._relief.from_disparity(disparity, scale)
 
     def _stage(self, views: Views) -> DisparityStage:
         """Return the stage that makes the disparity of these views."""

@@ -5,43 +5,34 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ...data import Relief
 from ..flight import Flight
+from ..strokes import SIDEWAYS
 from ..verdict import FEW, Change, Cure, Verdict, check_bound, under
-from .cures import FIT, flatten, round_off, soften
-from .slopes import slopes
+from .cures import FIT, gentler, soften
 
 
 def clipping(flight: Flight) -> Iterator[Verdict]:
     """Check the share of the surface where the force on a hand that presses down exceeds the device's.
 
-    Under a force law without friction it is P sqrt(1 + g^2) on a slope g, for a press P and a hand held sideways.
+    Under a force law without friction it is P sqrt(1 + s^2) on a slope s, for a press P and a hand held sideways. Walls
+    that push the hand away more strongly than it pushes do not count: it does not stay there.
     """
-    strength_n, most_n, press_n = flight.probes.strength_n, flight.max_force_n, flight.hand.press_n
+    most_n, press_n = flight.max_force_n, flight.hand.press_n
+    stays = np.linalg.norm(flight.probes.force_n[:, :2], axis=1) <= SIDEWAYS * press_n
+    strength_n = np.where(stays, flight.probes.strength_n, 0.0)
     share = float(np.mean(~(strength_n <= most_n)))
-    required_n = float(np.quantile(strength_n, 1 - FEW, method="higher"))
-    cure: Cure = [f"press with no more than {under(press_n * most_n / max(required_n, most_n))} N"]
-    if most_n > press_n and flight.stiffness_n_per_m > 0 and required_n > most_n:
-        cure = [*_gentler(flight, required_n), ", or ", *cure]
+    cure: Cure = ""
+    if share > FEW:
+        required_n = float(np.quantile(strength_n, 1 - FEW, method="higher"))
+        cure = [f"press with no more than {under(press_n * most_n / required_n)} N"]
+        if most_n > press_n and flight.stiffness_n_per_m > 0:
+            cure = [*gentler(flight, math.sqrt((most_n / press_n) ** 2 - 1), FEW), ", or ", *cure]
     yield check_bound(
         *("clipping", "the surface", share, "<=", FEW, "share", f"the greatest force, {most_n:g} N"),
         note=f"at a press of {press_n:g} N, up to {strength_n.max():.3g} N",
         says="the device is too weak for the steepest places",
         cure=cure,
     )
-
-
-def _gentler(flight: Flight, required_n: float) -> Sequence[str | Change]:
-    """Return smoothing if it makes the slopes gentle enough and is needed, otherwise a lower relief."""
-    most_n, press_n = flight.max_force_n, flight.hand.press_n
-    steepest = math.sqrt((most_n / press_n) ** 2 - 1)
-
-    def gentle(relief: Relief) -> bool:
-        return float(np.mean(slopes(relief) > steepest)) <= FEW
-
-    if not gentle(flight.surface.relief) and (rounder := round_off(flight, gentle)):
-        return [rounder]
-    return [flatten(flight, math.sqrt((most_n**2 - press_n**2) / (required_n**2 - press_n**2)))]
 
 
 def contact(flight: Flight) -> Iterator[Verdict]:

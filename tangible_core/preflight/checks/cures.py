@@ -3,6 +3,9 @@
 import math
 from collections.abc import Callable, Iterable
 
+import numpy as np
+from jaxtyping import Float32
+
 from ...data import Material, Relief
 from ...scene.geometry import smooth
 from ...servo.guard.safety import NOMINAL_S
@@ -16,6 +19,8 @@ SOFTEST_N_PER_M = 50.0
 """Smallest stiffness of a cure: an exploring hand of 1 N sinks in by 20 mm, as deep as most reliefs are high."""
 FIT = Change("materials.fit", "device", "is")
 COUPLE = Change("safety.coupling", "auto", "is")
+
+Slopes = Float32[np.ndarray, "h w"]
 
 
 def join_cures(*cures: Cure) -> Cure:
@@ -57,6 +62,36 @@ def heighten(flight: Flight, times: float) -> Change | str:
     if not flight.relief_key:
         return "higher parts (`height_m` under `parts:`)"
     return Change(flight.relief_key, over(flight.relief_m * times), "at least")
+
+
+def gentler(flight: Flight, steepest: float, few: float) -> Cure:
+    """Return the cures after which at most `few` of the surface is steeper than this: slope, rounding, height."""
+    if flight.slope is not None and (not flight.slope or flight.slope > steepest):
+        return [Change("relief.slope", under(steepest), "at most")]
+
+    def gentle(relief: Relief) -> bool:
+        return float(np.mean(slopes(relief) > steepest)) <= few
+
+    lower = flatten(flight, steepest / float(np.quantile(slopes(flight.surface.relief), 1 - few, method="higher")))
+    rounder = round_off(flight, gentle)
+    if rounder is None:
+        return [lower]
+    return [rounder, f", or {lower}" if isinstance(lower, str) else f", or a lower `{lower.key}`"]
+
+
+def slopes(relief: Relief) -> Slopes:
+    """Return the slope from each cell to its neighbours, the greater one of both sides; 0 for a single cell."""
+    across, along = relief.pitch_m
+    return np.hypot(_rise(relief.height_m.T).T / np.float32(across), _rise(relief.height_m) / np.float32(along))
+
+
+def _rise(heights: Slopes) -> Slopes:
+    """Return the greater step to the row before or after."""
+    rise = np.zeros_like(heights)
+    steps = np.abs(np.diff(heights, axis=0))
+    rise[1:] = steps
+    rise[:-1] = np.maximum(rise[:-1], steps)
+    return rise
 
 
 def round_off(flight: Flight, gentle: Callable[[Relief], bool]) -> Change | None:

@@ -1,31 +1,28 @@
-"""Checks of slopes: places where the force law is stiffer than on level ground, and walls."""
+"""Checks of slopes: places where the force law is stiffer than on level ground, walls, and sudden forces."""
 
 import math
 from collections.abc import Iterator
 
 import numpy as np
-from jaxtyping import Float32
 
-from ...data import Relief
 from ..flight import Flight
+from ..strokes import SIDEWAYS
 from ..verdict import FEW, Cure, Verdict, check_bound
-from .cures import COUPLE, FIT, SOFTEST_N_PER_M, flatten, join_cures, round_off, soften
+from .cures import COUPLE, FIT, SOFTEST_N_PER_M, flatten, gentler, join_cures, round_off, slopes, soften
 from .stiffness import TOO_STIFF
 
 MEASURED = 1.01
 """Ratio of a measured stiffness to the true one that is allowed as an error."""
-WALL = 1.0
-"""Slope of a wall: above 45 degrees a hand must push harder sideways than it presses down."""
-WALLS = 0.1
-"""Share of the surface up to which walls count as its outlines."""
+WALLS = 0.125
+"""Share of a stroke up to which the walls that hold a hand up count as outlines."""
+GENTLEST = 0.4
+"""Smallest slope limit of a cure: under less, a step of 1 mm is a ramp that fingers do not feel as a step."""
 PROXY = "proxy"
 """Name of the force law whose stiffness is that of level ground everywhere."""
 LEVEL = 1.1
 """Ratio to the stiffness on level ground up to which slopes are not at fault."""
 RARE = 0.001
 """Share of the surface that may be too stiff: the passivity controller brakes there."""
-
-Slopes = Float32[np.ndarray, "h w"]
 
 
 def slope_stiffness(flight: Flight) -> Iterator[Verdict]:
@@ -74,46 +71,47 @@ def _rounder(flight: Flight, times: float) -> list[Cure]:
 
 
 def cliffs(flight: Flight) -> Iterator[Verdict]:
-    """Check the shares of the surface that are walls, and that a stroke meets faster than a force may grow."""
-    steep = slopes(flight.surface.relief)
-    source = "over 45 degrees a hand pushes harder sideways than down"
-    yield _gentle(flight, steep, "a wall", WALL, WALLS, source, "much of the surface is as steep as a wall")
-    if flight.stiffness_n_per_m > 0:
-        per_tick_n = flight.stiffness_n_per_m * flight.hand.speed_m_per_s * flight.period_s
-        source = f"`safety.max_step_n`, {flight.max_step_n:.3g} N, at this speed"
-        says = "a stroke meets slopes at which the force has to grow too fast"
-        yield _gentle(flight, steep, "too sudden", flight.max_step_n / per_tick_n, FEW, source, says)
+    """Check the share of a stroke in which a wall holds the hand up, and in which the force grows too fast.
 
-
-def _gentle(flight: Flight, steep: Slopes, of: str, bound: float, few: float, source: str, says: str) -> Verdict:
-    """Check that only a few places are steeper than a bound."""
-    share = float(np.mean(steep > np.float64(bound)))
-    return check_bound(
-        *("slope", of, share, "<=", few, "share", source),
-        note=f"slope over {bound:.3g}; the steepest is {steep.max():.3g}",
-        says=says,
-        cure="" if share <= few else _gentler(flight, steep, bound, few),
+    Up a slope s with friction m, a press P needs a push P (s + m) / (1 - m s) sideways, and none suffices where m s is
+    1 or more. How much a force grows in a tick depends on the law: by K v T at most for a proxy, whatever the slope,
+    and by K v T s for a penalty. Strokes measure what the law really does.
+    """
+    strokes, steepest = flight.strokes, slopes(flight.surface.relief).max()
+    held_up, sudden = float(np.mean(strokes.held_up)), float(np.mean(strokes.rise_n > flight.max_step_n))
+    yield check_bound(
+        *("slope", "a wall", held_up, "<=", WALLS, "share"),
+        f"a hand pushes sideways with up to {SIDEWAYS:g} times its press, {flight.hand.press_n:g} N",
+        note=f"of strokes; the steepest slope is {steepest:.3g}",
+        says="much of a stroke is held up by walls",
+        cure="" if held_up <= WALLS else gentler(flight, climbable(flight), RARE),
+    )
+    yield check_bound(
+        *("slope", "too sudden", sudden, "<=", FEW, "share"),
+        f"`safety.max_step_n`, {flight.max_step_n:.3g} N",
+        note=f"of strokes; up to {strokes.rise_n.max():.3g} N in a tick",
+        says="a stroke meets places where the force grows too fast",
+        cure="" if sudden <= FEW else _steadier(flight),
     )
 
 
-def _gentler(flight: Flight, steep: Slopes, bound: float, few: float) -> Cure:
-    lower = flatten(flight, bound / float(np.quantile(steep, 1 - few, method="higher")))
-    rounder = round_off(flight, lambda relief: float(np.mean(slopes(relief) > bound)) <= few)
-    if rounder is None:
-        return [lower]
-    return [rounder, f", or {lower}" if isinstance(lower, str) else f", or a lower `{lower.key}`"]
+def climbable(flight: Flight) -> float:
+    """Return the steepest slope that a hand climbs with this press, by the greatest static friction of the surface.
+
+    Never under GENTLEST: on rougher materials a hand is held up by friction rather than by slopes.
+    """
+    friction = max((each.static_friction for each in flight.present_materials), default=0.0)
+    return max((SIDEWAYS - friction) / (1 + friction * SIDEWAYS), GENTLEST)
 
 
-def slopes(relief: Relief) -> Slopes:
-    """Return the slope from each cell to its neighbours, the greater one of both sides; 0 for a single cell."""
-    across, along = relief.pitch_m
-    return np.hypot(_rise(relief.height_m.T).T / np.float32(across), _rise(relief.height_m) / np.float32(along))
-
-
-def _rise(heights: Slopes) -> Slopes:
-    """Return the greater step to the row before or after."""
-    rise = np.zeros_like(heights)
-    steps = np.abs(np.diff(heights, axis=0))
-    rise[1:] = steps
-    rise[:-1] = np.maximum(rise[:-1], steps)
-    return rise
+def _steadier(flight: Flight) -> Cure:
+    """Return the cures of a force that grows too fast: gentler slopes for a penalty, otherwise a softer law."""
+    stiffness = flight.stiffness_n_per_m
+    per_tick_n = stiffness * flight.hand.speed_m_per_s * flight.period_s
+    if flight.law_name != PROXY and per_tick_n > 0:
+        steepest = flight.max_step_n / per_tick_n
+        if np.any(slopes(flight.surface.relief) > steepest):
+            return gentler(flight, steepest, RARE)
+    if flight.present_materials:
+        return [FIT] if not flight.fitted else "materials that differ less in stiffness (`tangible materials`)"
+    return soften(flight, stiffness * flight.max_step_n / float(np.quantile(flight.strokes.rise_n, 1 - FEW)))

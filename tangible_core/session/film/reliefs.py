@@ -11,12 +11,13 @@ import numpy as np
 from ...data import DisparityMap, Relief, Views
 from ...errors import ConfigError
 from ...plugins.notes import silently
+from ...relief import ReliefScale
 from ...scene.geometry import ValueRange
 from ...scene.video.frames import VideoFrame, VideoFrames
 from .steady import Steady
 
 LOOK_EVERY, LOOK_PIXELS = 8, 4
-"""Interval, in frames, of measuring the range of nearness; and step, in pixels, of the thinned map for it."""
+"""Interval, in frames, of measuring the scale; and step, in pixels, of the thinned map for it."""
 ADAPTS_S = 10.0
 """Time constant with which the range follows the frames: a relief of 10 mm then moves by 1 mm/s at most."""
 
@@ -33,12 +34,12 @@ class FrameMaker(ABC):
         """Return the disparity of a frame, on the grid of the surface."""
 
     @abstractmethod
-    def nearness(self, disparity: DisparityMap) -> ValueRange:
-        """Return the range of nearness for a relief of this map alone. Raises: GeometryError if nothing is known."""
+    def scale(self, disparity: DisparityMap) -> ReliefScale:
+        """Return the scale for a relief of this map alone. Raises: GeometryError if nothing is known."""
 
     @abstractmethod
-    def relief(self, disparity: DisparityMap, spans: ValueRange) -> Relief:
-        """Return the relief of a map, within this range. Raises: GeometryError if nothing is known."""
+    def relief(self, disparity: DisparityMap, scale: ReliefScale) -> Relief:
+        """Return the relief of a map by this scale. Raises: GeometryError if nothing is known."""
 
 
 class FrameRelief(NamedTuple):
@@ -51,24 +52,25 @@ class FrameRelief(NamedTuple):
 
 @final
 class Scale:
-    """The range of the first frame, which follows that of later ones slowly."""
+    """The scale of the first frame, which follows that of later ones slowly."""
 
-    def __init__(self, first: ValueRange, time_s: float = 0.0) -> None:
-        self.spans = first
+    def __init__(self, first: ReliefScale, time_s: float = 0.0) -> None:
+        self.current = first
         self._time_s = time_s
 
-    def look(self, seen: ValueRange, time_s: float) -> None:
-        """Follow the range of a frame at this time of the film; the first that is not empty is adopted at once.
+    def look(self, seen: ReliefScale, time_s: float) -> None:
+        """Follow the scale of a frame at this time of the film; the first that is not empty is adopted at once.
 
         That is for films that begin in the dark.
         """
         share = 1 - math.exp(-max(0.0, time_s - self._time_s) / ADAPTS_S)
         self._time_s = time_s
-        if not self.spans.low < self.spans.high:
-            self.spans = seen
-        elif seen.low < seen.high:
-            low, high = (then + share * (now - then) for then, now in zip(self.spans, seen, strict=True))
-            self.spans = ValueRange(low, high)
+        if not self.current.spans.low < self.current.spans.high:
+            self.current = seen
+        elif seen.spans.low < seen.spans.high:
+            low, high = (then + share * (now - then) for then, now in zip(self.current.spans, seen.spans, strict=True))
+            tones = self.current.tones + share * (seen.tones - self.current.tones)
+            self.current = ReliefScale(ValueRange(low, high), tones)
 
 
 @final
@@ -82,7 +84,8 @@ class Reliefs:
         """Prepare the reliefs. open_frames: opens the video, such as `Video.open`."""
         self._open_frames, self._maker = open_frames, maker
         self._frames: VideoFrames | None = None
-        self._steady, self._scale = Steady(), Scale(ValueRange(0, 0))
+        self._steady = Steady()
+        self._scale: Scale | None = None
         self._count = 0
         """Number of frames since the last cut; 0 before the first frame of a scene."""
 
@@ -114,7 +117,8 @@ class Reliefs:
         """Return the relief of the next frame. Raises: TangibleError if the frame has no depth."""
         with silently():
             disparity = self._disparity(frame)
-            return FrameRelief(frame.number, frame.time_s, self._maker.relief(disparity, self._scale.spans))
+            assert self._scale is not None
+            return FrameRelief(frame.number, frame.time_s, self._maker.relief(disparity, self._scale.current))
 
     def _disparity(self, frame: VideoFrame) -> DisparityMap:
         if not self._count:
@@ -122,8 +126,8 @@ class Reliefs:
         filtered = self._steady.next(self._maker.disparity(frame.views))
         if filtered.cut:
             return self._begin(frame)
-        if self._count % LOOK_EVERY == 0:
-            self._scale.look(self._maker.nearness(_thin(filtered.disparity)), frame.time_s)
+        if self._scale is not None and self._count % LOOK_EVERY == 0:
+            self._scale.look(self._maker.scale(_thin(filtered.disparity)), frame.time_s)
         self._count += 1
         return filtered.disparity
 
@@ -132,7 +136,7 @@ class Reliefs:
         self._count = 0
         self._steady = Steady()
         disparity = self._steady.next(self._maker.begin(frame.views)).disparity
-        self._scale = Scale(self._maker.nearness(disparity), frame.time_s)
+        self._scale = Scale(self._maker.scale(disparity), frame.time_s)
         self._count = 1
         return disparity
 

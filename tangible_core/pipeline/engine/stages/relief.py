@@ -2,8 +2,9 @@
 
 from functools import cached_property
 
-from ....data import DisparityMap, PartMap, Relief
+from ....data import Calibration, DisparityMap, PartMap, Relief
 from ....parts import Layering, PartHeights
+from ....relief import ReliefScale, relief_scale, shape_relief, shaping
 from ....scene import geometry, scaling
 from ....scene.workspace import FeltSize
 from .. import part_heights
@@ -34,7 +35,7 @@ class ReliefStage(Stage):
     def key(self) -> str:
         config, size = self.config, self.size
         if config.heights is None:
-            return f"{self.code(geometry.__name__)} {size!r}{self.reduction}"
+            return f"{self.code(shaping.__name__)} {size!r} {config.relief!r}{self.reduction}"
         code = self.code(part_heights.__name__, Layering.__module__, geometry.__name__)
         return f"{code} {size!r} {config.heights!r} {sorted(config.given_heights_m.items())}{self.reduction}"
 
@@ -53,12 +54,19 @@ class ReliefStage(Stage):
             return geometry.flat_relief(self.views.shape, self.size.width_m)
         return self.from_disparity(scaling.reduced_disparity(disparity, self.grid.shape))
 
-    def from_disparity(self, disparity: DisparityMap, spans: geometry.ValueRange | None = None) -> Relief:
-        """Return the relief of a disparity map on the working grid. spans: as `geometry.make_relief`."""
-        views, size = self.context.scene.views, self.size
-        calibration = views.calibration if views else None
-        relief = geometry.make_relief(disparity, calibration, size.width_m, size.relief_m, size.holes, spans)
-        return flatten_transparent(geometry.smooth(relief, size.smooth_m), self.grid.opaque_mask)
+    def from_disparity(self, disparity: DisparityMap, scale: ReliefScale | None = None) -> Relief:
+        """Return the relief of a disparity map on the working grid. scale: as `shape_relief`."""
+        relief = shape_relief(disparity, self._calibration, self.size, self.config.relief, scale)
+        return flatten_transparent(relief, self.grid.opaque_mask)
+
+    def scale(self, disparity: DisparityMap) -> ReliefScale:
+        """Return the scale of the relief of this disparity map alone."""
+        return relief_scale(disparity, self._calibration, self.size.width_m, self.config.relief)
+
+    @property
+    def _calibration(self) -> Calibration | None:
+        views = self.context.scene.views
+        return views.calibration if views else None
 
     def part_heights(self, parts: PartMap, disparity: DisparityMap | None) -> PartHeights:
         """Return the height of each part, and why. parts, disparity: of any size; both are brought to the grid."""

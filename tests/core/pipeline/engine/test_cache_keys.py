@@ -19,6 +19,7 @@ from tangible_core.plugins.interfaces import DepthEstimator, Segmenter
 from tangible_core.plugins.registry import default_registry
 from tangible_core.provenance import closure as closures
 from tangible_core.provenance import places, versions
+from tangible_core.relief import ReliefChoice
 from tangible_core.scene.scene_files import SceneFiles
 from tangible_core.scene.workspace import Workspace
 
@@ -151,6 +152,15 @@ class TestKeys:
         one, other = (pipeline(folder, workspace=Workspace(**{"width_m": 0.03, **more})) for more in ({}, size))
         assert self.differ("relief", one, other)
 
+    @pytest.mark.parametrize(
+        "choice",
+        [{"by": "depth"}, {"slope": 1}, {"spread": 0.4}, {"accent_m": 0.002}, {"grain_m": 0}],
+        ids=lambda each: next(iter(each)),
+    )
+    def test_keys_differ_for_the_shape_of_a_relief(self, folder: Path, choice: dict):
+        one, other = (pipeline(folder, relief=ReliefChoice(**more)) for more in ({}, choice))
+        assert self.differ("relief", one, other)
+
     @pytest.mark.parametrize("brings", [{}, {"disparity": Path("disparity.npy")}], ids=["found", "brought"])
     def test_keys_differ_for_the_cameras(self, folder: Path, brings: dict):
         np.save(folder / "disparity.npy", np.full((20, 30), 4.0, np.float32))
@@ -216,7 +226,9 @@ class TestCode:
     @pytest.mark.parametrize(
         ("module", "products"),
         [
-            ("tangible_core.scene.scaling", {"disparity", "segments", "parts", "simplified"}),
+            ("tangible_core.scene.scaling", {"disparity", "relief", "segments", "parts", "simplified"}),
+            ("tangible_core.relief.tones", {"relief"}),
+            ("tangible_core.relief.slope_kernels", {"relief"}),
             ("tangible_core.scene.geometry", {"relief", "simplified"}),
             ("tangible_core.materials.rules", {"materials"}),
             ("tangible_core.data.surface", set(KEPT) - {"parts"}),
@@ -245,8 +257,8 @@ class TestCode:
         ("distribution", "depth", "products"),
         [
             ("numpy", "semi-global", set(KEPT)),
-            ("numba", "semi-global", {"disparity", "segments"}),
-            ("llvmlite", "semi-global", {"disparity", "segments"}),
+            ("numba", "semi-global", {"disparity", "relief", "segments"}),
+            ("llvmlite", "semi-global", {"disparity", "relief", "segments"}),
             ("torch", "semi-global", set()),
             ("torch", "kornia-zncc", {"disparity"}),
             ("kornia", "kornia-report", {"disparity"}),

@@ -20,6 +20,7 @@ from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, PlainTouch, Segmenter, Skippable, Touch
 from tangible_core.plugins.notes import doubt, note
 from tangible_core.plugins.registry import Registry
+from tangible_core.relief import ReliefChoice
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import SceneFiles
 from tangible_core.scene.workspace import Workspace
@@ -489,6 +490,7 @@ class TestWorkingGrid:
             folder,
             scene=SceneFiles(photo=Path("left.png"), **files),
             workspace=self.COARSE,
+            relief=ReliefChoice(slope=0, spread=0, accent_m=0, grain_m=0),
             materials=MaterialChoice(rules=[{"at": [4, 3], "material": "sand"}], by={0: "ice", 2: "wood"}),
         )
         surface = pipe.make("surface")

@@ -1,6 +1,7 @@
 """Checks of slopes and of the force, on flights whose verdicts are known; each cure is applied."""
 
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -10,9 +11,21 @@ from flights import fly, grades, half_slope, level, material, of, shape, surface
 from tangible_core import HapticSurface
 from tangible_core.data import Relief
 from tangible_core.preflight.checks.clipping import clipping, contact
-from tangible_core.preflight.checks.slopes import cliffs, slope_stiffness, slopes
+from tangible_core.preflight.checks.slopes import cliffs, climbable, slope_stiffness, slopes
 from tangible_core.scene.geometry import smooth
 from tangible_core.servo.guard.safety import Safety
+
+
+def waves(amplitude_m: float) -> HapticSurface:
+    """Return waves along x, 20 mm long; the steepest slope is 314 amplitude_m."""
+    return shape(lambda x, y: amplitude_m * np.sin(2 * np.pi * x / 0.02), 256)
+
+
+def blocks(run: int) -> HapticSurface:
+    """Return blocks 5 mm high and 8 mm wide whose walls are `run` cells of 0.3 mm wide."""
+    return shape(
+        lambda x, y: 0.005 * np.clip(0.5 + (0.004 - np.abs(x % 0.016 - 0.008)) / (run * 0.08 / 256), 0, 1), 256
+    )
 
 
 class TestSlopes:
@@ -69,32 +82,63 @@ class TestSlopes:
         assert found.verdict == "warn"
         assert 0 < found.value <= 0.01
 
-    @pytest.mark.parametrize(("slope", "verdict"), [(0.99, "ok"), (1.01, "warn")])
-    def test_walls_are_graded_by_their_slope(self, slope: float, verdict: str):
-        found = of(cliffs(fly(half_slope(slope))), "a wall")
-        assert found.verdict == verdict
-        assert found.value == pytest.approx(0.5 if verdict == "warn" else 0, abs=0.02)
+    @pytest.mark.parametrize(("amplitude_m", "verdict"), [(0.0025, "ok"), (0.02, "warn")])
+    def test_walls_are_graded_by_how_long_they_hold_a_hand_up(self, amplitude_m: float, verdict: str):
+        """Waves of slope 0.8, which a hand climbs, and of 6.3, which it does not."""
+        assert of(cliffs(fly(waves(amplitude_m))), "a wall").verdict == verdict
 
-    def test_sudden_force_is_a_warning(self):
-        """1000 N/m at 0.25 m/s and 1 kHz meet slope 2 with 0.5 N a tick."""
+    def test_steeper_walls_hold_a_hand_up_for_longer(self):
+        """A share of the surface would fall, as a steeper wall has less area."""
+        gentle, steep, upright = (of(cliffs(fly(blocks(run))), "a wall").value for run in (12, 4, 1))
+        assert gentle == 0 < steep < upright
+
+    def test_friction_makes_walls_of_slopes(self):
+        """Up slope 1.57, no push suffices against a friction of 0.7."""
+        wave = waves(0.005)
+        rough = HapticSurface(
+            wave.relief, np.zeros(wave.height_m.shape, np.int32), (material(static_friction=0.7, dynamic_friction=0.7),)
+        )
+        smooth, held = (of(cliffs(fly(each)), "a wall") for each in (wave, rough))
+        assert (smooth.verdict, held.verdict) == ("ok", "warn")
+        assert climbable(fly(rough)) == pytest.approx((2 - 0.7) / (1 + 2 * 0.7))
+        assert climbable(fly(wave)) == 2
+
+    def test_sudden_force_is_what_the_law_does_and_not_a_formula(self):
+        """A penalty of 1000 N/m at 0.25 m/s and 1 kHz grows by 0.25 N a tick times the slope, a proxy by 0.25 N."""
         stroke = {"stiffness_n_per_m": 1000.0, "speed_m_per_s": 0.25}
-        assert of(cliffs(fly(half_slope(1.99), **stroke)), "too sudden").verdict == "ok"
-        assert of(cliffs(fly(half_slope(2.01), **stroke)), "too sudden").verdict == "warn"
-        assert [each.of for each in cliffs(fly(half_slope(2.01), "grey-level"))] == ["a wall"]
+        penalty = of(cliffs(fly(half_slope(5.0), "penalty", **stroke)), "too sudden")
+        proxy = of(cliffs(fly(half_slope(5.0), "proxy", **stroke)), "too sudden")
+        assert (penalty.verdict, proxy.verdict, proxy.value) == ("warn", "ok", 0)
+        assert float(re.search(r"up to ([\d.]+) N in a tick", proxy.note)[1]) < 0.5
+        assert [each.of for each in cliffs(fly(half_slope(1.0), "grey-level"))] == ["a wall", "too sudden"]
 
-    def test_wall_both_cures_pass(self):
-        surface = shape(lambda x, y: 0.01 * np.sin(2 * np.pi * x / 0.02), 256)
-        rounder = smooth(surface.relief, value_in_cure(of(cliffs(fly(surface)), "a wall"), "workspace.smooth_m"))
-        assert np.mean(slopes(rounder) > 1) <= 0.1
+    def test_sudden_penalty_is_cured_by_gentler_slopes_before_all_else(self):
+        stroke = {"stiffness_n_per_m": 1000.0, "speed_m_per_s": 0.25}
+        shaped = of(cliffs(fly(half_slope(5.0), "penalty", slope=6.0, **stroke)), "too sudden")
+        assert [(each.key, float(each.value)) for each in shaped.changes] == [("relief.slope", 2.0)]
+        brought = of(cliffs(fly(half_slope(5.0), "penalty", slope=None, smoothed=False, **stroke)), "too sudden")
+        assert [each.key for each in brought.changes] == ["workspace.relief_m"]
+
+    def test_wall_is_cured_by_slope_then_rounding_then_height(self):
+        surface = waves(0.02)
+        limited = of(cliffs(fly(surface, slope=0.0)), "a wall")
+        assert [(each.key, float(each.value)) for each in limited.changes] == [("relief.slope", 2.0)]
+        rounded = of(cliffs(fly(surface)), "a wall")
+        assert [each.key for each in rounded.changes] == ["workspace.smooth_m"]
+        rounder = smooth(surface.relief, value_in_cure(rounded, "workspace.smooth_m"))
+        assert np.mean(slopes(rounder) > 2) <= 0.001
         given = of(cliffs(fly(surface, smoothed=False)), "a wall")
         lower = value_in_cure(given, "workspace.relief_m") / 0.02
-        assert np.mean(slopes(HapticSurface.from_heights(lower * surface.height_m).relief) > 1) <= 0.1
+        assert np.mean(slopes(HapticSurface.from_heights(lower * surface.height_m).relief) > 2) <= 0.001
         assert "smooth_m" not in given.cure
         of_parts = of(cliffs(fly(surface, smoothed=False, relief_key="")), "a wall")
         assert (of_parts.cure, of_parts.changes) == ("lower parts (`height_m` under `parts:`)", ())
         both = of(cliffs(fly(surface, relief_key="")), "a wall")
         assert both.cure.endswith(", or lower parts (`height_m` under `parts:`)")
         assert [each.key for each in both.changes] == ["workspace.smooth_m"]
+
+    def test_slope_that_is_gentle_enough_already_is_no_cure(self):
+        assert "relief.slope" not in of(cliffs(fly(waves(0.02), slope=1.5)), "a wall").cure
 
     def test_slopes_take_the_greater_side(self):
         step = HapticSurface.from_heights(np.array([[0, 0, 0.01, 0.01]], np.float32), 0.04)
@@ -104,15 +148,23 @@ class TestSlopes:
 
 class TestClipping:
     def test_clipping_half_of_the_surface_has_cures_that_pass(self):
-        """A press of 3 N on slope 3 is answered with 9.5 N; at the bend, slope 1.5, with 5.4 N."""
-        surface = half_slope(3.0, cells=64)
-        flight = fly(surface, "penalty-gradient", relief_m=0.12)
+        """A press of 3 N on slope 1.8 is answered with 6.2 N, on slope 1.5 with 5.4 N."""
+        surface, device = half_slope(1.8, cells=64), {"max_force_n": 5.5}
+        flight = fly(surface, "penalty-gradient", relief_m=0.12, device=device)
         [found] = clipping(flight)
         assert (found.verdict, found.value) == ("warn", pytest.approx(0.5, abs=1 / 64))
         lower = value_in_cure(found, "workspace.relief_m") / 0.12
-        assert 3 * math.hypot(1, 3 * lower) == pytest.approx(8, rel=0.05)
+        assert 3 * math.hypot(1, 1.8 * lower) == pytest.approx(5.5, rel=0.05)
         gentler = HapticSurface.from_heights(lower * surface.height_m)
-        assert grades(clipping(fly(gentler, "penalty-gradient"))) == ["ok"]
+        assert grades(clipping(fly(gentler, "penalty-gradient", device=device))) == ["ok"]
+        [shaped] = clipping(fly(surface, "penalty-gradient", slope=1.8, device=device))
+        assert value_in_cure(shaped, "relief.slope") == pytest.approx(math.sqrt((5.5 / 3) ** 2 - 1), rel=0.05)
+
+    @pytest.mark.parametrize(("slope", "share"), [(1.8, 0.5), (2.3, 0.06)])
+    def test_clipping_leaves_out_walls_at_which_no_hand_stays(self, slope: float, share: float):
+        """A hand pushes sideways with at most twice its press; what is left is the bend at the foot of the wall."""
+        [found] = clipping(fly(half_slope(slope, cells=64), max_force_n=5.5))
+        assert found.value == pytest.approx(share, abs=0.06)
 
     @pytest.mark.parametrize(("press_n", "verdict", "share"), [(4.0, "ok", 0), (4.01, "warn", 1)])
     def test_clipping_press_above_the_device_is_graded(self, press_n: float, verdict: str, share: float):

@@ -130,7 +130,7 @@ class Faulty(FrameMaker):
     def begin(self, views):
         raise self._error
 
-    disparity = nearness = relief = begin
+    disparity = scale = relief = begin
 
 
 @pytest.mark.parametrize("error", [ZeroDivisionError("a plugin's fault"), BrokenMethod("made a map of 3 x 4")])

@@ -6,6 +6,8 @@ import pytest
 from films import GivenFrames, NearnessOfGrey, greys
 from tangible_core.data import DisparityMap
 from tangible_core.errors import ConfigError, GeometryError
+from tangible_core.relief import ReliefScale
+from tangible_core.relief.tones import STRAIGHT
 from tangible_core.scene.geometry import ValueRange
 from tangible_core.session.film import FrameMaker, Reliefs
 from tangible_core.session.film.reliefs import ADAPTS_S, Scale
@@ -38,10 +40,11 @@ def test_scale_follows_slowly():
 
 def test_scale_follows_with_its_time_constant_at_any_rate():
     for step_s in (0.1, 1.0):
-        scale = Scale(ValueRange(0, 10))
+        scale, seen = Scale(ReliefScale(ValueRange(0, 10), STRAIGHT)), ReliefScale(ValueRange(-5, 20), STRAIGHT**2)
         for number in range(1, round(ADAPTS_S / step_s) + 1):
-            scale.look(ValueRange(-5, 20), number * step_s)
-        assert scale.spans == pytest.approx((-5 + 5 / np.e, 20 - 10 / np.e))
+            scale.look(seen, number * step_s)
+        assert scale.current.spans == pytest.approx((-5 + 5 / np.e, 20 - 10 / np.e))
+        assert np.allclose(scale.current.tones, STRAIGHT**2 + (STRAIGHT - STRAIGHT**2) / np.e)
 
 
 def test_scale_of_film_that_begins_dark_adopts_the_first_range():
@@ -117,7 +120,7 @@ def test_scene_whose_first_frame_is_empty_begins_with_the_next():
             found = self.maker.disparity(views)
             return DisparityMap(np.full_like(found.disparity_px, np.nan)) if self.kept == "dark" else found
 
-        nearness = staticmethod(NearnessOfGrey().nearness)
+        scale = staticmethod(NearnessOfGrey().scale)
         relief = staticmethod(NearnessOfGrey().relief)
 
     maker = Blind()

@@ -1,0 +1,7 @@
+"""The relief of a depth map: heights where borders are, slopes that a hand can climb, and noise taken out."""
+
+from .choice import ReliefChoice as ReliefChoice
+from .shaping import ReliefScale as ReliefScale
+from .shaping import relief_scale as relief_scale
+from .shaping import shape_relief as shape_relief
+from .slope_limit import limit_slopes as limit_slopes

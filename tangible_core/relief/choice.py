@@ -1,0 +1,43 @@
+"""Options for the relief in a pipeline file."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from ..scene.workspace import Section
+
+SPREAD = 0.5
+"""The default share of the height that goes where borders are: more steepens level ground between them."""
+ACCENT_M = 0.001
+"""The default of the most by which a border is accented, m: twice the least step that is felt under a fingertip."""
+
+Length = Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)]
+
+
+class ReliefChoice(Section):
+    """How depth becomes height. A word alone is `by`: `relief: depth` keeps true proportions."""
+
+    by: Literal["disparity", "depth"] = "disparity"
+    """What heights are proportional to. `disparity`: near things get more of the height, as in a bas-relief. `depth`:
+    heights to scale, where the calibration of the cameras is known."""
+    slope: Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)] = 1.1
+    """The greatest slope, rise over run; steeper places become ramps. A hand that presses down climbs it with at most
+    this many times its press sideways. 0 keeps cliffs."""
+    spread: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] | None = None
+    """The share of the height that is given to those depths which borders cross; the order of all depths stays. 0 keeps
+    heights proportional. null for 0.5 by disparity and 0 by depth."""
+    accent_m: Length | None = None
+    """The most by which what stands before its surroundings is raised at its border, and they are lowered; null for
+    0.001 by disparity and 0 by depth."""
+    grain_m: Length = 0.0003
+    """Noise of less than 0.1 mm that is finer than this is taken out; 0 keeps it."""
+
+    @property
+    def spread_share(self) -> float:
+        """The decided share of the height that goes where borders are."""
+        return (SPREAD if self.by == "disparity" else 0.0) if self.spread is None else self.spread
+
+    @property
+    def most_accent_m(self) -> float:
+        """The decided bound of the accent, m."""
+        return (ACCENT_M if self.by == "disparity" else 0.0) if self.accent_m is None else self.accent_m

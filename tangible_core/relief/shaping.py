@@ -1,0 +1,133 @@
+"""The steps from a disparity map to the relief that is felt."""
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float32, Float64
+
+from ..data import Calibration, DisparityMap, Relief
+from ..runtime.opencv import plain_opencv
+from ..scene import geometry, scaling
+from ..scene.geometry import ValueRange
+from ..scene.workspace import FeltSize
+from .choice import ReliefChoice
+from .slope_limit import limit_slopes
+from .tones import STRAIGHT, apply_tones, tones_of
+
+CELL_M = 1e-4
+"""The finest cells on which a relief is shaped, m; what is rounded by 0.25 mm has no finer detail."""
+CELL_SHARE = 0.4
+"""Width of these cells where less is rounded, of the rounding's standard deviation."""
+GRAIN_HIGH_M = 1e-4
+"""The standard deviation below which a neighbourhood is noise, m: what a Falcon feels is three times as high."""
+ACCENT_REACH_M = 0.0015
+"""The standard deviation of the Gaussian that says how high the surroundings are, m."""
+
+
+class ReliefScale(NamedTuple):
+    """What the frames of a film share, so that a thing that stands still keeps its height."""
+
+    spans: ValueRange
+    """The nearness of the lowest and of the highest place."""
+    tones: Float64[np.ndarray, "n"]
+    """Heights, 0 to 1, of evenly spaced values of nearness between these."""
+
+
+def relief_scale(
+    disparity: DisparityMap, calibration: Calibration | None, width_m: float, choice: ReliefChoice
+) -> ReliefScale:
+    """Return the scale of the relief of this map alone. Raises: GeometryError if no depth is known."""
+    calibration = _calibration(calibration, choice)
+    spans = geometry.nearness_range(disparity, calibration)
+    if not choice.spread_share:
+        return ReliefScale(spans, STRAIGHT)
+    nearness = geometry.unit_nearness(disparity, calibration, spans)
+    return ReliefScale(spans, tones_of(_on_cells(nearness, width_m, CELL_M), choice.spread_share))
+
+
+def shape_relief(
+    disparity: DisparityMap,
+    calibration: Calibration | None,
+    size: FeltSize,
+    choice: ReliefChoice,
+    scale: ReliefScale | None = None,
+) -> Relief:
+    """Make the relief of a disparity map: the far end at 0, the near end at `size.relief_m` at most, pixels square.
+
+    Nearness becomes height by tones; noise is taken out (He et al., PAMI 2013), what stands before its surroundings is
+    accented (Luft et al. 2006, as height), slopes are limited, and edges are rounded by a Gaussian of `size.smooth_m`.
+    Each step is done on cells no finer than is felt after that rounding, so that time hardly grows with the picture.
+    scale: that of a film, by default that of this map (`relief_scale`).
+    Raises: GeometryError as `geometry.make_relief`.
+    """
+    scale = scale or relief_scale(disparity, calibration, size.width_m, choice)
+    extent_m = geometry.extent_of(disparity.disparity_px.shape, size.width_m)
+    nearness = geometry.unit_nearness(disparity, _calibration(calibration, choice), scale.spans)
+    cells = _on_cells(nearness, size.width_m, min(CELL_M, CELL_SHARE * size.smooth_m))
+    pitch_m = size.width_m / cells.shape[1]
+    height_m = apply_tones(cells, scale.tones) * np.float32(size.relief_m)
+    if choice.grain_m:
+        height_m = _without_grain(height_m, pitch_m, choice.grain_m)
+    if choice.most_accent_m:
+        height_m = _accented(height_m, pitch_m, choice.most_accent_m, size.relief_m)
+    if size.holes == "cut" and (unknown := ~np.isfinite(disparity.disparity_px)).any():
+        height_m[scaling.reduced_mask(unknown, height_m.shape)] = 0
+    shaped = geometry.smooth(Relief(limit_slopes(height_m, pitch_m, choice.slope), extent_m), size.smooth_m)
+    return Relief(_enlarged(shaped.height_m, nearness.shape), extent_m)
+
+
+def _calibration(calibration: Calibration | None, choice: ReliefChoice) -> Calibration | None:
+    return calibration if choice.by == "depth" else None
+
+
+def _on_cells(nearness: Float32[np.ndarray, "h w"], width_m: float, cell_m: float) -> Float32[np.ndarray, "r c"]:
+    factor = scaling.felt_factor(nearness.shape[1], width_m, cell_m)
+    return scaling.reduced_map(nearness, scaling.reduced_shape(nearness.shape, factor))
+
+
+def _without_grain(height_m: Float32[np.ndarray, "h w"], pitch_m: float, grain_m: float) -> Float32[np.ndarray, "h w"]:
+    """Flatten noise lower than GRAIN_HIGH_M in windows of this radius, and keep steps.
+
+    Source: the guided filter with itself as guide, its coefficients found on a half as fine grid (He & Sun 2015).
+    """
+    import cv2
+
+    shape = scaling.reduced_shape(height_m.shape, 2)
+    side = 2 * max(1, round(grain_m / (2 * pitch_m))) + 1
+    with plain_opencv():
+
+        def mean(values: np.ndarray) -> np.ndarray:
+            return np.asarray(cv2.blur(values, (side, side), borderType=cv2.BORDER_REPLICATE))
+
+        coarse = np.asarray(cv2.resize(height_m, shape[::-1], interpolation=cv2.INTER_AREA)) * np.float32(
+            1 / GRAIN_HIGH_M
+        )
+        around = mean(coarse)
+        variance = np.maximum(mean(coarse * coarse) - around * around, 0)
+        kept = variance / (variance + 1)
+        offset = mean((1 - kept) * around) * np.float32(GRAIN_HIGH_M)
+        return _enlarged(mean(kept), height_m.shape) * height_m + _enlarged(offset, height_m.shape)
+
+
+def _accented(
+    height_m: Float32[np.ndarray, "h w"], pitch_m: float, most_m: float, relief_m: float
+) -> Float32[np.ndarray, "h w"]:
+    """Add the difference from the surroundings, at most `most_m` of it, within 0 and `relief_m`."""
+    import cv2
+
+    shape = scaling.reduced_shape(height_m.shape, 4)
+    sigma = ACCENT_REACH_M / (pitch_m * height_m.shape[1] / shape[1])
+    with plain_opencv():
+        coarse = cv2.resize(height_m, shape[::-1], interpolation=cv2.INTER_AREA)
+        around = np.asarray(cv2.GaussianBlur(coarse, (0, 0), max(sigma, 1e-3), borderType=cv2.BORDER_REPLICATE))
+    above = height_m - _enlarged(around, height_m.shape)
+    return np.clip(height_m + np.clip(above, -np.float32(most_m), np.float32(most_m)), 0, np.float32(relief_m))
+
+
+def _enlarged(values: Float32[np.ndarray, "r c"], shape: tuple[int, int]) -> Float32[np.ndarray, "h w"]:
+    import cv2
+
+    if values.shape == shape:
+        return values
+    with plain_opencv():
+        return np.asarray(cv2.resize(values, shape[::-1], interpolation=cv2.INTER_LINEAR))

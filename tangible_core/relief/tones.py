@@ -10,9 +10,7 @@ BORDER = 0.03
 REACH = 2
 """Distance between these two cells: matched borders are one or two cells wide."""
 STEEPEST = 4.0
-"""The greatest density of borders that counts, over its mean: a single border does not take all of the height."""
-ROUNDS = 4
-"""How often what is cut off is shared out; the mean changes by less than a hundredth after that."""
+"""The greatest density of borders, over its mean; what is cut off is shared out to all depths."""
 STRAIGHT = np.linspace(0, 1, BINS + 1)
 """Tones that keep heights proportional to nearness."""
 
@@ -21,16 +19,15 @@ def tones_of(nearness: Float32[np.ndarray, "h w"], share: float) -> Float64[np.n
     """Return the heights, 0 to 1, of BINS + 1 evenly spaced values of nearness from 0 to 1.
 
     Each border counts once, however high: its weight is spread evenly over the depths between its two sides. The slope
-    of the map is at least 1 - share and at most 1 + share (STEEPEST - 1); without borders it is 1.
-    Source: as the clipped histogram of Pizer et al. 1987, over borders in place of pixels.
+    of the map is at least 1 - share and at most 1 + share STEEPEST; without borders it is 1.
+    Source: Pizer et al. 1987, the clipped histogram, here of borders in place of pixels.
     """
     density = _border_density(nearness) if share else np.zeros(BINS)
     if not density.any():
         return STRAIGHT
-    for _ in range(ROUNDS):
-        density = np.minimum(density / density.mean(), STEEPEST)
-    slope = share * density / density.mean() + 1 - share
-    return np.concatenate([[0], np.cumsum(slope) / slope.sum()])
+    cut = np.minimum(density / density.mean(), STEEPEST)
+    slope = share * (cut + 1 - cut.mean()) + 1 - share
+    return np.concatenate([[0], np.cumsum(slope) / BINS])
 
 
 def apply_tones(nearness: Float32[np.ndarray, "h w"], tones: Float64[np.ndarray, "n"]) -> Float32[np.ndarray, "h w"]:

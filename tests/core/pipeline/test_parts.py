@@ -548,7 +548,8 @@ def within_one_pixel(small: np.ndarray, large: np.ndarray) -> bool:
 
 def test_cure_for_steep_borders_leaves_heights_that_fit(folder: Path):
     """A lower workspace would be too low for them."""
-    text = "parts: {3: {height_m: 4.2 mm}}\nheights: given\nmaterials: {by: rules}\nworkspace: {width_m: 20 mm, smooth_m: 0}\n"
+    parts = "parts: {3: {height_m: 4.2 mm}}\nheights: given\nmaterials: {by: rules}\n"
+    text = f"{parts}workspace: {{width_m: 20 mm, smooth_m: 0}}\n"
     path = write_pipeline(folder, f"{text}render: penalty-gradient\ndevice: mock\n")
     assert not load_pipeline(path).preflight(loop=Loop(seconds=0.01)).safe
     fixed = fix(path, [], Hand(), Loop(seconds=0.01), path)

@@ -1,9 +1,9 @@
-"""A relief from an angle: parallel projection, facets from far to near, and hidden points."""
+"""A relief from an angle: parallel projection, facets from far to near, and heights under points."""
 
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float, Float32, Float64, Int64
+from jaxtyping import Float, Float32, Float64, Int64
 
 from tangible_core.data import Relief
 from tangible_core.scene.geometry import picture_to_workspace, resample, workspace_to_picture
@@ -61,13 +61,6 @@ def facets(points_m: Float64[np.ndarray, "h w 3"]) -> Facets:
     paper = on_paper(points_m)
     corners = [paper[row + down, column + right] for down, right in ((0, 0), (0, 1), (1, 1), (1, 0))]
     return Facets(np.stack(corners, axis=1), row, column)
-
-
-def is_visible(relief: Relief, points_m: Float64[np.ndarray, "n 3"]) -> Bool[np.ndarray, " n"]:
-    """Return which points of the surface are not hidden, by marching from each along the line of sight."""
-    step_m = min(relief.pitch_m) / np.cos(_UP)
-    march_m = points_m[:, None] + step_m * np.arange(2, sum(relief.height_m.shape))[:, None] * SIGHT
-    return ~np.any(heights_under(relief, march_m) > march_m[..., 2], axis=1)
 
 
 def heights_under(relief: Relief, points_m: Float64[np.ndarray, "... 3"]) -> Float32[np.ndarray, "..."]:

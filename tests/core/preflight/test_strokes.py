@@ -68,8 +68,9 @@ def test_hand_that_is_held_up_lifts_and_goes_on():
 
 def test_a_fall_of_the_force_is_no_rise():
     """A hand that slides off a cliff loses its press at once, and that takes no energy from anywhere."""
-    flight = fly(shape(lambda x, y: 0.004 * (np.abs(x % 0.01 - 0.005) < 0.0025)), stiffness_n_per_m=300.0)
-    assert flight.strokes.rise_n.min() < -flight.max_step_n
+    teeth = shape(lambda x, y: 0.6 * (x % 0.003), 512)
+    flight = fly(teeth, stiffness_n_per_m=400.0)
+    assert np.mean(flight.strokes.rise_n < -flight.max_step_n) > 0.01
     assert of(cliffs(flight), "too sudden").verdict == "ok"
 
 

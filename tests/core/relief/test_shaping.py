@@ -14,6 +14,7 @@ from tangible_core.scene.workspace import FeltSize, Workspace
 
 WIDTH_M, HIGH_M = 0.08, 0.005
 PLAIN = {"slope": 0, "spread": 0, "accent_m": 0, "grain_m": 0}
+UNDISTORTED = {"spread": 0, "accent_m": 0}
 CAMERA = Calibration(focal_px=1000.0, baseline_m=0.1)
 
 
@@ -60,13 +61,25 @@ def test_plain_choice_is_the_linear_relief(camera, holes):
     assert not np.array_equal(found, shaped(values, smooth_m=0))
 
 
+def test_finer_cells_are_kept_where_less_is_rounded():
+    """Pixels of 0.05 mm, of which 0.1 mm are kept under the usual rounding."""
+    values = np.random.default_rng(6).uniform(1, 9, (20, 1600)).astype(np.float32)
+    relief = geometry.make_relief(DisparityMap(values), None, WIDTH_M, HIGH_M)
+    found = shaped(values, PLAIN, smooth_m=0.0001)
+    assert np.allclose(found, geometry.smooth(relief, 0.0001).height_m, atol=1e-6)
+    assert shaped(values, PLAIN).std() < 0.2 * relief.height_m.std()
+
+
 def test_word_depth_keeps_true_proportions():
     """Half as near is twice as far: heights are linear in depth, and level ground stays as high as it is."""
     values = np.repeat(np.float32([10, 12.5, 100 / 6, 25]), 200)[None].repeat(100, axis=0)
     found = shaped(values, {"by": "depth"}, CAMERA)[50, [100, 300, 500, 700]]
     depth_m = 100 / np.float64([10, 12.5, 100 / 6, 25])
     assert np.allclose(found, HIGH_M * (depth_m[0] - depth_m) / (depth_m[0] - depth_m[-1]), atol=2e-5)
-    by_disparity = shaped(values, {"spread": 0, "accent_m": 0}, CAMERA)[50, [100, 300, 500, 700]]
+    assert np.array_equal(
+        shaped(values, {"by": "depth"}, CAMERA), shaped(values, {**UNDISTORTED, "by": "depth"}, CAMERA)
+    )
+    by_disparity = shaped(values, UNDISTORTED, CAMERA)[50, [100, 300, 500, 700]]
     assert np.allclose(by_disparity, HIGH_M * (values[0, [100, 300, 500, 700]] - 10) / 15, atol=2e-5)
 
 

@@ -99,8 +99,27 @@ class TestRelief:
         assert relief._stretch(level(0.002, (0.12, 0.04))) == relief._stretch(level(0.002, (0.04, 0.12))) == 10
         assert relief._stretch(level(0.03, (0.12, 0.04))) == 1
 
-    def test_scales_have_no_numbers_in_the_corners(self, axes: Axes):
+    def test_slope_is_lit_or_dark_by_the_side_that_it_faces(self, axes: Axes):
+        """The light is at the upper left; level ground is in between."""
+        x = np.linspace(0, 0.08, 81, dtype=np.float32)
+        heights = np.interp(x, [0, 0.02, 0.03, 0.05, 0.06, 0.08], [0, 0, 0.005, 0.005, 0, 0])[None].repeat(40, axis=0)
+        draw_relief(axes, Relief(heights.astype(np.float32), (0.08, 0.04)))
+        lightness = axes.images[0].get_array().mean(axis=(0, 2))
+        assert lightness[25] > lightness[40] + 0.05
+        assert lightness[55] < lightness[40] - 0.2
+
+    def test_arrows_point_down_the_slope(self, axes: Axes):
+        heights = np.linspace(0, 0.02, 40, dtype=np.float32)[None].repeat(20, axis=0)
+        draw_relief(axes, Relief(heights, (0.08, 0.04)))
+        [arrows] = [each for each in axes.collections if hasattr(each, "U")]
+        assert (arrows.U < -0.2).all() and np.abs(arrows.V).max() < 1e-6
+
+    def test_caption_has_the_size(self, axes: Axes):
         draw_relief(axes, level())
+        assert axes.get_xlabel() == "80 x 40 mm, heights in mm"
+
+    def test_scales_have_no_numbers_in_the_corners(self, axes: Axes):
+        relief.draw_surface(axes, level())
         texts = [text.get_text().replace("\N{MINUS SIGN}", "-") for text in axes.texts]
         numbers = [float(each) for each in texts if each and "mm" not in each]
         assert max(map(abs, numbers)) == 20

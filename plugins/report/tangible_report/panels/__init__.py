@@ -4,7 +4,7 @@ from tangible_core.plugins.hooks import Panel as Panel
 
 from .disparity import draw_disparity, draw_disparity_error
 from .force import draw_force_map
-from .relief import draw_relief, relief_aspect
+from .relief import draw_relief
 from .segments import draw_parts, draw_segments
 from .time import draw_force_time
 from .views import draw_views
@@ -15,7 +15,7 @@ PANELS = (
     Panel(draw_disparity_error, {"disparity", "truth"}, right_in=0.75),
     Panel(draw_segments, {"segments"}, {"views", "materials"}, right_in=1.75),
     Panel(draw_parts, {"parts"}, {"views", "surface"}, right_in=1.75),
-    Panel(draw_relief, {"relief"}, aspect=relief_aspect, right_in=0.85),
+    Panel(draw_relief, {"relief"}, right_in=0.45),
     Panel(draw_force_map, {"relief", "recording"}, left_in=0.65, right_in=0.95, bottom_in=0.65),
     Panel(
         draw_force_time, {"recording"}, {"relief"}, 4.5, left_in=0.65, bottom_in=0.55, least_in=7.6, least_aspect=3.0

@@ -1,4 +1,4 @@
-"""The panel of the relief: a lit block with some of its normals."""
+"""The panels of the relief: from above, lit from one side as fingers feel it, and as a block."""
 # pyright: reportUnknownMemberType=false
 # (matplotlib leaves its keywords without types)
 
@@ -17,30 +17,45 @@ from matplotlib.ticker import MaxNLocator
 from tangible_core.data import Relief
 from tangible_core.scene.geometry import normals
 
-from ..block import add_border, drawn_size, facets, is_visible, on_paper, points_of
-from ..style import INK, VIRIDIS, colour_bar, inches
+from ..block import add_border, drawn_size, facets, on_paper, points_of
+from ..style import INK, VIRIDIS, bare, colour_bar, inches
 
 LIGHT = LightSource(azdeg=315, altdeg=50)
+LOW_LIGHT = LightSource(azdeg=315, altdeg=35)
+"""A light so low that a slope of 45 degrees that looks away from it is dark."""
+PIXELS = 700
+"""The number of drawn cells along the longer side of the relief from above."""
 CELLS = 160
-"""The number of drawn cells along the longer side."""
-NORMALS = 11
+"""The number of cells along the longer side of a block, and for normals."""
+NORMALS = 16
 """The number of normals along the longer side."""
+ARROW = 0.035
+"""The length of the arrow of a horizontal normal, as a share of the longer side."""
 FLAT_M = 1e-6
 """The height below which a relief is drawn as a plane."""
 ROOM_IN = (0.1, 0.45, 0.4, 0.12)
 """The room left of the block, right of it, below and above, for its scales and normals, inches."""
-LARGE_IN2 = 6.0
-"""The area of the block on paper, about, square inches."""
 SCALE_MARK_IN = 0.35
 """The least distance between two numbers of a scale, inches."""
 TICK = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0, "shrinkB": 0}
 
 
 def draw_relief(axes: Axes, relief: Relief) -> str:
-    """Draw heights lit from the upper left, in true proportion or stretched by the factor in the headline; in mm."""
-    stretched = _draw_heights(axes, drawn_size(relief, CELLS))
-    _draw_normals(axes, stretched.relief)
-    return f"Relief and its normals{stretched.note}"
+    """Draw heights from above, lit low from the upper left, with the horizontal parts of some normals; in mm."""
+    shown = drawn_size(relief, PIXELS)
+    heights_mm = np.float32(1000) * shown.height_m
+    heights = ScalarMappable(Normalize(0, max(float(heights_mm.max()), 1000 * FLAT_M)), VIRIDIS)
+    width_m, length_m = shown.pitch_m
+    framed = np.pad(shown.height_m, 1, "edge")  # matplotlib shades with the differences of neighbours
+    paint = heights.to_rgba(np.pad(heights_mm, 1, "edge"))[..., :3]
+    lit = LOW_LIGHT.shade_rgb(paint, framed, blend_mode=_tint, dx=width_m, dy=length_m)[1:-1, 1:-1]
+    right_mm, far_mm = (500 * extent for extent in relief.extent_m)
+    axes.imshow(np.clip(lit, 0, 1), extent=(-right_mm, right_mm, -far_mm, far_mm))
+    axes.autoscale(False)
+    bare(axes, f"{2 * right_mm:.3g} x {2 * far_mm:.3g} mm, heights in mm")
+    _draw_normals(axes, drawn_size(relief, CELLS))
+    colour_bar(axes, heights, "")
+    return "Relief and its normals"
 
 
 def draw_surface(axes: Axes, relief: Relief) -> str:
@@ -66,14 +81,6 @@ def _draw_heights(axes: Axes, relief: Relief) -> _StretchedRelief:
     axes.set_axis_off()
     colour_bar(axes, heights, "height [mm]")
     return _StretchedRelief(stretched, f", heights x {stretch}" if stretch > 1 else "")
-
-
-def relief_aspect(relief: Relief) -> float:
-    """Return width over height of the panel that the block and its scales fill, at a size similar to other panels."""
-    width, height = np.ptp(_corners(relief.extent_m, _stretch(relief) * float(relief.height_m.max())), axis=0).tolist()
-    per_m = (LARGE_IN2 / (width * height)) ** 0.5
-    left_in, right_in, low_in, high_in = ROOM_IN
-    return (width * per_m + left_in + right_in) / (height * per_m + low_in + high_in)
 
 
 def _corners(extent_m: tuple[float, float], top_m: float) -> Float64[np.ndarray, "8 2"]:
@@ -118,16 +125,19 @@ def _dim(colours: np.ndarray, light: np.ndarray) -> np.ndarray:
     return colours * (0.3 + 0.7 * light)
 
 
+def _tint(colours: np.ndarray, light: np.ndarray) -> np.ndarray:
+    """Return colours that are paler than the height's, and as light as they are lit."""
+    return (0.45 + 0.55 * colours) * (0.15 + 1.05 * light)
+
+
 def _draw_normals(axes: Axes, relief: Relief) -> None:
-    """Draw normals of the drawn surface, at the points that the reader sees."""
+    """Draw the horizontal parts of normals as arrows: where it is level, a point."""
     step = max(1, max(relief.height_m.shape) // NORMALS)
     some = np.s_[step // 2 :: step, step // 2 :: step]
-    base_m, normal = points_of(relief)[some].reshape(-1, 3), normals(relief)[some].reshape(-1, 3)
-    clear = is_visible(relief, base_m)
-    arrow_m = 0.08 * max(relief.extent_m) * normal[clear]
+    base_mm, normal = 1000 * points_of(relief)[some].reshape(-1, 3), normals(relief)[some].reshape(-1, 3)
     axes.quiver(
-        *on_paper(base_m[clear]).T, *on_paper(arrow_m).T,
-        angles="xy", scale_units="xy", scale=1, width=0.0035, color=INK,
+        *base_mm[:, :2].T, *normal[:, :2].T, units="inches", width=0.012, minlength=0.6,
+        angles="xy", scale_units="xy", scale=1 / (1000 * ARROW * max(relief.extent_m)), color=INK,
     )  # fmt: skip
 
 

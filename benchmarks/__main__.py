@@ -19,6 +19,7 @@ SECTIONS = {
     "depth": "Depth",
     "texture": "Texture",
     "photos": "Photographs",
+    "relief": "The relief of depth",
     "parts": "Parts of a picture",
     "export": "Handing it on",
     "render": "Force laws",

@@ -1,7 +1,8 @@
 """What is promised and what was measured, side by side."""
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from statistics import fmean, stdev
 from typing import Any, NamedTuple
 
 
@@ -27,6 +28,12 @@ def judged(figures: Iterable[Figure]) -> list[str]:
 def table(headings: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> list[str]:
     """Lines of a Markdown table."""
     return [_line(headings), "|" + "---|" * len(headings), *(_line(row) for row in rows)]
+
+
+def mean_and_error(values: Sequence[float]) -> str:
+    """Return the mean with its standard error; without, for a single value."""
+    error = f" ± {stdev(values) / len(values) ** 0.5:.3f}" if len(values) > 1 else ""
+    return f"{fmean(values):.3f}{error}"
 
 
 def part(name: str, work: Callable[[], Any]) -> Any:

@@ -247,7 +247,7 @@ class Feeling:
             scene_relief_m=self.engine.scene.relief_m,
             of_parts=config.heights is not None,
             smoothed=self.engine.scene.height is None,
-            slope=config.relief.slope if config.relief_kind == "depth" else None,
+            slope=config.relief.slope if config.relief_kind in ("depth", "edges") else None,
             law_name=law.name,
             fitted=config.materials.fit == "device",
             hand=hand,

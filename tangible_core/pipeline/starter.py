@@ -14,6 +14,7 @@ from jaxtyping import Float32
 
 from ..data.pictures import to_grey
 from ..errors import ConfigError
+from ..plugins.interfaces import DepthEstimator
 from ..plugins.registry import default_registry
 from ..runtime.opencv import plain_opencv
 from ..scene.formats.decoding import PICTURES as PICTURES
@@ -31,7 +32,25 @@ MAPS = frozenset({".npy", ".npz", ".pfm"})
 SIDE_MM = 80
 """The longer side of the surface, mm: the reach of a small desktop device."""
 SMOOTH_MM: Mapping[str, float] = {"photo": 1.5, "heights": 0.0}
-"""The smoothing of the relief by kind of scene, mm."""
+"""The smoothing of a relief of brightness, and of a map of heights, mm."""
+PHOTOS: Mapping[str, Mapping[str, str]] = {
+    "edges": {
+        "felt": "Its edges are felt as raised lines, on low steps from dark to light",
+        "relief_mm": "2",
+        "smooth_mm": "0.25",
+        "why": "height of the lines and of light over dark together",
+        "relief": "relief: edges                      # or disparity: what is lighter is higher",
+    },
+    "depth": {
+        "felt": "Nearer parts are felt as higher, by the depth that a network finds",
+        "relief_mm": "5",
+        "smooth_mm": "0.25",
+        "why": "height of the nearest point above the farthest",
+        "relief": "relief: {slope: 1.1}               # nowhere steeper; less is gentler, 0 keeps cliffs",
+    },
+    "brightness": {"felt": "Lighter parts are felt as higher", "relief": ""},
+}
+"""The texts for one picture, by what is felt of it."""
 STEEPEST = 0.6
 """The slope that at most a twentieth of the relief exceeds: from 1 on, 45 degrees, the sideways force is larger than
 the force down."""
@@ -116,9 +135,9 @@ def _part(path: Path) -> str:
 
 def _size(scene: Scene, kind: Kind) -> dict[str, object]:
     """Choose a size that fits the device, and a height at which few slopes are too steep; return them as texts."""
-    values = scene.height if scene.views is None else to_grey(scene.views.left)
-    assert values is not None
-    rows, columns = values.shape
+    shades = scene.height if scene.views is None else to_grey(scene.views.left)
+    assert shades is not None
+    rows, columns = shades.shape
     longer = max(rows, columns)
     size: dict[str, object] = {"columns": columns, "rows": rows}
     size |= {"width_mm": f"{SIDE_MM * columns / longer:.3g}", "length_mm": f"{SIDE_MM * rows / longer:.3g}"}
@@ -127,11 +146,25 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
     if scene.measured is not None:
         lengths_m = zip(("width_mm", "length_mm", "relief_mm"), scene.measured, strict=True)
         return size | {name: f"{1e3 * length_m:.3g}" for name, length_m in lengths_m}
-    slope = _slope(values, SMOOTH_MM[kind])
+    slope = _slope(shades, SMOOTH_MM[kind])
     least, most = LEAST_MM, MOST_MM[kind]
     relief_mm = max(least, min(most, floor(2 * STEEPEST / slope) / 2)) if slope > 0 else most
     why = "more would make its edges walls" if relief_mm < most else "its edges would bear more"
-    return size | {"relief_mm": f"{relief_mm:g}", "smooth_mm": f"{SMOOTH_MM[kind]:g}", "why": why}
+    why = f"height of the lightest point above the darkest; {why}" if kind == "photo" else why
+    size |= {"relief_mm": f"{relief_mm:g}", "smooth_mm": f"{SMOOTH_MM[kind]:g}", "why": why}
+    return {**size, **(PHOTOS[_felt_of(scene)] if kind == "photo" else {})}
+
+
+def _felt_of(scene: Scene) -> str:
+    """Return what is felt of one picture: depth where a network finds it, else edges; brightness where it moves."""
+    method = default_registry().load("depth", "auto")()
+    return (
+        "depth"
+        if isinstance(method, DepthEstimator) and method.finds_depth
+        else "edges"
+        if scene.frames is None
+        else "brightness"
+    )
 
 
 def _slope(values: Float32[np.ndarray, "h w"], smooth_mm: float) -> float:

@@ -11,11 +11,12 @@ from .scene_files import BUILTINS, SceneFiles
 
 SceneKind = Literal["photograph", "depth", "heights"]
 """Source of a relief: the brightness of one picture, depth (of a pair, or a depth map), or a height map."""
-ReliefKind = SceneKind | Literal["parts"]
-"""Source of a relief, or parts, each with a height."""
+ReliefKind = SceneKind | Literal["edges", "parts"]
+"""Source of a relief, or the edges of a picture, or parts, each with a height."""
 
 SUITS: dict[ReliefKind, tuple[float, float]] = {
     "photograph": (0.004, 0.0015),
+    "edges": (0.002, 0.00025),
     "depth": (0.005, 0.00025),
     "heights": (0.02, 0.0),
     "parts": (0.006, 0.0005),
@@ -48,11 +49,12 @@ class Workspace(Section):
     """Width of the surface under the hand."""
     relief_m: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] | None = None
     """Height of the nearest point above the farthest; null for a default by the scene: 0.004 for a photograph, whose
-    brightness is not depth, 0.005 for depth, 0.02 for a height map, 0.006 for parts with `heights:`."""
+    brightness is not depth, 0.002 for its edges, 0.005 for depth, 0.02 for a height map, 0.006 for parts with
+    `heights:`."""
     smooth_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] | None = None
     """Standard deviation of a Gaussian that smooths an estimated relief, whose matching noise would feel like grit;
-    null for a default by the scene: 0.0015 for a photograph, 0.00025 for depth, 0.0005 for parts with `heights:`. A
-    height map is never smoothed."""
+    null for a default by the scene: 0.0015 for a photograph, 0.00025 for depth and edges, 0.0005 for parts with
+    `heights:`. A height map is never smoothed."""
     finest_m: Annotated[float, Field(ge=0, le=0.1, allow_inf_nan=False)] = 3e-5
     """Finest detail to keep: larger pictures are first reduced to it. A Falcon resolves 0.03 mm; 0 keeps all pixels."""
     holes: Literal["fill", "cut"] = "fill"

@@ -165,10 +165,12 @@ class PipelineConfig(BaseModel):
 
     @property
     def relief_kind(self) -> ReliefKind:
-        """What the relief is made of: one picture's brightness, or depth where the method finds it in one picture."""
+        """What the relief is made of: of one picture, its brightness, or depth where the method finds it."""
         if self.heights:
             return "parts"
         kind = kind_of(self.scene)
+        if self.relief.by == "edges" and kind != "heights":
+            return "edges"
         return "depth" if kind == "photograph" and self.depth and self.depth.method.finds_depth else kind
 
     @property

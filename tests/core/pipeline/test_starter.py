@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
@@ -12,7 +13,8 @@ from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.starter import are_pictures, starter
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles
-from videos import greys
+from tangible_depth import Auto
+from videos import greys, write_video
 
 
 def waves(columns: int, rows: int, across: float) -> np.ndarray:
@@ -41,9 +43,27 @@ def test_starter_values_suit_the_picture(folder: Path):
     assert isinstance(config.scene, SceneFiles) and config.scene.photo == folder / "calm.png"
     assert config.workspace.width_m == 0.06, "portrait: its longer side fits the device"
     assert made.scene.views is not None and made.scene.views.shape == (160, 120)
-    assert relief_mm("calm.png") == 8.0
-    assert relief_mm("my steep: one.png") < 4.0, "steep edges allow less"
+    assert (config.relief.by, config.relief_kind, config.size[1:3]) == ("edges", "edges", (0.002, 0.00025))
     assert all(line.count("#") for line in made.text.splitlines() if " mm " in line), "each length is explained"
+
+
+def test_starter_of_a_video_is_as_high_as_its_edges_allow(folder: Path):
+    """Edges would flicker; what is lighter is higher."""
+    for name, most_mm in (("calm", 8.0), ("my steep: one", 3.9)):
+        (folder / name).mkdir()
+        picture = cv2.imread(f"{name}.png")
+        write_video(folder / f"{name}.avi", [picture] * 2)
+        text = starter([Path(f"{name}.avi")], Path("p.yaml")).text
+        config = parse_config(text, Path("p.yaml"), default_registry())
+        assert config.relief_kind == "photograph" and config.size.smooth_m == 0.0015
+        assert 1e3 * config.size.relief_m <= most_mm
+        assert (1e3 * config.size.relief_m == 8.0) == (name == "calm")
+
+
+def test_starter_of_a_picture_whose_depth_a_network_finds(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(Auto, "finds_depth", True)
+    config = parse_config(starter([Path("calm.png")], Path("p.yaml")).text, Path("p.yaml"), default_registry())
+    assert (config.relief_kind, config.relief.slope, config.size.relief_m) == ("depth", 1.1, 0.005)
 
 
 def test_starter_of_heights_in_millimetres_keeps_their_size(folder: Path):

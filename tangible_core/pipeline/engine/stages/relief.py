@@ -4,13 +4,16 @@ from functools import cached_property
 
 from ....data import Calibration, DisparityMap, PartMap, Relief
 from ....parts import Layering, PartHeights
-from ....relief import ReliefScale, relief_scale, shape_relief, shaping
+from ....relief import ReliefChoice, ReliefScale, edge_relief, edges, relief_scale, shape_relief, shaping
 from ....scene import geometry, scaling
 from ....scene.workspace import FeltSize
 from .. import part_heights
 from ..part_heights import warn_missing_heights
 from ..stage import Inputs, Stage
 from ..working_grid import flatten_transparent, relief_of_layers
+
+LINEAR = ReliefChoice(by="depth", slope=0, grain_m=0)
+"""The shape of a relief that is neither spread nor limited."""
 
 
 class ReliefStage(Stage):
@@ -22,7 +25,7 @@ class ReliefStage(Stage):
     def needs(self) -> tuple[str, ...]:
         heights = self.config.heights
         if heights is None:
-            return "views", "disparity"
+            return ("views",) if self.config.relief_kind == "edges" else ("views", "disparity")
         by_depth = ("disparity",) if heights.by == "depth" else ()
         return "views", self.config.felt_parts, *by_depth
 
@@ -35,13 +38,21 @@ class ReliefStage(Stage):
     def key(self) -> str:
         config, size = self.config, self.size
         if config.heights is None:
-            return f"{self.code(shaping.__name__)} {size!r} {config.relief!r}{self.reduction}"
+            code = self.code(edges.__name__ if config.relief_kind == "edges" else shaping.__name__)
+            return f"{code} {size!r} {self.choice!r}{self.reduction}"
         code = self.code(part_heights.__name__, Layering.__module__, geometry.__name__)
         return f"{code} {size!r} {config.heights!r} {sorted(config.given_heights_m.items())}{self.reduction}"
 
     @property
+    def choice(self) -> ReliefChoice:
+        """The decided shape: brightness, which is no depth, is scaled and smoothed only."""
+        return LINEAR if self.config.relief_kind == "photograph" else self.config.relief
+
+    @property
     def note(self) -> str:
         heights = self.config.heights
+        if heights is None and self.config.relief_kind == "edges":
+            return "no depth is needed: edges are raised lines"
         if heights is None or heights.by == "depth":
             return ""
         return f"no depth is needed: heights are {'given' if heights.by == 'given' else 'guessed'}"
@@ -49,6 +60,8 @@ class ReliefStage(Stage):
     def make(self, inputs: Inputs) -> Relief:
         if self.config.heights is not None:
             return self._from_parts(inputs[self.config.felt_parts], inputs.get("disparity"))
+        if self.config.relief_kind == "edges":
+            return flatten_transparent(edge_relief(self.views, self.size, self.choice), self.grid.opaque_mask)
         disparity: DisparityMap | None = inputs["disparity"]
         if disparity is None:
             return geometry.flat_relief(self.views.shape, self.size.width_m)
@@ -56,12 +69,12 @@ class ReliefStage(Stage):
 
     def from_disparity(self, disparity: DisparityMap, scale: ReliefScale | None = None) -> Relief:
         """Return the relief of a disparity map on the working grid. scale: as `shape_relief`."""
-        relief = shape_relief(disparity, self._calibration, self.size, self.config.relief, scale)
+        relief = shape_relief(disparity, self._calibration, self.size, self.choice, scale)
         return flatten_transparent(relief, self.grid.opaque_mask)
 
     def scale(self, disparity: DisparityMap) -> ReliefScale:
         """Return the scale of the relief of this disparity map alone."""
-        return relief_scale(disparity, self._calibration, self.size.width_m, self.config.relief)
+        return relief_scale(disparity, self._calibration, self.size.width_m, self.choice)
 
     @property
     def _calibration(self) -> Calibration | None:

@@ -1,0 +1,82 @@
+"""Photographs without depth: felt steps against the borders that people drew, by brightness and by edges."""
+# scipy has no types.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
+
+import os
+from pathlib import Path
+from statistics import fmean
+from typing import Any
+
+import cv2
+import numpy as np
+from scipy.ndimage import distance_transform_edt
+
+from tangible_core import Pipeline, Scene
+from tangible_core.data import Relief
+from tangible_core.data.views import border_pixels
+from tangible_core.metrics.borders import WITHIN_M, felt_steps
+from tangible_core.scene.workspace import Workspace
+from tangible_depth import Luminance
+
+from .figures import mean_and_error, table
+from .tests_path import drawn_parts
+
+DRAWN, REGIONS = ("astronaut", "coffee", "motorcycle"), "TANGIBLE_REGIONS"
+
+
+def lines() -> list[str]:
+    """Felt steps of photographs against the borders that people drew."""
+    made = {
+        "brightness": lambda picture, width_m: _photograph(picture, width_m, depth=Luminance()),
+        "edges": lambda picture, width_m: _photograph(picture, width_m, relief="edges"),
+    }
+    pictures = {name: (drawn.picture, [drawn.parts.labels]) for name in DRAWN for drawn in [drawn_parts.drawn(name)]}
+    regions = {file.stem: (_read(file), _regions(file.with_suffix(".npz"))) for file in sorted(_files())}
+    groups = {name: {name: each} for name, each in pictures.items()}
+    if regions:
+        unseen = dict(list(regions.items())[1::2])  # the others are for choosing
+        groups[f"mean of {len(unseen)} photographs"] = unseen
+    rows: list[tuple[str, ...]] = []
+    for group, chosen in groups.items():
+        for width_m in (0.08, 0.16):
+            for what, make in made.items():
+                shares = [_drawn_steps(make(picture, width_m), borders) for picture, borders in chosen.values()]
+                rows.append(
+                    (
+                        group,
+                        f"{1000 * width_m:.0f} mm",
+                        what,
+                        *(mean_and_error(list(each)) for each in zip(*shares, strict=True)),
+                    )
+                )
+    said = (
+        "One photograph, by brightness and by edges: the share of the felt steps within 2 mm of a border that somebody "
+        "drew, and the share of the drawn borders with a felt step."
+    )
+    return [said, "", *table(("picture", "wide", "relief", "at a drawn border", "found"), rows)]
+
+
+def _photograph(picture: np.ndarray, width_m: float, **how: Any) -> Relief:
+    return Pipeline(Scene.photo(picture), workspace=Workspace(width_m=width_m), cached=False, **how).relief
+
+
+def _drawn_steps(relief: Relief, drawn: list[np.ndarray]) -> tuple[float, float]:
+    """Return the share of felt steps at a border that anybody drew, and the mean share of each one's borders found."""
+    steps = felt_steps(relief)
+    each = [border_pixels(cv2.resize(labels, steps.shape[::-1], interpolation=cv2.INTER_NEAREST)) for labels in drawn]
+    near = distance_transform_edt(~np.any(each, axis=0)) * relief.pitch_m[0] <= WITHIN_M
+    return float(np.mean(near[steps])) if steps.any() else 0.0, fmean(float(np.mean(steps[lines])) for lines in each)
+
+
+def _files() -> list[Path]:
+    folder = os.environ.get(REGIONS)
+    return list(Path(folder).glob("*.jpg")) if folder else []
+
+
+def _read(file: Path) -> np.ndarray:
+    return cv2.cvtColor(cv2.imread(str(file)), cv2.COLOR_BGR2RGB)
+
+
+def _regions(file: Path) -> list[np.ndarray]:
+    with np.load(file) as kept:
+        return [kept[name].astype(np.int32) for name in kept.files]

@@ -1,0 +1,115 @@
+"""The relief of one picture of which no depth is known: its edges as raised lines, as in a tactile graphic."""
+# scipy has no types.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
+
+import numpy as np
+from jaxtyping import Bool, Float32
+
+from ..data import Relief, Views
+from ..runtime.opencv import plain_opencv
+from ..scene import geometry, scaling
+from ..scene.workspace import FeltSize
+from .choice import ReliefChoice
+from .slope_limit import limit_slopes
+
+CELL_M = 3.3e-4
+"""The cells on which edges are found, m: a third of the blur below."""
+BLUR_M, BLUR_SHARE = 0.001, 1 / 80
+"""The standard deviation of the Gaussian before differences are taken is the geometric mean of this length, m, and this
+share of the width: a wider surface has room for more lines, but not for all that is finer."""
+STRONG, WEAK = 0.94, 1.5
+"""The share of the picture whose contrast is below that of an edge; and by how much less an edge may have that
+continues a strong one."""
+LEAST = 1.0
+"""The least contrast of an edge, Lab units over the blur: about what is seen between two shades side by side."""
+LONG = 10.0
+"""The least length of a line, of the blur."""
+LINE_M = 0.0004
+"""The standard deviation of the profile of a line, m: a line of 1 mm, as tactile graphics have."""
+LINES = 0.6
+"""The share of the height that lines have; the rest is that of light over dark."""
+CALM_M, CALM = 0.0015, 0.1
+"""The radius, m, within which light and dark are made even, and their standard deviation up to which they are."""
+
+
+def edge_relief(views: Views, size: FeltSize, choice: ReliefChoice) -> Relief:
+    """Make the relief of the left view's edges: raised lines on low steps from dark to light, pixels square.
+
+    An edge is a difference of colour at the scale of the blur that is among the strongest of the picture, or continues
+    one of these (Canny 1986, on the channel of Lab with the greatest difference), and is at least LONG times as long.
+    """
+    import cv2
+
+    extent_m = geometry.extent_of(views.shape, size.width_m)
+    factor = scaling.felt_factor(views.shape[1], size.width_m, CELL_M)
+    small = scaling.reduce_views(Views(views.left), factor).left
+    pitch_m = size.width_m / small.shape[1]
+    with plain_opencv():
+        lab = np.asarray(cv2.cvtColor(_colours(small), cv2.COLOR_RGB2LAB), np.float32)
+        lines = _lines(lab, pitch_m, (BLUR_M * BLUR_SHARE * size.width_m) ** 0.5)
+        height_m = (1 - LINES) * size.relief_m * _calm_light(np.ascontiguousarray(lab[..., 0]) / 100, pitch_m)
+        height_m = np.maximum(height_m + LINES * size.relief_m * lines, 0).astype(np.float32)
+        shown = np.asarray(cv2.resize(height_m, views.shape[::-1], interpolation=cv2.INTER_LINEAR))
+    relief = Relief(limit_slopes(shown, size.width_m / views.shape[1], choice.slope), extent_m)
+    return geometry.smooth(relief, size.smooth_m)
+
+
+def _colours(picture: np.ndarray) -> Float32[np.ndarray, "h w 3"]:
+    """Return the picture's colours, 0 to 1."""
+    scale = np.iinfo(picture.dtype).max if picture.dtype.kind in "iu" else 1
+    colours = picture[..., :3] if picture.ndim == 3 and picture.shape[2] >= 3 else np.dstack([picture] * 3)
+    return colours.astype(np.float32) / np.float32(scale)
+
+
+def _lines(lab: Float32[np.ndarray, "h w 3"], pitch_m: float, blur_m: float) -> Float32[np.ndarray, "h w"]:
+    """Return the profile of the lines, 0 to 1."""
+    from scipy.ndimage import distance_transform_edt
+
+    at_edge = _edges(lab, blur_m / pitch_m)
+    if not at_edge.any():
+        return np.zeros(at_edge.shape, np.float32)
+    distance_m = np.asarray(distance_transform_edt(~at_edge)) * pitch_m
+    return np.exp(-((distance_m / LINE_M) ** 2) / 2).astype(np.float32)
+
+
+def _edges(lab: Float32[np.ndarray, "h w 3"], sigma: float) -> Bool[np.ndarray, "h w"]:
+    """Return the cells of edges. sigma: of the blur, cells."""
+    import cv2
+
+    blurred = cv2.GaussianBlur(lab, (0, 0), max(sigma, 0.3), borderType=cv2.BORDER_REPLICATE)
+    across, along = (
+        cv2.Sobel(blurred, cv2.CV_32F, *order, scale=sigma / 8, borderType=cv2.BORDER_REPLICATE)
+        for order in ((1, 0), (0, 1))
+    )
+    contrast = np.hypot(across, along)
+    channel = contrast.argmax(axis=2)[..., None]
+    across, along, contrast = (
+        np.take_along_axis(np.asarray(each), channel, axis=2)[..., 0] for each in (across, along, contrast)
+    )
+    strong = max(float(np.quantile(contrast, STRONG)), LEAST)
+    unit = 16384 / max(float(contrast.max()), strong)  # OpenCV takes whole numbers of 16 bits
+    whole_across, whole_along = (np.rint(each * unit).astype(np.int16) for each in (across, along))
+    found: np.ndarray = cv2.Canny(whole_across, whole_along, strong / WEAK * unit, strong * unit, L2gradient=True)
+    _, pieces, about, _ = cv2.connectedComponentsWithStats(found, connectivity=8)
+    long: np.ndarray = np.asarray(about)[:, cv2.CC_STAT_AREA] >= LONG * sigma
+    long[0] = False
+    return long[np.asarray(pieces, np.int32)]
+
+
+def _calm_light(light: Float32[np.ndarray, "h w"], pitch_m: float) -> Float32[np.ndarray, "h w"]:
+    """Return light and dark from 0 to 1, even but for their steps. Source: the guided filter (He et al. 2010)."""
+    import cv2
+
+    low, high = np.percentile(light, geometry.RANGE_PERCENT)
+    if high - low < LEAST / 100:
+        return np.zeros_like(light)
+    light = np.clip((light - low) / (high - low), 0, 1).astype(np.float32)
+    side = 2 * max(1, round(CALM_M / pitch_m)) + 1
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        return np.asarray(cv2.blur(values, (side, side), borderType=cv2.BORDER_REPLICATE))
+
+    around = mean(light)
+    variance = np.maximum(mean(light * light) - around * around, 0)
+    kept = variance / (variance + np.float32(CALM**2))
+    return mean(kept) * light + mean((1 - kept) * around)

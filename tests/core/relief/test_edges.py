@@ -1,0 +1,146 @@
+"""Raised lines of pictures whose edges are known."""
+
+import numpy as np
+import pytest
+
+from tangible_core import Pipeline, Scene
+from tangible_core.data import Views
+from tangible_core.errors import ConfigError
+from tangible_core.relief import ReliefChoice, edge_relief
+from tangible_core.scene.workspace import FeltSize
+from tangible_depth import Luminance
+
+SIZE = FeltSize(0.08, 0.002, 0.00025, 3e-5, "fill")
+PITCH_M = 0.08 / 320
+
+
+def lines_of(picture, slope=1.1, **sizes):
+    return edge_relief(Views(np.ascontiguousarray(picture)), SIZE._replace(**sizes), ReliefChoice(slope=slope)).height_m
+
+
+def block(low=60, high=180, shape=(240, 320)):
+    """Return a lighter block in the middle."""
+    picture = np.full((*shape, 3), low, np.uint8)
+    rows, columns = shape
+    picture[rows // 4 : 3 * rows // 4, columns // 4 : 3 * columns // 4] = high
+    return picture
+
+
+def test_edge_is_a_line_over_both_of_its_sides():
+    found = lines_of(block())[120]
+    assert found[80] > found[60] + 0.0008, "over the dark side"
+    assert found[80] > found[110] + 0.0003, "over the light side"
+    assert found[110] > found[40] + 0.0005, "light is higher than dark"
+    assert np.abs(np.argmax(found[60:100]) + 60 - 79.5) <= 1.5
+
+
+def test_line_is_about_a_millimetre_wide_and_no_steeper_than_the_slope():
+    found = lines_of(block())
+    assert np.abs(np.diff(found, axis=1)).max() <= 1.1 * PITCH_M * 1.001
+    steep = lines_of(block(), slope=0)
+    assert np.abs(np.diff(steep, axis=1)).max() > 1.2 * PITCH_M
+    over = np.flatnonzero(found[120, 60:100] > (found[120, 80] + found[120, 110]) / 2)
+    assert 0.0005 <= np.ptp(over) * PITCH_M <= 0.0025
+
+
+def test_edges_of_colour_alone_are_lines():
+    """Both sides are as light as each other."""
+    picture = np.full((240, 320, 3), (200, 90, 90), np.uint8)
+    picture[:, 160:] = (60, 139, 60)
+    found = lines_of(picture)[120]
+    assert found[159:161].max() > found[100] + 0.0008 and found[159:161].max() > found[220] + 0.0008
+
+
+def test_texture_finer_than_the_blur_is_no_line():
+    picture = block().astype(np.int32)
+    picture[:, :, :] += (60 * (np.indices((240, 320)).sum(axis=0) % 2) - 30)[..., None]
+    found = lines_of(np.clip(picture, 0, 255).astype(np.uint8))
+    assert found[120, 78:82].max() > found[120, 100:220].max() + 0.0003
+    assert np.ptp(found[100:140, 100:220]) < 0.0002
+
+
+def test_weak_edge_is_a_line_where_it_continues_a_strong_one():
+    """Stripes on the left are the strongest edges; one fades to the right, where a block has as little contrast."""
+    picture = np.full((240, 320), 100.0)
+    picture[:, :160] += 100 * (np.arange(160) // 20 % 2)
+    picture[100:140, 160:] += np.linspace(100, 75, 160)
+    picture[200:230, 250:300] += 75
+    found = lines_of(np.repeat(picture[..., None], 3, axis=2).astype(np.uint8))
+    steps = 0.4 * SIZE.relief_m
+    assert found[98:103, 290].max() > steps + 0.0003, "it continues"
+    assert found[195:235, 245:305].max() < steps + 0.0002, "it is alone"
+
+
+def test_short_edges_are_no_lines():
+    picture = np.full((240, 320, 3), 60, np.uint8)
+    picture[118:122, 158:162] = 255
+    assert lines_of(picture).max() <= 0.4 * SIZE.relief_m + 1e-5
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32])
+def test_lines_do_not_depend_on_the_dtype(dtype):
+    scale = {np.uint8: 1, np.uint16: 257, np.float32: 1 / 255}[dtype]
+    assert np.allclose(lines_of((block() * np.float64(scale)).astype(dtype)), lines_of(block()), atol=1e-6)
+
+
+def test_grey_is_the_same_in_one_channel_and_in_three():
+    assert np.allclose(lines_of(block()[..., 0]), lines_of(block()), atol=1e-7)
+
+
+def test_picture_of_more_pixels_gives_the_same_lines():
+    large = np.kron(block(), np.ones((3, 3, 1), np.uint8))
+    found = lines_of(large).reshape(240, 3, 320, 3).mean(axis=(1, 3))
+    assert np.sqrt(np.mean((found - lines_of(block())) ** 2)) < 60e-6
+
+
+def test_mirrored_picture_gives_the_mirrored_lines():
+    """But for edges between two pixels, of which one is chosen."""
+    apart = lines_of(block()[:, ::-1])[:, ::-1] - lines_of(block())
+    assert np.sqrt(np.mean(apart**2)) < 60e-6
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 40), (40, 1), (2, 3)])
+@pytest.mark.parametrize("shade", [0, 128, 255])
+def test_flat_picture_of_any_shape_is_flat(shape, shade):
+    assert not lines_of(np.full((*shape, 3), shade, np.uint8)).any()
+
+
+def test_lines_stay_within_the_height():
+    noise = np.random.default_rng(0).integers(0, 256, (100, 150, 3)).astype(np.uint8)
+    found = lines_of(noise)
+    assert found.min() >= 0 and found.max() <= SIZE.relief_m * (1 + 1e-6)
+
+
+def test_pipeline_by_edges_needs_no_depth():
+    pipeline = Pipeline(Scene.photo(block()), relief="edges", cached=False)
+    found = pipeline.relief.height_m
+    assert np.array_equal(found, lines_of(block()))
+    assert pipeline.config.relief_kind == "edges" and pipeline.config.size[1:3] == (0.002, 0.00025)
+    assert {each.product: each.outcome for each in pipeline.outcomes}["disparity"] == "skipped"
+
+
+def test_photograph_by_brightness_is_scaled_and_smoothed_only():
+    pipeline = Pipeline(Scene.photo(block()), depth=Luminance(), relief={"slope": 0.1}, cached=False)
+    found = pipeline.relief.height_m
+    assert found.max() == pytest.approx(0.004, rel=0.01)
+    assert np.diff(found, axis=1).max() > 0.5 * PITCH_M, "no slope limit"
+
+
+def test_height_map_is_never_made_of_edges():
+    pipeline = Pipeline(Scene.heights(np.eye(9)), relief="edges")
+    assert pipeline.config.relief_kind == "heights"
+    assert pipeline.relief.height_m.max() == pytest.approx(0.02)
+
+
+def test_video_by_edges_is_refused(tmp_path):
+    for number in range(2):
+        (tmp_path / f"{number}.png").write_bytes(png(block()))
+    pipeline = Pipeline(Scene.video(tmp_path, fps=10), depth=Luminance(), relief="edges")
+    with pytest.raises(ConfigError, match="not of edges; leave `by: edges` out"):
+        _ = pipeline.reliefs
+
+
+def png(picture):
+    import cv2
+
+    return cv2.imencode(".png", picture)[1].tobytes()

@@ -36,21 +36,19 @@ SMOOTH_MM: Mapping[str, float] = {"photo": 1.5, "heights": 0.0}
 PHOTOS: Mapping[str, Mapping[str, str]] = {
     "edges": {
         "felt": "Its edges are felt as raised lines, on low steps from dark to light",
-        "relief_mm": "2",
-        "smooth_mm": "0.25",
-        "why": "height of the lines and of light over dark together",
-        "relief": "relief: edges                      # or disparity: what is lighter is higher",
+        "relief": "relief: edges                      # 2 mm high, or `relief_m` above; disparity: lighter is higher",
     },
     "depth": {
         "felt": "Nearer parts are felt as higher, by the depth that a network finds",
-        "relief_mm": "5",
-        "smooth_mm": "0.25",
-        "why": "height of the nearest point above the farthest",
-        "relief": "relief: {slope: 1.1}               # nowhere steeper; less is gentler, 0 keeps cliffs",
+        "relief": "relief: {slope: 1.1}               # 5 mm high, or `relief_m` above; 0 keeps cliffs",
     },
-    "brightness": {"felt": "Lighter parts are felt as higher", "relief": ""},
+    "brightness": {
+        "felt": "Lighter parts are felt as higher",
+        "relief": "  relief_m: $relief_mm mm            # height of the lightest point above the darkest; $why\n"
+        "  smooth_m: $smooth_mm mm            # less keeps finer detail, and makes steeper edges",
+    },
 }
-"""The texts for one picture, by what is felt of it."""
+"""Texts for one picture: felt by its edges, its depth or its brightness."""
 STEEPEST = 0.6
 """The slope that at most a twentieth of the relief exceeds: from 1 on, 45 degrees, the sideways force is larger than
 the force down."""
@@ -150,13 +148,14 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
     least, most = LEAST_MM, MOST_MM[kind]
     relief_mm = max(least, min(most, floor(2 * STEEPEST / slope) / 2)) if slope > 0 else most
     why = "more would make its edges walls" if relief_mm < most else "its edges would bear more"
-    why = f"height of the lightest point above the darkest; {why}" if kind == "photo" else why
     size |= {"relief_mm": f"{relief_mm:g}", "smooth_mm": f"{SMOOTH_MM[kind]:g}", "why": why}
-    return {**size, **(PHOTOS[_felt_of(scene)] if kind == "photo" else {})}
+    if kind == "photo":
+        size |= {name: Template(text).substitute(size) for name, text in PHOTOS[_felt_of(scene)].items()}
+    return size
 
 
 def _felt_of(scene: Scene) -> str:
-    """Return what is felt of one picture: depth where a network finds it, else edges; brightness where it moves."""
+    """Return the key of PHOTOS for one picture: depth if a network finds it, else edges; brightness if it moves."""
     method = default_registry().load("depth", "auto")()
     return (
         "depth"

@@ -71,6 +71,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         " segments: segments.png}\n"
         "materials: {by: {0: wood, 1: cloth}}\n"
         "workspace: {width_m: 0.08, relief_m: 0.004, smooth_m: 0}\n"
+        "relief: {slope: 0, spread: 0, accent_m: 0, grain_m: 0}\n"
         "render: {use: penalty}\n"
     )
     return at

@@ -236,7 +236,7 @@ class TestSee:
         pipeline.make("disparity")
         found = view_of(pipeline, "disparity")
         assert found.shows == "relief"
-        assert found.relief.height_m.max() == pytest.approx(0.01, rel=0.2)
+        assert found.relief.height_m.max() == pytest.approx(0.005, rel=0.2)
         assert not is_there(pipeline, "touch")
 
     def test_relative_depth_has_no_unit(self):

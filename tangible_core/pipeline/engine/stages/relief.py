@@ -45,7 +45,7 @@ class ReliefStage(Stage):
 
     @property
     def choice(self) -> ReliefChoice:
-        """The decided shape: brightness, which is no depth, is scaled and smoothed only."""
+        """The decided shape; the brightness of a photograph is scaled and smoothed only."""
         return LINEAR if self.config.relief_kind == "photograph" else self.config.relief
 
     @property

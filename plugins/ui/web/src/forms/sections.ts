@@ -3,7 +3,7 @@ import { type Option, options, sentence } from "./kinds";
 import { alternatives, type FileSchema, type Schema } from "./schema";
 
 /** The order of the forms; a key that is not in it stands behind the others. */
-const ORDER = ["depth", "texture", "heights", "simplify", "materials", "workspace", "mapping", "render", "device", "safety"];
+const ORDER = ["depth", "texture", "heights", "simplify", "relief", "materials", "workspace", "mapping", "render", "device", "safety"];
 /** Keys that have a panel of their own, without a form. */
 const ELSEWHERE = ["scene", "parts", "export"];
 

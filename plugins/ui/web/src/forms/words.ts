@@ -19,6 +19,7 @@ export const t = words({
   materials: ["Materials", "Materialien"],
   heights: ["Heights of parts", "Höhen der Teile"],
   simplify: ["Legible parts", "Lesbare Teile"],
+  relief: ["Shape of the relief", "Form des Reliefs"],
   workspace: ["Size", "Größe"],
   mapping: ["Mapping to the hand", "Abbildung auf die Hand"],
   render: ["Force law", "Kraftgesetz"],

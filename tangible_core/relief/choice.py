@@ -18,8 +18,8 @@ class ReliefChoice(Section):
     """How depth, or a picture, becomes height. A word alone is `by`: `relief: depth` keeps true proportions."""
 
     by: Literal["disparity", "depth", "edges"] = "disparity"
-    """What heights are made of. `disparity`: near things get more of the height, as in a bas-relief. `depth`: heights
-    to scale, where the calibration of the cameras is known. `edges`: the edges of the picture, as raised lines on low
+    """The source of heights. `disparity`: near things get more of the height, as in a bas-relief. `depth`: heights to
+    scale, where the calibration of the cameras is known. `edges`: the edges of the picture, as raised lines on low
     steps from dark to light, for one photograph without depth."""
     slope: Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)] = 1.1
     """The greatest slope, rise over run; steeper places become ramps. A hand that presses down climbs it with at most

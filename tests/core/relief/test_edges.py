@@ -39,8 +39,36 @@ def test_line_is_about_a_millimetre_wide_and_no_steeper_than_the_slope():
     assert np.abs(np.diff(found, axis=1)).max() <= 1.1 * PITCH_M * 1.001
     steep = lines_of(block(), slope=0)
     assert np.abs(np.diff(steep, axis=1)).max() > 1.2 * PITCH_M
+    foot, top, plateau = (found[120, column] for column in (88, 80, 110))
+    assert foot - plateau < 0.1 * (top - plateau), "2 mm from its middle"
     over = np.flatnonzero(found[120, 60:100] > (found[120, 80] + found[120, 110]) / 2)
     assert 0.0005 <= np.ptp(over) * PITCH_M <= 0.0025
+
+
+def test_both_edges_of_a_narrow_bar_are_lines_at_its_borders():
+    """A bar of 3 mm; on a surface four times as wide, one of 6 mm at twice the blur."""
+    for columns, half, width_m in ((320, 6, 0.08), (640, 6, 0.32)):
+        picture = np.full((240, columns, 3), 60, np.uint8)
+        picture[:, columns // 2 - half : columns // 2 + half] = 180
+        found = lines_of(picture, width_m=width_m)[120]
+        left = columns // 2 - 3 * half + np.argmax(found[columns // 2 - 3 * half : columns // 2])
+        assert abs(left - (columns // 2 - half)) <= 2.5
+
+
+def test_noise_of_a_flat_picture_is_flat():
+    noise = np.random.default_rng(1).integers(128, 130, (240, 320, 1)).astype(np.uint8)
+    assert not lines_of(np.repeat(noise, 3, axis=2)).any()
+
+
+def test_uneven_light_is_evened_and_steps_stay():
+    picture = block().astype(np.int32)
+    picture += (
+        np.rint(np.random.default_rng(2).normal(0, 5, (120, 160))).astype(np.int32).repeat(2, 0).repeat(2, 1)[..., None]
+    )
+    found = lines_of(picture.astype(np.uint8))
+    rough = 0.4 * SIZE.relief_m * 5 / 120
+    assert found[100:140, 110:210].std() < 0.3 * rough
+    assert found[120, 160] > found[120, 30] + 0.0005
 
 
 def test_edges_of_colour_alone_are_lines():
@@ -89,7 +117,9 @@ def test_grey_is_the_same_in_one_channel_and_in_three():
 
 def test_picture_of_more_pixels_gives_the_same_lines():
     large = np.kron(block(), np.ones((3, 3, 1), np.uint8))
-    found = lines_of(large).reshape(240, 3, 320, 3).mean(axis=(1, 3))
+    fine = lines_of(large)
+    assert np.abs(np.diff(fine, axis=1)).max() <= 1.1 * PITCH_M / 3 * 1.001
+    found = fine.reshape(240, 3, 320, 3).mean(axis=(1, 3))
     assert np.sqrt(np.mean((found - lines_of(block())) ** 2)) < 60e-6
 
 

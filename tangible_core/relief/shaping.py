@@ -70,7 +70,7 @@ def shape_relief(
         height_m = _without_grain(height_m, pitch_m, choice.grain_m)
     if choice.most_accent_m:
         height_m = _accented(height_m, pitch_m, choice.most_accent_m, size.relief_m)
-    if size.holes == "cut" and (unknown := ~np.isfinite(disparity.disparity_px)).any():
+    if size.holes == "cut" and (unknown := np.isnan(disparity.disparity_px)).any():
         height_m[scaling.reduced_mask(unknown, height_m.shape)] = 0
     shaped = geometry.smooth(Relief(limit_slopes(height_m, pitch_m, choice.slope), extent_m), size.smooth_m)
     return Relief(_enlarged(shaped.height_m, nearness.shape), extent_m)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tangible_core import Pipeline, Scene
 from tangible_core.data import Calibration, DisparityMap
 from tangible_core.errors import GeometryError
 from tangible_core.relief import ReliefChoice, ReliefScale, relief_scale, shape_relief
@@ -217,3 +218,19 @@ def test_rounding_comes_last_and_is_that_of_the_workspace():
     wave = np.interp([0.1587, 0.5, 0.8413], found / HIGH_M, at)
     assert np.allclose(wave, [-0.002, 0, 0.002], atol=4e-5)
     assert CELL_M <= WIDTH_M / 800
+
+
+@pytest.mark.parametrize("choice", [{}, {"spread": 0}, {"accent_m": 0}, "depth", UNDISTORTED])
+def test_outcome_tells_that_heights_are_spread_and_the_cure(choice):
+    picture = np.zeros((40, 60, 3), np.uint8)
+    scene = Scene.of(photo=picture, disparity=two_levels(columns=60, rows=40))
+    pipeline = Pipeline(scene, relief=choice, cached=False)
+    assert pipeline.relief.height_m.max() > 0.004
+    [why] = [each.why for each in pipeline.outcomes if each.product == "relief"]
+    assert ("`relief: depth` keeps true proportions" in why) == (choice not in ("depth", UNDISTORTED))
+
+
+def test_infinite_disparity_is_near_and_no_hole():
+    values = two_levels()
+    values[:, 600:] = np.inf
+    assert np.allclose(shaped(values, {"accent_m": 0}, holes="cut")[20, 620:780], HIGH_M, atol=1e-6)

@@ -1,9 +1,11 @@
 """The relief: from the disparity, or with `heights:` from the parts."""
 
+import logging
 from functools import cached_property
 
 from ....data import Calibration, DisparityMap, PartMap, Relief
 from ....parts import Layering, PartHeights
+from ....plugins.notes import note
 from ....relief import ReliefChoice, ReliefScale, edge_relief, edges, relief_scale, shape_relief, shaping
 from ....scene import geometry, scaling
 from ....scene.workspace import FeltSize
@@ -12,6 +14,9 @@ from ..part_heights import warn_missing_heights
 from ..stage import Inputs, Stage
 from ..working_grid import flatten_transparent, relief_of_layers
 
+log = logging.getLogger(__name__)
+SPREAD = "heights are spread so that borders can be felt; `relief: depth` keeps true proportions"
+"""The note on a relief whose heights are not proportional to depth."""
 LINEAR = ReliefChoice(by="depth", slope=0, grain_m=0)
 """The shape of a relief that is neither spread nor limited."""
 
@@ -43,9 +48,9 @@ class ReliefStage(Stage):
         code = self.code(part_heights.__name__, Layering.__module__, geometry.__name__)
         return f"{code} {size!r} {config.heights!r} {sorted(config.given_heights_m.items())}{self.reduction}"
 
-    @property
+    @cached_property
     def choice(self) -> ReliefChoice:
-        """The decided shape; the brightness of a photograph is scaled and smoothed only."""
+        """The decided shape, once, as the size; the brightness of a photograph is scaled and smoothed only."""
         return LINEAR if self.config.relief_kind == "photograph" else self.config.relief
 
     @property
@@ -65,6 +70,8 @@ class ReliefStage(Stage):
         disparity: DisparityMap | None = inputs["disparity"]
         if disparity is None:
             return geometry.flat_relief(self.views.shape, self.size.width_m)
+        if self.choice.spread_share or self.choice.most_accent_m:
+            note(log, SPREAD)
         return self.from_disparity(scaling.reduced_disparity(disparity, self.grid.shape))
 
     def from_disparity(self, disparity: DisparityMap, scale: ReliefScale | None = None) -> Relief:

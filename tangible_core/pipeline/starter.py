@@ -157,13 +157,9 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
 def _felt_of(scene: Scene) -> str:
     """Return the key of PHOTOS for one picture: depth if a network finds it, else edges; brightness if it moves."""
     method = default_registry().load("depth", "auto")()
-    return (
-        "depth"
-        if isinstance(method, DepthEstimator) and method.finds_depth
-        else "edges"
-        if scene.frames is None
-        else "brightness"
-    )
+    if isinstance(method, DepthEstimator) and method.finds_depth:
+        return "depth"
+    return "edges" if scene.frames is None else "brightness"
 
 
 def _slope(values: Float32[np.ndarray, "h w"], smooth_mm: float) -> float:

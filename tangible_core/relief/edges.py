@@ -10,6 +10,7 @@ from ..runtime.opencv import plain_opencv
 from ..scene import geometry, scaling
 from ..scene.workspace import FeltSize
 from .choice import ReliefChoice
+from .guided_filter import filter_coefficients
 from .slope_limit import limit_slopes
 
 CELL_M = 3.3e-4
@@ -97,19 +98,10 @@ def _edges(lab: Float32[np.ndarray, "h w 3"], sigma: float) -> Bool[np.ndarray, 
 
 
 def _calm_light(light: Float32[np.ndarray, "h w"], pitch_m: float) -> Float32[np.ndarray, "h w"]:
-    """Return light and dark from 0 to 1, even but for their steps. Source: the guided filter (He et al. 2010)."""
-    import cv2
-
+    """Return light and dark from 0 to 1, even but for their steps."""
     low, high = np.percentile(light, geometry.RANGE_PERCENT)
     if high - low < LEAST / 100:
         return np.zeros_like(light)
     light = np.clip((light - low) / (high - low), 0, 1).astype(np.float32)
-    side = 2 * max(1, round(CALM_M / pitch_m)) + 1
-
-    def mean(values: np.ndarray) -> np.ndarray:
-        return np.asarray(cv2.blur(values, (side, side), borderType=cv2.BORDER_REPLICATE))
-
-    around = mean(light)
-    variance = np.maximum(mean(light * light) - around * around, 0)
-    kept = variance / (variance + np.float32(CALM**2))
-    return mean(kept) * light + mean((1 - kept) * around)
+    kept, offset = filter_coefficients(light, CALM_M / pitch_m, CALM)
+    return kept * light + offset

@@ -11,6 +11,7 @@ from ..scene import geometry, scaling
 from ..scene.geometry import ValueRange
 from ..scene.workspace import FeltSize
 from .choice import ReliefChoice
+from .guided_filter import filter_coefficients
 from .slope_limit import limit_slopes
 from .tones import STRAIGHT, apply_tones, tones_of
 
@@ -93,20 +94,10 @@ def _without_grain(height_m: Float32[np.ndarray, "h w"], pitch_m: float, grain_m
     import cv2
 
     shape = scaling.reduced_shape(height_m.shape, 2)
-    side = 2 * max(1, round(grain_m / (2 * pitch_m))) + 1
     with plain_opencv():
-
-        def mean(values: np.ndarray) -> np.ndarray:
-            return np.asarray(cv2.blur(values, (side, side), borderType=cv2.BORDER_REPLICATE))
-
-        coarse = np.asarray(cv2.resize(height_m, shape[::-1], interpolation=cv2.INTER_AREA)) * np.float32(
-            1 / GRAIN_HIGH_M
-        )
-        around = mean(coarse)
-        variance = np.maximum(mean(coarse * coarse) - around * around, 0)
-        kept = variance / (variance + 1)
-        offset = mean((1 - kept) * around) * np.float32(GRAIN_HIGH_M)
-        return _enlarged(mean(kept), height_m.shape) * height_m + _enlarged(offset, height_m.shape)
+        coarse = np.asarray(cv2.resize(height_m, shape[::-1], interpolation=cv2.INTER_AREA))
+        kept, offset = filter_coefficients(coarse * np.float32(1 / GRAIN_HIGH_M), grain_m / (2 * pitch_m), 1)
+    return _enlarged(kept, height_m.shape) * height_m + _enlarged(offset * np.float32(GRAIN_HIGH_M), height_m.shape)
 
 
 def _accented(

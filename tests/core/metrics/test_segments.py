@@ -14,7 +14,9 @@ from tangible_core.metrics.segments import (
     border_points,
     boundary_distance,
     contingency,
+    covering,
     matched_accuracy,
+    rand_index,
     segment_errors,
 )
 
@@ -63,6 +65,27 @@ def test_adjusted_rand_index_is_exact_where_products_of_counts_do_not_fit_64_bit
     size = 10**8
     assert adjusted_rand_index(np.array([[size, 0], [0, size]])) == 1
     assert adjusted_rand_index(np.array([[size, size], [size, size]])) == pytest.approx(-1 / (4 * size - 2), rel=1e-12)
+
+
+@given(SMALL, SMALL)
+def test_rand_index_is_the_share_of_pairs_on_which_both_agree(labels, truth):
+    pairs = list(combinations(zip(labels.ravel().tolist(), truth.ravel().tolist(), strict=True), 2))
+    agreeing = sum((one[0] == other[0]) == (one[1] == other[1]) for one, other in pairs)
+    expected = agreeing / len(pairs) if pairs else 1.0
+    assert rand_index(contingency(labels, truth)) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ("labels", "truth", "expected"),
+    [
+        (row(0, 0, 1, 1), row(1, 1, 0, 0), 1.0),
+        (row(0, 0, 0, 0), row(0, 0, 0, 1), (3 * 3 / 4 + 1 * 1 / 4) / 4),
+        (row(0, 0, 0, 1), row(0, 0, 0, 0), 3 / 4),
+        (row(0, 1, 1, 1), row(0, 0, 1, 1), (2 * 1 / 2 + 2 * 2 / 3) / 4),
+    ],
+)
+def test_covering_equals_values_computed_by_hand(labels, truth, expected):
+    assert covering(contingency(labels, truth)) == pytest.approx(expected)
 
 
 @given(SMALL, SMALL)

@@ -93,7 +93,9 @@ class Gradient(Segmenter, Skippable):
         if labels is None:
             return one_segment(magnitude.shape)
         steep = magnitude / np.maximum(noise, np.float32(strongest / self._max_steepness))
-        return SegmentMap(number_in_reading_order(refine_labels(labels, step, steep)), self._confidence(steep))
+        rows, columns = (np.arange(side) // step for side in steep.shape)
+        pixels = refine_labels(labels, rows, columns, steep)
+        return SegmentMap(number_in_reading_order(pixels), self._confidence(steep))
 
     @property
     def _max_steepness(self) -> float:

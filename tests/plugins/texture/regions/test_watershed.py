@@ -81,10 +81,11 @@ class TestRefining:
         height = np.zeros((9, 11), np.float32)
         height[:, 5] = 1
         labels = np.array([[0, 0, 0, 1, 1, 1]] * 5, np.int32)
-        found = refine_labels(labels, 2, height)
+        found = refine_labels(labels, np.arange(9) // 2, np.arange(11) // 2, height)
         assert np.delete(found, 5, axis=1).tolist() == [[0] * 5 + [1] * 5] * 9
 
     def test_region_of_one_cell_stays(self):
         labels = np.zeros((5, 5), np.int32)
         labels[2, 2] = 1
-        assert np.count_nonzero(refine_labels(labels, 2, np.zeros((10, 10), np.float32)) == 1) >= 4
+        at = np.arange(10) // 2
+        assert np.count_nonzero(refine_labels(labels, at, at, np.zeros((10, 10), np.float32)) == 1) >= 4

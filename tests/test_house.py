@@ -26,6 +26,7 @@ from tangible_core.plugins.interfaces import (
     Drawing,
     Filming,
     Following,
+    Hierarchical,
     Reshaping,
     Scripted,
     Serviceable,
@@ -189,7 +190,9 @@ def test_methods_are_in_the_file_named_after_them():
 @pytest.mark.parametrize("kind", KIND_NAMES)
 def test_methods_are_final_and_inherit_from_interfaces_alone(kind):
     """From interfaces of the core, or from an abstract class of its family that inherits from these."""
-    capabilities = {Drawing, Skippable, Serviceable, Adjustable, Attended, Scripted, Reshaping, Following, Filming}
+    capabilities = {
+        Adjustable, Attended, Drawing, Filming, Following, Hierarchical, Reshaping, Scripted, Serviceable, Skippable,
+    }  # fmt: skip
     for each in default_registry().listings:
         if each.kind == kind and each.distribution == "tangible-images":
             bases = default_registry().load(kind, each.name).__bases__

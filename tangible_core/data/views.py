@@ -108,6 +108,35 @@ class SegmentMap(Record):
 
 
 @dataclass(frozen=True, eq=False)
+class SegmentTree(Record):
+    """Regions of a picture joined pair by pair, from the smallest ones to the whole: any number of segments at once.
+
+    labels: int32 (h, w), the smallest regions, 0..n-1, each of them present.
+    joins: int32 (n - 1, 2), the two nodes of each joining. Nodes 0..n-1 are the smallest regions, n + i is joining i.
+    levels: float32 (n - 1), rising within 0..1: how sure it is that people see a border there.
+    """
+
+    labels: Int32[np.ndarray, "h w"]
+    joins: Int32[np.ndarray, "joins 2"]
+    levels: Float32[np.ndarray, "joins"] = field(default_factory=lambda: np.empty(0, np.float32))
+
+    def cut(self, most: int, level: float = 0.0) -> SegmentMap:
+        """Return the segments between borders of at least a level, at most `most` of them.
+
+        The confidence of a segment is the level at which it is joined; that of the whole picture is 1.
+        """
+        count = len(self.joins) + 1
+        joined = max(count - most, int(np.searchsorted(self.levels, level)))
+        roots, sure = np.arange(count + joined), np.ones(count + len(self.joins), np.float32)
+        for at in reversed(range(joined)):
+            roots[self.joins[at]] = roots[count + at]
+        for at in range(joined, len(self.joins)):
+            sure[self.joins[at]] = self.levels[at]
+        _, names = np.unique(roots[:count], return_inverse=True)
+        return SegmentMap(names.astype(np.int32)[self.labels], sure[roots[:count]][self.labels])
+
+
+@dataclass(frozen=True, eq=False)
 class PartMap(Record):
     """The part of each pixel. A part is a piece of one segment whose pixels are connected by their sides.
 

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float64, Int64
 from pydantic import BaseModel
 
-from ..data import DisparityMap, Finding, HapticSurface, Record, Unit, Views, Work
+from ..data import DisparityMap, Finding, HapticSurface, Record, SegmentTree, Unit, Views, Work
 
 
 class Drawing(ABC):
@@ -46,6 +46,14 @@ class Following(ABC):
         It is called for the first frame as well.
         Raises: TangibleError as `estimate`.
         """
+
+
+class Hierarchical(ABC):
+    """The capability of a texture method to divide a picture into any number of segments at once."""
+
+    @abstractmethod
+    def tree(self, picture: np.ndarray) -> SegmentTree:
+        """Return the regions of the picture, joined pair by pair. Raises: TangibleError as `segment`."""
 
 
 class Reshaping(ABC):

@@ -1,0 +1,37 @@
+"""Trees of segments cut at a number and at a level."""
+
+import numpy as np
+import pytest
+
+from tangible_core.data import SegmentTree
+
+LABELS = np.array([[0, 0, 1], [2, 3, 1]], np.int32)
+JOINS = np.array([[1, 3], [0, 2], [4, 5]], np.int32)
+LEVELS = np.array([0.1, 0.4, 0.9], np.float32)
+
+
+@pytest.mark.parametrize(
+    ("most", "level", "labels", "confidence"),
+    [
+        (9, 0.0, [[0, 0, 1], [2, 3, 1]], [[0.4, 0.4, 0.1], [0.4, 0.1, 0.1]]),
+        (3, 0.0, [[0, 0, 2], [1, 2, 2]], [[0.4, 0.4, 0.9], [0.4, 0.9, 0.9]]),
+        (9, 0.1, [[0, 0, 1], [2, 3, 1]], [[0.4, 0.4, 0.1], [0.4, 0.1, 0.1]]),
+        (9, 0.2, [[0, 0, 2], [1, 2, 2]], [[0.4, 0.4, 0.9], [0.4, 0.9, 0.9]]),
+        (9, 0.5, [[1, 1, 0], [1, 0, 0]], [[0.9] * 3] * 2),
+        (2, 0.2, [[1, 1, 0], [1, 0, 0]], [[0.9] * 3] * 2),
+        (1, 0.0, [[0] * 3] * 2, [[1.0] * 3] * 2),
+        (9, 1.0, [[0] * 3] * 2, [[1.0] * 3] * 2),
+    ],
+)
+def test_cut_keeps_borders_of_the_level_and_at_most_the_number(
+    most: int, level: float, labels: list[list[int]], confidence: list[list[float]]
+):
+    found = SegmentTree(LABELS, JOINS, LEVELS).cut(most, level)
+    assert found.labels.tolist() == labels
+    assert found.confidence == pytest.approx(np.array(confidence, np.float32))
+
+
+def test_tree_of_one_region_is_one_segment():
+    tree = SegmentTree(np.zeros((2, 2), np.int32), np.empty((0, 2), np.int32))
+    assert tree.levels.shape == (0,)
+    assert tree.cut(5).count == 1

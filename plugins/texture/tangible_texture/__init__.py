@@ -7,6 +7,7 @@ from tangible_core.lazily import lazily
 if TYPE_CHECKING:
     from .gabor import Gabor as Gabor
     from .gradient import Gradient as Gradient
+    from .hierarchy import Hierarchy as Hierarchy
     from .histogram import Histogram as Histogram
     from .kornia_gabor import KorniaGabor as KorniaGabor
     from .kornia_gradient import KorniaGradient as KorniaGradient
@@ -17,6 +18,7 @@ __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     {
         "gabor": ["Gabor"],
         "gradient": ["Gradient"],
+        "hierarchy": ["Hierarchy"],
         "histogram": ["Histogram"],
         "kornia_gabor": ["KorniaGabor"],
         "kornia_gradient": ["KorniaGradient"],

@@ -29,7 +29,7 @@ METHODS = [
 ]
 SLOW_PEERS = {"kornia-gabor", "kornia-gradient", "report"}
 """Methods that others replace, and that take nine tenths of the time of all."""
-OF_GREY = {"gradient", "histogram", "kornia-gradient"}
+OF_GREY = {"gradient", "hierarchy", "histogram", "kornia-gradient"}
 """The methods that separate by brightness. The others separate by texture, for which a checkerboard is one thing."""
 SHAPE = 64, 88
 HALF = SHAPE[1] // 2
@@ -261,7 +261,9 @@ def test_installed_methods_are_listed():
     assert {"gradient", "histogram"} <= set(METHODS)
 
 
-@pytest.mark.parametrize(("name", "bytes_a_pixel"), [("gabor", 60), ("gradient", 40), ("histogram", 50)])
+@pytest.mark.parametrize(
+    ("name", "bytes_a_pixel"), [("gabor", 60), ("gradient", 40), ("hierarchy", 40), ("histogram", 50)]
+)
 def test_memory_stated_is_enough_for_four_megapixels(name: str, bytes_a_pixel: int):
     """The bound holds for grey, above the picture, with 16 MiB for constant parts."""
     script = (

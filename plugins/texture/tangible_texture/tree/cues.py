@@ -1,0 +1,101 @@
+"""How strongly a picture changes at each cell, and in which direction: in brightness and in what windows hold.
+
+A change of several planes has a structure tensor, the sum of the outer products of their gradients: its largest
+eigenvalue is the square of the steepest change, and n' T n that of the change along n. Gradients of square roots of
+shares measure Hellinger's distance between the windows on both sides. Compiled by numba.
+Sources: Di Zenzo, A note on the gradient of a multi-image, CVGIP 33, 1986; Martin, Fowlkes & Malik, Learning to detect
+natural image boundaries, IEEE TPAMI 26, 2004 (differences of windows).
+"""
+
+# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+from jaxtyping import Float32
+from numba import njit
+
+from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.threads import in_turns
+from tangible_core.runtime.opencv import plain_opencv
+
+FINE_CELLS = 0.6
+"""The standard deviation of the window of the change of brightness, in cells."""
+WINDOW_CELLS = 1.5
+"""The standard deviation of the narrowest window of shares, in cells."""
+LEVELS = 3
+"""The number of widths of windows, each twice as wide as the one before."""
+EMPTY = 1e-4
+"""A share that is added to all: the square root of nearly nothing must not change fast."""
+
+Tensors = Float32[np.ndarray, "cues 3 h w"]
+"""The structure tensor of each cue at each cell: across-across, across-down, down-down."""
+
+
+def tensors(brightness: Float32[np.ndarray, "h w"], shares: Mapping[str, Float32[np.ndarray, "_ h w"]]) -> Tensors:
+    """Compute the tensors of brightness, and of each kind of shares in windows of LEVELS widths."""
+    result = np.zeros((1 + LEVELS * len(shares), 3, *brightness.shape), np.float32)
+
+    @plain_opencv()
+    def work(kinds: Iterable[tuple[int, np.ndarray]]) -> None:
+        for at, planes in kinds:
+            _add_windows(planes, result[1 + LEVELS * at :][:LEVELS])
+
+    in_turns(list(enumerate(shares.values())), work)
+    with plain_opencv():
+        _add_outer(_blur(brightness, FINE_CELLS), result[0])
+    return result
+
+
+def _add_windows(planes: Float32[np.ndarray, "d h w"], result: Float32[np.ndarray, "levels 3 h w"]) -> None:
+    import cv2
+
+    for level in range(LEVELS):
+        if level:
+            size = (planes.shape[2] + 1) // 2, (planes.shape[1] + 1) // 2
+            planes = np.stack([cv2.resize(each, size, interpolation=cv2.INTER_AREA) for each in planes])
+        tensor = np.zeros((3, *planes.shape[1:]), np.float32)
+        for each in planes:
+            _add_outer(np.sqrt(_blur(each, WINDOW_CELLS) + np.float32(EMPTY)), tensor)
+        for at in range(3):
+            result[level, at] = cv2.resize(tensor[at], result.shape[:1:-1], interpolation=cv2.INTER_LINEAR)
+
+
+def _blur(plane: Float32[np.ndarray, "h w"], sigma: float) -> Float32[np.ndarray, "h w"]:
+    import cv2
+
+    return cv2.GaussianBlur(plane, (0, 0), sigma, borderType=cv2.BORDER_REFLECT)
+
+
+def weighted_strength(tensors: Tensors, weights: Float32[np.ndarray, "cues"]) -> Float32[np.ndarray, "h w"]:
+    """Return the sum over cues of a weight times the square root of the steepest change."""
+    result = np.zeros(tensors.shape[2:], np.float32)
+    _add_strengths(tensors.reshape(*tensors.shape[:2], -1), weights, result.reshape(-1))
+    return result
+
+
+@njit(**KERNEL)
+def _add_outer(plane, tensor):
+    """Add the outer product of central differences; the border is repeated."""
+    rows, columns = plane.shape
+    half = np.float32(0.5)
+    for row in range(rows):
+        above, below = max(row - 1, 0), min(row + 1, rows - 1)
+        for column in range(columns):
+            across = half * (plane[row, min(column + 1, columns - 1)] - plane[row, max(column - 1, 0)])
+            down = half * (plane[below, column] - plane[above, column])
+            tensor[0, row, column] += across * across
+            tensor[1, row, column] += across * down
+            tensor[2, row, column] += down * down
+
+
+@njit(**KERNEL)
+def _add_strengths(tensors, weights, result):
+    half = np.float32(0.5)
+    for cue in range(len(tensors)):
+        weight = weights[cue]
+        for at in range(result.size):
+            xx, xy, yy = tensors[cue, 0, at], tensors[cue, 1, at], tensors[cue, 2, at]
+            apart = half * (xx - yy)
+            largest = half * (xx + yy) + np.sqrt(apart * apart + xy * xy)
+            result[at] += weight * np.sqrt(np.sqrt(largest))

@@ -1,0 +1,150 @@
+"""Joining of neighbouring regions, the pair first that people are least likely to keep apart. Compiled by numba."""
+
+# ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
+
+import numpy as np
+from jaxtyping import Float64, Int32
+from numba import njit
+
+from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.elementary import logarithm
+
+from .regions import Regions
+
+TERMS = 6
+"""The number of terms of a border's cost, see `_measure`."""
+_NONE = -1
+
+
+def join_regions(
+    regions: Regions, weights: Float64[np.ndarray, "terms"], constant: float, seen: Float64[np.ndarray, "rows 8"]
+) -> tuple[Int32[np.ndarray, "joins 2"], Float64[np.ndarray, "joins"], int]:
+    """Join the two neighbours whose border costs least, again and again, until one region is left.
+
+    seen: rows for the two nodes and the terms of each border whenever it is measured, for a program that fits weights;
+    none for any other.
+    Returns: the two nodes of each joining, that of joining i being node n + i, as in SciPy's linkages; the costs; and
+    the number of rows written.
+    """
+    count, borders = len(regions.areas), len(regions.borders)
+    joins, costs = np.empty((count - 1, 2), np.int32), np.empty(count - 1)
+    owners = np.concatenate([regions.borders[:, 0], regions.borders[:, 1]]).astype(np.int32)
+    links, first, marks = (np.full(size, _NONE, np.int32) for size in (2 * borders, count, count))
+    areas, colours, roughness = (each.copy() for each in (regions.areas, regions.colours, regions.roughness))
+    pairs, strengths, prices = regions.pairs.copy(), regions.strengths.copy(), np.empty(borders)
+    rows = _join(
+        areas, colours, roughness, owners, links, first, marks, np.arange(count, dtype=np.int32), pairs, strengths,
+        prices, weights, constant, np.empty(TERMS), seen, joins, costs,
+    )  # fmt: skip
+    return joins, costs, rows
+
+
+@njit(**KERNEL)
+def _join(
+    areas, colours, roughness, owners, links, first, marks, nodes, pairs, strengths, prices, weights, constant, terms,
+    seen, joins, costs,
+):  # fmt: skip
+    """Join regions in place; returns the number of rows seen.
+
+    The borders of a region are a linked list of half borders: those of border b are b and b + len(prices).
+    """
+    count, borders, rows, total = areas.size, prices.size, 0, areas.sum()
+    for half in range(2 * borders - 1, -1, -1):
+        links[half], first[owners[half]] = first[owners[half]], half
+    for border in range(borders):
+        one, other = owners[border], owners[border + borders]
+        _measure(areas, colours, roughness, one, other, pairs[border], strengths[border], total, terms)
+        prices[border] = _price(terms, weights, constant)
+        rows = _record(seen, rows, nodes[one], nodes[other], terms)
+    for step in range(count - 1):
+        best = np.argmin(prices)
+        one, lost = owners[best], owners[best + borders]
+        joins[step, 0], joins[step, 1], costs[step] = nodes[one], nodes[lost], prices[best]
+        nodes[one] = count + step
+        areas[one] += areas[lost]
+        for at in range(colours.shape[1]):
+            colours[one, at] += colours[lost, at]
+        for at in range(roughness.shape[1]):
+            roughness[one, at] += roughness[lost, at]
+        _join_borders(one, lost, owners, links, first, marks, pairs, strengths, prices)
+        half = first[one]
+        while half != _NONE:
+            border, other = half % borders, owners[(half + borders) % (2 * borders)]
+            _measure(areas, colours, roughness, one, other, pairs[border], strengths[border], total, terms)
+            prices[border] = _price(terms, weights, constant)
+            rows = _record(seen, rows, nodes[one], nodes[other], terms)
+            half = links[half]
+    return rows
+
+
+@inner()
+def _join_borders(one, lost, owners, links, first, marks, pairs, strengths, prices):
+    """Give the borders of a region to another; of two with the same neighbour the second is added to the first."""
+    borders = prices.size
+    kept, head = _NONE, _NONE
+    for start in (first[one], first[lost]):
+        half = start
+        while half != _NONE:
+            following, border = links[half], half % borders
+            owners[half] = one
+            other = owners[(half + borders) % (2 * borders)]
+            if other in (one, lost):
+                prices[border] = np.inf
+            elif prices[border] < np.inf:
+                if marks[other] == _NONE:
+                    marks[other] = border
+                    if kept == _NONE:
+                        head = half
+                    else:
+                        links[kept] = half
+                    kept = half
+                else:
+                    pairs[marks[other]] += pairs[border]
+                    strengths[marks[other]] += strengths[border]
+                    prices[border] = np.inf
+            half = following
+    if kept != _NONE:
+        links[kept] = _NONE
+    first[one] = head
+    half = head
+    while half != _NONE:
+        marks[owners[(half + borders) % (2 * borders)]] = _NONE
+        half = links[half]
+
+
+@inner()
+def _measure(areas, colours, roughness, one, other, pairs, strength, total, terms):
+    """Write the terms of a border's cost.
+
+    They are the mean strength; Hellinger's distance of roughness; the square root of the difference in colour; and the
+    logarithms of the smaller and of the larger area, and of the length, against the whole picture.
+    """
+    alike = 0.0
+    for at in range(roughness.shape[1]):
+        alike += np.sqrt((roughness[one, at] / areas[one]) * (roughness[other, at] / areas[other]))
+    redder = colours[one, 1] / areas[one] - colours[other, 1] / areas[other]
+    yellower = colours[one, 2] / areas[one] - colours[other, 2] / areas[other]
+    terms[0] = strength / pairs
+    terms[1] = np.sqrt(max(0.0, 1 - alike))
+    terms[2] = np.sqrt(np.sqrt(redder * redder + yellower * yellower))
+    terms[3] = logarithm(np.float32(min(areas[one], areas[other]) / total))
+    terms[4] = logarithm(np.float32(max(areas[one], areas[other]) / total))
+    terms[5] = logarithm(np.float32(pairs / np.sqrt(total)))
+
+
+@inner()
+def _price(terms, weights, constant):
+    price = constant
+    for at in range(terms.size):
+        price += weights[at] * terms[at]
+    return price
+
+
+@inner()
+def _record(seen, rows, one, other, terms):
+    if rows == len(seen):
+        return rows
+    seen[rows, 0], seen[rows, 1] = one, other
+    for at in range(terms.size):
+        seen[rows, 2 + at] = terms[at]
+    return rows + 1

@@ -18,6 +18,7 @@ SECTIONS = {
     "house": "The house itself",
     "depth": "Depth",
     "texture": "Texture",
+    "regions": "Regions that people draw",
     "photos": "Photographs",
     "relief": "The relief of depth",
     "parts": "Parts of a picture",

@@ -2,8 +2,6 @@
 # scipy has no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
-import os
-from pathlib import Path
 from statistics import fmean
 from typing import Any
 
@@ -19,9 +17,10 @@ from tangible_core.scene.workspace import Workspace
 from tangible_depth import Luminance
 
 from .figures import mean_and_error, table
+from .regions_drawn import Photograph, photographs
 from .tests_path import drawn_parts
 
-DRAWN, REGIONS = ("astronaut", "coffee", "motorcycle"), "TANGIBLE_REGIONS"
+DRAWN = "astronaut", "coffee", "motorcycle"
 
 
 def lines() -> list[str]:
@@ -30,8 +29,10 @@ def lines() -> list[str]:
         "brightness": lambda picture, width_m: _photograph(picture, width_m, depth=Luminance()),
         "edges": lambda picture, width_m: _photograph(picture, width_m, relief="edges"),
     }
-    pictures = {name: (drawn.picture, [drawn.parts.labels]) for name in DRAWN for drawn in [drawn_parts.drawn(name)]}
-    regions = {file.stem: (_read(file), _regions(file.with_suffix(".npz"))) for file in sorted(_files())}
+    pictures = {
+        name: Photograph(drawn.picture, [drawn.parts.labels]) for name in DRAWN for drawn in [drawn_parts.drawn(name)]
+    }
+    regions = photographs()
     groups = {name: {name: each} for name, each in pictures.items()}
     if regions:
         unseen = dict(list(regions.items())[1::2])  # the others are for choosing
@@ -64,19 +65,5 @@ def _drawn_steps(relief: Relief, drawn: list[np.ndarray]) -> tuple[float, float]
     """Return the share of felt steps at a border that anybody drew, and the mean share of each one's borders found."""
     steps = felt_steps(relief)
     each = [border_pixels(cv2.resize(labels, steps.shape[::-1], interpolation=cv2.INTER_NEAREST)) for labels in drawn]
-    near = distance_transform_edt(~np.any(each, axis=0)) * relief.pitch_m[0] <= WITHIN_M
+    near = np.asarray(distance_transform_edt(~np.any(each, axis=0))) * relief.pitch_m[0] <= WITHIN_M
     return float(np.mean(near[steps])) if steps.any() else 0.0, fmean(float(np.mean(steps[lines])) for lines in each)
-
-
-def _files() -> list[Path]:
-    folder = os.environ.get(REGIONS)
-    return list(Path(folder).glob("*.jpg")) if folder else []
-
-
-def _read(file: Path) -> np.ndarray:
-    return cv2.cvtColor(cv2.imread(str(file)), cv2.COLOR_BGR2RGB)
-
-
-def _regions(file: Path) -> list[np.ndarray]:
-    with np.load(file) as kept:
-        return [kept[name].astype(np.int32) for name in kept.files]

@@ -1,0 +1,203 @@
+"""Fit the weights of `hierarchy` to regions that people drew: `python -m benchmarks.regions_fit` prints them.
+
+First the weights of cues at cells, by the share of people with a border there; then, in ROUNDS, the weights of a
+border's cost, by the share of people who keep apart what it separates: over all borders that the joining with the
+weights of the round before looks at, as in Nunez-Iglesias et al., PLoS ONE 8, 2013.
+"""
+# scipy has no types.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownMemberType=false
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from scipy.ndimage import distance_transform_edt
+from scipy.optimize import minimize
+
+from tangible_core.data import SegmentTree
+from tangible_core.data.views import border_pixels
+from tangible_core.metrics.segments import contingency
+from tangible_texture.features.channels import channels
+from tangible_texture.tree.cells import opponent_colours, reduce_to_cells, shares
+from tangible_texture.tree.cues import Tensors, tensors, weighted_strength
+from tangible_texture.tree.joining import TERMS, join_regions
+from tangible_texture.tree.regions import Regions, measure_regions, small_regions
+from tangible_texture.tree.weights import border_weights
+
+from .regions_drawn import Photograph, photographs
+
+ROUNDS, SAMPLES = 4, 5000
+"""The rounds of fitting, and the borders taken from each photograph in each of them."""
+PLACES, NEAR_CELLS, FAR_CELLS = 12_000, 0.8, 3
+"""The cells taken from each photograph, nearer to a drawn border than this or farther than that from all."""
+SIZE_POWER = 0.6
+"""The power of the smaller region's share of the picture that weights a border."""
+RIDGE = 1e-3
+"""The penalty on squared weights of standardised terms."""
+
+
+class Model(NamedTuple):
+    """All weights: of cues at cells, of cues at borders, of the terms of a border, and the constant."""
+
+    at_cells: np.ndarray
+    at_borders: np.ndarray
+    terms: np.ndarray
+    constant: float
+
+
+class Prepared(NamedTuple):
+    """What does not depend on weights."""
+
+    photograph: Photograph
+    colours: np.ndarray
+    roughness: np.ndarray
+    cues: Tensors
+    drawn: list[np.ndarray]
+    """The people's labels of cells."""
+
+
+def prepare(photograph: Photograph) -> Prepared:
+    """Compute the cues of a photograph, and reduce the drawn regions to its cells."""
+    colours = opponent_colours(reduce_to_cells(channels(photograph.picture, colour=True)))
+    assert colours is not None
+    held = shares(colours)
+    size = colours.shape[:0:-1]
+    drawn = [cv2.resize(each, size, interpolation=cv2.INTER_NEAREST) for each in photograph.drawn]
+    return Prepared(photograph, colours, held["roughness"], tensors(colours[0], held), drawn)
+
+
+def fit(prepared: Sequence[Prepared]) -> Model:
+    """Fit all weights."""
+    rng = np.random.default_rng(1)
+    strengths, near = _stacked([_cells(each, rng) for each in prepared])
+    at_cells, _ = _logistic(strengths, near)
+    model = Model(at_cells, at_cells, np.array([1.0] + [0.0] * (TERMS - 1)), 0.0)
+    measured = [Measured(each, at_cells) for each in prepared]
+    rows: list[tuple[np.ndarray, ...]] = []
+    for _ in range(ROUNDS):
+        rows += [each.seen(model, rng) for each in measured]
+        terms, apart, sizes = _stacked(rows)
+        weights, constant = _logistic(terms, apart, sizes**SIZE_POWER, len(at_cells) + 2)
+        model = Model(at_cells, weights[: len(at_cells)], np.r_[1.0, weights[len(at_cells) :]], constant)
+    return model
+
+
+def tree(prepared: Prepared, model: Model) -> SegmentTree:
+    """Return the tree of a photograph's cells by a model's weights; its levels are costs."""
+    return Measured(prepared, model.at_cells).tree(model)
+
+
+class Measured:
+    """The small regions of a photograph, with the strength of each cue at each border."""
+
+    def __init__(self, prepared: Prepared, at_cells: np.ndarray) -> None:
+        cells = small_regions(weighted_strength(prepared.cues, at_cells.astype(np.float32)))
+        each = [
+            measure_regions(cells, prepared.colours, prepared.roughness, prepared.cues, one)
+            for one in _each_alone(prepared.cues)
+        ]
+        self.regions: Regions = each[0]
+        self.strengths = np.stack([regions.strengths for regions in each], axis=1)
+        self.drawn = [contingency(cells, labels).astype(np.float64) for labels in prepared.drawn]
+
+    def tree(self, model: Model) -> SegmentTree:
+        """Return the tree of cells, whose levels are costs."""
+        joins, costs, _ = self._join(model, 0)
+        return SegmentTree(self.regions.labels, joins, np.maximum.accumulate(costs).astype(np.float32))
+
+    def seen(self, model: Model, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return of some borders the terms, cue by cue, the share of people who keep them, and the smaller area."""
+        joins, _, rows = self._join(model, 100_000)
+        rows = rows[rng.choice(len(rows), min(SAMPLES, len(rows)), replace=False)]
+        one, other = rows[:, 0].astype(int), rows[:, 1].astype(int)
+        first, last = _leaves(joins)
+        ends = first[self.regions.borders]
+        inside = (ends >= first[one][:, None, None]) & (ends < last[one][:, None, None])
+        beyond = (ends >= first[other][:, None, None]) & (ends < last[other][:, None, None])
+        between = (inside[..., 0] & beyond[..., 1]) | (inside[..., 1] & beyond[..., 0])
+        cues = (between @ self.strengths) / (between @ self.regions.pairs)[:, None]
+        nodes = [_nodes(counts, joins) for counts in self.drawn]
+        apart = np.mean([1 - (held[one] * held[other]).sum(axis=1) for held in nodes], axis=0)
+        return np.hstack([cues, rows[:, 3:]]), apart, np.exp(rows[:, 5])
+
+    def _join(self, model: Model, most: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        seen = np.empty((most, TERMS + 2))
+        regions = self.regions._replace(strengths=self.strengths @ model.at_borders)
+        joins, costs, count = join_regions(regions, model.terms, model.constant, seen)
+        return joins, costs, seen[:count]
+
+
+def _cells(prepared: Prepared, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Return the strength of each cue at some cells, and the share of people with a border there."""
+    away = [np.asarray(distance_transform_edt(~border_pixels(each))) for each in prepared.drawn]
+    near = np.mean([each <= NEAR_CELLS for each in away], axis=0).ravel()
+    at = np.flatnonzero((near > 0) | (np.min(away, axis=0) > FAR_CELLS).ravel())
+    at = rng.choice(at, min(PLACES, at.size), replace=False)
+    strengths = [weighted_strength(prepared.cues, one).ravel()[at] for one in _each_alone(prepared.cues)]
+    return np.stack(strengths, axis=1), near[at]
+
+
+def _each_alone(cues: Tensors) -> list[np.ndarray]:
+    """Return weights that take one cue each."""
+    return list(np.eye(len(cues), dtype=np.float32))
+
+
+def _stacked(rows: Sequence[tuple[np.ndarray, ...]]) -> list[np.ndarray]:
+    """Return the first arrays of all rows as one, then the second ones, and on."""
+    return [np.concatenate(each) for each in zip(*rows, strict=True)]
+
+
+def _leaves(joins: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first and last place of each node's smallest regions, in an order in which they are neighbours."""
+    count = len(joins) + 1
+    sizes, first = np.ones(count + len(joins), int), np.zeros(count + len(joins), int)
+    for at, (one, other) in enumerate(joins):
+        sizes[count + at] = sizes[one] + sizes[other]
+    for at in reversed(range(len(joins))):
+        one, other = joins[at]
+        first[one], first[other] = first[count + at], first[count + at] + sizes[one]
+    return first, first + sizes
+
+
+def _nodes(counts: np.ndarray, joins: np.ndarray) -> np.ndarray:
+    """Return the shares of a person's regions in each node."""
+    nodes = np.vstack([counts, np.zeros((len(joins), counts.shape[1]))])
+    for at, (one, other) in enumerate(joins):
+        nodes[len(counts) + at] = nodes[one] + nodes[other]
+    return nodes / nodes.sum(axis=1, keepdims=True)
+
+
+def _logistic(
+    terms: np.ndarray, wanted: np.ndarray, weights: np.ndarray | None = None, positive: int | None = None
+) -> tuple[np.ndarray, float]:
+    """Fit a logistic regression of shares; the first weights, or all of them, are not negative."""
+    middle, spread = terms.mean(axis=0), terms.std(axis=0) + 1e-9
+    scaled = np.c_[(terms - middle) / spread, np.ones(len(terms))]
+    heavy = np.ones(len(terms)) if weights is None else weights
+    heavy = heavy / heavy.sum()
+    ridge = np.r_[np.full(terms.shape[1], RIDGE), 0.0]
+
+    def loss(at: np.ndarray) -> tuple[float, np.ndarray]:
+        logits = scaled @ at
+        off = 1 / (1 + np.exp(-logits)) - wanted
+        value = (heavy * (np.logaddexp(0, logits) - wanted * logits)).sum() + 0.5 * (ridge * at * at).sum()
+        return float(value), scaled.T @ (heavy * off) + ridge * at
+
+    free = 0 if positive is None else terms.shape[1] - positive
+    bounds = [(0, None)] * (terms.shape[1] - free) + [(None, None)] * (free + 1)
+    best = minimize(loss, np.zeros(scaled.shape[1]), jac=True, method="L-BFGS-B", bounds=bounds).x
+    slopes = best[:-1] / spread
+    return slopes, float(best[-1] - (middle * slopes).sum())
+
+
+def main() -> None:
+    """Print the weights fitted to all photographs."""
+    model = fit([prepare(each) for each in photographs().values()])
+    assert len(model.at_borders) == len(border_weights())
+    for name, values in model._asdict().items():
+        print(name, np.array2string(np.asarray(values), precision=3, separator=", ", suppress_small=True))
+
+
+if __name__ == "__main__":
+    main()

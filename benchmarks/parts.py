@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import cache
+from math import ceil
 from statistics import median
 from time import process_time
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import cv2
 import numpy as np
 
+from tangible_authoring.first_parts import SEGMENTS_PER_PART
 from tangible_core import DisparityMap, Views, load_method
 from tangible_core.data import PartMap, Relief, SegmentMap
 from tangible_core.metrics import border_steps
@@ -24,6 +26,7 @@ from tangible_core.parts.large import large_parts
 from tangible_core.scene.geometry import smooth
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.workspace import SUITS, Workspace
+from tangible_texture import Hierarchy
 
 from .figures import Figure, judged, part, table
 from .tests_path import drawn_parts
@@ -43,7 +46,7 @@ def section() -> str:
     head = (
         f"Pictures that come with scikit-image, {1000 * WIDTH_M:.0f} mm wide, {1000 * TALL_M:.0f} mm high. A step is "
         "felt where heights differ by 0.5 mm within 2 mm, after a Gaussian of 0.5 mm. Drawn: by hand, in "
-        "`tests/helpers/drawn_parts.yaml`. Automatic: `gradient`, joined to 12 parts. Layers win partly by "
+        "`tests/helpers/drawn_parts.yaml`. Automatic: as `tangible parts` finds them, at most 12. Layers win partly by "
         "construction: they have steps at the borders of the parts that they are made of. No reader was asked."
     )
     borders, shares = part("borders", _borders)
@@ -160,7 +163,7 @@ def _luminance(name: str) -> np.ndarray:
 def _automatic(name: str) -> PartMap:
     """As `tangible parts` finds them."""
     picture = drawn_parts.drawn(name).picture
-    segments = load_method("texture", "gradient")(segments=2 * MOST_PARTS).segment(picture)
+    segments = Hierarchy(segments=ceil(SEGMENTS_PER_PART * MOST_PARTS)).segment(picture)
     return large_parts(segments, picture, LEAST_WIDTH * max(picture.shape[:2]), MOST_PARTS)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from math import floor
+from math import ceil, floor
 from pathlib import Path
 from time import perf_counter
 
@@ -33,7 +33,7 @@ MOST_PARTS = 12
 """The most parts by default: a person names these in a few minutes, and fingers can tell them apart."""
 SMALLEST_MM = 5.0
 """The diameter of a disc, mm, that each part must hold: a narrower part is felt as an edge rather than as a thing."""
-SEGMENTS_PER_PART = 2
+SEGMENTS_PER_PART = 4 / 3
 """Segments that are requested of a method for each part: segments that are too small go to their neighbours."""
 STEPS_PER_M = 10_000
 """Steps of a height in a metre: a tenth of a millimetre is easy to read, and nobody feels less."""
@@ -138,7 +138,7 @@ def _pipeline(
     if maps := [picture for picture in pictures if picture.suffix.lower() in MAPS]:
         raise ConfigError(f"{maps[0]}: is a map of heights, which are felt as they are; parts are those of a picture")
     template = starter(pictures, file)
-    chosen = f"texture={{use: {in_yaml(method)}}}" if method else f"texture.segments={SEGMENTS_PER_PART * most}"
+    chosen = f"texture={{use: {in_yaml(method)}}}" if method else f"texture.segments={ceil(SEGMENTS_PER_PART * most)}"
     config = parse_config(template.text, file, registry, [chosen, *overrides])
     return Pipeline.from_config(config.with_values(scene=template.scene), registry, cache)
 

@@ -17,8 +17,8 @@ log = logging.getLogger(__name__)
 
 MOST_SEGMENTS = 64
 """The largest number of segments under `auto`, far more than touch can distinguish."""
-LEAST_LEVEL = 0.02
-"""The level under which nobody draws a border: such regions are joined, however many segments are requested."""
+LEAST_LEVEL = 0.12
+"""The level of a border that chance makes: such regions are joined, however many segments are requested."""
 
 
 class Hierarchy(Segmenter, Skippable, Hierarchical):
@@ -39,8 +39,8 @@ class Hierarchy(Segmenter, Skippable, Hierarchical):
     """
 
     segments: Annotated[int, Field(ge=1)] | Literal["auto"] = "auto"
-    """Largest number of segments; `auto`: as many as have borders of at least `level`, at most 64, reported with the
-    level of the weakest border."""
+    """Largest number of segments, fewer where borders have levels under 0.12, as in noise; `auto`: as many as have
+    borders of at least `level`, at most 64, reported with the level of the weakest border."""
     level: Annotated[float, Field(ge=0.02, lt=1)] = 0.5
     """Lowest level of a border under `auto`: the share of people who would draw it. Less gives more and finer segments.
     """

@@ -120,7 +120,13 @@ def test_parts_editor_makes_five_parts_by_mouse(opened: Callable[..., str], open
 
     # a proposal, accepted
     tool(page, "Propose")
-    mouse.draw((130, 80), (150, 90), (165, 100))
+    level = page.get_by_label("Smaller or larger piece")
+    level.fill("95")
+    mouse.draw((150, 90), (151, 90))
+    until(lambda: page.get_by_role("button", name="Accept").is_visible(), "proposed by a click")
+    level.fill("60")
+    until(lambda: level.get_attribute("aria-valuetext") == "up to borders that 60 % of people would draw", "smaller")
+    until(lambda: page.get_by_role("button", name="Accept").is_visible(), "proposed again")
     page.get_by_role("button", name="Accept").click()
     name.fill("ball")
     # an outline, on the picture's edges

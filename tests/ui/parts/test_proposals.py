@@ -8,11 +8,13 @@ import pytest
 from PIL import Image
 
 from drawn_parts import drawn
+from tangible_core.data import SegmentTree
 from tangible_core.errors import ConfigError
+from tangible_texture import Hierarchy
 from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.parts import proposals
 from tangible_ui.worker.parts.outlines import snap
-from tangible_ui.worker.parts.proposals import as_points, propose, runs
+from tangible_ui.worker.parts.proposals import as_points, propose, propose_region, runs
 from tangible_ui.worker.state import WorkerState
 
 SHAPE = (240, 320)
@@ -103,6 +105,51 @@ class TestProposals:
         good = {"head", "collar", "helmet", "suit", "table", "coffee", "floor", "spoon"}
         assert {part for (_, part), share in found.items() if share > 0.75} >= good, found
         assert np.median(list(found.values())) > 0.75
+
+    @pytest.mark.parametrize("points", [STROKE, STROKE[1:2]], ids=["stroke", "click"])
+    def test_region_is_the_object_under_a_stroke_or_click(self, points: np.ndarray) -> None:
+        picture, inside = two_things()
+        box, mask = propose_region(Hierarchy().tree(picture), points, 12, 0.6)
+        assert overlap(place(box, mask), inside) > 0.95
+        assert mask[0].any()  # the box just holds it
+        assert mask[-1].any()
+        assert mask[:, 0].any()
+        assert mask[:, -1].any()
+
+    def test_region_of_a_lower_level_is_a_piece_of_that_of_a_higher_one(self) -> None:
+        picture, inside = two_things()
+        tree = Hierarchy().tree(picture)
+        sizes = [place(*propose_region(tree, STROKE[1:2], 3, level)).sum() for level in (0.05, 0.6, 1.0)]
+        assert sizes[0] < 0.5 * inside.sum()
+        assert sizes[0] < sizes[1] < sizes[2] == picture[..., 0].size
+
+    def test_stroke_over_two_regions_takes_both(self) -> None:
+        labels = np.zeros((20, 30), np.int32)
+        labels[:, 10:20], labels[:, 20:] = 1, 2
+        tree = SegmentTree(labels, np.array([[0, 1], [2, 3]], np.int32), np.float32([0.4, 0.8]))
+        both = np.array([[14.0, 10.0], [25.0, 10.0]])
+        assert propose_region(tree, both, 1, 0.3)[0] == (10, 0, 20, 20)
+        most = np.array([[11.0, 10.0], [21.0, 10.0]])
+        assert propose_region(tree, most, 1, 0.3)[0] == (10, 0, 12, 20), "the stroke itself and one region"
+        assert propose_region(tree, most, 1, 0.3, [12, 5, 18, 9])[0][1] >= 5
+        assert propose_region(tree, most[:1], 1, 0.5)[0] == (0, 0, 20, 20)
+
+    def test_regions_find_objects_in_photographs_by_one_click(self) -> None:
+        """Overlap with parts drawn by hand, of one click in the middle of each, at the best of five levels."""
+        shares = [
+            max(
+                overlap(
+                    place(*propose_region(tree, stroke.mean(axis=0, keepdims=True), width, level), mask.shape), mask
+                )
+                for level in (0.2, 0.4, 0.6, 0.7, 0.8)
+            )
+            for name in ("astronaut", "coffee")
+            for tree in [Hierarchy().tree(drawn(name).picture)]
+            for _, mask in things(name)
+            for stroke, width in [stroke_along(mask)]
+            for middle in [stroke.mean(axis=0, keepdims=True)]
+        ]
+        assert np.mean(shares) > 0.65
 
     @pytest.mark.parametrize(
         ("within", "over_px"), [((100, 80, 215, 160), 0), ((100, 80, 201, 144), 7), ((120, 97, 215, 160), 7)]
@@ -216,11 +263,17 @@ def test_jobs_return_json_data(tmp_path: Path) -> None:
     worker_state = WorkerState(tmp_path, lambda event, **told: None)
     told = {"text": "scene: {photo: a.png}\n", "path": tmp_path / "a.yaml", "sets": []}
     found = JOBS["parts_propose"].do(
-        worker_state, **told, points=STROKE.tolist(), width_px=12, kind="grabcut", within=None
+        worker_state, **told, points=STROKE.tolist(), width_px=12, kind="grabcut", within=None, level=0.5
     )
     x, y, columns, rows = found["box"]
     mask = np.repeat(np.arange(len(found["runs"])) % 2, found["runs"]).reshape(rows, columns)
     assert overlap(place((x, y, columns, rows), mask.astype(bool)), inside) > 0.95
     assert all(type(each) is int for each in [*found["box"], *found["runs"]])
+    click = {"points": [[160, 120]], "width_px": 3, "kind": "regions", "within": None}
+    large, small = (JOBS["parts_propose"].do(worker_state, **told, **click, level=level) for level in (0.6, 0.05))
+    x, y, columns, rows = large["box"]
+    mask = np.repeat(np.arange(len(large["runs"])) % 2, large["runs"]).reshape(rows, columns)
+    assert overlap(place((x, y, columns, rows), mask.astype(bool)), inside) > 0.95
+    assert small["box"][2] * small["box"][3] < columns * rows
     found = JOBS["parts_snap"].do(worker_state, **told, points=[[80, 60], [240, 60], [240, 180]], reach_px=5)
     assert all(type(each) is float for point in found["points"] for each in point)

@@ -59,14 +59,16 @@ async def parts_propose(
     tab: Tab | None,
     points: list[list[float]],
     width_px: float,
-    kind: Literal["grabcut", "watershed"] = "grabcut",
+    kind: Literal["regions", "grabcut", "watershed"] = "grabcut",
     within: list[float] | None = None,
+    level: float = 0.5,
 ) -> dict[str, Any] | None:
     """Propose the part under a stroke, in pixels of the picture; None if a newer stroke came before this began.
 
-    within: first column and row, and those after the last, which bound the proposal. Raises: ConfigError.
+    within: first column and row, and those after the last, which bound the proposal. level: the share of people who
+    would draw its border, for `regions`: less gives a smaller piece. Raises: ConfigError.
     """
-    told = {"points": points, "width_px": width_px, "kind": kind, "within": within}
+    told = {"points": points, "width_px": width_px, "kind": kind, "within": within, "level": level}
     return await session.strokes.run(lambda: session.worker.quick("parts_propose", **session.document(), **told))
 
 

@@ -89,6 +89,8 @@ class WorkerState:
         """The pipeline and the view whose description pages got last."""
         self.opened: Any = None
         """The scene in the parts editor; used by quick jobs alone."""
+        self.tree: Any = None
+        """The picture in the parts editor, and its tree of regions; used by quick jobs alone."""
         self.kept: Any = None
         """Results that do not depend on the heights of parts; used by quick jobs alone."""
         self._cache = cache or Cache()

@@ -30,9 +30,10 @@ from ..parts.opening import (
     leave_files,
     opened_of,
     part_entries,
+    tree_of,
 )
 from ..parts.outlines import snap
-from ..parts.proposals import Kind, as_points, propose, runs
+from ..parts.proposals import Kind, as_points, propose, propose_region, runs
 from ..parts.saving import (
     compact,
     document_with_parts,
@@ -89,13 +90,18 @@ def parts_propose(
     width_px: float,
     kind: Kind,
     within: Sequence[float] | None,
+    level: float,
 ) -> dict[str, Any]:
     """Propose the part under a stroke: its box, and run lengths of pixels outside and inside in turn, row by row.
 
     Raises: ConfigError for a stroke outside of the picture; otherwise as `parts_open`.
     """
-    picture = opened_of(state, edited_of(state, text, path, sets)).picture
-    box, mask = propose(picture, as_points(points, picture.shape), width_px, kind, within)
+    opened = opened_of(state, edited_of(state, text, path, sets))
+    stroke = as_points(points, opened.picture.shape)
+    if kind == "regions":
+        box, mask = propose_region(tree_of(state, opened), stroke, width_px, level, within)
+    else:
+        box, mask = propose(opened.picture, stroke, width_px, kind, within)
     return {"box": list(box), "runs": runs(mask)}
 
 

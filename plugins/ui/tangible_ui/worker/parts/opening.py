@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import UInt8
 
-from tangible_core.data import SegmentMap
+from tangible_core.data import SegmentMap, SegmentTree
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
 from tangible_core.data.views import PartMap, border_pixels
@@ -16,6 +16,7 @@ from tangible_core.parts import HeightChoice, PartChoice, find_parts, part_sizes
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.engine.part_validation import parts_of
 from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.plugins.interfaces import Hierarchical
 from tangible_core.scene.scene import Scene
 
 from ..state import WorkerState
@@ -23,6 +24,8 @@ from ..view.files import leave, write_whole
 from ..view.surface_view import is_there
 
 FOLDER = "parts-"
+TREES = "hierarchy"
+"""The texture method whose regions are proposed, where the document's own makes no tree."""
 KEPT = 3
 """Folders of the editor that are kept: tabs may still fetch from the one before."""
 MOST_LOOKED_AT = 400_000
@@ -53,6 +56,18 @@ def opened_of(state: WorkerState, pipeline: Pipeline) -> Opened:
         before = Opened(pipeline, scene, to_rgb8(_picture(scene)), _parts(pipeline))
     state.opened = before._replace(pipeline=pipeline)
     return before
+
+
+def tree_of(state: WorkerState, opened: Opened) -> SegmentTree:
+    """Return the tree of the picture's regions, by the document's texture method if that makes one; it is kept."""
+    if state.tree is None or state.tree[0] is not opened.picture:
+        chosen = opened.pipeline.config.texture
+        method = chosen.method if chosen else None
+        if not isinstance(method, Hierarchical):
+            method = state.registry.load("texture", TREES)()
+        assert isinstance(method, Hierarchical)
+        state.tree = opened.picture, method.tree(opened.picture)
+    return state.tree[1]
 
 
 def digest(parts: PartMap, config: PipelineConfig) -> str:

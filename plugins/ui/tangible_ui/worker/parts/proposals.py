@@ -6,9 +6,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float64, UInt8
 
+from tangible_core.data import SegmentTree
 from tangible_core.errors import ConfigError
 
-Kind = Literal["grabcut", "watershed"]
+Kind = Literal["regions", "grabcut", "watershed"]
 MOST_POINTS = 2000
 MOST_CELLS = 16_000
 """Maximum number of cells of the reduced window: GrabCut takes a tenth of a second for these."""
@@ -21,6 +22,8 @@ BLOCK = 12
 """Side of the blocks that are refined at the picture's own size, in cells; only those that the border crosses."""
 SMALL_HOLE = 0.01
 """Greatest hole that is filled, as a share of the part's area."""
+LEAST_UNDER = 0.3
+"""Least pixels of a stroke in a region that counts, as a share of those in the region that holds the most."""
 RIM = 2
 OUTSIDE, PART = 2, 1
 
@@ -66,6 +69,30 @@ def propose(
         mask = _refine_border(whole, mask)
     mask |= _draw_stroke(points, width_px, window, (window.columns, window.rows))
     return _crop_to_box(mask, window)
+
+
+def propose_region(
+    tree: SegmentTree,
+    points: Float64[np.ndarray, "n 2"],
+    width_px: float,
+    level: float,
+    within: Sequence[float] | None = None,
+) -> tuple[Window, Bool[np.ndarray, "r c"]]:
+    """Return the regions under the stroke, between borders of at least a level, as `propose`: a lower level gives less.
+
+    A region counts if it holds at least LEAST_UNDER as many pixels of the stroke as the one that holds the most.
+    """
+    labels = tree.cut(len(tree.joins) + 1, level).labels
+    whole = Window(0, 0, labels.shape[1], labels.shape[0])
+    stroke = _draw_stroke(points, float(np.clip(width_px, 1, max(labels.shape))), whole, labels.shape[::-1])
+    under = np.bincount(labels[stroke], minlength=int(labels.max()) + 1)
+    mask = (under >= max(1.0, LEAST_UNDER * under.max()))[labels]
+    if within is not None:
+        x0, y0, x1, y1 = np.clip(within, 0, [*labels.shape[::-1], *labels.shape[::-1]]).astype(int).tolist()
+        inside = np.zeros(labels.shape, np.bool_)
+        inside[y0:y1, x0:x1] = True
+        mask &= inside
+    return _crop_to_box(_keep_connected(mask, stroke) | stroke, whole)
 
 
 def as_points(points: Sequence[Sequence[float]], shape: tuple[int, ...]) -> Float64[np.ndarray, "n 2"]:

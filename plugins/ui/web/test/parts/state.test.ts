@@ -151,6 +151,31 @@ describe("editor state", () => {
     assert.deepEqual(draw(), ["bbaa", "bbbb"]);
   });
 
+  test("a proposed region is made larger and smaller by the keys of the brush", async () => {
+    const levels: number[] = [];
+    const propose: ToolRequests["propose"] = async (_, __, { level }) => {
+      levels.push(level);
+      return { box: [0, 0, level > 0.65 ? 3 : 2, 1], runs: [0, level > 0.65 ? 3 : 2] };
+    };
+    const { state, said, draw } = editor(["aaaa", "bbbb"], { ...NONE, propose });
+    const { width } = state.tools;
+    state.select(1);
+    state.use("propose");
+    await strokeOf(state, [0.5, 0.5]);
+    for (const by of [1, 1, 1, 1, 1, -1] as const) {
+      state.resizeBrush(by);
+      await new Promise(setImmediate);
+    }
+    assert.deepEqual(levels, [0.6, 0.7, 0.8, 0.9, 0.95, 0.95, 0.85]);
+    assert.equal(state.tools.width, width);
+    assert.equal(helpOf(state).startsWith(said.at(-1)!), true);
+    state.finish();
+    assert.deepEqual(draw(), ["bbba", "bbbb"]);
+    state.resizeBrush(1);
+    assert.equal(levels.length, 7, "the brush again");
+    assert.ok(state.tools.width > width);
+  });
+
   test("a request that fails is shown", async () => {
     const { state } = editor(["aaaa", "bbbb"], { ...NONE, propose: () => Promise.reject(new Error("no memory")) });
     state.use("propose");

@@ -5,7 +5,7 @@ import { caps } from "../../help/key_caps";
 import { KINDS } from "../editor/requests";
 import { TOOL_KEYS } from "../editor/keys";
 import type { EditorState } from "../editor/state";
-import { type Tool, TOOLS } from "./tools";
+import { LEVELS, percent, type Tool, TOOLS } from "./tools";
 import { input, select } from "./part_list";
 
 /** Changes of what the board shows. */
@@ -14,22 +14,25 @@ export interface Zoom {
   fit(): void;
 }
 
+type FieldName = "width" | "snap" | "method" | "level";
+
 /** The fields of each tool; a proposal is corrected with brush and lasso. */
-const FIELDS: Record<Tool, readonly ("width" | "snap" | "method")[]> = {
-  select: [], brush: ["width"], lasso: ["snap"], propose: ["width", "method"], split: [], join: [],
+const FIELDS: Record<Tool, readonly FieldName[]> = {
+  select: [], brush: ["width"], lasso: ["snap"], propose: ["width", "method", "level"], split: [], join: [],
 };
 
 export class Toolbar {
   readonly tools = group(t("tools"));
   readonly options = document.createElement("div");
   readonly width = input("parts-width", "range");
+  readonly level = input("parts-level", "range");
   private uses = new Map<Tool, HTMLButtonElement>();
   private newPart: HTMLButtonElement;
   private back: HTMLButtonElement;
   private again: HTMLButtonElement;
   private proposal: HTMLElement[];
   private erases: HTMLButtonElement;
-  private fields: Record<"width" | "snap" | "method", HTMLElement>;
+  private fields: Record<FieldName, HTMLElement>;
 
   constructor(
     private state: EditorState,
@@ -44,7 +47,7 @@ export class Toolbar {
       ...this.uses.values(), gap(), this.newPart, gap(), this.back, this.again, gap(),
       keyButton(t("zoomIn"), "+", () => zoom.zoomBy(1.5)), keyButton(t("zoomOut"), "-", () => zoom.zoomBy(1 / 1.5)), keyButton(t("fit"), "0", () => zoom.fit()),
     );
-    this.fields = { width: this.widthField(), snap: this.snapField(), method: this.methodField() };
+    this.fields = { width: this.widthField(), snap: this.snapField(), method: this.methodField(), level: this.levelField() };
     this.erases = button(t("takeAway"), () => {
       tools.erases = !tools.erases;
       this.show();
@@ -64,12 +67,17 @@ export class Toolbar {
     this.back.disabled = !drawing.history.canUndo;
     this.again.disabled = !drawing.history.canRedo;
     for (const [name, each] of Object.entries(this.fields)) each.hidden = !(FIELDS[tools.tool] as readonly string[]).includes(name);
+    this.fields.level.hidden ||= tools.how.kind !== "regions";
     for (const each of this.proposal) each.hidden = !drawing.proposed;
     this.erases.hidden ||= tools.tool !== "brush" && tools.tool !== "lasso";
     this.options.hidden = [...this.options.children].every((each) => (each as HTMLElement).hidden);
     if (Math.abs(this.shownWidth - tools.width) >= 1) this.width.value = String(Math.log2(tools.width));
     this.width.setAttribute("aria-valuetext", t("pixels", { count: Math.round(tools.width) }));
     this.width.nextElementSibling!.textContent = this.width.getAttribute("aria-valuetext");
+    const share = percent(tools.how.level);
+    this.level.value = String(share);
+    this.level.setAttribute("aria-valuetext", t("pieceLevel", { share }));
+    this.level.nextElementSibling!.textContent = t("percent", { share });
   }
 
   private get shownWidth(): number {
@@ -101,8 +109,24 @@ export class Toolbar {
   private methodField(): HTMLElement {
     const choice = select("parts-method");
     for (const kind of KINDS) choice.add(new Option(t(kind), kind));
-    choice.addEventListener("change", () => (this.state.tools.kind = choice.value));
+    choice.addEventListener("change", () => {
+      void this.state.tools.change({ kind: choice.value });
+      this.show();
+    });
     return field(t("method"), choice);
+  }
+
+  /** Return the field of the size of a proposed region: by how many people would draw its border. */
+  private levelField(): HTMLElement {
+    const [min, max] = LEVELS;
+    Object.assign(this.level, { min: String(min), max: String(max), step: "5" });
+    this.level.addEventListener("input", () => {
+      void this.state.tools.change({ level: this.level.valueAsNumber / 100 });
+      this.show();
+    });
+    const box = field(t("piece"), this.level);
+    box.append(document.createElement("output"));
+    return box;
   }
 }
 

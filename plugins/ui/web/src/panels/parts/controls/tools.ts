@@ -16,10 +16,20 @@ const NEAR_PX = 2;
 /** Reach of snapping, and extension of a splitting line, CSS pixels. */
 const REACH_PX = 10;
 
+/** The lowest and the highest level of a region's border, in per cent. */
+export const LEVELS = [5, 95] as const;
+
+/** How a part is proposed. */
+export interface HowToPropose {
+  kind: string;
+  /** The share of people, 0 to 1, who would draw the border of a region: less gives a smaller piece. */
+  level: number;
+}
+
 /** Requests of the tools to the server. */
 export interface ToolRequests {
   /** Return the part that a stroke of this width lies on; null if a newer stroke replaced the request. */
-  propose(stroke: readonly Point[], width_px: number, kind: string): Promise<Proposal | null>;
+  propose(stroke: readonly Point[], width_px: number, how: HowToPropose): Promise<Proposal | null>;
   /** Move an outline to edges of the picture within this distance. */
   snap(outline: readonly Point[], reach_px: number): Promise<Point[]>;
 }
@@ -32,11 +42,13 @@ export class Tools {
   newPart = false;
   erases = false;
   snaps = true;
-  kind = "grabcut";
+  how: HowToPropose = { kind: "regions", level: 0.6 };
   down = false;
   /** True while a request is under way. */
   busy = false;
   line: Point[] = [];
+  /** The stroke of the last proposal. */
+  private proposedBy: readonly Point[] = [];
   /** Return how many pixels of the picture a CSS pixel covers. */
   scale: () => number = () => 1;
   /** Called with the reason if something did not work. */
@@ -96,6 +108,28 @@ export class Tools {
     this.attempt(() => this.finish(this.drawing.accept(this.target)));
   }
 
+  /** Propose again, from the same stroke, in another way. */
+  async change(how: Partial<HowToPropose>): Promise<void> {
+    Object.assign(this.how, how);
+    if (!this.drawing.proposed || !this.proposedBy.length) return;
+    try {
+      await this.propose(this.proposedBy);
+    } catch (error) {
+      this.onFailure(error as Error);
+    }
+  }
+
+  /** True if the proposal is a region of the picture, of which there is a larger or smaller one. */
+  get proposesRegion(): boolean {
+    return this.tool === "propose" && this.how.kind === "regions" && this.drawing.proposed !== null && this.proposedBy.length > 0;
+  }
+
+  /** Propose a larger region (1) or a smaller one (-1). */
+  resizeRegion(by: 1 | -1): Promise<void> {
+    const [least, most] = LEVELS;
+    return this.change({ level: Math.max(least, Math.min(most, percent(this.how.level) + 10 * by)) / 100 });
+  }
+
   private get target(): number | null {
     return this.newPart ? null : this.drawing.selected;
   }
@@ -127,8 +161,9 @@ export class Tools {
     this.finish(this.drawing.end());
   }
 
-  private async propose(line: Point[]): Promise<void> {
-    const proposal = await this.wait(this.requests.propose(line, this.width, this.kind));
+  private async propose(line: readonly Point[]): Promise<void> {
+    this.proposedBy = line;
+    const proposal = await this.wait(this.requests.propose(line, this.width, this.how));
     if (proposal) this.drawing.propose(proposal); // null if a newer stroke replaced the request
   }
 
@@ -170,6 +205,8 @@ export class Tools {
     }
   }
 }
+
+export const percent = (level: number): number => Math.round(100 * level);
 
 /** Return a line extended at both ends, as rims are hard to hit exactly. */
 function extendLine(line: Point[], by: number): Point[] {

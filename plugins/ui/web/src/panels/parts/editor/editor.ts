@@ -40,7 +40,7 @@ class Editor {
   ) {
     const { net } = page;
     this.state = new EditorState(scene, {
-      propose: (stroke, width_px, kind) => proposePart(net, stroke, width_px, kind),
+      propose: (stroke, width_px, how) => proposePart(net, stroke, width_px, how),
       snap: (outline, reach_px) => snapOutline(net, outline, reach_px),
     });
     this.view = new EditorView(this.state, scene.picture, materials, { save: () => this.saving.save(), close: () => this.close() });

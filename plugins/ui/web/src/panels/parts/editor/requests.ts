@@ -2,12 +2,13 @@
 import type { Server } from "../../../page";
 import { bulk } from "../../../server/connection";
 import { token } from "../../../server/token";
+import type { HowToPropose } from "../controls/tools";
 import type { Part } from "../drawing/drawing";
 import type { Heights } from "../drawing/picture_details";
 import type { Labels, Point } from "../pixels/labels";
 import type { Proposal } from "../pixels/mask";
 
-export const KINDS = ["grabcut", "watershed"] as const;
+export const KINDS = ["regions", "grabcut", "watershed"] as const;
 
 interface Answer {
   columns: number;
@@ -49,8 +50,8 @@ export async function openParts(net: Server): Promise<Opened> {
   return { digest, heights, top_m, title, language, picture, parts, labels: { columns, rows, data: new Uint16Array(labels) } };
 }
 
-export const proposePart = (net: Server, points: readonly Point[], width_px: number, kind: string): Promise<Proposal | null> =>
-  net.ask("parts_propose", { points: whole(points), width_px: Math.max(1, Math.round(width_px)), kind, within: null });
+export const proposePart = (net: Server, points: readonly Point[], width_px: number, how: HowToPropose): Promise<Proposal | null> =>
+  net.ask("parts_propose", { points: whole(points), width_px: Math.max(1, Math.round(width_px)), within: null, ...how });
 
 export async function snapOutline(net: Server, points: readonly Point[], reach_px: number): Promise<Point[]> {
   const answer = await net.ask<{ points: Point[] }>("parts_snap", { points: whole(points), reach_px: Math.max(1, Math.round(reach_px)) });

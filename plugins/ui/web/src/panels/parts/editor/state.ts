@@ -167,8 +167,12 @@ export class EditorState {
     this.events.tell("tool", "newPart");
   }
 
-  /** Make the brush wider (1) or narrower (-1). */
+  /** Make the brush wider (1) or narrower (-1), or a region that is proposed larger or smaller. */
   resizeBrush(by: 1 | -1): void {
+    if (this.tools.proposesRegion) {
+      void this.tools.resizeRegion(by).then(() => this.events.tell("pen", "proposed"));
+      return this.lifted();
+    }
     const { width } = this.tools;
     const { columns, rows } = this.drawing.labels;
     const wanted = by > 0 ? Math.max(width + 1, width * WIDTH_FACTOR) : Math.min(width - 1, width / WIDTH_FACTOR);

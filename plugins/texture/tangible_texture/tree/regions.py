@@ -28,8 +28,6 @@ class Regions(NamedTuple):
     labels: Int32[np.ndarray, "h w"]
     areas: Float64[np.ndarray, "n"]
     """The cells of each region."""
-    lengths: Float64[np.ndarray, "n"]
-    """The sides of cells along each region's outline, those at the rim of the picture among them."""
     colours: Float64[np.ndarray, "n 3"]
     """Sums over cells."""
     roughness: Float64[np.ndarray, "n bins"]
@@ -82,12 +80,9 @@ def measure_regions(
     keys, which, pairs = np.unique(
         np.minimum(one, other) * count + np.maximum(one, other), return_inverse=True, return_counts=True
     )
-    rim = np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]])
-    outline = np.bincount(np.concatenate([one, other, rim]), minlength=count)
     return Regions(
         labels,
         np.bincount(flat, minlength=count).astype(np.float64),
-        outline.astype(np.float64),
         _sums(flat, colours, count),
         _sums(flat, roughness, count),
         np.stack(np.divmod(keys, count), axis=1),

@@ -1,10 +1,8 @@
 """Texture: every promise with its bound, and what stands behind the figures.
 
-TANGIBLE_TEXTURES names a folder with pictures of one texture each, eight or more, that no method was tuned on; without
-it, mosaics of the builtin textures stand in for them. The extra `torch` is needed.
+TANGIBLE_TEXTURES names folders with pictures of one texture each; the first has eight or more that no method was tuned
+on. Without it, mosaics of the builtin textures stand in for them. The extra `torch` is needed.
 """
-
-import os
 
 from . import (
     texture_accuracy,
@@ -18,6 +16,7 @@ from . import (
     texture_opencv,
     texture_scenes,
     texture_skips,
+    texture_unseen,
 )
 from .figures import judged, part
 
@@ -32,6 +31,7 @@ PROTOCOL = (
 def section() -> str:
     """Return the section of RESULTS.md, as Markdown."""
     figures = part("mosaics", texture_accuracy.figures)
+    figures += part("mosaics of two halves", texture_unseen.figures)
     figures += part("colour", texture_colour.figures)
     figures += part("features", texture_features.figures)
     figures += part("smooth scenes", texture_gradient.figures)
@@ -51,6 +51,10 @@ def section() -> str:
             "",
             *texture_accuracy.mosaic_rows(),
             "",
+            "By kind of region, mosaics of two halves of the textures, of 2 to 16 segments.",
+            "",
+            *texture_unseen.kind_rows(),
+            "",
             "By material: one point of a stroke, and where the spectrum of its heights (or of the force) peaks.",
             "",
             *materials,
@@ -69,10 +73,9 @@ def section() -> str:
 
 
 def _conditions() -> list[str]:
-    folder = os.environ.get(texture_scenes.FOLDER)
     given = (
         "Held out: mosaics of photographs of textures; the others are of brick, grass, gravel, and textures in code."
-        if folder
+        if texture_scenes.folders()
         else f"{texture_scenes.FOLDER} was not set: the builtin textures stand in for those held out."
     )
     return [

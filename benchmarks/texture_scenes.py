@@ -8,7 +8,10 @@ from tangible_bench.tasks.texture_scenes import TextureScene
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments, smooth_scene
 
 FOLDER = "TANGIBLE_TEXTURES"
-"""Environment variable: a folder with pictures of one texture each, eight or more, that no method was tuned on."""
+"""Environment variable: folders with pictures of one texture each, with os.pathsep between them.
+
+The first has eight or more that no method was tuned on.
+"""
 SEGMENTS = (2, 3, 4, 5, 6, 8)
 SEEDS = (1, 3, 5, 7, 9)
 """Odd ones: methods are tuned on even ones."""
@@ -19,9 +22,14 @@ MANY, MANY_NOISE, MANY_SEEDS = 30, 10.0, range(3001, 3017, 2)
 
 @cache
 def held_out() -> dict[str, KnownSegments]:
-    """Mosaics of the pictures in the folder that FOLDER names; the builtin ones where it names none."""
-    folder = os.environ.get(FOLDER)
-    return _mosaics(Path(folder)) if folder else builtin()
+    """Mosaics of the pictures in the first folder that FOLDER names; the builtin ones where it names none."""
+    given = folders()
+    return _mosaics(given[0]) if given else builtin()
+
+
+def folders() -> list[Path]:
+    """Return the folders that FOLDER names."""
+    return [Path(each) for each in os.environ.get(FOLDER, "").split(os.pathsep) if each]
 
 
 @cache

@@ -17,15 +17,16 @@ class Gabor(Segmenter, Skippable):
 
     The features are local energies in a bank of Gabor filters and frequencies of local binary patterns, in cells of
     4 x 4 pixels. Cells are first divided into many clusters, which are then joined pair by pair: the pair with the
-    smallest difference in features goes first, weighed by size. In the last joinings the discriminating features are
-    computed again at each step, and neighbouring cells are drawn to the same class. The result is deterministic and
-    does not depend on the picture's origin. Labels are in the order of their first pixels, row by row. Confidence is
-    1 - q / p, where p and q are the memberships of a pixel's class and of the second best class: 0 on borders.
+    smallest difference in features goes first, weighed by size, more so of eight segments or more. In the last joinings
+    the discriminating features are computed again at each step, and neighbouring cells are drawn to the same class. The
+    result is deterministic and does not depend on the picture's origin. Labels are in the order of their first pixels,
+    row by row. Confidence is 1 - q / p, where p and q are the memberships of a pixel's class and of the second best
+    class: 0 on borders.
     Sources: Jain & Farrokhnia, Pattern Recognition 24, 1991 (the energies); Ojala et al., IEEE TPAMI 24, 2002
     (patterns); Su & Dy, ICTAI 2004 (division); Ward, J. Am. Stat. Ass. 58, 1963 (joining).
     """
 
-    version: ClassVar[int] = 3
+    version: ClassVar[int] = 4
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Largest number of textures; `auto`: an estimate, at most 8, reported with its reason and reliability."""

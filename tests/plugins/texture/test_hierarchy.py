@@ -57,6 +57,10 @@ class TestHierarchy:
         grey = 128 + np.random.default_rng(0).normal(0, noise, (120, 160))
         assert Hierarchy().segment(np.clip(grey, 0, 255).astype(np.uint8)).count == 1
 
+    def test_noise_is_not_divided_on_request(self):
+        grey = 128 + np.random.default_rng(0).normal(0, 20, (120, 160))
+        assert Hierarchy(segments=6).segment(np.clip(grey, 0, 255).astype(np.uint8)).count == 1
+
     def test_shading_is_one_segment(self):
         assert Hierarchy().segment(np.linspace(0, 255, 300)[None].repeat(200, axis=0).astype(np.uint8)).count == 1
 
@@ -94,7 +98,19 @@ class TestHierarchy:
         assert [int(each.max()) + 1 for each in cuts] == list(range(1, 30))
         for coarse, fine in pairwise(cuts):
             assert np.unique(np.stack([fine.ravel(), coarse.ravel()]), axis=1).shape[1] == fine.max() + 1
-        assert np.all(np.diff(tree.levels) >= 0)
+
+    def test_levels_of_a_tree_rise(self):
+        levels = Hierarchy().tree(things(0, noise=40)[0]).levels
+        assert np.all(np.diff(levels) >= 0)
+        assert np.any(np.diff(levels) == 0), "some joining cost less than the one before"
+
+    def test_weak_border_is_kept_at_a_low_level_alone(self):
+        """People do not agree about a faint shadow."""
+        picture = np.full((90, 120, 3), (120, 110, 100), np.uint8)
+        picture[:, 60:] = 150, 140, 130
+        picture[:20, :20] = 250, 20, 20
+        counts = [Hierarchy(level=level).segment(picture).count for level in (0.13, 0.5)]
+        assert counts == [3, 2]
 
     def test_level_is_the_confidence_of_segments(self):
         picture, truth = things(0)
@@ -112,10 +128,12 @@ class TestHierarchy:
         ]
 
     def test_estimate_is_limited(self):
-        checks = np.kron(
-            np.random.default_rng(0).permutation(np.arange(144)).reshape(12, 12) % 7, np.ones((16, 16), int)
-        )
-        assert 40 < Hierarchy(level=0.02).segment(COLOURS[checks].astype(np.uint8)).count <= MOST_SEGMENTS
+        """A hundred squares of other colours."""
+        numbers = np.kron(np.arange(100).reshape(10, 10) * 37 % 100, np.ones((20, 20), int))
+        colours = np.random.default_rng(0).permutation(np.indices((5, 5, 4)).reshape(3, -1).T * [60, 60, 80])
+        picture = colours[numbers].astype(np.uint8)
+        assert Hierarchy(segments=200).segment(picture).count > MOST_SEGMENTS
+        assert Hierarchy(level=0.02).segment(picture).count == MOST_SEGMENTS == 64
 
     def test_large_request_does_not_divide_what_nobody_would(self):
         picture = np.full((80, 120, 3), (200, 60, 50), np.uint8)

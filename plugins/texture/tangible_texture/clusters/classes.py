@@ -54,7 +54,7 @@ def classes(
     """
     from .discriminants import principal_axes
     from .dividing import divide
-    from .joining import axes_between, join_clusters
+    from .joining import FEW_POWER, MANY, MANY_POWER, axes_between, join_clusters
     from .neighbourhood import refit_labels
     from .planes import combine_planes
 
@@ -62,7 +62,8 @@ def classes(
     most = MOST_GUESSED if segments == "auto" else segments
     rotated = combine_planes(principal_axes(features.wide.planes, PRINCIPAL_AXES, HALF_WHITE), features.wide.planes)
     labels = _resample_labels(divide(rotated, spent.each * most + spent.besides), features.wide.shape, shape)
-    steps = join_clusters(planes, labels, shape, most + spent.last)
+    power = MANY_POWER if segments != "auto" and segments >= MANY else FEW_POWER
+    steps = join_clusters(planes, labels, shape, most + spent.last, power)
     labels = (
         _clearest_division(steps)
         if segments == "auto"

@@ -18,8 +18,11 @@ from .planes import combine_planes, inner_products, scatter_matrix_in_kernel
 
 AXES = 20
 """The largest number of discriminants."""
-SIZE_POWER = 0.4
-"""The exponent of the sizes of two clusters in the cost of joining them; 1 in Ward's method."""
+FEW_POWER, MANY_POWER, MANY = 0.4, 0.8, 8
+"""The exponent of the sizes of two clusters in the cost of joining them, and that for MANY segments or more.
+
+It is 1 in Ward's method. Few regions may differ in size; of many, few are much larger than the others.
+"""
 RIDGE = 0.05
 """The ridge added to each pair's scatter, as a share of the mean variance within clusters."""
 
@@ -34,12 +37,17 @@ class Step(NamedTuple):
 
 
 def join_clusters(
-    planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int], renewed: int
+    planes: Float32[np.ndarray, "d n"],
+    labels: Int32[np.ndarray, "n"],
+    shape: tuple[int, int],
+    renewed: int,
+    power: float = FEW_POWER,
 ) -> Iterator[Step]:
     """Yield divisions into ever fewer clusters, down to one: one less at least in each, one at once if none differ.
 
     renewed: from this number of clusters down, discriminants are recomputed before each joining, and cells settle with
-    their neighbours after it. Before that, the discriminants of the first division are used.
+    their neighbours after it. Before that, the discriminants of the first division are used. power: the exponent of
+    sizes.
     """
     projected = combine_planes(axes_between(planes, labels, shape), planes)
     labels = refit_labels(projected, labels, shape, 2, 1) if len(projected) else labels
@@ -48,7 +56,7 @@ def join_clusters(
             projected = combine_planes(axes_between(planes, labels, shape), planes)
         if not len(projected):
             break
-        costs = joining_costs(projected, labels, shape)
+        costs = joining_costs(projected, labels, shape, power)
         other, one = np.unravel_index(costs.argmin(), costs.shape)
         yield Step(labels, count, float(costs[other, one]))
         names = np.arange(count, dtype=np.int32)
@@ -68,9 +76,12 @@ def axes_between(
 
 
 def joining_costs(
-    planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int]
+    planes: Float32[np.ndarray, "d n"],
+    labels: Int32[np.ndarray, "n"],
+    shape: tuple[int, int],
+    power: float = FEW_POWER,
 ) -> Float64[np.ndarray, "k k"]:
-    """Compute D (m k / n)^SIZE_POWER for each pair once, the higher label first; infinite elsewhere.
+    """Compute D (m k / n)^power for each pair once, the higher label first; infinite elsewhere.
 
     D is the squared Mahalanobis distance of the two means in the mean of the two scatters; m = a b / (a + b) combines
     their sizes, of k clusters and n cells.
@@ -83,14 +94,14 @@ def joining_costs(
     means, scatter = _moments(np.ascontiguousarray(planes[:, order]), weights[order], np.cumsum(sizes) - sizes, sizes)
     ridge = RIDGE * np.einsum("k,kii->", sizes, scatter) / sizes.sum() / len(planes) + 1e-9
     joined = sizes[:, None] * sizes / (sizes[:, None] + sizes) * count / labels.size
-    costs = _distances(means, scatter, ridge) * _powers(joined)
+    costs = _distances(means, scatter, ridge) * _powers(joined, power)
     costs[np.triu_indices(count)] = np.inf
     return costs
 
 
-def _powers(sizes: Float64[np.ndarray, "k k"]) -> Float64[np.ndarray, "k k"]:
+def _powers(sizes: Float64[np.ndarray, "k k"], power: float) -> Float64[np.ndarray, "k k"]:
     """Raise one value after another: NumPy's powers of an array have other last bits where AVX-512 is."""
-    return np.array([[size**SIZE_POWER for size in row] for row in sizes.tolist()])
+    return np.array([[size**power for size in row] for row in sizes.tolist()])
 
 
 @njit(cache=True, nogil=True)

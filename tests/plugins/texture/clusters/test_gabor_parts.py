@@ -1,12 +1,14 @@
 """The steps of the Gabor segmenter against plain formulas."""
 
+from typing import Literal
+
 import numpy as np
 import pytest
 
 from tangible_core.compiled.small_matrices import eigen, solve
 from tangible_core.plugins.notes import collected
 from tangible_texture.clusters import planes as matrices
-from tangible_texture.clusters.classes import _clearest_division, _resample_labels
+from tangible_texture.clusters.classes import _clearest_division, _resample_labels, classes
 from tangible_texture.clusters.discriminants import discriminant_axes, evidence, principal_axes, scatters
 from tangible_texture.clusters.dividing import divide, one_hot
 from tangible_texture.clusters.full_size import pixel_labels
@@ -18,6 +20,7 @@ from tangible_texture.clusters.planes import (
     scatter_matrix,
     scatter_matrix_in_kernel,
 )
+from tangible_texture.features.features import Features, Window
 from tangible_texture.features.patterns import COUNTERS, RADII, pattern_frequencies
 from tangible_texture.signal.smoothing import gaussian
 
@@ -140,8 +143,9 @@ def test_clusters_without_differences_are_joined_into_one():
     assert not steps[0].labels.any()
 
 
-def test_joining_costs_match_their_formula(random: np.random.Generator):
-    """The formula is D (m k / n)^0.4, D the squared Mahalanobis distance, in scatters with a ridge of a twentieth."""
+@pytest.mark.parametrize(("given", "power"), [({}, 0.4), ({"power": 0.8}, 0.8)])
+def test_joining_costs_match_their_formula(random: np.random.Generator, given: dict[str, float], power: float):
+    """The formula is D (m k / n)^power, D the squared Mahalanobis distance, in scatters with a ridge of a twentieth."""
     shape, count = (12, 30), 4
     labels = random.integers(0, 3, shape).astype(np.int32)
     labels[:, 20:] = 3
@@ -154,14 +158,14 @@ def test_joining_costs_match_their_formula(random: np.random.Generator):
     means = [np.average(part, axis=1, weights=heavy) for part, heavy in parts]
     scatter_of = [np.cov(part, aweights=heavy, ddof=0) for part, heavy in parts]
     ridge = 0.05 * sum(size * np.trace(each) for size, each in zip(sizes, scatter_of, strict=True)) / sizes.sum() / 5
-    costs = joining_costs(planes, labels.ravel(), shape)
+    costs = joining_costs(planes, labels.ravel(), shape, **given)
     assert np.isinf(costs[np.triu_indices(count)]).all()
     for one in range(count):
         for other in range(one):
             step = means[one] - means[other]
             within = (scatter_of[one] + scatter_of[other]) / 2 + ridge * np.eye(5)
             size = sizes[one] * sizes[other] / (sizes[one] + sizes[other]) * count / sizes.sum()
-            expected = step @ np.linalg.solve(within, step) * size**0.4
+            expected = step @ np.linalg.solve(within, step) * size**power
             assert costs[one, other] == pytest.approx(expected, rel=1e-3)
 
 
@@ -345,3 +349,17 @@ def test_pixel_half_way_between_two_classes_is_of_the_first():
     labels, confidence = pixel_labels(alike, 3, (2, 6))
     assert not labels.any()
     assert not confidence.any()
+
+
+@pytest.mark.parametrize(("segments", "power"), [(7, 0.4), (8, 0.8), (16, 0.8), ("auto", 0.4)])
+def test_sizes_count_more_of_eight_segments_and_more(
+    monkeypatch: pytest.MonkeyPatch, random: np.random.Generator, segments: Literal["auto"] | int, power: float
+):
+    used: list[float] = []
+    monkeypatch.setattr(
+        "tangible_texture.clusters.joining._powers", lambda sizes, power: used.append(power) or np.ones_like(sizes)
+    )
+    planes = random.standard_normal((6, 400)).astype(np.float32) + (np.arange(400) // 25 % 20).astype(np.float32)
+    window = Window(planes.astype(np.float32), (20, 20))
+    classes(Features(window, window, window), segments, "fast")
+    assert set(used) == {power}

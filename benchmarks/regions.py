@@ -6,7 +6,7 @@ TANGIBLE_REGIONS names a folder of photographs, *.jpg, each with the regions tha
 import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from statistics import fmean, median
+from statistics import fmean
 from time import process_time
 
 import cv2
@@ -20,6 +20,7 @@ from tangible_texture import Gradient, Hierarchy
 from .figures import Figure, judged, mean_and_error, part, table
 from .regions_drawn import Photograph, photographs
 from .regions_fit import fit, prepare, tree
+from .turns import in_turns
 
 FOLDS = 4
 COUNTS = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 32, 40, 50, 64, 80, 100)
@@ -151,14 +152,8 @@ def _times(given: Mapping[str, Photograph]) -> list[Figure]:
 
 
 def _milliseconds(work: Callable[[], object], runs: int = RUNS) -> float:
-    taken: list[float] = []
     with limited_threads(1):
-        work()
-        for _ in range(runs):
-            start = process_time()
-            work()
-            taken.append(1000 * (process_time() - start))
-    return median(taken)
+        return 1000 * in_turns({"": work}, runs, process_time)[""].seconds
 
 
 def _memory_mib() -> int:

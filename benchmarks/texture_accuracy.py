@@ -122,7 +122,7 @@ def _fast() -> Figure:
 
 
 def _counted() -> Figure:
-    guesses = np.array([(*_guess(scene.picture), scene.count) for scene in published().values()])
+    guesses = np.array([(*guess(scene.picture), scene.count) for scene in published().values()])
     off = np.abs(guesses[:, 0] - guesses[:, 2])
     about = (guesses[:, 1] >= 0.7) & (guesses[:, 1] < 0.9)
     exact, near = np.mean(off == 0), np.mean(off <= 1)
@@ -140,8 +140,8 @@ def _counted() -> Figure:
     )
 
 
-def _guess(picture: np.ndarray) -> tuple[int, float]:
-    """How many segments are found, and what the guess is worth; 1 where nothing was guessed."""
+def guess(picture: np.ndarray) -> tuple[int, float]:
+    """Return the number of segments found, and the confidence of that; 1 where nothing was guessed."""
     with collected() as notes:
         count = load_method("texture", "gabor")().segment(picture).count
     worth = [float(found[1]) for each in notes if (found := re.search(r"estimated with confidence ([\d.]+):", each))]

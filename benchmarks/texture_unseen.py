@@ -1,6 +1,5 @@
 """`gabor` on mosaics of six kinds of region, told the number of segments or not: 80 of each half of the textures."""
 
-import re
 from collections.abc import Callable, Mapping
 from functools import cache
 from itertools import pairwise
@@ -10,12 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tangible_core.metrics import segment_errors
-from tangible_core.plugins.notes import collected
-from tangible_core.plugins.registry import load_method
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 
 from .figures import Figure, mean_and_error, table
-from .texture_accuracy import found
+from .texture_accuracy import found, guess
 from .texture_kinds import KINDS, reported_half, tuning_half
 from .texture_opencv import segmented
 
@@ -116,7 +113,7 @@ def _fast() -> Figure:
 
 
 def _counted() -> Figure:
-    guesses = np.array([(*_guess(scene.picture), scene.count) for scene in reported_half().values()])
+    guesses = np.array([(*guess(scene.picture), scene.count) for scene in reported_half().values()])
     off, worth = np.abs(guesses[:, 0] - guesses[:, 2]), guesses[:, 1]
     groups = [(worth >= low) & (worth < high) for low, high in pairwise(WORTHS)]
     rates = [(int(each.sum()), worth[each].mean(), (off[each] == 0).mean()) for each in groups if each.any()]
@@ -128,14 +125,6 @@ def _counted() -> Figure:
         + "; ".join(f"of {count} worth {said:.2f}, {right:.2f} are right" for count, said, right in rates),
         bool(exact >= 0.6 and near >= 0.85) and all(abs(said - right) <= 0.1 for _, said, right in rates),
     )
-
-
-def _guess(picture: np.ndarray) -> tuple[int, float]:
-    """Return the number of segments found, and the confidence of that; 1 where nothing was guessed."""
-    with collected() as notes:
-        count = load_method("texture", "gabor")().segment(picture).count
-    worth = [float(each[1]) for note in notes if (each := re.search(r"estimated with confidence ([\d.]+):", note))]
-    return count, worth[0] if worth else 1.0
 
 
 def kind_rows() -> list[str]:

@@ -48,8 +48,7 @@ def adjusted_rand_index(counts: Counts) -> float:
     maps of a single segment are equal, and so are two in which every pixel is one.
     Source: Hubert & Arabie, Comparing partitions, Journal of Classification 2 (1985), eq. 5.
     """
-    both, first, second = (_pairs(part) for part in (counts, counts.sum(axis=1), counts.sum(axis=0)))
-    (every,) = (_pairs(np.asarray([counts.sum()])),)
+    both, first, second, every = _pair_counts(counts)
     chance, most = 2 * first * second, (first + second) * every
     return 1.0 if most == chance else (2 * both * every - chance) / (most - chance)
 
@@ -60,8 +59,7 @@ def rand_index(counts: Counts) -> float:
     The mean over several people's maps is the probabilistic Rand index.
     Source: Unnikrishnan, Pantofaru & Hebert, IEEE TPAMI 29, 2007.
     """
-    both, first, second = (_pairs(part) for part in (counts, counts.sum(axis=1), counts.sum(axis=0)))
-    every = _pairs(np.asarray([counts.sum()]))
+    both, first, second, every = _pair_counts(counts)
     return 1 - (first + second - 2 * both) / every if every else 1.0
 
 
@@ -114,6 +112,12 @@ def _mean_distance(start: Bool[np.ndarray, "r c"], goal: Bool[np.ndarray, "r c"]
 
     nearest: Any = KDTree(np.argwhere(goal))
     return float(nearest.query(np.argwhere(start))[0].mean()) / 2
+
+
+def _pair_counts(counts: Counts) -> tuple[int, int, int, int]:
+    """Count the pairs of pixels that are together in both maps, in the first, in the second, and all pairs."""
+    both, first, second = (_pairs(part) for part in (counts, counts.sum(axis=1), counts.sum(axis=0)))
+    return both, first, second, _pairs(np.asarray([counts.sum()]))
 
 
 def _pairs(sizes: Counts | np.ndarray) -> int:

@@ -15,8 +15,6 @@ from .signal.skipping import one_segment, reason_to_skip
 
 log = logging.getLogger(__name__)
 
-MOST_SEGMENTS = 64
-"""The largest number of segments under `auto`, far more than touch can distinguish."""
 LEAST_LEVEL = 0.12
 """The level of a border that chance makes: such regions are joined, however many segments are requested."""
 
@@ -55,6 +53,7 @@ class Hierarchy(Segmenter, Skippable, Hierarchical):
         Returns: labels int32 (h, w), confidence float32 (h, w) in 0..1.
         Raises: PictureError as `check_picture`.
         """
+        from .regions.basins import MOST_SEGMENTS
         from .regions.merging import number_in_reading_order
 
         if self.segments == 1:

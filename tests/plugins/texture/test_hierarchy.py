@@ -12,7 +12,7 @@ from tangible_core.data import Views
 from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import collected
 from tangible_texture import Hierarchy
-from tangible_texture.hierarchy import MOST_SEGMENTS
+from tangible_texture.regions.basins import MOST_SEGMENTS
 from wavy_cells import cells
 
 COLOURS = np.array(

@@ -43,7 +43,7 @@ def _replace_specks(values, lowest, highest, calm):
         calm[at] = high if value - high > spread else low if low - value > spread else value
 
 
-def gaussian(values: Float32[np.ndarray, "h w c"], sigma_px: float) -> Float32[np.ndarray, "h w c"]:
+def gaussian(values: Float32[np.ndarray, "h w *c"], sigma_px: float) -> Float32[np.ndarray, "h w *c"]:
     """Smooth by a Gaussian; outside of the picture is its mirror image."""
     import cv2
 

@@ -8,6 +8,8 @@ from jaxtyping import Float32
 from tangible_core.data.pictures import luma
 from tangible_core.runtime.opencv import plain_opencv
 
+from ..signal.smoothing import gaussian
+
 CELLS = 40_000
 """The most cells of a picture, so that the same picture at another size has the same regions."""
 BINS = 12
@@ -62,17 +64,11 @@ def shares(colours: Planes) -> Mapping[str, Float32[np.ndarray, "_ h w"]]:
     import cv2
 
     kinds = {name: _bins(plane, *RANGES[name], BINS) for name, plane in zip(RANGES, colours, strict=True)}
+    apart = np.abs(colours[0] - gaussian(colours[0], AROUND_CELLS))
+    rough = gaussian(apart / (apart + np.float32(WEAK)), 0.7)
     with plain_opencv():
-        apart = np.abs(colours[0] - _blur(colours[0], AROUND_CELLS))
-        rough = _blur(apart / (apart + np.float32(WEAK)), 0.7)
         across, down = (cv2.Sobel(colours[0], cv2.CV_32F, *order, scale=1 / 8) for order in ((1, 0), (0, 1)))
     return {**kinds, "roughness": _bins(rough, 0, ROUGHEST, ROUGH_BINS), "direction": _directions(across, down)}
-
-
-def _blur(plane: Plane, sigma: float) -> Plane:
-    import cv2
-
-    return cv2.GaussianBlur(plane, (0, 0), sigma, borderType=cv2.BORDER_REFLECT)
 
 
 def _bins(plane: Plane, low: float, high: float, count: int) -> Planes:

@@ -19,6 +19,8 @@ from tangible_core.compiled.compiling import KERNEL
 from tangible_core.compiled.threads import in_turns
 from tangible_core.runtime.opencv import plain_opencv
 
+from ..signal.smoothing import gaussian
+
 FINE_CELLS = 0.6
 """The standard deviation of the window of the change of brightness, in cells."""
 WINDOW_CELLS = 1.5
@@ -42,8 +44,7 @@ def tensors(brightness: Float32[np.ndarray, "h w"], shares: Mapping[str, Float32
             _add_windows(planes, result[1 + LEVELS * at :][:LEVELS])
 
     in_turns(list(enumerate(shares.values())), work)
-    with plain_opencv():
-        _add_outer(_blur(brightness, FINE_CELLS), result[0])
+    _add_outer(gaussian(brightness, FINE_CELLS), result[0])
     return result
 
 
@@ -56,15 +57,9 @@ def _add_windows(planes: Float32[np.ndarray, "d h w"], result: Float32[np.ndarra
             planes = np.stack([cv2.resize(each, size, interpolation=cv2.INTER_AREA) for each in planes])
         tensor = np.zeros((3, *planes.shape[1:]), np.float32)
         for each in planes:
-            _add_outer(np.sqrt(_blur(each, WINDOW_CELLS) + np.float32(EMPTY)), tensor)
+            _add_outer(np.sqrt(gaussian(each, WINDOW_CELLS) + np.float32(EMPTY)), tensor)
         for at in range(3):
             result[level, at] = cv2.resize(tensor[at], result.shape[:1:-1], interpolation=cv2.INTER_LINEAR)
-
-
-def _blur(plane: Float32[np.ndarray, "h w"], sigma: float) -> Float32[np.ndarray, "h w"]:
-    import cv2
-
-    return cv2.GaussianBlur(plane, (0, 0), sigma, borderType=cv2.BORDER_REFLECT)
 
 
 def weighted_strength(tensors: Tensors, weights: Float32[np.ndarray, "cues"]) -> Float32[np.ndarray, "h w"]:

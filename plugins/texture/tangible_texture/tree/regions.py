@@ -11,10 +11,11 @@ from jaxtyping import Float32, Float64, Int32, Int64
 from numba import njit
 
 from tangible_core.compiled.compiling import KERNEL, inner
-from tangible_core.runtime.opencv import plain_opencv
 
+from ..regions.borders import ACROSS, DOWN
 from ..regions.refining import inner_cells
 from ..regions.watershed import UNSEEN, watershed
+from ..signal.smoothing import gaussian
 
 CALM_CELLS = 0.7
 """The standard deviation of the window in which strengths are smoothed before their minima are found, in cells."""
@@ -45,12 +46,10 @@ def small_regions(strength: Float32[np.ndarray, "h w"]) -> Int32[np.ndarray, "h 
 
     A region that is nowhere three cells wide, such as the blurred border between two things, goes to its neighbours.
     """
-    import cv2
     from skimage.measure import label
     from skimage.morphology import local_minima
 
-    with plain_opencv():
-        calm = cv2.GaussianBlur(strength, (0, 0), CALM_CELLS, borderType=cv2.BORDER_REFLECT)
+    calm = gaussian(strength, CALM_CELLS)
     calm -= calm.min()
     minima = np.asarray(local_minima(calm))
     markers = np.asarray(label(minima if minima.any() else calm == 0, connectivity=2)).astype(np.int32) - 1
@@ -94,8 +93,11 @@ def measure_regions(
 def _pairs(labels: Int32[np.ndarray, "h w"]) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return the flat indices of both cells of every pair, above each other and next to each other."""
     at = np.arange(labels.size).reshape(labels.shape)
-    ways = (np.s_[:-1, :], np.s_[1:, :]), (np.s_[:, :-1], np.s_[:, 1:])
-    return [(at[one][differ], at[other][differ]) for one, other in ways for differ in [labels[one] != labels[other]]]
+    return [
+        (at[one][differ], at[other][differ])
+        for one, other in (DOWN, ACROSS)
+        for differ in [labels[one] != labels[other]]
+    ]
 
 
 def _sums(flat: Int32[np.ndarray, "cells"], planes: Float32[np.ndarray, "d h w"], count: int) -> np.ndarray:

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float32, Float64
 
 BINS = 256
-"""Places of the map, less one."""
+"""Places of the map, less one: as many as a lookup table of OpenCV has."""
 BORDER = 0.03
 """The least difference of nearness of two cells at a border, of its whole range."""
 REACH = 2
@@ -32,11 +32,14 @@ def tones_of(nearness: Float32[np.ndarray, "h w"], share: float) -> Float64[np.n
 
 def apply_tones(nearness: Float32[np.ndarray, "h w"], tones: Float64[np.ndarray, "n"]) -> Float32[np.ndarray, "h w"]:
     """Return the heights of these values of nearness, 0 to 1, interpolated between the places of the map."""
+    import cv2
+
     place = nearness * np.float32(BINS)
-    below = np.minimum(place.astype(np.int32), BINS - 1)
+    below = np.minimum(np.floor(place), np.float32(BINS - 1))
     place -= below
-    place *= np.diff(tones).astype(np.float32)[below]
-    place += tones.astype(np.float32)[below]
+    index = below.astype(np.uint8)
+    place *= cv2.LUT(index, np.diff(tones).astype(np.float32))
+    place += cv2.LUT(index, tones[:-1].astype(np.float32))
     return place
 
 

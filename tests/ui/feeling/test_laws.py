@@ -10,13 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+from faulty_touch import FaultyTouch
 from tangible_core import load_method
 from tangible_core.errors import ConfigError
+from tangible_core.servo import Packed, Safety, pack_touch
 from tangible_ui.feeling.choice import Choice, NotConfirmed
 from tangible_ui.feeling.comparison import NOTHING
 from tangible_ui.feeling.feeling import Feeling
 from tangible_ui.framing import STATE_FRAME
 from tangible_ui.requests import feeling as asks
+from tangible_ui.serving.serve import watch
 from tangible_ui.state.session import Session
 from waiting import happened
 
@@ -60,6 +63,10 @@ def forces(session: Session) -> tuple[float, float]:
     return values[15], values[21]
 
 
+def raises_soon() -> Packed:
+    return pack_touch(FaultyTouch("odd error"), load_method("device", "pointer")().spec())
+
+
 async def press_until(session: Session, until: Callable[[], bool]) -> None:
     """Press on the surface until something is so."""
 
@@ -92,6 +99,27 @@ def test_second_law_is_computed_on_the_same_hand(tmp_path: Path) -> None:
             assert session.laws.comparison.force_n == NOTHING
             assert not session.laws.comparison.running
             await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
+
+    asyncio.run(compare())
+
+
+@pytest.mark.usefixtures("loop_in_thread")
+def test_second_law_that_raises_is_reported_once_and_can_be_replaced(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def compare() -> None:
+        async with felt_session(tmp_path) as (session, _):
+            await asks.compare_laws(session, None, "penalty", "{stiffness_n_per_m: 800}")
+            session.laws.comparison.feel(raises_soon(), Safety())
+            polling = asyncio.ensure_future(watch(session))
+            await press_until(session, lambda: "penalty (b) is no longer computed" in caplog.text)
+            await press_until(session, lambda: np.allclose(forces(session), (0.4, 0), atol=0.02))
+            await asks.switch_law(session, None, "b")
+            await press_until(session, lambda: np.allclose(forces(session), (0.8, 0.4), atol=0.02))
+            assert caplog.text.count("OddError") == 1
+            polling.cancel()
+            session.laws.comparison.feel(raises_soon(), Safety())
+            await press_until(session, lambda: not session.laws.comparison.running)  # and the session can be closed
 
     asyncio.run(compare())
 

@@ -11,6 +11,8 @@ from tangible_core.servo import Packed, Safety, Servo, null_touch
 from tangible_devices.pointer import PointerClient
 from tangible_devices.pointer.pointer import Pointer
 
+from .ending import end_loop
+
 NOTHING: Vector = (0.0, 0.0, 0.0)
 STALE_AFTER_S = 0.3
 FOLLOW_S = 0.008
@@ -28,6 +30,7 @@ class ComparisonLoop:
         self._channel = channel
         self._servo: Servo | None = None
         self._client: PointerClient | None = None
+        self._told: Servo | None = None
         self._lock = Lock()
 
     @property
@@ -63,6 +66,14 @@ class ComparisonLoop:
         x, y, z = row[11:14].tolist()
         return (x, y, z) if math.isfinite(x + y + z) else NOTHING
 
+    def loop_end(self) -> str:
+        """Return once why the loop ended by itself; else "". Meant to be polled."""
+        servo = self._servo
+        if servo is None or servo.running or servo is self._told:
+            return ""
+        self._told = servo
+        return end_loop(servo)
+
     def close(self) -> None:
         """End the loop; a second call does nothing."""
         with self._lock:
@@ -82,4 +93,4 @@ class ComparisonLoop:
         if client is not None:
             client.close()
         if servo is not None:
-            servo.stop()
+            end_loop(servo)

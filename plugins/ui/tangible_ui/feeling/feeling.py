@@ -10,14 +10,14 @@ from threading import Lock
 from typing import Any, NamedTuple, final
 
 from tangible_core.data import Vector
-from tangible_core.errors import DeviceError, TangibleError
+from tangible_core.errors import DeviceError
 from tangible_core.mapping import MappedDevice, WorkspaceMapping, placement_of
-from tangible_core.plugins.failures import sentence
 from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Beacon, Packed, Safety, Servo, null_touch
 from tangible_core.servo.ring import STOP
 
 from ..framing import BUTTON_BITS, FLAG_BITS, STATE, STATE_FRAME
+from .ending import end_loop
 from .hand import HIGH_M, Hand
 
 NOBODY: Vector = (0.0, 0.0, 0.0)
@@ -27,7 +27,6 @@ STALE_AFTER_S = 0.3
 server waiting for a quarter of a second. A page's own silence is `hand.SILENT_S`."""
 FOLLOW_S = 0.012
 """Time constant with which the loop follows the mouse, s: mice move 60 times a second, the loop ticks 1000 times."""
-STOPPED = "stopped"
 BUTTONS, PRESSED = (1 << BUTTON_BITS) - 1, 1
 """Bits of a device's buttons; and the button by which the page's own hand is pressed down, which ends no beacon."""
 
@@ -209,7 +208,7 @@ class Feeling:
 
         def wait_until_gone() -> None:
             for servo in cut:
-                _end(servo)
+                end_loop(servo)
 
         return wait_until_gone
 
@@ -229,7 +228,7 @@ class Feeling:
         if servo is None or servo.running or servo is self._told:
             return None
         self._told = servo
-        return None if self.stopped else LoopEnd(_end(servo), servo.device_lost)
+        return None if self.stopped else LoopEnd(end_loop(servo), servo.device_lost)
 
     def frame(self, seq: int, status: int, other_law: OtherLaw = ALONE) -> bytes | None:
         """Return the newest tick as a STATE frame, without a loop a hand that is nowhere; None if overwritten."""
@@ -266,14 +265,14 @@ class Feeling:
                 raise
         finally:
             if is_stopped() and self._servo is not None:
-                _end(self._servo)
+                end_loop(self._servo)
 
     def _restart(self, device: HapticDevice, own_hand: bool) -> None:
         """Replace the loop by one on this device; it begins without force."""
         self.hand.close()
         before, self._servo, self._device = self._servo, None, None
         if before is not None:
-            _end(before)
+            end_loop(before)
         self._starting = servo = Servo(null_touch(), device, Safety())
         try:
             servo.__enter__()
@@ -287,13 +286,3 @@ class Feeling:
 def without_mapping(device: HapticDevice) -> HapticDevice:
     """Return the device itself."""
     return device.device if isinstance(device, MappedDevice) else device
-
-
-def _end(servo: Servo) -> str:
-    """End a loop if it still runs, and return why it ended."""
-    try:
-        return servo.stop(STOPPED).stopped
-    except TangibleError as error:
-        return str(error)
-    except Exception as error:  # noqa: BLE001 - what a plugin raised in the loop is no failure of stopping it
-        return sentence(error)

@@ -2,6 +2,7 @@
 
 import asyncio
 import gc
+import logging
 import signal
 import threading
 import time
@@ -27,6 +28,7 @@ from ..state.session import Session
 from .connection import PING_S, Connection, Exchange, Strangers
 from .routes import application
 
+log = logging.getLogger(__name__)
 EXAMPLE = Path("builtin/motorcycle")
 MOST_MESSAGE_BYTES = 2**20
 """Size limit of a message, bytes; pipeline files are smaller."""
@@ -161,7 +163,7 @@ async def _start(session: Session) -> None:
 
 
 async def watch(session: Session) -> None:
-    """Poll the loop until the server ends: keep the hand, move a compared law's hand, report ends."""
+    """Poll the loop until the server ends: keep the hand, move that of a compared law, report ends."""
     while True:
         session.feeling.hand.keep()
         session.laws.follow(session.feeling)
@@ -169,4 +171,6 @@ async def watch(session: Session) -> None:
             session.tell("beacon", part=None, name="", why=why)
         if (end := session.feeling.loop_end()) is not None:
             session.tell("loop", running=False, why=end.why, lost=end.lost)
+        if why := session.laws.comparison.loop_end():
+            log.warning("%s is no longer computed beside the law that is felt: %s", session.laws.shown_name, why)
         await asyncio.sleep(KEEP_S)

@@ -106,6 +106,11 @@ class Laws:
             return OtherLaw(blind=True)
         return ALONE if self.other is None else OtherLaw(self.comparison.force_n)
 
+    @property
+    def shown_name(self) -> str:
+        """The name of the law that does not act."""
+        return self.named[1 - self.felt]
+
     def message(self) -> dict[str, Any]:
         """Return the message `laws`: what pages may know."""
         if self.tally is not None:

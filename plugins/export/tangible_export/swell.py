@@ -33,14 +33,20 @@ class Swell(Exporter):
         return sheet_for(self.page, aspect, self.width_m).picture_mm[0] / 1000
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
-        """Write the page and each page of the key as an SVG, and all of them as one PDF.
+        """Write the page and each page of the key as an SVG, and all of them as one PDF; the page also in ink.
+
+        The copies in ink, `-ink.svg` and `-ink.pdf`, have the same marks in grey, and in black the texts of the
+        braille, the names of the parts and a scale bar.
 
         Raises: PictureError where there are no parts, or a page could not be read; GeometryError where it has no room;
         BrailleError for a title or a name that has no braille; BrokenMethod without shapely.
         """
         try:
+            from .paper.lettering import words
+            from .paper.marks.ink import ink_svg, write_ink_pdf
             from .paper.marks.reading import read
             from .paper.marks.rendering import write_pdf
+            from .paper.marks.svg import svg
             from .paper.opening import open_parts
             from .paper.page import drawn_pages
         except ImportError as error:
@@ -49,14 +55,16 @@ class Swell(Exporter):
             raise PictureError("this scene has no parts to outline; it needs a picture, or its own `parts:`")
         sheet = sheet_for(self.page, _aspect(work, parts), self.width_m)
         check_readable(self.page, sheet)
-        texts = drawn_pages(work, open_parts(work, parts, sheet.picture_mm[0] / 1000), sheet, self.page)
+        pages = drawn_pages(work, open_parts(work, parts, sheet.picture_mm[0] / 1000), sheet, self.page)
+        texts, note = [svg(each) for each in pages], words(work.language).ink
         files = {f"{stem.name}-swell{'-key' * (n > 0)}{f'-{n}' * (n > 1)}.svg": text for n, text in enumerate(texts)}
-        paths = [stem.with_name(name) for name in files]
-        for path, text in zip(paths, texts, strict=True):
+        pdf, ink, ink_pdf = (stem.with_name(f"{stem.name}-swell{each}") for each in (".pdf", "-ink.svg", "-ink.pdf"))
+        paths = [*map(stem.with_name, files), ink]
+        for path, text in zip(paths, [*texts, ink_svg(pages[0], note, named=True)], strict=True):
             path.write_text(text, encoding="utf-8", newline="\n")
-        pdf = stem.with_name(f"{stem.name}-swell.pdf")
         write_pdf(pdf, [read(text) for text in texts])
-        return (*paths, pdf)
+        write_ink_pdf(ink_pdf, pages, note)
+        return (*paths[:-1], pdf, ink, ink_pdf)
 
 
 def _aspect(work: Work, parts: PartMap) -> float:

@@ -1,6 +1,7 @@
 """Pages for swell paper, read and measured again by programs that did not draw them."""
 
 import re
+import subprocess
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -36,7 +37,12 @@ def exported(request, tmp_path_factory) -> tuple[str, tuple[Path, ...], list[str
 
 
 def svgs(files) -> list[Path]:
-    return [each for each in files if each.suffix == ".svg"]
+    """The pages for the heater, without the copy in ink."""
+    return [each for each in files if each.suffix == ".svg" and not each.stem.endswith("-ink")]
+
+
+def named(files, ending: str) -> Path:
+    return next(each for each in files if each.name.endswith(ending))
 
 
 def halves(labels=(0, 1), shape=(300, 400)) -> np.ndarray:
@@ -155,7 +161,7 @@ def test_page_neighbours_have_different_fills(exported):
 
 def test_pdf_has_all_pages_in_true_size(exported):
     _, files, _ = exported
-    pdf, pages = files[-1], svgs(files)
+    pdf, pages = named(files, "-swell.pdf"), svgs(files)
     data = pdf.read_bytes()
     assert b"/Image" not in data.replace(b"/ImageB", b"").replace(b"/ImageC", b"").replace(b"/ImageI", b"")
     assert b"/BaseFont" not in data
@@ -170,6 +176,26 @@ def test_pdf_has_all_pages_in_true_size(exported):
         rows, columns = (min(sides) for sides in zip(drawn.shape, printed.shape, strict=True))
         differ = (drawn[:rows, :columns] < 128) != (printed[:rows, :columns] < 128)
         assert differ.mean() < 0.01
+
+
+def test_ink_copy_has_names_and_letters_where_the_parts_are_and_a_scale(tmp_path):
+    work = labels_work(halves(), ("land", "sea <1> & $x$"), title="Coast", language="de")
+    files = Swell().write(work, tmp_path / "map")
+    page_root, ink = (ElementTree.parse(each).getroot() for each in (files[0], named(files, "-swell-ink.svg")))
+    texts = {each.text: (float(each.get("x")), float(each.get("y"))) for each in ink.iterfind("{*}text")}
+    for area in page_root.iterfind("{*}g[@aria-label]/*[@data-mark='outline']/.."):
+        name, letter = area.get("aria-label"), area.find("./*[@data-mark='braille']").get("aria-label")
+        at = np.array(re.findall(r"[ML]([\d.]+) ([\d.]+)", area.find("./*[@data-mark='outline']").get("d")), float)
+        assert (at.min(axis=0) < texts[f"{letter} {name}"]).all() and (texts[f"{letter} {name}"] < at.max(axis=0)).all()
+    assert {"Coast", "5 cm"} < texts.keys() and any("nicht schwellen" in each for each in texts)
+    (scale,) = re.findall(r"M([\d.]+) [\d.]+L([\d.]+) ", ink.find(".//*[@data-mark='scale']").get("d"))
+    assert float(scale[1]) - float(scale[0]) == 50
+    marks = [len(list(root.iterfind(".//{*}circle"))) for root in (page_root, ink)]
+    assert marks[0] == marks[1] > 0
+    words = ["pdftotext", "-layout", str(named(files, "-swell-ink.pdf")), "-"]
+    pages = subprocess.run(words, check=True, capture_output=True, text=True).stdout.split("\f")[:-1]
+    assert len(pages) == len(svgs(files))
+    assert all("land" in each and "sea <1> & $x$" in each and "5 cm" in each for each in pages)
 
 
 @pytest.mark.parametrize(("paper", "shape"), [("a4", (300, 450)), ("letter", (450, 300)), ("a3", (300, 450))])

@@ -26,12 +26,14 @@ class Words(NamedTuple):
     """Heading of the list of letters and fills."""
     corner: str
     """Text alternative of the corner mark."""
+    ink: str
+    """Note at the foot of a copy in ink."""
 
 
 WORDS = {
-    "en": Words("key", "upper right corner"),
-    "de": Words("Legende", "Ecke oben rechts"),
-    "fr": Words("légende", "coin supérieur droit"),
+    "en": Words("key", "upper right corner", "Copy in ink, to read by eye: do not put it through the heater."),
+    "de": Words("Legende", "Ecke oben rechts", "Schwarzschriftkopie für Sehende: nicht schwellen."),
+    "fr": Words("légende", "coin supérieur droit", "Copie en noir pour les voyants : ne pas chauffer."),
 }
 
 

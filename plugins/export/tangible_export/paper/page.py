@@ -14,7 +14,6 @@ from jaxtyping import Float64
 from tangible_core.data import PartMap, Work
 from tangible_core.errors import PictureError
 from tangible_core.errors import shown as shown_text
-from tangible_core.parts import shared_borders
 from tangible_core.plugins.notes import note
 
 from ..braille import Cells, height_m, translate, written_by
@@ -29,11 +28,10 @@ from .marks.svg import NO_DOTS, Area, Braille, Drawing, svg
 from .named_parts import LETTERS, MOST_NAMES, NamedParts, group_by_name, key_letters
 from .opening import open_at
 from .sheet import CLEAR_MM, GAP_MM, Page, Sheet
+from .smoothing import smooth_borders
 
 log = logging.getLogger(__name__)
 
-SMOOTH_MM = 0.8
-"""Tolerance of borders in smoothing, by which steps of pixels become lines."""
 ROUNDS = 6
 """Largest number of rounds of measuring and correcting a page."""
 APART_MM = 0.15
@@ -52,8 +50,8 @@ class Symbols:
     """Kind of the fill."""
 
 
-def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[str]:
-    """Return the SVGs of the page and of its key.
+def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[Drawing]:
+    """Return the page and the pages of its key.
 
     Raises: PictureError for a picture of one part, or a page that fingers cannot read; BrailleError for its texts.
     """
@@ -84,7 +82,9 @@ def drawn_pages(work: Work, parts: PartMap, sheet: Sheet, page: Page) -> list[st
     symbols, picture = _draw_readable(blank, parts, groups)
     _note_left_out(symbols, picture)
     keys = key_pages(_entries(symbols, picture), work.title, work.language, page, sheet)
-    return [svg(picture), *map(_check_key, keys)]
+    for key in keys:
+        _check_key(key)
+    return [picture, *keys]
 
 
 def _draw_readable(blank: Drawing, parts: PartMap, groups: Sequence[NamedParts]) -> tuple[list[Symbols], Drawing]:
@@ -118,13 +118,12 @@ def _on_page(parts: PartMap, sheet: Sheet) -> tuple[Any, ...]:
     width, length = sheet.picture_mm
     middle = np.array([sheet.left_mm + width / 2, sheet.top_mm + length / 2])
     # The rows of a simplified map are whole, so its sides are those of the picture but for half a row.
-    scale = np.array([width, -length * columns / rows])
+    scale = np.array([1, -length * columns / (rows * width)])
 
     def to_page(at: Float64[np.ndarray, "k 2"]) -> Float64[np.ndarray, "k 2"]:
         return at * scale + middle
 
-    shapes = shared_borders(parts, 1.0, SMOOTH_MM / width)
-    return tuple(shapely.transform(each, to_page) for each in shapes)
+    return tuple(shapely.transform(each, to_page) for each in smooth_borders(parts, width))
 
 
 def _neighbours(parts: PartMap, groups: Sequence[NamedParts]) -> list[set[int]]:
@@ -213,12 +212,10 @@ def _letter_in(near: Near, areas: Sequence[Area]) -> int | None:
     return None
 
 
-def _check_key(key: Drawing) -> str:
-    """Return the SVG of a key page. Raises: PictureError if two of its marks are too near."""
-    text = svg(key)
-    if near := too_near(read(text)):
+def _check_key(key: Drawing) -> None:
+    """Check a key page. Raises: PictureError if two of its marks are too near."""
+    if near := too_near(read(svg(key))):
         raise PictureError(f"in the key, {near[0]}, and {GAP_MM} mm must be between them")
-    return text
 
 
 def _entries(symbols: Sequence[Symbols], picture: Drawing) -> list[Entry]:

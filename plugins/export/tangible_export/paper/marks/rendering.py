@@ -20,21 +20,27 @@ POINTS_PER_MM = 72 / MM_PER_INCH
 
 def write_pdf(path: Path, pages: Sequence[Marks]) -> None:
     """Write all pages as lines and areas, without pictures and fonts; the same pages give the same bytes."""
-    about = {"Title": pages[0].title, "Creator": "Tangible Images", "CreationDate": None}
+    save_pdf(path, pages[0].title, [figure_of(page, page.marks) for page in pages])
+
+
+def save_pdf(path: Path, title: str, figures: Sequence[Figure]) -> None:
+    """Write each figure as a page of a PDF that has no time in it."""
+    about = {"Title": title, "Creator": "Tangible Images", "CreationDate": None}
     with PdfPages(path, metadata=about) as file:
-        for page in pages:
-            file.savefig(_figure(page, page.marks))
+        for figure in figures:
+            file.savefig(figure)
 
 
 def black(page: Marks, pixels_per_mm: int) -> Bool[np.ndarray, "r c"]:
     """Return the pixels that ink covers by half or more."""
-    figure = _figure(page, page.marks, pixels_per_mm * MM_PER_INCH)
+    figure = figure_of(page, page.marks, pixels_per_mm * MM_PER_INCH)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())[..., 3] > 127
 
 
-def _figure(page: Marks, marks: Sequence[Mark], pixels_per_inch: float = 72) -> Figure:
+def figure_of(page: Marks, marks: Sequence[Mark], pixels_per_inch: float = 72, colour: str = "black") -> Figure:
+    """Return marks of a page as a figure of its size."""
     width, length = page.size_mm
     figure = Figure(figsize=(width / MM_PER_INCH, length / MM_PER_INCH), dpi=pixels_per_inch, facecolor="none")
     placed = Affine2D().scale(1 / width, -1 / length).translate(0, 1) + figure.transFigure
@@ -44,8 +50,8 @@ def _figure(page: Marks, marks: Sequence[Mark], pixels_per_inch: float = 72) -> 
         patch = PathPatch(
             shape,
             fill=not stroke_mm,
-            facecolor="black",
-            edgecolor="black" if stroke_mm else "none",
+            facecolor=colour,
+            edgecolor=colour if stroke_mm else "none",
             linewidth=stroke_mm * POINTS_PER_MM,
             capstyle="round",
             joinstyle="round",

@@ -1,0 +1,60 @@
+"""Outlines of parts against shapes that are known exactly."""
+
+import numpy as np
+import pytest
+import shapely
+
+from tangible_core.data import PartMap
+from tangible_export.paper.smoothing import smooth_borders
+
+WIDTH_MM = 180.0
+
+
+def disc_and_halves(columns: int, radius_mm: float) -> PartMap:
+    """A disc in the middle of a picture, on a ground of two halves."""
+    at = (np.arange(columns) + 0.5) * WIDTH_MM / columns - WIDTH_MM / 2
+    labels = np.where(at[None, :] < 3.3, 0, 1) * np.ones((columns, 1), np.int32)
+    labels[at[:, None] ** 2 + at[None, :] ** 2 < radius_mm**2] = 2
+    return PartMap(labels.astype(np.int32), (0, 1, 2))
+
+
+def points_along(shape, every_mm: float = 0.1) -> np.ndarray:
+    line = shape.exterior
+    return shapely.get_coordinates(shapely.line_interpolate_point(line, np.arange(0, line.length, every_mm)))
+
+
+@pytest.mark.parametrize("columns", [180, 400, 720])
+@pytest.mark.parametrize("radius_mm", [20.0, 60.0])
+def test_smooth_border_of_a_disc_is_the_circle_without_stairs(columns, radius_mm):
+    disc = smooth_borders(disc_and_halves(columns, radius_mm), WIDTH_MM)[2]
+    off = np.abs(np.hypot(*points_along(disc).T) - radius_mm)
+    assert off.mean() < 0.1
+    assert np.percentile(off, 99) < 0.5 * WIDTH_MM / columns
+    ahead = np.diff(shapely.get_coordinates(disc), axis=0)
+    turns = np.angle(np.exp(1j * np.diff(np.arctan2(ahead[:, 1], ahead[:, 0]))))
+    assert (np.abs(turns) > np.radians(45)).sum() <= 2, "right angles are left at the two places where parts meet alone"
+
+
+def test_smooth_borders_are_shared_and_fill_the_picture():
+    parts = disc_and_halves(400, 30)
+    shapes = smooth_borders(parts, WIDTH_MM)
+    assert sum(each.area for each in shapes) == pytest.approx(WIDTH_MM**2, rel=1e-9)
+    assert all(one.intersection(other).area == 0 for one in shapes for other in shapes if one is not other)
+    assert shapely.union_all(shapes).equals(shapely.box(-90, -90, 90, 90))
+    assert shapely.coverage_is_valid(list(shapes))
+
+
+def test_smooth_border_of_an_enclosed_part_is_round():
+    parts = disc_and_halves(400, 20)
+    alone = PartMap(np.where(parts.labels == 2, 1, 0).astype(np.int32), (0, 1))
+    ground, disc = smooth_borders(alone, WIDTH_MM)
+    assert np.abs(np.hypot(*points_along(disc).T) - 20).max() < 0.3
+    assert len(ground.interiors) == 1 and ground.area + disc.area == pytest.approx(WIDTH_MM**2)
+
+
+def test_smooth_borders_keep_every_part_and_its_pieces():
+    labels = np.zeros((90, 90), np.int32)
+    labels[10:30, 10:30] = labels[60:80, 50:80] = 2
+    shapes = smooth_borders(PartMap(labels, (0, 1, 2)), WIDTH_MM)
+    assert shapes[1].is_empty and len(shapely.get_parts(shapes[2])) == 2
+    assert sum(each.area for each in shapes) == pytest.approx(WIDTH_MM**2)

@@ -108,10 +108,12 @@ def outcomes(rows: Iterable[Outcome], title: str | None = None, ran: str = "ran"
 
 def parts_felt(parts: Sequence[PartFelt]) -> None:
     """Print which parts were touched, for how long and with which force; nothing if there are none."""
+    from ..data.part_words import shown_number
+
     if parts:
         say("")
         cells = [
-            (str(each.number), escape(each.name), escape(each.material), f"{100 * each.share:.0f}",
+            (str(shown_number(each.number)), escape(each.name), escape(each.material), f"{100 * each.share:.0f}",
              f"{each.peak_force_n:.2f}")
             for each in parts
         ]  # fmt: skip

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..data.part_words import name_part
 from ..parts.words.places import place_in_words
 
 MOST_NAMED = 4
@@ -16,10 +17,9 @@ def describe_part(number: int, names: Sequence[str] = ()) -> str:
     """Return a part's number and, if it has one, its name.
 
     >>> describe_part(3), describe_part(1, ["wall", "helmet"])
-    ('part 3', 'part 1 (helmet)')
+    ('part 4', 'part 2 (helmet)')
     """
-    name = names[number] if number < len(names) else ""
-    return f"part {number} ({name})" if name else f"part {number}"
+    return name_part(number, names[number] if number < len(names) else "")
 
 
 def join_texts(texts: Sequence[str]) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from ..data import Material, MaterialMap, PartMap, SegmentMap
+from ..data.part_words import missing_key, name_part
 from ..data.pictures import to_grey
 from ..errors import MaterialError, did_you_mean, quoted
 from ..runtime.opencv import plain_opencv
@@ -78,7 +79,7 @@ def assign(
     picture of the segments' size; PictureError if the picture is not one.
     """
     noun = noun_of(segments)
-    chosen = {label: (name, f"{noun} {label}: its own -> {name}") for label, name in (own or {}).items()}
+    chosen = {label: (name, f"{name_part(label, noun=noun)}: its own -> {name}") for label, name in (own or {}).items()}
     chosen = {**apply_rules(rules, segments, picture, shape), **chosen}
     if isinstance(by, Mapping):
         chosen = {**_by_name(segments, by, library), **chosen}
@@ -86,8 +87,8 @@ def assign(
         roughness = {label: each for label, each in enumerate(_roughness(segments, picture)) if label not in ground}
         chosen = {**_by_roughness(roughness, default, noun), **chosen}
     for label in ground:
-        chosen.setdefault(label, (default, f"{noun} {label}: transparent in the picture -> {default}"))
-    rest = ((default, f"{noun} {label}: not named -> {default}") for label in range(segments.count))
+        chosen.setdefault(label, (default, f"{name_part(label, noun=noun)}: transparent in the picture -> {default}"))
+    rest = ((default, f"{name_part(label, noun=noun)}: not named -> {default}") for label in range(segments.count))
     names, reasons = zip(*(chosen.get(label, each) for label, each in enumerate(rest)), strict=True)
     return MaterialMap(tuple(find(name, library) for name in names), reasons)
 
@@ -136,20 +137,20 @@ def _by_name(
     count = max(segments.segments) + 1 if isinstance(segments, PartMap) else segments.count
     for label, name in names.items():
         if label not in range(count):
-            complaints.append(f"there is no segment {quoted(label)}; the segments are 0 to {count - 1}")
+            complaints.append(missing_key(quoted(label), count, "segment"))
         try:
             find(name, library)
         except MaterialError as error:
-            complaints.append(f"segment {label}: {error}")
+            complaints.append(f"{name_part(label, noun='segment')}: {error}")
     if complaints:
         raise MaterialError(*complaints)
     if isinstance(segments, PartMap):
         return {
-            part: (name, f"part {part}: segment {label}, named {name}")
+            part: (name, f"{name_part(part)}: {name_part(label, noun='segment')}, named {name}")
             for label, name in names.items()
             for part in parts_of(label, segments)
         }
-    return {label: (name, f"segment {label}: named {name}") for label, name in names.items()}
+    return {label: (name, f"{name_part(label, noun='segment')}: named {name}") for label, name in names.items()}
 
 
 def _by_roughness(roughness: Mapping[int, float], default: str, noun: str) -> dict[int, Choice]:
@@ -158,5 +159,8 @@ def _by_roughness(roughness: Mapping[int, float], default: str, noun: str) -> di
     chosen: dict[int, Choice] = {}
     for (label, value), rank in zip(roughness.items(), ranks, strict=True):
         name = LADDER[round(int(rank) * (len(LADDER) - 1) / last)] if last else default
-        chosen[label] = (name, f"{noun} {label}: roughness rank {rank + 1} of {last + 1} ({value:.3f}) -> {name}")
+        chosen[label] = (
+            name,
+            f"{name_part(label, noun=noun)}: roughness rank {rank + 1} of {last + 1} ({value:.3f}) -> {name}",
+        )
     return chosen

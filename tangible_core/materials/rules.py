@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from ..data import PartMap, SegmentMap
+from ..data.part_words import missing_key, name_part
 from ..errors import MaterialError, quoted
 from .colours import Colour, segment_colours
 
@@ -74,7 +75,9 @@ def apply_rules(
         if not fits:
             log.warning("materials: rule %d: no %s is %s", number, noun, rule.colour)
         for label, why in fits.items():
-            choices.setdefault(label, (rule.material, f"{noun} {label}: rule {number}, {why} -> {rule.material}"))
+            choices.setdefault(
+                label, (rule.material, f"{name_part(label, noun=noun)}: rule {number}, {why} -> {rule.material}")
+            )
     if complaints:
         raise MaterialError(*complaints)
     return choices
@@ -100,15 +103,15 @@ def parts_of(segment: int, parts: PartMap) -> list[int]:
     """Return the parts of a segment. Raises: MaterialError if there is no such segment."""
     numbers = [number for number, each in enumerate(parts.segments) if each == segment]
     if not numbers:
-        raise MaterialError(f"there is no segment {segment}; the segments are 0 to {max(parts.segments)}")
+        raise MaterialError(missing_key(segment, max(parts.segments) + 1, "segment"))
     return numbers
 
 
 def _of_segment(segment: int, segments: SegmentMap | PartMap) -> dict[int, str]:
     if isinstance(segments, PartMap):
-        return dict.fromkeys(parts_of(segment, segments), f"of segment {segment}")
+        return dict.fromkeys(parts_of(segment, segments), f"of {name_part(segment, noun='segment')}")
     if segment >= segments.count:
-        raise MaterialError(f"there is no segment {segment}; the segments are 0 to {segments.count - 1}")
+        raise MaterialError(missing_key(segment, segments.count, "segment"))
     return {segment: "named"}
 
 
@@ -116,7 +119,7 @@ def _part(part: int | str, segments: SegmentMap | PartMap) -> dict[int, str]:
     if not isinstance(segments, PartMap):
         raise MaterialError("a rule by part needs parts, and these are segments; name the segment instead")
     if isinstance(part, str) or part >= segments.count:
-        raise MaterialError(f"there is no part {quoted(part)}; the parts are 0 to {segments.count - 1}")
+        raise MaterialError(missing_key(quoted(part), segments.count))
     return {part: "named"}
 
 

@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Float64, Int64
 
 from ..data import PartMap
+from ..data.part_words import name_part, shown_number
 from ..scene.scaling import reduced_shape
 from .find import part_sizes, reduced_parts
 from .heights import PartHeights
@@ -103,10 +104,10 @@ def _overlaps(pairs: Neighbours, sure: Float64[np.ndarray, "m"], count: int) -> 
 
 def _list(verb: str, parts: list[int]) -> str:
     """Return words such as `; it is behind parts 1, 2 and 5`; nothing for no part."""
-    *others, last = map(str, parts[:MOST_NAMED] or [""])
-    if not last:
-        return ""
-    return f"; {verb} parts {', '.join(others)} and {last}" if others else f"; {verb} part {last}"
+    if len(parts) == 1:
+        return f"; {verb} {name_part(parts[0])}"
+    *others, last = [str(shown_number(each)) for each in parts[:MOST_NAMED]] or [""]
+    return f"; {verb} parts {', '.join(others)} and {last}" if others else ""
 
 
 def _rank(nearness: Float64[np.ndarray, "n"], sizes: Int64[np.ndarray, "n"]) -> tuple[Int64[np.ndarray, "n"], int]:

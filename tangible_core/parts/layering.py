@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from ..data import Relief, Views
+from ..data.part_words import name_part
 from ..data.pictures import check_same_shape, to_grey
 from ..data.views import PartMap, border_pixels
 from ..errors import GeometryError
@@ -66,7 +67,9 @@ class Layering:
         if heights.shape != (self.parts.count,):
             raise GeometryError(f"there are {self.parts.count} parts and {heights.size} heights; give one a part")
         if (wrong := np.flatnonzero(~(np.isfinite(heights) & (heights >= 0)))).size:
-            raise GeometryError(f"part {wrong[0]}: its height is {heights[wrong[0]]} m; it must be 0 or more")
+            raise GeometryError(
+                f"{name_part(int(wrong[0]))}: its height is {heights[wrong[0]]} m; it must be 0 or more"
+            )
         labels = self.parts.labels
         height_m = np.take(np.minimum(heights, self._bulge_m), labels, mode="clip")  # no label is clipped; fastest
         height_m *= self._profile

@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import Float32, Float64
 
 from ..data import HapticSurface
+from ..data.part_words import label_of_number, name_part, shown_number
 from ..data.records import Record
 from ..data.ticks import MOST_BEACON_PARTS
 from ..errors import ConfigError, GeometryError, did_you_mean, quoted
@@ -141,29 +142,32 @@ class BeaconMemory:
 
 
 def part_number(surface: HapticSurface, part: str | int) -> int:
-    """Return the number of a part, given by number or name. Raises: ConfigError, with all parts, if there is none."""
+    """Return the label of a part. part: its label, or as text its name or the number that people know it by, from 1.
+
+    Raises: ConfigError, with all parts, if there is none.
+    """
     names = surface.names
     if names is None or surface.labels is None:
         raise ConfigError("a beacon pulls to a part, and this surface has no parts; add `parts:` or `heights:`")
     if isinstance(part, int):
         if 0 <= part < min(len(names), MOST_BEACON_PARTS):
             return part
-        raise ConfigError(f"there is no part {part}; the parts are {_list_parts(names)}")
+        raise ConfigError(f"there is no {name_part(part)}; the parts are {_list_parts(names)}")
     wanted = part.strip()
     numbers = [number for number, name in enumerate(names) if wanted and name == wanted]
     if len(numbers) > 1:
-        choice = ", ".join(map(str, numbers))
+        choice = ", ".join(str(shown_number(each)) for each in numbers)
         raise ConfigError(f"{len(numbers)} parts are called {quoted(wanted)}; choose one by its number: {choice}")
     if numbers:
         return part_number(surface, numbers[0])
     if wanted.isdecimal():
-        return part_number(surface, int(wanted))
+        return part_number(surface, label_of_number(int(wanted)))
     hint = did_you_mean(wanted, [name for name in names if name])
     raise ConfigError(f"no part is called {quoted(wanted)}{hint}; the parts are {_list_parts(names)}")
 
 
 def beacon_to(surface: HapticSurface, part: str | int) -> Beacon:
-    """Return a beacon to a part of a surface, given by its number or name.
+    """Return a beacon to a part of a surface, given as in `part_number`.
 
     Raises: ConfigError if there is no such part, GeometryError if the part has no cell on this surface.
     """
@@ -171,7 +175,7 @@ def beacon_to(surface: HapticSurface, part: str | int) -> Beacon:
     assert surface.labels is not None and surface.names is not None
     cells = surface.labels == number
     if not cells.any():
-        raise GeometryError(f"part {number} is too small for a cell of the surface; choose another one")
+        raise GeometryError(f"{name_part(number)} is too small for a cell of the surface; choose another one")
     across_m, down_m = surface.relief.pitch_m
     step = _step(cells.shape, (across_m, down_m))
     cells, above, left = _coarsen(cells, step, (across_m, down_m))
@@ -234,9 +238,9 @@ def _potential(distance_m: Float64[np.ndarray, "h w"]) -> Float32[np.ndarray, "h
 
 def _list_parts(names: tuple[str, ...]) -> str:
     """Return the parts with their names, or their numbers alone; few enough for a line."""
-    named = [f"{number}: {quoted(name)}" for number, name in enumerate(names) if name]
+    named = [f"{shown_number(number)}: {quoted(name)}" for number, name in enumerate(names) if name]
     if not named:
-        return f"0 to {len(names) - 1}, none of which has a name"
+        return f"1 to {len(names)}, none of which has a name"
     more = f" and {len(named) - MOST_LISTED} others" if len(named) > MOST_LISTED else ""
     return ", ".join(named[:MOST_LISTED]) + more
 

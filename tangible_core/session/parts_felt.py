@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Float64, Int32
 
 from ..data import HapticSurface, ServoReport, TickFlag, Vector
+from ..data.part_words import name_part
 from ..errors import OutputError, TangibleError, quoted
 from .recording import Recording
 
@@ -108,7 +109,7 @@ def names_of(text: str) -> list[dict[int, str]]:
 
 def part_label(number: int, name: str) -> str:
     """Return a part's name, or its number if it has none."""
-    return name or f"part {number}"
+    return name or name_part(number)
 
 
 def parts_felt(recording: Recording, surface: HapticSurface) -> tuple[PartFelt, ...]:

@@ -7,6 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 from string import Template
 
+from tangible_core.data.part_words import name_part
 from tangible_core.files.yaml.parts_block import part_lines
 from tangible_core.parts import HeightChoice
 from tangible_core.pipeline.pipeline import Pipeline
@@ -64,7 +65,7 @@ def _count_in_words(parts: int) -> str:
 def _lines(listed: Sequence[ListedPart]) -> str:
     """Write a line for each part, with its place and the reason of its height."""
     parts = {each.number: {"name": "", "height_m": f"{1000 * (each.height_m or 0):.1f} mm"} for each in listed}
-    comments = {each.number: f"{each.where}, {_briefly(each.why)}" for each in listed}
+    comments = {each.number: f"{name_part(each.number)}: {each.where}, {_briefly(each.why)}" for each in listed}
     return part_lines(parts, comments).removesuffix("\n")
 
 

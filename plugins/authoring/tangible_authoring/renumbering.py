@@ -5,6 +5,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
+from tangible_core.data.part_words import name_part, shown_number
 from tangible_core.errors import ConfigError
 from tangible_core.files.writing import atomic_write
 from tangible_core.files.yaml.parts_block import with_parts
@@ -89,8 +90,8 @@ def _check_rules(file: Path, by_rules: Collection[int], moved: Iterable[Moved]) 
     """Refuse rules for parts by numbers that have changed. Raises: ConfigError."""
     if each := next((each for each in moved if each.before in by_rules), None):
         raise ConfigError(
-            f"{file}: a rule of materials.rules is for part {each.before} by its number, which has changed; give the "
-            "part a name, and write that into the rule"
+            f"{file}: a rule of materials.rules is for {name_part(each.before)} by its key {each.before}, which has "
+            "changed; give the part a name, and write that into the rule"
         )
 
 
@@ -117,10 +118,11 @@ def in_words(moved: Sequence[Moved]) -> str:
     """Name the parts whose numbers have changed.
 
     >>> in_words([Moved(2, 3, "head"), Moved(3, None, "")])
-    'numbers of parts have changed: 2 (head) is now 3, 3 is no more'
+    'numbers of parts have changed: 3 (head) is now 4, 4 is no more'
     """
     changes = (
-        f"{each.before}{each.name and f' ({each.name})'} is {'no more' if each.now is None else f'now {each.now}'}"
+        f"{shown_number(each.before)}{each.name and f' ({each.name})'} is "
+        f"{'no more' if each.now is None else f'now {shown_number(each.now)}'}"
         for each in moved[:MOST_NAMED]
     )
     more = [f"and {len(moved) - MOST_NAMED} more"] if len(moved) > MOST_NAMED else []
@@ -156,8 +158,8 @@ def _choice_of(written: Mapping[int, Any], before: Before) -> Any:
 
 
 def _comment(before: Before, part: ListedPart) -> str:
-    new = f", new, cut from what was {before.cut_from}" if before.number is None else ""
-    return f"{part.where}{new}"
+    new = f", new, cut from what was {name_part(before.cut_from)}" if before.number is None else ""
+    return f"{name_part(part.number)}: {part.where}{new}"
 
 
 def _block(choice: Any) -> dict[str, Any]:

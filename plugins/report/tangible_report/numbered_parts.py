@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from jaxtyping import Bool, Int32, UInt8
 
+from tangible_core.data.part_words import shown_number
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
 from tangible_core.data.views import PartMap
@@ -52,7 +53,8 @@ def numbered_parts(picture: np.ndarray, parts: PartMap, names: Sequence[str] = (
     draw = ImageDraw.Draw(image)
     for number in range(parts.count):
         name = names[number] if number < len(names) else ""
-        texts = [f"{number} {name}", str(number)] if name else [str(number)]
+        number_text = str(shown_number(number))
+        texts = [f"{number_text} {name}", number_text] if name else [number_text]
         _write(draw, _largest_disc(labels == number), texts, longer)
     info = PngInfo()
     info.add_text(DRAWN, _digest(image))

@@ -193,13 +193,17 @@ def _error_lines(figures: Mapping[Any, Any]) -> list[str]:
 
 
 def _material_lines(figures: Mapping[Any, Any]) -> list[str]:
-    return [f"{label}: {each['name']} ({each['why']})" for label, each in figures.items()]
+    from ...data.part_words import shown_number
+
+    return [f"{shown_number(int(label))}: {each['name']} ({each['why']})" for label, each in figures.items()]
 
 
 def _part_lines(figures: Mapping[Any, Any]) -> list[str]:
     """Return a line for each part: its number, name, height and material, and the reason."""
+    from ...data.part_words import shown_number
+
     return [
-        f"{number}: {', '.join(_properties(each))}" + (f" ({each['why']})" if each["why"] else "")
+        f"{shown_number(int(number))}: {', '.join(_properties(each))}" + (f" ({each['why']})" if each["why"] else "")
         for number, each in figures.items()
     ]
 

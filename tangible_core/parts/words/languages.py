@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Literal, NamedTuple, get_args
 from unicodedata import category
 
+from ...data.part_words import shown_number
 from ...errors import quoted, shown
 from ...plugins.notes import note
 from . import de, en, fr
@@ -66,11 +67,11 @@ def part_label(part: str | int, language: str = "en") -> str:
     language: a tag, as of a pipeline.
 
     >>> part_label("helmet"), part_label(3), part_label(3, "de-AT")
-    ('helmet', 'part 3', 'Teil 3')
+    ('helmet', 'part 4', 'Teil 4')
     """
     if isinstance(part, str):
         return one_line(part)
-    return Words(language_of(language))("part number", number=part)
+    return Words(language_of(language))("part number", number=shown_number(part))
 
 
 def one_line(text: str) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 
 from ...data import Material
+from ...data.part_words import name_part
 from ...errors import MOST_QUOTED, ConfigError, MaterialError, did_you_mean, quoted
 from ...materials.assignment import find, load_library
 from ...parts import PartChoice
@@ -53,7 +54,7 @@ def _wrong_names(parts: Mapping[int, PartChoice]) -> Iterator[Wrong]:
         wrong = _wrong_name(choice.name)
         other = first.setdefault(choice.name.strip().casefold(), number) if choice.name.strip() else number
         if other != number:
-            wrong = f"{quoted(choice.name)} is the name of part {other} as well; give each part a name of its own"
+            wrong = f"{quoted(choice.name)} is the name of {name_part(other)} as well; give each part a name of its own"
         if wrong:
             yield ("parts", number, "name"), wrong
 

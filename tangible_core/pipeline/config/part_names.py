@@ -17,12 +17,3 @@ def numbers_of(parts: Mapping[int, PartChoice]) -> dict[str, int]:
 def names_of(parts: Mapping[int, PartChoice], count: int) -> tuple[str, ...]:
     """Return a name for each of `count` parts; empty for a part without one."""
     return tuple(parts[number].name.strip() if number in parts else "" for number in range(count))
-
-
-def part_in_words(number: int, name: str = "") -> str:
-    """Name a part in a sentence.
-
-    >>> part_in_words(6, "helmet"), part_in_words(7)
-    ('part 6 (helmet)', 'part 7')
-    """
-    return f"part {number} ({name})" if name else f"part {number}"

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from ...data import DisparityMap, PartMap
+from ...data.part_words import name_part, shown_number
 from ...parts import HeightChoice, PartHeights, depth_heights, guess_heights
 from ...plugins.notes import note
 from .working_grid import transparent_parts
@@ -74,10 +75,10 @@ def in_words(numbers: list[int]) -> str:
     """Name parts in a sentence, the first of many.
 
     >>> in_words([3]), in_words([3, 5, 7])
-    ('part 3', 'parts 3, 5 and 7')
+    ('part 4', 'parts 4, 6 and 8')
     """
     if len(numbers) == 1:
-        return f"part {numbers[0]}"
-    first, rest = numbers[:MOST_NAMED], len(numbers) - MOST_NAMED
+        return name_part(numbers[0])
+    first, rest = map(shown_number, numbers[:MOST_NAMED]), len(numbers) - MOST_NAMED
     *most, last = map(str, first) if rest <= 0 else (*map(str, first), f"{rest} more")
     return f"parts {', '.join(most)} and {last}"

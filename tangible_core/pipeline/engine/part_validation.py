@@ -8,13 +8,14 @@ from functools import lru_cache
 import numpy as np
 
 from ...data import HapticSurface, MaterialMap, PartMap, SegmentMap
+from ...data.part_words import missing_key, name_part
 from ...errors import PictureError
 from ...materials.rules import MaterialRule
 from ...parts import find_parts, part_sizes
 from ...plugins.notes import note
 from ..config.model import PipelineConfig
 from ..config.part_checks import ROUNDING_M
-from ..config.part_names import Wrong, names_of, numbers_of, part_in_words
+from ..config.part_names import Wrong, names_of, numbers_of
 
 log = logging.getLogger(__name__)
 
@@ -44,7 +45,9 @@ def warn_small_parts(parts: PartMap) -> None:
     small = np.flatnonzero(sizes < max(FEW_PIXELS, FEW_SHARE * parts.labels.size)).tolist()
     if not small:
         return
-    texts = [f"part {each} at {place_of(parts, each)} ({_pixels(int(sizes[each]))})" for each in small[:MOST_SLIPS]]
+    texts = [
+        f"{name_part(each)} at {place_of(parts, each)} ({_pixels(int(sizes[each]))})" for each in small[:MOST_SLIPS]
+    ]
     more = f", and {len(small) - MOST_SLIPS} more" if len(small) > MOST_SLIPS else ""
     few = "one part has few pixels" if len(small) == 1 else f"{len(small)} parts have few pixels"
     cure = "paint over them, or choose smoother segments; the numbers of the parts after them then change"
@@ -85,15 +88,13 @@ def check_numbers(config: PipelineConfig, count: int) -> None:
 
 
 def _wrong_numbers(config: PipelineConfig, count: int) -> Iterator[Wrong]:
-    there = f"the parts are 0 to {count - 1}" if count > 1 else "the only part is 0"
-    there = f"{there} (`tangible parts` draws them with their numbers)"
-    names = config.part_names
+    draws = "(`tangible parts` draws the parts with their numbers)"
     for number in config.parts or {}:
         if number >= count:
-            yield ("parts", number), f"there is no {part_in_words(number, names.get(number, ''))}; {there}"
+            yield ("parts", number), f"{missing_key(number, count)} {draws}"
     for index, rule in enumerate(config.materials.rules):
         if isinstance(rule.part, int) and rule.part >= count:
-            yield ("materials", "rules", index, "part"), f"there is no {part_in_words(rule.part)}; {there}"
+            yield ("materials", "rules", index, "part"), f"{missing_key(rule.part, count)} {draws}"
 
 
 def _wrong_heights(config: PipelineConfig, parts: PartMap, columns: int) -> Iterator[Wrong]:
@@ -106,7 +107,7 @@ def _wrong_heights(config: PipelineConfig, parts: PartMap, columns: int) -> Iter
             place = place_of(parts, number, columns / parts.labels.shape[1])
             yield (
                 ("parts", number, "height_m"),
-                f"{part_in_words(number, names.get(number, ''))}, at {place} of the picture, is {_mm(height_m)} high, "
+                f"{name_part(number, names.get(number, ''))}, at {place} of the picture, is {_mm(height_m)} high, "
                 f"and the highest can be {_mm(top_m)}: workspace.relief_m, {_mm(size.relief_m)}, less bulge_m and "
                 f"detail_m, {_mm(above_m)}; make it lower, or workspace.relief_m {_mm(height_m + above_m)}",
             )
@@ -135,7 +136,7 @@ def add_names_to_reasons(config: PipelineConfig, materials: MaterialMap) -> Mate
     reasons = list(materials.reasons)
     for number, name in config.part_names.items():
         if number < len(reasons):
-            reasons[number] = part_in_words(number, name) + reasons[number].removeprefix(part_in_words(number))
+            reasons[number] = name_part(number, name) + reasons[number].removeprefix(name_part(number))
     return replace(materials, reasons=tuple(reasons))
 
 

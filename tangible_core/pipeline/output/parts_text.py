@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from ...data import DisparityMap, PartMap
+from ...data.part_words import name_part
 from ...errors import ConfigError, shown
 from ...files.yaml.editing import on_one_line
 from ...files.yaml.parts_block import with_parts
@@ -51,7 +52,7 @@ def to_correct(engine: Engine) -> str:
         rest = ""
     head = f"# {SOURCES[config.heights.by]} Correct what is wrong, and give names.\n"
     given = config.heights.model_copy(update={"by": "given"}).model_dump(mode="json")
-    reasons = {number: shown(why, MOST_REASON) for number, why in enumerate(heights.reasons)}
+    reasons = {number: f"{name_part(number)}: {shown(why, MOST_REASON)}" for number, why in enumerate(heights.reasons)}
     parts = with_parts(rest, Path(), _blocks(config, heights), reasons)
     return f"{head}{parts}heights: {on_one_line(given)}\n"
 

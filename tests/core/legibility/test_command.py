@@ -26,9 +26,9 @@ def test_legible_small_part_prints_its_cure_and_exits_with_1(folder):
     found = tangible("legible", "house.yaml", "--for", "swell", cwd=folder)
     assert found.returncode == 1
     lines = found.stdout.splitlines()
-    assert "60 mm wide, on swell paper: Illegible, because part 2 (window) is smaller than a" in lines[0]
+    assert "60 mm wide, on swell paper: Illegible, because part 3 (window) is smaller than a" in lines[0]
     wrong = next(line for line in lines if line.startswith("illegible"))
-    assert "part 2 (window), on the left, halfway down: 4 mm < 6.4 mm; tactilegraphics.org" in wrong
+    assert "part 3 (window), on the left, halfway down: 4 mm < 6.4 mm; tactilegraphics.org" in wrong
     assert (
         lines[lines.index(wrong) + 1]
         .split("cure: ")[1]

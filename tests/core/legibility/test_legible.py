@@ -60,10 +60,10 @@ def test_verdict_has_part_place_bound_source_and_cure():
     labels[100:140, 100:140] = 2
     parts = PartMap(labels, (0, 1, 2))
     (small,) = verdicts("swell", parts, names=("", "", "moon"))["part"]
-    assert (small.of, small.verdict, small.bound) == ("part 2 (moon), at the upper left", "illegible", 0.0064)
+    assert (small.of, small.verdict, small.bound) == ("part 3 (moon), at the upper left", "illegible", 0.0064)
     assert small.value == pytest.approx(0.004, rel=3e-3)
     assert small.source == "tactilegraphics.org"
-    assert small.says == "part 2 (moon) is smaller than a fingertip at the upper left"
+    assert small.says == "part 3 (moon) is smaller than a fingertip at the upper left"
     ((x, y),) = small.at
     assert 100 <= 600 * x <= 140
     assert 100 <= 400 * y <= 140
@@ -182,7 +182,7 @@ def test_pins_part_of_one_pin_and_hidden_borders_fail():
     assert grades("pins", PartMap(labels, (0, 1))) == {"parts": "ok", "pins": "ok", "kept borders": "ok"}
     labels[pin : 2 * pin, pin : 2 * pin] = 2
     (few,) = verdicts("pins", PartMap(labels, (0, 1, 2)), names=("", "", "star"))["pins"]
-    assert (few.value, few.of) == (1, "part 2 (star), at the upper left")
+    assert (few.value, few.of) == (1, "part 3 (star), at the upper left")
     labels[:, 10 * pin : 10 * pin + pin // 5] = 2
     assert grades("pins", PartMap(labels, (0, 1, 2)))["kept borders"] == "illegible"
 

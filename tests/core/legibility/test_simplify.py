@@ -10,6 +10,7 @@ import drawn_parts
 from colour_parts import by_colour
 from tangible_core import load_method
 from tangible_core.data import PartMap, SegmentMap
+from tangible_core.data.part_words import name_part
 from tangible_core.errors import GeometryError
 from tangible_core.legibility import SimplifyChoice, legibility, simplify
 from tangible_core.parts import find_parts
@@ -69,7 +70,7 @@ def test_simplify_random_parts_pass_or_are_reported(seed, count, width_m):
     again = simplify(found, width_m, CHOICE, names)
     assert not passes or (np.array_equal(again.labels, found.labels) and again.segments == found.segments)
     gone = [n for n, name in enumerate(names[: parts.count]) if name and not (found.labels == n).any()]
-    assert all(any(f"part {number} ({names[number]})" in note for note in notes) for number in gone[:3])
+    assert all(any(name_part(number, names[number]) in note for note in notes) for number in gone[:3])
 
 
 def test_simplify_passing_parts_are_unchanged():
@@ -131,7 +132,7 @@ def test_simplify_small_named_part_is_noted_with_a_cure():
     with collected() as notes:
         simplify(parts, 0.06, CHOICE, names)
     (note,) = notes
-    assert "part 2 (window), in which a disc of 4 mm fits" in note
+    assert "part 3 (window), in which a disc of 4 mm fits" in note
     assert "make the whole 96 mm wide (`workspace.width_m`), or have fewer and larger parts" in note
 
 
@@ -162,7 +163,7 @@ def test_simplify_part_split_in_two_is_noted():
     with collected() as notes:
         found = simplify(PartMap(labels, (0, 1)), 0.06, CHOICE, ("", "glasses"))
     assert find_parts(SegmentMap(found.labels)).count == 3
-    assert notes == ["simplified parts in several pieces: part 1 (glasses) in 2"]
+    assert notes == ["simplified parts in several pieces: part 2 (glasses) in 2"]
 
 
 def test_simplify_picture_below_a_fingertip_notes_the_size_that_passes():

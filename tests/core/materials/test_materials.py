@@ -192,20 +192,20 @@ class TestByName:
     def test_each_label_gets_its_material(self):
         assigned = assign(stripes(3), None, {0: "ice", 1: "sand", 2: "ice"}, library())
         assert [each.name for each in assigned.materials] == ["ice", "sand", "ice"]
-        assert assigned.reasons == ("segment 0: named ice", "segment 1: named sand", "segment 2: named ice")
+        assert assigned.reasons == ("segment 1: named ice", "segment 2: named sand", "segment 3: named ice")
 
     def test_unnamed_label_is_neutral(self):
         assigned = assign(stripes(2), None, {1: "sand"}, library())
         assert [each.name for each in assigned.materials] == ["plain", "sand"]
-        assert assigned.reasons[0] == "segment 0: not named -> plain"
+        assert assigned.reasons[0] == "segment 1: not named -> plain"
 
     def test_wrong_labels_and_names_are_all_reported(self):
         with pytest.raises(MaterialError) as error:
             assign(stripes(3), None, {0: "icee", 3: "sand", -1: "sand"}, library())
         first, second, third = str(error.value).splitlines()
-        assert first.startswith("segment 0: no material is named 'icee' (did you mean 'ice'?)")
-        assert second == "there is no segment 3; the segments are 0 to 2"
-        assert third == "there is no segment -1; the segments are 0 to 2"
+        assert first.startswith("segment 1: no material is named 'icee' (did you mean 'ice'?)")
+        assert second == "no segment has the key 3: the keys of the 3 segments are 0 to 2, and segment 1 is key 0"
+        assert third == "no segment has the key -1: the keys of the 3 segments are 0 to 2, and segment 1 is key 0"
 
 
 class TestByRoughness:
@@ -215,9 +215,9 @@ class TestByRoughness:
         assert [each.name for each in assigned.materials] == ["brick", "ice", "wood"]
         spread = picture.std()
         assert assigned.reasons == (
-            f"segment 0: roughness rank 3 of 3 ({0.3 / spread * np.sqrt(80 / 81):.3f}) -> brick",
-            "segment 1: roughness rank 1 of 3 (0.000) -> ice",
-            f"segment 2: roughness rank 2 of 3 ({0.1 / spread * np.sqrt(80 / 81):.3f}) -> wood",
+            f"segment 1: roughness rank 3 of 3 ({0.3 / spread * np.sqrt(80 / 81):.3f}) -> brick",
+            "segment 2: roughness rank 1 of 3 (0.000) -> ice",
+            f"segment 3: roughness rank 2 of 3 ({0.1 / spread * np.sqrt(80 / 81):.3f}) -> wood",
         )
 
     def test_shadow_does_not_change_the_roughness(self):
@@ -271,7 +271,7 @@ class TestByRoughness:
 
     def test_roughness_of_a_single_pixel_is_zero(self):
         assigned = assign(SegmentMap(np.zeros((1, 1), np.int32)), np.ones((1, 1)), "roughness", library())
-        assert assigned.reasons == ("segment 0: roughness rank 1 of 1 (0.000) -> plain",)
+        assert assigned.reasons == ("segment 1: roughness rank 1 of 1 (0.000) -> plain",)
 
     def test_roughness_without_a_picture_is_refused(self):
         for picture in (None, np.zeros((3, 4))):
@@ -311,10 +311,10 @@ class TestByRules:
         assigned = assign(segments, picture, "rules", library(), given, "leather")
         assert [each.name for each in assigned.materials] == ["water", "ice", "leather", "sand"]
         assert assigned.reasons == (
-            "segment 0: rule 4, 100 % of it blue -> water",
-            "segment 1: rule 2, at [25.4, 0] -> ice",
-            "segment 2: not named -> leather",
-            "segment 3: rule 1, named -> sand",
+            "segment 1: rule 4, 100 % of it blue -> water",
+            "segment 2: rule 2, at [25.4, 0] -> ice",
+            "segment 3: not named -> leather",
+            "segment 4: rule 1, named -> sand",
         )
 
     @pytest.mark.parametrize(
@@ -342,10 +342,10 @@ class TestByRules:
         segments, picture = quarters()
         picture[:9, :20] = (200, 30, 30)
         assigned = assign(segments, picture, "rules", library(), rules({"colour": "blue", "material": "water"}))
-        assert assigned.reasons[0] == "segment 0: rule 1, 55 % of it blue -> water"
+        assert assigned.reasons[0] == "segment 1: rule 1, 55 % of it blue -> water"
         picture[:11, :20] = (200, 30, 30)
         assigned = assign(segments, picture, "rules", library(), rules({"colour": "blue", "material": "water"}))
-        assert assigned.reasons[0] == "segment 0: not named -> plain"
+        assert assigned.reasons[0] == "segment 1: not named -> plain"
 
     def test_rule_that_fits_nothing_is_logged(self, caplog: pytest.LogCaptureFixture):
         assign(*quarters(), "rules", library(), rules({"colour": "pink", "material": "skin"}))
@@ -363,7 +363,7 @@ class TestByRules:
         with pytest.raises(MaterialError) as error:
             assign(quarters()[0], np.zeros((3, 4)), "rules", library(), given)
         first, second, third = str(error.value).splitlines()
-        assert first == "materials: rule 1: there is no segment 4; the segments are 0 to 3"
+        assert first.startswith("materials: rule 1: no segment has the key 4: the keys of the 4 segments are 0 to 3")
         assert second == "materials: rule 2: [40, 3] lies outside the picture of 40 x 40 pixels"
         assert third.startswith("materials: rule 3: a rule by colour needs the segmented picture")
 

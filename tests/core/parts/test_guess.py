@@ -109,11 +109,11 @@ def test_reasons_name_the_place_of_a_part_and_what_it_hides():
     heights = guess_heights(parts_of(discs((120, 100), (170, 100))), 0.004)
     assert heights.reasons == (
         "guessed, 1 of 3 from the back: it reaches down to 96 % of the picture's height and has 100 % of its upper and "
-        "side rims; it is behind part 2",
+        "side rims; it is behind part 3",
         "guessed, 2 of 3 from the back: it reaches down to 68 % of the picture's height and has 0 % of its upper and "
-        "side rims; it is behind part 2",
+        "side rims; it is behind part 3",
         "guessed, 3 of 3 from the back: it reaches down to 66 % of the picture's height and has 0 % of its upper and "
-        "side rims; it is in front of parts 0 and 1",
+        "side rims; it is in front of parts 1 and 2",
     )
 
 

@@ -171,7 +171,7 @@ def test_picture_that_does_not_fit_the_parts_is_refused(picture, message):
 
 @pytest.mark.parametrize(
     ("heights_m", "message"),
-    [([0.001], "2 parts and 1 heights"), ([0, np.nan], "part 1"), ([-0.001, 0], "part 0"), ([0, np.inf], "part 1")],
+    [([0.001], "2 parts and 1 heights"), ([0, np.nan], "part 2"), ([-0.001, 0], "part 1"), ([0, np.inf], "part 2")],
 )
 def test_wrong_heights_are_refused(heights_m, message):
     with pytest.raises(GeometryError, match=message):

@@ -21,7 +21,7 @@ ROWS, COLUMNS = 40, 60
 LABELS = np.zeros((ROWS, COLUMNS), np.int32)
 LABELS[5:15, 5:20] = LABELS[5:15, 40:55] = 1
 LABELS[20:35, 20:45] = 2
-"""Part 0 is the wall, of segment 0; 1 and 2 are the two boxes of segment 1; 3 is of segment 2."""
+"""Part 0 is the wall, of segment 1; 1 and 2 are the two boxes of segment 2; 3 is of segment 3."""
 PICTURE = np.random.default_rng(0).random((ROWS, COLUMNS)).astype(np.float32)
 ran: list[str] = []
 
@@ -125,7 +125,7 @@ class TestHeights:
         assert surface.extent_m == pytest.approx((0.08, 0.08 * ROWS / COLUMNS))
         assert [each.text for each in notes(made, "relief")] == [
             "no depth is needed: heights are given",
-            "no height is given for parts 0 and 2, which lie at 0",
+            "no height is given for parts 1 and 3, which lie at 0",
         ]
 
     def test_heights_by_depth_are_medians_over_the_parts(self):
@@ -157,7 +157,7 @@ class TestHeights:
         assert [each.levelname for each in caplog.records if "guessed" in each.message] == ["WARNING"]
         made = pipeline(heights="guess", parts={0: {"height_m": 0}, 2: {"height_m": 0}})
         made.make("relief")
-        assert notes(made, "relief")[-1].text.startswith("the heights of parts 1 and 3 are guessed")
+        assert notes(made, "relief")[-1].text.startswith("the heights of parts 2 and 4 are guessed")
         made = pipeline(heights="guess", parts={number: {"height_m": 0} for number in range(4)})
         made.make("relief")
         assert [each.kind for each in notes(made, "relief")] == ["decision"]
@@ -226,7 +226,7 @@ class TestCached:
         assert outcome_kinds(again)["surface"] == "cached"
         assert again.surface.names == ("wall", "crate", "", "chest")
         assert again.materials is not None
-        assert again.materials.reasons[1] == "part 1 (crate): rule 1, named -> ice"
+        assert again.materials.reasons[1] == "part 2 (crate): rule 1, named -> ice"
         assert outcome_kinds(again)["materials"] == "cached"
         assert again.relief is not None and outcome_kinds(again)["relief"] == "cached"
 
@@ -237,7 +237,7 @@ class TestCached:
         config = first.config.with_values(parts={**(first.config.parts or {}), 0: PartChoice(name="sky")})
         again = first.changed(config)
         assert again.surface.names is not None and again.surface.names[0] == "sky"
-        assert again.materials is not None and "part 0 (sky)" in again.materials.reasons[0]
+        assert again.materials is not None and "part 1 (sky)" in again.materials.reasons[0]
         assert "ran" not in outcome_kinds(again).values()
         assert first.surface.names is not None and first.surface.names[0] == "wall"
 
@@ -273,7 +273,7 @@ class TestCached:
         load_pipeline(path, cache=Cache(folder / "cache")).make("surface")
         path.write_text(f"{text}parts: {{99999: nobody}}\n")
         again = load_pipeline(path, cache=Cache(folder / "cache"))
-        with pytest.raises(ConfigError, match=r"p.yaml:4:9: parts.99999: there is no part 99999 \(nobody\)"):
+        with pytest.raises(ConfigError, match=r"p.yaml:4:9: parts.99999: no part has the key 99999"):
             again.make("surface")
         assert outcome_kinds(again)["surface"] == "failed"
 
@@ -296,10 +296,10 @@ class TestMaterials:
         assert found is not None
         assert [each.name for each in found.materials] == ["ice", "glass", "wood", "cloth"]
         assert found.reasons == (
-            "part 0 (wall): rule 1, named -> ice",
-            "part 1 (left box): its own -> glass",
-            "part 2: rule 2, of segment 1 -> wood",
-            "part 3: segment 2, named cloth",
+            "part 1 (wall): rule 1, named -> ice",
+            "part 2 (left box): its own -> glass",
+            "part 3: rule 2, of segment 2 -> wood",
+            "part 4: segment 3, named cloth",
         )
 
     def test_materials_by_place_and_colour_are_those_of_the_rules(self):
@@ -310,7 +310,7 @@ class TestMaterials:
         )
         assert made.materials is not None
         assert [each.name for each in made.materials.materials] == ["plain", "brick", "ice", "plain"]
-        assert made.materials.reasons[1] == "part 1: rule 2, 100 % of it red -> brick"
+        assert made.materials.reasons[1] == "part 2: rule 2, 100 % of it red -> brick"
 
     def test_materials_by_roughness_are_one_for_each_part(self):
         picture = np.full((ROWS, COLUMNS), 0.5, np.float32)
@@ -319,13 +319,15 @@ class TestMaterials:
         assert made.materials is not None
         names = [each.name for each in made.materials.materials]
         assert names[1] == "brick" and names[2] != "brick"  # both are of one segment
-        assert made.materials.reasons[0].startswith("part 0 (wall): roughness rank ")
+        assert made.materials.reasons[0].startswith("part 1 (wall): roughness rank ")
 
     def test_rule_for_an_unknown_segment_is_refused(self):
         made = pipeline(parts={}, materials={"by": "rules", "rules": [{"segment": 7, "material": "ice"}]}, depth=Ramp())
-        with pytest.raises(MaterialError, match=r"rule 1: there is no segment 7; the segments are 0 to 2"):
+        with pytest.raises(
+            MaterialError, match=r"rule 1: no segment has the key 7: the keys of the 3 segments are 0 to 2"
+        ):
             made.make("materials")
-        with pytest.raises(MaterialError, match=r"there is no segment 7; the segments are 0 to 2"):
+        with pytest.raises(MaterialError, match=r"no segment has the key 7: the keys of the 3 segments are 0 to 2"):
             pipeline(parts={}, materials={7: "ice"}, depth=Ramp()).make("materials")
 
     def test_materials_on_a_map_of_heights_are_by_parts(self):
@@ -360,8 +362,8 @@ class TestComplaints:
     def test_unknown_part_is_refused_with_its_place(self, folder: Path):
         error = self.complaints(folder, "parts:\n  0: wall\n  9: {name: ghost}\nheights: given\n")
         assert str(error) == (
-            f"{folder / 'p.yaml'}:4:3: parts.9: there is no part 9 (ghost); the parts are 0 to 3 "
-            "(`tangible parts` draws them with their numbers)"
+            f"{folder / 'p.yaml'}:4:3: parts.9: no part has the key 9: the keys of the 4 parts are 0 to 3, "
+            "and part 1 is key 0 (`tangible parts` draws the parts with their numbers)"
         )
         (complaint,) = error.complaints
         assert (complaint.location, complaint.line, complaint.column) == (("parts", 9), 4, 3)
@@ -369,12 +371,14 @@ class TestComplaints:
     def test_rule_for_an_unknown_part_is_refused_with_its_place(self, folder: Path):
         error = self.complaints(folder, "parts: {}\nmaterials: {rules: [{part: 4, material: ice}]}\n")
         assert error.complaints[0].location == ("materials", "rules", 0, "part")
-        assert "p.yaml:3:22: materials.rules.0.part: there is no part 4; the parts are 0 to 3" in str(error)
+        assert "p.yaml:3:22: materials.rules.0.part: no part has the key 4: the keys of the 4 parts are 0 to 3" in str(
+            error
+        )
 
     def test_height_above_the_workspace_is_refused_with_the_cure(self, folder: Path):
         error = self.complaints(folder, f"{SAID.replace('3 mm', '4.3 mm')}heights: given\n")
         assert str(error).endswith(
-            ":2:72: parts.3.height_m: part 3 (chest), at [32, 27] of the picture, is 4.3 mm high, and the highest can "
+            ":2:72: parts.3.height_m: part 4 (chest), at [32, 27] of the picture, is 4.3 mm high, and the highest can "
             "be 4.2 mm: workspace.relief_m, 6 mm, less bulge_m and detail_m, 1.8 mm; make it lower, or "
             "workspace.relief_m 6.1 mm"
         )
@@ -392,7 +396,7 @@ class TestComplaints:
     @pytest.mark.parametrize("parts", [{}, {"heights": "depth"}], ids=["materials alone", "heights"])
     def test_unknown_part_is_refused_before_depth_runs(self, parts: dict):
         made = pipeline(None, parts={9: "ghost"}, depth=Ramp(), texture=Same(), **parts)
-        with pytest.raises(ConfigError, match="there is no part 9"):
+        with pytest.raises(ConfigError, match="no part has the key 9"):
             made.make("surface")
         assert ran == ["segments"]
         assert outcome_kinds(made)["parts"] == "failed"
@@ -401,7 +405,7 @@ class TestComplaints:
         with pytest.raises(ConfigError) as error:
             pipeline(parts={9: "ghost", 1: {"height_m": 1}}, heights="given").make("relief")
         assert [each.location for each in error.value.complaints] == [("parts", 9), ("parts", 1, "height_m")]
-        assert str(error.value).startswith("parts.9: there is no part 9 (ghost)")
+        assert str(error.value).startswith("parts.9: no part has the key 9")
         assert {each.line for each in error.value.complaints} == {None}
 
     @pytest.mark.parametrize("key", ["heights: given", "parts: {0: wall}"])
@@ -450,7 +454,7 @@ class TestComplaints:
             ({0: 3}, "parts.0: takes the name of a part, or {name: ..., height_m"),
             ({0: {"heigth_m": 1}}, "parts.0.heigth_m: "),
             ({0: {"height_m": np.nan}}, "parts.0.height_m: Input should be a finite number"),
-            ({0: "a", 1: "A"}, "parts.1.name: 'A' is the name of part 0 as well"),
+            ({0: "a", 1: "A"}, "parts.1.name: 'A' is the name of part 1 as well"),
         ],
     )
     def test_nonsense_in_python_is_refused(self, parts: Any, says: str):
@@ -467,7 +471,7 @@ class TestComplaints:
         (slip,) = notes(made, "parts")
         assert slip.kind == "warning"
         assert slip.text == (
-            "2 parts have few pixels: part 1 at [50, 2] (1 pixel), part 5 at [2, 30] (1 pixel); paint over them, or "
+            "2 parts have few pixels: part 2 at [50, 2] (1 pixel), part 6 at [2, 30] (1 pixel); paint over them, or "
             "choose smoother segments; the numbers of the parts after them then change"
         )
 
@@ -573,7 +577,7 @@ class TestWritten:
         assert again.surface.digest() == first.surface.digest()
         np.testing.assert_array_equal(again.surface.height_m, first.surface.height_m)
         line = next(each for each in file.read_text(encoding="utf-8").splitlines() if each.startswith("  3: "))
-        assert line.startswith("  3: {name: Truhe, height_m: 0.00") and "material: glass}   # guessed, " in line
+        assert line.startswith("  3: {name: Truhe, height_m: 0.00") and "material: glass}   # part 4: guessed, " in line
         rerun = again.run(folder / "out")
         assert not file.exists() and file not in rerun.files
 
@@ -594,7 +598,7 @@ class TestWritten:
             "name": "chest", "material": "glass", "height_m": 0.003, "why": "given",
         }  # fmt: skip
         assert (folder / "out" / "parts.npz").exists()
-        assert "Boxes. Input" in run.sheet_says and "3 chest: glass" in run.sheet_says
+        assert "Boxes. Input" in run.sheet_says and "4 chest: glass" in run.sheet_says
         assert "Segments" not in run.sheet_says
         assert "Its parts, from near to far, are chest (" in run.sheet_says
         assert "heights: {by: guess" not in run.sheet_says and not (folder / "out" / "parts-guessed.yaml").exists()

@@ -41,17 +41,18 @@ from waiting import until
 
 class TestPartNames:
     def test_part_number_accepts_name_number_and_number_as_text(self):
-        assert [beacon_to(SURFACE, each).part for each in ("ground", " arc", 4, "4")] == [0, 4, 4, 4]
+        assert [beacon_to(SURFACE, each).part for each in ("ground", " arc", 4, "5")] == [0, 4, 4, 4]
         assert pickle.loads(pickle.dumps(beacon_to(SURFACE, 4))).part == 4
 
     @pytest.mark.parametrize(
         ("part", "said"),
         [
-            ("arch", "no part is called 'arch' (did you mean 'arc'?); the parts are 0: 'ground'"),
-            ("", "no part is called ''; the parts are 0: 'ground', 1: 'disc'"),
-            (5, "there is no part 5; the parts are 0: 'ground'"),
+            ("arch", "no part is called 'arch' (did you mean 'arc'?); the parts are 1: 'ground'"),
+            ("", "no part is called ''; the parts are 1: 'ground', 2: 'disc'"),
+            (5, "there is no part 6; the parts are 1: 'ground'"),
             ("9", "there is no part 9"),
-            (-1, "there is no part -1"),
+            (-1, "there is no part 0"),
+            ("0", "there is no part 0"),
         ],
     )
     def test_part_number_of_missing_part_lists_the_parts(self, part: str | int, said: str):
@@ -61,11 +62,11 @@ class TestPartNames:
 
     def test_part_number_of_ambiguous_name_or_surface_without_parts_is_refused(self):
         twice = HapticSurface(SURFACE.relief, SURFACE.labels, None, ("a", "b", "a", "", ""))
-        with pytest.raises(ConfigError, match=r"2 parts are called .*: 0, 2"):
+        with pytest.raises(ConfigError, match=r"2 parts are called .*: 1, 3"):
             beacon_to(twice, "a")
         with pytest.raises(ConfigError, match="has no parts"):
             beacon_to(HapticSurface(SURFACE.relief), 0)
-        with pytest.raises(GeometryError, match="part 5 is too small"):
+        with pytest.raises(GeometryError, match="part 6 is too small"):
             beacon_to(HapticSurface(SURFACE.relief, SURFACE.labels, None, (*NAMES, "gone")), 5)
 
 

@@ -43,7 +43,7 @@ def in_parts(labels: np.ndarray = LABELS, names: tuple[str, ...] | None = NAMES)
     ("x_mm", "y_mm", "called"),
     [
         (-20, 10, "sky"),
-        (20, 10, "part 1"),
+        (20, 10, "part 2"),
         (0, -10, "Gräser [hoch]"),
         (-40, 20, "sky"),
         (40, -20, "Gräser [hoch]"),

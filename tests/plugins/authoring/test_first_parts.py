@@ -47,7 +47,7 @@ def test_file_and_list_say_sizes_in_their_units(stripes: Path):
     assert text.startswith("# stripes.png in 5 parts, 160 x 40 pixels; parts-numbered.png shows their numbers.")
     assert "width_m: 80 mm " in text and "with its length of 20 mm" in text
     assert "a part may be 4.2 mm high" in text
-    rows = [line.split() for line in done.stdout.splitlines() if re.match(r"\s*[0-4]\s", line)]
+    rows = [line.split() for line in done.stdout.splitlines() if re.match(r"\s*[1-5]\s", line)]
     assert rows[-1][-2] == "3.8"  # 6 of 160 columns, in percent
     assert sorted(row[-1] for row in rows) == ["0.0", "1.0", "2.1", "3.1", "4.2"]
 
@@ -72,5 +72,5 @@ def test_title_is_the_name_of_the_picture_in_words():
 def test_message_names_as_many_moved_parts_as_a_line_holds():
     moved = [Moved(number, number + 1, "") for number in range(MOST_NAMED + 2)]
     said = in_words(moved)
-    assert said.endswith(f"{MOST_NAMED - 1} is now {MOST_NAMED}, and 2 more")
-    assert in_words(moved[:MOST_NAMED]).endswith(f"{MOST_NAMED - 1} is now {MOST_NAMED}")
+    assert said.endswith(f"{MOST_NAMED} is now {MOST_NAMED + 1}, and 2 more")
+    assert in_words(moved[:MOST_NAMED]).endswith(f"{MOST_NAMED} is now {MOST_NAMED + 1}")

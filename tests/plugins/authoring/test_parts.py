@@ -72,7 +72,7 @@ def test_part_line_says_where_the_part_lies(folder: Path):
     wall, vase, floor = [line for line in (folder / "still.yaml").read_text().splitlines() if line.startswith("  ")][:3]
     assert wall.startswith('  0: {name: "", height_m: 0.0 mm}   # ')
     assert wall.endswith("60 % of the picture, guessed, 1 of 3 from the back")
-    assert "# in the middle, " in vase and "# along the bottom, " in floor
+    assert "# part 2: in the middle, " in vase and "# part 3: along the bottom, " in floor
 
 
 def test_existing_file_without_force_is_kept(folder: Path):
@@ -192,7 +192,7 @@ def test_painted_parts_are_renumbered_on_request(folder: Path):
     told = tangible("parts", "still.yaml", cwd=folder)
     assert told.returncode == 2 and "new" in told.stdout, told.stderr
     assert told.stderr == (
-        "still.yaml: numbers of parts have changed: 1 (vase) is now 2, 2 (floor [old]) is now 3, since "
+        "still.yaml: numbers of parts have changed: 2 (vase) is now 3, 3 (floor [old]) is now 4, since "
         "parts-numbered.png was drawn; --renumber lets what the file says of them follow, --force draws the numbers "
         "alone\n"
     )
@@ -205,7 +205,7 @@ def test_painted_parts_are_renumbered_on_request(folder: Path):
     assert heights[1] == heights[0], "the window is as high as the wall that it was cut from"
     after = file.read_text()
     assert after.partition("parts:")[0] == named.partition("parts:")[0], "the rest stays, with its comments"
-    assert "new, cut from what was 0" in after
+    assert "new, cut from what was part 1" in after
     assert said.surface.names == ("wall", "", "vase", "floor [old]")
     well(tangible("parts", "still.yaml", "--renumber", cwd=folder))
     assert file.read_text() == after, "once is enough"
@@ -218,10 +218,10 @@ def test_removed_part_is_reported_until_corrected(folder: Path):
     paint(folder / "parts.png", (0, 0, 160, 79), 20)
     paint(folder / "parts.png", (0, 79, 160, 120), 21)
     ran = tangible("run", "still.yaml", cwd=folder)
-    assert ran.returncode == 2 and "there is no part 2 (floor); the parts are 0 to 1" in ran.stderr
-    assert "`tangible parts` draws them with their numbers" in ran.stderr
+    assert ran.returncode == 2 and "no part has the key 2: the keys of the 2 parts are 0 to 1" in ran.stderr
+    assert "`tangible parts` draws the parts with their numbers" in ran.stderr
     alone = tangible("parts", "still.yaml", "--force", cwd=folder)
-    assert alone.returncode == 2 and "there is no part 2" in alone.stderr, "drawn, and still to be corrected"
+    assert alone.returncode == 2 and "no part has the key 2" in alone.stderr, "drawn, and still to be corrected"
     assert "written: parts-numbered.png" in alone.stdout
 
 
@@ -233,7 +233,7 @@ def test_rule_by_an_old_number_is_refused(folder: Path):
     paint(folder / "parts.png", (110, 0, 160, 40), 20)
     before = file.read_text()
     done = tangible("parts", "still.yaml", "--renumber", cwd=folder)
-    assert done.returncode == 2 and "a rule of materials.rules is for part 1 by its number" in done.stderr
+    assert done.returncode == 2 and "a rule of materials.rules is for part 2 by its key 1" in done.stderr
     assert file.read_text() == before
 
 
@@ -297,7 +297,7 @@ def test_names_of_parts_reach_recording_and_replay(folder: Path):
     )
     felt = well(tangible("feel", "still.yaml", "--seconds", 0.8, "--record", "hand.nc", "--json", cwd=folder))
     said = json.loads(felt.stdout)
-    assert said["part"] in ("[wall]", "part 1", "part 2")
+    assert said["part"] in ("[wall]", "part 2", "part 3")
     assert sum(each["share"] for each in said["parts"]) == pytest.approx(1)
     about = Recording.load(folder / "hand.nc").about
     (materials,) = names_of(about.materials)
@@ -329,7 +329,7 @@ def test_beacon_by_name_reaches_recording_and_replay(folder: Path):
     assert (alone.beacon == 1).all()
     wrong = tangible("feel", "still.yaml", "--beacon", "vas", cwd=folder)
     assert (wrong.returncode, wrong.stdout) == (2, "")
-    assert "no part is called 'vas' (did you mean 'vase'?); the parts are 1: 'vase'" in wrong.stderr
+    assert "no part is called 'vas' (did you mean 'vase'?); the parts are 2: 'vase'" in wrong.stderr
 
 
 def test_run_reports_its_parts(folder: Path):
@@ -337,4 +337,4 @@ def test_run_reports_its_parts(folder: Path):
     file = folder / "still.yaml"
     file.write_text(file.read_text().replace('0: {name: ""', "0: {material: glass, name: '[wall]'"))
     ran = well(tangible("run", "still.yaml", "--set", "want=surface", cwd=folder))
-    assert "\nparts\n  0: [wall], 0 mm high, glass (given)\n  1: " in ran.stdout
+    assert "\nparts\n  1: [wall], 0 mm high, glass (given)\n  2: " in ran.stdout

@@ -11,4 +11,4 @@ def test_labels_are_listed_once_and_the_others_counted():
 
 def test_label_of_part_without_name_is_its_number_in_the_language():
     work = Work("Map", "de", {}, None, ("sea", " "))
-    assert [label_of(number, work) for number in range(3)] == ["sea", "Teil 1", "Teil 2"]
+    assert [label_of(number, work) for number in range(3)] == ["sea", "Teil 2", "Teil 3"]

@@ -219,7 +219,7 @@ def test_pins_svg_layers_are_named_parts(tmp_path):
     assert root.get("viewBox") == "0 0 96 40"
     assert [each.tag.rpartition("}")[2] for each in root] == ["title", "g", "g"]
     assert [each.get("data-image-layer") for each in root[1:]] == ["layer-1", "layer-2"]
-    assert [each.get("aria-label") for each in root[1:]] == ["sea & <sky>", "part 1"]
+    assert [each.get("aria-label") for each in root[1:]] == ["sea & <sky>", "part 2"]
     assert all(len(each) for each in root[1:])  # both sides of a border have it
     [content] = [json.loads(each.read_text()) for each in files if each.name.endswith("-graphic.json")]
     assert list(content) == ["graphic"]

@@ -148,7 +148,7 @@ class TestSegments:
     def test_entries_of_the_legend_are_short(self):
         assert segments._short("fourteen chars") == "fourteen chars"
         assert segments._short("fifteen letters") == "fifteen let..."
-        assert segments._entries([*"aaabbbb"]) == ["0, 1, 2: a", "3, 4, 5, ...: b"]
+        assert segments._entries([*"aaabbbb"]) == ["1, 2, 3: a", "4, 5, 6, ...: b"]
 
     @pytest.mark.parametrize(("count", "last"), [(20, "t, 5 %"), (21, "and 2 more")])
     def test_legend_has_as_many_entries_as_lines_have_room(self, axes: Axes, count: int, last: str):

@@ -33,6 +33,7 @@ from tangible_core.data import (
     SegmentMap,
     Views,
 )
+from tangible_core.data.part_words import name_part
 from tangible_core.errors import OutputError, PictureError
 from tangible_core.files.json_text import write_figures
 from tangible_core.materials.assignment import library
@@ -529,7 +530,9 @@ class TestSheet:
         legend = axes.get_legend()
         assert legend is not None
         *listed, more = [text.get_text() for text in legend.get_texts()]
-        assert listed == [f"segment {label}, 0 %" for label in range(len(listed))] and len(listed) > 9
+        assert (
+            listed == [f"{name_part(label, noun='segment')}, 0 %" for label in range(len(listed))] and len(listed) > 9
+        )
         assert more == f"and {2400 - len(listed)} more"
         (picture,) = images(axes)
         assert picture.shape == (13 * ROWS, 13 * COLUMNS, 3)
@@ -624,7 +627,7 @@ class TestParts:
             surface=surface, title="Haus", language="de-AT",
         )  # fmt: skip
         assert (
-            "Parts, from near to far: 3 parts; 2 a very lo...: ice, 17 %; 1: ice, 17 %; 0 wall: stone, 67 %. " in says
+            "Parts, from near to far: 3 parts; 3 a very lo...: ice, 17 %; 2: ice, 17 %; 1 wall: stone, 67 %. " in says
         )
         assert "Segments" not in says and says.startswith("A sheet of 3 pictures of Haus.")
         assert "Ihre Teile sind, von nah nach fern, a very long name (rechts" in says
@@ -646,7 +649,7 @@ class TestParts:
 
     def test_parts_without_surface_are_in_their_order(self, tmp_path: Path) -> None:
         parts = PartMap(np.int32([[0, 0, 0, 1]]), (0, 1))
-        assert draw_sheet(tmp_path / "parts.png", parts=parts).endswith("Parts: 2 parts; 0, 75 %; 1, 25 %.")
+        assert draw_sheet(tmp_path / "parts.png", parts=parts).endswith("Parts: 2 parts; 1, 75 %; 2, 25 %.")
         assert show(parts).get_title() == "Parts"
         assert parts._repr_html_().startswith("<img alt='PartMap'")  # pyright: ignore[reportPrivateUsage]
 
@@ -700,18 +703,20 @@ class TestSegments:
         del run["recording"], run["disparity"]  # the rest is drawn larger
         axes = draw_figure(run, "title", PANELS).axes[1]
         names = list(library())[:14]
-        assert sorted(int(text.get_text().split()[0]) for text in axes.texts) == [*range(14)]
+        assert sorted(int(text.get_text().split()[0]) for text in axes.texts) == [*range(1, 15)]
         legend = axes.get_legend()
         assert legend is not None
         said = [text.get_text() for text in legend.get_texts()]
-        assert [each.rpartition(",")[0] for each in said] == [f"{label}: {name}" for label, name in enumerate(names)]
+        assert [each.rpartition(",")[0] for each in said] == [
+            f"{number}: {name}" for number, name in enumerate(names, 1)
+        ]
         shown = {key.get_facecolor() for key in legend.get_patches()}
         assert len(shown) == 14
 
     def test_segments_of_one_material_share_an_entry(self) -> None:
         legend = draw_figure(whole_run(), "title", PANELS).axes[3].get_legend()
         assert legend is not None
-        assert [text.get_text() for text in legend.get_texts()] == ["0, 2: ice, 67 %", "1: sandpaper, 33 %"]
+        assert [text.get_text() for text in legend.get_texts()] == ["1, 3: ice, 67 %", "2: sandpaper, 33 %"]
 
     @pytest.mark.parametrize("count", [0, 3, 8, 24, 25, 3000])
     def test_colours_are_all_different(self, count: int) -> None:
@@ -726,7 +731,7 @@ class TestSegments:
 class TestFiles:
     SAYS = (
         "A sheet of 3 pictures of a & b. Input: left, inset right: 60 x 40 px, f 1000 px, B 200 mm. "
-        "Segments and their materials: 3 segments, 2 materials; 0, 2: ice, 67 %; 1: sandpaper, 33 %. "
+        "Segments and their materials: 3 segments, 2 materials; 1, 3: ice, 67 %; 2: sandpaper, 33 %. "
         "Relief and its normals: 80 x 53.3 mm, heights in mm."
     )
 

@@ -51,7 +51,7 @@ def test_text_with_named_parts_describes_the_surface(tmp_path: Path):
     merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
     texts, notes = write_texts(work("ciel", "", "île", "eau", simplified=merged), Text(), tmp_path)
     assert texts.keys() == {".txt", ".html"}
-    assert [each.split(".")[1] for each in items(texts[".txt"])] == [" eau", " île", " partie 1", " ciel"]
+    assert [each.split(".")[1] for each in items(texts[".txt"])] == [" eau", " île", " partie 2", " ciel"]
     assert "Le long du bord inférieur" in items(texts[".txt"])[0]
     assert '<html lang="fr">' in texts[".html"]
     assert notes == []
@@ -60,7 +60,7 @@ def test_text_with_named_parts_describes_the_surface(tmp_path: Path):
 def test_text_without_names_describes_the_simplified_parts(tmp_path: Path):
     merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
     texts, notes = write_texts(work(simplified=merged), Text(), tmp_path)
-    assert [each[:12] for each in items(texts[".txt"])] == ["1. partie 3.", "2. partie 0."]
+    assert [each[:12] for each in items(texts[".txt"])] == ["1. partie 4.", "2. partie 1."]
     assert notes == ["no part has a name, so parts are described by number; `tangible parts` shows them for naming"]
     texts, notes = write_texts(work(simplified=None), Text(), tmp_path)
     assert items(texts[".txt"]) == [] and "<ol>" not in texts[".html"] and notes == []

@@ -110,7 +110,7 @@ def test_layers_have_the_colours_of_their_values(url: str, open_page):
             assert np.abs(found - np.array(colour)).max() <= 6, (look, place, found)
     plain, lined = (around(page, picture, place, 15).std(0).max() for place in (BEHIND, BEFORE))
     assert lined > plain + 10
-    assert page.inner_text("#view .legend") == "part 0: wood\npart 1: cloth"
+    assert page.inner_text("#view .legend") == "part 1: wood\npart 2: cloth"
 
 
 def test_steep_edge_is_shown_greyed_or_cut(url: str, open_page):

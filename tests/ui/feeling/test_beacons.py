@@ -48,7 +48,7 @@ def test_beacon_requested_by_a_tab_is_announced_to_all_tabs(tmp_path: Path, monk
         told = session.tab.last("beacon")
         assert (told["part"], told["name"], told["why"]) == (0, "wall", "asked")
         assert pulled[-1] is not None and pulled[-1].part == 0
-        with pytest.raises(ConfigError, match="there is no part 999"):
+        with pytest.raises(ConfigError, match="there is no part 1000"):
             await ask(session.session, session.tab, part=999)
         assert await ask(session.session, session.tab, part=None) == {"part": None, "name": ""}
         assert pulled[-1] is None and session.tab.last("beacon")["part"] is None

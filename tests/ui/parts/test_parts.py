@@ -374,9 +374,9 @@ class TestSaving:
     @pytest.mark.parametrize(
         ("materials", "says"),
         [
-            ("{rules: [{segment: 1, material: ice}]}", "by number for 1"),
-            ("{rules: [{part: 2, material: ice}, {part: hat, material: ice}]}", "by number for 2"),
-            ("{by: {0: ice, 2: sand}}", "by number for 2"),
+            ("{rules: [{segment: 1, material: ice}]}", "by the keys 1"),
+            ("{rules: [{part: 2, material: ice}, {part: hat, material: ice}]}", "by the keys 2"),
+            ("{by: {0: ice, 2: sand}}", "by the keys 2"),
             ("{rules: [{part: hat, material: ice}]}", ""),
         ],
     )
@@ -387,12 +387,12 @@ class TestSaving:
             await saved(small, ask)
             await ask("set", written={"materials": materials})
             await saved(small, ask)
-            assert "by number" not in caplog.text  # as they were
+            assert "by the keys" not in caplog.text  # as they were
             moved = drawn()
             moved[moved == 3] = 0
             moved[0, 1] = 3  # the third part is the second now
             await saved(small, ask, upload=await sent(small, ask, packed(moved)))
-            assert ("by number" in caplog.text) == bool(says)
+            assert ("by the keys" in caplog.text) == bool(says)
             assert says in caplog.text
 
         small(check)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from sessions import TEXT, SmallSession, small_scene
+from tangible_core.data.part_words import name_part
 from tangible_core.errors import ConfigError, Stopped, TangibleError
 from tangible_ui.requests import REQUESTS
 from tangible_ui.requests import making as asks_making
@@ -100,7 +101,7 @@ def test_make_of_depth_or_texture_alone_is_shown(worker_state: WorkerState, scen
     (told,) = events(worker_state, "materials")
     assert len(told["segments"]) == 3
     assert sum(each["share"] for each in told["segments"]) == pytest.approx(1)
-    assert all(each["why"].startswith(f"segment {each['label']}") for each in told["segments"])
+    assert all(each["why"].startswith(name_part(each["label"], noun="segment")) for each in told["segments"])
     assert {each["product"] for each in events(worker_state, "stage")} >= {"segments", "materials"}
     assert "disparity" not in {each["product"] for each in events(worker_state, "stage")}
     make(worker_state, TEXT, scene, "relief")

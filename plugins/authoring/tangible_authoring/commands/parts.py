@@ -149,11 +149,12 @@ def _print(found: Sequence[ListedPart], before: Sequence[Before] | None = None) 
     from rich.markup import escape
 
     from tangible_core.cli import show
+    from tangible_core.data.part_words import shown_number
 
     rows = [
         (
-            str(each.number),
-            *([] if was is None else ["new" if was.number is None else str(was.number)]),
+            str(shown_number(each.number)),
+            *([] if was is None else ["new" if was.number is None else str(shown_number(was.number))]),
             escape(each.name),
             each.place,
             f"{100 * each.share:.1f}",

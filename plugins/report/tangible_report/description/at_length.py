@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tangible_core.data import HapticSurface
+from tangible_core.data.part_words import shown_number
 from tangible_core.parts.words.languages import Language, Words, one_line
 from tangible_core.parts.words.places import NOWHERE
 from tangible_core.scene.workspace import SceneKind
@@ -105,7 +106,7 @@ def _largest(parts: Sequence[PartFacts]) -> list[PartFacts]:
 
 
 def _label(part: PartFacts, say: Words, given: Callable[[str], str]) -> str:
-    return given(part.name) if part.name else say("part number", number=part.number)
+    return given(part.name) if part.name else say("part number", number=shown_number(part.number))
 
 
 def _size(surface: HapticSurface, say: Words) -> str:

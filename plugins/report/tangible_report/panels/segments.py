@@ -9,6 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from tangible_core.data import HapticSurface, MaterialMap, PartMap, SegmentMap, Views
+from tangible_core.data.part_words import name_part, shown_number
 from tangible_core.data.pictures import to_grey
 
 from ..style import INK, bare, colours, inches, thin_out
@@ -32,7 +33,7 @@ def draw_segments(
 
     The legend has the materials in the order of their segments, and the numbers of their segments.
     """
-    names = [f"segment {label}" for label in range(segments.count)]
+    names = [name_part(label, noun="segment") for label in range(segments.count)]
     if materials is not None:
         names = [material.name for material in materials.materials]
     kinds = {name: kind for kind, name in enumerate(dict.fromkeys(names))}
@@ -40,7 +41,9 @@ def draw_segments(
     kind_of = np.array([kinds[name] for name in names])[labels]
     grey = np.ones(labels.shape, np.float32) if views is None else _grey(views.left, segments.labels.shape)
     _draw_regions(axes, grey, labels, kind_of)
-    _write_names(axes, labels, [f"{label} {name}" for label, name in enumerate(names)] if materials else names)
+    _write_names(
+        axes, labels, [f"{shown_number(label)} {name}" for label, name in enumerate(names)] if materials else names
+    )
     shares = np.bincount(kind_of.ravel(), minlength=len(kinds)) / kind_of.size
     _draw_legend(axes, _entries(names) if materials else [*kinds], shares)
     materials_too = f", {_count(len(kinds), 'material')}" if materials else ""
@@ -54,7 +57,7 @@ def draw_parts(axes: Axes, parts: PartMap, views: Views | None = None, surface: 
     The legend has the parts with their materials, from near to far if there is a surface, or else in their order.
     """
     names = [""] * parts.count if surface is None or surface.names is None else surface.names
-    titles = [f"{number} {name}".rstrip() for number, name in enumerate(names)]
+    titles = [f"{shown_number(number)} {name}".rstrip() for number, name in enumerate(names)]
     labels = _drawn_size(parts.labels)
     grey = np.ones(labels.shape, np.float32) if views is None else _grey(views.left, parts.labels.shape)
     order = _near_to_far(parts, surface)
@@ -118,7 +121,7 @@ def _write_names(axes: Axes, labels: Int[np.ndarray, "h w"], names: list[str]) -
     point_px = inches(axes)[0] / 72 * labels.shape[1]
     for label in np.argsort(-np.bincount(labels.ravel()), kind="stable")[:NAMED].tolist():
         column, row, radius_px = _largest_disc(labels == label)
-        for text in (names[label], str(label)):
+        for text in (names[label], str(shown_number(label))):
             if 2 * radius_px > point_px * max(10.0, 4.2 * len(text)):
                 halo = withStroke(linewidth=2, foreground="white")
                 axes.text(column, row, text, fontsize=8, ha="center", va="center", path_effects=[halo])
@@ -142,7 +145,7 @@ def _entries(names: list[str]) -> list[str]:
     """Return the entries of the legend: each material after the numbers of its segments."""
     labels: dict[str, list[str]] = {}
     for label, name in enumerate(names):
-        labels.setdefault(name, []).append(str(label))
+        labels.setdefault(name, []).append(str(shown_number(label)))
     more = {name: ", ..." if len(numbers) > NUMBERS else "" for name, numbers in labels.items()}
     return [f"{', '.join(numbers[:NUMBERS])}{more[name]}: {_short(name)}" for name, numbers in labels.items()]
 

@@ -50,4 +50,4 @@ def test_english_stands_in_with_a_note():
 
 def test_part_label_is_its_name_or_its_number():
     labels = part_label(" helmet\n"), part_label("a\tb\ud800"), part_label(0), part_label(3, "fr"), part_label(3, "pt")
-    assert labels == ("helmet", "a b", "part 0", "partie 3", "part 3")
+    assert labels == ("helmet", "a b", "part 1", "partie 4", "part 4")

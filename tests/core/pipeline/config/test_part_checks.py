@@ -92,8 +92,8 @@ def test_completed_parts_are_read_back_equal(text: str):
         ("parts: {6: wall, '6': floor}", "2:18", ("parts", "6"), "parts.6: is there twice"),
         ("parts: {6: 3}", "2:9", ("parts", 6), "takes the name of a part, or {name: ..., height_m"),
         ("parts: {6: {nam: wall}}", "2:13", ("parts", 6, "nam"), "did you mean 'name'?"),
-        ("parts:\n  0: wall\n  6: {name: Wall}", "4:7", ("parts", 6, "name"), "'Wall' is the name of part 0 as well"),
-        ("parts: {0: wall, 6: 'wall '}", "2:18", ("parts", 6, "name"), "is the name of part 0 as well; give each part"),
+        ("parts:\n  0: wall\n  6: {name: Wall}", "4:7", ("parts", 6, "name"), "'Wall' is the name of part 1 as well"),
+        ("parts: {0: wall, 6: 'wall '}", "2:18", ("parts", 6, "name"), "is the name of part 1 as well; give each part"),
         ("parts: {0: '12'}", "2:9", ("parts", 0, "name"), "would be taken for the number of a part"),
         ('parts: {0: "a\\nb"}', "2:9", ("parts", 0, "name"), "is one line of plain text"),
         (f"parts: {{0: {'x' * 81}}}", "2:9", ("parts", 0, "name"), "over 80 characters"),
@@ -148,7 +148,7 @@ def test_override_keeps_the_name_of_a_part():
     config = parse("scene: builtin/brick\nrender: proxy\n", "render.stiffness_n_per_m=500")
     assert config.render is not None and config.render.method.model_dump()["stiffness_n_per_m"] == 500
     (sentence,), (complaint,) = complaints(f"{SCENE}parts: {{0: a}}\n", "parts.3.name=a")
-    assert sentence.startswith("--set parts.3.name=a: parts.3.name: 'a' is the name of part 0 as well")
+    assert sentence.startswith("--set parts.3.name=a: parts.3.name: 'a' is the name of part 1 as well")
     assert complaint == Complaint(("parts", 3, "name"), complaint.text, None, None)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tangible_core.data import HapticSurface, MaterialMap, PartMap
+from tangible_core.data.part_words import name_part
 from tangible_core.materials.assignment import library
 from tangible_core.parts.words.languages import LANGUAGES
 from tangible_report.description import PartFacts, describe_at_length, facts, page_of
@@ -108,7 +109,7 @@ def test_description_has_words_for_shares(share: float, says: str):
 
 def test_description_has_a_part_without_a_name_of_the_least_share():
     [line] = lines_of(told(1, share=0.001))
-    assert line.startswith("1. part 1. A small part of the picture (0.1 %)")
+    assert line.startswith("1. part 2. A small part of the picture (0.1 %)")
 
 
 def test_description_of_the_ground_has_no_height():
@@ -117,14 +118,14 @@ def test_description_of_the_ground_has_no_height():
 
 def test_description_names_four_neighbours():
     line = lines_of(told(0, beside=(5, 4, 3, 2, 1)), *map(told, range(1, 6)))[0]
-    assert line.endswith("Beside it: part 5, part 4, part 3, part 2.")
+    assert line.endswith("Beside it: part 6, part 5, part 4, part 3.")
 
 
 def test_description_leaves_out_the_smallest_parts():
     shares = [0.001 + 0.0001 * (number * 7 % 62) for number in range(62)]
     lines = lines_of(*(told(number, share=share) for number, share in enumerate(shares)), told(62, share=0.00099))
     assert lines[-1].startswith("3 smaller parts")
-    left = {number for number in range(62) if not any(f". part {number}. " in line for line in lines)}
+    left = {number for number in range(62) if not any(f". {name_part(number)}. " in line for line in lines)}
     assert left == {0, 9}  # of 0.1 and 0.11 %
 
 
@@ -140,7 +141,7 @@ def test_description_of_one_pixel_has_no_parts():
     [only] = facts(dot)
     assert (only.share, only.size_m, only.neighbours, only.place) == (1.0, (0.01, 0.01), (), "- -")
     assert describe_at_length(dot, "dot", "en", [only])[-1] == (
-        "1. part 0. More than half of the picture (100 %), 10 mm wide and 10 mm long, 1000 mm high."
+        "1. part 1. More than half of the picture (100 %), 10 mm wide and 10 mm long, 1000 mm high."
     )
     flat = HapticSurface.from_heights(np.zeros((4, 4)))
     assert facts(flat) == ()
@@ -158,11 +159,11 @@ def test_description_of_one_pixel_has_no_parts():
             "",
             "Parts, from near to far",
             "1. cup. On the right, halfway down. A medium-sized part of the picture (15 %), 24 mm wide and 30 mm long, "
-            "4.3 mm high. Feels like glass. Beside it: wall, part 1.",
-            "2. part 1. Along the bottom. A large part of the picture (34 %), 80 mm wide and 24 mm long, 2 mm high. "
+            "4.3 mm high. Feels like glass. Beside it: wall, part 2.",
+            "2. part 2. Along the bottom. A large part of the picture (34 %), 80 mm wide and 24 mm long, 2 mm high. "
             "Feels like wood. Beside it: wall, cup.",
             "3. wall. Along the top. More than half of the picture (51 %), 80 mm wide and 36 mm long. "
-            "Feels like stone. Beside it: part 1, cup.",
+            "Feels like stone. Beside it: part 2, cup.",
         )),
         ("de", (
             "Still life",
@@ -172,11 +173,11 @@ def test_description_of_one_pixel_has_no_parts():
             "",
             "Teile, von nah nach fern",
             "1. cup. Rechts auf halber Höhe. Ein mittelgroßer Teil des Bildes (15 %), 24 mm breit und 30 mm lang, "
-            "4,3 mm hoch. Fühlt sich an wie Glas. Daneben: wall, Teil 1.",
-            "2. Teil 1. Am unteren Rand entlang. Ein großer Teil des Bildes (34 %), 80 mm breit und 24 mm lang, "
+            "4,3 mm hoch. Fühlt sich an wie Glas. Daneben: wall, Teil 2.",
+            "2. Teil 2. Am unteren Rand entlang. Ein großer Teil des Bildes (34 %), 80 mm breit und 24 mm lang, "
             "2 mm hoch. Fühlt sich an wie Holz. Daneben: wall, cup.",
             "3. wall. Am oberen Rand entlang. Mehr als die Hälfte des Bildes (51 %), 80 mm breit und 36 mm lang. "
-            "Fühlt sich an wie Stein. Daneben: Teil 1, cup.",
+            "Fühlt sich an wie Stein. Daneben: Teil 2, cup.",
         )),
         ("fr", (
             "Still life",
@@ -186,11 +187,11 @@ def test_description_of_one_pixel_has_no_parts():
             "",
             "Parties, de la plus proche à la plus lointaine",
             "1. cup. À droite, à mi-hauteur. Une partie moyenne de l'image (15 %), 24 mm de large et 30 mm de long, "
-            "4,3 mm de haut. Au toucher, comme du verre. À côté : wall, partie 1.",
-            "2. partie 1. Le long du bord inférieur. Une grande partie de l'image (34 %), 80 mm de large et 24 mm de "
+            "4,3 mm de haut. Au toucher, comme du verre. À côté : wall, partie 2.",
+            "2. partie 2. Le long du bord inférieur. Une grande partie de l'image (34 %), 80 mm de large et 24 mm de "
             "long, 2 mm de haut. Au toucher, comme du bois. À côté : wall, cup.",
             "3. wall. Le long du bord supérieur. Plus de la moitié de l'image (51 %), 80 mm de large et 36 mm de long. "
-            "Au toucher, comme de la pierre. À côté : partie 1, cup.",
+            "Au toucher, comme de la pierre. À côté : partie 2, cup.",
         )),
     ],
 )  # fmt: skip
@@ -267,7 +268,7 @@ def test_page_marks_names_in_another_language():
     page = Page(page_of(still_life(), "Still life", "fr", facts(still_life()), named_in="en-GB"))
     said = {text for language, text in page.text if language == "en-GB"}
     assert said == {"Still life", "wall", "cup"}
-    assert ("fr", "partie 1.") in page.text
+    assert ("fr", "partie 2.") in page.text
     alike = page_of(still_life(), "Still life", "en", facts(still_life()), named_in="en")
     assert "<span" not in alike
 

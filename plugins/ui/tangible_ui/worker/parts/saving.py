@@ -46,7 +46,7 @@ def warn_of_numbers(config: PipelineConfig, before: Opened, found: PartMap) -> N
     moved |= {each for each in named if is_elsewhere(each, before.parts.labels)}
     if moved:
         log.warning(
-            "materials: are chosen by number for %s, which is now another part or none; name the parts, and choose by "
+            "materials: are chosen by the keys %s, which is now another part or none; name the parts, and choose by "
             "name ({part: NAME, material: ...})",
             ", ".join(map(str, sorted(moved))),
         )

@@ -1,6 +1,7 @@
 /** Values of the data cursor: as rows of words, as text, and as JSON. */
 import type { Vec } from "../server/protocol";
 import { t } from "../overlay/words";
+import { shownNumber } from "../words/part_words";
 import { LIMITS } from "./limits";
 import type { Reading, SurfacePlace } from "./reading";
 
@@ -42,7 +43,8 @@ export function rows(live: Reading | null, pointer: SurfacePlace | null): Row[] 
 function materialName(at: Pick<Reading, "material" | "part" | "name"> | null): string {
   if (!at || at.part === null) return NONE;
   if (at.name) return at.material ? `${at.name}, ${at.material.name}` : at.name;
-  return at.material ? t("part", { name: at.material.name, number: at.part }) : t("noMaterial", { number: at.part });
+  const number = shownNumber(at.part);
+  return at.material ? t("part", { name: at.material.name, number }) : t("noMaterial", { number });
 }
 
 const limitsOf = (live: Reading) => LIMITS.filter(({ bit }) => live.state.flags & bit).map(({ word }) => word);

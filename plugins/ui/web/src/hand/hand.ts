@@ -6,6 +6,7 @@ import { clamp, HOVER_M, nextPosition, clampToRim, type Goal } from "./motion";
 import { findPartCentres, type Part } from "./part_centres";
 import { type Mover, PRESS_M } from "./state";
 import { t } from "./words";
+import { shownNumber } from "../words/part_words";
 
 /** Interval of messages for a hand at rest, ms: the server releases it after 100 ms of silence. */
 const ALIVE_MS = 30;
@@ -123,11 +124,11 @@ export class Hand implements PageHand {
     const { parts: all, next } = this.centres;
     if (!all.length) return this.page.say(t("noParts"));
     this.centres.next = (next + step + all.length) % all.length;
-    const { at } = all[this.centres.next]!;
+    const { at, label } = all[this.centres.next]!;
     this.liftTo(by, ...at);
     const called = scene.part(...at);
     const name = (called && `${called}, `) + (scene.material(...at)?.name ?? t("noMaterial"));
-    this.page.say(t("part", { number: this.centres.next + 1, of: all.length, name }));
+    this.page.say(t("part", { number: shownNumber(label), of: scene.meta.labels, name }), { topic: "hand", asked: true });
   }
 
   /** Move freely in space, or over the surface. */

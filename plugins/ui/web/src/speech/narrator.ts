@@ -5,6 +5,7 @@ import { FLAGS, isHeld, isRunning, isTouching, type State } from "../server/prot
 import type { Scene } from "../surface/scene";
 import { on } from "../shortcuts";
 import { t } from "./words";
+import { shownNumber } from "../words/part_words";
 import { decimal, language } from "../words/words";
 
 /** Consecutive states with a flag before it is announced: a single tick at its limit does not matter. */
@@ -22,7 +23,7 @@ const LIMITS = {
 export function describePlace(name: string | undefined, called: string, part: number | null, parts: number, names: Record<string, string>): string {
   const text = name === undefined ? t("nameless") : (names[name] ?? name);
   if (called) return name === undefined ? called : `${called}, ${text}`;
-  return part === null || parts < 2 ? text : t("part", { name: text, part });
+  return part === null || parts < 2 ? text : t("part", { name: text, part: shownNumber(part) });
 }
 
 export class Narrator {

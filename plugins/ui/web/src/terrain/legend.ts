@@ -1,5 +1,6 @@
 /** Legends of colours and patterns. */
 import type { Scene } from "../surface/scene";
+import { shownNumber } from "../words/part_words";
 import { t } from "../view/words";
 import { darken, heat, isMarked, styleOf, type Colour } from "./colours";
 
@@ -22,7 +23,8 @@ export function legend(scene: Scene, look: string): HTMLElement | null {
 
 function partName(scene: Scene, label: number): string {
   const material = scene.meta.materials[scene.kinds[label]];
-  return material ? t("partOf", { label, material: material.name }) : t("part", { label });
+  const number = shownNumber(label);
+  return material ? t("partOf", { number, material: material.name }) : t("part", { number });
 }
 
 function scale(low: number, high: number, unit: string, unknowns: boolean): HTMLElement {

@@ -4,6 +4,7 @@ import { DocumentEditor } from "../../forms/editor";
 import { LIBRARY } from "../../forms/rows";
 import type { Material, Segment } from "../../server/messages";
 import type { Page } from "../../page";
+import { shownNumber } from "../../words/part_words";
 import type { Panel } from "../panel";
 import { t } from "./words";
 import { materialEdit } from "./edit";
@@ -81,10 +82,10 @@ function line(row: HTMLTableRowElement): HTMLTableRowElement {
 /** Fill a row in place, so that a focused select keeps the focus. */
 function fill(row: HTMLTableRowElement, { label, material, why, share }: Segment, names: string[]): void {
   const [head, choice, area] = row.cells;
-  head.textContent = String(label);
+  head.textContent = String(shownNumber(label));
   const select = choice.querySelector("select")!;
   select.dataset.at = String(row.sectionRowIndex);
-  select.setAttribute("aria-label", t("choose", { label }));
+  select.setAttribute("aria-label", t("choose", { number: shownNumber(label) }));
   const all = names.includes(material) ? names : [material, ...names];
   if (select.options.length !== all.length) select.replaceChildren(...all.map((each) => new Option(each, each)));
   select.value = material;

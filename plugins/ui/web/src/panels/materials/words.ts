@@ -9,7 +9,7 @@ export const t = words({
   share: ["Area", "Fläche"],
   material: ["Material", "Material"],
   why: ["Why", "Warum"],
-  choose: ["Material of segment {label}", "Material von Segment {label}"],
+  choose: ["Material of segment {number}", "Material von Segment {number}"],
   library: ["The library ({count} materials)", "Die Bibliothek ({count} Materialien)"],
   libraryAlone: ["The library", "Die Bibliothek"],
   source: ["Source", "Quelle"],

@@ -1,5 +1,6 @@
 /** List of the parts from front to back, and fields of the selected one. */
 import { button, field, hint } from "../../../elements";
+import { shownNumber } from "../../../words/part_words";
 import { t } from "../editor/words";
 import type { Drawing, Part } from "../drawing/drawing";
 import { frontToBack } from "../drawing/order";
@@ -13,8 +14,8 @@ export class PartList {
   readonly list = document.createElement("ul");
   readonly said = document.createElement("fieldset");
   readonly name = input("parts-name", "text");
-  /** Returns the number of a part in the file. */
-  numberOf: (label: number) => number = (label) => label;
+  /** Returns the number by which people know a part. */
+  numberOf: (label: number) => number = shownNumber;
   /** Returns whether changes of a part take effect before saving. */
   isFelt: (label: number) => boolean = () => true;
   neighbours: Part[] = [];

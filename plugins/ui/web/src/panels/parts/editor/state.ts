@@ -1,6 +1,7 @@
 /** State of the parts editor: drawing, tools, crosshair, notice and saved state. It knows neither elements nor texts;
  * view, speech and saving subscribe to it. */
 import { Hub } from "../../../hub";
+import { shownNumber } from "../../../words/part_words";
 import { type Fault, type Tool, type ToolRequests, Tools } from "../controls/tools";
 import { Drawing, Full, type Part } from "../drawing/drawing";
 import { type PictureDetails, roundShapes } from "../drawing/picture_details";
@@ -96,9 +97,9 @@ export class EditorState {
     return this.drawing.history.isSaved && this.detailsSaved;
   }
 
-  /** Return the number of a part in the file. */
+  /** Return the number by which people know a part: that of its key in the file, from 1. */
   numberOf(label: number): number {
-    return this.order.get(label) ?? label;
+    return shownNumber(this.order.get(label) ?? label);
   }
 
   /** Return whether a part was opened or saved: its height and material take effect at once. */

@@ -57,7 +57,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_run_of_a_pair_makes_every_product_and_reports_it(folder: Path):
-    words = [TANGIBLE, "run", "p.yaml", "--seconds", "1"]
+    words = [TANGIBLE, "run", "p.yaml", "--seconds", "1", "--verbose"]
     done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=240)
     assert done.returncode == 0, done.stderr
     for word in ("disparity", "opencv-sgbm", "ran", "bad2", "out/p/sheet.png"):

@@ -31,6 +31,9 @@ Sets = Annotated[
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 NoCache = Annotated[bool, typer.Option("--no-cache", help="Neither read nor write the cache of results.")]
+Verbose = Annotated[
+    bool, typer.Option("--verbose", "-v", help="Also list what became of each product, why, and all figures.")
+]
 Yes = Annotated[bool, typer.Option("--yes", "-y", help="Skip the confirmation when the depth map is unreliable.")]
 Record = Annotated[Path | None, typer.Option(help="Save every tick to this file (.nc, .npz or .csv).")]
 

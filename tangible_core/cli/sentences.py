@@ -5,8 +5,11 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from ..files.paths import without_folders
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
     from ..data import Outcome
     from ..pipeline.output.exporting import Export
@@ -16,13 +19,13 @@ if TYPE_CHECKING:
 
 def run_summary(run: Run) -> str:
     """Return what a run made, the size of the surface, and the forces on a simulated hand."""
-    products = [name for name, value in run.products.items() if value is not None]
+    scene, products = without_folders(run.scene), [name for name, value in run.products.items() if value is not None]
     if "touch" in products:
-        text = f"{run.scene} can now be felt"
+        text = f"{scene} can now be felt"
     elif products:
-        text = f"{run.scene} is done: its {_and(products)} {'is' if len(products) == 1 else 'are'} made"
+        text = f"{scene} is done: its {_and(products)} {'is' if len(products) == 1 else 'are'} made"
     else:
-        text = f"{run.scene} is done: nothing of it had to be made"
+        text = f"{scene} is done: nothing of it had to be made"
     if (surface := run.products.get("surface")) is not None:
         width_m, length_m = surface.extent_m
         height_m = float(surface.height_m.max())
@@ -31,6 +34,12 @@ def run_summary(run: Run) -> str:
         text += f". A simulated hand felt it for {force['seconds']:.1f} s, with forces of up to "
         text += f"{force['peak_force_n']:.1f} N"
     return f"{text}."
+
+
+def where(files: Sequence[Path]) -> str:
+    """Return the folder of a run's files, and the sheet to look at."""
+    sheets = [path for path in files if path.stem == "sheet"]
+    return f"Results: {files[0].parent}" + (f"; look at {sheets[0]}" if sheets else "")
 
 
 def export_summary(scene: str, done: Export) -> str:

@@ -95,15 +95,27 @@ def entry(head: str, text: str) -> None:
 
 
 def outcomes(rows: Iterable[Outcome], title: str | None = None, ran: str = "ran") -> None:
-    """Print the outcome of each product, and the reason; ran: the word for products that ran, or will run."""
+    """Print the outcome of each product, and the reason.
+
+    ran: the word for products that ran, or will run. The warnings of a run are logged already.
+    """
     from ..data.outcome import HEADINGS
 
     cells = [
-        (product, method, f"[{COLOURS[each.outcome]}]{word}[/]", escape(why), seconds)
+        (product, method, f"[{COLOURS[each.outcome]}]{word}[/]", escape(_without_warnings(each, ran)), seconds)
         for each in rows
-        for product, method, word, why, seconds in [each.row(ran)]
+        for product, method, word, _, seconds in [each.row(ran)]
     ]
     table(HEADINGS, cells, title)
+
+
+def _without_warnings(outcome: Outcome, ran: str) -> str:
+    """Return the reason of an outcome; of a plan, which makes nothing, with the warnings."""
+    why = outcome.why
+    for each in outcome.notes if ran == "ran" else ():
+        if each.kind != "decision":
+            why = why.replace(f"; {each.text}", "", 1)
+    return why
 
 
 def parts_felt(parts: Sequence[PartFelt]) -> None:
@@ -147,9 +159,9 @@ def as_rows(rows: Iterable[Outcome]) -> list[dict[str, Any]]:
     return [asdict(each) for each in rows]
 
 
-def sentence(text: str) -> None:
-    """Print a summary of the lines below it, folded between words."""
-    console(highlight=False).print(text, "", markup=False, sep="\n")
+def sentence(text: str, apart: bool = True) -> None:
+    """Print a summary, folded between words; apart: with an empty line before the lines below it."""
+    console(highlight=False).print(text, *[""] * apart, markup=False, sep="\n")
 
 
 def say(text: str) -> None:

@@ -27,6 +27,15 @@ def as_path(value: object, name: str = "path") -> Path:
         raise ConfigError(f"{path}: no user here is named {quoted(path.parts[0][1:])}, and `~` names a home") from error
 
 
+def without_folders(name: str) -> str:
+    """Return the name of a scene for people to read: that of the file, without its folders.
+
+    >>> without_folders("/home/me/photo.jpg"), without_folders("builtin/brick")
+    ('photo.jpg', 'builtin/brick')
+    """
+    return Path(name).name if Path(name).is_absolute() else name
+
+
 def _check_name(path: Path) -> None:
     """Raise a ConfigError for a name that no file can have."""
     try:

@@ -1,6 +1,7 @@
 """Materials limited to what a device renders stably, one by one, before the guard would soften all of them."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 from ..data import DeviceSpec, HapticSurface, Material
@@ -39,30 +40,39 @@ def fit(material: Material, spec: DeviceSpec, safety: Safety) -> Material:
 
 
 def fit_surface(surface: HapticSurface, spec: DeviceSpec, safety: Safety) -> tuple[HapticSurface, str]:
-    """Limit the materials of a surface to what this device renders stably; return a text on the changes as well."""
+    """Limit the materials of a surface to what this device renders stably; return a sentence on the changes as well."""
     if surface.materials is None:
         return surface, ""
     pairs = {each: fit(each, spec, safety) for each in dict.fromkeys(surface.materials)}  # however many labels have it
     materials = tuple(pairs[each] for each in surface.materials)
-    if not (changes := ", ".join(filter(None, (describe_change(*pair) for pair in pairs.items())))):
-        return surface, ""
-    return replace(surface, materials=materials), f"limited to what the device renders stably: {changes}"
+    return replace(surface, materials=materials), describe_changes(pairs)
 
 
-def describe_change(before: Material, after: Material) -> str:
-    """Describe the change of a material; empty if there is none.
+GENTLER = {
+    "stiffness_n_per_m": "softer than {they} {are}: the device cannot hold anything harder",
+    "roughness_m": "more gently than {they} {are}: the device cannot go finer",
+    "damping_n_s_per_m": "with less damping than {they} {have}: the device has no more",
+}
+"""How materials are felt where a device limits this field, and why."""
 
-    >>> glass = Material("glass", 2500.0, 2.0, 0.2, 0.1, texture="smooth")
-    >>> describe_change(glass, replace(glass, stiffness_n_per_m=2400.0))
-    'glass (stiffness 2500 to 2400 N/m)'
+
+def describe_changes(pairs: Mapping[Material, Material]) -> str:
+    """Describe which materials are felt otherwise than they are; empty if none. pairs: as they are to as they are felt.
+
+    >>> sand = Material("sand", 400.0, 2.0, 0.2, 0.1, grain_m=1e-3, roughness_m=9e-5)
+    >>> describe_changes({sand: replace(sand, roughness_m=3e-5)})
+    'sand is felt more gently than it is: the device cannot go finer'
     """
-    each = (
-        ("stiffness", before.stiffness_n_per_m, after.stiffness_n_per_m, "N/m"),
-        ("texture", 1e6 * before.roughness_m, 1e6 * after.roughness_m, "um"),
-        ("damping", before.damping_n_s_per_m, after.damping_n_s_per_m, "N s/m"),
-    )
-    texts = [f"{name} {was:g} to {float(f'{now:.3g}'):g} {unit}" for name, was, now, unit in each if was != now]
-    return f"{before.name} ({', '.join(texts)})" if texts else ""
+    texts = list[str]()
+    for field, text in GENTLER.items():
+        names = [was.name for was, now in pairs.items() if getattr(was, field) != getattr(now, field)]
+        if names:
+            *most, last = names
+            one = not most
+            subject = last if one else f"{', '.join(most)} and {last}"
+            words = {"they": "it" if one else "they", "are": "is" if one else "are", "have": "has" if one else "have"}
+            texts.append(f"{subject} {words['are']} felt {text.format(**words)}")
+    return "; ".join(texts)
 
 
 def _most_n_per_m(damping_n_s_per_m: float, spec: DeviceSpec, safety: Safety) -> float:

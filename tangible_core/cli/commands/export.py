@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .. import completing
-from ..options import FAILED, MISTAKE, ConfigOrPictures, Json, NoCache, Sets
+from ..options import FAILED, MISTAKE, ConfigOrPictures, Json, NoCache, Sets, Verbose
 from ..verbosity import is_quiet
 from .run import default_place, open_pipeline
 
@@ -37,6 +37,7 @@ def export(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the files [default: out/NAME].")] = None,
     sets: Sets = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite files that no export of this wrote.")] = False,
+    verbose: Verbose = False,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
@@ -56,7 +57,7 @@ def export(
     if as_json:
         show.print_json(done.document())
     elif not is_quiet():
-        _print(pipeline.scene.name, done)
+        _print(pipeline.scene.name, done, verbose)
     show.flush()
     for each in done.exports:
         if each.outcome.outcome != "ran":
@@ -94,11 +95,13 @@ def _code(exports: Sequence[Exported]) -> int:
     return FAILED if "failed" in outcomes else MISTAKE if "refused" in outcomes else 0
 
 
-def _print(scene: str, done: Export) -> None:
+def _print(scene: str, done: Export, verbose: bool) -> None:
+    from ...files.paths import without_folders
     from .. import sentences, show
 
-    show.sentence(sentences.export_summary(scene, done))
-    show.outcomes(done.outcomes)
+    show.sentence(sentences.export_summary(without_folders(scene), done))
+    if verbose:
+        show.outcomes(done.outcomes)
     if files := [path for paths in done.files.values() for path in paths]:
         show.say("\n[bold]written[/]")
     for path in files:

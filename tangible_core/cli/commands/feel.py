@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import FAILED, Json, NoCache, Record, Sets, Yes
+from ..options import FAILED, Json, NoCache, Record, Sets, Verbose, Yes
 from ..verbosity import is_quiet
 from .run import device_of, open_pipeline
 
@@ -36,6 +36,7 @@ def feel(
         typer.Option(metavar="PART", help="Pull the hand gently to this part, by name or number; a button ends it."),
     ] = None,
     record: Record = None,
+    verbose: Verbose = False,
     as_json: Json = False,
     no_cache: NoCache = False,
     yes: Yes = False,
@@ -101,11 +102,12 @@ def feel(
         document |= {"beacon": report.beacon, "beacons": [each._asdict() for each in pulled]}
         show.print_json({**document, "file": record and str(record)})
     elif not is_quiet():
-        show.sentence(sentences.touch_summary(device.name, figures))
-        show.outcomes(pipeline.outcomes)
-        if loop:
-            show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was requested\n")
-        show.table(("figure", "value"), [(name, _text(value)) for name, value in figures.items()])
+        show.sentence(sentences.touch_summary(device.name, figures), apart=verbose)
+        if verbose:
+            show.outcomes(pipeline.outcomes)
+            if loop:
+                show.say(f"\n{loop['how']}; the first tick came {loop['start_s']:.2f} s after the loop was requested\n")
+            show.table(("figure", "value"), [(name, _text(value)) for name, value in figures.items()])
         show.parts_felt(parts)
         for beacon_felt in pulled:
             show.plain(f"\n{beacon_felt}.")

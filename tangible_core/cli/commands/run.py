@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from ..options import ConfigOrPictures, Json, NoCache, Sets
+from ..options import ConfigOrPictures, Json, NoCache, Sets, Verbose
 from ..verbosity import is_quiet
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ Seconds = Annotated[float, typer.Option(help="Length of the simulated touch, s."
 def demo(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/demo].")] = None,
     seconds: Seconds = 8.0,
+    verbose: Verbose = False,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
@@ -45,10 +46,10 @@ def demo(
     pipeline = Pipeline.from_config(config, default_registry(), None if no_cache else Cache())
     out = out or default_place(DEMO)
     done = pipeline.run(out, seconds=seconds)
-    _print(done, as_json)
+    _print(done, as_json, verbose)
     _check_complete(done)
     if not (as_json or is_quiet()):
-        show.say(NEXT.format(config=out / "config.yaml"))
+        show.plain(NEXT.format(config=out / "config.yaml"))
 
 
 DEMO = Path("tangible demo/demo.yaml")
@@ -56,11 +57,11 @@ DEMO = Path("tangible demo/demo.yaml")
 
 NEXT = """
 Next:
+  tangible ui {config}                see it, hear it and feel it with the mouse, on a page in the browser
   tangible plan {config}              what a run does and why, without running it
   tangible feel {config} --seconds 5  the same surface on the configured device
   tangible run {config} --set render.use=grey-level   the report's own law, to compare
-  tangible plugins                    what else there is to put into `use:`
-  tangible ui {config}                see it, hear it and feel it with the mouse, on a page in the browser"""
+  tangible plugins                    what else there is to put into `use:`"""
 
 
 def run(
@@ -69,6 +70,7 @@ def run(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for the results [default: out/NAME].")] = None,
     seconds: Seconds = 8.0,
     sheet: Annotated[Literal["png", "svg", "pdf"], typer.Option(help="Format of the sheet.")] = "png",
+    verbose: Verbose = False,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
@@ -76,10 +78,19 @@ def run(
 
     A simulated device feels the surface; a real one is never moved: see `feel`.
     """
+    from .. import show
+
     pipeline = open_pipeline(config, sets or [], not no_cache)
     done = pipeline.run(out or default_place(config[0]), seconds=seconds, sheet=sheet)
-    _print(done, as_json)
+    _print(done, as_json, verbose)
     _check_complete(done)
+    if not (as_json or is_quiet()):
+        words = [*map(str, config), *(word for each in sets or [] for word in ("--set", each))]
+        show.plain(f"\nNext:\n  {shlex.join(['tangible', 'ui', *words])}  {SEE}")
+
+
+SEE = "see it, hear it and feel it with the mouse, on a page in the browser"
+"""What the page is for, as the next step of a command."""
 
 
 def plan(config: ConfigOrPictures, sets: Sets = None, as_json: Json = False, no_cache: NoCache = False) -> None:
@@ -147,7 +158,7 @@ def default_place(source: Path) -> Path:
     return folder
 
 
-def _print(run: Run, as_json: bool) -> None:
+def _print(run: Run, as_json: bool, verbose: bool) -> None:
     from .. import sentences, show
 
     if as_json:
@@ -156,15 +167,21 @@ def _print(run: Run, as_json: bool) -> None:
     if is_quiet():
         return
     show.sentence(sentences.run_summary(run))
-    show.outcomes(run.outcomes, f"[bold]{run.scene}[/]")
-    for name, values in run.figures.items():
-        title, lines = LINES[name]
-        show.say(f"\n[bold]{title}[/]")
-        for line in lines(values):
-            show.plain(f"  {line}")
-    show.say("\n[bold]written[/]")
-    for path in run.files:
-        show.plain(f"  {path}")
+    if verbose:
+        show.outcomes(run.outcomes, f"[bold]{run.scene}[/]")
+        for name, values in run.figures.items():
+            title, lines = LINES[name]
+            show.say(f"\n[bold]{title}[/]")
+            for line in lines(values):
+                show.plain(f"  {line}")
+        show.say("\n[bold]written[/]")
+        for path in run.files:
+            show.plain(f"  {path}")
+        return
+    for name in SENTENCES:
+        if name in run.figures:
+            show.plain(f"{run.figures[name]['says']}\n")
+    show.plain(sentences.where(run.files))
 
 
 def _check_complete(run: Run) -> None:
@@ -185,8 +202,8 @@ def _check_complete(run: Run) -> None:
 
 def _error_lines(figures: Mapping[Any, Any]) -> list[str]:
     return [
-        f"{figures['bad2']:.0f} % of the picture is off by more than 2 px, or unknown",
-        f"bad1 {figures['bad1']:.2f} %, bad2 {figures['bad2']:.2f} % of pixels over 1 px, 2 px (unknown counts as bad)",
+        f"{figures['bad1']:.2f} % of the pixels are off by more than 1 px (bad1), {figures['bad2']:.2f} % by more than "
+        "2 px (bad2); unknown ones count as bad",
         f"average {figures['average_px']:.3f} px, rms {figures['rms_px']:.3f} px "
         f"over the {figures['density']:.1f} % that are known",
     ]
@@ -195,7 +212,11 @@ def _error_lines(figures: Mapping[Any, Any]) -> list[str]:
 def _material_lines(figures: Mapping[Any, Any]) -> list[str]:
     from ...data.part_words import shown_number
 
-    return [f"{shown_number(int(label))}: {each['name']} ({each['why']})" for label, each in figures.items()]
+    numbered = ((shown_number(int(label)), each["name"], each["why"]) for label, each in figures.items())
+    return [
+        f"{number}: {name} ({why.removeprefix(f'segment {number}: ').removesuffix(f' -> {name}')})"
+        for number, name, why in numbered
+    ]
 
 
 def _part_lines(figures: Mapping[Any, Any]) -> list[str]:
@@ -220,6 +241,9 @@ def _force_lines(figures: Mapping[Any, Any]) -> list[str]:
         f"in contact {100 * figures['contact_share']:.0f} % of {figures['seconds']:.1f} s ({figures['ticks']} ticks)"
     ]
 
+
+SENTENCES = ("guard", "hand")
+"""The figures that tell what went differently from what was requested: printed without --verbose too."""
 
 LINES: dict[str, tuple[str, Callable[[Mapping[Any, Any]], list[str]]]] = {
     "disparity": ("error against the truth", _error_lines),

@@ -30,7 +30,7 @@ class MaterialChoice(Section):
     """A YAML file with custom materials, in addition to the built-in ones."""
     fit: Literal["device", "never"] = "device"
     """`device`: stiffness, texture and damping of each material are limited to what the device renders stably, and the
-    outcome of the touch lists the limits. `never`: materials stay as they are, and the guard scales the whole force."""
+    outcome of the touch names them. `never`: materials stay as they are, and the guard scales the whole force."""
 
 
 def check_material_names(source: Source, location: Location, choice: MaterialChoice) -> None:

@@ -13,6 +13,7 @@ from ...compiled.background import BackgroundCompiler
 from ...data import Note, Outcome, Outcomes, Plan, Record
 from ...data.products import PRODUCTS
 from ...errors import TangibleError, UnknownMethod
+from ...files.paths import without_folders
 from ...plugins import hooks
 from ...plugins.interfaces import HapticDevice
 from ...plugins.notes import collect_notes
@@ -279,7 +280,7 @@ class Engine:
         """Return why a product is given, and for the pictures or the heights the notes on their files."""
         scene, of_files = self._read
         notes = of_files if product == ("relief" if scene.views is None else "views") else ()
-        return with_notes(notes, f"provided by the scene {scene.name}"), notes
+        return with_notes(notes, f"provided by the scene {without_folders(scene.name)}"), notes
 
     @cached_property
     def stages(self) -> dict[str, Stage]:

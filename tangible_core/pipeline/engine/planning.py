@@ -8,10 +8,10 @@ from .cache import Cache, Notes
 from .stage import Stage
 
 REQUESTED = "requested"
-NEEDED = "needed for"
+NEEDED = "needed for the"
 NOT_NEEDED = "not needed for what was requested"
-WITHIN_CACHED = "within a cached product"
-SAME = "same method, options and inputs as before"
+WITHIN_CACHED = "within an unchanged product"
+SAME = "unchanged"
 
 
 class Outlook(NamedTuple):

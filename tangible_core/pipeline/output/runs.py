@@ -14,6 +14,7 @@ from ...data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Record, 
 from ...data.products import IN_REPORT
 from ...errors import ConfigError, OutputError
 from ...files.json_text import write_figures
+from ...files.paths import without_folders
 from ...files.writing import write_text
 from ...mapping import intended_path, map_device, over
 from ...metrics import disparity_errors
@@ -194,7 +195,7 @@ def _draw(engine: Engine, products: Mapping[str, Any], recording: Recording | No
     shown: dict[str, Any] = {name: products.get(name) for name in (*IN_REPORT, "relief")}
     if scene.truth is not None and shown["disparity"] is not None:
         shown["disparity"] = engine.make("disparity")  # pixel by pixel next to its truth
-    title = engine.config.title or (Path(scene.name).name if Path(scene.name).is_absolute() else scene.name)
+    title = engine.config.title or without_folders(scene.name)
     if doubts := [each.text.partition(":")[0] for each in engine.outcomes.doubts]:
         title = f"{title} (doubtful: {'; '.join(doubts)})"
     extras = {"views": scene.views, "truth": scene.truth, "recording": recording}

@@ -17,8 +17,9 @@ from pictures import write_png
 from standard_sets import LAYOUTS, known
 from tangible_core.cli import completing, sentences, show, verbosity
 from tangible_core.cli.command_table import COMMANDS, load
-from tangible_core.data import Outcome, Relief
+from tangible_core.data import DisparityMap, Outcome, Relief, Views
 from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.plugins.notes import note
 
 TANGIBLE = str(Path(sys.executable).with_name("tangible"))
 
@@ -178,11 +179,19 @@ def test_output_on_forty_columns_loses_no_word(words: list[str], folder: Path, m
     assert not [word for word in missing - empty if word not in joined]
 
 
-def test_command_prints_a_summary_above_its_table(folder: Path):
+def test_command_prints_a_summary_above_its_table(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("COLUMNS", "200")
     plan = tangible("plan", "p.yaml", cwd=folder).stdout
     assert plan.startswith("`run` would make disparity and relief. Nothing is run now.\n")
     run = tangible("run", "p.yaml", cwd=folder).stdout
-    assert "dot.pngisdone:itsdisparityandreliefaremade." in "".join(run.split())  # a long path is broken
+    assert run == (
+        "dot.png is done: its disparity and relief are made.\n\n"
+        "Results: out/p; look at out/p/sheet.png\n\n"
+        "Next:\n  tangible ui p.yaml  see it, hear it and feel it with the mouse, on a page in the browser\n"
+    )
+    table = tangible("run", "p.yaml", "-v", cwd=folder).stdout
+    assert re.search(r"^relief .*\bunchanged\b", table, re.MULTILINE)
+    assert all(table.count(text) == 1 for text in ("out/p/relief.npz", "tangible ui"))
     assert tangible("plan", "p.yaml", cwd=folder).stdout.startswith("Nothing is left to run")
     figures = {"overruns": 0, "ticks": 500, "seconds": 0.5, "contact_share": 0.931, "peak_force_n": 2.04}
     assert sentences.touch_summary("mock", figures) == (
@@ -220,3 +229,22 @@ def test_plugins_show_prints_the_options_of_an_exporter(tmp_path: Path):
     assert ran.stdout.startswith("heights is an exporter of tangible-images")
     assert "width_m = null" in ran.stdout
     assert re.search("^export +heights", tangible("plugins", cwd=tmp_path).stdout, re.MULTILINE)
+
+
+def test_warning_on_a_product_is_printed_once_whether_it_is_made_or_cached(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+):
+    from tangible_depth.luminance import Luminance
+
+    estimate = Luminance.estimate
+
+    def warn(self: Luminance, views: Views) -> DisparityMap:
+        note(logging.getLogger("tangible_depth.luminance"), "hardly any contrast", logging.WARNING)
+        return estimate(self, views)
+
+    monkeypatch.setattr(Luminance, "estimate", warn)
+    for words in (("-v",), ("-v",), (), ("-q",)):
+        done = tangible("run", "p.yaml", *words, cwd=folder)
+        assert done.stderr == "warning: hardly any contrast\n", words
+        assert "hardly any" not in done.stdout
+    assert "hardly any contrast" in tangible("plan", "p.yaml", cwd=folder).stdout, "no warning stands elsewhere"

@@ -72,7 +72,7 @@ def test_fit_surface_describes_each_change_once():
     named = replace(level(labels=labels, materials=(hard, hard)), names=("wall", "cup"))
     surface, said = fit_surface(named, SPEC, Safety())
     assert surface.names == ("wall", "cup")
-    assert said == "limited to what the device renders stably: hard (stiffness 9000 to 3200 N/m)"
+    assert said == "hard is felt softer than it is: the device cannot hold anything harder"
     assert [each.stiffness_n_per_m for each in surface.materials] == [3200, 3200]
     plain = level()
     assert fit_surface(plain, SPEC, Safety()) == (plain, "")
@@ -116,7 +116,9 @@ class TestPipeline:
         pipeline = self.pipeline(device=Mock())
         pipeline.make("touch")
         [touch] = [each for each in pipeline.outcomes if each.product == "touch"]
-        assert "limited to what the device renders stably: brick (texture 225 to 85.5 um), stone" in touch.why
+        assert touch.why == (
+            "requested; brick and stone are felt more gently than they are: the device cannot go finer"
+        )
         assert pipeline.surface.materials[0] == library()["brick"]
 
     def test_given_device_replaces_the_configured_one(self):
@@ -124,7 +126,7 @@ class TestPipeline:
         pipeline = self.pipeline(device=strong)
         pipeline.feel(Mock(), 0.01, in_real_time=False)
         [touch] = [each for each in pipeline.outcomes if each.product == "touch"]
-        assert "brick (texture 225 to 85.5 um)" in touch.why
+        assert "brick and stone are felt more gently than they are" in touch.why
         assert pipeline.preflight(Mock()).safe
 
     def test_replay_uses_the_materials_of_the_session(self):

@@ -35,5 +35,6 @@ def new(
     if is_quiet():
         return
     show.plain(f"written: {file}\n\nNext:")
+    show.plain(f"  tangible ui {file}         shows it on a page in the browser, to be felt with the mouse")
     show.plain(f"  tangible run {file}        makes what can be felt, and draws it")
     show.plain(f"  tangible preflight {file}  says whether it is safe on its device")

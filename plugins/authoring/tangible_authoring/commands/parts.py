@@ -101,6 +101,7 @@ def _divide(
 NEXT = """
 Next:
   look at {numbered}, and write names and heights into {file}
+  tangible ui {file}        shows the parts on a page in the browser, to be named there and felt with the mouse
   tangible run {file}       makes what can be felt, and draws it
   tangible parts {file}     lists and numbers the parts again, when you have painted over {labels}"""
 

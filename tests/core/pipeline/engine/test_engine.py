@@ -217,7 +217,7 @@ def test_outcome_of_a_cached_product_repeats_its_notes(folder: Path, caplog: pyt
         assert list(told["disparity"].notes) == noticed
         assert told["disparity"].why.endswith("; every row is strange; hardly worth it")
         assert [each.message for each in caplog.records] == ["every row is strange", "hardly worth it"]
-    assert told["segments"].why == "within a cached product; skipped: everything"
+    assert told["segments"].why == "within an unchanged product; skipped: everything"
     again.make("disparity")
     assert len(caplog.records) == 2  # and not told twice
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from accessible_names import controls_of, faults_of
 from browser_tabs import SETTLED
 from needed import lacking
 from page_files import WEB
@@ -113,6 +114,8 @@ class TestSeen:
         page = show(locale=locale)
         assert page.evaluate("document.documentElement.lang") == locale[:2]
         open_all(page)
+        page.wait_for_function("() => document.querySelector('#materials datalist').childElementCount")
+        assert_controls_have_names(page, 150)
         assert axe_finds(page, every_theme=locale == "en-GB") == []
 
     def test_parts_editor_has_no_violations_by_axe_in_any_size(self, show: Show):
@@ -129,6 +132,7 @@ class TestSeen:
         page.locator("#parts-height-mm").fill("99")
         assert "von 0 bis" in page.locator("#parts-height-mm-complaint").inner_text()
         open_all(page)
+        assert_controls_have_names(page, 20)
         assert axe_finds(page, every_theme=True) == []
         for name, (width, height) in SIZES.items():
             page.set_viewport_size({"width": width, "height": height})
@@ -219,6 +223,13 @@ THEMES: dict[str, dict[str, Any]] = {
     "dark more": {"color_scheme": "dark", "contrast": "more"},
     "light more": {"color_scheme": "light", "contrast": "more"},
 }
+
+
+def assert_controls_have_names(page: "Page", least: int) -> None:
+    """Check the accessibility tree, in which a slider whose value takes its label has no name; axe does not see it."""
+    controls = controls_of(page)
+    assert len(controls) > least
+    assert faults_of(controls) == []
 
 
 def axe_finds(page: "Page", *, every_theme: bool) -> list[str]:

@@ -23,6 +23,17 @@ export function paragraph(text: string, className = ""): HTMLParagraphElement {
   return Object.assign(document.createElement("p"), { className, textContent: text });
 }
 
+/** A slider under its name, with its value in words beside the name. The value stands outside of the label: an <output>
+ * can be labelled itself, and would take the label, so that the slider had no name. It is for the eyes alone: the
+ * slider's own `aria-valuetext` is read. */
+export function slider(name: string, control: HTMLInputElement, value: HTMLOutputElement): HTMLDivElement {
+  const box = field(name, control);
+  box.className = "slider";
+  value.ariaHidden = "true";
+  box.insertBefore(value, control);
+  return box;
+}
+
 /** Return a hint under a control, in small letters. */
 export function hint(text: string): HTMLParagraphElement {
   return paragraph(text, "hint");

@@ -1,5 +1,6 @@
 /** Settings of the view: colouring, light, magnifier and camera. */
 import "./view.css";
+import { slider } from "../../elements";
 import { CAMERA_KEYS } from "../../view/camera_input";
 import { Magnifier } from "../../view/magnifier";
 import type { Page } from "../../page";
@@ -25,7 +26,7 @@ function build(page: Page, root: HTMLElement): void {
     lens.change();
   };
   const controls = controlsOf(showing.settings, set);
-  root.append(looks(page, showing, set, controls.slider), ...controls.boxes, camera(page));
+  root.append(looks(page, showing, set, controls.control), ...controls.boxes, camera(page));
   page.hub.on("shown", () => showing.begin());
   page.hub.on("look at", ({ look }) => page.scene && looksOf(page.scene.meta).includes(look) && set({ look }));
   const grounded = (): void => void (page.view.ground = colour("--ground"));
@@ -34,11 +35,11 @@ function build(page: Page, root: HTMLElement): void {
 }
 
 /** Return the choice of colouring, with its legend. */
-function looks(page: Page, showing: Look, set: (changes: Partial<Settings>) => void, slider: Slider): HTMLElement {
+function looks(page: Page, showing: Look, set: (changes: Partial<Settings>) => void, control: Slider): HTMLElement {
   const box = fieldset("shows");
   const choices = document.createElement("div");
   const meaning = document.createElement("div");
-  const cover = slider("cover", "cover", 0.05, percent);
+  const cover = control("cover", "cover", 0.05, percent);
   box.append(choices, meaning, cover);
   box.hidden = true;
   showing.onChange = () => {
@@ -62,12 +63,11 @@ const percent = (value: number): string => `${Math.round(100 * value)} %`;
 const degrees = (value: number): string => `${value}°`;
 
 function controlsOf(settings: Settings, set: (changes: Partial<Settings>) => void) {
-  const slider: Slider = (name, word, step, say) => {
-    const label = document.createElement("label");
-    label.className = "slider";
+  const control: Slider = (name, word, step, say) => {
     const input = document.createElement("input");
     const value = document.createElement("output");
     input.type = "range";
+    input.id = `view-${name}`;
     [input.min, input.max] = BOUNDS[name]!.map(String);
     input.step = String(step);
     input.value = String(settings[name]);
@@ -80,25 +80,24 @@ function controlsOf(settings: Settings, set: (changes: Partial<Settings>) => voi
       set({ [name]: input.valueAsNumber });
     };
     said();
-    label.append(t(word), value, input);
-    return label;
+    return slider(t(word), input, value);
   };
   const light = fieldset("light");
   const hint = document.createElement("small");
   hint.textContent = t("eyeDomeSays");
   light.append(
-    slider("raking", "raking", 0.05, percent),
-    slider("azimuthDeg", "azimuth", 5, degrees),
-    slider("elevationDeg", "elevation", 5, degrees),
-    slider("eyeDome", "eyeDome", 0.05, percent),
+    control("raking", "raking", 0.05, percent),
+    control("azimuthDeg", "azimuth", 5, degrees),
+    control("elevationDeg", "elevation", 5, degrees),
+    control("eyeDome", "eyeDome", 0.05, percent),
     hint,
   );
   const curtains = fieldset("curtains");
   for (const steep of Object.keys(STEEPS) as (keyof typeof STEEPS)[])
     curtains.append(radio("steep", steep, steep, () => set({ steep }), settings.steep === steep));
-  curtains.append(slider("steepDeg", "steeper", 1, degrees));
-  const normals = slider("normals", "normals", 1, density);
-  return { slider, boxes: [light, curtains, normals, magnifier(settings, set)] };
+  curtains.append(control("steepDeg", "steeper", 1, degrees));
+  const normals = control("normals", "normals", 1, density);
+  return { control, boxes: [light, curtains, normals, magnifier(settings, set)] };
 }
 
 function density(value: number): string {

@@ -1,0 +1,75 @@
+"""The names of all controls of a page, as the browser computes them for screen readers."""
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from playwright.sync_api import CDPSession, Page
+
+CONTROLS = {
+    "button", "checkbox", "combobox", "DisclosureTriangle", "link", "listbox", "menuitem", "radio", "searchbox",
+    "slider", "spinbutton", "switch", "tab", "textbox", "textfield",
+}  # fmt: skip
+"""Roles of the accessibility tree that somebody acts on."""
+SEEN = """function () {
+  const text = (each) => {
+    const copy = each.cloneNode(true);
+    for (const inner of copy.querySelectorAll("input, select, textarea, output, kbd, datalist, [aria-hidden=true]")) inner.remove();
+    return copy.textContent.replace(/\\s+/g, " ").trim();
+  };
+  const label = this.labels?.length ? [...this.labels].map(text).join(" ") : /BUTTON|SUMMARY|A/.test(this.tagName) ? text(this) : "";
+  const around = this.tagName === "SUMMARY" ? this.parentElement : this;
+  const inside = around.parentElement?.closest("[role=group], fieldset, tr, li, table, details, dialog, section");
+  return { label, tag: this.outerHTML.slice(0, 120), inside: inside ? inside.outerHTML.slice(0, 200) : "" };
+}"""
+"""Returns the text that people see as the label of a control, and the box in which its name is to be the only one."""
+
+
+class Control(NamedTuple):
+    """A control of the page."""
+
+    role: str
+    name: str
+    label: str
+    """The visible label."""
+    inside: str
+    tag: str
+
+
+def controls_of(page: "Page") -> list[Control]:
+    """Return every control that the browser's accessibility tree has."""
+    session: CDPSession = page.context.new_cdp_session(page)
+    nodes: list[dict[str, Any]] = session.send("Accessibility.getFullAXTree")["nodes"]
+    found = [each for each in nodes if not each["ignored"] and each["role"]["value"] in CONTROLS]
+    controls = [
+        Control(each["role"]["value"], each.get("name", {}).get("value", "").strip(), **_seen(session, each))
+        for each in found
+    ]
+    session.detach()
+    return controls
+
+
+def _seen(session: "CDPSession", node: dict[str, Any]) -> dict[str, str]:
+    found = session.send("DOM.resolveNode", {"backendNodeId": node["backendDOMNodeId"]})["object"]["objectId"]
+    asked = {"objectId": found, "functionDeclaration": SEEN, "returnByValue": True}
+    return session.send("Runtime.callFunctionOn", asked)["result"]["value"]
+
+
+def faults_of(controls: list[Control]) -> list[str]:
+    """Return the controls without a name, with another one than people see, or with one that a neighbour has too."""
+    faults = [f"no name: {each.role} {each.tag}" for each in controls if not each.name]
+    faults += [
+        f"{each.role} {each.name!r} reads {each.label!r}"
+        for each in controls
+        if each.name and _plain(each.label) not in _plain(each.name)
+    ]
+    known = set[tuple[str, str, str]]()
+    for each in controls:
+        key = each.role, each.name, each.inside
+        if each.name and key in known:
+            faults.append(f"twice: {each.role} {each.name!r} in {each.inside}")
+        known.add(key)
+    return faults
+
+
+def _plain(text: str) -> str:
+    return "".join(text.casefold().split()).rstrip(":.…")

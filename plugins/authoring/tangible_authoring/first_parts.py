@@ -105,13 +105,9 @@ def first_parts(
         raise ConfigError(f"count: must be at least 1, not {most}")
     check_positive("smallest", smallest_mm)
     pipeline = _pipeline(pictures, file, method, overrides, most, registry or default_registry(), cache)
-    scene, segments = pipeline.scene, pipeline.make("segments")
+    scene, parts = pipeline.scene, proposed_parts(pipeline, most, smallest_mm)
     assert scene.views is not None
-    if segments is None:
-        segments = SegmentMap(np.zeros(scene.shape, np.int32))
-    with _observers_notified(pipeline.engine.registry):
-        parts = large_parts(segments, scene.views.left, smallest_mm / SIDE_MM * max(scene.shape), most)
-    heights = _heights(pipeline, parts)
+    heights = proposed_heights(pipeline, parts)
     rows, title = list_rows(parts, heights, {}), title_of(pictures[0])
     text = parts_starter(pipeline, file, LABELS, NUMBERED, title, rows)
     labels, numbered, _ = files_beside(file)
@@ -119,6 +115,24 @@ def first_parts(
     contents = {labels: label_picture(parts.labels), numbered: shown, file: text.encode()}
     chosen = pipeline.config.texture
     return FirstParts(scene, parts, rows, title, chosen.name if chosen else "", contents)
+
+
+def proposed_parts(pipeline: Pipeline, most: int = MOST_PARTS, smallest_mm: float = SMALLEST_MM) -> PartMap:
+    """Find the parts of a pipeline's picture: the segments of its texture method, joined until they are few and large.
+
+    most, smallest_mm: as in `first_parts`. Raises: TangibleError as `Pipeline.make`.
+    """
+    scene, segments = pipeline.scene, pipeline.make("segments")
+    assert scene.views is not None
+    if segments is None:
+        segments = SegmentMap(np.zeros(scene.shape, np.int32))
+    with _observers_notified(pipeline.engine.registry):
+        return large_parts(segments, scene.views.left, smallest_mm / SIDE_MM * max(scene.shape), most)
+
+
+def segments_for(most: int = MOST_PARTS) -> int:
+    """Return the number of segments that is requested of a texture method for at most this many parts."""
+    return ceil(SEGMENTS_PER_PART * most)
 
 
 def _pipeline(
@@ -138,19 +152,23 @@ def _pipeline(
     if maps := [picture for picture in pictures if picture.suffix.lower() in MAPS]:
         raise ConfigError(f"{maps[0]}: is a map of heights, which are felt as they are; parts are those of a picture")
     template = starter(pictures, file)
-    chosen = f"texture={{use: {in_yaml(method)}}}" if method else f"texture.segments={ceil(SEGMENTS_PER_PART * most)}"
+    chosen = f"texture={{use: {in_yaml(method)}}}" if method else f"texture.segments={segments_for(most)}"
     config = parse_config(template.text, file, registry, [chosen, *overrides])
     return Pipeline.from_config(config.with_values(scene=template.scene), registry, cache)
 
 
-def _heights(pipeline: Pipeline, parts: PartMap) -> PartHeights:
-    """Find the heights of parts: by depth where the scene has depth, else by a guess; rounded down, metres."""
-    scene = pipeline.scene
-    has_depth = scene.disparity is not None or (scene.views is not None and scene.views.right is not None)
-    disparity = pipeline.make("disparity") if has_depth else None
-    choice = HeightChoice(by="guess" if disparity is None else "depth")
-    top_m = RELIEF_MM / 1000 - choice.bulge_m - choice.detail_m
-    found = heights_of(parts, choice, top_m, {}, disparity, scene.shown)
+def proposed_heights(pipeline: Pipeline, parts: PartMap, top_m: float | None = None) -> PartHeights:
+    """Find the heights of parts: by depth where the scene has depth, else by a guess; rounded down, metres.
+
+    top_m: the greatest height of a part; that of the starter file by default.
+    """
+    scene, choice = pipeline.scene, HeightChoice(by="guess")
+    if top_m is None:
+        top_m = RELIEF_MM / 1000 - choice.bulge_m - choice.detail_m
+    two_views = scene.views is not None and scene.views.right is not None and pipeline.config.depth is not None
+    disparity = pipeline.make("disparity") if scene.disparity is not None or two_views else None
+    by_depth = choice.model_copy(update={"by": "depth"})
+    found = heights_of(parts, choice if disparity is None else by_depth, top_m, {}, disparity, scene.shown)
     rounded = (floor(height_m * STEPS_PER_M + 1e-6) / STEPS_PER_M for height_m in found.heights_m)
     return PartHeights(tuple(rounded), found.reasons)
 

@@ -229,7 +229,7 @@ def test_rule_by_an_old_number_is_refused(folder: Path):
     well(tangible("parts", "still.png", cwd=folder))
     file = folder / "still.yaml"
     rules = "materials: {rules: [{part: 1, material: glass}]}"
-    file.write_text(file.read_text().replace("materials: {by: roughness}", rules))
+    file.write_text(file.read_text().replace("materials: {by: rules}", rules))
     paint(folder / "parts.png", (110, 0, 160, 40), 20)
     before = file.read_text()
     done = tangible("parts", "still.yaml", "--renumber", cwd=folder)

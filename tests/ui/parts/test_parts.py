@@ -14,6 +14,7 @@ from PIL import Image
 
 from full_disk import files_up_to
 from sessions import TEXT, SmallSession, small_scene
+from tangible_authoring.first_parts import first_parts
 from tangible_core import load_pipeline
 from tangible_core.data import SegmentMap
 from tangible_core.errors import ConfigError, OutputError, TangibleError
@@ -284,6 +285,27 @@ class TestOpening:
 
         small(check)
 
+    def test_first_parts_are_those_of_the_terminal(self, small: Callable[[Check], None], tmp_path: Path) -> None:
+        """A photo that nobody has divided: the same parts, in the same order of heights, as in `tangible parts`."""
+
+        async def check(small: SmallSession, ask: Any) -> None:
+            picture = np.full((90, 120, 3), 200, np.uint8)
+            picture[60:] = [60, 90, 40]
+            picture[20:50, 30:70] = [180, 30, 30]
+            Image.fromarray(picture).save(tmp_path / "scene.png")
+            await ask("begin", files=[str(tmp_path / "scene.png")], make_it=False)
+            assert not (await ask("parts_open"))["divided"]
+            found = await ask("parts_first")
+            labels = np.fromfile(small.session.folder / found["labels"], "<u2").reshape(90, 120)
+            wanted = first_parts([tmp_path / "scene.png"], tmp_path / "scene.yaml")
+            np.testing.assert_array_equal(labels, wanted.parts.labels)
+            assert wanted.parts.count >= 3
+            heights = [each.height_m or 0.0 for each in wanted.listed]
+            assert np.argsort(found["heights_m"]).tolist() == np.argsort(heights).tolist()
+            assert not (await ask("parts_open"))["divided"], "nothing is saved by that"
+
+        small(check)
+
     def test_saved_parts_are_opened_again(self, small: Callable[[Check], None]) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
             kept = await saved(small, ask, title="A hat", language="de")
@@ -342,7 +364,7 @@ class TestSaving:
     def test_labels_are_saved_next_to_the_document(self, small: Callable[[Check], None], tmp_path: Path) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
             found = await saved(small, ask)
-            assert (found["path"], found["saved"]) == (str(tmp_path / "parts.png"), True)
+            assert (found["path"], found["file"]) == (str(tmp_path / "parts.png"), str(tmp_path / "mine.yaml"))
             assert found["numbers"] == {"0": [0], "7": [1], "3": [2]}
             assert (tmp_path / "mine.yaml").read_text() == small.session.text
             assert small.session.text.startswith(
@@ -357,17 +379,62 @@ class TestSaving:
 
         small(check)
 
-    def test_labels_of_an_unsaved_document_go_to_the_store(
+    @pytest.mark.parametrize("beside", [True, False])
+    def test_document_without_a_file_gets_one_and_no_file_is_replaced(
+        self, small: Callable[[Check], None], tmp_path: Path, beside: bool
+    ) -> None:
+        """Next to the photograph if that was chosen, else in the program's folder; what is saved again replaces it."""
+
+        async def check(small: SmallSession, ask: Any) -> None:
+            for name in ("mine.yaml", "mine-2.yaml"):
+                (tmp_path / name).write_text("# of somebody else\n")
+            offered = await ask("parts_open")
+            assert (offered["file"], offered["beside"]) == ("", str(tmp_path))
+            place = tmp_path / "mine-3.yaml" if beside else tmp_path / "data/drawn/mine/mine.yaml"
+            for _ in range(2):
+                found = await saved(small, ask, beside=beside)
+                assert (Path(found["file"]), Path(found["path"])) == (place, place.with_name("parts.png"))
+            assert (
+                (tmp_path / "mine.yaml").read_text() == (tmp_path / "mine-2.yaml").read_text() == "# of somebody else\n"
+            )
+            assert small.session.path == place and (await ask("parts_open"))["file"] == str(place)
+            assert load_pipeline(place).surface.names == ("wall", "hat", "bag")
+            await ask("undo")
+            assert small.session.path.name == "mine.yaml", "undo leads back to the document that had no parts"
+
+        small(check)
+
+    def test_uploaded_and_built_in_pictures_have_no_place_beside_them(
         self, small: Callable[[Check], None], tmp_path: Path
     ) -> None:
         async def check(small: SmallSession, ask: Any) -> None:
-            (tmp_path / "mine.yaml").write_text("# of somebody else\n")
-            found = await saved(small, ask)
-            assert not found["saved"]
-            assert (tmp_path / "mine.yaml").read_text() == "# of somebody else\n"
-            assert Path(found["path"]).is_relative_to(tmp_path / "data")
-            await ask("save", path=str(tmp_path / "other" / "new.yaml"))
-            assert load_pipeline(tmp_path / "other" / "new.yaml").surface.names == ("wall", "hat", "bag")
+            uploaded = tmp_path / "data" / "opened" / "mine.png"
+            uploaded.parent.mkdir(parents=True)
+            (tmp_path / "mine.png").rename(uploaded)
+            for file in (str(uploaded), "builtin/motorcycle"):
+                await ask("begin", files=[file], make_it=False)
+                assert (await ask("parts_open"))["beside"] == ""
+            await ask("begin", files=[str(uploaded)], make_it=False)
+            found = await saved(small, ask, beside=True)
+            assert Path(found["file"]).parent.parent == tmp_path / "data" / "drawn"
+
+        small(check)
+
+    @pytest.mark.parametrize(
+        ("said", "kept"),
+        [("", "rules"), ("materials: {by: roughness}\n", "rules"), ("materials: {by: {0: ice}}\n", {0: "ice"})],
+    )
+    def test_saved_parts_get_no_material_by_the_rank_of_their_roughness(
+        self, small: Callable[[Check], None], tmp_path: Path, said: str, kept: Any
+    ) -> None:
+        async def check(small: SmallSession, ask: Any) -> None:
+            (tmp_path / "mine.yaml").write_text(TEXT + said)
+            await ask("begin", files=[str(tmp_path / "mine.yaml")], make_it=False)
+            await saved(small, ask)
+            pipeline = load_pipeline(tmp_path / "mine.yaml")
+            assert pipeline.config.materials.by == kept
+            if kept == "rules":
+                assert [each.name for each in pipeline.materials.materials] == ["plain", "glass", "plain"]
 
         small(check)
 
@@ -511,7 +578,7 @@ class TestSaving:
         (tmp_path / "sent").write_bytes(packed(labels))
         JOBS["parts_save"].do(
             worker_state, text=text, path=path, sets=[], sent=tmp_path / "sent", parts=[{"label": 1, "name": "a"}],
-            heights=GIVEN, words={}, of="", opened=text, store=tmp_path,
+            heights=GIVEN, words={}, of="", opened=text, store=tmp_path, drawn=tmp_path,
         )  # fmt: skip
         scene = load_pipeline(path).scene
         assert scene.segments is not None

@@ -13,8 +13,15 @@ from .table import request
 
 @request()
 async def parts_open(session: Session, tab: Tab | None) -> dict[str, Any]:
-    """Return what the editor begins with: the document's picture and parts."""
-    return await session.worker.quick("parts_open", **session.document())
+    """Return what the editor begins with: the document's picture and parts, its file, and where a new one may lie."""
+    told = {"opened": session.drafts.opened_text, "uploads": user_folder("")}
+    return await session.worker.quick("parts_open", **session.document(), **told)
+
+
+@request()
+async def parts_first(session: Session, tab: Tab | None) -> dict[str, Any]:
+    """Propose all parts of a picture that nobody has divided yet, as `tangible parts` does. Raises: TangibleError."""
+    return await session.worker.quick("parts_first", **session.document())
 
 
 @request()
@@ -27,11 +34,13 @@ async def parts_save(
     title: str | None = None,
     language: str | None = None,
     of: str = "",
+    beside: bool = False,
 ) -> dict[str, Any]:
-    """Save labels that a page has uploaded and the entries of their parts; save the document too if it has a file.
+    """Save labels that a page has uploaded, and the document with the entries of their parts.
 
     upload: their batch, a gzip of uint16. of: digest of the parts that were edited; if others replaced those
-    meanwhile, the request is refused. Raises: ConfigError, OutputError; then nothing is changed.
+    meanwhile, the request is refused. beside: a document without a file gets one next to the photograph, else in the
+    program's folder; no file that is there is replaced. Raises: ConfigError, OutputError; then nothing is changed.
     """
     async with session.texts.lock:
         sent = await asyncio.to_thread(session.uploads.single, upload)
@@ -39,16 +48,16 @@ async def parts_save(
             found = await session.worker.quick(
                 "parts_save", **session.document(), sent=sent, parts=parts, heights=heights, of=of,
                 words={"title": title, "language": language}, opened=session.drafts.opened_text,
-                store=user_folder("opened"), earlier=session.texts.all,
+                store=user_folder("opened"), drawn=user_folder("drawn"), beside=beside, earlier=session.texts.all,
             )  # fmt: skip
         finally:
             await asyncio.to_thread(session.uploads.drop, upload)
         text, moved = found.pop("text"), found.pop("moved")
         session.texts.rewrite(moved)
         session.text = moved.get(session.text, session.text)
-        if found["saved"]:
-            session.drafts.remember_opened(text)
-        await take(session, Text(text, session.path))
+        session.drafts.remember_opened(text)
+        await take(session, Text(text, found["file"]))
+        found["file"] = str(found["file"])
     session.begin(foresee(session, apply=True))
     return found
 

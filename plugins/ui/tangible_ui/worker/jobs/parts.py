@@ -11,6 +11,7 @@ from tangible_core.data import HapticSurface, Record, SegmentMap
 from tangible_core.data.records import digest_of
 from tangible_core.errors import ConfigError
 from tangible_core.parts import PartChoice, find_parts
+from tangible_core.pipeline.config.editing import edit_text, relocate_text
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine import part_validation, working_grid
 from tangible_core.pipeline.engine.part_validation import check_parts
@@ -30,6 +31,7 @@ from ..parts.opening import (
     leave_files,
     opened_of,
     part_entries,
+    texture_of_first_parts,
     tree_of,
 )
 from ..parts.outlines import snap
@@ -37,9 +39,10 @@ from ..parts.proposals import Kind, as_points, propose, propose_region, runs
 from ..parts.saving import (
     compact,
     document_with_parts,
-    in_store,
+    folder_of_photograph,
     is_in_file,
     keep_replaced,
+    new_file,
     number_parts,
     place_next_to,
     undo_framing,
@@ -53,31 +56,60 @@ from .table import job
 
 
 @job(quick=True)
-def parts_open(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
+def parts_open(
+    state: WorkerState, text: str, path: Path, sets: list[str], opened: str = "", uploads: Path = Path()
+) -> dict[str, Any]:
     """Return what an editor begins with; write the picture, and the number of each pixel's part, into files.
+
+    opened: the document's text when its file was opened or saved. uploads: folder of uploaded pictures.
 
     Raises: ConfigError for a wrong document; PictureError for a scene that cannot be read, or has too many parts;
     OutputError if the files cannot be written.
     """
     pipeline = edited_of(state, text, path, sets)
-    opened, config = opened_of(state, pipeline), pipeline.config
-    at = f"{FOLDER}{digest_of((opened.picture, opened.parts))}"
-    leave_files(opened, state.folder / at)
+    edited, config = opened_of(state, pipeline), pipeline.config
+    at = f"{FOLDER}{digest_of((edited.picture, edited.parts))}"
+    leave_files(edited, state.folder / at)
+    in_file, beside = is_in_file(path, opened), folder_of_photograph(config, uploads)
     by_parts = config.with_values(heights=config_heights(config))
-    rows, columns = opened.parts.labels.shape
+    rows, columns = edited.parts.labels.shape
     return {
         "columns": columns,
         "rows": rows,
         "picture": f"{at}/picture.jpg",
         "labels": f"{at}/labels.u16",
-        "digest": digest(opened.parts, config),
-        "parts": part_entries(opened.parts, config_parts(config)),
+        "digest": digest(edited.parts, config),
+        "parts": part_entries(edited.parts, config_parts(config)),
+        "divided": edited.scene.segments is not None or edited.parts.count > 1,
         "heights": config_heights(config).model_dump(mode="json"),
         "top_m": max(0.0, by_parts.top_m),
         "widthM": by_parts.size.width_m,
+        "file": str(path) if in_file else "",
+        "beside": "" if in_file or beside is None else str(beside),
         "title": config.title,
         "language": config.language,
     }
+
+
+@job(quick=True)
+def parts_first(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
+    """Propose all parts of a picture that nobody has divided yet, as `tangible parts` does, with their heights.
+
+    Returns: the file of the number of each pixel's part, and the height of each part in metres; no parts for a scene
+    without a picture. Raises: TangibleError as `Pipeline.make`; OutputError if the file cannot be written.
+    """
+    from tangible_authoring.first_parts import proposed_heights, proposed_parts
+
+    opened = opened_of(state, edited_of(state, text, path, sets))
+    if opened.scene.views is None:
+        return {"labels": "", "heights_m": []}
+    divided = state.pipeline_of(text, path, [*sets, texture_of_first_parts()])
+    found, config = proposed_parts(divided), divided.config
+    by_parts = config.with_values(heights=config_heights(config))
+    heights = proposed_heights(divided, found, max(0.0, by_parts.top_m))
+    at = f"{FOLDER}{digest_of((opened.picture, found))}"
+    leave_files(opened._replace(parts=found), state.folder / at)
+    return {"labels": f"{at}/labels.u16", "heights_m": list(heights.heights_m)}
 
 
 @job(quick=True)
@@ -128,14 +160,17 @@ def parts_save(
     of: str,
     opened: str,
     store: Path,
+    drawn: Path,
+    beside: bool = False,
     earlier: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Save labels that a page has uploaded and the entries of their parts; save the document too if it has a file.
+    """Save labels that a page has uploaded, and the document with the entries of their parts.
 
     of: digest of the parts that were edited, or "". opened: the document's text when its file was opened or saved; a
-    file with another text is left alone. store: folder for labels of a document without a file, and for labels that
-    were replaced. earlier: texts of the document's history.
-    Returns: with `moved`, new versions of earlier texts, and of this one, that named replaced labels.
+    file with another text is left alone. A document without a file gets a new one: beside: next to the photograph,
+    else in the folder `drawn`. store: folder for labels that were replaced. earlier: texts of the document's history.
+    Returns: path of the labels, file of the document and its text; with `moved`, new versions of earlier texts, and of
+    this one, that named replaced labels.
     Raises: ConfigError for invalid labels, parts that were changed elsewhere meanwhile, and invalid entries;
     OutputError; then nothing is changed.
     """
@@ -146,17 +181,20 @@ def parts_save(
     known, segments = compact(labels)
     found = find_parts(SegmentMap(segments))
     choices, numbers = number_parts(parts, [int(known[each]) for each in found.segments], found.labels)
-    picture = as_png(undo_framing(found.labels, pipeline.config), path.name)
-    in_file = is_in_file(path, opened)
-    place = place_next_to(path) if in_file else in_store(store, picture)
-    changed = document_with_parts(text, path, place, choices, heights, words)
-    config = parse_config(changed, path, state.registry, sets)
+    file = path if is_in_file(path, opened) else new_file(pipeline.config, path, drawn, beside)
+    picture = as_png(undo_framing(found.labels, pipeline.config), file.name)
+    place = place_next_to(file)
+    text_there = relocate_text(text, path, parse_config(text, path, state.registry), file)
+    changed = document_with_parts(text_there, file, place, choices, heights, words)
+    if pipeline.config.materials.by == "roughness":
+        changed = edit_text(changed, file, {("materials", "by"): "rules"})  # parts are of what they are said to be of
+    config = parse_config(changed, file, state.registry, sets)
     check_parts(config, found, labels.shape[1])
     moved = keep_replaced(place, picture, store, [*earlier, text], path)
-    write(place, picture, path if in_file else None, changed)
+    write(place, picture, file, changed)
     warn_of_numbers(config, opened_of(state, pipeline), found)
     of = digest(found, config)
-    return {"text": changed, "path": str(place), "numbers": numbers, "saved": in_file, "digest": of, "moved": moved}
+    return {"text": changed, "path": str(place), "file": file, "numbers": numbers, "digest": of, "moved": moved}
 
 
 @job(quick=True)

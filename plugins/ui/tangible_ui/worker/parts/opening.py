@@ -70,6 +70,13 @@ def tree_of(state: WorkerState, opened: Opened) -> SegmentTree:
     return state.tree[1]
 
 
+def texture_of_first_parts() -> str:
+    """Return the texture method whose segments `tangible parts` joins to parts, as a change of a document."""
+    from tangible_authoring.first_parts import segments_for
+
+    return f"texture={{use: {TREES}, segments: {segments_for()}}}"
+
+
 def digest(parts: PartMap, config: PipelineConfig) -> str:
     """Return the digest of the parts and of the document's entries for them."""
     choices = tuple((number, repr(each)) for number, each in sorted(config_parts(config).items()))

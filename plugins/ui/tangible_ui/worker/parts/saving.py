@@ -171,6 +171,32 @@ def is_in_file(path: Path, opened: str) -> bool:
         return False
 
 
+def folder_of_photograph(config: PipelineConfig, uploads: Path) -> Path | None:
+    """Return the folder of a document's picture; None for a built-in scene, an upload, or a folder to read alone.
+
+    uploads: folder of uploaded pictures, which a person never sees.
+    """
+    files = config.scene
+    picture = (files.photo or files.left) if isinstance(files, SceneFiles) else None
+    if picture is None:
+        return None
+    folder = (config.folder / picture).absolute().parent
+    hidden = folder.resolve().is_relative_to(uploads.resolve())
+    return None if hidden or not os.access(folder, os.W_OK) else folder
+
+
+def new_file(config: PipelineConfig, path: Path, drawn: Path, beside: bool) -> Path:
+    """Return the path of a new pipeline file: next to the photograph, else in a new folder below `drawn`.
+
+    path: of the document so far, whose name it keeps; a number is added where a file is there already.
+    """
+    names = itertools.chain([path.stem], (f"{path.stem}-{number}" for number in itertools.count(2)))
+    folder = folder_of_photograph(config, drawn.parent) if beside else None
+    if folder is None:
+        return next(drawn / name / f"{name}.yaml" for name in names if not os.path.lexists(drawn / name))
+    return next(folder / f"{name}.yaml" for name in names if not os.path.lexists(folder / f"{name}.yaml"))
+
+
 def place_next_to(path: Path) -> Path:
     """Return a path for labels next to a pipeline file: a new one, or one that was written for that very file."""
     names = itertools.chain([NAME], (f"{Path(NAME).stem}-{number}.png" for number in itertools.count(2)))
@@ -200,10 +226,9 @@ def keep_replaced(place: Path, picture: bytes, store: Path, texts: Sequence[str]
     return moved
 
 
-def write(place: Path, picture: bytes, document: Path | None, text: str) -> None:
+def write(place: Path, picture: bytes, document: Path, text: str) -> None:
     """Write the labels and the document, both or neither. Raises: OutputError."""
     with atomic_write(place) as file:
         file.write(picture)
         file.flush()  # a full disk shows before the document is touched
-        if document is not None:
-            write_text(document, text)
+        write_text(document, text)

@@ -80,6 +80,14 @@ class Mouse:
         self.page.mouse.click(*self.at(x, y))
 
 
+def undo_the_first_parts(page: "Page") -> None:
+    """Wait for the parts that the program proposes for a picture, and take them back: it is one part then."""
+    until(lambda: "parts are proposed" in page.locator("#parts-told").inner_text(), "parts are proposed")
+    assert len(names(page)) >= 3, "a ball, a wall and a table"
+    page.keyboard.press("Control+z")
+    until(lambda: len(names(page)) == 1, "undone to nothing")
+
+
 def tool(page: "Page", name: str) -> None:
     page.locator("#parts-editor .bar").first.get_by_role("button", name=name, exact=True).click()
 
@@ -116,6 +124,7 @@ def test_parts_editor_makes_five_parts_by_mouse(opened: Callable[..., str], open
     page.wait_for_selector("#parts-list [role=option]")
     assert any("editor-" in url for url in fetched), "the editor comes when it is opened"
     mouse, name = Mouse(page), page.locator("#parts-name")
+    undo_the_first_parts(page)
     name.fill("wall")
 
     # a proposal, accepted
@@ -213,6 +222,7 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     enter(page, "#parts-edit")
     page.wait_for_selector("#parts-list [role=option]")
     until(lambda: focus_id(page) == "parts-list", "the list has the focus")
+    undo_the_first_parts(page)
     name_part(page, "wall")
 
     # an outline with the crosshair: from the middle to the lower half
@@ -279,7 +289,11 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     assert page.locator("#parts-editor").count() == 1, "it goes on"
     page.locator("#parts-list").focus()
     press(page, "Control+s")
-    until(lambda: "Saved: " in page.locator("#parts-told").inner_text(), "saved")
+    page.wait_for_selector("dialog[open]")
+    assert str(photo.parent) in page.locator("dialog").inner_text(), "the folder of the photograph is offered"
+    press(page, "Tab", "Enter")
+    until(lambda: f"Saved: {photo.with_suffix('.yaml')}" in page.locator("#parts-told").inner_text(), "saved, and where")
+    assert read_parts(photo.with_suffix(".yaml"))[0].keys() == {0, 1, 2, 3, 4}
     press(page, "Escape")
     until(lambda: page.locator("#parts-editor").count() == 0, "closed")
 

@@ -1,5 +1,6 @@
 /** Small pictures of parts, drawn in letters. */
 import { Drawing, type Part } from "../../src/panels/parts/drawing/drawing";
+import type { Limits } from "../../src/panels/parts/pixels/tidy";
 import type { Labels, Span } from "../../src/panels/parts/pixels/labels";
 
 export const part = (label: number, more: Partial<Part> = {}): Part => ({ label, name: "", height_m: 0, material: null, automatic: false, ...more });
@@ -15,9 +16,10 @@ export const drawn = ({ columns, data }: Labels): string[] =>
     String.fromCharCode(...data.subarray(row * columns, (row + 1) * columns).map((each) => each + 97)),
   );
 
-export function drawing(...lines: string[]): Drawing {
+/** slivers: limits in pixels; without them none is small enough. */
+export function drawing(lines: string[], slivers: Limits = { pixels: 0, width: 0 }): Drawing {
   const labels = picture(...lines);
-  return new Drawing(labels, [...new Set(labels.data)].sort().map((label) => part(label, { name: `part ${label}` })), 0.004);
+  return new Drawing(labels, [...new Set(labels.data)].sort().map((label) => part(label, { name: `part ${label}` })), 0.004, slivers);
 }
 
 export const pixels = (spans: Iterable<Span>): Set<string> =>

@@ -14,7 +14,7 @@ function editor(lines: string[], requests = NONE) {
   const labels = picture(...lines);
   const parts = [...new Set(labels.data)].sort().map((label) => part(label, { name: `part ${label}` }));
   const heights = { by: "depth", round_m: 0.0012345, bulge_m: 0, detail_m: 0 } as const;
-  const state = new EditorState({ labels, parts, top_m: 0.004, digest: "d", heights, title: " A ", language: "" }, requests);
+  const state = new EditorState({ labels, parts, top_m: 0.004, digest: "d", heights, title: " A ", language: "", divided: true, file: "", beside: "" }, requests);
   const told: (keyof EditorEvents)[] = [];
   const said: string[] = [];
   for (const name of NAMES) state.events.on(name, () => void told.push(name));
@@ -139,7 +139,7 @@ describe("editor state", () => {
     assert.equal(said.at(-1), "Brush: finished.");
   });
 
-  test("a proposal is announced, accepted with Enter, and named in the help", async () => {
+  test("a proposal is announced, and accepted with Enter as a new part unless it is to be added to the selected one", async () => {
     const { state, said, draw } = editor(["aaaa", "bbbb"], { ...NONE, propose: async () => ({ box: [0, 0, 2, 1], runs: [0, 2] }) });
     state.select(1);
     state.use("propose");
@@ -147,8 +147,47 @@ describe("editor state", () => {
     await state.pen();
     await state.pen();
     assert.equal(helpOf(state).startsWith(said.at(-1)!), true);
+    assert.ok(helpOf(state).endsWith("It becomes a new part."));
     state.finish();
-    assert.deepEqual(draw(), ["bbaa", "bbbb"]);
+    assert.deepEqual(draw(), ["ccaa", "bbbb"]);
+    assert.equal(state.drawing.selected, 2);
+    state.step("undo");
+    for (const expected of [["bbaa", "bbbb"], ["ccaa", "bbbb"]]) {
+      state.select(1);
+      await strokeOf(state, [0.5, 0.5]);
+      state.tools.addsTo = expected[0] === "bbaa";
+      if (state.tools.addsTo) assert.ok(helpOf(state).endsWith("It is added to: part 1."));
+      state.finish();
+      assert.deepEqual(draw().map((line) => line.replaceAll(/[d-z]/g, "c")), expected, "the next one is a new part again");
+      state.step("undo");
+    }
+  });
+
+  test("the program's own parts are begun with, unless something is drawn, and closing loses nothing then", () => {
+    const { state, said, draw } = editor(["aaaa"]);
+    state.begin({ labels: Uint16Array.from([0, 0, 1, 1]), heights_m: [0.001, 0.002] });
+    assert.deepEqual(draw(), ["bbcc"]);
+    assert.ok(state.isSaved && said.at(-1)!.startsWith("2 parts are proposed"));
+    state.step("undo");
+    assert.deepEqual([draw(), state.tools.newPart], [["aaaa"], true]);
+    state.drawing.begin(null);
+    state.drawing.paint([[0, 0, 1]]);
+    state.drawing.end();
+    assert.ok(!state.isSaved, "as many steps, and one of them is the person's");
+    state.begin({ labels: Uint16Array.from([0, 0, 1, 1]), heights_m: [0.001, 0.002] });
+    assert.equal(state.drawing.parts.length, 2);
+  });
+
+  test("slivers that go are said", async () => {
+    const lines = Array.from({ length: 40 }, (_, row) => (row % 39 ? `a${"b".repeat(38)}a` : "a".repeat(40)));
+    const inner = Array.from({ length: 37 }).flatMap(() => [0, 38]);
+    const { state, said } = editor(lines, { ...NONE, propose: async () => ({ box: [1, 1, 38, 37], runs: inner }) });
+    state.drawing.set(new Map([[1, { name: "" }]]));
+    state.use("propose");
+    state.drawing.limits.width = 3;
+    await strokeOf(state, [5, 5]);
+    state.finish();
+    assert.equal(said.at(-1), "A sliver, too small for a finger, went to the part around it. Undo takes that back.");
   });
 
   test("a proposed region is made larger and smaller by the keys of the brush", async () => {
@@ -170,7 +209,7 @@ describe("editor state", () => {
     assert.equal(state.tools.width, width);
     assert.equal(helpOf(state).startsWith(said.at(-1)!), true);
     state.finish();
-    assert.deepEqual(draw(), ["bbba", "bbbb"]);
+    assert.deepEqual(draw(), ["ccca", "bbbb"]);
     state.resizeBrush(1);
     assert.equal(levels.length, 7, "the brush again");
     assert.ok(state.tools.width > width);
@@ -201,7 +240,7 @@ describe("editor state", () => {
     state.drawing.end();
     assert.deepEqual([state.update().heights_m, state.isFelt(2)], [[0.002, null], false]);
     const { parts, history } = state.drawing;
-    state.markSaved({ path: "p", digest: "e", numbers: { 0: [1], 1: [2], 2: [0] } }, parts, history.length);
+    state.markSaved({ file: "p.yaml", digest: "e", numbers: { 0: [1], 1: [2], 2: [0] } }, parts, history.length);
     assert.deepEqual(state.update(), state.base);
     assert.deepEqual([state.update().heights_m, state.isFelt(2), state.isSaved, state.digest], [[0.003, 0.002, null], true, true, "e"]);
   });

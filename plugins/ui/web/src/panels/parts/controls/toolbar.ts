@@ -32,6 +32,7 @@ export class Toolbar {
   private again: HTMLButtonElement;
   private proposal: HTMLElement[];
   private erases: HTMLButtonElement;
+  private addsTo: HTMLButtonElement;
   private fields: Record<FieldName, HTMLElement>;
 
   constructor(
@@ -54,7 +55,12 @@ export class Toolbar {
     });
     const accept = keyButton(t("accept"), "Enter", () => tools.accept());
     accept.className = "primary";
-    this.proposal = [accept, keyButton(t("discard"), "Escape", () => drawing.discard()), this.erases];
+    this.addsTo = button(t("addTo"), () => {
+      tools.addsTo = !tools.addsTo;
+      state.events.tell("options", null);
+    });
+    this.addsTo.id = "parts-add-to";
+    this.proposal = [accept, this.addsTo, keyButton(t("discard"), "Escape", () => drawing.discard()), this.erases];
     this.options.className = "bar";
     this.options.append(...Object.values(this.fields), ...this.proposal);
   }
@@ -64,6 +70,7 @@ export class Toolbar {
     for (const [tool, each] of this.uses) each.ariaPressed = String(tool === tools.tool);
     this.newPart.ariaPressed = String(tools.newPart);
     this.erases.ariaPressed = String(tools.erases);
+    this.addsTo.ariaPressed = String(tools.addsTo);
     this.back.disabled = !drawing.history.canUndo;
     this.again.disabled = !drawing.history.canRedo;
     for (const [name, each] of Object.entries(this.fields)) each.hidden = !(FIELDS[tools.tool] as readonly string[]).includes(name);

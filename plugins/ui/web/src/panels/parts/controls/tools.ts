@@ -40,6 +40,8 @@ export class Tools {
   width = 1;
   /** True if the next stroke makes a new part. */
   newPart = false;
+  /** True if the next proposal is added to the selected part; otherwise it is a new part. */
+  addsTo = false;
   erases = false;
   snaps = true;
   how: HowToPropose = { kind: "regions", level: 0.6 };
@@ -55,6 +57,8 @@ export class Tools {
   onFailure: (why: Fault | Error) => void = () => undefined;
   /** Called when a request starts (true) or ends. */
   onWait: (busy: boolean) => void = () => undefined;
+  /** Called with the number of slivers that went to what is around them. */
+  onGiven: (slivers: number) => void = () => undefined;
   /** Called with the part that was pointed at. */
   onSelect: (label: number) => void = () => undefined;
 
@@ -104,8 +108,14 @@ export class Tools {
     return was;
   }
 
+  /** Accept the proposal, as a new part unless it is to be added to the selected one. */
   accept(): void {
-    this.attempt(() => this.finish(this.drawing.accept(this.target)));
+    this.attempt(() => {
+      this.drawing.given = 0;
+      this.finish(this.drawing.accept(this.addsTo ? this.drawing.selected : null));
+      this.addsTo = false;
+      if (this.drawing.given) this.onGiven(this.drawing.given);
+    });
   }
 
   /** Propose again, from the same stroke, in another way. */

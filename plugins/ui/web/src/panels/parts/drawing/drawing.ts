@@ -4,7 +4,7 @@ import { Mask, type Proposal, toSpans } from "../pixels/mask";
 import { Patch } from "../pixels/patch";
 import { findPieces, type Pieces } from "../pixels/pieces";
 import { eachRun, split } from "../pixels/split";
-import { mergeSmallPieces } from "../pixels/tidy";
+import { giveAway, type Limits, sliversOf } from "../pixels/tidy";
 import { History, type Part, type Step } from "./history";
 import { frontToBack, reorder } from "./order";
 
@@ -15,6 +15,8 @@ const LAST = 0xfffe;
 /** Height of a new part above the part it is painted on, metres. */
 const BEFORE_M = 0.001;
 
+const NEW = { name: "", material: null, automatic: false };
+
 /** Thrown when no label is left for a new part. */
 export class Full extends Error {}
 
@@ -23,6 +25,8 @@ export class Drawing {
   /** The proposed part; null while there is none. */
   proposed: Mask | null = null;
   readonly history = new History();
+  /** Slivers that the last accepted proposal left to what is around them. */
+  given = 0;
   /** Called with the box of pixels that look different, and whether parts changed too. */
   onChange: (box: Box, parts: boolean) => void = () => undefined;
   private counts: Uint32Array;
@@ -33,6 +37,7 @@ export class Drawing {
     readonly labels: Labels,
     public parts: readonly Part[],
     readonly top_m: number,
+    readonly limits: Limits = sliversOf(labels),
   ) {
     this.counts = countPixels(labels);
     this.next = Math.max(-1, ...parts.map((each) => each.label)) + 1;
@@ -111,14 +116,35 @@ export class Drawing {
     this.onChange(boundingBox(spans), false);
   }
 
-  /** Add the proposal to a part, or make it a new one (null); return whether that changed a pixel. */
+  /** Divide a picture of one part into others, as one step. labels: the number of each pixel's part, from 0. */
+  divide(labels: Uint16Array, heights_m: readonly number[]): void {
+    this.checkRoom(heights_m.length);
+    const first = this.next;
+    this.next += heights_m.length;
+    const patch = new Patch();
+    for (let at = 0, end = 0; at < labels.length; at = end) {
+      while (end < labels.length && labels[end] === labels[at]) end++;
+      patch.put(this.labels.data, at, end, first + labels[at]!);
+    }
+    const parts = heights_m.map((height_m, i) => ({ ...NEW, label: first + i, height_m: Math.min(this.top_m, height_m) }));
+    this.record({ patch: patch.close(), box: this.whole, after: parts, to: frontToBack(parts)[0]!.label, gesture: "" });
+  }
+
+  /** Add the proposal to a part, or make it a new one (null); return whether that changed a pixel.
+   *
+   * Slivers that it leaves of other parts go to what is around them, in the same step; `given` has their number. */
   accept(label: number | null): boolean {
     const mask = this.proposed;
     if (!mask) return false;
     this.proposed = null;
-    this.begin(label);
+    const into = this.begin(label);
     this.paint([...mask.spans()]);
     this.onChange(mask.box, false);
+    const cut = new Set<number>();
+    this.stroke!.patch.each((_, _length, before) => cut.add(before));
+    const keeps = (each: number): boolean => !cut.has(each) || !!this.part(each)?.name;
+    this.given = giveAway(this.labels, this.limits, this.stroke!.patch, keeps, into);
+    if (this.given) this.stroke!.box = this.whole;
     return this.end();
   }
 
@@ -156,10 +182,17 @@ export class Drawing {
     return new Map([...sizes].filter(([, all]) => all.length > 1).map(([label, all]) => [label, all.sort((a, b) => b - a)]));
   }
 
-  /** Make each piece a part: a part's largest piece stays it. Pieces of fewer pixels than `least` are merged first. */
-  settle(least: number): void {
+  /** Give slivers to what is around them, as one step, but no whole part; return how many went. */
+  tidy(): number {
     const patch = new Patch();
-    mergeSmallPieces(this.labels, least, patch);
+    const given = giveAway(this.labels, this.limits, patch, () => true);
+    if (given) this.record({ patch: patch.close(), box: this.whole, after: this.parts, to: this.selected, gesture: "" });
+    return given;
+  }
+
+  /** Make each piece a part: a part's largest piece stays it. */
+  settle(): void {
+    const patch = new Patch();
     const added: Part[] = [];
     const seen = new Set<number>();
     const found = findPieces(this.labels);
@@ -242,7 +275,7 @@ export class Drawing {
 
   private partInFront(label: number, under: number | undefined): Part {
     const ground = this.part(under ?? -1)?.height_m ?? 0;
-    return { label, name: "", height_m: Math.min(this.top_m, ground + BEFORE_M), material: null, automatic: false };
+    return { ...NEW, label, height_m: Math.min(this.top_m, ground + BEFORE_M) };
   }
 
   /** Return the part that had most of a patch's pixels. */

@@ -36,6 +36,11 @@ export class History {
     return this.done.length;
   }
 
+  /** The last step; undefined if there is none. */
+  get last(): Step | undefined {
+    return this.done.at(-1);
+  }
+
   get isSaved(): boolean {
     return this.done.length === this.savedAt;
   }

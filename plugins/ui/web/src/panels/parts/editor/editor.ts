@@ -1,8 +1,8 @@
 /** The parts editor: the picture with the borders of its parts, in place of the page's columns. */
-import type { Page } from "../../../page";
+import type { Page, Server } from "../../../page";
 import { letters, keyName } from "../../../shortcuts";
 import { type Action, actionOf } from "./keys";
-import { type Opened, openParts, proposePart, snapOutline } from "./requests";
+import { firstParts, type Opened, openParts, proposePart, snapOutline } from "./requests";
 import { Saving } from "./saving";
 import { announce } from "./speech";
 import { EditorState } from "./state";
@@ -51,10 +51,22 @@ class Editor {
     window.addEventListener("beforeunload", this.leaving);
     this.state.survey();
     this.view.list.list.focus();
+    if (!scene.divided) void this.begin(net);
   }
 
   dress(): void {
     this.view.board.dress();
+  }
+
+  /** Begin with parts that the program proposes; without them the picture is one part, to draw on. */
+  private async begin(net: Server): Promise<void> {
+    this.state.notify("searching", false);
+    try {
+      const proposed = await firstParts(net);
+      if (current === this) this.state.begin(proposed);
+    } catch (error) {
+      this.state.fail(error as Error);
+    }
   }
 
   private leaving = (event: BeforeUnloadEvent): void => {

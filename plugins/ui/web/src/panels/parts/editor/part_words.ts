@@ -14,3 +14,5 @@ export const heightOf = ({ height_m, automatic }: Part): string =>
 export const shareOf = (share: number): string => t("percent", { share: decimal(100 * share, share < 0.01 ? 2 : share < 0.1 ? 1 : 0) });
 
 export const placeOf = ({ at: [x, y] }: Place, { columns, rows }: Labels): string => ninthOfPicture(x / columns, y / rows);
+
+export const sliversInWords = (count: number): string => (count === 1 ? t("givenOne") : t("given", { count }));

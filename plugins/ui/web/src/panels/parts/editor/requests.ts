@@ -21,16 +21,23 @@ interface Answer {
   top_m: number;
   title: string;
   language: string;
+  /** False for a picture that nobody has divided yet. */
+  divided: boolean;
+  /** The pipeline file of the document; empty if it has none yet. */
+  file: string;
+  /** Folder of the photograph, in which a new file may be written; empty if it may not. */
+  beside: string;
 }
 
-export interface Opened extends Pick<Answer, "digest" | "heights" | "top_m" | "title" | "language"> {
+export interface Opened extends Pick<Answer, "digest" | "heights" | "top_m" | "title" | "language" | "divided" | "file" | "beside"> {
   labels: Labels;
   picture: ImageBitmap;
   parts: Part[];
 }
 
 export interface Saved {
-  path: string;
+  /** The pipeline file. */
+  file: string;
   digest: string;
   /** The new numbers of each label's pieces. */
   numbers: Record<string, number[]>;
@@ -42,12 +49,26 @@ export async function openParts(net: Server): Promise<Opened> {
     bulk(`/scene/${answer.labels}`).then((each) => each.arrayBuffer()),
     bulk(`/scene/${answer.picture}`).then(async (each) => createImageBitmap(await each.blob())),
   ]);
-  const { columns, rows, digest, heights, top_m, title, language } = answer;
+  const { columns, rows, digest, heights, top_m, title, language, divided, file, beside } = answer;
   const parts = answer.parts.map(({ number, name, height_m, material }) => {
     const automatic = height_m === null && heights.by !== "given";
     return { label: number, name, height_m: height_m ?? 0, material, automatic };
   });
-  return { digest, heights, top_m, title, language, picture, parts, labels: { columns, rows, data: new Uint16Array(labels) } };
+  return { digest, heights, top_m, title, language, divided, file, beside, picture, parts, labels: { columns, rows, data: new Uint16Array(labels) } };
+}
+
+/** The parts that the program proposes for a whole picture. */
+export interface FirstParts {
+  labels: Uint16Array;
+  heights_m: number[];
+}
+
+/** Return the parts that the program proposes for a picture that nobody has divided; null if it finds one alone. */
+export async function firstParts(net: Server): Promise<FirstParts | null> {
+  const { labels, heights_m } = await net.ask<{ labels: string; heights_m: number[] }>("parts_first");
+  if (heights_m.length < 2) return null;
+  const data = await bulk(`/scene/${labels}`).then((each) => each.arrayBuffer());
+  return { heights_m, labels: new Uint16Array(data) };
 }
 
 export const proposePart = (net: Server, points: readonly Point[], width_px: number, how: HowToPropose): Promise<Proposal | null> =>

@@ -1,15 +1,13 @@
 /** Saving of the parts after questions, and live updates of heights and materials. */
 import type { Server } from "../../../page";
 import { LiveUpdate } from "./live_update";
-import { shareOf } from "./part_words";
+import { shareOf, sliversInWords } from "./part_words";
 import { question } from "../controls/question";
 import { saveParts } from "./requests";
 import { nameIn } from "./speech";
 import type { EditorState } from "./state";
 import { t } from "./words";
 
-/** Pieces of a smaller share of the picture can be merged before saving. */
-const CRUMB = 0.0005;
 /** Parts in pieces, and sizes of each, that a question lists. */
 const MOST_LISTED = 6;
 
@@ -60,19 +58,32 @@ export class Saving {
     const { drawing } = state;
     drawing.discard();
     try {
+      const given = drawing.tidy();
       if (!(await this.settle())) return false;
+      const beside = await this.place();
+      if (beside === null) return false;
       state.notify("saving", false);
       const { parts } = drawing;
       const steps = drawing.history.length;
-      const saved = await saveParts(this.net, drawing.labels, parts, { ...state.savedDetails, of: state.digest });
+      const saved = await saveParts(this.net, drawing.labels, parts, { ...state.savedDetails, of: state.digest, beside });
       this.live.reset();
       state.markSaved(saved, parts, steps);
-      state.notify("saved", false, { path: saved.path });
+      if (given) state.notify("savedTidy", false, { path: saved.file, given: sliversInWords(given) });
+      else state.notify("saved", false, { path: saved.file });
       return true;
     } catch (error) {
       state.fail(error as Error);
       return false;
     }
+  }
+
+  /** Return whether a new file goes next to the photograph, after a question if it may; null to go on editing. */
+  private async place(): Promise<boolean | null> {
+    const { file, beside } = this.state;
+    if (file || !beside) return false;
+    const answers = [["", t("goOn")], ["beside", t("beside", { folder: beside })], ["own", t("ownFolder")]] as const;
+    const answer = await question(t("saveWhere"), [t("whereText")], answers);
+    return answer ? answer === "beside" : null;
   }
 
   /** Make every part one piece, after a question if some are not; return whether to go on. */
@@ -86,9 +97,9 @@ export class Saving {
       return t("inPieces", { name: nameIn(this.state, label), count: sizes.length, sizes: listed + (sizes.length > MOST_LISTED ? " …" : "") });
     });
     if (scattered.length > MOST_LISTED) texts.push(t("morePieces", { count: scattered.length - MOST_LISTED }));
-    texts.push(t("eachBecomes", { share: shareOf(CRUMB) }));
-    const answer = await question(t("scattered"), texts, [["", t("goOn")], ["tidy", t("saveTidy")], ["pieces", t("savePieces")]]);
-    if (answer) drawing.settle(answer === "tidy" ? CRUMB * pixels : 0);
+    texts.push(t("eachBecomes"));
+    const answer = await question(t("scattered"), texts, [["", t("goOn")], ["pieces", t("savePieces")]]);
+    if (answer) drawing.settle();
     return answer !== "";
   }
 }

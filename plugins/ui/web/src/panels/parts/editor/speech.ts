@@ -13,7 +13,9 @@ export function helpOf(state: EditorState): string {
   const { tools, drawing } = state;
   const help = drawing.proposed ? t("proposed") : t(`${tools.tool}Help`);
   if (!PAINTING.includes(tools.tool)) return help;
-  return `${help} ${tools.newPart ? t("intoFresh") : t("into", { name: nameIn(state, drawing.selected) })}`;
+  const isNew = drawing.proposed || tools.tool === "propose" ? !tools.addsTo : tools.newPart;
+  if (drawing.proposed) return `${help} ${isNew ? t("becomesNew") : t("isAdded", { name: nameIn(state, drawing.selected) })}`;
+  return `${help} ${isNew ? t("intoFresh") : t("into", { name: nameIn(state, drawing.selected) })}`;
 }
 
 export function textOf(state: EditorState, { word, values, label = state.drawing.selected }: Notice): string {

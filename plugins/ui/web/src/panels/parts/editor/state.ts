@@ -4,11 +4,12 @@ import { Hub } from "../../../hub";
 import { shownNumber } from "../../../words/part_words";
 import { type Fault, type Tool, type ToolRequests, Tools } from "../controls/tools";
 import { Drawing, Full, type Part } from "../drawing/drawing";
+import type { Step } from "../drawing/history";
 import { type PictureDetails, roundShapes } from "../drawing/picture_details";
 import { type Box, labelAt, type Point } from "../pixels/labels";
 import { findNeighbours, findPlaces, type Place } from "../pixels/pieces";
 import type { Update } from "./live_update";
-import type { Opened, Saved } from "./requests";
+import type { FirstParts, Opened, Saved } from "./requests";
 import type { Word } from "./words";
 
 /** Brushes side by side along the picture's longer side, at first. */
@@ -69,17 +70,25 @@ export class EditorState {
   saving = false;
   /** Digest of the document that the parts were read from, or saved to. */
   digest: string;
+  /** The pipeline file; empty while there is none. */
+  file: string;
+  /** Folder of the photograph, in which a new file may be written; empty if it may not. */
+  readonly beside: string;
   /** Numbers that the parts will have in the file. */
   private order = new Map<number, number>();
   /** Numbers that parts had when they were opened or saved. */
   private numbers: Map<number, number>;
   private detailsSaved = true;
+  /** The step that proposed parts at the start; undefined without one, or once parts are saved. */
+  private started: Step | undefined;
   /** The update of the opened or saved parts. */
   private baseline: Update;
 
   constructor(scene: Omit<Opened, "picture">, requests: ToolRequests) {
-    const { labels, parts, top_m, digest, heights, title, language } = scene;
+    const { labels, parts, top_m, digest, heights, title, language, file, beside } = scene;
     this.digest = digest;
+    this.file = file;
+    this.beside = beside;
     this.details = { heights: { ...heights, ...roundShapes(heights) }, title, language };
     this.drawing = new Drawing(labels, parts, top_m);
     this.numbers = new Map(parts.map(({ label }) => [label, label]));
@@ -90,11 +99,25 @@ export class EditorState {
     this.drawing.onChange = (box, partsToo) => this.onDrawing(box, partsToo);
     this.tools.onFailure = (why) => this.fail(why);
     this.tools.onWait = (busy) => (busy ? this.notify("proposing", false) : this.clearNotice());
+    this.tools.onGiven = (count) => (count === 1 ? this.notify("givenOne", false) : this.notify("given", false, { count }));
     this.tools.onSelect = (label) => this.select(label);
   }
 
+  /** Begin with the parts that the program proposes, unless something is drawn already. */
+  begin(proposed: FirstParts | null): void {
+    if (this.drawing.history.length || this.tools.down || this.drawing.proposed) return;
+    if (!proposed) return this.clearNotice();
+    this.drawing.divide(proposed.labels, proposed.heights_m);
+    this.started = this.drawing.history.last;
+    this.tools.newPart = false;
+    this.survey();
+    this.notify("started", false, { count: proposed.heights_m.length });
+  }
+
+  /** Return whether nothing would be lost: the program's own proposal is found again. */
   get isSaved(): boolean {
-    return this.drawing.history.isSaved && this.detailsSaved;
+    const { history } = this.drawing;
+    return (history.isSaved || (!!history.last && history.last === this.started)) && this.detailsSaved;
   }
 
   /** Return the number by which people know a part: that of its key in the file, from 1. */
@@ -286,6 +309,8 @@ export class EditorState {
   /** Take over a save. parts and steps: those at its start. */
   markSaved(saved: Saved, parts: readonly Part[], steps: number): void {
     this.digest = saved.digest;
+    this.file = saved.file;
+    this.started = undefined;
     this.numbers = new Map(parts.map(({ label }) => [label, saved.numbers[label]![0]!]));
     this.baseline = this.update({ heights_m: [], materials: [], heights: {} });
     this.drawing.history.markSaved(steps);
@@ -296,6 +321,7 @@ export class EditorState {
   private onDrawing(box: Box, parts: boolean): void {
     this.events.tell("pixels", box);
     if (parts) {
+      if (this.drawing.parts.length === 1) this.tools.newPart = true; // there is nothing else to paint
       this.notice = null;
       this.events.tell("parts", null);
     } else this.events.tell("options", null);

@@ -434,7 +434,8 @@ class TestSaving:
             pipeline = load_pipeline(tmp_path / "mine.yaml")
             assert pipeline.config.materials.by == kept
             if kept == "rules":
-                assert [each.name for each in pipeline.materials.materials] == ["plain", "glass", "plain"]
+                chosen = pipeline.materials
+                assert chosen is not None and [each.name for each in chosen.materials] == ["plain", "glass", "plain"]
 
         small(check)
 

@@ -292,7 +292,8 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     page.wait_for_selector("dialog[open]")
     assert str(photo.parent) in page.locator("dialog").inner_text(), "the folder of the photograph is offered"
     press(page, "Tab", "Enter")
-    until(lambda: f"Saved: {photo.with_suffix('.yaml')}" in page.locator("#parts-told").inner_text(), "saved, and where")
+    where = f"Saved: {photo.with_suffix('.yaml')}"
+    until(lambda: where in page.locator("#parts-told").inner_text(), "saved, and where")
     assert read_parts(photo.with_suffix(".yaml"))[0].keys() == {0, 1, 2, 3, 4}
     press(page, "Escape")
     until(lambda: page.locator("#parts-editor").count() == 0, "closed")

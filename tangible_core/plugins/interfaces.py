@@ -194,6 +194,10 @@ class Exporter(Method):
         """
         return None
 
+    def options_for_width(self, width_m: float, aspect: float) -> Mapping[str, Any]:
+        """Return the options with which the picture is at least this wide; none if it cannot be."""
+        return {}
+
     @abstractmethod
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """Write the files, and return their paths: `stem` with endings, such as `stem.with_suffix` makes.

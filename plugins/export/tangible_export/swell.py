@@ -1,7 +1,8 @@
 """Pages for swell paper."""
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, ClassVar, final
+from typing import Annotated, Any, ClassVar, final
 
 from pydantic import Field
 
@@ -31,6 +32,15 @@ class Swell(Exporter):
     def picture_width_m(self, aspect: float) -> float:
         """Return the width of the picture on the page."""
         return sheet_for(self.page, aspect, self.width_m).picture_mm[0] / 1000
+
+    def options_for_width(self, width_m: float, aspect: float) -> Mapping[str, Any]:
+        """Return a page with room for this width, and the width if one is given; none if no page has room."""
+        for page in dict.fromkeys((self.page, "a3")):
+            room_m = sheet_for(page, aspect, None).picture_mm[0] / 1000
+            if width_m <= room_m:
+                paper = {} if page == self.page else {"page": page}
+                return paper if self.width_m is None else {**paper, "width_m": width_m}
+        return {}
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """Write the page and each page of the key as an SVG, and all of them as one PDF; the page also in ink.

@@ -45,8 +45,8 @@ def legible(
     from ...pipeline.feeling import Feeling
 
     pipeline = open_pipeline(config, sets or [], not no_cache)
+    width_m = Feeling(pipeline).width_on(medium.value) if width_m is None else width_m
     verdicts = Feeling(pipeline).legible(medium.value, width_m)
-    width_m = pipeline.config.size.width_m if width_m is None else width_m
     _print(pipeline.scene.name, medium.value, width_m, verdicts, as_json)
     if not verdicts.readable:
         raise typer.Exit(FAILED)

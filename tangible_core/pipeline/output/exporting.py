@@ -31,7 +31,7 @@ from ..engine.engine import Engine
 from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
 from .export_folder import check_writable, check_written, move
-from .legible import judge_products, names_of_parts, with_width
+from .legible import judge_products, names_of_parts, with_cures_of, with_width
 from .run_folder import default_name, relative_source
 
 log = logging.getLogger(__name__)
@@ -187,7 +187,7 @@ class _ExportRun:
             engine = self._engine(chosen)
             with engine.watching(listen):
                 work = work_for(engine, chosen.method)
-                legible = legible_for(engine, chosen.method)
+                legible = legible_for(engine, chosen)
             check_stopped()
             self.progress(StageEvent(product, chosen.name))
             hooks.tell(self.engine.registry.plugins, "tangible_stage_started", product=product, method=chosen.name)
@@ -251,12 +251,14 @@ def work_for(engine: Engine, exporter: Exporter) -> Work:
     )
 
 
-def legible_for(engine: Engine, exporter: Exporter) -> Legibility | None:
+def legible_for(engine: Engine, chosen: NamedMethod[Exporter]) -> Legibility | None:
     """Judge the legibility by the products that an exporter needs; None for files that are not touched."""
+    exporter, (rows, columns) = chosen.method, engine.scene.shape
     if exporter.medium is None:
         return None
     parts = "simplified" if "simplified" in exporter.needs else engine.config.felt_parts
-    return judge_products(engine, exporter.medium, parts, set[str]().union(*map(engine.inputs_of, exporter.needs)))
+    judged = set[str]().union(*map(engine.inputs_of, exporter.needs))
+    return with_cures_of(chosen, judge_products(engine, exporter.medium, parts, judged), columns / rows)
 
 
 def _illegible(legible: Legibility | None) -> list[Note]:

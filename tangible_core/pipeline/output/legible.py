@@ -1,30 +1,84 @@
-"""The legibility of a pipeline's products for fingers, at the configured or at another width."""
+"""The legibility of a pipeline's products for fingers, at the width that export draws or at another one."""
 
 from collections.abc import Collection, Mapping
-from typing import Any, get_args
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any, cast, get_args
 
 from ...data import PartMap, Record
-from ...errors import ConfigError, did_you_mean, quoted
+from ...errors import ConfigError, TangibleError, did_you_mean, quoted
 from ...legibility import Legibility, legibility
-from ...plugins.interfaces import Medium
+from ...plugins.interfaces import Exporter, Medium
+from ...preflight.verdict import Change, Verdict
 from ...scene.workspace import Workspace
+from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from ..config.part_names import names_of
 from ..engine.engine import Engine
 from ..engine.working_grid import WorkingGrid
 
+WIDTH = "workspace.width_m"
+"""The key by which cures enlarge a picture."""
 ROUNDING = 1e-9
 """A share above the rounding error of a product of floating-point numbers."""
 JUDGED: Mapping[Medium, tuple[str, ...]] = {"print": ("relief",), "force": ("relief", "materials")}
 """Products that the rules of a medium judge next to the parts."""
 
 
-def legible(engine: Engine, medium: Medium) -> Legibility:
-    """Judge the engine's parts at its width. Raises: ConfigError for an unknown medium; as `Engine.make`."""
+def legible(engine: Engine, medium: Medium, width_m: float | None = None) -> Legibility:
+    """Judge the engine's parts at the width that export draws, or at another one.
+
+    Raises: ConfigError for an unknown medium or width; as `Engine.make`.
+    """
     if medium not in (media := get_args(Medium)):
         raise ConfigError(f"medium: is {quoted(medium)}{did_you_mean(str(medium), media)}; it is {', '.join(media)}")
+    exporter = exporter_for(engine, medium)
+    judged = with_width(engine, drawn_width_m(engine, exporter) if width_m is None else width_m)
     parts = engine.config.felt_parts
-    return judge_products(engine, medium, parts, {parts, *JUDGED.get(medium, ())})
+    found = judge_products(judged, medium, parts, {parts, *JUDGED.get(medium, ())})
+    return found if exporter is None else with_cures_of(exporter, found, _aspect(engine))
+
+
+def exporter_for(engine: Engine, medium: Medium) -> NamedMethod[Exporter] | None:
+    """Return the exporter that draws for a medium: the configured one, else the installed one; None if none does."""
+    if own := next((each for each in engine.config.export if each.method.medium == medium), None):
+        return own
+    registry = engine.registry
+    for name in sorted(registry.names("export"), key=lambda each: (each != medium, each)):
+        with suppress(TangibleError, ValueError):  # one that is broken, or has options that must be given
+            cls = cast("type[Exporter]", registry.load("export", name))
+            if cls.medium == medium:
+                return NamedMethod(name, registry.find("export", name).origin, cls())
+    return None
+
+
+def drawn_width_m(engine: Engine, exporter: NamedMethod[Exporter] | None) -> float:
+    """Return the width of the whole picture in the files of an exporter; that of the workspace without one."""
+    width_m = None if exporter is None else exporter.method.picture_width_m(_aspect(engine))
+    return engine.config.size.width_m if width_m is None else width_m
+
+
+def with_cures_of(exporter: NamedMethod[Exporter], found: Legibility, aspect: float) -> Legibility:
+    """Return the verdicts with cures that change the width in the exporter's options, where it has its own width."""
+    if exporter.method.picture_width_m(aspect) is None:
+        return found
+    return Legibility(_with_width_of(exporter, each, aspect) for each in found)
+
+
+def _with_width_of(exporter: NamedMethod[Exporter], verdict: Verdict, aspect: float) -> Verdict:
+    wider = next((each for each in verdict.changes if each.key == WIDTH), None)
+    if wider is None:
+        return verdict
+    options = exporter.method.options_for_width(float(wider.value), aspect)
+    named = [Change(f"export.{exporter.name}.{name}", f"{value}", "is") for name, value in options.items()]
+    changes = tuple(new for each in verdict.changes for new in (named if each is wider else [each]))
+    cure = verdict.cure.replace(f"{wider}, ", "".join(f"{each}, " for each in named))
+    return replace(verdict, cure=cure.replace(f"{wider}", ", ".join(map(str, named))), changes=changes)
+
+
+def _aspect(engine: Engine) -> float:
+    rows, columns = engine.scene.shape
+    return columns / rows
 
 
 def judge_products(engine: Engine, medium: Medium, parts: str, judged: Collection[str]) -> Legibility:

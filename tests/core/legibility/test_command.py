@@ -18,7 +18,8 @@ def folder(tmp_path):
     (tmp_path / "parts.png").write_bytes(label_picture(labels))
     write_png(tmp_path / "photo.png", np.full((100, 150, 3), 128, np.uint8))
     scene = "scene: {photo: photo.png, segments: parts.png}\nworkspace: {width_m: 60 mm}\ndepth: luminance\n"
-    (tmp_path / "house.yaml").write_text(f"{scene}parts: {{2: window}}\n")
+    drawn = "export: [{use: swell, width_m: 60 mm}]\n"
+    (tmp_path / "house.yaml").write_text(f"{scene}parts: {{2: window}}\n{drawn}")
     return tmp_path
 
 
@@ -32,7 +33,7 @@ def test_legible_small_part_prints_its_cure_and_exits_with_1(folder):
     assert (
         lines[lines.index(wrong) + 1]
         .split("cure: ")[1]
-        .startswith("`simplify.part_m: 0.0064`, `workspace.width_m: 0.0")
+        .startswith("`simplify.part_m: 0.0064`, `export.swell.width_m: 0.0")
     )
 
 
@@ -45,6 +46,31 @@ def test_legible_json_has_the_verdicts_and_places(folder):
     assert wrong["changes"][0] == {"key": "simplify.part_m", "value": 0.0064, "towards": "at least"}
     ((x, y),) = wrong["at"]
     assert (x, y) == (pytest.approx(35 / 150, abs=0.03), pytest.approx(45 / 100, abs=0.03))
+
+
+def test_legible_is_judged_at_the_width_that_export_draws(folder):
+    """As wide as the page allows, where the file gives no width for it; in print as its longer side says."""
+    for medium, options, width_mm in (
+        ("swell", "page=letter", 258),
+        ("print", "longer_side_m=0.2", 200),
+        ("force", "", 60),
+    ):
+        word = "swell" if medium == "swell" else "stl"
+        words = ["--set", f"export=[{word}]", *(["--set", f"export.{word}.{options}"] if options else [])]
+        found = json.loads(tangible("legible", "house.yaml", "--for", medium, "--json", *words, cwd=folder).stdout)
+        assert found["width_m"] == pytest.approx(width_mm / 1000, abs=1e-3), medium
+
+
+def test_legible_cure_of_a_width_is_an_option_of_the_exporter(folder):
+    """The picture of 60 mm is to be 96 mm wide; what follows from the cure passes."""
+    found = json.loads(tangible("legible", "house.yaml", "--for", "swell", "--json", cwd=folder).stdout)
+    changes = [
+        change for each in found["verdicts"] for change in each["changes"] if change["key"].startswith("export.")
+    ]
+    assert {each["key"] for each in changes} == {"export.swell.width_m"}
+    words = ["--set", f"export.swell.width_m={changes[0]['value']}"]
+    again = tangible("legible", "house.yaml", "--for", "swell", *words, cwd=folder)
+    assert again.returncode == 0, again.stdout
 
 
 @pytest.mark.parametrize("words", [["--width-m", "0.12"], ["--set", "simplify.part_m=0.0064"]])

@@ -158,7 +158,7 @@ class TestExport:
 class TestLegible:
     def test_legibility_verdicts_pass_after_their_cure(self, small: Any) -> None:
         async def check(small: SmallSession, ask: Ask) -> None:
-            found = await ask("legible", medium="swell")
+            found = await ask("legible", medium="swell", width_m=0.08)
             assert small.tab.last("legible")["verdicts"] == found["verdicts"]
             assert (found["medium"], found["width_m"], found["grade"]) == ("swell", 0.08, "illegible")
             (gap,) = (each for each in found["verdicts"] if each["check"] == "gap")
@@ -172,6 +172,20 @@ class TestLegible:
             assert (again["grade"], again["digest"]) == ("ok", small.session.digest)
             await ask("undo")
             assert "simplify" not in small.session.text
+
+        small(check, striped_scene)
+
+    def test_legibility_of_the_panel_is_judged_at_the_width_of_the_export(self, small: Any) -> None:
+        """A picture that is legible on its page is so in both panels, and what is not is so in both."""
+
+        async def check(small: SmallSession, ask: Ask) -> None:
+            await ask("set", changes={"simplify": {}})
+            for width_m in (None, 0.05):
+                await ask("set", changes={"export": [{"use": "swell", "width_m": width_m}]})
+                exported = await ask("export", exports=[{"use": "swell", "width_m": width_m}])
+                found = await ask("legible", medium="swell")
+                assert found["width_m"] == pytest.approx(width_m or 0.237, abs=1e-3)
+                assert found["grade"] == exported["exports"][0]["legible"]["grade"]
 
         small(check, striped_scene)
 

@@ -1,13 +1,15 @@
 """The options and the writing that all formats of solids share."""
 
 from abc import abstractmethod
+from collections.abc import Mapping
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Annotated, ClassVar
+from typing import IO, TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import Field
 
 from tangible_core.data import Work
 from tangible_core.plugins.interfaces import Exporter, Medium
+from tangible_core.preflight.verdict import over
 
 if TYPE_CHECKING:
     from .closed import Solid
@@ -42,6 +44,11 @@ class SolidExporter(Exporter):
     def picture_width_m(self, aspect: float) -> float:
         """Return the width of the picture, whose longer side is `longer_side_m`."""
         return self.longer_side_m * min(1.0, aspect)
+
+    def options_for_width(self, width_m: float, aspect: float) -> Mapping[str, Any]:
+        """Return the longer side with which the picture is this wide; none beyond a metre."""
+        longer_m = width_m / min(1.0, aspect)
+        return {"longer_side_m": float(over(longer_m))} if longer_m <= 1 else {}
 
     def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
         """Write one file: `stem` with the format's ending.

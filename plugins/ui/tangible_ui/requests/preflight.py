@@ -41,7 +41,7 @@ async def legible(
 ) -> dict[str, Any] | None:
     """Judge the document by the rules of one medium; None if it was stopped.
 
-    width_m: of the whole picture there; by default that of the workspace.
+    width_m: of the whole picture there; by default as export draws it.
     """
     return await long_job(session, "legible", "parts", sets=session.sets, medium=medium, width_m=width_m)
 

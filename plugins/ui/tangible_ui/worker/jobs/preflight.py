@@ -92,7 +92,7 @@ def _verdict_data(
 def legible(
     state: WorkerState, number: int, text: str, path: Path, sets: list[str], medium: Medium, width_m: float | None
 ) -> dict[str, Any]:
-    """Judge by the rules of one medium. width_m: of the whole picture there; by default that of the workspace.
+    """Judge by the rules of one medium. width_m: of the whole picture there; by default as export draws it.
 
     Raises: TangibleError as `Pipeline.legible`.
     """
@@ -102,8 +102,8 @@ def legible(
         state.tell("making", want="legible", digest=digest)
         pipeline.make("parts", stage_reporter(state, work), work.stop)
         with stoppable(work.stop):
+            width_m = Feeling(pipeline).width_on(medium) if width_m is None else width_m
             judged = Feeling(pipeline).legible(medium, width_m)
-    width_m = pipeline.config.size.width_m if width_m is None else width_m
     found = {"digest": digest, "medium": medium, "width_m": width_m, **judged.as_data()}
     state.tell("legible", **found)
     state.tell("made", want="legible", digest=digest, outcome="made", why="", seconds=perf_counter() - begun_s)

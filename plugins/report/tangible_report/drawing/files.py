@@ -73,7 +73,9 @@ def _svg(figure: Figure, file: IO[bytes], title: str, says: str) -> None:
 def _pdf(figure: Figure, file: IO[bytes], title: str, says: str) -> None:
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
 
-    FigureCanvasPdf(figure).print_pdf(file, metadata={"Title": title, "Subject": says, "CreationDate": None})
+    drawn = BytesIO()  # on a full disk, the backend raises an error of zlib
+    FigureCanvasPdf(figure).print_pdf(drawn, metadata={"Title": title, "Subject": says, "CreationDate": None})
+    file.write(drawn.getvalue())
 
 
 WRITERS: dict[str, Write] = {".png": _png, ".svg": _svg, ".pdf": _pdf}

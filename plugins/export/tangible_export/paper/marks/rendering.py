@@ -1,6 +1,7 @@
 """Marks as figures of matplotlib: for the PDF, and for the pixels by which a page is measured."""
 
 from collections.abc import Sequence
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -26,9 +27,11 @@ def write_pdf(path: Path, pages: Sequence[Marks]) -> None:
 def save_pdf(path: Path, title: str, figures: Sequence[Figure]) -> None:
     """Write each figure as a page of a PDF that has no time in it."""
     about = {"Title": title, "Creator": "Tangible Images", "CreationDate": None}
-    with PdfPages(path, metadata=about) as file:
+    drawn = BytesIO()  # on a full disk, PdfPages raises an error of zlib
+    with PdfPages(drawn, metadata=about) as file:
         for figure in figures:
             file.savefig(figure)
+    path.write_bytes(drawn.getvalue())
 
 
 def black(page: Marks, pixels_per_mm: int) -> Bool[np.ndarray, "r c"]:

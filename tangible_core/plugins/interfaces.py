@@ -186,6 +186,9 @@ class Exporter(Method):
     """The products that it reads, such as `relief`; only these are made for it."""
     medium: ClassVar[Medium | None] = None
     """The medium by whose rules legibility is checked before writing; None for files that are not touched."""
+    limits_slopes: ClassVar[bool] = True
+    """False for what is made of plastic or pins, where no hand is held up by a wall: unless the pipeline file sets
+    `relief.slope`, cliffs of the relief stay upright."""
 
     def picture_width_m(self, aspect: float) -> float | None:
         """Return the width of the whole picture in the files, at which products are made; None for the workspace's.

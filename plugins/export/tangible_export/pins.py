@@ -28,6 +28,7 @@ class Pins(Exporter):
     """
 
     medium: ClassVar[Medium | None] = "pins"
+    limits_slopes: ClassVar[bool] = False
 
     display: Named | Display = "monarch"
     """A display by name, or the numbers of its columns, rows and heights."""

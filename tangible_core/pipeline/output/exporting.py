@@ -171,7 +171,10 @@ class _ExportRun:
         self.force = force
         self.progress = progress
         self.source = relative_source(engine.config.path, folder)
-        self.by_width: dict[float | None, Engine] = {None: engine, engine.config.size.width_m: engine}
+        config = engine.config
+        self.upright_slope = config.relief.slope if "slope" in config.relief.model_fields_set else 0.0
+        """The slope limit for exporters that need none."""
+        self.engines = {(width_m, config.relief.slope): engine for width_m in (None, config.size.width_m)}
 
     def export(self, name: str, stem: str, chosen: NamedMethod[Exporter]) -> Exported:
         """Make the products for an exporter, and run it."""
@@ -210,13 +213,14 @@ class _ExportRun:
         return Exported(name, outcome, files, made, legible)
 
     def _engine(self, chosen: NamedMethod[Exporter]) -> Engine:
-        """Return the engine for the width at which this exporter writes."""
+        """Return the engine for the width at which this exporter writes, and for its slopes."""
         rows, columns = self.engine.scene.shape
         width_m = chosen.method.picture_width_m(columns / rows)
-        if width_m not in self.by_width:
-            self.by_width[width_m] = with_width(self.engine, width_m)
-        engine = self.by_width[width_m]
-        for other in self.by_width.values():
+        slope = self.engine.config.relief.slope if chosen.method.limits_slopes else self.upright_slope
+        if (width_m, slope) not in self.engines:
+            self.engines[width_m, slope] = _with_slope(with_width(self.engine, width_m), slope)
+        engine = self.engines[width_m, slope]
+        for other in self.engines.values():
             engine.adopt(other)
         return engine
 
@@ -225,6 +229,13 @@ class _ExportRun:
         check_stopped()
         paths = check_written(written, stem, _full_name(chosen.method))
         return move(paths, self.folder, self.source, chosen.name, self.force)
+
+
+def _with_slope(engine: Engine, slope: float) -> Engine:
+    relief = engine.config.relief
+    if relief.slope == slope:
+        return engine
+    return engine.with_config(engine.config.with_values(relief=relief.model_copy(update={"slope": slope})))
 
 
 def _full_name(exporter: Exporter) -> str:

@@ -21,6 +21,7 @@ class SolidExporter(Exporter):
 
     needs: ClassVar[tuple[str, ...]] = ("relief",)
     medium: ClassVar[Medium | None] = "print"
+    limits_slopes: ClassVar[bool] = False
     ending: ClassVar[str]
     """Ending of the file, without the dot."""
 

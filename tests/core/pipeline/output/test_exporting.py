@@ -49,6 +49,20 @@ class Report(Exporter):
         return (path,)
 
 
+class Steepest(Exporter):
+    """An exporter that writes the steepest slope along the rows of its relief."""
+
+    needs: ClassVar[tuple[str, ...]] = ("relief",)
+
+    def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
+        slopes = np.abs(np.diff(work.relief.height_m, axis=1)) / work.relief.pitch_m[0]
+        return write_file(stem.with_suffix(f".{type(self).__name__}"), str(slopes.max()))
+
+
+class SteepestUpright(Steepest):
+    limits_slopes: ClassVar[bool] = False
+
+
 class Does(Exporter):
     """An exporter that calls a function with the stem."""
 
@@ -125,6 +139,19 @@ class TestWork:
         assert widths == [0.08, 0.16, 0.16]
         made = [[each.product for each in one.made if each.outcome == "ran"] for one in done.exports]
         assert made == [["parts", "relief"], ["relief"], []]
+
+    @pytest.mark.parametrize(
+        ("said", "steepest"),
+        [({}, (1.1, 4)), ({"relief": {"slope": 2.0}}, (2.0, 2.0)), ({"relief": {"slope": 0}}, (4, 4))],
+    )
+    def test_slopes_are_limited_where_a_hand_is_held_up_or_the_file_says_so(
+        self, tmp_path: Path, said: dict[str, Any], steepest: tuple[float, float]
+    ):
+        wall = np.repeat(np.float32([[2, 9]]), 60, 1).repeat(90, 0)
+        step = Pipeline(Scene.pair(wall, wall, disparity=wall), cached=False, **said)
+        step.export(tmp_path, [Steepest(), SteepestUpright()])
+        found = [float(path.read_text()) for path in sorted(tmp_path.glob("*.Steepest*"))]
+        assert [min(each, 4) for each in found] == pytest.approx(steepest, rel=0.05)
 
     def test_parts_do_not_depend_on_the_width_of_the_exporter(self, tmp_path: Path):
         """Names are given by the numbers of parts, which would be those of other parts."""

@@ -55,6 +55,10 @@ class ConfigError(TangibleError):
         self.complaints = tuple(each._replace(text=shown(each.text, MOST_IN_LINE)) for each in records)
 
 
+class OptionError(ConfigError, ValueError):
+    """Options in Python that do not exist, or with a value that they cannot have: one sentence for each."""
+
+
 class UnknownMethod(TangibleError):
     """A name that no installed method has."""
 

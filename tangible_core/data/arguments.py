@@ -4,18 +4,40 @@ A list becomes an array; numbers change their type if no value changes by more t
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import wraps
+from inspect import Parameter, signature
 from os import PathLike
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from ..errors import ArgumentError, wrong_argument
+from ..errors import ArgumentError, did_you_mean, wrong_argument
 from .device import Force, HapticState
 
 NUMBERS = "buif"
 """The kinds of NumPy types that hold numbers."""
+F = TypeVar("F", bound=Callable[..., Any])
 READERS = "; Scene and numpy.load read files"
+
+
+def named_options(function: F) -> F:
+    """Wrap a function so that an unknown option is an ArgumentError with the name that was probably meant."""
+    parameters = signature(function).parameters
+    known = [name for name, each in parameters.items() if each.kind in _BY_NAME and name not in ("self", "cls")]
+
+    @wraps(function)
+    def call(*arguments: Any, **options: Any) -> Any:
+        for name in options:
+            if name not in known:
+                near = did_you_mean(name, known)
+                raise ArgumentError(f"{function.__qualname__}: {name}: unknown option{near}; known: {', '.join(known)}")
+        return function(*arguments, **options)
+
+    return cast(F, call)
+
+
+_BY_NAME = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
 
 
 def as_array(name: str, value: object, dtype: str | None = None) -> np.ndarray:

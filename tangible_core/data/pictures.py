@@ -1,6 +1,7 @@
 """Pictures as numpy arrays: checks and conversions (`scene.formats.pictures` reads and writes files).
 
-A picture is (h, w), (h, w, 3) or (h, w, 4) RGB(A); uint8, uint16, bool, or floating point in 0..1.
+A picture is (h, w), (h, w, 3) or (h, w, 4) RGB(A); uint8, uint16, bool, or floating point in 0..1. Whole numbers of any
+other type are understood where they are those of 8 or 16 bits, and floating point in 0..255 or 0..65535 as well.
 """
 
 from typing import Any, cast
@@ -15,22 +16,40 @@ RED, BLUE = np.float32(0.299), np.float32(0.114)
 """The weights of R and B in luma (ITU-R BT.601); the weight of G is the rest of 1."""
 
 
-def check_picture(picture: np.ndarray, name: str = "picture") -> np.ndarray:
-    """Return the array itself if it is a picture.
+MOST = 65535
+"""The largest value of a picture: 16 bits."""
+BRIGHTEST = 4.0
+"""The largest value of a float picture in 0..1, two stops above white; one that exceeds it is in 0..255."""
 
-    Raises: PictureError if the shape or the type is wrong, the picture is empty, or a value is NaN or infinite.
+
+def check_picture(picture: np.ndarray, name: str = "picture") -> np.ndarray:
+    """Return the array itself if it is a picture; whole numbers of another type become uint8 or uint16.
+
+    Raises: PictureError if the shape or the type is wrong, the picture is empty, a value is NaN or infinite, or a whole
+    number is negative or beyond 16 bits.
     """
     picture = as_picture(name, picture)
     if picture.ndim not in (2, 3) or (picture.ndim == 3 and picture.shape[2] not in (3, 4)):
         raise PictureError(f"{name}: a picture is (h, w) or (h, w, 3|4), not {picture.shape}")
     if picture.size == 0:
         raise PictureError(f"{name}: the picture is empty, {picture.shape}")
-    if picture.dtype.kind not in "bf" and picture.dtype.str[1:] not in ("u1", "u2"):
-        raise PictureError(
-            f"{name}: a picture is uint8, uint16, bool or float (0..1), not {picture.dtype}; convert it first"
-        )
+    if picture.dtype.kind in "iu" and picture.dtype.str[1:] not in ("u1", "u2"):
+        return _of_16_bits(picture, name)
+    if picture.dtype.kind not in "bfu":
+        raise PictureError(f"{name}: a picture holds whole numbers, bool or float (0..1), not {picture.dtype}")
     check_finite(picture, name)
     return picture
+
+
+def _of_16_bits(picture: np.ndarray, name: str) -> np.ndarray:
+    """Return whole numbers of any type as uint8, or uint16 where one exceeds 255."""
+    low, high = int(picture.min()), int(picture.max())
+    if low < 0 or high > MOST:
+        raise PictureError(
+            f"{name}: holds whole numbers from {low} to {high}; those of a picture run from 0 to 255, or to {MOST}; "
+            "scale it first"
+        )
+    return picture.astype(np.min_scalar_type(high))
 
 
 def is_one_colour(picture: np.ndarray) -> bool:
@@ -79,9 +98,10 @@ def opaque(picture: np.ndarray) -> Bool[np.ndarray, "h w"]:
 
 
 def full_scale(picture: np.ndarray) -> float:
-    """Return the value of white: 255, 65535, 1, or the largest magnitude of a float picture that exceeds 1."""
+    """Return the value of white: 1, 255 or 65535; of a float picture that fits none of these, its largest magnitude."""
     if picture.dtype.kind == "f":
-        return max(1.0, float(np.max(np.abs(picture))))
+        largest = float(np.max(np.abs(picture)))
+        return next((white for white in (255.0, float(MOST)) if BRIGHTEST < largest <= white), max(1.0, largest))
     return 1.0 if picture.dtype == np.bool_ else float(np.iinfo(picture.dtype).max)
 
 

@@ -3,11 +3,14 @@
 import re
 from collections.abc import Mapping
 from decimal import Decimal
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
-from pydantic import BaseModel, GetJsonSchemaHandler, ValidationInfo, field_validator
+from pydantic import BaseModel, GetJsonSchemaHandler, ValidationError, ValidationInfo, field_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
+
+from ..errors import OptionError
+from ..files.yaml.validation import sentences_about
 
 _LENGTHS = {"m": 1, "cm": "1e-2", "mm": "1e-3", "um": "1e-6"}
 UNITS: Mapping[str, Mapping[str, Decimal]] = {
@@ -30,8 +33,33 @@ _DIGITS = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"\s*((?>{_DIGITS}))\s*(\D.*?)\s*")
 
 
-class Quantities(BaseModel):
+class _Blocks(type(BaseModel)):
+    """The class of all blocks of options: what is wrong with the options of a new one is an OptionError.
+
+    Only a call of the class is caught, so that a file's reader gets pydantic's errors with their places.
+    """
+
+    if not TYPE_CHECKING:  # the signature of each block is that of its fields
+
+        def __call__(cls, *values: Any, **options: Any) -> Any:
+            if values:
+                names = ", ".join(f"{name}=..." for name in list(cls.model_fields)[:MOST_NAMED]) or "it has none"
+                raise OptionError(f"{cls.__name__}: write options with their names, such as {names}")
+            try:
+                return super().__call__(**options)
+            except ValidationError as error:
+                sentences = [text for _, text in sentences_about(error, cls, options)]
+            raise OptionError(*(f"{cls.__name__}: {each}" for each in sentences))
+
+
+MOST_NAMED = 3
+"""The most options that a message about their names quotes."""
+
+
+class Quantities(BaseModel, metaclass=_Blocks):
     """The base of all blocks of options. A number whose name ends with a unit may be text with a unit of that kind.
+
+    Raises: OptionError for an unknown option, or a value that an option cannot have.
 
     >>> class Block(Quantities):
     ...     width_m: float

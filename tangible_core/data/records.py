@@ -12,6 +12,7 @@ import xxhash
 
 from ..errors import wrong_argument
 from .arguments import as_array, as_number, as_picture
+from .short_repr import short_repr
 
 
 class Record:
@@ -22,13 +23,17 @@ class Record:
     Raises: ArgumentError for a value that cannot be converted.
     """
 
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Give a record the short form of its fields before `dataclass` gives it the long one."""
+        super().__init_subclass__(**options)
+        if "__repr__" not in cls.__dict__:
+            cls.__repr__ = lambda self: short_repr(self)
+
     def __post_init__(self) -> None:
         settle(self)
         for name, value in items_of(self):
             if isinstance(value, np.ndarray):
-                view = cast(np.ndarray, value).view()
-                view.flags.writeable = False
-                object.__setattr__(self, name, view)
+                object.__setattr__(self, name, frozen(cast(np.ndarray, value)))
 
     def _repr_html_(self) -> str:
         """Return a small picture with units, for a notebook."""
@@ -38,6 +43,13 @@ class Record:
     def digest(self) -> str:
         """Return the XXH3-128 of the content: the same in every process, and equal for equal content."""
         return digest_of(self)
+
+
+def frozen(array: np.ndarray) -> np.ndarray:
+    """Return a read-only view of an array."""
+    view = array.view()
+    view.flags.writeable = False
+    return view
 
 
 def digest_of(value: Any) -> str:

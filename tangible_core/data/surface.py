@@ -5,10 +5,12 @@ from dataclasses import dataclass, fields
 from typing import Literal, get_args
 
 import numpy as np
-from jaxtyping import Float32, Int32
+from jaxtyping import Float32, Float64, Int32
+from numpy.typing import ArrayLike
 
 from ..errors import GeometryError, MaterialError, PictureError, did_you_mean, quoted
 from .arguments import as_array, as_number
+from .interpolation import bilinear
 from .pictures import check_finite, size_in_words
 from .records import Record
 
@@ -161,6 +163,27 @@ class HapticSurface(Record):
         rows, columns = height_m.shape
         relief = Relief(np.ascontiguousarray(height_m, np.float32), (width_m, width_m * rows / columns))
         return cls(relief, labels, materials)
+
+    def height_at(self, x_m: ArrayLike, y_m: ArrayLike) -> Float64[np.ndarray, "..."]:
+        """Return the height at points over the surface, metres; NaN beyond its extent, where there is free air.
+
+        x_m, y_m: metres from the centre, x to the right, y away from the user, numbers or arrays of one shape, which
+        the result has. Between the centres of the cells the height is bilinear, as in the force law
+        `penalty-gradient`. Laws on a smooth spline, such as `proxy`, have the same heights at the centres, but near
+        steps, and at the outermost half cell.
+        Raises: ArgumentError for values that are not numbers.
+        """
+        return bilinear(self.height_m, self.extent_m, x_m, y_m)[0]
+
+    def normal_at(self, x_m: ArrayLike, y_m: ArrayLike) -> Float64[np.ndarray, "... 3"]:
+        """Return the unit normals (x, y, z) at points over the surface, upwards; NaN beyond its extent.
+
+        x_m, y_m: as for `height_at`, whose exact gradient they are perpendicular to; the result has one more axis, of
+        three. Raises: ArgumentError for values that are not numbers.
+        """
+        _, across, along = bilinear(self.height_m, self.extent_m, x_m, y_m)
+        length = np.sqrt(1 + across**2 + along**2)
+        return np.stack([-across, -along, np.ones_like(across)], axis=-1) / length[..., None]
 
     @property
     def height_m(self) -> Float32[np.ndarray, "h w"]:

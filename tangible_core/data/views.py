@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float32, Int32, Integer
 
 from ..errors import GeometryError, PictureError
 from .pictures import check_picture, check_same_shape, size_in_words
-from .records import Record, settle
+from .records import Record, frozen, settle
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +47,9 @@ class Views(Record):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_picture(self.left, "left view")
+        object.__setattr__(self, "left", frozen(check_picture(self.left, "left view")))
         if self.right is not None:
-            check_picture(self.right, "right view")
+            object.__setattr__(self, "right", frozen(check_picture(self.right, "right view")))
             if self.left.shape[:2] != self.right.shape[:2]:
                 raise PictureError(
                     f"the left view is {size_in_words(self.left)} and the right one {size_in_words(self.right)}; "
@@ -69,6 +69,7 @@ class DisparityMap(Record):
     disparity_px: float32 (h, w), NaN where unknown; larger is nearer. A left pixel (row, x) matches (row, x - d).
     confidence: float32 (h, w) in 0..1; by default 1 where the disparity is known and 0 elsewhere.
     unit: "px" for stereo, "relative" (0 far .. 1 near) for one picture.
+    Raises: PictureError for infinity, or a confidence of another size.
     """
 
     disparity_px: Float32[np.ndarray, "h w"]
@@ -80,6 +81,9 @@ class DisparityMap(Record):
         if self.confidence.size == 0:
             object.__setattr__(self, "confidence", np.isfinite(self.disparity_px).astype(np.float32))
         check_same_shape("disparity_px", self.disparity_px, "confidence", self.confidence)
+        if infinite := np.count_nonzero(np.isinf(self.disparity_px)):
+            count = f"{infinite} of {self.disparity_px.size} values {'is' if infinite == 1 else 'are'} infinite"
+            raise PictureError(f"disparity_px: {count}; write NaN where the disparity is unknown")
         super().__post_init__()
 
 

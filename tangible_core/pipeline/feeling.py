@@ -11,10 +11,12 @@ import numpy as np
 
 from .. import session
 from ..data import TICK_COLUMNS, ServoReport
+from ..data.arguments import named_options
 from ..errors import ConfigError
 from ..files.paths import as_path
 from ..legibility import Legibility
 from ..plugins import hooks
+from ..plugins.failures import naming_plugins
 from ..plugins.interfaces import Film, HapticDevice, Medium, Reshaping, Touch
 from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
 from ..runtime.threads import limited_threads
@@ -118,6 +120,8 @@ class Feeling:
         config = self.engine.config
         return film_of(self.engine, config.felt_device if self.given is None else self.device, period_s)
 
+    @named_options
+    @naming_plugins()
     def run(
         self,
         seconds: float | None = 8.0,

@@ -6,6 +6,7 @@ from threading import Event
 from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, cast, final
 
 from ..data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Plan, Relief, SegmentMap, ServoReport
+from ..data.arguments import named_options
 from ..data.products import Product
 from ..errors import wrong_argument
 from ..files.paths import as_path
@@ -211,6 +212,7 @@ class Pipeline:
         """The force law on this surface."""
         return self.make("touch")
 
+    @named_options
     def run(
         self,
         out: str | PathLike[str],
@@ -229,6 +231,7 @@ class Pipeline:
         with self.engine.watching(progress, stop):
             return make_run(self.engine, as_path(out, "out"), want or self.config.want, seconds, self._report, sheet)
 
+    @named_options
     def export(
         self,
         out: str | PathLike[str],
@@ -282,6 +285,9 @@ class Pipeline:
             if name not in OLD_NAMES or "engine" not in vars(self):
                 raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
             return OLD_NAMES[name](self)
+
+    def __repr__(self) -> str:
+        return f"Pipeline({self.config.in_short})"
 
     def _repr_html_(self) -> str:
         return self.plan()._repr_html_()  # pyright: ignore[reportPrivateUsage] - the name is the notebook's

@@ -1,11 +1,13 @@
 """Unforeseen errors in one sentence: the plugin that failed, the verb, and the file with the traceback."""
 
 import logging
+from collections.abc import Generator
+from contextlib import contextmanager
 from traceback import walk_tb
 from types import FrameType
 from typing import Any, NamedTuple
 
-from ..errors import MOST_IN_LINE, shown
+from ..errors import MOST_IN_LINE, TangibleError, shown
 from ..runtime.failure_log import where_kept
 from .interfaces import KINDS, Link, Touch
 from .naming import package, plugin_name, points
@@ -33,6 +35,21 @@ def place_of(error: BaseException) -> Place | None:
         return sent
     frames = [frame for frame, _ in walk_tb(error.__traceback__)][::-1]
     return next(filter(None, map(_method, frames)), None) or _function(frames)
+
+
+@contextmanager
+def naming_plugins() -> Generator[None]:
+    """Add the plugin that failed, and its verb, to an unforeseen error: Python prints them below the error."""
+    try:
+        yield
+    except TangibleError:
+        raise
+    except Exception as error:
+        if place := place_of(error):
+            text = f"{plugin_name(place.kind, place.module, place.owner)} failed in {place.function}"
+            if text not in getattr(error, "__notes__", ()):
+                error.add_note(text)
+        raise
 
 
 def remember_place(error: BaseException, trace: str) -> None:

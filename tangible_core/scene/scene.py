@@ -11,6 +11,8 @@ from jaxtyping import Bool, Float32
 from numpy.typing import ArrayLike
 
 from ..data import Calibration, DisparityMap, Record, Relief, SegmentMap, Views
+from ..data.arguments import named_options
+from ..data.short_repr import short_repr
 from ..errors import ConfigError, GeometryError, PictureError
 from .formats.height_maps import MeasuredSize
 from .formats.pairs import Layout
@@ -61,7 +63,11 @@ class Scene:
     files: str | SceneFiles | None = None
     """The builtin name, or the files with absolute paths, from which it was read; None if a part was an array."""
 
+    def __repr__(self) -> str:
+        return short_repr(self)
+
     @classmethod
+    @named_options
     def pair(
         cls,
         left: Picture,
@@ -92,6 +98,7 @@ class Scene:
         )  # fmt: skip
 
     @classmethod
+    @named_options
     def photo(
         cls,
         photo: Picture,
@@ -120,6 +127,7 @@ class Scene:
         )  # fmt: skip
 
     @classmethod
+    @named_options
     def heights(
         cls,
         heights: Picture,
@@ -143,6 +151,7 @@ class Scene:
         )  # fmt: skip
 
     @classmethod
+    @named_options
     def video(
         cls,
         video: File | int,

@@ -16,6 +16,7 @@ from ..data.arguments import as_picture
 from ..data.pictures import fill_non_finite
 from ..errors import ConfigError, PictureError, wrong_argument
 from ..files.paths import as_path
+from ..files.yaml.validation import sentences_about
 from .formats.height_maps import find_picture, in_metres, read_heights_metadata
 from .formats.multi_picture import Notify
 from .formats.pairs import Layout, halves, read_pair
@@ -140,15 +141,11 @@ def _validate(values: Mapping[str, Any], calibration: Calibration | None) -> Sce
     if calibration is not None:
         cameras = {"focal_px": calibration.focal_px, "baseline_m": calibration.baseline_m}
         cameras |= {"offset_px": calibration.offset_px} if calibration.offset_px else {}
+    given = {**values, **cameras}
     try:
-        return SceneFiles.model_validate({**values, **cameras})
+        return SceneFiles.model_validate(given)
     except ValidationError as error:
-        raise ConfigError(
-            *(
-                f"{'.'.join(['scene', *map(str, each['loc'])])}: {each['msg'].removeprefix('Value error, ')}"
-                for each in error.errors()
-            )
-        ) from error
+        raise ConfigError(*(text for _, text in sentences_about(error, SceneFiles, given, ("scene",)))) from error
 
 
 def scene_name(files: SceneFiles) -> str:

@@ -7,6 +7,7 @@ import subprocess
 
 from pydantic import ValidationError
 
+from ..errors import OptionError
 from ..plugins.interfaces import Method
 from ..plugins.registry import Listing
 from ..runtime.child_process import python
@@ -77,7 +78,7 @@ def unknown_options_are_refused(method: Method) -> None:
     """Check that a misspelt option is an error and not ignored."""
     try:
         type(method)(**{"no_such_option": 1})
-    except ValidationError:
+    except OptionError:
         return
     raise CheckFailure("an option that does not exist is accepted; keep extra='forbid'")
 

@@ -210,13 +210,14 @@ def _error_lines(figures: Mapping[Any, Any]) -> list[str]:
 
 
 def _material_lines(figures: Mapping[Any, Any]) -> list[str]:
-    from ...data.part_words import shown_number
+    from ...data.part_words import name_part, shown_number
 
-    numbered = ((shown_number(int(label)), each["name"], each["why"]) for label, each in figures.items())
-    return [
-        f"{number}: {name} ({why.removeprefix(f'segment {number}: ').removesuffix(f' -> {name}')})"
-        for number, name, why in numbered
-    ]
+    lines = list[str]()
+    for label, each in figures.items():
+        place, name = name_part(int(label), noun="segment"), each["name"]
+        why = each["why"].removeprefix(f"{place}: ").removesuffix(f" -> {name}")
+        lines.append(f"{shown_number(int(label))}: {name} ({why})")
+    return lines
 
 
 def _part_lines(figures: Mapping[Any, Any]) -> list[str]:

@@ -1,6 +1,5 @@
 """YAML parsed with the place of each key and value: all complaints at once, each with file:line:column."""
 
-import re
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -17,7 +16,7 @@ from ..paths import as_path
 from ..reading import MOST_TEXT_BYTES, in_words, read_bytes
 from .bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, BoundedScanner, check_events
 from .validation import Location as Location
-from .validation import has, model_at, plain_errors
+from .validation import has, sentences_about
 
 Tree = dict[Any, Any]
 """The parser's own mapping: a dict with the line and column of its parts."""
@@ -131,23 +130,9 @@ class Source:
             self.complain(location, str(error))
             return None
         except ValidationError as error:
-            for each in plain_errors(error, plain(block)):
-                self._complain_about(location, model, each)
+            for where, sentence in sentences_about(error, model, plain(block), location):
+                self.complain(where, sentence)
             return None
-
-    def _complain_about(self, location: Location, model: type[BaseModel], error: Mapping[str, Any]) -> None:
-        where = (*location, *(part for part in error["loc"] if part != "[key]" and not str(part).startswith(":")))
-        name = shown(".".join(str(part) for part in where))
-        if error["type"] == "extra_forbidden":
-            options = list(model_at(model, error["loc"][:-1]).model_fields)
-            known = f"; known: {', '.join(options)}" if options else "; there are no options"
-            self.complain(where, f"{name}: unknown option{did_you_mean(str(where[-1]), options)}{known}")
-        else:
-            is_clear = isinstance(error["input"], dict) or error["type"] == "missing"
-            given = "" if is_clear else f", not {quoted(error['input'])}"
-            if error["type"] == "literal_error":
-                given += did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
-            self.complain(where, f"{name}: {error['msg']}{given}")
 
 
 def read_text(path: Path) -> str:

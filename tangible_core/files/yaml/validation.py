@@ -1,9 +1,12 @@
 """Errors of pydantic about a block of YAML: in plain words, and at locations that the block has."""
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import Any, cast, get_args
 
 from pydantic import BaseModel, ValidationError
+
+from ...errors import did_you_mean, quoted, shown
 
 Location = tuple[Any, ...]
 """Keys and indices from the top of the file."""
@@ -37,6 +40,30 @@ def plain_errors(error: ValidationError, block: Any) -> list[dict[str, Any]]:
             text = f"{joined[key]['msg']}, or {text.removeprefix(_WANTED)}"
         joined[key] = {**each, "msg": text}
     return list(joined.values())
+
+
+def sentences_about(
+    error: ValidationError, model: type[BaseModel], block: Any, location: Location = ()
+) -> list[tuple[Location, str]]:
+    """Return pydantic's errors about the options of a model as sentences, each with its place.
+
+    location: that of the block, which the sentences name too.
+    """
+    return [_sentence(each, model, location) for each in plain_errors(error, block)]
+
+
+def _sentence(error: dict[str, Any], model: type[BaseModel], location: Location) -> tuple[Location, str]:
+    where = (*location, *(part for part in error["loc"] if part != "[key]" and not str(part).startswith(":")))
+    name = shown(".".join(str(part) for part in where))
+    if error["type"] == "extra_forbidden":
+        options = list(model_at(model, error["loc"][:-1]).model_fields)
+        known = f"; known: {', '.join(options)}" if options else "; there are no options"
+        return where, f"{name}: unknown option{did_you_mean(str(where[-1]), options)}{known}"
+    is_clear = isinstance(error["input"], dict) or error["type"] == "missing"
+    given = "" if is_clear else f", not {quoted(error['input'])}"
+    if error["type"] == "literal_error":
+        given += did_you_mean(f"{error['input']}", re.findall(r"'([^']*)'", error["msg"]))
+    return where, f"{name}: {error['msg']}{given}".removeprefix(": ")
 
 
 def _is_within(inner: Location, outer: Location) -> bool:

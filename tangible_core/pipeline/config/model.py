@@ -15,7 +15,8 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from ruamel.yaml import YAML
 
 from ...data.products import Product
-from ...errors import ConfigError
+from ...errors import ConfigError, quoted
+from ...files.paths import without_folders
 from ...files.yaml.source import Source
 from ...legibility import SimplifyChoice
 from ...mapping import WorkspaceMapping, map_device
@@ -25,6 +26,7 @@ from ...relief import ReliefChoice
 from ...scene.formats.height_maps import MeasuredSize
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles
+from ...scene.scene_source import scene_name
 from ...scene.workspace import FeltSize, ReliefKind, Workspace, kind_of
 from ...servo.guard.safety import Safety
 from .keys import (
@@ -172,6 +174,18 @@ class PipelineConfig(BaseModel):
         if self.relief.by == "edges" and kind != "heights":
             return "edges"
         return "depth" if kind == "photograph" and self.depth and self.depth.method.finds_depth else kind
+
+    @property
+    def in_short(self) -> str:
+        """The scene, the wanted product and the names of the methods, in a line."""
+        scene = self.scene.name if isinstance(self.scene, Scene) else self.scene
+        name = scene if isinstance(scene, str) else scene_name(scene)
+        methods = {"depth": self.depth, "texture": self.texture, "render": self.render, "device": self.device}
+        named = {"want": self.want, **{kind: chosen.name for kind, chosen in methods.items() if chosen}}
+        return ", ".join([quoted(without_folders(name)), *(f"{key}={quoted(value)}" for key, value in named.items())])
+
+    def __repr__(self) -> str:
+        return f"PipelineConfig({self.in_short})"
 
     @property
     def felt_device(self) -> HapticDevice | None:

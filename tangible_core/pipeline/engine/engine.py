@@ -15,6 +15,7 @@ from ...data.products import PRODUCTS
 from ...errors import TangibleError, UnknownMethod
 from ...files.paths import without_folders
 from ...plugins import hooks
+from ...plugins.failures import naming_plugins
 from ...plugins.interfaces import HapticDevice
 from ...plugins.notes import collect_notes
 from ...plugins.registry import Registry
@@ -228,7 +229,7 @@ class Engine:
             return cached
         if stage.refusal is not None:
             self._note(Outcome(stage.product, "refused", str(stage.refusal), stage.method))
-            raise stage.refusal
+            raise stage.refusal.with_traceback(None)  # it may be raised again
         inputs = {name: self._pull(name, f"{NEEDED} {stage.product}") for name in stage.needs}
         check_stopped()
         self._progress(StageEvent(stage.product, stage.method))
@@ -239,7 +240,7 @@ class Engine:
             self.compiler.wait(stage.product)
         start = perf_counter()
         try:
-            with collect_notes() as notes, limited_threads(self.threads):
+            with collect_notes() as notes, limited_threads(self.threads), naming_plugins():
                 value = stage.make(inputs)
         except BaseException as error:
             why, seconds = f"{type(error).__name__}: {error}", perf_counter() - start

@@ -69,6 +69,10 @@ class Run:
                 return path
         raise OutputError(f"{self.scene}: has no sheet, as no exporter named {SHEET!r} is installed")
 
+    def __repr__(self) -> str:
+        made = [name for name, value in self.products.items() if value is not None]
+        return f"Run of {self.scene}: {', '.join(made)}, in {self.files[0].parent}"
+
     def _repr_html_(self) -> str:
         if self.sheet.suffix == ".png":
             return png_html(self.sheet.read_bytes(), self.sheet_says)

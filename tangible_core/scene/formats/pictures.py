@@ -35,7 +35,7 @@ def picture_of(values: np.ndarray, name: str, non_finite: NonFinite = "error") -
     """Return an array as `read_picture` does. Raises: PictureError if it is not a picture, or holds NaN or infinity."""
     if non_finite == "error":
         return check_picture(values, name)
-    check_picture(np.nan_to_num(values), name)
+    check_picture(np.nan_to_num(values, posinf=0, neginf=0), name)
     return values
 
 

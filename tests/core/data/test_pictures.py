@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from hostile import SIDE, npy_header, npz_bomb, tiff
+from tangible_core.data import Views
 from tangible_core.data.pictures import check_picture, fill_non_finite, full_scale, to_grey, to_rgb8
 from tangible_core.errors import PictureError, shown
 from tangible_core.scene.formats.pictures import MAX_LABELS, read_labels, read_map, read_picture
@@ -60,7 +61,10 @@ def test_picture_of_any_allowed_shape_and_type_is_accepted(dtype, shape):
         (np.zeros((2, 2, 2), np.uint8), r"\(h, w\) or \(h, w, 3\|4\), not \(2, 2, 2\)"),
         (np.zeros(3, np.uint8), r"not \(3,\)"),
         (np.zeros((0, 4), np.uint8), "empty"),
-        (np.zeros((2, 2), np.int64), "not int64; convert it first"),
+        (
+            np.int64([[-3, 70_000]]),
+            "the view: holds whole numbers from -3 to 70000; those of a picture run from 0 to 255,",
+        ),
         (np.zeros((2, 2), np.complex64), "not complex64"),
         (np.array([[0, 1], [NAN, np.inf]]), "the view: 2 values are NaN or infinite, the first at row 1, column 0"),
     ],
@@ -72,10 +76,29 @@ def test_array_that_is_not_a_picture_is_refused_with_the_reason(array, complaint
 
 @pytest.mark.parametrize(
     ("white", "scale"),
-    [(np.uint8(255), 255), (np.uint16(65535), 65535), (np.float32(0.5), 1), (np.float64(4), 4), (np.bool_(1), 1)],
+    [
+        (np.uint8(255), 255),
+        (np.uint16(65535), 65535),
+        (np.float32(0.5), 1),
+        (np.float64(4), 4),
+        (np.float32(40), 255),
+        (np.bool_(1), 1),
+    ],
 )
 def test_full_scale_is_the_maximum_of_the_type_or_of_a_float_picture(white, scale):
     assert full_scale(np.full((2, 2), white)) == scale
+
+
+@pytest.mark.parametrize(
+    ("dtype", "white"),
+    [(np.int16, 255)] + [(each, 65535) for each in (np.int32, np.uint32, np.int64, np.uint64, np.float32, np.float64)],
+)
+def test_picture_of_other_numbers_is_that_of_8_or_16_bits(dtype: type, white: int):
+    plain = np.array([[0, 17, white // 5, white]], np.min_scalar_type(white))
+    other = Views(plain.astype(dtype)).left
+    np.testing.assert_allclose(to_grey(other), to_grey(plain), atol=1e-6)
+    assert not other.flags.writeable
+    assert other.dtype == (dtype if np.dtype(dtype).kind == "f" else plain.dtype)
 
 
 def test_grey_of_any_type_is_the_luma_of_rec_601():
@@ -194,8 +217,8 @@ def test_npy_file_is_read_as_a_picture(tmp_path):
 
 
 def test_npy_file_that_is_not_a_picture_is_refused_with_its_name(tmp_path):
-    with pytest.raises(PictureError, match=r"a\.npy: .*not int64"):
-        read_picture(save_npy(tmp_path, "a.npy", np.zeros((2, 2), np.int64)))
+    with pytest.raises(PictureError, match=r"a\.npy: .*not complex64"):
+        read_picture(save_npy(tmp_path, "a.npy", np.zeros((2, 2), np.complex64)))
 
 
 # Files that are not pictures

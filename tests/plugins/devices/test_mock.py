@@ -7,11 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from level_ground import positions, read
 from tangible_core.data import NO_FORCE, Force
-from tangible_core.errors import DeviceError
+from tangible_core.errors import DeviceError, OptionError
 from tangible_devices.mock import Mock
 
 
@@ -221,5 +220,5 @@ def test_spec_is_that_of_a_falcon():
     ],
 )
 def test_options_that_contradict_are_refused(options: dict, complaint: str):
-    with pytest.raises(ValidationError, match=complaint):
+    with pytest.raises(OptionError, match=complaint):
         Mock(**options)

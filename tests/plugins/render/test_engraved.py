@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from tangible_core import Pipeline, Scene
 from tangible_core.data import HapticState, HapticSurface, Relief
+from tangible_core.errors import OptionError
 from tangible_core.materials.assignment import library
 from tangible_core.plugins import ForceRenderer
 from tangible_core.plugins.notes import collected
@@ -256,11 +256,11 @@ class TestOptions:
         ],
     )
     def test_wrong_options_are_refused(self, options: dict[str, object], said: str):
-        with pytest.raises(ValidationError, match=said):
+        with pytest.raises(OptionError, match=said):
             Engraved(**options)  # pyright: ignore[reportArgumentType]
 
     def test_materials_around_engraved_are_refused(self):
-        with pytest.raises(ValidationError, match="engraved renders materials itself"):
+        with pytest.raises(OptionError, match="engraved renders materials itself"):
             WithMaterials(law="engraved")
         assert Engraved(law={"use": "with-materials"}).touch(straight(50, 30)[0]) is not None
 

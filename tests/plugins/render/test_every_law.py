@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import ValidationError
 
 from planes import UP_M, WIDTH_M, at, tilted
 from tangible_core.data import NO_FORCE, HapticState, HapticSurface, Relief
-from tangible_core.errors import GeometryError
+from tangible_core.errors import GeometryError, OptionError
 from tangible_render.force_shading import ForceShading
 from tangible_render.grey_level import GreyLevel
 from tangible_render.lateral_gradient import LateralGradient
@@ -126,5 +125,5 @@ class TestEveryRenderer:
     ],
 )
 def test_wrong_options_are_refused(renderer, option: str, value: float):
-    with pytest.raises(ValidationError, match=option):
+    with pytest.raises(OptionError, match=option):
         renderer(**{option: value})

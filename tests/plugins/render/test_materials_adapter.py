@@ -7,11 +7,12 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from materials_on_laws import GRAINY, LATERAL, PLAIN, PUSHING, RUBBER, STICKY, K, cover, level, stroke
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.data import Force, HapticState, HapticSurface, Material
+from tangible_core.errors import OptionError
 from tangible_core.materials.assignment import library
 from tangible_core.plugins.interfaces import ForceRenderer, PlainTouch, Touch
 from tangible_core.plugins.registry import load_method
@@ -71,11 +72,11 @@ class TestOptions:
         ],
     )
     def test_law_option_wrong_is_refused(self, law: object, message: str):
-        with pytest.raises(ValidationError, match=message):
+        with pytest.raises(OptionError, match=message):
             WithMaterials(law=law)  # pyright: ignore[reportArgumentType]
 
     def test_material_not_built_in_is_refused(self):
-        with pytest.raises(ValidationError, match="did you mean 'sand'"):
+        with pytest.raises(OptionError, match="did you mean 'sand'"):
             WithMaterials(material="sandy")
 
 
@@ -167,7 +168,7 @@ class TestFacts:
         assert np.array_equal(found, WithMaterials(law="penalty").touch(surface).path(stroke()))
 
     def test_law_rendering_materials_under_another_name_is_refused(self):
-        with pytest.raises(ValidationError, match="unnamed renders materials itself; use it directly"):
+        with pytest.raises(OptionError, match="unnamed renders materials itself; use it directly"):
             WithMaterials(law="unnamed")
 
     def test_law_declared_lateral_leaves_the_push_to_the_table(self):

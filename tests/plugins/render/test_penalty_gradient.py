@@ -40,6 +40,14 @@ class TestPenaltyGradient:
         depth = 1 / 256
         assert at(touch, x, y, height - depth) == (-4 * slope_x, -4 * slope_y, 4.0)
 
+    def test_surface_has_the_height_and_the_normal_that_the_law_has(self):
+        surface = HapticSurface.from_heights(RNG.uniform(0.001, 0.004, (40, 60)).astype(np.float32), 0.08)
+        touch = PenaltyGradient(stiffness_n_per_m=640.0).touch(surface)
+        x, y = RNG.uniform(-0.04, 0.04, 200), RNG.uniform(-0.026, 0.026, 200)
+        for point in zip(x, y, surface.height_at(x, y), surface.normal_at(x, y), strict=True):
+            force = np.array(at(touch, *point[:2], point[2] - 0.001))
+            np.testing.assert_allclose(force, 0.64 * point[3] / point[3][2], rtol=1e-9)
+
     def test_heights_from_the_last_centre_to_the_edge_are_constant(self):
         surface = tilted(0.125, 0)
         touch = PenaltyGradient(stiffness_n_per_m=512.0).touch(surface)

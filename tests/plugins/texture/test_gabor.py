@@ -3,11 +3,10 @@
 import cv2
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from label_maps import rand_index
 from tangible_core.data import Views
-from tangible_core.errors import PictureError
+from tangible_core.errors import OptionError, PictureError
 from tangible_core.plugins.notes import collected
 from tangible_texture.energies.gabor_bank import Gabor as bank_filter
 from tangible_texture.energies.gabor_bank import kernel, sigma_of_bandwidth
@@ -217,7 +216,7 @@ def test_non_finite_value_is_named_with_its_place():
 
 @pytest.mark.parametrize("options", [{"segments": 0}, {"effort": "most"}, {"lambda_max_px": 1}, {"least_energy": 1}])
 def test_options_out_of_range_are_refused(options: dict):
-    with pytest.raises(ValidationError):
+    with pytest.raises(OptionError):
         Gabor(**options)
 
 

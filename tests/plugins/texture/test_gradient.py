@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import ValidationError
 
 from label_maps import rand_index
 from tangible_core.data import Views
-from tangible_core.errors import PictureError
+from tangible_core.errors import OptionError, PictureError
 from tangible_core.plugins.notes import collected
 from tangible_texture.gradient import Gradient
 from tangible_texture.regions.basins import MOST_SEGMENTS
@@ -200,11 +199,11 @@ class TestGradient:
         ids=str,
     )
     def test_wrong_options_are_refused(self, options: dict):
-        with pytest.raises(ValidationError):
+        with pytest.raises(OptionError):
             Gradient(**options)
 
     def test_thresholds_out_of_order_are_explained(self):
-        with pytest.raises(ValidationError, match=r"flat 1\.4 < canny_low 5 <= canny_high 4 must hold"):
+        with pytest.raises(OptionError, match=r"flat 1\.4 < canny_low 5 <= canny_high 4 must hold"):
             Gradient(canny_low=5)
 
     def test_method_pickled_is_equal(self):

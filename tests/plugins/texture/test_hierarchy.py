@@ -5,11 +5,10 @@ from itertools import pairwise
 import cv2
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from label_maps import rand_index
 from tangible_core.data import Views
-from tangible_core.errors import PictureError
+from tangible_core.errors import OptionError, PictureError
 from tangible_core.plugins.notes import collected
 from tangible_texture import Hierarchy
 from tangible_texture.regions.basins import MOST_SEGMENTS
@@ -154,5 +153,5 @@ class TestHierarchy:
 
     @pytest.mark.parametrize("level", [0, 1, -0.1, 0.01])
     def test_level_outside_of_its_bounds_is_refused(self, level: float):
-        with pytest.raises(ValidationError):
+        with pytest.raises(OptionError):
             Hierarchy(level=level)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import ValidationError
 
 from tangible_core.data import Views
+from tangible_core.errors import OptionError
 from tangible_core.plugins.notes import collected
 from tangible_texture.clusters.otsu import OtsuClasses
 from tangible_texture.histogram import MOST_LEVELS, Histogram
@@ -135,5 +135,5 @@ class TestHistogram:
 
     @pytest.mark.parametrize("options", [{"segments": 0}, {"sigma_px": -1}, {"smallest_px": 0}, {"bins": 9}], ids=str)
     def test_wrong_options_are_refused(self, options: dict):
-        with pytest.raises(ValidationError):
+        with pytest.raises(OptionError):
             Histogram(**options)

@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import Any
 
-from pydantic import ValidationError
-
 from tangible_core.errors import TangibleError
 from tangible_core.plugins.interfaces import ForceRenderer
 
@@ -34,9 +32,6 @@ def complete_options(law: Law, refusal: Refusal) -> dict[str, Any]:
     """Return the force law's name and all of its options. Raises: ValueError if the name or an option is wrong."""
     try:
         name, method = build_law(law, refusal)
-    except ValidationError as error:
-        wrong = (f"{'.'.join(map(str, each['loc']))}: {each['msg']}" for each in error.errors())
-        raise ValueError("; ".join(wrong)) from error
     except TangibleError as error:
         raise ValueError(str(error)) from error
     return {"use": name, **method.model_dump(mode="json")}

@@ -13,7 +13,8 @@ def channels(picture: np.ndarray, colour: bool) -> Float32[np.ndarray, "h w c"]:
     overflow nor vanish.
     Raises: PictureError as `check_picture`.
     """
-    white = full_scale(check_picture(picture))
+    picture = check_picture(picture)
+    white = full_scale(picture)
     paint = np.atleast_3d(picture)[..., :3]
     values = _share(paint if _has_colour(paint) else paint[..., :1], white)
     if picture.ndim == 3 and picture.shape[2] == 4:

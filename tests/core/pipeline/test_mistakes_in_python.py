@@ -1,0 +1,101 @@
+"""Mistakes in Python: one sentence with the name that was probably meant, and the plugin that failed."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tangible_core import DisparityMap, HapticSurface, Pipeline, PlainTouch, Scene, Workspace, load_method
+from tangible_core.data import Force, HapticState, Views
+from tangible_core.errors import OptionError, TangibleError
+from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, Touch
+from tangible_core.servo import Safety
+from tangible_depth import Luminance, SemiGlobal
+from tangible_devices import Mock
+from tangible_render import Proxy
+
+GREY = np.arange(240, dtype=np.uint8).reshape(12, 20)
+
+
+def scene() -> Scene:
+    return Scene.photo(GREY)
+
+
+@pytest.mark.parametrize(
+    ("build", "sentence"),
+    [
+        (lambda: SemiGlobal(max_disparty_px=64), "SemiGlobal: max_disparty_px: unknown option (did you mean 'max_d"),
+        (lambda: SemiGlobal(max_disparity_px=-4), "SemiGlobal: max_disparity_px: Input should be greater than or equ"),
+        (lambda: SemiGlobal(64), "SemiGlobal: write options with their names, such as max_disparity_px=..."),
+        (lambda: load_method("render", "proxy")(stifness_n_per_m=3), "(did you mean 'stiffness_n_per_m'?)"),
+        (lambda: Mock(path="circl"), "Mock: path: Input should be 'raster', 'circle'"),
+        (lambda: Mock(path="circl"), "not 'circl' (did you mean 'circle'?)"),
+        (lambda: Workspace(widht_m=0.1), "Workspace: widht_m: unknown option (did you mean 'width_m'?)"),
+        (lambda: Safety(max_forc_n=1), "Safety: max_forc_n: unknown option (did you mean 'max_force_n'?)"),
+        (lambda: Pipeline(scene(), texure=None), "texure: is not a key of the pipeline file (did you mean 'texture'?)"),
+        (lambda: Pipeline(scene(), workspace={"widht_m": 1}), "workspace.widht_m: unknown option (did you mean 'width"),
+        (lambda: Scene.photo(GREY, rotat=90), "Scene.photo: rotat: unknown option (did you mean 'rotate'?)"),
+        (lambda: Scene.photo(GREY, non_finite="msk"), "Input should be 'error' or 'mask', not 'msk' (did you mean"),
+        (lambda: Scene.of(phto=GREY), "scene.phto: unknown option (did you mean 'photo'?)"),
+        (lambda: Pipeline(scene()).run("out", secnds=3), "Pipeline.run: secnds: unknown option (did you mean 'sec"),
+        (lambda: Pipeline(scene()).feel(secnds=3), "secnds: unknown option (did you mean 'seconds'?)"),
+        (lambda: DisparityMap(np.float32([[1, np.inf]])), "disparity_px: 1 of 2 values is infinite; write NaN where"),
+        (lambda: Views(np.int64([[1, 70_000]])), "left view: holds whole numbers from 1 to 70000"),
+    ],
+)  # fmt: skip
+def test_mistake_is_one_sentence_of_ours(build: Callable[[], Any], sentence: str, unchecked_shapes: None):
+    with pytest.raises(TangibleError) as caught:
+        build()
+    assert sentence in str(caught.value)
+    assert "pydantic" not in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_options_with_several_mistakes_have_a_sentence_each():
+    with pytest.raises(OptionError) as caught:
+        Proxy(stifness_n_per_m=3, texture="yes please")  # pyright: ignore[reportCallIssue]
+    assert len(caught.value.args) == 2
+
+
+def test_options_error_is_a_value_error_for_those_who_catch_one():
+    with pytest.raises(ValueError, match="unknown option"):
+        Mock(pth="circle")  # pyright: ignore[reportCallIssue]
+
+
+class BrokenDepth(DepthEstimator):
+    """A method with a bug."""
+
+    def estimate(self, views: Views) -> DisparityMap:
+        """Fail."""
+        raise ZeroDivisionError("a bug")
+
+
+class BrokenTouch(PlainTouch):
+    """A touch with a bug."""
+
+    def force(self, state: HapticState) -> Force:
+        """Fail."""
+        raise ZeroDivisionError("a bug")
+
+
+class BrokenLaw(ForceRenderer):
+    """A force law with a bug."""
+
+    def touch(self, surface: HapticSurface) -> Touch:
+        """Return the touch that fails."""
+        return BrokenTouch()
+
+
+def test_method_that_raises_is_named():
+    with pytest.raises(ZeroDivisionError) as caught:
+        Pipeline(scene(), depth=BrokenDepth(), cached=False).make("disparity")
+    assert caught.value.__notes__ == [f"{__name__}.BrokenDepth failed in estimate"]
+
+
+@pytest.mark.parametrize("in_real_time", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_force_law_that_raises_is_named(in_real_time: bool):
+    pipeline = Pipeline(scene(), depth=Luminance(), render=BrokenLaw(), cached=False)
+    with pytest.raises(Exception, match="a bug") as caught:
+        pipeline.feel(Mock(), 0.05, in_real_time=in_real_time)
+    assert f"{__name__}.BrokenTouch failed in force" in [*caught.value.__notes__, str(caught.value)]

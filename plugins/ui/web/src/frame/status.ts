@@ -1,46 +1,39 @@
-/** The header: status line, stop button, and button for the hand. */
+/** The head: the sentence about what goes on, the stop button, and the buttons for force and hand. */
 import type { Page } from "../page";
 import { on } from "../shortcuts";
-import { t } from "./words";
 import { productName } from "../words/product_words";
 import { language } from "../words/words";
+import { follow, headline, type Facts } from "./headline";
+import { t as says } from "./status_words";
+import { t } from "./words";
 
-type What = "idle" | "busy" | "felt" | "stopped" | "error";
+/** Time for which the head says that the connection is back, ms; then it says what goes on alone. */
+const BACK_MS = 4000;
 
 export class Status {
   private line = document.getElementById("status")!;
-  /** Status while nothing is computed: forces on or off. */
-  private rest: "idle" | "felt" = "idle";
+  private facts: Facts;
+  private wasLost = false;
+  private back = 0;
 
-  constructor(private page: Pick<Page, "hub" | "net" | "say" | "forget">) {
+  constructor(private page: Pick<Page, "hub" | "net" | "say">) {
     const { hub } = page;
     this.give("hold", t("takeHand"), () => this.ask("hold"));
-    this.give("again", t("feelAgain"), () => void this.page.net.feel().catch((error: Error) => this.show("error", error.message)));
+    this.give("again", t("feelAgain"), () => void this.page.net.feel().catch((error: Error) => this.fail(error)));
     this.stopButton();
-    this.line.textContent = t("starting");
     new ResizeObserver(() => this.reach()).observe(this.line);
-    hub.on("gone", () => this.show("error", t("gone"), "gone"));
-    hub.on("refused", ({ why }) => this.show("error", t(why === "key" ? "wrongKey" : "loadAgain"), "gone"));
-    hub.on("hello", () => page.forget("gone"));
-    hub.on("error", ({ text }) => this.show("error", text));
-    hub.on("stage", ({ product, method, done }) => {
-      if (!done.outcome) this.show("busy", t("making", { product: productName(product), method }));
+    hub.on("gone", () => (this.wasLost = true));
+    hub.on("hello", () => {
+      if (!this.wasLost) return;
+      this.wasLost = false;
+      this.back = window.setTimeout(() => this.endBack(), BACK_MS);
     });
-    hub.on("made", ({ want, outcome, why }) => {
-      if (outcome === "failed") this.show("error", why);
-      else if (outcome === "stopped") this.show(this.rest, t("makingStopped"));
-      else if (want !== "touch") this.show(this.rest, t("made"));
+    this.facts = follow(hub, (facts) => this.show(facts));
+    hub.on("made", ({ want, outcome }) => {
+      if (outcome === "stopped") page.say(says("makingStopped"), { topic: "made" });
+      else if (outcome === "made" && want !== "touch") page.say(says("computed", { product: productName(want) }), { topic: "made" });
     });
-    hub.on("maker_gone", ({ why }) => this.show("error", why));
-    hub.on("touch", ({ law }) => this.show((this.rest = "felt"), t("feeling", { law })));
-    hub.on("loop", ({ running, stopped, why, waiting }) => {
-      if (!running) this.rest = "idle";
-      if (!running) this.show("stopped", stopped ? t("stopped") : t(waiting ? "waiting" : "ended", { why }));
-    });
-    hub.on("holding", ({ holding, free }) => {
-      document.getElementById("hold")!.hidden = holding;
-      if (!holding) this.show("idle", t(free ? "nobody" : "watching"));
-    });
+    this.show(this.facts);
   }
 
   private give(id: string, text: string, act: () => void): HTMLButtonElement {
@@ -51,25 +44,53 @@ export class Status {
   }
 
   private stopButton(): void {
-    const stop = (): void => void this.page.net.stop().catch((error: Error) => this.show("error", error.message));
-    const button = this.give("stop", t("stopLong"), stop);
-    const key = document.createElement("kbd");
-    key.textContent = t("escape");
-    button.append(" ", key);
+    const stop = (): void => void this.page.net.stop().catch((error: Error) => this.fail(error));
+    const button = this.give("stop", t("stop"), stop);
+    const more = Object.assign(document.createElement("span"), { className: "long", textContent: t("stopMore") });
+    const key = Object.assign(document.createElement("kbd"), { textContent: t("escape") });
+    button.append(more, " ", key);
     button.setAttribute("aria-keyshortcuts", "Escape");
     on("stop", stop);
   }
 
   private ask(name: string): void {
-    this.page.net.ask(name).catch((error: Error) => this.show("error", error.message));
+    this.page.net.ask(name).catch((error: Error) => this.fail(error));
   }
 
-  private show(what: What, text: string, topic = what === "error" ? text : "status"): void {
-    this.line.dataset.state = what;
-    this.line.textContent = text;
-    this.line.lang = what === "error" && topic !== "gone" ? "en" : language; // the program's texts are English
-    this.page.say(text, { topic, urgent: what === "error" || what === "stopped" });
+  private fail(error: Error): void {
+    this.show(Object.assign(this.facts, { trouble: error.message }));
+  }
+
+  private endBack(): void {
+    clearTimeout(this.back);
+    this.back = 0;
+    this.show(this.facts);
+  }
+
+  private show(facts: Facts): void {
+    const { what, text, foreign } = headline(facts);
+    const { line, page } = this;
+    if (facts.connection === "lost") this.back = (clearTimeout(this.back), 0);
+    const shown = this.back ? `${says("back")} ${text}` : text;
+    this.showButtons(facts);
+    if (line.textContent === shown && line.dataset.state === what) return;
+    line.dataset.state = what;
+    line.textContent = shown;
+    line.lang = foreign ? "en" : language;
+    const news = { topic: "status", urgent: what === "error" || what === "stopped" };
+    if (shown !== text || line.dataset.said !== text) page.say(shown, news);
+    line.dataset.said = text;
     this.reach();
+  }
+
+  /** Show the buttons that do something now; a button that leaves gives its focus to the stop button. */
+  private showButtons({ hand, noForce }: Facts): void {
+    const there = { hold: hand !== "ours", again: noForce !== "" };
+    for (const [id, on] of Object.entries(there)) {
+      const button = document.getElementById(id)!;
+      if (!on && document.activeElement === button) document.getElementById("stop")!.focus();
+      button.hidden = !on;
+    }
   }
 
   /** Make a text longer than its place reachable, so that the keyboard scrolls it. */

@@ -1,0 +1,81 @@
+/** The sentence in the head of the page: one, and true, from the latest facts about connection, work and force. */
+import type { Hub } from "../hub";
+import { productName } from "../words/product_words";
+import { t } from "./status_words";
+
+export type What = "idle" | "busy" | "felt" | "stopped" | "error";
+
+export interface Headline {
+  what: What;
+  text: string;
+  /** True if the text is the program's own, which is English. */
+  foreign?: true;
+}
+
+/** The latest facts; an empty text stands for none. */
+export interface Facts {
+  connection: "starting" | "open" | "lost" | "key" | "version";
+  /** Why the computing process is gone for good. */
+  workerGone: string;
+  document: "none" | "wrong" | "fine";
+  /** The stage that is at work, in words. */
+  making: string;
+  /** What went wrong last, until something else is begun. */
+  trouble: string;
+  /** True once a surface is on the screen. */
+  seen: boolean;
+  /** Force law under the hand. */
+  law: string;
+  /** Why there is no force, in words. */
+  noForce: string;
+  hand: "ours" | "free" | "elsewhere";
+}
+
+export const FIRST: Facts = {
+  connection: "starting", workerGone: "", document: "none", making: "", trouble: "", seen: false, law: "", noForce: "", hand: "ours",
+};
+
+/** Return the sentence: the first that applies of no connection, no force, a fault, work, the hand, what is felt. */
+export function headline(facts: Facts): Headline {
+  const { connection, workerGone, document, making, trouble, seen, law, noForce, hand } = facts;
+  if (connection === "key") return { what: "error", text: t("wrongKey") };
+  if (connection === "version") return { what: "error", text: t("loadAgain") };
+  if (connection === "lost") return { what: "error", text: t("lost") };
+  if (connection === "starting") return { what: "idle", text: t("starting") };
+  if (workerGone) return { what: "error", text: workerGone, foreign: true };
+  if (noForce) return { what: "stopped", text: making ? `${noForce} ${making}` : noForce };
+  if (trouble) return { what: "error", text: trouble, foreign: true };
+  if (making) return { what: "busy", text: making };
+  if (document === "wrong" && !law) return { what: "error", text: t("complaints") };
+  if (hand !== "ours") return { what: "idle", text: t(hand === "free" ? "nobody" : "watching") };
+  if (law) return { what: "felt", text: t("feeling", { law }) };
+  if (seen) return { what: "idle", text: t("seen") };
+  return { what: "idle", text: t(document === "none" ? "nothing" : "starting") };
+}
+
+/** Keep the facts by the events of the hub; `changed` is called after each event that may change them. */
+export function follow(hub: Hub, changed: (facts: Facts) => void): Facts {
+  const facts = { ...FIRST };
+  const set = (more: Partial<Facts>): void => changed(Object.assign(facts, more));
+  hub.on("hello", () => set({ connection: "open" }));
+  hub.on("gone", () => set({ connection: "lost", making: "" }));
+  hub.on("refused", ({ why }) => set({ connection: why }));
+  hub.on("maker", () => set({ workerGone: "" }));
+  hub.on("maker_gone", ({ why }) => set({ workerGone: why, making: "" }));
+  hub.on("document", ({ complaints, path, text }) => {
+    set({ document: complaints.length ? "wrong" : path && text ? "fine" : "none", trouble: "" });
+  });
+  hub.on("making", () => set({ trouble: "" }));
+  hub.on("stage", ({ product, method, done }) => {
+    if (!done.outcome) set({ making: t(method ? "making" : "makingPlain", { product: productName(product), method }) });
+  });
+  hub.on("made", ({ outcome, why }) => set({ making: "", trouble: outcome === "failed" ? why : "" }));
+  hub.on("error", ({ text }) => set({ trouble: text }));
+  hub.on("shown", () => set({ seen: true }));
+  hub.on("touch", ({ law }) => set({ law, noForce: "", trouble: "" }));
+  hub.on("loop", ({ running, stopped, why, waiting }) => {
+    set({ noForce: running ? "" : stopped ? t("stopped") : t(waiting ? "waiting" : "ended", { why }) });
+  });
+  hub.on("holding", ({ holding, free }) => set({ hand: holding ? "ours" : free ? "free" : "elsewhere" }));
+  return facts;
+}

@@ -86,6 +86,7 @@ def _editor(photo: Path) -> "Generator[Page]":
     with served(config) as server, browser() as chromium:
         page = opened(chromium, server.url)
         felt(page)
+        page.locator("#tab-parts").click()
         page.locator("#parts-edit").click()
         until(page, "document.querySelector('#parts-list [role=option]')")
         yield page

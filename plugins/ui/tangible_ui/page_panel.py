@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 log = logging.getLogger(__name__)
 GROUP = "tangible.page"
@@ -14,7 +14,7 @@ GROUP = "tangible.page"
 
 @dataclass(frozen=True)
 class PagePanel:
-    """A panel of the page, the last of its right column, closed at first."""
+    """A panel of the page, the last of its task, closed at first."""
 
     module: Path
     """The panel's ES module; the page may fetch the files of its folder, and no others."""
@@ -23,6 +23,8 @@ class PagePanel:
     requests: Mapping[str, Callable[..., Any]] = field(default_factory=dict[str, Callable[..., Any]])
     """Functions that answer the panel's requests, with JSON data: called with the document's pipeline, and the
     request's arguments by name."""
+    task: Literal["picture", "parts", "feel", "hand-on", "advanced"] = "advanced"
+    """The task of the page that the panel serves; "advanced" puts it among the settings."""
 
 
 @cache

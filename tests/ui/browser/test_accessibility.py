@@ -11,6 +11,7 @@ from accessible_names import controls_of, faults_of
 from browser_tabs import SETTLED
 from needed import lacking
 from page_files import WEB
+from page_panels import bring, show_everything
 from waiting import until
 
 if TYPE_CHECKING:
@@ -58,7 +59,6 @@ SMALL = """
   .map((each) => [each.outerHTML.slice(0, 90), each.getBoundingClientRect()])
   .filter(([, box]) => box.height < 24 || box.width < 24).map(([html]) => html)
 """
-FILLED = "() => [...document.querySelectorAll('.panel > .inside')].every((each) => each.childElementCount)"
 LOOK = """(each) => {
   const { backgroundColor, outlineStyle, outlineWidth } = getComputedStyle(each);
   return [backgroundColor, outlineStyle, outlineWidth];
@@ -89,13 +89,6 @@ def show(open_page: Callable[..., Any], opened: Callable[..., str]) -> Show:
     return show
 
 
-def open_all(page: "Page") -> None:
-    page.evaluate("document.querySelectorAll('details').forEach((each) => (each.open = true))")
-    page.wait_for_function(FILLED)
-    page.evaluate("document.querySelectorAll('details').forEach((each) => (each.open = true))")  # what came meanwhile
-    page.evaluate(SETTLED)
-
-
 def focus(page: "Page") -> str:
     return page.evaluate("document.activeElement.id || document.activeElement.closest('[id]')?.id || ''")
 
@@ -113,7 +106,7 @@ class TestSeen:
             lacking("axe-core is not installed: npm ci in plugins/ui/web")
         page = show(locale=locale)
         assert page.evaluate("document.documentElement.lang") == locale[:2]
-        open_all(page)
+        show_everything(page)
         page.wait_for_function("() => document.querySelector('#materials datalist').childElementCount")
         assert_controls_have_names(page, 150)
         assert axe_finds(page, every_theme=locale == "en-GB") == []
@@ -123,7 +116,7 @@ class TestSeen:
         if not AXE.is_file():
             lacking("axe-core is not installed: npm ci in plugins/ui/web")
         page = show(locale="de-DE")
-        page.locator("#parts-edit").click()
+        bring(page, "parts").locator("#parts-edit").click()
         page.wait_for_selector("#parts-list [role=option]")
         page.keyboard.press("p")
         for _ in range(2):
@@ -131,7 +124,7 @@ class TestSeen:
         page.get_by_role("button", name="Annehmen").wait_for()
         page.locator("#parts-height-mm").fill("99")
         assert "von 0 bis" in page.locator("#parts-height-mm-complaint").inner_text()
-        open_all(page)
+        page.evaluate("document.querySelectorAll('#parts-editor details').forEach((each) => (each.open = true))")
         assert_controls_have_names(page, 20)
         assert axe_finds(page, every_theme=True) == []
         for name, (width, height) in SIZES.items():
@@ -152,14 +145,14 @@ class TestSeen:
             lacking("axe-core is not installed: npm ci in plugins/ui/web")
         page = show(locale="de-DE")
         wait_for_force(page)
-        open_all(page)
+        show_everything(page)
         page.get_by_label("3D-Druck (STL)").check()
         page.get_by_label("3D-Druck (3MF)").check()
         page.locator("#export-run").click()
         page.wait_for_selector("#export .outcome")
         page.locator("#legible-check").click()
         page.wait_for_selector("#legible .sentence")
-        open_all(page)
+        show_everything(page)
         assert page.locator("#legible .places button").count() > 0
         page.evaluate("document.querySelector('#left').scrollTo(0, 0)")  # a heading that sticks covers what is below it
         assert axe_finds(page, every_theme=True) == []
@@ -174,7 +167,7 @@ class TestSeen:
     def test_page_fits_every_size_from_a_phone_to_a_wall(self, show: Show):
         """The language is German, whose words are longer."""
         page = show(locale="de-DE")
-        open_all(page)
+        show_everything(page)
         for name, (width, height) in SIZES.items():
             page.set_viewport_size({"width": width, "height": height})
             page.evaluate(SETTLED)
@@ -206,7 +199,7 @@ class TestSeen:
         assert page.evaluate(ground) == light
 
         page.emulate_media(forced_colors="active")
-        open_all(page)
+        show_everything(page)
         button = page.locator("#sound-on")
         button.focus()
         background, outline, width = button.evaluate(LOOK)
@@ -271,18 +264,33 @@ class TestKeys:
         assert page.locator("#skip").is_visible()
         page.keyboard.press("Enter")
         assert focus(page) == "terrain"
-        for region in ("left", "right", "bottom", "head", "terrain"):
+        for region in ("left", "head", "terrain"):
             page.keyboard.press("F6")
             assert focus(page) == region
         page.keyboard.press("Shift+F6")
         assert focus(page) == "head"
-        page.keyboard.press("F6")
-        page.keyboard.press("F6")
+        page.locator("#advanced").press("Enter")
+        page.locator("#terrain").focus()
+        for region in ("left", "right", "bottom", "head", "terrain", "left"):
+            page.keyboard.press("F6")
+            assert focus(page) == region
         page.keyboard.press("Tab")
-        assert focus(page) == "open"
+        assert focus(page) == "tab-picture"
+        for key, task in (
+            ("ArrowRight", "parts"),
+            ("End", "hand-on"),
+            ("ArrowRight", "picture"),
+            ("ArrowLeft", "hand-on"),
+        ):
+            page.keyboard.press(key)
+            assert focus(page) == f"tab-{task}"
+            assert page.locator(f"#tab-{task}").get_attribute("aria-selected") == "true"
+            assert page.locator("[role=tabpanel]:visible").get_attribute("id") == f"task-{task}"
+        page.keyboard.press("Tab")
+        assert focus(page) == "legible"
         page.keyboard.press("ArrowDown")
-        assert focus(page) == "methods"
-        page.keyboard.press("Enter")
+        assert focus(page) == "description"
+        page.locator("#methods > summary").press("Enter")
         assert not page.evaluate("document.querySelector('#methods').open")
         page.locator("#split-left").focus()
         width = page.evaluate("document.querySelector('#left').offsetWidth")
@@ -292,19 +300,21 @@ class TestKeys:
         assert wider >= width + 40
         page.reload()
         page.wait_for_selector("#methods")
+        assert page.locator("#methods").is_visible(), "all settings are shown again"
         assert not page.evaluate("document.querySelector('#methods').open")
+        assert page.locator("#tab-hand-on").get_attribute("aria-selected") == "true"
         assert page.evaluate("document.querySelector('#left').offsetWidth") == wider
 
     def test_tab_key_reaches_every_control(self, show: Show):
         page = show()
-        open_all(page)
+        show_everything(page)
         page.evaluate("document.activeElement.blur()")
         reachable = page.evaluate(
             """(() => {
               const all = [...document.querySelectorAll("a, button, select, textarea, summary, input, [tabindex='0']")];
               const radios = new Set();
               return all.filter((each) => {
-                if (!each.checkVisibility() || each.disabled) return false;
+                if (!each.checkVisibility() || each.disabled || each.tabIndex < 0) return false;
                 if (each.type !== "radio") return true;
                 return !radios.has(each.name) && radios.add(each.name);
               }).length;
@@ -322,10 +332,10 @@ class TestKeys:
         page.locator("#left").focus()
         page.keyboard.press("d")
         assert page.evaluate(asked) == 1
-        page.locator("#log-panel input[type=search]").focus()
+        bring(page, "log-panel").locator("input[type=search]").focus()
         page.keyboard.type("ddd")
         assert page.evaluate(asked) == 1
-        open_all(page)
+        show_everything(page)
         page.get_by_label("Single letters are keys everywhere").uncheck()
         page.locator("#left").focus()
         page.keyboard.press("d")
@@ -339,7 +349,7 @@ class TestKeys:
     def test_page_works_without_local_storage(self, show: Show):
         page = show("Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden') } })")
         page.locator("#theme").select_option("dark")
-        page.locator("#methods > summary").click()
+        page.locator("#settings > summary").click()
         assert page.evaluate("document.querySelector('main').checkVisibility()")
 
 
@@ -378,7 +388,7 @@ class TestSaid:
 
     def test_speech_in_german_needs_a_german_voice(self, show: Show):
         page = show(SPY + VOICES, locale="de-DE")
-        open_all(page)
+        show_everything(page)
         page.wait_for_function("() => document.querySelector('#described').textContent.includes('Materialien: ')")
         page.keyboard.press("d")
         assert "Materialien: " in last(page)
@@ -400,7 +410,7 @@ class TestSaid:
         assert page.evaluate("spoken") == []
         page.locator("#language").click()
         page.wait_for_function("() => document.documentElement.lang === 'en'")
-        page.wait_for_selector("#open")
+        page.wait_for_selector("#open", state="attached")
         assert page.locator("#language").inner_text() == "Deutsch"
         assert page.locator("#open > summary").inner_text() == "Open"
         assert page.locator("#speech-on").get_attribute("aria-pressed") == "true", (
@@ -505,9 +515,9 @@ class TestTasks:
         page.wait_for_function("() => document.querySelector('#terrain').ariaLabel.includes('brick')")
         wait_for_force(page)
 
-        reach(page, "right", "#view input[name=look]:checked")
+        reach(page, "main", "#look")
         page.keyboard.press("ArrowDown")
-        assert page.evaluate("document.activeElement.checked"), "another look"
+        assert page.evaluate("document.activeElement.value") == "relief", "another look"
 
         reach(page, "main", "#terrain")
         for key in ("ArrowLeft", " "):
@@ -528,12 +538,13 @@ class TestTasks:
         enter(page, "head", "#again")
         wait_for_force(page)
 
-        enter(page, "left", "#yaml > summary")
-        reach(page, "left", "#yaml-path")
+        reach(page, "left", "#tab-picture")
+        page.keyboard.press("End")
+        reach(page, "left", "#save-path")
         page.keyboard.press("Control+a")
         page.keyboard.type(str(tmp_path / "mine.yaml"))
-        enter(page, "left", "#yaml button:text-is('Save')")
-        page.wait_for_function("() => document.querySelector('#yaml').textContent.includes('Saved: ')")
+        enter(page, "left", "#save button:text-is('Save')")
+        page.wait_for_function("() => document.querySelector('#save').textContent.includes('Saved: ')")
         assert "brick" in (tmp_path / "mine.yaml").read_text(encoding="utf-8")
 
         page.keyboard.press("F1")

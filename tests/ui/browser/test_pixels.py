@@ -17,6 +17,7 @@ from PIL import Image
 
 from browser_tabs import Chromium, tabs
 from lasting_server import LastingServer
+from page_panels import open_panel
 from waiting import until
 
 WIDTH_M, LENGTH_M, HIGH_M = 0.08, 0.06, 0.006
@@ -109,10 +110,8 @@ def shown(chromium: Chromium, lasting: LastingServer, tmp_path_factory: pytest.T
             page = open_page(f"{url}&measure", draws=True, viewport={"width": 1400, "height": 800})
             page.wait_for_function("() => window.page?.scene && figures.firstMs > 0")
             page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-            page.evaluate(
-                "() => { document.getElementById('data-cursor').open = false;"
-                "for (const id of ['ruler-panel', 'mapping-panel']) document.getElementById(id).open = true; }"
-            )
+            for panel in ("ruler-panel", "mapping-panel"):
+                open_panel(page, panel)
         yield Shown(page)
         with chromium.used():
             pages.close()

@@ -14,6 +14,7 @@ import trimesh
 
 from browser_tabs import OpenPage
 from lasting_server import LastingServer
+from page_panels import bring, open_panel
 from sessions import small_scene, striped_scene
 from tangible_core.errors import DeviceError
 from tangible_devices.pointer import PointerClient
@@ -55,13 +56,6 @@ def show(opened: Callable[..., str], open_page: OpenPage, tmp_path: Path) -> Cal
     return show
 
 
-def panel_of(page: "Page", panel: str) -> Any:
-    """A panel, opened by the keyboard; what comes then is there."""
-    page.locator(f"#{panel} > summary").press("Enter")
-    until(lambda: page.locator(f"#{panel} > .inside > *").count() > 0, panel)
-    return page.locator(f"#{panel}")
-
-
 def content_of(download: "Download") -> bytes:
     path = download.path()
     return Path(path).read_bytes()
@@ -74,7 +68,7 @@ def text_of(page: "Page") -> str:
 class TestExport:
     def test_export_of_a_solid_and_a_zip_works_by_the_keyboard(self, show: Callable[..., "Page"]) -> None:
         page = show()
-        panel = panel_of(page, "export")
+        panel = open_panel(page, "export")
         panel.get_by_label("3D print (STL)").press(" ")
         panel.get_by_label("3D print (3MF)").press(" ")
         panel.locator("summary", has_text="3D print (STL)").press("Enter")
@@ -102,7 +96,7 @@ class TestExport:
 
     def test_export_choices_are_written_to_the_file_and_read_from_it(self, show: Callable[..., "Page"]) -> None:
         page = show("export: [{use: stl, rim_m: 0.01}, 3mf]\n")
-        panel = panel_of(page, "export")
+        panel = open_panel(page, "export")
         until(lambda: panel.get_by_label("3D print (STL)").is_checked(), "what the file says")
         assert panel.get_by_label("3D print (3MF)").is_checked()
         assert not panel.get_by_label("Heights (PNG, TIFF)").is_checked()
@@ -121,7 +115,7 @@ class TestExport:
 
     def test_export_with_an_invalid_option_shows_the_reason(self, show: Callable[..., "Page"]) -> None:
         page = show()
-        panel = panel_of(page, "export")
+        panel = open_panel(page, "export")
         panel.get_by_role("button", name="Export", exact=True).press("Enter")
         until(lambda: "Choose at least one." in panel.inner_text(), "nothing chosen")
         panel.locator("summary", has_text="3D print (STL)").press("Enter")
@@ -135,7 +129,7 @@ class TestExport:
 
     def test_export_listed_twice_in_the_file_is_shown_twice(self, show: Callable[..., "Page"]) -> None:
         page = show("export: [stl, {use: stl, rim_m: 0.01}]\n")
-        panel = panel_of(page, "export")
+        panel = open_panel(page, "export")
         lines = panel.locator(".exporters > li")
         until(lambda: lines.get_by_label("3D print (STL)", exact=True).count() == 2, "both")
         count = lines.count()
@@ -148,7 +142,7 @@ class TestExport:
 class TestLegible:
     def test_legibility_fault_is_marked_announced_and_cured(self, show: Callable[..., "Page"]) -> None:
         page = show(scene=striped_scene)
-        panel = panel_of(page, "legible")
+        panel = open_panel(page, "legible")
         panel.get_by_label("Read on").select_option("swell")
         panel.get_by_role("button", name="Check now").press("Enter")
         until(lambda: panel.locator(".sentence.illegible").count() == 1, "judged")
@@ -180,7 +174,7 @@ class TestLegible:
 
     def test_legibility_is_judged_at_another_width(self, show: Callable[..., "Page"]) -> None:
         page = show()
-        panel = panel_of(page, "legible")
+        panel = open_panel(page, "legible")
         panel.get_by_label("Width, mm").fill("400")
         panel.get_by_label("Read on").select_option("print")
         panel.get_by_role("button", name="Check now").press("Enter")
@@ -193,7 +187,7 @@ class TestLegible:
 class TestDescription:
     def test_description_is_read_spoken_copied_and_saved(self, show: Callable[..., "Page"]) -> None:
         page = show("language: de\n", VOICES, permissions=["clipboard-read", "clipboard-write"])
-        panel = panel_of(page, "description")
+        panel = open_panel(page, "description")
         region = panel.get_by_role("region", name="Description")
         until(lambda: "Eine Fläche" in region.inner_text(), "in the language of the document")
         assert region.get_attribute("lang") == "de"
@@ -228,11 +222,11 @@ class TestBeacon:
         monkeypatch.setenv("TANGIBLE_RUNTIME_DIR", str(lasting.runtime))
         channel = f"guided-{os.getpid()}"
         page = show(f"parts: {{0: {{name: wall}}}}\ndevice: {{use: pointer, channel: {channel}}}\n")
-        panel = page.locator("#parts")
+        panel = bring(page, "parts")
         panel.get_by_text("choose one under “Devices”").wait_for()
         assert panel.get_by_role("button", name="guide me there").count() == 0
-        page.evaluate("document.querySelector('#devices').open = true")
-        page.locator("#use-document").press("Enter")
+        open_panel(page, "devices").locator("#use-document").press("Enter")
+        bring(page, "parts")
         guide = panel.get_by_role("button", name="wall: guide me there")
         until(guide.is_visible, "a device is felt")
 

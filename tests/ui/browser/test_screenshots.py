@@ -16,6 +16,7 @@ from PIL import Image
 from browser_tabs import SETTLED
 from drawn_parts import drawn
 from page_files import ROOT
+from page_panels import bring
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -51,7 +52,7 @@ def test_screenshot_of_the_page(open_page: Callable[..., Any], url: str, tmp_pat
     page = open_page(url, draws=True, **PICTURES[name])
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
     if name == "ui-dark":
-        page.locator("#view input[value=materials]").check()
+        page.locator("#look").select_option("materials")
     touch(page)
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     page.mouse.up()
@@ -65,10 +66,10 @@ def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_p
     page = open_page(url, draws=KEPT, viewport=size, color_scheme="light", reduced_motion="reduce")
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
     page.evaluate("document.querySelectorAll('details.panel').forEach((each) => (each.open = false))")
-    names = page.evaluate("[...document.querySelectorAll('#left > .panel, #right > .panel')].map(({ id }) => id)")
+    names = page.evaluate("[...document.querySelectorAll('#left .panel, #right > .panel')].map(({ id }) => id)")
     assert len(names) > 15
     for name in names:
-        panel = page.locator(f"#{name}")
+        panel = bring(page, name)
         panel.evaluate("(each) => (each.open = true)")
         prepare(page, name)
         box = panel.bounding_box()
@@ -96,7 +97,7 @@ def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: 
         opened(tmp_path / "astronaut.yaml"), draws=True, viewport={"width": 1180, "height": 720}, color_scheme="light"
     )
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
-    page.locator("#parts-edit").click()
+    bring(page, "parts").locator("#parts-edit").click()
     page.locator("#parts-list [role=option]", has_text="helmet").first.click()
     page.wait_for_timeout(500)
     keep(Image.open(io.BytesIO(page.screenshot())).convert("RGB"), tmp_path, "ui/parts-editor")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from browser_tabs import OpenPage
+from page_panels import open_panel
 from sessions import small_scene
 from waiting import until
 
@@ -27,10 +28,7 @@ def page(opened, open_page: OpenPage, tmp_path: Path) -> "Page":
 
 def press(page: "Page", panel: str, name: str) -> None:
     """Open a panel and press one of its buttons."""
-    heading = page.locator(f"#{panel} > summary")
-    if page.locator(f"#{panel}").get_attribute("open") is None:
-        heading.press("Enter")
-    page.locator(f"#{panel}").get_by_role("button", name=name, exact=True).first.press("Enter")
+    open_panel(page, panel).get_by_role("button", name=name, exact=True).first.press("Enter")
 
 
 def says(page: "Page", panel: str, text: str) -> None:
@@ -41,13 +39,13 @@ def test_depth_and_texture_are_run_separately(page: "Page") -> None:
     for name in ("Run depth", "Run texture"):
         press(page, "methods", name)
         until(lambda: page.locator("#status").get_attribute("data-state") in ("idle", "felt"))
-    until(lambda: page.locator("#view input[value=segments]").count() == 1)
+    until(lambda: page.locator("#look option[value=segments]").count() == 1)
     press(page, "methods", "Make and feel")
     until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
 
 
 def test_preflight_cure_corrects_the_document(page: "Page") -> None:
-    page.locator("#yaml > summary").press("Enter")
+    open_panel(page, "yaml")
     before = page.locator("#yaml-text").input_value()
     page.locator("#yaml-text").fill(
         before.replace("texture: {use: gabor, segments: 3}\n", "").replace("_m: 400}", "_m: 40000}")
@@ -91,7 +89,7 @@ def test_stroke_is_recorded_played_and_replayed_with_another_law(page: "Page") -
 
 
 def test_two_laws_are_compared_openly_and_blindly(page: "Page") -> None:
-    page.locator("#laws > summary").press("Enter")
+    open_panel(page, "laws")
     until(lambda: page.locator("#laws-other option").count() > 3)
     page.locator("#laws-options").fill("{stiffness_n_per_m: 200}")
     page.locator("#laws-other").press("p")
@@ -114,17 +112,17 @@ def test_two_laws_are_compared_openly_and_blindly(page: "Page") -> None:
 def test_enlarged_region_is_saved_and_opens_the_same(page: "Page", tmp_path: Path) -> None:
     page.locator("#terrain").focus()
     page.keyboard.press("z")
-    page.locator("#yaml > summary").press("Enter")
+    open_panel(page, "yaml")
     text = page.locator("#yaml-text")
     until(lambda: "region_m" in text.input_value())
     zoomed = text.input_value()
-    page.locator("#yaml-path").fill(str(tmp_path / "zoomed.yaml"))
-    press(page, "yaml", "Save")
+    open_panel(page, "save").locator("#save-path").fill(str(tmp_path / "zoomed.yaml"))
+    press(page, "save", "Save")
     until((tmp_path / "zoomed.yaml").is_file)
     page.locator("#terrain").focus()
     page.keyboard.press("Shift+Z")
     until(lambda: "region_m" not in text.input_value())
-    folder = page.locator("#open details", has_text="Folder of this computer")
+    folder = open_panel(page, "open").locator("details", has_text="Folder of this computer")
     folder.locator("summary").press("Enter")
     page.locator("#open-folder").fill(str(tmp_path))
     page.locator("#open-folder").press("Enter")

@@ -10,6 +10,7 @@ from matplotlib import colormaps
 from PIL import Image
 
 from page_files import built_page
+from page_panels import bring
 from page_server import KEY, PageServer
 from waiting import until
 
@@ -102,7 +103,7 @@ def test_layers_have_the_colours_of_their_values(url: str, open_page):
         "segments": (PALETTE["ground"], PALETTE["raised"]),
     }
     for look, colours in wanted.items():
-        page.check(f"#view input[value={look}]")
+        page.select_option("#look", look)
         wait_for_rest(page)
         picture = pixels(page)
         for place, colour in zip((BEHIND, BEFORE), colours, strict=True):
@@ -110,7 +111,7 @@ def test_layers_have_the_colours_of_their_values(url: str, open_page):
             assert np.abs(found - np.array(colour)).max() <= 6, (look, place, found)
     plain, lined = (around(page, picture, place, 15).std(0).max() for place in (BEHIND, BEFORE))
     assert lined > plain + 10
-    assert page.inner_text("#view .legend") == "part 1: wood\npart 2: cloth"
+    assert page.inner_text("#strip .legend") == "part 1: wood\npart 2: cloth"
 
 
 def test_steep_edge_is_shown_greyed_or_cut(url: str, open_page):
@@ -120,8 +121,9 @@ def test_steep_edge_is_shown_greyed_or_cut(url: str, open_page):
     from_above(page)
     edge = (0.0, 0.0)
     seen = {}
+    bring(page, "view")
     for steep in ("shown", "grey", "cut"):
-        page.check(f"#view input[value={steep}]")
+        page.locator(f"#view input[value={steep}]").check()
         wait_for_rest(page)
         picture = pixels(page)
         seen[steep] = np.median(around(page, picture, edge, 1), 0)
@@ -243,8 +245,8 @@ def test_page_without_webgl_says_so_and_works(url: str, open_page, complaints: l
     page = open_page(f"{url}&measure")
     page.wait_for_function("() => window.page?.scene")
     assert "no WebGL" in page.inner_text("#no-terrain")
-    page.check("#view input[value=height]")
-    assert "mm" in page.inner_text("#view .legend")
+    page.select_option("#look", "height")
+    assert "mm" in page.inner_text("#strip .legend")
     assert page.evaluate("() => window.page.scene.pick([0.016, 0, 1], [0, 0, -1])[2]") == pytest.approx(0.004, abs=1e-6)
     assert complaints == []
 

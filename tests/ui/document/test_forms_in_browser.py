@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from browser_tabs import OpenPage
 from page_files import built_page
+from page_panels import bring, open_panel
 from sessions import TEXT, small_scene
 from waiting import until
 
@@ -21,6 +22,8 @@ def test_option_typed_in_the_form_is_saved_to_the_file(serve, open_page: OpenPag
     until(lambda: page.locator("#status").get_attribute("data-state") == "felt")  # the loop too has started
     until(lambda: state(page, "touch") == "ran" and page.locator("#section-render").count() == 1)
 
+    for each in (page, other):
+        bring(each, "methods")
     page.locator("#section-render > summary").focus()
     page.keyboard.press("Enter")
     page.keyboard.press("Tab")  # the method
@@ -59,13 +62,13 @@ def test_option_typed_in_the_form_is_saved_to_the_file(serve, open_page: OpenPag
     until(lambda: state(page, "disparity") == state(page, "touch") == "ran")
     assert "contour" in page.locator('#stages [data-product="disparity"]').inner_text()
 
-    page.locator("#yaml > summary").focus()
-    page.keyboard.press("Enter")
-    page.locator("#yaml-path").fill("saved.yaml")
+    open_panel(page, "yaml")
+    save = bring(page, "save")
+    page.locator("#save-path").fill("saved.yaml")
     page.keyboard.press("Enter")
     expected = TEXT.replace("stiffness_n_per_m: 400", "stiffness_n_per_m: 0.5 N/mm").replace("luminance", "contour")
     until(lambda: page.locator("#yaml-text").input_value() == expected)
-    page.locator("#yaml button", has_text="Save").first.press("Enter")
+    save.get_by_role("button", name="Save").press("Enter")
     until(lambda: (tmp_path / "saved.yaml").is_file())
     assert (tmp_path / "saved.yaml").read_text() == expected
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from page_panels import open_panel
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.servo.ring import Ring, shared_folder
 from waiting import until
@@ -141,7 +142,7 @@ def test_keyboard_gives_force_and_the_stop_key_works_in_a_field(page: Any) -> No
     held = over(rows)  # a page that is held up for a tenth of a second lets go
     speeds = (np.diff(rows[:, X]) / np.diff(rows[:, 0]))[held[1:] & held[:-1]]
     assert np.abs(speeds).max() < 0.5  # it does not leap from one step of a key to the next
-    page.evaluate("document.getElementById('hand').open = true")
+    open_panel(page, "hand")
     page.locator("#press").focus()
     page.keyboard.press("Escape")
     until(lambda: not felt.path.exists())
@@ -152,7 +153,7 @@ def test_keyboard_gives_force_and_the_stop_key_works_in_a_field(page: Any) -> No
 
 def test_device_is_chosen_and_examined_and_a_motor_needs_consent(page: Any) -> None:
     felt = page.locator("#device-felt")
-    page.locator("#devices > summary").click()
+    open_panel(page, "devices")
     page.get_by_role("button", name="Examine mock").click()
     until(lambda: "needs nothing" in page.locator(".devices").text_content())
     page.get_by_role("button", name="Use mock").click()

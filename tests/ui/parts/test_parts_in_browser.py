@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from browser_tabs import OpenPage
+from page_panels import bring
 from tangible_core.parts import PartChoice, find_parts
 from tangible_core.pipeline.config.parsing import load_config
 from tangible_core.plugins.registry import default_registry
@@ -120,7 +121,7 @@ def test_parts_editor_makes_five_parts_by_mouse(opened: Callable[..., str], open
     wait_for_force(page)
     fetched: list[str] = []
     page.on("request", lambda request: fetched.append(request.url))
-    page.locator("#parts-edit").click()
+    bring(page, "parts").locator("#parts-edit").click()
     page.wait_for_selector("#parts-list [role=option]")
     assert any("editor-" in url for url in fetched), "the editor comes when it is opened"
     mouse, name = Mouse(page), page.locator("#parts-name")
@@ -219,6 +220,7 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     wait_for_force(page)
     keys = page.keyboard
     until(lambda: focus_on(page, "left"), "F6")
+    bring(page, "parts")
     enter(page, "#parts-edit")
     page.wait_for_selector("#parts-list [role=option]")
     until(lambda: focus_id(page) == "parts-list", "the list has the focus")
@@ -299,11 +301,12 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     until(lambda: page.locator("#parts-editor").count() == 0, "closed")
 
     until(lambda: focus_on(page, "left"), "F6")
-    enter(page, "#yaml > summary")
-    until(lambda: tab_to(page, "#yaml-path"), "Tab")
+    until(lambda: tab_to(page, "#tab-parts"), "the tasks")
+    press(page, "ArrowRight", "ArrowRight")
+    until(lambda: tab_to(page, "#save-path"), "Tab")
     press(page, "Control+a")
     keys.type(str(photo.parent / "kept.yaml"))
-    enter(page, "#yaml button:text-is('Save')")
+    enter(page, "#save button:text-is('Save')")
     until((photo.parent / "kept.yaml").is_file, "the file is kept")
     parts, labels = read_parts(photo.parent / "kept.yaml")
     assert {each.name for each in parts.values()} == {"wall", "ball", "table", "lamp", "door"}

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from page_files import ROOT, built_page
+from page_panels import bring
 from page_server import KEY, PageServer
 from sessions import SmallSession, small_scene
 from tangible_core.errors import ConfigError
@@ -41,7 +42,7 @@ def test_panel_of_a_plugin_is_opened_and_answered(installed: Path, serve, open_p
     path = f"{installed}{os.pathsep}{os.environ.get('PYTHONPATH', '')}"
     page = open_page(serve(small_scene(tmp_path), cwd=tmp_path, PYTHONPATH=path).url)
     until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
-    panel = page.locator("#plugin-acme")
+    panel = bring(page, "plugin-acme")
     assert panel.locator("summary").inner_text() == "Highest point"
     panel.locator("summary").press("Enter")
     panel.get_by_role("button", name="Measure").press("Enter")
@@ -100,7 +101,9 @@ def test_request_of_a_panel_gets_the_pipeline_and_an_unknown_one_is_refused(
             return await REQUESTS[name](small.session, small.tab, **arguments)
 
         await ask("begin", files=[str(small_scene(tmp_path))], make_it=False)
-        assert await ask("panels") == [{"name": "glove", "title": {"en": "Glove"}, "module": "/panels/glove/glove.js"}]
+        assert await ask("panels") == [
+            {"name": "glove", "title": {"en": "Glove"}, "module": "/panels/glove/glove.js", "task": "advanced"}
+        ]
         assert await ask("ask_panel", panel="glove", request="width", arguments={"by": 2}) == pytest.approx(0.12)
         with pytest.raises(ConfigError, match=r"'glvoe' is not a panel of a plugin .did you mean 'glove'"):
             await ask("ask_panel", panel="glvoe", request="width")

@@ -2,12 +2,15 @@
 import "./style/tokens.css";
 import "./style/ground.css";
 import "./style/frame.css";
+import "./style/surface.css";
+import "./style/tasks.css";
 import "./style/wide.css";
 import "./style/panels.css";
 import "./style/controls.css";
 import "./style/preferences.css";
 import { Announcer, liveRegions } from "./speech/announcer";
 import { buildRegions } from "./frame/regions";
+import { buildTasks } from "./frame/tasks";
 import { Frames } from "./view/frames";
 import { attachFingers } from "./hand/fingers";
 import { attachGamePad } from "./hand/game_pad";
@@ -101,6 +104,7 @@ hub.on("scene", async (meta) => {
   }
 });
 
+buildTasks();
 buildRegions(page);
 buildSplitters();
 listen(canvas);

@@ -5,7 +5,7 @@ import type * as Plugins from "../src/panels/plugins";
 import type { Panel } from "../src/panels/panel";
 import type { PluginPanel } from "../src/server/messages";
 
-const GLOVE: PluginPanel = { name: "glove", title: { en: "Glove", de: "Handschuh" }, module: "/panels/glove/module.js" };
+const GLOVE: PluginPanel = { name: "glove", title: { en: "Glove", de: "Handschuh" }, module: "/panels/glove/module.js", task: "advanced" };
 
 /** A page of a hub and a server that answers with what was asked. */
 function fake() {
@@ -18,7 +18,7 @@ function fake() {
 /** The elements that a panel touches, as far as it touches them. */
 function panelElement(open: boolean) {
   const listeners: (() => void)[] = [];
-  const box = { open, addEventListener: (_: string, listener: () => void) => listeners.push(listener) };
+  const box = { open, checkVisibility: () => true, addEventListener: (_: string, listener: () => void) => listeners.push(listener) };
   const root = { textContent: "", closest: () => box, replaceChildren: () => undefined };
   return { root: root as never as HTMLElement, toggle: (on: boolean) => ((box.open = on), listeners.forEach((each) => each())) };
 }

@@ -25,9 +25,10 @@ from .table import job
 @job(quick=True)
 def check(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
     """Return what a pipeline file says, alone and with every default filled in, or its errors."""
-    values, complaints = None, list[Complaint]()
+    values, relief_from, complaints = None, None, list[Complaint]()
     try:
-        values = state.config_of(text, path, sets).as_data()
+        config = state.config_of(text, path, sets)
+        values, relief_from = config.as_data(), config.relief_kind
     except ConfigError as error:
         complaints = list(error.complaints)
     return {
@@ -36,6 +37,7 @@ def check(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[st
         "digest": digest_of(text),
         "said": _parse(text, path),
         "values": values,
+        "relief_from": relief_from,
         "complaints": [each._asdict() for each in complaints],
     }
 

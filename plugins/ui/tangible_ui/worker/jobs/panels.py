@@ -12,9 +12,9 @@ from .table import job
 
 @job(quick=True)
 def panels(state: WorkerState) -> list[dict[str, Any]]:
-    """List the installed panels: name, titles by language, path of the ES module."""
+    """List the installed panels: name, titles by language, path of the ES module, task."""
     return [
-        {"name": name, "title": dict(panel.title), "module": str(panel.module.resolve())}
+        {"name": name, "title": dict(panel.title), "module": str(panel.module.resolve()), "task": panel.task}
         for name, panel in installed_panels().items()
     ]
 

@@ -1,8 +1,8 @@
-/** The data cursor at the lower right of the surface: values at the device, the contact and the mouse. */
+/** The data cursor below the surface: force, material and height; on demand all values at device, contact and mouse. */
 import "./data_cursor.css";
 import { button } from "../elements";
 import { place, type SurfacePlace } from "./reading";
-import { asJson, asText, rows, type Row } from "./values";
+import { asJson, asText, rows, shortRows, type Row } from "./values";
 import type { Page } from "../page";
 import { on } from "../shortcuts";
 import { t } from "../overlay/words";
@@ -11,27 +11,30 @@ type Parts = Pick<Page, "view" | "overlay" | "canvas" | "scene" | "say">;
 
 /** Interval of updates, ms, which can be read. */
 const EVERY_MS = 100;
-/** Height of the canvas from which the data cursor is open at first. */
-const ROOMY_PX = 540;
 
 export function dataCursor(page: Parts): void {
   const box = document.createElement("details");
   box.id = "data-cursor";
-  box.open = innerWidth >= 768 && page.canvas.clientHeight >= ROOMY_PX; // otherwise it would cover the surface
   const heading = document.createElement("summary");
-  heading.textContent = t("cursor");
-  const table = document.createElement("table");
-  table.createTBody();
+  heading.textContent = t("allValues");
+  const [short, table] = [document.createElement("table"), document.createElement("table")];
+  for (const each of [short, table]) each.createTBody();
+  short.className = "short";
+  short.setAttribute("aria-label", t("cursor"));
+  const all = Object.assign(document.createElement("div"), { className: "all" });
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   buttons.append(button(t("copyText"), () => copy(false)), button(t("copyJson"), () => copy(true)));
-  box.append(heading, table, buttons);
-  page.canvas.parentElement!.append(box);
+  all.append(table, buttons);
+  box.append(heading, all);
+  document.getElementById("strip")!.append(short, box);
   const under = follow(page);
   setInterval(() => {
     if (document.hidden) return;
-    if (box.open) fill(table, rows(page.overlay.live, under()));
-    box.classList.toggle("under", covers(box, page));
+    fill(short, shortRows(page.overlay.live, under()));
+    if (!box.open) return;
+    fill(table, rows(page.overlay.live, under()));
+    box.classList.toggle("under", covers(all, page));
   }, EVERY_MS);
   on("copy values", () => void copy(false));
   on("copy values as JSON", () => void copy(true));
@@ -47,11 +50,12 @@ export function dataCursor(page: Parts): void {
   }
 }
 
-/** Return whether the data cursor covers the contact. */
+/** Return whether the values cover the contact. */
 function covers(box: HTMLElement, { overlay, view, canvas }: Parts): boolean {
   if (!overlay.live?.seen) return false;
   const [x, y] = view.toScreen(overlay.live.contact);
-  return x > box.offsetLeft - canvas.offsetLeft && y > box.offsetTop - canvas.offsetTop;
+  const [own, whole] = [box.getBoundingClientRect(), canvas.getBoundingClientRect()];
+  return x > own.left - whole.left && y > own.top - whole.top;
 }
 
 /** Return a function that looks up the surface under the mouse. */
@@ -80,7 +84,7 @@ function fill(table: HTMLTableElement, wanted: Row[]): void {
       const heading = document.createElement("th");
       heading.scope = "row";
       row.replaceChildren(heading, ...values.map(() => document.createElement("td")));
-      if (values.length === 1) row.cells[1].colSpan = 3;
+      if (values.length === 1 && table.className !== "short") row.cells[1].colSpan = 3;
     }
     for (const [j, text] of [name, ...values].entries()) if (row.cells[j].textContent !== text) row.cells[j].textContent = text;
   }

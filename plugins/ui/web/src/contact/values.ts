@@ -40,6 +40,17 @@ export function rows(live: Reading | null, pointer: SurfacePlace | null): Row[] 
   return table;
 }
 
+/** Return force, material and height: what a person asks first. */
+export function shortRows(live: Reading | null, pointer: SurfacePlace | null): Row[] {
+  const held = live?.seen ? live : null;
+  const at = held ?? pointer;
+  return [
+    [t("row_force"), held ? `${formatFixed(held.newtons, 2)} N` : NONE],
+    [t("row_material"), at?.material?.name ?? NONE],
+    [t("row_height"), `${formatFixed(MM * (held?.surfaceM ?? pointer?.at[2] ?? NaN), 1)} mm`],
+  ];
+}
+
 function materialName(at: Pick<Reading, "material" | "part" | "name"> | null): string {
   if (!at || at.part === null) return NONE;
   if (at.name) return at.material ? `${at.name}, ${at.material.name}` : at.name;

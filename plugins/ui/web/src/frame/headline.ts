@@ -35,7 +35,7 @@ export const FIRST: Facts = {
   connection: "starting", workerGone: "", document: "none", making: "", trouble: "", seen: false, law: "", noForce: "", hand: "ours",
 };
 
-/** Return the sentence: the first that applies of no connection, no force, a fault, work, the hand, what is felt. */
+/** Return the sentence: the first that applies of connection, force, fault, work, hand and touch. */
 export function headline(facts: Facts): Headline {
   const { connection, workerGone, document, making, trouble, seen, law, noForce, hand } = facts;
   if (connection === "key") return { what: "error", text: t("wrongKey") };

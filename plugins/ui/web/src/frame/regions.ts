@@ -16,8 +16,9 @@ const visibleRegions = (): Region[] => regions.filter((each) => document.getElem
 
 export function buildRegions(page: Pick<Page, "hub" | "themes">): void {
   const { themes } = page;
-  for (const region of visibleRegions()) element(region).setAttribute("aria-label", t(region));
+  for (const region of regions) document.getElementById(region)?.setAttribute("aria-label", t(region));
   skipLinks();
+  new ResizeObserver(([head]) => keepHeight(head!.target as HTMLElement)).observe(element("head"));
   on("next region", () => focusRegion(1));
   on("previous region", () => focusRegion(-1));
   chooseTheme(themes);
@@ -26,10 +27,15 @@ export function buildRegions(page: Pick<Page, "hub" | "themes">): void {
   page.hub.on("shown", ({ meta }) => (document.title = `${meta.name} – ${t("title")}`));
 }
 
+/** Keep the height of the head as a token: below it the surface sticks. */
+function keepHeight(head: HTMLElement): void {
+  document.documentElement.style.setProperty("--head", `${head.offsetHeight}px`);
+}
+
 function skipLinks(): void {
   const skip = element("skip");
   skip.setAttribute("aria-label", t("jump"));
-  for (const region of regions.slice(0, 4)) {
+  for (const region of ["main", "left"] as const) {
     const link = document.createElement("a");
     link.href = `#${REGIONS[region]}`;
     link.textContent = t(region);

@@ -96,6 +96,8 @@ export const t = words({
   whole: ["Whole picture (Shift+Z)", "Ganzes Bild (Umschalt+Z)"],
 
   cursor: ["Data cursor", "Messwerte am Cursor"],
+  allValues: ["All values", "Alle Werte"],
+  row_height: ["Height", "Höhe"],
   row_device: ["Device", "Gerät"],
   row_proxy: ["Proxy", "Stellvertreter"],
   row_contact: ["Contact", "Kontakt"],

@@ -15,7 +15,9 @@ import { parts } from "./parts/panel";
 import { preflight } from "./preflight/panel";
 import { recordings } from "./recordings/panel";
 import { ruler } from "./ruler/panel";
+import { save } from "./save/panel";
 import { settings } from "./settings/panel";
+import { signs } from "./signs/panel";
 import { sound } from "./sound/panel";
 import { stages } from "./stages/panel";
 import { view } from "./view/panel";
@@ -25,16 +27,19 @@ import "./description/description.css";
 import "./export/export.css";
 import "./legibility/legibility.css";
 
-/** Left: the pipeline. */
-const LEFT: Panel[] = [
-  open, methods, stages, parts, materials, preflight,
-  lazy({ id: "legible", title: t("legible"), place: "left", open: false }, () => import("./legibility/panel")),
-  lazy({ id: "description", title: t("description"), place: "left", open: false }, () => import("./description/panel")),
-  lazy({ id: "export", title: t("export"), place: "left", open: false }, () => import("./export/panel")),
-  yaml,
+/** The tasks, in which what is needed first stands first. */
+const PICTURE: Panel[] = [open];
+const PARTS: Panel[] = [parts, materials];
+const FEEL: Panel[] = [hand, sound, devices, laws, recordings, signs];
+const HAND_ON: Panel[] = [
+  lazy({ id: "legible", title: t("legible"), task: "hand-on", open: false }, () => import("./legibility/panel")),
+  lazy({ id: "description", title: t("description"), task: "hand-on", open: false }, () => import("./description/panel")),
+  lazy({ id: "export", title: t("export"), task: "hand-on", open: true }, () => import("./export/panel")),
+  save,
 ];
-/** Right: view, sound and touch; settings and help last. */
-const RIGHT: Panel[] = [view, overlay, ruler, mapping, hand, devices, sound, laws, recordings, settings, help];
-const BOTTOM: Panel[] = [log];
+/** All settings. */
+const ADVANCED: Panel[] = [methods, stages, preflight, view, overlay, ruler, mapping, yaml];
+/** Below the panels of every task. */
+const ANY: Panel[] = [settings, help];
 
-export const panels: Panel[] = [...LEFT, ...RIGHT, ...BOTTOM];
+export const panels: Panel[] = [...PICTURE, ...PARTS, ...FEEL, ...HAND_ON, ...ADVANCED, ...ANY, log];

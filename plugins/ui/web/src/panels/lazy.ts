@@ -1,9 +1,10 @@
-/** A panel whose module is loaded when it is first opened, so that the page starts sooner. */
+/** A panel whose module is loaded when it is first seen open, so that the page starts sooner. */
+import { onChange } from "../frame/tasks";
 import type { Page } from "../page";
 import type { Panel } from "./panel";
 import { t } from "./words";
 
-/** Return a panel that builds itself from a module when it is first opened.
+/** Return a panel that builds itself from a module when it is first seen open.
  *
  * If loading or building fails, the panel shows why and tries again when it is opened the next time. */
 export function lazy(about: Omit<Panel, "build">, load: () => Promise<Pick<Panel, "build">>): Panel {
@@ -13,7 +14,7 @@ export function lazy(about: Omit<Panel, "build">, load: () => Promise<Pick<Panel
     const box = root.closest("details")!;
     let started = false;
     const fill = async (): Promise<void> => {
-      if (started || !box.open) return;
+      if (started || !box.open || !box.checkVisibility()) return;
       started = true;
       try {
         const panel = await load();
@@ -25,6 +26,7 @@ export function lazy(about: Omit<Panel, "build">, load: () => Promise<Pick<Panel
       }
     };
     box.addEventListener("toggle", () => void fill());
+    onChange(() => void fill());
     void fill();
   }
 }

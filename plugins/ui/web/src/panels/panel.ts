@@ -1,13 +1,14 @@
 /** A panel of the page: an independent section under a heading. */
 import type { Page } from "../page";
+import { bring, holder, type Place } from "../frame/tasks";
 import { recall, remember } from "../preferences";
 import { t } from "./words";
 
 export interface Panel {
   id: string;
   title: string;
-  /** Column: left the pipeline, right view, sound and touch, bottom the log. */
-  place: "left" | "right" | "bottom";
+  /** The task that it serves: "picture", "parts", "feel" or "hand-on"; "advanced" for settings; "any" below every task. */
+  task: Place;
   /** True if it is open at first. */
   open: boolean;
   /** Build the contents, once, open or not. Headings in `root` are <h3>; classes for controls are listed in style/tokens.css. */
@@ -21,7 +22,7 @@ const WAYS: Record<string, (all: HTMLElement[], at: number) => HTMLElement | und
   End: (all) => all.at(-1),
 };
 
-/** Add panels to their columns, each under a heading that opens and closes it. A panel that fails leaves the others. */
+/** Add panels to their tasks, each under a heading that opens and closes it. A panel that fails leaves the others. */
 export function build(page: Page, panels: Panel[]): void {
   for (const panel of panels) {
     const root = place(panel);
@@ -35,9 +36,10 @@ export function build(page: Page, panels: Panel[]): void {
   }
 }
 
-/** Open a panel and focus its heading. */
+/** Bring a panel to the screen, open it and focus its heading. */
 export function reveal(id: string): void {
   const box = document.getElementById(id) as HTMLDetailsElement;
+  bring(box);
   box.open = true;
   box.querySelector("summary")!.focus();
   box.scrollIntoView({ block: "nearest" });
@@ -58,16 +60,16 @@ function place(panel: Panel): HTMLElement {
   const root = document.createElement("div");
   root.className = "inside";
   box.append(heading, root);
-  document.getElementById(panel.place)!.append(box);
+  holder(panel.task).append(box);
   return root;
 }
 
-/** Move the focus between headings of a region by arrow keys. */
+/** Move the focus between the headings of a region that are shown, by arrow keys. */
 function walk(event: KeyboardEvent): void {
   const way = WAYS[event.key];
   if (!way) return;
   const here = event.currentTarget as HTMLElement;
-  const all = [...here.closest(".region")!.querySelectorAll<HTMLElement>(".panel > summary")];
+  const all = [...here.closest(".region")!.querySelectorAll<HTMLElement>(".panel > summary")].filter((each) => each.checkVisibility());
   way(all, all.indexOf(here))?.focus();
   event.preventDefault();
 }

@@ -28,9 +28,9 @@ export interface PanelInterface {
 type Build = (panel: PanelInterface) => void | Promise<void>;
 type Load = (address: string) => Promise<{ default?: unknown }>;
 
-/** Return the panel of a plugin: the last of the right column, closed at first. */
-export function pluginPanel({ name, title, module }: PluginPanel, load: Load = (address) => import(address)): Panel {
-  const about = { id: `plugin-${name}`, title: title[language] ?? title.en ?? name, place: "right", open: false } as const;
+/** Return the panel of a plugin: the last of its task, closed at first. */
+export function pluginPanel({ name, title, module, task }: PluginPanel, load: Load = (address) => import(address)): Panel {
+  const about = { id: `plugin-${name}`, title: title[language] ?? title.en ?? name, task, open: false } as const;
   return lazy(about, async () => {
     const { default: build } = await load(address(module));
     if (typeof build !== "function") throw new Error(`${module} has no function as its default export`);

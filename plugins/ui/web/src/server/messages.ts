@@ -1,5 +1,6 @@
 /** Messages of the server by name; `at_s` is the Unix time. */
 import type { Plain } from "../forms/schema";
+import type { Task } from "../frame/tasks";
 
 export interface Material {
   name: string;
@@ -159,16 +160,19 @@ export interface Document {
   said: Values | null;
   /** Values with all defaults filled in; null if something is wrong. */
   values: Values | null;
+  /** What the relief is made of; null if something is wrong. */
+  relief_from: "photograph" | "depth" | "heights" | "edges" | "parts" | null;
   complaints: Complaint[];
   can_undo: boolean;
   can_redo: boolean;
 }
 
-/** A panel that a plugin brings: its titles by language, and the address of its ES module. */
+/** A panel that a plugin brings: its titles by language, the address of its ES module, and the task that it serves. */
 export interface PluginPanel {
   name: string;
   title: Record<string, string>;
   module: string;
+  task: Task | "advanced";
 }
 
 interface Said {

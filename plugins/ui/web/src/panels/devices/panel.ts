@@ -77,4 +77,4 @@ function row(...buttons: HTMLElement[]): HTMLElement {
   return results;
 }
 
-export const devices: Panel = { id: "devices", title: t("title"), place: "right", open: false, build };
+export const devices: Panel = { id: "devices", title: t("title"), task: "feel", open: false, build };

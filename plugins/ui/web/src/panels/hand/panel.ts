@@ -74,4 +74,4 @@ function slider(): HTMLInputElement {
   });
 }
 
-export const hand: Panel = { id: "hand", title: t("title"), place: "right", open: false, build };
+export const hand: Panel = { id: "hand", title: t("title"), task: "feel", open: true, build };

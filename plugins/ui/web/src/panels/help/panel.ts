@@ -37,4 +37,4 @@ function table(): HTMLTableElement {
   return tableElement;
 }
 
-export const help: Panel = { id: "help", title: t("title"), place: "right", open: false, build };
+export const help: Panel = { id: "help", title: t("title"), task: "any", open: false, build };

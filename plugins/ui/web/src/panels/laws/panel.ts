@@ -125,4 +125,4 @@ function input(id: string): HTMLInputElement {
   return control;
 }
 
-export const laws: Panel = { id: "laws", title: t("title"), place: "right", open: false, build };
+export const laws: Panel = { id: "laws", title: t("title"), task: "feel", open: false, build };

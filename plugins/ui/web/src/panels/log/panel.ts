@@ -199,7 +199,7 @@ function check(text: string, on: boolean, change: (on: boolean) => void): HTMLEl
 export const log: Panel = {
   id: "log-panel",
   title: t("title"),
-  place: "bottom",
+  task: "log",
   open: true,
   build: (page, root) => void new Log(page, root),
 };

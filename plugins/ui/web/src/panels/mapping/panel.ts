@@ -38,4 +38,4 @@ function words(frame: MappingFrame): string {
     : t("reachesAll", { width, length });
 }
 
-export const mapping: Panel = { id: "mapping-panel", title: t("mapping"), place: "right", open: false, build };
+export const mapping: Panel = { id: "mapping-panel", title: t("mapping"), task: "advanced", open: false, build };

@@ -124,4 +124,4 @@ function round(value: number): number {
   return Number(value.toPrecision(3));
 }
 
-export const materials: Panel = { id: "materials", title: t("title"), place: "left", open: false, build };
+export const materials: Panel = { id: "materials", title: t("title"), task: "parts", open: false, build };

@@ -68,4 +68,4 @@ function steps(page: Page, editor: DocumentEditor): HTMLElement {
   return box;
 }
 
-export const methods: Panel = { id: "methods", title: t("title"), place: "left", open: true, build };
+export const methods: Panel = { id: "methods", title: t("title"), task: "advanced", open: true, build };

@@ -103,4 +103,4 @@ function foldable(title: string, inside: HTMLElement): HTMLElement {
   return box;
 }
 
-export const open: Panel = { id: "open", title: t("title"), place: "left", open: true, build };
+export const open: Panel = { id: "open", title: t("title"), task: "picture", open: true, build };

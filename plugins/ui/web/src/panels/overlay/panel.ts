@@ -1,6 +1,5 @@
 /** Settings of the overlay, and what limits the force. */
 import "./overlay.css";
-import { GLYPHS } from "../../overlay/pieces/contact_label";
 import { LIMITS, perSecond, type Counts } from "../../contact/limits";
 import { MM_PER_N, SECONDS, SWITCHES } from "../../overlay/settings";
 import type { Page } from "../../page";
@@ -39,7 +38,7 @@ function build(page: Page, root: HTMLElement): void {
   page.hub.on("shown", () => {
     scale.querySelector("input")!.value = `${Number((1000 * overlay.settings.metresPerNewton).toPrecision(3))}`;
   });
-  root.append(box, seconds, scale, grips(), limits(page, root));
+  root.append(box, seconds, scale, limits(page));
 }
 
 /** Return a number field; values outside of the bounds are not taken. */
@@ -58,26 +57,8 @@ function number(text: string, least: number, most: number, step: number, first: 
   return label;
 }
 
-/** Return a legend of the words and symbols next to the cursor. */
-function grips(): HTMLElement {
-  const box = document.createElement("section");
-  const heading = document.createElement("h3");
-  heading.textContent = t("gripTitle");
-  const list = document.createElement("ul");
-  list.className = "limits-list grips";
-  for (const each of ["rests", "sticks", "slips", "glides"] as const) {
-    const [line, name, says] = [document.createElement("li"), document.createElement("strong"), document.createElement("span")];
-    name.textContent = `${GLYPHS[each]} ${t(each)}`;
-    says.textContent = t(`${each}Help`);
-    line.append(name, says);
-    list.append(line);
-  }
-  box.append(heading, list);
-  return box;
-}
-
-/** Return a list of how often each limit acted in the last second, polled while the panel is open. */
-function limits(page: Page, root: HTMLElement): HTMLElement {
+/** Return a list of how often each limit acted in the last second, polled while it is seen. */
+function limits(page: Page): HTMLElement {
   const box = document.createElement("section");
   const heading = document.createElement("h3");
   heading.textContent = `${t("limitsTitle")}: ${t("perSecond")}`;
@@ -97,7 +78,7 @@ function limits(page: Page, root: HTMLElement): HTMLElement {
   box.append(heading, list);
   let before: { counts: Counts; atMs: number } | null = null;
   setInterval(async () => {
-    if (document.hidden || !root.closest("details")?.open) return void (before = null);
+    if (document.hidden || !list.checkVisibility()) return void (before = null);
     const answer = await page.net.ask<Counts | null>("limits").catch(() => null);
     const now = answer && { counts: answer, atMs: performance.now() };
     const rates = now && before && perSecond(before.counts, now.counts, (now.atMs - before.atMs) / 1000);
@@ -111,4 +92,4 @@ function limits(page: Page, root: HTMLElement): HTMLElement {
   return box;
 }
 
-export const overlay: Panel = { id: "overlay-panel", title: t("title"), place: "right", open: false, build };
+export const overlay: Panel = { id: "overlay-panel", title: t("title"), task: "advanced", open: false, build };

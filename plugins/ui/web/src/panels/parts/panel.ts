@@ -28,4 +28,4 @@ function build(page: Page, root: HTMLElement): void {
   root.append(hint(t("about")), edit, status, namedParts(page));
 }
 
-export const parts: Panel = { id: "parts", title: t("title"), place: "left", open: true, build };
+export const parts: Panel = { id: "parts", title: t("title"), task: "parts", open: true, build };

@@ -68,4 +68,4 @@ function fixedInWords(fixed: Fixed): string {
   return fixed.safe ? changed : `${changed} ${t("notFixed", { sentence: fixed.sentence })}`;
 }
 
-export const preflight: Panel = { id: "preflight", title: t("title"), place: "left", open: false, build };
+export const preflight: Panel = { id: "preflight", title: t("title"), task: "advanced", open: false, build };

@@ -170,4 +170,4 @@ function playback(page: Page): { box: HTMLElement; load: (ticks: Ticks, name: st
   };
 }
 
-export const recordings: Panel = { id: "records", title: t("title"), place: "right", open: false, build };
+export const recordings: Panel = { id: "records", title: t("title"), task: "feel", open: false, build };

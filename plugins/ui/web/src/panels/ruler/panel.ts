@@ -74,4 +74,4 @@ function markers(page: Page): HTMLElement {
   return box;
 }
 
-export const ruler: Panel = { id: "ruler-panel", title: t("ruler"), place: "right", open: false, build };
+export const ruler: Panel = { id: "ruler-panel", title: t("ruler"), task: "advanced", open: false, build };

@@ -89,4 +89,4 @@ function labelAround(text: string, control: HTMLElement): HTMLElement {
   return label;
 }
 
-export const settings: Panel = { id: "settings", title: t("title"), place: "right", open: false, build };
+export const settings: Panel = { id: "settings", title: t("title"), task: "any", open: false, build };

@@ -115,4 +115,4 @@ function labelAround(text: string, control: HTMLElement): HTMLElement {
   return label;
 }
 
-export const sound: Panel = { id: "sound", title: t("title"), place: "right", open: false, build };
+export const sound: Panel = { id: "sound", title: t("title"), task: "feel", open: false, build };

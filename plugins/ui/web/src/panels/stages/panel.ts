@@ -132,4 +132,4 @@ function text(value: string): HTMLElement {
   return status;
 }
 
-export const stages: Panel = { id: "stages", title: t("title"), place: "left", open: true, build };
+export const stages: Panel = { id: "stages", title: t("title"), task: "advanced", open: true, build };

@@ -1,16 +1,16 @@
-/** Settings of the view: colouring, light, magnifier and camera. */
+/** Settings of the view: light, steep walls, magnifier and camera. The strip below the surface has what it shows. */
 import "./view.css";
 import { slider } from "../../elements";
 import { CAMERA_KEYS } from "../../view/camera_input";
 import { Magnifier } from "../../view/magnifier";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
-import { legend } from "../../terrain/legend";
 import { COARSEST, DENSITIES } from "../../terrain/needles";
 import { Refiner } from "../../surface/refinement";
 import { STEEPS } from "../../terrain/shader";
 import { BOUNDS, type Settings } from "../../view/settings";
 import { looksOf, Look } from "../../view/look";
+import { lookChoice } from "../../view/look_choice";
 import { colour } from "../../frame/themes";
 import { t } from "../../view/words";
 
@@ -26,36 +26,15 @@ function build(page: Page, root: HTMLElement): void {
     lens.change();
   };
   const controls = controlsOf(showing.settings, set);
-  root.append(looks(page, showing, set, controls.control), ...controls.boxes, camera(page));
+  const cover = controls.control("cover", "cover", 0.05, percent);
+  lookChoice(page, showing, (look) => set({ look }));
+  page.hub.on("look", ({ look }) => (cover.hidden = look === "photo" || !page.scene?.meta.photo));
+  root.append(cover, ...controls.boxes, camera(page));
   page.hub.on("shown", () => showing.begin());
   page.hub.on("look at", ({ look }) => page.scene && looksOf(page.scene.meta).includes(look) && set({ look }));
   const grounded = (): void => void (page.view.ground = colour("--ground"));
   page.hub.on("theme", grounded);
   grounded();
-}
-
-/** Return the choice of colouring, with its legend. */
-function looks(page: Page, showing: Look, set: (changes: Partial<Settings>) => void, control: Slider): HTMLElement {
-  const box = fieldset("shows");
-  const choices = document.createElement("div");
-  const meaning = document.createElement("div");
-  const cover = control("cover", "cover", 0.05, percent);
-  box.append(choices, meaning, cover);
-  box.hidden = true;
-  showing.onChange = () => {
-    const { scene } = page;
-    if (!scene) return;
-    box.hidden = false;
-    const there = looksOf(scene.meta);
-    const stands = [...choices.querySelectorAll("input")].map(({ value }) => value);
-    if (stands.join() !== there.join())
-      choices.replaceChildren(...there.map((look) => radio("look", look, look as Word, () => set({ look }))));
-    for (const input of choices.querySelectorAll("input")) input.checked = input.value === showing.look;
-    const element = legend(scene, showing.look);
-    meaning.replaceChildren(...(element ? [element] : []));
-    cover.hidden = showing.look === "photo" || !scene.meta.photo;
-  };
-  return box;
 }
 
 type Slider = (name: keyof Settings, word: Word, step: number, say: (value: number) => string) => HTMLElement;
@@ -184,4 +163,4 @@ function radio(name: string, value: string, word: Word, chosen: () => void, chec
   return label;
 }
 
-export const view: Panel = { id: "view", title: t("title"), place: "right", open: true, build };
+export const view: Panel = { id: "view", title: t("title"), task: "advanced", open: true, build };

@@ -1,6 +1,6 @@
-/** The pipeline file as text: to read, edit, copy, download and save. */
+/** The pipeline file as text: to read, edit and copy. */
 import { button, field } from "../../elements";
-import { copy, download } from "../../files";
+import { copy } from "../../files";
 import { DocumentEditor } from "../../forms/editor";
 import type { Complaint } from "../../server/messages";
 import type { Page } from "../../page";
@@ -43,24 +43,8 @@ function build(page: Page, root: HTMLElement): void {
   page.hub.on("document", (message) => {
     if (!timer && text.value !== message.text) replace(text, message.text);
     if (!timer) state.replaceChildren(...complaints(message.complaints));
-    path.value ||= message.path;
-    if (document.activeElement !== path) path.value = message.path;
   });
 
-  const path = document.createElement("input");
-  path.id = "yaml-path";
-  path.spellcheck = false;
-  const instead = document.createElement("input");
-  instead.type = "checkbox";
-  instead.id = "yaml-replace";
-  const save = async (): Promise<void> => {
-    try {
-      await page.net.ask("save", { path: path.value, replace: instead.checked });
-      say(t("saved", { path: page.document?.path ?? path.value }));
-    } catch (error) {
-      say(t("failed", { why: (error as Error).message }));
-    }
-  };
   root.append(
     field(t("text"), text),
     state,
@@ -68,10 +52,6 @@ function build(page: Page, root: HTMLElement): void {
       await copy(text.value);
       say(t("copied"));
     }),
-    button(t("download"), () => download(text.value, path.value.split(/[/\\]/).at(-1) || "pipeline.yaml", "application/yaml")),
-    field(t("path"), path),
-    field(t("replace"), instead),
-    button(t("save"), save),
     status,
   );
 }
@@ -100,4 +80,4 @@ function complaints(found: Complaint[]): HTMLElement[] {
   return [heading, list];
 }
 
-export const yaml: Panel = { id: "yaml", title: t("title"), place: "left", open: false, build };
+export const yaml: Panel = { id: "yaml", title: t("title"), task: "advanced", open: false, build };

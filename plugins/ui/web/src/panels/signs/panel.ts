@@ -1,0 +1,32 @@
+/** What the signs on the surface and the words at the contact mean. */
+import { GLYPHS } from "../../overlay/pieces/contact_label";
+import { t as overlay } from "../../overlay/words";
+import type { Page } from "../../page";
+import type { Panel } from "../panel";
+import "./signs.css";
+import { t } from "./words";
+
+/** Signs in the colours of the overlay. */
+const SIGNS = { hand: "●", proxy: "◆", contact: "○", force: "➔" } as const;
+const STATES = ["rests", "sticks", "slips", "glides"] as const;
+
+function build(_: Page, root: HTMLElement): void {
+  const signs = (Object.keys(SIGNS) as (keyof typeof SIGNS)[]).map((each) => line(SIGNS[each], each, t(each)));
+  const states = STATES.map((each) => line(GLYPHS[each], "", `${overlay(each)}: ${overlay(`${each}Help`)}`));
+  root.append(listOf(signs), Object.assign(document.createElement("h3"), { textContent: overlay("gripTitle") }), listOf(states));
+}
+
+function listOf(lines: HTMLElement[]): HTMLElement {
+  const list = Object.assign(document.createElement("ul"), { className: "signs" });
+  list.append(...lines);
+  return list;
+}
+
+function line(sign: string, name: string, text: string): HTMLElement {
+  const mark = Object.assign(document.createElement("span"), { className: `sign ${name}`, ariaHidden: "true", textContent: sign });
+  const item = document.createElement("li");
+  item.append(mark, Object.assign(document.createElement("span"), { textContent: text }));
+  return item;
+}
+
+export const signs: Panel = { id: "signs", title: t("title"), task: "feel", open: false, build };

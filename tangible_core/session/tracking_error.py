@@ -27,7 +27,10 @@ DIRECTIONS, IN_A_PIT = 16, 14
 
 Places = Float64[np.ndarray, "n 3"]
 Which = Bool[np.ndarray, " n"]
-GENTLER = "A smaller `workspace.relief_m` or a greater `workspace.smooth_m` makes a surface that lets it pass."
+GENTLER = (
+    "A smaller `relief.slope`, a greater `workspace.smooth_m` or a smaller `workspace.relief_m` makes a surface that "
+    "lets it pass."
+)
 
 
 class TrackingError(NamedTuple):

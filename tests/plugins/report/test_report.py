@@ -489,7 +489,7 @@ class TestSheet:
             pytest.param({"views": Views(np.full((9, 9, 3), 65535, np.uint16))}, id="uint16"),
             pytest.param({"disparity": DisparityMap(np.full((4, 4), NAN, np.float32))}, id="nothing known"),
             pytest.param({"disparity": DisparityMap(np.full((1, 1), 3.0, np.float32))}, id="one disparity"),
-            pytest.param({"disparity": DisparityMap(np.float32([[1e30, -np.inf]]))}, id="huge and infinite"),
+            pytest.param({"disparity": DisparityMap(np.float32([[1e30, -1e30]]))}, id="huge"),
             pytest.param({"surface": HapticSurface.from_heights(np.zeros((1, 1)))}, id="one flat cell"),
             pytest.param({"surface": HapticSurface.from_heights(np.full((2, 90), 1e-4), 1e-3)}, id="a strip"),
             pytest.param({"surface": HapticSurface.from_heights(np.eye(5) * 50)}, id="taller than wide"),

@@ -11,12 +11,14 @@ CONTROLS = {
 }  # fmt: skip
 """Roles of the accessibility tree that somebody acts on."""
 SEEN = """function () {
+  const UNREAD = "input, select, textarea, output, kbd, datalist, [aria-hidden=true]";
   const text = (each) => {
     const copy = each.cloneNode(true);
-    for (const inner of copy.querySelectorAll("input, select, textarea, output, kbd, datalist, [aria-hidden=true]")) inner.remove();
+    for (const inner of copy.querySelectorAll(UNREAD)) inner.remove();
     return copy.textContent.replace(/\\s+/g, " ").trim();
   };
-  const label = this.labels?.length ? [...this.labels].map(text).join(" ") : /BUTTON|SUMMARY|A/.test(this.tagName) ? text(this) : "";
+  const own = /BUTTON|SUMMARY|A/.test(this.tagName) ? text(this) : "";
+  const label = this.labels?.length ? [...this.labels].map(text).join(" ") : own;
   const around = this.tagName === "SUMMARY" ? this.parentElement : this;
   const inside = around.parentElement?.closest("[role=group], fieldset, tr, li, table, details, dialog, section");
   return { label, tag: this.outerHTML.slice(0, 120), inside: inside ? inside.outerHTML.slice(0, 200) : "" };

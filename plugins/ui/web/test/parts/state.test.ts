@@ -18,7 +18,7 @@ function editor(lines: string[], requests = NONE) {
   const told: (keyof EditorEvents)[] = [];
   const said: string[] = [];
   for (const name of NAMES) state.events.on(name, () => void told.push(name));
-  announce(state, (text) => void said.push(text));
+  announce(state, (text) => void said.push(String(text)));
   state.survey();
   told.length = 0;
   return { state, told, said, draw: () => drawn(labels) };

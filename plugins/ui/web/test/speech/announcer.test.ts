@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { beforeEach, describe, test } from "node:test";
-import { AGAIN_MS, Announcer, PAUSE_MS, STALE_MS } from "../../src/speech/announcer";
+import { AGAIN_MS, Announcer, LETTER_MS, LONGEST_PAUSE_MS, PAUSE_MS, STALE_MS } from "../../src/speech/announcer";
 
 let now = 0;
 let due: { atMs: number; act: () => void }[] = [];
@@ -118,5 +118,43 @@ describe("what is said", () => {
     announcer.say("");
     pass(10_000);
     assert.deepEqual(said, []);
+  });
+
+  test("a text that comes later is composed when its turn comes, and left out if it is no longer true", () => {
+    let touching = true;
+    announcer.say("a");
+    announcer.say(() => (touching ? "Touching wood." : ""), { topic: "contact" });
+    announcer.say("b");
+    touching = false;
+    pass(PAUSE_MS);
+    assert.deepEqual(said, ["a", "b"]);
+    touching = true;
+    announcer.say(() => (touching ? "Touching wood." : ""), { topic: "contact" });
+    pass(PAUSE_MS);
+    assert.deepEqual(said, ["a", "b", "Touching wood."]);
+  });
+
+  test("a long sentence is spoken to its end, but the stop does not wait", () => {
+    const long = "x".repeat(60);
+    announcer.say(long);
+    announcer.say("next");
+    pass(60 * LETTER_MS - 1);
+    assert.deepEqual(said, [long]);
+    pass(1);
+    assert.deepEqual(said, [long, "next"]);
+    pass(PAUSE_MS);
+    announcer.say("y".repeat(999));
+    announcer.say("error", { urgent: true });
+    announcer.say("last");
+    pass(PAUSE_MS);
+    assert.equal(said.at(-1), "error");
+    pass(PAUSE_MS);
+    assert.equal(said.at(-1), "last");
+    assert.ok(LONGEST_PAUSE_MS < STALE_MS);
+  });
+
+  test("paths and modules are not spelled out", () => {
+    announcer.say("tangible_core.files: /home/ada/x/cat.yaml is saved");
+    assert.deepEqual(said, ["cat.yaml is saved"]);
   });
 });

@@ -104,7 +104,7 @@ class Log {
       this.items.get(dropped)?.remove();
       this.items.delete(dropped);
     }
-    if (level === "warning") this.page.say(t("said", { level: t(level), text }));
+    if (level === "warning") this.page.say(t("said", { level: t(level), text: foreign }));
     if (!again || !this.items.has(line)) this.fresh.push(line);
     else fill(this.items.get(line)!, line);
     if (this.fresh.length === 1) setTimeout(() => this.flush());

@@ -15,6 +15,8 @@ export class Status {
   private facts: Facts;
   private wasLost = false;
   private back = 0;
+  /** True from a stop by this page's key or button on: it is confirmed, and no alarm. */
+  private stopping = false;
 
   constructor(private page: Pick<Page, "hub" | "net" | "say">) {
     const { hub } = page;
@@ -29,6 +31,7 @@ export class Status {
       this.back = window.setTimeout(() => this.endBack(), BACK_MS);
     });
     this.facts = follow(hub, (facts) => this.show(facts));
+    hub.on("loop", () => (this.stopping = false));
     hub.on("made", ({ want, outcome }) => {
       if (outcome === "stopped") page.say(says("makingStopped"), { topic: "made" });
       else if (outcome === "made" && want !== "touch") page.say(says("computed", { product: productName(want) }), { topic: "made" });
@@ -44,7 +47,10 @@ export class Status {
   }
 
   private stopButton(): void {
-    const stop = (): void => void this.page.net.stop().catch((error: Error) => this.fail(error));
+    const stop = (): void => {
+      this.stopping = true;
+      void this.page.net.stop().catch((error: Error) => this.fail(error));
+    };
     const button = this.give("stop", t("stop"), stop);
     const more = Object.assign(document.createElement("span"), { className: "long", textContent: t("stopMore") });
     const key = Object.assign(document.createElement("kbd"), { textContent: t("escape") });
@@ -77,7 +83,8 @@ export class Status {
     line.dataset.state = what;
     line.textContent = shown;
     line.lang = foreign ? "en" : language;
-    const news = { topic: "status", urgent: what === "error" || what === "stopped" };
+    const asked = what === "stopped" && this.stopping;
+    const news = { topic: "status", asked, urgent: what === "error" || (what === "stopped" && !asked) };
     if (shown !== text || line.dataset.said !== text) page.say(shown, news);
     line.dataset.said = text;
     this.reach();

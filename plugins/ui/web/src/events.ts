@@ -13,6 +13,12 @@ export interface PageEvents extends Events {
   shown: Scene;
   /** Something about this page's hand changed: its mover, its mode, whether it is the active one. */
   hand: HandState;
+  /** The hand is led to a part by its label, or to the middle of the surface (null). */
+  led: { label: number | null };
+  /** A tour of the parts began or ended. */
+  tour: { on: boolean };
+  /** Moves of the hand are described, or not. */
+  describing: { on: boolean };
   /** A request to colour the surface by the picture, heights, segments ... */
   "look at": { look: string };
   /** The colouring of the surface changed. */

@@ -64,6 +64,7 @@ const page: Page = {
   canvas,
   scene: null,
   hand: null,
+  narration: null,
   document: null,
   replayed: null,
   sound: new Sound(hub, () => page.scene),
@@ -109,7 +110,7 @@ buildRegions(page);
 buildSplitters();
 listen(canvas);
 new Status(page);
-new Narrator(page);
+page.narration = new Narrator(page);
 const hand = (page.hand = new Hand(page));
 for (const attach of [attachMouse, attachFingers, attachKeyboard, attachGamePad]) attach(hand, page);
 showGraphicsTrouble(page);

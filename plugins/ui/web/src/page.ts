@@ -11,10 +11,11 @@ import type { Settings as OverlaySettings } from "./overlay/settings";
 import type { Document } from "./server/messages";
 import type { State, Vec } from "./server/protocol";
 import type { VoiceName } from "./sound/sound";
-import type { Announcement } from "./speech/announcer";
+import type { Announcement, Text } from "./speech/announcer";
 import type { Layer } from "./surface/loading";
 import type { Part, Scene } from "./surface/scene";
 import type { FinePatch, Looks } from "./terrain/terrain";
+import type { CameraAct } from "./view/camera_input";
 import type { Trouble } from "./view/view";
 
 /** The program behind the page. */
@@ -72,6 +73,8 @@ export interface Renderer {
   troubled: (trouble: Trouble) => void;
   /** Called when the camera has come to rest. */
   rested: () => void;
+  /** Called after a key moved the camera. */
+  acted: (act: CameraAct) => void;
   /** Replace the surface that is drawn. */
   put(scene: Scene, looks: Looks): void;
   /** Add an object that moves; its owner sets visibility and position before each frame. */
@@ -115,6 +118,17 @@ export interface PageHand extends HandState {
   take(): void;
   /** Move freely in space, or over the surface. */
   free(on: boolean): void;
+  /** Lift the hand and move it over a place of the surface. */
+  leadTo(x: number, y: number): void;
+}
+
+/** The narration of what lies under the hand. */
+export interface Narration {
+  /** Whether moves are described: in the air too, with rises and falls. */
+  moves: boolean;
+  readonly touring: boolean;
+  /** Begin or end a tour of the parts. */
+  toggleTour(): void;
 }
 
 export interface Sound {
@@ -156,6 +170,8 @@ export interface Page {
   scene: Scene | null;
   /** This page's hand; null until the page is built. */
   hand: PageHand | null;
+  /** The narration; null until the page is built. */
+  narration: Narration | null;
   /** The pipeline file on the screen. */
   document: Document | null;
   /** The tick of a recording that is shown in place of the loop's; null while the loop's is shown. */
@@ -166,7 +182,7 @@ export interface Page {
   /** Resolved once the server has time for low-priority requests (server/idle.ts). */
   readonly idle: Promise<void>;
   /** Announce a text in a live region, and aloud if speech is on (speech/announcer.ts). */
-  say(text: string, options?: Announcement): void;
+  say(text: Text, options?: Announcement): void;
   /** Allow a topic's last text to be announced again. */
   forget(topic: string): void;
 }

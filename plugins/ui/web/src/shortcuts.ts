@@ -49,6 +49,8 @@ export const SHORTCUTS = {
   "view from above": { keys: ["Ctrl+End"], where: "surface", own: true },
   where: { keys: ["w"], where: "letter" },
   describe: { keys: ["d"], where: "letter" },
+  "describe moves": { keys: ["Shift+d"], where: "letter" },
+  tour: { keys: ["g"], where: "letter" },
   sound: { keys: ["s"], where: "letter" },
   aloud: { keys: ["a"], where: "letter" },
   "hear heights": { keys: ["h"], where: "letter" },

@@ -6,7 +6,7 @@ import { clamp, HOVER_M, nextPosition, clampToRim, type Goal } from "./motion";
 import { findPartCentres, type Part } from "./part_centres";
 import { type Mover, PRESS_M } from "./state";
 import { t } from "./words";
-import { shownNumber } from "../words/part_words";
+import { decimal } from "../words/words";
 
 /** Interval of messages for a hand at rest, ms: the server releases it after 100 ms of silence. */
 const ALIVE_MS = 30;
@@ -88,6 +88,7 @@ export class Hand implements PageHand {
       this.goal = { over: clampToRim(this.page.scene, goal.over[0] + x / scale, goal.over[1] + y / scale) };
       this.changeHeight(z);
     }
+    if (z) this.page.say(() => this.depthInWords(), { topic: "hand" });
   }
 
   /** Move deeper, whether it touches or not. */
@@ -112,7 +113,7 @@ export class Hand implements PageHand {
 
   toMiddle(by: Mover): void {
     this.liftTo(by, 0, 0);
-    this.page.say(t("inTheMiddle"));
+    this.page.hub.tell("led", { label: null });
   }
 
   /** Move to the centre of the next part, or of the previous one. */
@@ -126,9 +127,11 @@ export class Hand implements PageHand {
     this.centres.next = (next + step + all.length) % all.length;
     const { at, label } = all[this.centres.next]!;
     this.liftTo(by, ...at);
-    const called = scene.part(...at);
-    const name = (called && `${called}, `) + (scene.material(...at)?.name ?? t("noMaterial"));
-    this.page.say(t("part", { number: shownNumber(label), of: scene.meta.labels, name }), { topic: "hand", asked: true });
+    this.page.hub.tell("led", { label });
+  }
+
+  leadTo(x: number, y: number): void {
+    this.liftTo("keys", x, y);
   }
 
   /** Move freely in space, or over the surface. */
@@ -140,7 +143,7 @@ export class Hand implements PageHand {
       const [x, y] = "at" in this.goal ? this.goal.at : this.goal.over;
       this.goal = on ? { at: this.at ?? [x, y, this.height(x, y, false)] } : { over: [x, y] };
     }
-    this.page.say(t(on ? "inSpace" : "overSurface"));
+    this.page.say(t(on ? "inSpace" : "overSurface"), { topic: "hand", asked: true });
     this.notify();
   }
 
@@ -197,6 +200,17 @@ export class Hand implements PageHand {
 
   private goalOrDefault(): { over: [number, number] } | { at: Vec } {
     return this.goal ?? (this.isFree ? { at: [0, 0, this.height(0, 0, false)] } : { over: [0, 0] });
+  }
+
+  /** Return how deep the hand presses, or how high it is, when it has stopped changing. */
+  private depthInWords(): string {
+    const { goal } = this;
+    if (!goal) return "";
+    if ("at" in goal) return t("level", { mm: decimal(1000 * goal.at[2], 1) });
+    if (!this.down) return t(this.gapM < 0 ? "deepUnpressed" : "above", { mm: decimal(1000 * Math.abs(this.gapM), 1) });
+    const mm = decimal(1000 * this.pressM, 1);
+    if (this.pressM >= PRESS_M.most) return t("deepest", { mm });
+    return t(this.pressM <= PRESS_M.least ? "shallowest" : "deep", { mm });
   }
 
   private changeHeight(z: number): void {

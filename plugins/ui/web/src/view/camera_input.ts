@@ -22,28 +22,29 @@ const WAYS: Record<string, [number, number]> = {
   ArrowDown: [0, -1],
 };
 
-/** Return whether the key is one of the camera's: none that is the hand's (shortcuts.ts). */
-export function handleKey(eye: Eye, event: KeyboardEvent): boolean {
+export type CameraAct = (typeof CAMERA_KEYS)[number]["does"];
+
+/** Act on a key of the camera: none that is the hand's (shortcuts.ts). Return what it did, null for another key. */
+export function handleKey(eye: Eye, event: KeyboardEvent): CameraAct | null {
   const way = WAYS[event.key];
-  const { ctrlKey, shiftKey, altKey } = event;
-  if (event.metaKey) return false;
-  if (way && ctrlKey && shiftKey && !altKey) eye.orbit(way[0] * KEY_TURN, -way[1] * KEY_TURN);
-  else if (way && altKey && !ctrlKey && !shiftKey) eye.pan(way[0] * KEY_SHARE, way[1] * KEY_SHARE);
-  else if (altKey) return false;
-  else if (event.key === "Home" && ctrlKey) eye.home();
-  else if (event.key === "End" && ctrlKey) eye.top();
-  else if (ctrlKey) return false;
-  else if (event.key === "+") eye.zoom(0.85);
-  else if (event.key === "-") eye.zoom(1 / 0.85);
-  else return false;
-  return true;
+  const { key, ctrlKey, shiftKey, altKey } = event;
+  if (event.metaKey) return null;
+  if (way && ctrlKey && shiftKey && !altKey) return eye.orbit(way[0] * KEY_TURN, -way[1] * KEY_TURN), "orbit";
+  if (way && altKey && !ctrlKey && !shiftKey) return eye.pan(way[0] * KEY_SHARE, way[1] * KEY_SHARE), "pan";
+  if (altKey) return null;
+  if (ctrlKey && key === "Home") return eye.home(), "home";
+  if (ctrlKey && key === "End") return eye.top(), "top";
+  if (ctrlKey || (key !== "+" && key !== "-")) return null;
+  return eye.zoom(key === "+" ? 0.85 : 1 / 0.85), "zoom";
 }
 
 /**
  * Mouse, fingers, wheel and keys that are the camera's: they are taken before anything else on the canvas hears of them.
  * One finger and the plain left button are the hand's. When a second finger comes, the first one's hand is let go.
  */
-export function attachCameraInput(canvas: HTMLCanvasElement, eye: Eye, ground: (x: number, y: number) => Vec | null): void {
+export function attachCameraInput(
+  canvas: HTMLCanvasElement, eye: Eye, ground: (x: number, y: number) => Vec | null, acted: (act: CameraAct) => void,
+): void {
   const fingers = new Map<number, [number, number]>();
   let grip: { pointer: number; orbits: boolean; at: [number, number] } | null = null;
   let pinching = false;
@@ -128,5 +129,10 @@ export function attachCameraInput(canvas: HTMLCanvasElement, eye: Eye, ground: (
     },
     first,
   );
-  canvas.addEventListener("keydown", (event) => handleKey(eye, event) && take(event), first);
+  canvas.addEventListener("keydown", (event) => {
+    const act = handleKey(eye, event);
+    if (!act) return;
+    take(event);
+    acted(act);
+  }, first);
 }

@@ -13,7 +13,7 @@ import {
   WebGLRenderTarget,
 } from "three";
 import { Eye } from "./camera";
-import { attachCameraInput } from "./camera_input";
+import { attachCameraInput, type CameraAct } from "./camera_input";
 import { EyeDome, fullScreenQuad } from "./eye_dome";
 import type { Vec } from "../server/protocol";
 import type { Scene } from "../surface/scene";
@@ -48,6 +48,8 @@ export class View {
   troubled: (trouble: Trouble) => void = () => {};
   /** Called when the camera has come to rest. */
   rested: () => void = () => {};
+  /** Called after a key moved the camera. */
+  acted: (act: CameraAct) => void = () => {};
   /** Strength of the eye-dome shading, 0 to 1. */
   eyeDome = 0;
   private renderer: WebGLRenderer | null;
@@ -78,7 +80,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     if (!this.renderer) this.trouble = "missing";
     this.eye.ground = (x, y) => this.scene?.height(x, y) ?? NaN;
     this.eye.onChange = () => this.onMove();
-    attachCameraInput(canvas, this.eye, (x, y) => this.scene?.pick(...this.ray(x, y)) ?? this.onGround(x, y));
+    attachCameraInput(canvas, this.eye, (x, y) => this.scene?.pick(...this.ray(x, y)) ?? this.onGround(x, y), (act) => this.acted(act));
     canvas.addEventListener("webglcontextlost", (event) => this.onContextLost(event));
     canvas.addEventListener("webglcontextrestored", () => this.onContextRestored());
     new ResizeObserver(() => this.size()).observe(canvas);

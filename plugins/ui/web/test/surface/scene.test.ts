@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { firstRoot, Grid } from "../../src/surface/grid";
 import type { Material, Meta } from "../../src/server/messages";
-import { describePlace } from "../../src/speech/narrator";
+import { describePlace } from "../../src/speech/names";
 import { place } from "../../src/contact/reading";
 import { asJson, rows } from "../../src/contact/values";
 import type { Vec } from "../../src/server/protocol";

@@ -2,6 +2,7 @@
 import type { Page, PointerTool } from "../../page";
 import type { Vec } from "../../server/protocol";
 import { on } from "../../shortcuts";
+import { decimal } from "../../words/words";
 import { t } from "../words";
 import { COLOURS } from "../colours";
 import { DrapedLine } from "./draped_line";
@@ -140,14 +141,15 @@ export class MappingFrame implements PointerTool {
     if (!scene) return;
     view.focus(scene.on(x, y), Math.max(width, length));
     this.draft = zoomTo(this.mapping, x, y, width, length);
-    void this.write();
+    const [w, l] = [width, length].map((side) => decimal(1000 * side, 1));
+    void this.write(t("enlarged", { width: w!, length: l! }));
   }
 
   whole(): void {
     const { scene, view } = this.page;
     if (scene) view.frame(...scene.meta.extent_m);
     this.draft = wholePicture(this.mapping);
-    void this.write();
+    void this.write(t("wholeFelt"));
   }
 
   private step(right: number, away: number): void {
@@ -194,8 +196,9 @@ export class MappingFrame implements PointerTool {
     this.draw();
   }
 
-  /** Write the mapping into the document; writes follow one another, and only the newest waiting one is sent. */
-  private async write(): Promise<void> {
+  /** Write the mapping into the document; writes follow one another, and only the newest waiting one is sent.
+   * done: what is said once it is written. */
+  private async write(done = ""): Promise<void> {
     this.draw();
     if (this.writing) return;
     this.writing = true;
@@ -203,6 +206,7 @@ export class MappingFrame implements PointerTool {
       written = this.draft;
       try {
         await this.page.net.ask("set", { ...changes(written), apply: true });
+        this.page.say(done, { topic: "mapping", asked: true });
       } catch (error) {
         this.page.say((error as Error).message);
         break;

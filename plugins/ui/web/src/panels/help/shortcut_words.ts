@@ -28,6 +28,8 @@ export const t = words({
   where: ["Where am I? Announces place, height, material and force",
     "Wo bin ich? Sagt Ort, Höhe, Material und Kraft"],
   describe: ["Describe the surface", "Die Oberfläche beschreiben"],
+  "describe moves": ["Describe what the hand moves over, on or off", "Beschreiben, worüber sich die Hand bewegt, ein oder aus"],
+  tour: ["A guided tour of the parts, from near to far", "Ein Rundgang durch die Teile, von nah nach fern"],
   sound: ["Sound on or off", "Ton ein oder aus"],
   aloud: ["Speech on or off", "Sprachausgabe ein oder aus"],
   "hear heights": ["Hear the heights from left to right, in the row under the hand",

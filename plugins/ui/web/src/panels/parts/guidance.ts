@@ -54,7 +54,7 @@ export function namedParts(page: Page): HTMLElement {
     show();
   });
   page.hub.on("beacon", (message: Events["beacon"]) => {
-    if (message.part !== guided) page.say(inWords(message), { topic: "beacon", asked: true });
+    if (message.part !== guided && !page.narration?.touring) page.say(inWords(message), { topic: "beacon", asked: true });
     guided = message.part;
     show();
   });

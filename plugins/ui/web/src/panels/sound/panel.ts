@@ -99,7 +99,26 @@ function speechControls(page: Page): HTMLElement[] {
   };
   page.hub.on("aloud", show);
   show();
-  return [element, rated, hint];
+  return [element, rated, hint, ...narrationControls(page)];
+}
+
+/** Return the buttons of what the announcements tell beyond contact: for a screen reader too. */
+function narrationControls(page: Page): HTMLElement[] {
+  const moves = button(t("moves"), () => page.narration && (page.narration.moves = !page.narration.moves));
+  moves.setAttribute("aria-keyshortcuts", "Shift+D");
+  const tour = button(t("tour"), () => page.narration?.toggleTour());
+  tour.setAttribute("aria-keyshortcuts", "G");
+  const show = (): void => {
+    moves.setAttribute("aria-pressed", String(page.narration?.moves ?? false));
+    tour.setAttribute("aria-pressed", String(page.narration?.touring ?? false));
+  };
+  page.hub.on("describing", show);
+  page.hub.on("tour", show);
+  show();
+  const about = document.createElement("p");
+  about.className = "hint";
+  about.textContent = t("narration");
+  return [moves, tour, about];
 }
 
 function range({ least, most, step }: { least: number; most: number; step: number }, value: number): HTMLInputElement {

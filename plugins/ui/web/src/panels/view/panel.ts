@@ -1,7 +1,7 @@
 /** Settings of the view: light, steep walls, magnifier and camera. The strip below the surface has what it shows. */
 import "./view.css";
 import { slider } from "../../elements";
-import { CAMERA_KEYS } from "../../view/camera_input";
+import { CAMERA_KEYS, type CameraAct } from "../../view/camera_input";
 import { Magnifier } from "../../view/magnifier";
 import type { Page } from "../../page";
 import type { Panel } from "../panel";
@@ -100,17 +100,20 @@ function camera(page: Page): HTMLElement {
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   const { eye } = page.view;
-  const does: [Word, () => void][] = [
-    ["home", () => eye.home()],
-    ["top", () => eye.top()],
-    ["nearer", () => eye.zoom(0.7)],
-    ["farther", () => eye.zoom(1 / 0.7)],
+  const does: [Word, CameraAct, () => void][] = [
+    ["home", "home", () => eye.home()],
+    ["top", "top", () => eye.top()],
+    ["nearer", "zoom", () => eye.zoom(0.7)],
+    ["farther", "zoom", () => eye.zoom(1 / 0.7)],
   ];
-  for (const [word, act] of does) {
+  for (const [word, act, move] of does) {
     const button = document.createElement("button");
     button.type = "button";
     button.textContent = t(word);
-    button.onclick = act;
+    button.onclick = () => {
+      move();
+      page.view.acted(act);
+    };
     buttons.append(button);
   }
   box.append(buttons, keys());

@@ -33,6 +33,7 @@ SECTIONS = {
     "record": "Recordings",
     "devices": "Devices",
     "ui": "The page",
+    "by_ear": "By ear",
     "tests": "The test run",
     "mutants": "Faults that the tests notice",
 }

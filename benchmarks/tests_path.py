@@ -11,6 +11,7 @@ import exported_pictures as exported_pictures
 import falcon_bus as falcon_bus
 import falcon_streams as falcon_streams
 import films as films
+import page_files as page_files
 import solids as solids
 import two_cameras as two_cameras
 from faulty_touch import FaultyTouch as FaultyTouch

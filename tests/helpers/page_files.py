@@ -22,7 +22,7 @@ def hook():
     return module
 
 
-def node(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+def node(*words: object, cwd: Path, stdin: str = "") -> subprocess.CompletedProcess[str]:
     """Run node, which comes with the extra `dev`, with the page's own packages."""
     if not (WEB / "node_modules").is_dir():
         lacking("the page's packages are not installed: npm ci in plugins/ui/web")
@@ -33,7 +33,13 @@ def node(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
 
         program = shutil.which("node", path=f"{ROOT_DIR}/bin") or shutil.which("node", path=ROOT_DIR)
     return subprocess.run(
-        [str(program), *map(str, words)], cwd=cwd, capture_output=True, text=True, encoding="utf-8", check=False
+        [str(program), *map(str, words)],
+        cwd=cwd,
+        input=stdin,
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        check=False,
     )
 
 

@@ -71,8 +71,8 @@ def _picture(kind: str, labels: np.ndarray, rng: np.random.Generator, named: boo
 def _without_specks(labels: Int32[np.ndarray, "r c"]) -> Int32[np.ndarray, "r c"]:
     parts = find_parts(SegmentMap(labels)).labels
     small = (np.bincount(parts.ravel()) < LEAST_CELLS)[parts]
-    rows, columns = ndimage.distance_transform_edt(small, return_distances=False, return_indices=True)
-    return parts[rows, columns]
+    nearest: Any = ndimage.distance_transform_edt(small, return_distances=False, return_indices=True)
+    return parts[nearest[0], nearest[1]]
 
 
 def _grid() -> tuple[np.ndarray, np.ndarray]:

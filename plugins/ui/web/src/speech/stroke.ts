@@ -80,7 +80,7 @@ export class Stroke {
     [this.label, this.inside, this.edge, this.baseM] = [label, at, at, after];
   }
 
-  /** Return whether a place is on the slope of an edge that was crossed, or lies ahead: the edge is what is told. */
+  /** Return whether a place is on the slope of an edge that was crossed, or lies ahead: its sentence is about the edge. */
   private besideEdge(at: Place, from: Place): boolean {
     const far = distance(at, from);
     const ahead = at.map((part, axis) => part + ((part - from[axis]!) / far) * BESIDE_M) as unknown as Place;

@@ -197,7 +197,7 @@ export class MappingFrame implements PointerTool {
   }
 
   /** Write the mapping into the document; writes follow one another, and only the newest waiting one is sent.
-   * done: what is said once it is written. */
+   * done: the confirmation once it is written. */
   private async write(done = ""): Promise<void> {
     this.draw();
     if (this.writing) return;

@@ -27,6 +27,7 @@ from tangible_core.plugins.interfaces import (
     Filming,
     Following,
     Hierarchical,
+    Previewing,
     Reshaping,
     Scripted,
     Serviceable,
@@ -191,7 +192,8 @@ def test_methods_are_in_the_file_named_after_them():
 def test_methods_are_final_and_inherit_from_interfaces_alone(kind):
     """From interfaces of the core, or from an abstract class of its family that inherits from these."""
     capabilities = {
-        Adjustable, Attended, Drawing, Filming, Following, Hierarchical, Reshaping, Scripted, Serviceable, Skippable,
+        Adjustable, Attended, Drawing, Filming, Following, Hierarchical, Previewing, Reshaping, Scripted, Serviceable,
+        Skippable,
     }  # fmt: skip
     for each in default_registry().listings:
         if each.kind == kind and each.distribution == "tangible-images":

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
-from jaxtyping import Float64, Int64
+from jaxtyping import Float64, Int64, UInt8
 from pydantic import BaseModel
 
 from ..data import DisparityMap, Finding, HapticSurface, Record, SegmentTree, Unit, Views, Work
@@ -25,6 +25,14 @@ class Drawing(ABC):
 
         Raises: OutputError for a product without a picture.
         """
+
+
+class Previewing(ABC):
+    """The capability of an exporter to show what its files would hold, without writing them."""
+
+    @abstractmethod
+    def preview(self, work: Work) -> UInt8[np.ndarray, "h w"]:
+        """Return a picture of the files for eyes, white and black being 255 and 0. Raises: TangibleError as `write`."""
 
 
 class Skippable(ABC):

@@ -30,6 +30,7 @@ from .capabilities import Attended as Attended
 from .capabilities import Drawing as Drawing
 from .capabilities import Following as Following
 from .capabilities import Hierarchical as Hierarchical
+from .capabilities import Previewing as Previewing
 from .capabilities import Reshaping as Reshaping
 from .capabilities import Scripted as Scripted
 from .capabilities import Serviceable as Serviceable

@@ -2,17 +2,21 @@
 
 import logging
 from pathlib import Path
-from typing import ClassVar, final
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, final
 
 import numpy as np
+from jaxtyping import Int32, UInt8
 
 from tangible_core.data import PartMap, Work
 from tangible_core.errors import PictureError, shown
-from tangible_core.plugins.interfaces import Exporter, Medium
+from tangible_core.plugins.interfaces import Exporter, Medium, Previewing
 from tangible_core.plugins.notes import note
 
 from .labels import first_labels, label_of
 from .pin_display.displays import DISPLAYS, HEXADECIMAL, PITCH_M, Display, Named
+
+if TYPE_CHECKING:
+    from .pin_display.raising import Place
 
 log = logging.getLogger(__name__)
 
@@ -20,8 +24,20 @@ LEAST_PINS = 3
 """Shortest side of a picture in pins; fewer leave nothing between two borders."""
 
 
+class Raised(NamedTuple):
+    """The pins of a display that are up, and the parts that they show."""
+
+    pins: UInt8[np.ndarray, "rows columns"]
+    """Height of each pin."""
+    place: "Place"
+    """Rows and columns of the display that the picture takes."""
+    most: Int32[np.ndarray, "r c"]
+    """The part that has most of each pin's place."""
+    labels: dict[int, str]
+
+
 @final
-class Pins(Exporter):
+class Pins(Exporter, Previewing):
     """Pins that rise along the borders of parts: PNG, JSON, Unicode braille, and an SVG for the IMAGE services.
 
     On a display whose pins have several heights, the relief fills the areas between the borders, below their height.
@@ -53,6 +69,33 @@ class Pins(Exporter):
         """
         from .pin_display import formats, raising
 
+        array = self._array
+        pins, place, most, labels = self._raised(work)
+        rows, columns = most.shape
+        title = shown(work.title)
+        svg = formats.svg(pins, array.levels, raising.parts_on_display(array, most, place), labels, title)
+        head = {"title": title, "language": work.language, "display": self._name, **array.model_dump()}
+        texts = {
+            ".json": formats.numbers(pins, {**head, "parts": list(labels.values())}),
+            ".txt": formats.patterns(pins),
+            ".svg": svg,
+            "-graphic.json": formats.graphic(svg),
+        }
+        if self.display in HEXADECIMAL:
+            texts[".hex"] = formats.hexadecimal(pins)
+        note(log, f"{columns} x {rows} of {array.columns} x {array.rows} pins; {100 * (pins > 0).mean():.0f} % are up")
+        return _write_files(stem, self._name, formats.png(pins, array.levels), texts)
+
+    def preview(self, work: Work) -> UInt8[np.ndarray, "h w"]:
+        """Return the pins as discs, the higher the darker. Raises: as `write`."""
+        from .pin_display.formats import discs
+
+        return discs(self._raised(work).pins, self._array.levels)
+
+    def _raised(self, work: Work) -> "Raised":
+        """Return the pins of the display, and what they show. Raises: as `write`."""
+        from .pin_display import raising
+
         array, parts = self._array, _parts(work, self._array)
         place = raising.place_of(array, parts.labels.shape)
         rows, columns = (each.stop - each.start for each in place)
@@ -67,19 +110,7 @@ class Pins(Exporter):
         pins = raising.pin_heights(array, raising.borders(most), area, place)
         if not pins.any():
             raise PictureError("no pin would rise, as one part fills the display; have more parts, and larger ones")
-        title = shown(work.title)
-        svg = formats.svg(pins, array.levels, raising.parts_on_display(array, most, place), labels, title)
-        head = {"title": title, "language": work.language, "display": self._name, **array.model_dump()}
-        texts = {
-            ".json": formats.numbers(pins, {**head, "parts": list(labels.values())}),
-            ".txt": formats.patterns(pins),
-            ".svg": svg,
-            "-graphic.json": formats.graphic(svg),
-        }
-        if self.display in HEXADECIMAL:
-            texts[".hex"] = formats.hexadecimal(pins)
-        note(log, f"{columns} x {rows} of {array.columns} x {array.rows} pins; {100 * (pins > 0).mean():.0f} % are up")
-        return _write_files(stem, self._name, formats.png(pins, array.levels), texts)
+        return Raised(pins, place, most, labels)
 
     @property
     def _name(self) -> str:

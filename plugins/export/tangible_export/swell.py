@@ -2,19 +2,27 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, final
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, final
 
+import numpy as np
+from jaxtyping import UInt8
 from pydantic import Field
 
 from tangible_core.data import PartMap, Work
 from tangible_core.errors import BrokenMethod, PictureError
-from tangible_core.plugins.interfaces import Exporter, Medium
+from tangible_core.plugins.interfaces import Exporter, Medium, Previewing
 
 from .paper.sheet import Page, check_readable, sheet_for
 
+if TYPE_CHECKING:
+    from .paper.marks.svg import Drawing
+
+PREVIEW_PER_MM = 3
+"""Pixels of a preview in a millimetre: enough for dots of braille."""
+
 
 @final
-class Swell(Exporter):
+class Swell(Exporter, Previewing):
     """A page for swell paper and its key: outlines, fills and braille in black shapes alone, as SVG and as PDF.
 
     Sources: Guidelines and Standards for Tactile Graphics, Braille Authority of North America, 2010, for a key of
@@ -51,21 +59,13 @@ class Swell(Exporter):
         Raises: PictureError where there are no parts, or a page could not be read; GeometryError where it has no room;
         BrailleError for a title or a name that has no braille; BrokenMethod without shapely.
         """
-        try:
-            from .paper.lettering import words
-            from .paper.marks.ink import ink_svg, write_ink_pdf
-            from .paper.marks.reading import read
-            from .paper.marks.rendering import write_pdf
-            from .paper.marks.svg import svg
-            from .paper.opening import open_parts
-            from .paper.page import drawn_pages
-        except ImportError as error:
-            raise BrokenMethod(f"pages need shapely ({error}); pip install 'tangible-images[export]'") from error
-        if (parts := work.simplified) is None:
-            raise PictureError("this scene has no parts to outline; it needs a picture, or its own `parts:`")
-        sheet = sheet_for(self.page, _aspect(work, parts), self.width_m)
-        check_readable(self.page, sheet)
-        pages = drawn_pages(work, open_parts(work, parts, sheet.picture_mm[0] / 1000), sheet, self.page)
+        from .paper.lettering import words
+        from .paper.marks.ink import ink_svg, write_ink_pdf
+        from .paper.marks.reading import read
+        from .paper.marks.rendering import write_pdf
+        from .paper.marks.svg import svg
+
+        pages = self._pages(work)
         texts, note = [svg(each) for each in pages], words(work.language).ink
         files = {f"{stem.name}-swell{'-key' * (n > 0)}{f'-{n}' * (n > 1)}.svg": text for n, text in enumerate(texts)}
         pdf, ink, ink_pdf = (stem.with_name(f"{stem.name}-swell{each}") for each in (".pdf", "-ink.svg", "-ink.pdf"))
@@ -75,6 +75,29 @@ class Swell(Exporter):
         write_pdf(pdf, [read(text) for text in texts])
         write_ink_pdf(ink_pdf, pages, note)
         return (*paths[:-1], pdf, ink, ink_pdf)
+
+    def preview(self, work: Work) -> UInt8[np.ndarray, "h w"]:
+        """Return the page of the picture. Raises: as `write`."""
+        pages = self._pages(work)
+        from .paper.marks.reading import read
+        from .paper.marks.rendering import black
+        from .paper.marks.svg import svg
+
+        ink = black(read(svg(pages[0])), PREVIEW_PER_MM)
+        return np.where(ink, 0, 255).astype(np.uint8)
+
+    def _pages(self, work: Work) -> "list[Drawing]":
+        """Return the page and the pages of its key. Raises: as `write`."""
+        try:
+            from .paper.opening import open_parts
+            from .paper.page import drawn_pages
+        except ImportError as error:
+            raise BrokenMethod(f"pages need shapely ({error}); pip install 'tangible-images[export]'") from error
+        if (parts := work.simplified) is None:
+            raise PictureError("this scene has no parts to outline; it needs a picture, or its own `parts:`")
+        sheet = sheet_for(self.page, _aspect(work, parts), self.width_m)
+        check_readable(self.page, sheet)
+        return drawn_pages(work, open_parts(work, parts, sheet.picture_mm[0] / 1000), sheet, self.page)
 
 
 def _aspect(work: Work, parts: PartMap) -> float:

@@ -75,8 +75,13 @@ class TestExport:
         longer = panel.get_by_label("Longer side").first
         longer.fill("5 cm")
         longer.press("Enter")
+        shown = panel.locator(".previews img")
+        drawn = "(all) => all.map((each) => each.naturalWidth)"
+        until(lambda: shown.count() == 2 and all(shown.evaluate_all(drawn)), "pictures before anything is made")
+        assert "3D print (STL): the picture is 5.0 cm wide" in panel.locator("figcaption").first.inner_text()
         panel.get_by_role("button", name="Export", exact=True).press("Enter")
         until(lambda: "2 files are ready." in panel.inner_text(), "files")
+        until(lambda: page.evaluate("document.activeElement.id") == "export-status", "the focus is at the result")
         assert panel.locator(".outcome h3").all_inner_texts() == ["3D print (STL)", "3D print (3MF)"]
         assert panel.locator(".outcome .sentence").count() == 2
         with page.expect_download() as waited:
@@ -144,6 +149,7 @@ class TestLegible:
         page = show(scene=striped_scene)
         panel = open_panel(page, "legible")
         panel.get_by_label("Read on").select_option("swell")
+        panel.get_by_label("Width, mm").fill("80")
         panel.get_by_role("button", name="Check now").press("Enter")
         until(lambda: panel.locator(".sentence.illegible").count() == 1, "judged")
         until(lambda: page.evaluate("heard.some((each) => each.startsWith('Illegible'))"), "said")
@@ -162,6 +168,16 @@ class TestLegible:
         panel.get_by_label("Show the places").press(" ")
         until(lambda: not marks.first.is_visible(), "hidden")
         panel.get_by_label("Show the places").press(" ")
+        until(lambda: marks.first.is_visible(), "shown again")
+        panel.evaluate("(each) => (each.open = false)")
+        until(lambda: not marks.first.is_visible(), "the marks leave with their panel")
+        panel.evaluate("(each) => (each.open = true)")
+        until(lambda: marks.first.is_visible(), "and come with it")
+        assert panel.get_by_role("button", name="Print it on A3 paper").count() == 1, (
+            "a part of 6.4 mm has no room on A4"
+        )
+        assert panel.get_by_role("button", name="Give places narrower than 3.2 mm to their neighbours").count() == 1
+        assert "simplify" not in panel.inner_text(), "no key is read"
 
         before = text_of(page)
         panel.get_by_role("button", name="Simplify the parts").press("Enter")

@@ -10,6 +10,7 @@ from zipfile import ZipFile
 import numpy as np
 import pytest
 import trimesh
+from PIL import Image
 
 from sessions import TEXT, SmallSession, small_scene, striped_scene
 from tangible_core.errors import ConfigError, TangibleError
@@ -153,6 +154,37 @@ class TestExport:
                 await ask("export_zip", folder=folder)
 
         small(check)
+
+
+class TestPreviews:
+    def test_preview_is_a_picture_of_what_will_be_written(self, small: Any) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
+            for block, wide_m in (("swell", 0.237), ({"use": "stl", "longer_side_m": 0.1}, 0.1), ("pins", 0.133)):
+                found = await ask("export_preview", block=block)
+                assert found["width_m"] == pytest.approx(wide_m, abs=2e-3), block
+                with Image.open(small.session.folder / found["file"]) as picture:
+                    assert picture.size == (found["columns"], found["rows"])
+                    assert np.asarray(picture).std() > 5
+            assert not small.tab.names().count("exported")
+            assert not list(small.session.folder.glob("export-*")), "nothing is written"
+
+        small(check, striped_scene)
+
+    def test_preview_of_files_without_a_picture_and_of_what_cannot_be_written(self, small: Any) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
+            assert (await ask("export_preview", block="text"))["file"] == ""
+            with pytest.raises(TangibleError, match="no room on a4"):
+                await ask("export_preview", block={"use": "swell", "width_m": 0.5})
+
+        small(check, striped_scene)
+
+    def test_preview_waits_for_what_is_slow_to_make(self, small: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+        async def check(small: SmallSession, ask: Ask) -> None:
+            monkeypatch.setattr("tangible_ui.worker.jobs.export.plan_data", lambda *_: {"slow": ["disparity"]})
+            found = await ask("export_preview", block="stl")
+            assert (found["file"], found["waits"]) == ("", True)
+
+        small(check, striped_scene)
 
 
 class TestLegible:

@@ -15,6 +15,8 @@ import numpy as np
 from jaxtyping import Bool, Int32, UInt8
 
 Pins = UInt8[np.ndarray, "r c"]
+PIN_PX = 8
+"""Pixels between pins in a picture for eyes."""
 _BRAILLE = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])
 """Bits of Unicode's braille patterns, of a cell of 2 x 4 pins."""
 
@@ -26,6 +28,17 @@ def png(pins: Pins, levels: int) -> bytes:
     grey = 255 - np.rint(pins.astype(np.float64) * (255 / levels)).astype(np.uint8)
     _, data = cv2.imencode(".png", grey)
     return data.tobytes()
+
+
+def discs(pins: Pins, levels: int) -> UInt8[np.ndarray, "h w"]:
+    """Return a picture of the pins: a ring for each that is down, a disc for each that is up, darker if higher."""
+    at = np.mgrid[:PIN_PX, :PIN_PX] - (PIN_PX - 1) / 2
+    radius = np.hypot(*at)
+    disc, ring = radius < 0.42 * PIN_PX, np.abs(radius - 0.34 * PIN_PX) < 0.6
+    grey = 200 - np.rint(pins.astype(np.float64) * (200 / levels)).astype(np.uint8)
+    fine = np.kron(grey, np.ones((PIN_PX, PIN_PX), np.uint8))
+    up = np.kron(pins > 0, disc)
+    return np.where(up, fine, np.where(np.kron(pins == 0, ring), 190, 255)).astype(np.uint8)
 
 
 def numbers(pins: Pins, head: Mapping[str, Any]) -> str:

@@ -5,10 +5,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Annotated, Any, ClassVar
 
+import numpy as np
+from jaxtyping import UInt8
 from pydantic import Field
 
 from tangible_core.data import Work
-from tangible_core.plugins.interfaces import Exporter, Medium
+from tangible_core.plugins.interfaces import Exporter, Medium, Previewing
 from tangible_core.preflight.verdict import over
 
 if TYPE_CHECKING:
@@ -16,7 +18,7 @@ if TYPE_CHECKING:
     from .plate import Layout
 
 
-class SolidExporter(Exporter):
+class SolidExporter(Exporter, Previewing):
     """An exporter of the relief as a closed solid, in one file; each format has its own `write_solid`."""
 
     needs: ClassVar[tuple[str, ...]] = ("relief",)
@@ -64,6 +66,15 @@ class SolidExporter(Exporter):
         with path.open("wb") as file:
             self.write_solid(file, solid, layout, work)
         return (path,)
+
+    def preview(self, work: Work) -> UInt8[np.ndarray, "h w"]:
+        """Return the solid, of coarser triangles, in light from the upper left. Raises: as `write`."""
+        from .making import PlateOptions, make_solid
+        from .shading import COARSE_M, coarse_work, shaded
+
+        options = PlateOptions(**{name: getattr(self, name) for name in PlateOptions._fields})
+        solid, _ = make_solid(options._replace(error_m=max(options.error_m, COARSE_M)), coarse_work(work))
+        return shaded(solid)
 
     @abstractmethod
     def write_solid(self, file: IO[bytes], solid: "Solid", layout: "Layout", work: Work) -> None:

@@ -11,16 +11,24 @@ from time import perf_counter
 from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile
 
+from tangible_core.data.records import digest_of as digest_of_records
 from tangible_core.errors import ConfigError
 from tangible_core.pipeline.output.export_folder import read_list
-from tangible_core.pipeline.output.exporting import Exported
+from tangible_core.pipeline.output.exporting import Exported, work_for
+from tangible_core.pipeline.output.legible import drawn_width_m, with_width
+from tangible_core.plugins.interfaces import Previewing
+from tangible_core.plugins.notes import silently
 
 from ..state import WorkerState
+from ..view.files import leave, write_whole
 from .document import digest_of
-from .making import stage_reporter
+from .making import plan_data, stage_reporter
 from .table import job
 
 FOLDER = "export-"
+PREVIEW = "preview-"
+KEPT_PREVIEWS = 16
+"""Pictures of files that are kept: pages may still show them."""
 NAMED = re.compile(rf"{FOLDER}[0-9a-f]{{16}}")
 KEPT = 2
 """Folders that are kept: tabs may still fetch from the one before."""
@@ -57,6 +65,31 @@ def export(
 
 
 @job(quick=True)
+def export_preview(state: WorkerState, text: str, path: Path, sets: list[str], block: Any) -> dict[str, Any]:
+    """Draw what an exporter would write, into a file that pages fetch; nothing slow is made for that.
+
+    block: an item of `export:`. Returns: the file with its size in pixels and the width of the picture that is made, m;
+    no file for an exporter without a picture, or while something slow is not made yet (`waits`).
+    Raises: ConfigError; TangibleError if the exporter could not write.
+    """
+    pipeline = state.pipeline_of(text, path, [*sets, f"export={json.dumps([block])}"])
+    (chosen,) = pipeline.config.export
+    none = {"file": "", "waits": False, "columns": 0, "rows": 0, "width_m": 0.0}
+    if not isinstance(chosen.method, Previewing):
+        return none
+    if any(plan_data(pipeline, text, product)["slow"] for product in chosen.method.needs):
+        return {**none, "waits": True}
+    width_m = drawn_width_m(pipeline.engine, chosen)
+    with silently():
+        picture = chosen.method.preview(work_for(with_width(pipeline.engine, width_m), chosen.method))
+    at = f"{PREVIEW}{digest_of_records((picture,))}"
+    leave(state.folder / at, "the preview", lambda part: write_whole(picture, part / "picture.png"))
+    _sweep(state.folder, PREVIEW, KEPT_PREVIEWS)
+    rows, columns = picture.shape
+    return {"file": f"{at}/picture.png", "waits": False, "columns": columns, "rows": rows, "width_m": width_m}
+
+
+@job(quick=True)
 def export_zip(state: WorkerState, folder: str) -> str:
     """Pack the exported files of a folder into one, and return its name. Raises: ConfigError if they are gone."""
     at = state.folder / folder
@@ -87,11 +120,11 @@ def _outcome_data(each: Exported) -> dict[str, Any]:
     }
 
 
-def _sweep(folder: Path) -> None:
+def _sweep(folder: Path, prefix: str = FOLDER, kept: int = KEPT - 1) -> None:
     """Remove folders of files that were exported long ago, also by a killed process."""
     found: list[tuple[int, Path]] = []
-    for each in folder.glob(f"{FOLDER}*"):
+    for each in folder.glob(f"{prefix}*"):
         with suppress(OSError):  # another thread swept it
             found.append((each.stat().st_mtime_ns, each))
-    for _, each in sorted(found)[: -KEPT + 1]:
+    for _, each in sorted(found)[:-kept]:
         shutil.rmtree(each, ignore_errors=True)

@@ -36,6 +36,16 @@ export class Choices {
     this.build(entriesOf(value, this.exporters.map(({ name }) => name)));
   }
 
+  /** Change an option of an exporter that is chosen; return whether one is. */
+  change(use: string, option: string, value: Plain): boolean {
+    const entry = this.entries.find((each) => each.on && each.use === use);
+    if (!entry) return false;
+    entry.options = { ...entry.options, [option]: value };
+    this.build(this.entries);
+    this.onChange();
+    return true;
+  }
+
   private build(entries: Entry[]): void {
     this.entries = entries;
     this.root.replaceChildren(...entries.map((entry, at) => this.line(entry, at)));

@@ -3,40 +3,48 @@ import { button, hint, paragraph } from "../../elements";
 import { DocumentEditor } from "../../forms/editor";
 import { options } from "../../forms/kinds";
 import { alternatives, type FileSchema, type Plain } from "../../forms/schema";
-import { same } from "../../forms/values";
+import { isMap, same } from "../../forms/values";
 import type { Exported } from "../../server/messages";
 import type { Page } from "../../page";
 import { t } from "./words";
-import { productName } from "../../words/product_words";
 import type { Cure } from "../verdicts/verdicts";
 import { Choices, type Exporter } from "./choices";
 import { equals } from "./entries";
 import { address, outcomes, formatBytes } from "./outcomes";
+import { Previews } from "./previews";
+import { progress } from "./progress";
 
 export function build(page: Page, root: HTMLElement): void {
   const editor = new DocumentEditor(page);
   const status = document.createElement("p");
   status.setAttribute("role", "status");
+  status.id = "export-status";
+  status.tabIndex = -1;
   const tell = (text: string, className = ""): void => void Object.assign(status, { textContent: text, className });
   editor.onRefused = (why) => tell(why, "bad");
   const list = document.createElement("div");
   list.textContent = t("waiting");
   const results = document.createElement("div");
+  const previews = new Previews(page);
   let choices: Choices | null = null;
   let shown: Plain | undefined;
+  const preview = (): void => previews.show(choices?.blocks ?? []);
 
   const said = (): Plain | undefined => (page.document?.said?.export ?? undefined) as Plain | undefined;
   const follow = (): void => {
     if (!choices || same(said(), shown)) return;
     shown = said();
     choices.show(shown);
+    preview();
   };
   const load = async (): Promise<void> => {
     const schema = await page.net.ask<FileSchema>("schema");
     choices = new Choices(exportersOf(schema));
     shown = said();
     choices.show(shown);
+    choices.onChange = preview;
     list.replaceChildren(choices.root);
+    preview();
   };
   const run = async (): Promise<void> => {
     const exports = choices?.blocks ?? [];
@@ -49,6 +57,7 @@ export function build(page: Page, root: HTMLElement): void {
     } catch (error) {
       tell((error as Error).message, "bad");
     }
+    lookAt(root, status);
   };
   const add = async (): Promise<void> => {
     const exports = choices?.blocks ?? [];
@@ -58,6 +67,8 @@ export function build(page: Page, root: HTMLElement): void {
     if (await editor.submit(change)) tell(t("added"));
   };
   const cure: Cure = (key, value) => {
+    const [kind, use, option] = key.split(".");
+    if (kind === "export" && use && option && choices?.change(use, option, value)) return void run();
     void editor.submit({ changes: { [key]: value } }).then((done) => (done ? run() : undefined));
   };
 
@@ -67,7 +78,8 @@ export function build(page: Page, root: HTMLElement): void {
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   buttons.append(start, stopButton(page), button(t("add"), add));
-  root.append(hint(t("about")), list, buttons, progress(page), status, results);
+  const names = (): string[] => (choices?.blocks ?? []).map((each) => String(isMap(each) ? each.use : each));
+  root.append(hint(t("about")), list, previews.root, buttons, progress(page, names), status, results);
   void load().catch((error: Error) => (list.textContent = error.message));
 
   const stale = paragraph(t("stale"), "warn");
@@ -82,6 +94,7 @@ export function build(page: Page, root: HTMLElement): void {
   page.hub.on("document", () => {
     follow();
     age();
+    preview();
   });
   const before = page.hub.last("exported");
   if (before) show(before);
@@ -114,24 +127,12 @@ function stopButton(page: Page): HTMLElement {
   return stop;
 }
 
-/** Return the progress of the export. Not spoken: the status line announces start and end. */
-function progress(page: Page): HTMLElement {
-  const box = document.createElement("p");
-  box.className = "hint progress";
-  box.hidden = true;
-  const bar = document.createElement("progress");
-  bar.setAttribute("aria-label", t("running"));
-  const text = document.createElement("span");
-  box.append(bar, text);
-  page.hub.on("making", ({ want }) => {
-    box.hidden = want !== "export";
-    text.textContent = "";
-  });
-  page.hub.on("stage", ({ product, done }) => {
-    if (!done.outcome) text.textContent = t("making", { product: productName(product) });
-  });
-  for (const name of ["made", "gone"] as const) page.hub.on(name, () => (box.hidden = true));
-  return box;
+/** Lead the eye and the focus to the result, unless the person is elsewhere by now. */
+function lookAt(root: HTMLElement, status: HTMLElement): void {
+  const { activeElement } = document;
+  if (activeElement && activeElement !== document.body && !root.contains(activeElement)) return;
+  status.focus({ preventScroll: true });
+  status.scrollIntoView({ block: "nearest" });
 }
 
 function summaryOf({ exports }: Exported): [string, string] {

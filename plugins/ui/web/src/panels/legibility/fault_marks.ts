@@ -16,7 +16,11 @@ export class FaultMarks {
   private away: (() => void)[] = [];
   private elements = new Map<number, HTMLElement>();
 
-  constructor(private page: Page) {}
+  constructor(
+    private page: Page,
+    /** Returns whether the panel that lists the places is seen: the marks leave with it. */
+    private listed: () => boolean,
+  ) {}
 
   set visible(on: boolean) {
     this.shown = on;
@@ -32,7 +36,7 @@ export class FaultMarks {
       element.setAttribute("aria-hidden", "true");
       element.append(`${number}`);
       this.elements.set(number, element);
-      return this.page.overlay.stay(element, () => (this.shown ? this.where(at) : null));
+      return this.page.overlay.stay(element, () => (this.shown && this.listed() ? this.where(at) : null));
     });
     this.page.overlay.changed = true;
   }

@@ -5,6 +5,7 @@ import type { Legible, Medium } from "../../server/messages";
 import type { Page } from "../../page";
 import { t } from "./words";
 import { decimal } from "../../words/words";
+import { sentenceOf } from "../verdicts/cures";
 import { type Cure, gradeSentence, verdictTables } from "../verdicts/verdicts";
 import { FaultMarks } from "./fault_marks";
 import { numberFaults, faultList } from "./fault_list";
@@ -15,7 +16,8 @@ const WIDTH_MM = { least: 10, most: 2000 };
 
 export function build(page: Page, root: HTMLElement): void {
   const editor = new DocumentEditor(page);
-  const marks = new FaultMarks(page);
+  const marks = new FaultMarks(page, () => root.checkVisibility());
+  new IntersectionObserver(() => (page.overlay.changed = true)).observe(root); // the panel was opened or closed
   const medium = choice();
   const width = widthField();
   const status = document.createElement("p");
@@ -59,6 +61,7 @@ export function build(page: Page, root: HTMLElement): void {
     marks.visible = stale.hidden && marked.input.checked;
   };
   const cure: Cure = (key, value) => {
+    if (key.startsWith("export.")) width.value = ""; // it is judged as export draws it from now on
     void editor.submit({ changes: { [key]: value } }).then((done) => (done ? work() : undefined));
   };
   const show = (verdict: Legible): void => {
@@ -87,11 +90,11 @@ function simplifyButton({ verdicts: all }: Legible, editor: DocumentEditor, chec
   const wanted = all.flatMap((each) => each.changes).filter(({ key }) => key === SIMPLIFY || key.startsWith(`${SIMPLIFY}.`));
   if (!wanted.length) return [];
   const changes = Object.fromEntries(wanted.reverse().map(({ key, value }) => [key, value])); // the first value of a key counts
-  const written = Object.entries(changes).map(([key, value]) => `${key}: ${JSON.stringify(value)}`);
+  const written = Object.entries(changes).map(([key, value]) => sentenceOf(key, value));
   const cure = button(t("simplify"), () => void editor.submit({ changes }).then((done) => (done ? check() : undefined)));
   cure.id = "legible-simplify";
   cure.className = "primary";
-  const about = hint(t("simplifyHint", { changes: written.join(", ") }));
+  const about = hint(t("simplifyHint", { changes: written.join("; ") }));
   about.id = "legible-simplify-hint";
   cure.setAttribute("aria-describedby", about.id);
   return [cure, about];

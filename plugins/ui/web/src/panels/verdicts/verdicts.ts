@@ -1,6 +1,7 @@
 /** Verdicts as tables, with source, cure in words, and buttons that change the document. */
 import { button, tableWithHeads, paragraph } from "../../elements";
 import type { Grade, Verdict } from "../../server/messages";
+import { restOf, sentenceOf } from "./cures";
 import { t } from "./words";
 
 const SHAPES: Record<Grade, string> = { ok: "✓", warn: "▲", unsafe: "✕", illegible: "✕" };
@@ -50,7 +51,7 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: Mor
   what.textContent = `${said.check}: ${said.of}`;
   element.append(what);
   element.insertCell().append(said.stands);
-  const texts = [said.note, said.source, said.verdict === "ok" ? "" : said.cure].filter((text) => text && fresh(`${said.check} ${text}`));
+  const texts = [said.note, said.source, said.verdict === "ok" ? "" : restOf(said)].filter((text) => text && fresh(`${said.check} ${text}`));
   const changes = said.changes.filter((each) => fresh(JSON.stringify(each)));
   const also = more(said);
   if (!texts.length && !changes.length && !also) return;
@@ -62,12 +63,7 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: Mor
     below.append(each);
   }
   if (also) below.append(also);
-  for (const { key, value } of changes) below.append(button(t("set", { key, value: written(value) }), () => cure(key, value)));
-}
-
-/** Return a value as the pipeline file writes it. */
-function written(value: Setting): string {
-  return typeof value === "string" ? value : JSON.stringify(value);
+  for (const { key, value } of changes) below.append(button(sentenceOf(key, value), () => cure(key, value)));
 }
 
 function foldable(title: string, inside: HTMLElement): HTMLElement {

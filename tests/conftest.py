@@ -18,6 +18,7 @@ from checked_calls import check
 from distributions import Points, distribution
 
 os.environ["MPLBACKEND"] = "Agg"
+os.environ["LC_ALL"] = "C.UTF-8"  # the tests are about the English texts, whatever language their reader has chosen
 HELPERS = str(Path(__file__).parent / "helpers")
 # processes that a test starts find the helpers too
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [os.environ.get("PYTHONPATH"), HELPERS]))

@@ -15,6 +15,7 @@ from typing import Any
 from unittest.mock import patch
 
 from tangible_core.cli.app import app, main
+from tangible_core.translation import set_language
 
 Done = subprocess.CompletedProcess[str]
 
@@ -42,6 +43,7 @@ def as_at_first() -> Iterator[None]:
             yield
         finally:
             app.registered_commands[:] = commands
+            set_language("en")
             for logger, level in zip(loggers, levels, strict=True):
                 logger.setLevel(level)
 

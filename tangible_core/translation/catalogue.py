@@ -1,0 +1,184 @@
+"""A language's catalogue, a .po file as translators know it: English texts of the source with their translations."""
+
+import json
+import re
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache, lru_cache
+from importlib.resources import files
+
+from .numerals import Numerals
+from .template import Template
+
+ENTRY = re.compile(r'^msgid((?:\s*"(?:[^"\\]|\\.)*")+)\s*msgstr((?:\s*"(?:[^"\\]|\\.)*")+)', re.MULTILINE)
+LINE = re.compile(r'"(?:[^"\\]|\\.)*"')
+JOINTS = ("; ", ": ", " -> ", ", ", " (", " <= ", " >= ", " < ", " > ", " ≥ ", " ≤ ", " / ", " x ", " and ", " or ")
+"""The marks between texts that stand in one line, those that bind least first."""
+WEAK = 9
+"""Fewest letters of a template that are recognised between words which are not known."""
+MOST_WORDS = 2
+"""Most words of a name, which stays as it is between texts that are known."""
+MOST_CHARACTERS = 3000
+"""Longest text that is taken apart."""
+CACHED = 8192
+"""Texts that are kept with their translations: a page shows the same ones again and again."""
+
+
+class Catalogue:
+    """The texts of one language."""
+
+    def __init__(self, entries: dict[str, str], numerals: Numerals) -> None:
+        templates = [Template(*each) for each in entries.items()]
+        self._exact = {each.english: each.translation for each in templates if not each.names}
+        varied = sorted((each for each in templates if each.names), key=lambda each: -each.letters)
+        self._strong = [each for each in varied if each.letters >= WEAK]
+        self._weak = [each for each in varied if each.letters < WEAK]
+        self._endings = [each for each in varied if each.english[0] in MARKS]
+        self._words: dict[str, list[str]] = {}
+        for english in self._exact:
+            if english.count(" ") >= MOST_WORDS or english[0] in MARKS:
+                self._words.setdefault(english[-LAST:], []).append(english)
+        self._numerals = numerals
+        self.find = lru_cache(CACHED)(self._find)
+
+    def __call__(self, text: str) -> str:
+        """Return a text in the language; what the catalogue does not know stays English, as a whole."""
+        return text if (found := self.find(text)) is None else found
+
+    def _find(self, text: str) -> str | None:
+        """Return a text in the language, or None if it is not known."""
+        bare = text.strip()
+        if not bare or len(bare) > MOST_CHARACTERS:
+            return None
+        before, after = text[: text.index(bare)], text[text.index(bare) + len(bare) :]
+        ways = (
+            self._exactly, self._strongly, self._counted, self._numerals, self._by_lines, self._without_ending,
+            self._by_sentences, self._by_joints, self._weakly, self._by_joint_and_names,
+            self._without_stop,
+        )  # fmt: skip
+        found = next(filter(None, (way(bare) for way in ways)), None)
+        if found is None and after:  # a template whose last placeholder is empty
+            return (found := self._strongly(f"{bare} ")) and before + found + after[1:]
+        return None if found is None else before + found + after
+
+    def _exactly(self, text: str) -> str | None:
+        joined = " ".join(text.split())
+        if (found := self._exact.get(text) or self._exact.get(joined)) is not None:
+            return found
+        found = self._exact.get(f"{joined}.")  # as in a list of commands
+        return found and found.removesuffix(".")
+
+    def _strongly(self, text: str) -> str | None:
+        return self._by_template(text, self._strong)
+
+    def _weakly(self, text: str) -> str | None:
+        return self._by_template(text, self._weak, self._fits)
+
+    def _by_template(
+        self, text: str, templates: Sequence[Template], fits: Callable[[str], bool] = lambda _: True
+    ) -> str | None:
+        """Return a text that was made of one of these templates, and whose values fit."""
+        for each in templates:
+            values = each.match(text) if each.longest in text else None
+            if values is not None and all(map(fits, values.values())):
+                return each.fill(values, self)
+        return None
+
+    def _fits(self, text: str) -> bool:
+        """Return True for a text that is known, a name, or code."""
+        return is_name(text.strip()) or self.find(text) is not None
+
+    def _counted(self, text: str) -> str | None:
+        """Return a number of known things, such as `3 ok`."""
+        number, _, rest = text.partition(" ")
+        found = self._exact.get(rest)
+        return f"{number} {found}" if found and number.isdecimal() else None
+
+    def _by_lines(self, text: str) -> str | None:
+        """Return a text of several paragraphs or lines."""
+        for mark in ("\n\n", "\n"):
+            if mark in text:
+                return mark.join(map(self, text.split(mark)))
+        return None
+
+    def _without_ending(self, text: str) -> str | None:
+        """Return a text with an addition, such as a hint in brackets, a place, or a further fact."""
+        for ending in self._words.get(text[-LAST:], ()):
+            start = len(text) - len(ending)
+            apart = start > 0 and text.endswith(ending) and (text[start - 1] == " " or ending[0] in MARKS)
+            if apart and self._fits(text[:start]):
+                return self(text[:start]) + self._exact[ending]
+        for each in self._endings:
+            place = text.rfind(each.literals[0])
+            values = each.match(text[place:]) if place > 0 else None
+            if values is not None and all(map(self._fits, (text[:place], *values.values()))):
+                return self(text[:place]) + each.fill(values, self)
+        return None
+
+    def _by_sentences(self, text: str) -> str | None:
+        sentences = re.split(r"(?<=[.!?]) +(?=[A-Z`[])", text)
+        known = len(sentences) > 1 and all(self.find(each) is not None for each in sentences)
+        return " ".join(map(self, sentences)) if known else None
+
+    def _by_joints(self, text: str) -> str | None:
+        """Return two texts, such as those of a list or a place and a text, that are known."""
+        return self._by_halves(text, lambda each: self.find(each) is not None)
+
+    def _by_joint_and_names(self, text: str) -> str | None:
+        """Return a known text next to a name."""
+        return self._by_halves(text, self._fits)
+
+    def _by_halves(self, text: str, fits: Callable[[str], bool]) -> str | None:
+        for parts, joint in self._halves(text):
+            if all(map(fits, parts)) and any(self.find(each) is not None for each in parts):
+                return f"{self(parts[0])}{self._joint(joint)}{self(parts[1])}"
+        return None
+
+    def _without_stop(self, text: str) -> str | None:
+        found = self.find(text[:-1]) if text.endswith(".") else None
+        return found and f"{found}."
+
+    def _halves(self, text: str) -> Iterator[tuple[tuple[str, str], str]]:
+        for joint in JOINTS:
+            place = text.find(joint)
+            while place > 0:
+                yield (text[:place], text[place + len(joint) :]), joint
+                place = text.find(joint, place + 1)
+
+    def _joint(self, joint: str) -> str:
+        word = joint.strip()
+        return joint.replace(word, self._exact.get(word, word))
+
+
+MARKS = " ,;.:(["
+"""The marks with which an addition to a text begins."""
+LAST = 5
+"""Last letters by which additions are found."""
+
+
+def is_name(text: str) -> bool:
+    """Return True for a word, a short text that is not English prose, or code between backticks.
+
+    >>> is_name("Novint Falcon"), is_name("`a: 1 mm`"), is_name("halfway down")
+    (True, True, False)
+    """
+    words = text.split()
+    short = len(words) < 2 or (len(words) == 2 and not all(each.isalpha() and each.islower() for each in words))
+    return short or (text.startswith("`") and text.endswith("`"))
+
+
+@cache
+def catalogue(language: str) -> Catalogue:
+    """Return the catalogue of a language other than English."""
+    text = files("tangible_core.translation").joinpath(f"{language}.po").read_text(encoding="utf-8")
+    return Catalogue(parse(text), Numerals(language))
+
+
+def parse(text: str) -> dict[str, str]:
+    """Return the texts of a .po file with their translations, without those that have none yet."""
+    pairs = ((unquoted(english), unquoted(own)) for english, own in ENTRY.findall(text))
+    return {english: own for english, own in pairs if english and own}
+
+
+def unquoted(lines: str) -> str:
+    """Return the text of the quoted lines of an entry."""
+    return "".join(json.loads(each) for each in LINE.findall(lines))

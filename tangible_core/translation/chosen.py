@@ -1,0 +1,43 @@
+"""The language of the person at the terminal."""
+
+from collections.abc import Mapping
+
+LANGUAGES = ("en", "de", "fr")
+"""The languages of which there is a catalogue; English, the first, is the language of the source and needs none."""
+LOCALES = ("LC_ALL", "LC_MESSAGES", "LANG")
+"""The variables of the environment that name the locale of messages, the strongest first."""
+WITHOUT_LANGUAGE = ("", "C", "POSIX")
+_chosen = [LANGUAGES[0]]
+
+
+def language() -> str:
+    """Return the language in which the terminal is addressed."""
+    return _chosen[0]
+
+
+def set_language(tag: str) -> None:
+    """Address the terminal in the language of a tag, such as `de` or `de_AT.UTF-8`; in English if it has none."""
+    _chosen[0] = _spoken(tag) or LANGUAGES[0]
+
+
+def language_of_environment(environment: Mapping[str, str]) -> str:
+    """Return the language that the environment asks for, by the variables of gettext and in their order.
+
+    >>> language_of_environment({"LANG": "de_DE.UTF-8"})
+    'de'
+    >>> language_of_environment({"LANG": "en_GB.UTF-8", "LANGUAGE": "nl:fr:de"})
+    'fr'
+    >>> language_of_environment({"LC_ALL": "C.UTF-8", "LANGUAGE": "de"})
+    'en'
+    """
+    locale = next((environment[each] for each in LOCALES if environment.get(each)), "")
+    if locale.partition(".")[0] in WITHOUT_LANGUAGE:
+        return LANGUAGES[0]
+    tags = [*environment.get("LANGUAGE", "").split(":"), locale]
+    return next((found for found in map(_spoken, tags) if found), LANGUAGES[0])
+
+
+def _spoken(tag: str) -> str:
+    """Return the language of a tag, or "" if there is no catalogue of it."""
+    found = tag.replace("_", "-").partition("-")[0].partition(".")[0].lower()
+    return found if found in LANGUAGES else ""

@@ -1,0 +1,62 @@
+"""A text with placeholders: recognised in a finished English text, and filled in another language."""
+
+import re
+from collections.abc import Callable, Mapping
+from functools import cached_property
+
+PLACEHOLDER = re.compile(r"\{(\w+)(!s)?\}")
+
+
+class Template:
+    """An English text with placeholders such as `{name}`, and its translation.
+
+    In the translation the placeholders may stand in another order; `{name!s}` and those between backticks take what
+    stands in the text as it is, such as a number that goes into a file.
+    """
+
+    def __init__(self, english: str, translation: str) -> None:
+        self.english, self.translation = english, translation
+        self.literals = tuple(PLACEHOLDER.split(english)[::3])
+        self.letters = sum(map(str.isalpha, "".join(self.literals)))
+        self.longest = max(self.literals, key=len)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The names of the placeholders, in the order of the English text."""
+        return tuple(found[1] for found in PLACEHOLDER.finditer(self.english))
+
+    def match(self, text: str) -> Mapping[str, str] | None:
+        """Return what stands in place of each placeholder if a text was made of this template.
+
+        Each literal is looked for as early as possible, and the last one at the end: linear in the text's length.
+        """
+        first, *middle, last = self.literals
+        if not (text.startswith(first) and text.endswith(last)) or len(text) < len(first) + len(last):
+            return None
+        begin, end, values = len(first), len(text) - len(last), list[str]()
+        for literal in middle:
+            place = text.find(literal, begin, end)
+            if place < 0:
+                return None
+            values.append(text[begin:place])
+            begin = place + len(literal)
+        values.append(text[begin:end])
+        for number in reversed(range(len(middle))):  # of placeholders side by side, the first one has it all
+            if not middle[number]:
+                values[number], values[number + 1] = values[number + 1], values[number]
+        if "\n" not in self.english and any("\n" in each for each in values):
+            return None
+        return dict(zip(self.names, values, strict=True))
+
+    def fill(self, values: Mapping[str, str], embed: Callable[[str], str]) -> str:
+        """Return the translation with these values. embed: puts a value into the language."""
+        parts = self.translation.split("`")
+        for number, part in enumerate(parts):
+            coded = number % 2 == 1
+
+            def value(found: re.Match[str], coded: bool = coded) -> str:
+                own = values[found[1]]
+                return own if coded or found[2] else embed(own)
+
+            parts[number] = PLACEHOLDER.sub(value, part)
+        return "`".join(parts)

@@ -1,0 +1,40 @@
+"""Texts in a language, at the place where they are shown."""
+
+import re
+
+from .chosen import LANGUAGES, language
+
+MARKS = re.compile(r"((?<!\\)\[/?[a-z][a-z0-9_ #]*\]|(?<!\\)\[/\])")
+"""Marks of rich in a text."""
+
+
+def translate(text: str, to: str) -> str:
+    """Return an English text of the program in another language; a text without a translation stays as it is.
+
+    Arguments in a text are translated if they are texts of the program too, and numbers get the language's notation.
+    """
+    if to == LANGUAGES[0] or not text:
+        return text
+    from .catalogue import catalogue  # read only where it is needed
+
+    return catalogue(to)(text)
+
+
+def localise(text: str) -> str:
+    """Return an English text in the language of the terminal."""
+    return translate(text, language())
+
+
+def localise_marked(text: str) -> str:
+    """Return `localise` of a text with rich's marks, which stay."""
+    if language() == LANGUAGES[0]:
+        return text
+    return "".join(
+        each if number % 2 else _escaped(localise(each.replace(r"\[", "[")))
+        for number, each in enumerate(MARKS.split(text))
+    )
+
+
+def _escaped(text: str) -> str:
+    """Return a text whose brackets are not taken for marks."""
+    return re.sub(r"\[(?=[a-z/#@])", r"\\[", text)

@@ -1,0 +1,168 @@
+"""Texts in other languages: recognised as they were made, with numbers and known arguments in the language."""
+
+from pathlib import Path
+
+import pytest
+
+from command_line import tangible
+from english import english_of
+from shown_texts import is_prose, literals
+from tangible_core.errors import UnknownMethod, did_you_mean
+from tangible_core.translation import language_of_environment, translate
+from tangible_core.translation.catalogue import Catalogue, parse
+from tangible_core.translation.numerals import Numerals
+
+PO = """
+msgid ""
+msgstr "Language: de\\n"
+
+# a comment
+#: a file
+msgid "{name} is {height} high, and {share} of {whole} lies on {material}{hint}."
+msgstr "Auf {material}{hint} liegen {share} von {whole}; {name} ist {height} hoch."
+
+msgid "write `{key}: {value}` into {file}"
+msgstr "schreiben Sie `{key}: {value}` in {file!s}"
+
+msgid "(did you mean {near}?)"
+msgstr "(meinten Sie {near}?)"
+
+msgid "wood"
+msgstr "Holz"
+
+msgid "in the middle"
+msgstr "in der Mitte"
+
+msgid "is too low"
+msgstr "ist zu niedrig"
+
+msgid "It is done."
+msgstr ""
+"Es ist "
+"getan."
+
+msgid "and"
+msgstr "und"
+
+msgid "{count} parts"
+msgstr "{count} Teile"
+"""
+GERMAN = Catalogue(parse(PO), Numerals("de"))
+
+
+@pytest.mark.parametrize(
+    ("english", "german"),
+    [
+        ("It is done.", "Es ist getan."),
+        ("It is\n    done.", "Es ist getan."),
+        ("It is done", "Es ist getan"),
+        ("wall is 1.5 mm high, and 1,250.5 of 2 lies on wood.", "Auf Holz liegen 1.250,5 von 2; wall ist 1,5 mm hoch."),
+        (
+            "wall is 2 mm high, and 1 of 2 lies on x (did you mean 'y'?).",
+            "Auf x (meinten Sie 'y'?) liegen 1 von 2; wall ist 2 mm hoch.",
+        ),
+        ("write `a.b_m: 1.5` into file 2.5", "schreiben Sie `a.b_m: 1.5` in file 2.5"),
+        ("wall is too low in the middle, wood", "wall ist zu niedrig in der Mitte, Holz"),
+        ("3 parts and wood", "3 Teile und Holz"),
+        ("wall: It is done.", "wall: Es ist getan."),
+        ("a.yaml:3:1: It is done.", "a.yaml:3:1: Es ist getan."),
+        ("It is done.\nand that is not known", "Es ist getan.\nand that is not known"),
+        ("nothing of this is known, and so it stays in the middle", None),
+        ("version 3.11", "version 3.11"),
+    ],
+)
+def test_a_text_is_translated_whole_or_not_at_all(english: str, german: str | None) -> None:
+    assert GERMAN(english) == (english if german is None else german)
+
+
+def test_the_program_s_own_errors_are_translated() -> None:
+    error = UnknownMethod("depth", "semi-globl", ["semi-global", "zncc"])
+    said = translate(str(error), "de")
+    assert not english_of(said)
+    assert "'semi-global'" in said and "'semi-globl'" in said
+    assert did_you_mean("a", ["b"]) == ""
+
+
+def test_english_is_left_alone() -> None:
+    assert translate("1.5 mm", "en") == "1.5 mm"
+
+
+@pytest.mark.parametrize(
+    ("environment", "language"),
+    [
+        ({}, "en"),
+        ({"LANG": "de_AT.UTF-8"}, "de"),
+        ({"LANG": "de_AT.UTF-8", "LC_ALL": "C"}, "en"),
+        ({"LANG": "en_GB.UTF-8", "LC_MESSAGES": "fr_FR"}, "fr"),
+        ({"LANG": "nl_NL.UTF-8", "LANGUAGE": "nl:de:fr"}, "de"),
+        ({"LANG": "nl_NL.UTF-8"}, "en"),
+    ],
+)
+def test_the_environment_names_the_language(environment: dict[str, str], language: str) -> None:
+    assert language_of_environment(environment) == language
+
+
+def test_conditions_in_a_text_give_whole_texts(tmp_path: Path) -> None:
+    source = tmp_path / "module.py"
+    source.write_text(
+        "def say(n, path):\n"
+        "    '''Not this text.'''\n"
+        "    log.info('%s of %d are done', n, path)\n"
+        "    raise ConfigError(f\"{path}: {'is' if n == 1 else 'are'} not there, \" + f'{n} file{\"s\" * (n > 1)}')\n"
+    )
+    assert {text for _, text in literals(source) if is_prose(text)} == {
+        "{path}: is not there, {n} file",
+        "{path}: is not there, {n} files",
+        "{path}: are not there, {n} file",
+        "{path}: are not there, {n} files",
+        "{value} of {value2} are done",
+    }
+
+
+COMMANDS = [
+    ("--help",),
+    *((name, "--help") for name in (
+        "demo", "run", "plan", "export", "preflight", "legible", "feel", "replay", "plugins", "check", "cache",
+        "schema", "new", "parts", "batch", "compare", "devices", "materials", "pointer", "ui",
+    )),
+    ("plugins", "show", "--help"), ("devices", "doctor", "--help"), ("materials", "show", "--help"),
+    ("plugins",), ("plugins", "show", "render", "proxy"), ("plugins", "show", "depth", "semi-global"),
+    ("materials",), ("materials", "show", "wood"), ("devices", "doctor", "mock"), ("cache",),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
+def test_the_terminal_has_no_english_in_german(words: tuple[str, ...], tmp_path: Path) -> None:
+    done = tangible("--lang", "de", *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert not english_of(done.stdout + done.stderr)
+
+
+MISTAKES = [
+    ("run", "nothere.yaml"), ("run",), ("run", "--nonsense"), ("nonsense",), ("run", "a.png", "b.png", "c.png"),
+    ("plugins", "show", "depth", "nonsense"), ("materials", "show", "wod"), ("--log-level", "loud", "plugins"),
+    ("run", "a.yaml", "--seconds", "long"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("words", MISTAKES, ids=" ".join)
+def test_mistakes_are_told_in_german(words: tuple[str, ...], tmp_path: Path) -> None:
+    done = tangible(*words, "--lang", "de", cwd=tmp_path)
+    assert done.returncode == 2
+    assert not english_of(done.stderr)
+    assert english_of(tangible(*words, cwd=tmp_path).stderr)
+
+
+def test_results_are_told_in_german_and_data_in_english(tmp_path: Path) -> None:
+    pipeline = tmp_path / "photo.yaml"
+    pipeline.write_text(
+        "scene: builtin/coins\nwant: touch\ntexture: {use: gradient, segments: 3}\nrender: {use: proxy}\n"
+        "device: {use: mock}\nexport: [swell]\n"
+    )
+    for words in (("plan",), ("run", "--verbose", "--seconds", "0.2"), ("preflight", "--seconds", "0.1"),
+                  ("legible", "--for", "swell"), ("export",), ("parts",)):  # fmt: skip
+        done = tangible("--lang", "de", words[0], pipeline, *words[1:], cwd=tmp_path)
+        assert not english_of(done.stdout + done.stderr), words
+    data = tangible("--lang", "de", "plan", pipeline, "--json", cwd=tmp_path)
+    assert data.stdout == tangible("plan", pipeline, "--json", cwd=tmp_path).stdout
+    assert '"why"' in data.stdout

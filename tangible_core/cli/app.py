@@ -6,6 +6,7 @@ import atexit
 import gc
 import os
 import sys
+from io import StringIO
 from traceback import walk_tb
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +16,7 @@ from ..errors import ConfigError, TangibleError, exit_error
 from ..plugins import hooks
 from ..plugins.registry import default_registry
 from ..runtime import signals, standard_output
+from ..translation import LANGUAGES, language, localise
 from .command_table import COMMANDS, LazyGroup
 from .options import DONE, FAILED, INTERRUPTED, MISTAKE
 from .verbosity import parse_verbosity
@@ -30,7 +32,8 @@ app = typer.Typer(
     cls=LazyGroup,
     help="Turn pictures into something one can feel: `tangible demo` shows all of it.",
     epilog="Anywhere: --log-level [LOGGER=]LEVEL (debug, info, warning, error; for all or one logger); "
-    "-q, --quiet (only requested output, warnings and errors).",
+    "-q, --quiet (only requested output, warnings and errors); "
+    "--lang (en, de, fr; by default that of the environment).",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
@@ -88,6 +91,10 @@ def _check_folder() -> None:
 def _run_app() -> int:
     with standard_output.protect():
         words = parse_verbosity(sys.argv[1:])
+        if language() != LANGUAGES[0]:
+            from .help_text import localise_help
+
+            localise_help()
         hooks.tell(default_registry().plugins, "tangible_commands", app=app)
     try:
         code = app(words, standalone_mode=False, default_map=_without_help())
@@ -141,16 +148,17 @@ def _exit_code(work: Callable[[], int]) -> int:
 def _report_unexpected(error: BaseException) -> int:
     """Report typer's error about the words of the call, or a fault of the program or a plugin."""
     if (show := getattr(error, "show", None)) is not None:
-        return _report(show, MISTAKE)
+        show(text := StringIO())
+        return _report(text.getvalue().rstrip(), MISTAKE)
     from ..plugins import failures
 
     return _report(failures.sentence(error), FAILED if failures.place_of(error) is None else MISTAKE)
 
 
-def _report(message: str | Callable[[], None], code: int) -> int:
+def _report(message: str, code: int) -> int:
     """Print a message on standard error, which may be full or closed, and return the exit code."""
     try:
-        message() if callable(message) else typer.echo(message, err=True)
+        typer.echo(localise(message), err=True)
     except OSError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
     return code

@@ -20,20 +20,19 @@ if TYPE_CHECKING:
 def run_summary(run: Run) -> str:
     """Return what a run made, the size of the surface, and the forces on a simulated hand."""
     scene, products = without_folders(run.scene), [name for name, value in run.products.items() if value is not None]
-    if "touch" in products:
-        text = f"{scene} can now be felt"
-    elif products:
-        text = f"{scene} is done: its {_and(products)} {'is' if len(products) == 1 else 'are'} made"
-    else:
-        text = f"{scene} is done: nothing of it had to be made"
+    size, touch = "", ""
     if (surface := run.products.get("surface")) is not None:
         width_m, length_m = surface.extent_m
         height_m = float(surface.height_m.max())
-        text += f", as a surface of {1e3 * width_m:.0f} x {1e3 * length_m:.0f} mm, {1e3 * height_m:.3g} mm high"
+        size = f", as a surface of {1e3 * width_m:.0f} x {1e3 * length_m:.0f} mm, {1e3 * height_m:.3g} mm high"
     if (force := run.figures.get("force")) is not None:
-        text += f". A simulated hand felt it for {force['seconds']:.1f} s, with forces of up to "
-        text += f"{force['peak_force_n']:.1f} N"
-    return f"{text}."
+        peak_n = f"{force['peak_force_n']:.1f}"
+        touch = f" A simulated hand felt it for {force['seconds']:.1f} s, with forces of up to {peak_n} N."
+    if "touch" in products:
+        return f"{scene} can now be felt{size}.{touch}"
+    if products:
+        return f"{scene} is done: its {_and(products)} {'is' if len(products) == 1 else 'are'} made{size}.{touch}"
+    return f"{scene} is done: nothing of it had to be made{size}.{touch}"
 
 
 def where(files: Sequence[Path]) -> str:

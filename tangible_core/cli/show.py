@@ -16,6 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ..runtime.standard_output import stream
+from ..translation import localise, localise_marked
 
 if TYPE_CHECKING:
     from ..data import Outcome
@@ -46,15 +47,19 @@ def flush() -> None:
         own.flush()
 
 
-def table(headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None) -> None:
+def table(
+    headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None, named: bool = False
+) -> None:
     """Print a table without frames, or one entry a row if the terminal is too narrow.
 
     Cells are text with rich's marks. No text is lost: a word that is too long continues in the next line.
+    named: the first column has names to type, which stay as they are in every language.
     """
+    headings, title = [localise(each) for each in headings], title and localise_marked(title)
     grid = Table(title=title, title_justify="left", box=None, pad_edge=False, header_style="bold")
     for heading in headings:
         grid.add_column(heading, overflow="fold")
-    cells = [tuple(row) for row in rows]
+    cells = [(first if named else localise_marked(first), *map(localise_marked, rest)) for first, *rest in rows]
     for row in cells:
         grid.add_row(*row)
     terminal = console()
@@ -83,15 +88,15 @@ def entries(terminal: Console, headings: Sequence[str], rows: Iterable[Sequence[
         terminal.print(first, style="bold", highlight=False)
         for heading, cell in zip(headings[1:], others, strict=True):
             if cell:
-                text = Text.from_markup(cell) if isinstance(cell, str) else cell
-                terminal.print(Padding(Text.assemble(f"{heading}: " if heading else "", text), (0, 0, 0, 2)))
+                text = Text.from_markup(localise_marked(cell)) if isinstance(cell, str) else cell
+                terminal.print(Padding(Text.assemble(f"{localise(heading)}: " if heading else "", text), (0, 0, 0, 2)))
 
 
 def entry(head: str, text: str) -> None:
     """Print a name and an indented text below it, both without marks."""
     terminal = console(highlight=False)
     terminal.print(Text(head, style="bold"))
-    terminal.print(Padding(Text(text), (0, 0, 0, 4)))
+    terminal.print(Padding(Text(localise(text)), (0, 0, 0, 4)))
 
 
 def outcomes(rows: Iterable[Outcome], title: str | None = None, ran: str = "ran") -> None:
@@ -138,6 +143,10 @@ def verdicts(heading: str, rows: Sequence[Verdict], colours: Mapping[str, str], 
     colours: grade -> rich's style. widths: of the columns of grades and of checks.
     """
     say(f"{heading}\n")
+    widths = (
+        max(widths[0], *(len(localise(grade)) for grade in colours)),
+        max(widths[1], *(len(localise(each.check)) for each in rows), 0),
+    )
     for verdict in rows:
         say(verdict_line(verdict, colours, widths))
     grades = Counter(each.verdict for each in rows)
@@ -149,9 +158,11 @@ def verdict_line(verdict: Verdict, colours: Mapping[str, str], widths: tuple[int
     from ..preflight import relation
 
     grade, check = widths
-    text = "; ".join(filter(None, (f"{verdict.of}: {relation(verdict)}", verdict.note, verdict.source)))
-    cure = f"\n{'':>{grade + check + 2}}cure: {verdict.cure}" if verdict.cure else ""
-    return f"[{colours[verdict.verdict]}]{verdict.verdict:<{grade}}[/] {verdict.check:<{check}} {escape(text + cure)}"
+    stands = f"{localise(verdict.of)}: {localise(relation(verdict))}"
+    text = "; ".join(filter(None, (stands, localise(verdict.note), localise(verdict.source))))
+    cure = f"\n{'':>{grade + check + 2}}{localise('cure')}: {localise(verdict.cure)}" if verdict.cure else ""
+    name, topic = localise(verdict.verdict), localise(verdict.check)
+    return f"[{colours[verdict.verdict]}]{name:<{grade}}[/] {topic:<{check}} {escape(text + cure)}"
 
 
 def as_rows(rows: Iterable[Outcome]) -> list[dict[str, Any]]:
@@ -161,19 +172,19 @@ def as_rows(rows: Iterable[Outcome]) -> list[dict[str, Any]]:
 
 def sentence(text: str, apart: bool = True) -> None:
     """Print a summary, folded between words; apart: with an empty line before the lines below it."""
-    console(highlight=False).print(text, *[""] * apart, markup=False, sep="\n")
+    console(highlight=False).print(localise(text), *[""] * apart, markup=False, sep="\n")
 
 
 def say(text: str) -> None:
     """Print a line of text with rich's marks."""
-    console(highlight=False, soft_wrap=True).print(text)
+    console(highlight=False, soft_wrap=True).print(localise_marked(text))
 
 
 def plain(text: str) -> None:
     """Print a text that can be copied: without marks or folding."""
-    console(highlight=False, soft_wrap=True).print(text, markup=False)
+    console(highlight=False, soft_wrap=True).print(localise(text), markup=False)
 
 
 def note(text: str) -> None:
     """Print a line for people on standard error, apart from the results."""
-    Console(stderr=True, highlight=False, soft_wrap=True).print(text, markup=False)
+    Console(stderr=True, highlight=False, soft_wrap=True).print(localise(text), markup=False)

@@ -42,16 +42,17 @@ def plugins(context: typer.Context, as_json: Json = False) -> None:
 
     from ...plugins.registry import default_registry
     from ...runtime.standard_output import stream
+    from ...translation import localise
 
     rows = [{column: getattr(each, column) for column in (*COLUMNS, "target")} for each in default_registry().listings]
     if as_json:
         print(json.dumps(rows, indent=2, ensure_ascii=False), file=stream())
         return
-    lines = [{column: column for column in COLUMNS}, *rows]
+    lines = [{column: localise(column) for column in COLUMNS}, *rows]
     widths = [max(len(row[column]) for row in lines) for column in COLUMNS[:-1]]
     for row in lines:
         cells = (row[column].ljust(width) for column, width in zip(COLUMNS, widths, strict=False))
-        print(*cells, row["summary"], sep="  ", file=stream())
+        print(*cells, localise(row["summary"]), sep="  ", file=stream())
 
 
 @app.command("show")
@@ -65,6 +66,7 @@ def show_one(kind: Kind, name: Name, as_json: Json = False) -> None:
     from ...metrics.measured import load_measured
     from ...pipeline.config.markdown import options_of
     from ...plugins.registry import default_registry
+    from ...translation import localise
     from .. import show
 
     registry = default_registry()
@@ -76,10 +78,11 @@ def show_one(kind: Kind, name: Name, as_json: Json = False) -> None:
         head = {column: getattr(listing, column) for column in (*COLUMNS, "target")}
         show.print_json({**head, "text": text, "options": [each._asdict() for each in options], "measured": figures})
         return
-    show.plain(f"{listing.name} is {WORDS[kind]} of {listing.origin}.\n\n{text}\n")
+    show.plain(f"{listing.name} is {WORDS[kind]} of {listing.origin}.\n")
+    show.plain(f"{text}\n")
     show.say("[bold]options[/]" if options else "It has no options.")
     for each in options:
-        bounds = ", ".join(filter(None, (each.unit, each.values)))
+        bounds = ", ".join(filter(None, (each.unit, localise(each.values))))
         show.entry(f"{each.name} = {each.default or 'null'}   ({bounds})", each.meaning)
     show.plain(f"\n{_speed_and_accuracy(listing, measurements)}")
     show.plain(f"Its source: {inspect.getsourcefile(cls)}")

@@ -61,7 +61,7 @@ def materials(context: typer.Context, library: Library = None, as_json: Json = F
         for each in known.values()
     ]
     headings = ("material", "N/m", "N s/m", "static", "dynamic friction", "texture", "roughness um", "grain mm")
-    show.table(headings, rows)
+    show.table(headings, rows, named=True)
     show.say("\n[bold]sources[/]")
     for each in known.values():
         show.say(f"  {each.name}: {each.source}")
@@ -96,7 +96,7 @@ def show_one(
         show.print_json({**asdict(material), "sources": sources, "vibration_hz": _vibration_hz(material)})
         return
     rows = [(key, _worth(getattr(material, key)), _unit(key), sources[key]) for key in VALUES]
-    show.table(("value", "", "unit", "source"), rows, f"[bold]{material.name}[/]")
+    show.table(("value", "", "unit", "source"), rows, f"[bold]{material.name}[/]", named=True)
     show.say(f"\n{material.texture}: {MODELS[material.texture]}.")
     if (hertz := _vibration_hz(material)) is not None:
         show.say(f"A stroke at {STROKE_M_PER_S:g} m/s vibrates with {hertz:.0f} Hz.")

@@ -36,7 +36,7 @@ def figures(rounds: int = 2) -> list[Figure]:
         theirs = pandora(scene)
     except ImportError:
         return [
-            Figure(what, bound, "not measured: pandora is not installed (pip install 'tangible-images[peers]')", False)
+            Figure(what, bound, "not measured: pandora is not installed (pip install 'pandora[sgm]')", False)
         ]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

@@ -55,7 +55,7 @@ def _shapely() -> Any:
     try:
         return import_module("shapely")
     except ImportError as error:
-        raise BrokenMethod(f"borders as lines need shapely ({error}); pip install 'tangible-images[export]'") from error
+        raise BrokenMethod(f"borders as lines need shapely ({error}); pip install shapely") from error
 
 
 def _rings(parts: PartMap) -> tuple[Float64[np.ndarray, "k 2"], Int64[np.ndarray, "k"], Int64[np.ndarray, "m"]]:

@@ -35,7 +35,7 @@ def need(name: str) -> ModuleType:
         return module
     except ImportError as error:
         package = name.partition(".")[0]
-        raise BrokenMethod(f"this method needs {package} ({error}); pip install 'tangible-images[torch]'") from error
+        raise BrokenMethod(f"this method needs {package} ({error}); pip install torch kornia") from error
 
 
 @contextmanager

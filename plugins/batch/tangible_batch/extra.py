@@ -23,4 +23,4 @@ def need_all() -> None:
 
 
 def _missing(name: str, why: object) -> BatchError:
-    return BatchError(f"this needs {name} ({why}); pip install 'tangible-images[batch]'")
+    return BatchError(f"this needs {name} ({why}); pip install distributed pyarrow")

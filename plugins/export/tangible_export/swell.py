@@ -92,7 +92,7 @@ class Swell(Exporter, Previewing):
             from .paper.opening import open_parts
             from .paper.page import drawn_pages
         except ImportError as error:
-            raise BrokenMethod(f"pages need shapely ({error}); pip install 'tangible-images[export]'") from error
+            raise BrokenMethod(f"pages need shapely ({error}); pip install shapely") from error
         if (parts := work.simplified) is None:
             raise PictureError("this scene has no parts to outline; it needs a picture, or its own `parts:`")
         sheet = sheet_for(self.page, _aspect(work, parts), self.width_m)

@@ -433,7 +433,7 @@ class TestScenes:
         monkeypatch.setattr(extra, "find_spec", lambda name: None)
         done = self.run(archive.parent)
         assert done.returncode == 2
-        assert "pip install 'tangible-images[batch]'" in done.stderr
+        assert "pip install distributed pyarrow" in done.stderr
 
     def test_folder_names_are_safe_on_any_system(self, archive: Path, tmp_path: Path):
         rows = [

@@ -108,7 +108,7 @@ class _OnnxRuntime:
             library: Any = import_module("onnxruntime")
         except ImportError as error:
             raise BrokenMethod(
-                f"runtime: onnxruntime is not installed ({error}); pip install 'tangible-images[onnx]', or "
+                f"runtime: onnxruntime is not installed ({error}); pip install onnxruntime, or "
                 "onnxruntime-gpu for a graphics card"
             ) from error
         options = library.SessionOptions()

@@ -10,7 +10,7 @@ from tangible_core.errors import DeviceAbsent, DeviceError
 
 INSTALL = (
     "install the Force Dimension SDK 3.16 or newer (forcedimension.com), then pip install "
-    "'tangible-images[force-dimension]' with Python 3.12 or older; FDSDK in the environment may name the SDK's folder"
+    "forcedimension-core with Python 3.12 or older; FDSDK in the environment may name the SDK's folder"
 )
 
 

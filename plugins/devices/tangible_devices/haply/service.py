@@ -15,7 +15,7 @@ from tangible_core.errors import DeviceAbsent, DeviceError
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
 
-INSTALL = "pip install 'tangible-images[haply]'"
+INSTALL = "pip install websockets"
 START = "start Haply Hub or the Haply Inverse Service, or give its address with option uri"
 MOST_BYTES = 1 << 22
 PROBLEMS = {

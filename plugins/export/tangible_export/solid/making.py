@@ -16,7 +16,7 @@ from .triangles import Triangles, all_triangles, few_triangles, sample_nodes
 
 log = logging.getLogger(__name__)
 
-INSTALL = "pip install 'tangible-images[export]'"
+INSTALL = "pip install pydelatin"
 MOST_NODES = 24_000_000
 """Largest number of nodes: 5333 x 4500 take a gibibyte."""
 MOST_TRIANGLES = 2_000_000

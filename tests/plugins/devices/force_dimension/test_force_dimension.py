@@ -151,7 +151,7 @@ class TestAxes:
 
 class TestFaults:
     def test_open_without_package_names_what_to_install(self, missing: None):
-        with pytest.raises(DeviceAbsent, match=r"pip install 'tangible-images\[force-dimension\]'"):
+        with pytest.raises(DeviceAbsent, match=r"pip install forcedimension-core"):
             ForceDimension().open()
 
     def test_open_without_device_is_refused(self, dhd: Library):

@@ -44,14 +44,14 @@ def write_texts(given: Work, exporter: Text, folder: Path) -> tuple[dict[str, st
 
 
 def items(text: str) -> list[str]:
-    return [line for line in text.splitlines() if line[:1].isdigit()]
+    return [line for line in text.splitlines() if line.startswith("- ")]
 
 
 def test_text_with_named_parts_describes_the_surface(tmp_path: Path):
     merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
     texts, notes = write_texts(work("ciel", "", "île", "eau", simplified=merged), Text(), tmp_path)
     assert texts.keys() == {".txt", ".html"}
-    assert [each.split(".")[1] for each in items(texts[".txt"])] == [" eau", " île", " partie 2", " ciel"]
+    assert [each.split(".")[0] for each in items(texts[".txt"])] == ["- eau", "- île", "- partie 2", "- ciel"]
     assert "Le long du bord inférieur" in items(texts[".txt"])[0]
     assert '<html lang="fr">' in texts[".html"]
     assert notes == []
@@ -60,20 +60,20 @@ def test_text_with_named_parts_describes_the_surface(tmp_path: Path):
 def test_text_without_names_describes_the_simplified_parts(tmp_path: Path):
     merged = np.where(LABELS < 2, 0, 3).astype(np.int32)
     texts, notes = write_texts(work(simplified=merged), Text(), tmp_path)
-    assert [each[:12] for each in items(texts[".txt"])] == ["1. partie 4.", "2. partie 1."]
+    assert [each[:11] for each in items(texts[".txt"])] == ["- partie 4.", "- partie 1."]
     assert notes == ["no part has a name, so parts are described by number; `tangible parts` shows them for naming"]
     texts, notes = write_texts(work(simplified=None), Text(), tmp_path)
-    assert items(texts[".txt"]) == [] and "<ol>" not in texts[".html"] and notes == []
+    assert items(texts[".txt"]) == [] and "<ul>" not in texts[".html"] and notes == []
     assert "4 matières" in texts[".txt"]
 
 
 def test_text_is_in_the_language_of_the_pipeline_by_default(tmp_path: Path):
     names = "ciel", "lac", "île", "eau"
     texts, _ = write_texts(work(*names), Text(language="de"), tmp_path)
-    assert "1. eau. Am unteren Rand entlang." in texts[".txt"]
+    assert "- eau. Am unteren Rand entlang." in texts[".txt"]
     assert '<html lang="de">' in texts[".html"] and '<span lang="fr" dir="auto">eau</span>' in texts[".html"]
     texts, notes = write_texts(work(*names, language="pt-BR"), Text(), tmp_path)
-    assert "1. eau. Along the bottom." in texts[".txt"]
+    assert "- eau. Along the bottom." in texts[".txt"]
     assert '<html lang="en">' in texts[".html"] and '<h1><span lang="pt-BR" dir="auto">Le lac</span>' in texts[".html"]
     assert notes == ["described in English: there are no words for the language 'pt-BR'; there are for en, de and fr"]
 
@@ -97,7 +97,7 @@ def test_braille_has_the_lines_and_pages_of_embossers(tmp_path: Path):
     first, *later = (line for line in lines if line)
     assert first == as_ascii(translate("Le lac", "fr"))
     starts = [line for line in later if not line.startswith(" ")]
-    assert sum(line.startswith(as_ascii(translate(f"{n}.", "fr"))) for line in starts for n in (1, 2, 3, 4)) == 4
+    assert sum(line.startswith(as_ascii(translate("- ", "fr"))) for line in starts) == 4
     assert all(line.startswith("  ") for line in later if line not in starts)
     told = texts[".txt"].splitlines()
     assert 1 + len(starts) == sum(map(bool, told)), "a line begins at the margin for each line of the text"
@@ -106,7 +106,7 @@ def test_braille_has_the_lines_and_pages_of_embossers(tmp_path: Path):
 
 def test_braille_is_in_the_language_of_the_text(tmp_path: Path):
     brf = write_texts(work("ciel", "lac", "île", "eau"), Text(braille=True, language="de"), tmp_path)[0][".brf"]
-    assert f"\n{as_ascii(translate('1. eau.', 'de'))} " in brf
+    assert f"\n{as_ascii(translate('- eau.', 'de'))} " in brf
 
 
 def test_text_of_heights_lists_parts_from_high_to_low(tmp_path: Path):
@@ -138,4 +138,4 @@ def test_pipeline_exports_text(tmp_path: Path):
     lines = text.read_text().splitlines()
     assert lines[0] == "Rampe"
     assert lines[2].startswith("Eine Fläche, 240 mm breit und 160 mm lang")
-    assert [each[:9] for each in items(text.read_text())] == ["1. unten.", "2. oben. "]
+    assert [each[:9] for each in items(text.read_text())] == ["- unten. ", "- oben. A"]

@@ -55,7 +55,7 @@ def describe_at_length(
     parts: Sequence[PartFacts] = (),
     kind: SceneKind | None = None,
 ) -> tuple[str, ...]:
-    """Return the lines of a long description: title, overview, heading, and a numbered line for each part.
+    """Return the lines of a long description: title, overview, heading, and a line for each part.
 
     parts: from near to far, by `facts`. kind: the kind of the scene, if it is known.
 
@@ -66,9 +66,7 @@ def describe_at_length(
     lines = [told.title, "", " ".join(told.overview)]
     if told.parts:
         lines += ["", told.heading]
-    lines += [
-        f"{place}. {end_sentence(each.label)} {' '.join(each.sentences)}" for place, each in enumerate(told.parts, 1)
-    ]
+    lines += [f"- {end_sentence(each.label)} {' '.join(each.sentences)}" for each in told.parts]
     return (*lines, told.left_out) if told.left_out else tuple(lines)
 
 

@@ -39,7 +39,7 @@ def page_of(
     items = "".join(
         f"<li><strong>{end_sentence(each.label)}</strong> {' '.join(each.sentences)}</li>\n" for each in told.parts
     )
-    listed = f"<h2>{told.heading}</h2>\n<ol>\n{items}</ol>\n" if told.parts else ""
+    listed = f"<h2>{told.heading}</h2>\n<ul>\n{items}</ul>\n" if told.parts else ""
     left = f"<p>{told.left_out}</p>\n" if told.left_out else ""
     return f"""<!doctype html>
 <html lang="{language}">

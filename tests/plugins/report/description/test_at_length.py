@@ -104,12 +104,12 @@ def lines_of(*parts: PartFacts) -> list[str]:
 )
 def test_description_has_words_for_shares(share: float, says: str):
     [line] = lines_of(told(1, "Who?", share))
-    assert line == f"1. Who? {says}, 10 mm wide and 20 mm long."
+    assert line == f"- Who? {says}, 10 mm wide and 20 mm long."
 
 
 def test_description_has_a_part_without_a_name_of_the_least_share():
     [line] = lines_of(told(1, share=0.001))
-    assert line.startswith("1. part 2. A small part of the picture (0.1 %)")
+    assert line.startswith("- part 2. A small part of the picture (0.1 %)")
 
 
 def test_description_of_the_ground_has_no_height():
@@ -125,7 +125,7 @@ def test_description_leaves_out_the_smallest_parts():
     shares = [0.001 + 0.0001 * (number * 7 % 62) for number in range(62)]
     lines = lines_of(*(told(number, share=share) for number, share in enumerate(shares)), told(62, share=0.00099))
     assert lines[-1].startswith("3 smaller parts")
-    left = {number for number in range(62) if not any(f". {name_part(number)}. " in line for line in lines)}
+    left = {number for number in range(62) if not any(f"- {name_part(number)}. " in line for line in lines)}
     assert left == {0, 9}  # of 0.1 and 0.11 %
 
 
@@ -141,7 +141,7 @@ def test_description_of_one_pixel_has_no_parts():
     [only] = facts(dot)
     assert (only.share, only.size_m, only.neighbours, only.place) == (1.0, (0.01, 0.01), (), "- -")
     assert describe_at_length(dot, "dot", "en", [only])[-1] == (
-        "1. part 1. More than half of the picture (100 %), 10 mm wide and 10 mm long, 1000 mm high."
+        "- part 1. More than half of the picture (100 %), 10 mm wide and 10 mm long, 1000 mm high."
     )
     flat = HapticSurface.from_heights(np.zeros((4, 4)))
     assert facts(flat) == ()
@@ -158,11 +158,11 @@ def test_description_of_one_pixel_has_no_parts():
             "It is highest on the right, halfway down and lowest along the top; about 94 % of it is flat.",
             "",
             "Parts, from near to far",
-            "1. cup. On the right, halfway down. A medium-sized part of the picture (15 %), 24 mm wide and 30 mm long, "
+            "- cup. On the right, halfway down. A medium-sized part of the picture (15 %), 24 mm wide and 30 mm long, "
             "4.3 mm high. Feels like glass. Beside it: wall, part 2.",
-            "2. part 2. Along the bottom. A large part of the picture (34 %), 80 mm wide and 24 mm long, 2 mm high. "
+            "- part 2. Along the bottom. A large part of the picture (34 %), 80 mm wide and 24 mm long, 2 mm high. "
             "Feels like wood. Beside it: wall, cup.",
-            "3. wall. Along the top. More than half of the picture (51 %), 80 mm wide and 36 mm long. "
+            "- wall. Along the top. More than half of the picture (51 %), 80 mm wide and 36 mm long. "
             "Feels like stone. Beside it: part 2, cup.",
         )),
         ("de", (
@@ -172,11 +172,11 @@ def test_description_of_one_pixel_has_no_parts():
             "am tiefsten am oberen Rand entlang; etwa 94 % davon sind eben.",
             "",
             "Teile, von nah nach fern",
-            "1. cup. Rechts auf halber Höhe. Ein mittelgroßer Teil des Bildes (15 %), 24 mm breit und 30 mm lang, "
+            "- cup. Rechts auf halber Höhe. Ein mittelgroßer Teil des Bildes (15 %), 24 mm breit und 30 mm lang, "
             "4,3 mm hoch. Fühlt sich an wie Glas. Daneben: wall, Teil 2.",
-            "2. Teil 2. Am unteren Rand entlang. Ein großer Teil des Bildes (34 %), 80 mm breit und 24 mm lang, "
+            "- Teil 2. Am unteren Rand entlang. Ein großer Teil des Bildes (34 %), 80 mm breit und 24 mm lang, "
             "2 mm hoch. Fühlt sich an wie Holz. Daneben: wall, cup.",
-            "3. wall. Am oberen Rand entlang. Mehr als die Hälfte des Bildes (51 %), 80 mm breit und 36 mm lang. "
+            "- wall. Am oberen Rand entlang. Mehr als die Hälfte des Bildes (51 %), 80 mm breit und 36 mm lang. "
             "Fühlt sich an wie Stein. Daneben: Teil 2, cup.",
         )),
         ("fr", (
@@ -186,11 +186,11 @@ def test_description_of_one_pixel_has_no_parts():
             "mi-hauteur ; il est le plus bas le long du bord supérieur ; environ 94 % de la surface sont plats.",
             "",
             "Parties, de la plus proche à la plus lointaine",
-            "1. cup. À droite, à mi-hauteur. Une partie moyenne de l'image (15 %), 24 mm de large et 30 mm de long, "
+            "- cup. À droite, à mi-hauteur. Une partie moyenne de l'image (15 %), 24 mm de large et 30 mm de long, "
             "4,3 mm de haut. Au toucher, comme du verre. À côté : wall, partie 2.",
-            "2. partie 2. Le long du bord inférieur. Une grande partie de l'image (34 %), 80 mm de large et 24 mm de "
+            "- partie 2. Le long du bord inférieur. Une grande partie de l'image (34 %), 80 mm de large et 24 mm de "
             "long, 2 mm de haut. Au toucher, comme du bois. À côté : wall, cup.",
-            "3. wall. Le long du bord supérieur. Plus de la moitié de l'image (51 %), 80 mm de large et 36 mm de long. "
+            "- wall. Le long du bord supérieur. Plus de la moitié de l'image (51 %), 80 mm de large et 36 mm de long. "
             "Au toucher, comme de la pierre. À côté : partie 2, cup.",
         )),
     ],
@@ -216,8 +216,8 @@ def test_description_of_many_parts_has_the_named_and_largest(extra: int, says: s
         HapticSurface.from_heights(labels * 1e-4, 0.08, labels), names=("the lowest", *[""] * (count - 1))
     )
     lines = describe_at_length(surface, "x", "en", facts(surface))
-    assert sum(". part " in line or "the lowest" in line for line in lines if line[:1].isdigit()) == MOST_PARTS
-    assert any(line.startswith(f"{MOST_PARTS}. the lowest. ") for line in lines)
+    assert sum("- part " in line or "the lowest" in line for line in lines if line.startswith("- ")) == MOST_PARTS
+    assert [line for line in lines if line.startswith("- ")][-1].startswith("- the lowest. ")
     assert (lines[-1] if says else None) == says
 
 
@@ -248,20 +248,20 @@ def test_page_has_the_words_of_the_lines(language: Any):
     surface = still_life(("wall & <b>", "", "cup"))
     page = Page(page_of(surface, 'A "still" <life>', language, facts(surface)))
     assert page.open == [("", "")]
-    assert page.tags.count("h1") == page.tags.count("main") == page.tags.count("title") == page.tags.count("ol") == 1
+    assert page.tags.count("h1") == page.tags.count("main") == page.tags.count("title") == page.tags.count("ul") == 1
     assert page.tags.count("li") == 3
-    assert page.tags.index("h1") < page.tags.index("h2") < page.tags.index("ol")
+    assert page.tags.index("h1") < page.tags.index("h2") < page.tags.index("ul")
     assert {"script", "img", "link", "b"}.isdisjoint(page.tags)
     assert ("html", "lang", language) in page.attributes
     body = " ".join(text for _, text in page.text[2:])
     lines = describe_at_length(surface, 'A "still" <life>', language, facts(surface))
-    told = " ".join(line.split(". ", 1)[1] if line[:1].isdigit() else line for line in lines if line)
+    told = " ".join(line.removeprefix("- ") for line in lines if line)
     assert body == told
 
 
 def test_page_tells_what_is_left_out():
     page = page_of(HapticSurface.from_heights(np.zeros((4, 4))), "x", "en", [told(0), told(1, share=0.0005)])
-    assert "</ol>\n<p>One smaller part, 0.1 % of the picture, is left out.</p>\n</main>" in page
+    assert "</ul>\n<p>One smaller part, 0.1 % of the picture, is left out.</p>\n</main>" in page
 
 
 def test_page_marks_names_in_another_language():

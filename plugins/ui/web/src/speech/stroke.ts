@@ -19,7 +19,7 @@ export const CROSSED_M = 0.0005;
 const BESIDE_M = 0.0025;
 /** Distance to the rim at which it is met, and from which on it can be met again, metres. */
 const RIM_M = { met: 0.0006, left: 0.003 };
-/** Rise or fall that is told, metres, and as a share of the relief: the greater counts. */
+/** Smallest rise or fall within a part, metres, and as a share of the relief: the greater counts. */
 const SLOPE = { leastM: 0.0005, share: 0.15 };
 /** Longest way between two places that is walked, metres: beyond it the hand was set down elsewhere. */
 const LONGEST_M = 0.1;

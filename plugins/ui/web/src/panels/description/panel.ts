@@ -97,7 +97,7 @@ function inElements({ title, overview, heading, parts, left_out }: Description):
   if (!parts.length) return elements;
   const second = document.createElement("h4");
   second.textContent = heading;
-  const list = document.createElement("ol");
+  const list = document.createElement("ul");
   for (const { label, says } of parts) {
     const item = document.createElement("li");
     const name = document.createElement("strong");

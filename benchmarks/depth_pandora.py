@@ -35,9 +35,7 @@ def figures(rounds: int = 2) -> list[Figure]:
     try:
         theirs = pandora(scene)
     except ImportError:
-        return [
-            Figure(what, bound, "not measured: pandora is not installed (pip install 'pandora[sgm]')", False)
-        ]
+        return [Figure(what, bound, "not measured: pandora is not installed (pip install 'pandora[sgm]')", False)]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         found = fill(DisparityMap(theirs()))

@@ -26,7 +26,7 @@ from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from .cache import Cache, Notes
 from .keys import product_key
-from .planning import NEEDED, REQUESTED, SAME, Outlook, foresee, not_needed, notes_ahead, with_notes
+from .planning import REQUESTED, SAME, Outlook, foresee, needed_for, not_needed, notes_ahead, with_notes
 from .stage import Context, Progress, Stage, StageEvent, ignore_event, stage_class
 
 log = logging.getLogger(__name__)
@@ -230,7 +230,7 @@ class Engine:
         if stage.refusal is not None:
             self._note(Outcome(stage.product, "refused", str(stage.refusal), stage.method))
             raise stage.refusal.with_traceback(None)  # it may be raised again
-        inputs = {name: self._pull(name, f"{NEEDED} {stage.product}") for name in stage.needs}
+        inputs = {name: self._pull(name, needed_for(stage.product)) for name in stage.needs}
         check_stopped()
         self._progress(StageEvent(stage.product, stage.method))
         if stage.product not in self._substituted:

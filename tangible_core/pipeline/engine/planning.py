@@ -8,7 +8,6 @@ from .cache import Cache, Notes
 from .stage import Stage
 
 REQUESTED = "requested"
-NEEDED = "needed for the"
 NOT_NEEDED = "not needed for what was requested"
 WITHIN_CACHED = "within an unchanged product"
 SAME = "unchanged"
@@ -23,6 +22,11 @@ class Outlook(NamedTuple):
     """The function that returns where a given product comes from, with its notes."""
     cache_for: Callable[[Stage], Cache | None]
     key: Callable[[str], str]
+
+
+def needed_for(product: str) -> str:
+    """Return why a product is made that was not requested itself."""
+    return f"needed for the {product}"
 
 
 def foresee(engine: Outlook, product: str, why: str, steps: dict[str, Outcome]) -> dict[str, Outcome]:
@@ -43,7 +47,7 @@ def foresee(engine: Outlook, product: str, why: str, steps: dict[str, Outcome]) 
         steps[product] = Outcome(product, "refused", str(stage.refusal), stage.method)
     else:
         for name in stage.needs:
-            foresee(engine, name, f"{NEEDED} {product}", steps)
+            foresee(engine, name, needed_for(product), steps)
             if any(each.outcome == "refused" for each in steps.values()):
                 return steps
         notes = notes_ahead(stage)

@@ -24,6 +24,7 @@ from ..framing import (
 from ..state.session import Session
 from .connection import cut_off
 from .parsing import BadRequest, ParsedRequest, parse
+from .translating import in_language, language_of
 
 IN_FLIGHT = 2
 """Maximum number of states that a tab has not drawn yet; more would only queue up in the browser."""
@@ -46,6 +47,7 @@ class LiveTab:
 
     def __init__(self, session: Session, socket: WebSocket) -> None:
         self._session, self._socket = session, socket
+        self._language = language_of(socket.query_params.get("language", ""))
         self._events: asyncio.Queue[str] = asyncio.Queue()
         self._waiting = self._asks = 0
         self._seq = self._drawn = 0
@@ -56,7 +58,7 @@ class LiveTab:
         """Send an event; a tab that does not read is cut off."""
         if self._gone:
             return
-        text = _as_json(event)
+        text = _as_json(in_language(event, self._language))
         self._waiting += len(text)
         if self._events.qsize() >= MOST_WAITING or self._waiting > MOST_WAITING_CHARACTERS:
             self._gone = True

@@ -16,6 +16,7 @@ from starlette.websockets import WebSocket
 
 from tangible_core.errors import TangibleError
 from tangible_core.files.reading import MOST_BYTES, in_words
+from tangible_core.translation import translate
 
 from ..address import static
 from ..requests import feeling
@@ -23,6 +24,7 @@ from ..state.session import Session
 from .access import Guarded
 from .connection import show_key
 from .live import LiveTab
+from .translating import language_of
 
 FOREVER = "private, max-age=31536000, immutable"
 ASK_AGAIN = "no-cache"
@@ -65,7 +67,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
 
     def require_key(answer: Answer) -> Answer:
         async def check_key(request: Request) -> Response:
-            return await answer(request) if has_key(request) else PlainTextResponse(NOT_YOURS, 403)
+            return await answer(request) if has_key(request) else refusal(request, NOT_YOURS, 403)
 
         return check_key
 
@@ -73,7 +75,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
         digest, name = request.path_params["digest"], request.path_params["name"]
         path = None if digest.startswith(EXPORTS) else _lying(session().folder, digest, name)
         if path is None:
-            return PlainTextResponse("this file is gone", 404)
+            return refusal(request, "this file is gone", 404)
         if request.query_params.keys() & WINDOW:
             return await window_of(path, request)
         return FileResponse(path, headers={"cache-control": FOREVER})
@@ -83,7 +85,7 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
         folder, name = request.path_params["folder"], request.path_params["name"]
         path = _lying(session().folder, folder, name) if folder.startswith(EXPORTS) else None
         if path is None:
-            return PlainTextResponse("this file is not there any more; export it again", 404)
+            return refusal(request, "this file is not there any more; export it again", 404)
         return FileResponse(path, filename=name)
 
     async def panel_file(request: Request) -> Response:
@@ -91,27 +93,27 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
         folder = session().panel_folders.get(request.path_params["panel"])
         path = None if folder is None else _lying(folder.parent, folder.name, request.path_params["name"])
         if path is None:
-            return PlainTextResponse("no plugin brings this file", 404)
+            return refusal(request, "no plugin brings this file", 404)
         return FileResponse(path, headers={"cache-control": ASK_AGAIN})
 
     async def window_of(path: Path, request: Request) -> Response:
         try:
             found = await asyncio.to_thread(read_window, path, {key: int(request.query_params[key]) for key in WINDOW})
         except (KeyError, ValueError):
-            return PlainTextResponse("there is no such window", 400)
+            return refusal(request, "there is no such window", 400)
         return Response(found, media_type="application/octet-stream", headers={"cache-control": FOREVER})
 
     async def upload(request: Request) -> Response:
         name = request.path_params["name"]
         said = request.headers.get("content-length", "0")
         if int(said) > MOST_BYTES:  # before the first byte is read
-            return PlainTextResponse(f"{name}: holds more than {in_words(MOST_BYTES)}; open a smaller one", 413)
+            return refusal(request, f"{name}: holds more than {in_words(MOST_BYTES)}; open a smaller one", 413)
         try:
             await session().uploads.put(request.path_params["batch"], name, request.stream())
         except TangibleError as error:
-            return PlainTextResponse(str(error), 400)
+            return refusal(request, str(error), 400)
         except ClientDisconnect:
-            return PlainTextResponse("the upload broke off", 400)
+            return refusal(request, "the upload broke off", 400)
         return Response(status_code=204)
 
     async def stop(_: Request) -> Response:
@@ -135,6 +137,11 @@ def routes(session: Callable[[], Session], key: str) -> list[BaseRoute]:
         WebSocketRoute("/live", live),
         Mount("/", BuiltPage(directory=static(), html=True)),
     ]
+
+
+def refusal(request: Request, text: str, status: int) -> Response:
+    """Return a sentence in the language of the tab that asked."""
+    return PlainTextResponse(translate(text, language_of(request.query_params.get("language", ""))), status)
 
 
 def _lying(folder: Path, digest: str, name: str) -> Path | None:

@@ -2,6 +2,7 @@
 import type { Vec } from "../server/protocol";
 import { t } from "../overlay/words";
 import { shownNumber } from "../words/part_words";
+import { notation } from "../words/words";
 import { LIMITS } from "./limits";
 import type { Reading, SurfacePlace } from "./reading";
 
@@ -14,8 +15,8 @@ const MM = 1000;
 /** Return a number with fixed digits; never a minus before zero. */
 export function formatFixed(value: number, digits: number): string {
   if (!Number.isFinite(value)) return NONE;
-  const text = value.toFixed(digits);
-  return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
+  const text = notation(value.toFixed(digits));
+  return Number(value.toFixed(digits)) === 0 ? text.replace("-", "") : text.replace("-", "−");
 }
 
 const mm = (at: Vec | null): string[] => (at ? at.map((part) => formatFixed(MM * part, 2)) : [NONE, NONE, NONE]);

@@ -63,7 +63,6 @@ function labelOf({ title, unit, kind }: Option, id: string, main: HTMLElement): 
   const isGroup = kind.kind === "block" || kind.kind === "tuple" || kind.kind === "list";
   const label = document.createElement(isGroup ? "span" : "label");
   label.className = "name";
-  label.lang = "en";
   label.id = `${id}-name`;
   label.append(title);
   if (unit) {
@@ -82,7 +81,6 @@ function helpOf(option: Option, id: string): { root: HTMLElement; show(byDefault
   root.id = `${id}-hint`;
   root.className = "hint";
   const about = document.createElement("span");
-  about.lang = "en";
   about.textContent = option.about;
   const now = document.createElement("span");
   const range = rangeOf(option.kind, option.unit);

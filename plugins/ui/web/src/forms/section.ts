@@ -32,7 +32,6 @@ export class SectionForm {
     this.root.append(heading);
     if (section.methods.length) this.root.append(this.choice());
     this.about.className = "hint about";
-    this.about.lang = "en";
     this.root.append(this.about, this.fields);
     if (!section.methods.length) this.build(null, section.options);
   }

@@ -8,8 +8,6 @@ export type What = "idle" | "busy" | "felt" | "stopped" | "error";
 export interface Headline {
   what: What;
   text: string;
-  /** True if the text is the program's own, which is English. */
-  foreign?: true;
 }
 
 /** The latest facts; an empty text stands for none. */
@@ -42,9 +40,9 @@ export function headline(facts: Facts): Headline {
   if (connection === "version") return { what: "error", text: t("loadAgain") };
   if (connection === "lost") return { what: "error", text: t("lost") };
   if (connection === "starting") return { what: "idle", text: t("starting") };
-  if (workerGone) return { what: "error", text: workerGone, foreign: true };
+  if (workerGone) return { what: "error", text: workerGone };
   if (noForce) return { what: "stopped", text: making ? `${noForce} ${making}` : noForce };
-  if (trouble) return { what: "error", text: trouble, foreign: true };
+  if (trouble) return { what: "error", text: trouble };
   if (making) return { what: "busy", text: making };
   if (document === "wrong" && !law) return { what: "error", text: t("complaints") };
   if (hand !== "ours") return { what: "idle", text: t(hand === "free" ? "nobody" : "watching") };

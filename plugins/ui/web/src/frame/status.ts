@@ -2,7 +2,6 @@
 import type { Page } from "../page";
 import { on } from "../shortcuts";
 import { productName } from "../words/product_words";
-import { language } from "../words/words";
 import { follow, headline, type Facts } from "./headline";
 import { t as says } from "./status_words";
 import { t } from "./words";
@@ -74,7 +73,7 @@ export class Status {
   }
 
   private show(facts: Facts): void {
-    const { what, text, foreign } = headline(facts);
+    const { what, text } = headline(facts);
     const { line, page } = this;
     if (facts.connection === "lost") this.back = (clearTimeout(this.back), 0);
     const shown = this.back ? `${says("back")} ${text}` : text;
@@ -82,7 +81,6 @@ export class Status {
     if (line.textContent === shown && line.dataset.state === what) return;
     line.dataset.state = what;
     line.textContent = shown;
-    line.lang = foreign ? "en" : language;
     const asked = what === "stopped" && this.stopping;
     const news = { topic: "status", asked, urgent: what === "error" || (what === "stopped" && !asked) };
     if (shown !== text || line.dataset.said !== text) page.say(shown, news);

@@ -19,7 +19,7 @@ export interface PanelInterface {
   ask<T>(name: string, args?: Record<string, unknown>): Promise<T>;
   /** Call a listener with the latest message of this name, if there was one, and with each that follows. */
   on<K extends Message>(message: K, listener: (message: Events[K]) => void): void;
-  /** Return a function that gives the texts of a table {key: [English, German]} in the page's language. */
+  /** Return a function that gives the texts of a table {key: [English, German, French]} in the page's language. */
   words<T extends Table>(table: T): Words<T>;
   /** Announce a text to screen readers. */
   say(text: string): void;

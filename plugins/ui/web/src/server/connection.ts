@@ -1,5 +1,6 @@
 /** The websocket: states in, pointers and acknowledgements out, JSON for requests and messages. It reconnects by itself. */
 import type { Hub } from "../hub";
+import { language } from "../words/words";
 import { token } from "./token";
 import type { Events } from "./messages";
 import { encodeAck, now, encodePointer, encodeRelease, parseState, TAGS, VERSION, type State, type Vec } from "./protocol";
@@ -14,7 +15,7 @@ const WRONG_KEY = 4401;
 
 /** Fetch a file of the server. Throws if it is not there. */
 export async function bulk(path: string, asked: Record<string, number> = {}, signal?: AbortSignal): Promise<Response> {
-  const query = new URLSearchParams({ token, ...Object.fromEntries(Object.entries(asked).map(([k, v]) => [k, `${v}`])) });
+  const query = new URLSearchParams({ token, language, ...Object.fromEntries(Object.entries(asked).map(([k, v]) => [k, `${v}`])) });
   const response = await fetch(`${path}?${query}`, { signal });
   if (!response.ok) throw new Error(`${path}: ${response.status} ${await response.text()}`);
   return response;
@@ -91,7 +92,7 @@ export class Connection {
   }
 
   private connect(): void {
-    const socket = new WebSocket(`ws://${location.host}/live?token=${encodeURIComponent(token)}`);
+    const socket = new WebSocket(`ws://${location.host}/live?token=${encodeURIComponent(token)}&language=${language}`);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => (this.pauseMs = FIRST_PAUSE_MS);
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) =>

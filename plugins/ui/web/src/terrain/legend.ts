@@ -1,6 +1,7 @@
 /** Legends of colours and patterns. */
 import type { Scene } from "../surface/scene";
 import { shownNumber } from "../words/part_words";
+import { notation } from "../words/words";
 import { t } from "../view/words";
 import { darken, heat, isMarked, styleOf, type Colour } from "./colours";
 
@@ -50,7 +51,7 @@ function scale(low: number, high: number, unit: string, unknowns: boolean): HTML
 /** Return a number of a scale with enough digits for its span. */
 export function number(value: number, span: number): string {
   const digits = Math.min(Math.max(2 - Math.floor(Math.log10(Math.max(Math.abs(span), 1e-9))), 0), 6);
-  return value.toFixed(digits).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
+  return notation(value.toFixed(digits).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, ""));
 }
 
 function kinds(names: string[]): HTMLElement {

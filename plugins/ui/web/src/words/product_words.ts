@@ -10,7 +10,7 @@ const t = words({
   materials: ["Materials", "Materialien"],
   surface: ["Surface", "Oberfläche"],
   touch: ["Force law", "Kraftgesetz"],
-  export: ["Export as {name}", "Ausgabe als {name}"],
+  export: ["Export as {name}", "Export als {name}"],
 });
 
 /** The program's prefix of exported products. */

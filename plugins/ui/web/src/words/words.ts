@@ -1,8 +1,8 @@
-/** Texts of the page: tables of [English, German], one per area, next to the code that uses them. */
+/** Texts of the page: tables of [English, German, French], one per area, next to the code that uses them. Without French, English. */
 import { recall, remember } from "../preferences";
 
-export type Table = Record<string, readonly [english: string, german: string]>;
-export const LANGUAGES = ["en", "de"] as const;
+export type Table = Record<string, readonly [english: string, german: string, french?: string]>;
+export const LANGUAGES = ["en", "de", "fr"] as const;
 export type Language = (typeof LANGUAGES)[number];
 
 const KEPT = "language";
@@ -40,9 +40,17 @@ export function words<T extends Table>(table: T): Words<T> {
   tables.push(table);
   const column = LANGUAGES.indexOf(language);
   const t = (key: keyof T, values: Record<string, string | number> = {}): string =>
-    table[key]![column]!.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+    (table[key]![column] ?? table[key]![0]).replace(/\{(\w+)\}/g, (whole, name: string) => notation(String(values[name] ?? whole)));
   return Object.assign(t, { has: (name: string): name is keyof T & string => Object.hasOwn(table, name) });
 }
+
+/** Return a text, with the language's decimal mark if it is a number. */
+export function notation(text: string): string {
+  return NUMBER.test(text) ? text.replace(".", MARK) : text;
+}
+
+const NUMBER = /^[-−]?\d+\.\d+$/;
+const MARK = (0.5).toLocaleString(language)[1]!;
 
 /** Return a number in the language's notation. */
 export function decimal(value: number, digits: number): string {

@@ -1,4 +1,5 @@
 /** Label next to the cursor: force in newtons, whether the contact sticks or slips, active limits. */
+import { notation } from "../../words/words";
 import type { View } from "../../view/view";
 import { t } from "../words";
 import { tip } from "./force_arrow";
@@ -52,7 +53,7 @@ export class ContactLabel implements Piece {
     this.late = now - this.readMs < EVERY_MS;
     if (this.late) return;
     this.readMs = now;
-    say(this.force, show.labels ? `${live.newtons.toFixed(2)} N` : "");
+    say(this.force, show.labels ? `${notation(live.newtons.toFixed(2))} N` : "");
     say(this.other, show.labels && live.otherN > 0 ? t("otherForce", { newtons: live.otherN.toFixed(2) }) : "");
     say(this.grip, show.labels && live.grip !== "apart" ? `${GLYPHS[live.grip]} ${t(live.grip)}` : "");
     const held = LIMITS.filter(({ bit }) => now - (this.seenMs.get(bit) ?? -Infinity) < KEPT_MS);

@@ -77,7 +77,6 @@ export class Choices {
     name.className = "visually-hidden";
     name.textContent = t("optionsOf", { name: exporterName(entry.use) });
     const about = paragraph(known.about.split("\n")[0], "hint");
-    about.lang = "en";
     const count = (): void => {
       const set = Object.keys(entry.options).length;
       heading.replaceChildren(set ? t("optionsSet", { set }) : t("options"), name);

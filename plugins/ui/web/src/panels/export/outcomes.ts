@@ -30,7 +30,7 @@ function outcome(folder: string, exported: Exported["exports"][number], cure: Cu
   const seconds = known === "ran" ? t("seconds", { seconds: decimal(exported.seconds, 1) }) : "";
   became.append(symbolOf(known), [t(known), seconds].filter(Boolean).join(", "));
   box.append(heading, became);
-  if (known !== "ran") box.append(english(exported.why, "bad"));
+  if (known !== "ran") box.append(paragraph(exported.why, "bad"));
   if (exported.files.length) box.append(files(folder, exported.files));
   if (exported.legible) box.append(legible(exported.legible, cure));
   if (exported.notes.length) box.append(notes(exported.notes));
@@ -64,7 +64,7 @@ function legible(judgement: NonNullable<Exported["exports"][number]["legible"]>,
 }
 
 function notes(all: Outcome["notes"]): HTMLElement {
-  return foldable(t("notes", { count: all.length }), all.map(({ kind, text }) => english(text, kind === "decision" ? "hint" : "hint warn")));
+  return foldable(t("notes", { count: all.length }), all.map(({ kind, text }) => paragraph(text, kind === "decision" ? "hint" : "hint warn")));
 }
 
 function foldable(title: string, inside: HTMLElement[]): HTMLElement {
@@ -73,12 +73,6 @@ function foldable(title: string, inside: HTMLElement[]): HTMLElement {
   heading.textContent = title;
   box.append(heading, ...inside);
   return box;
-}
-
-function english(text: string, className: string): HTMLElement {
-  const status = paragraph(text, className);
-  status.lang = "en";
-  return status;
 }
 
 function symbolOf(known: Outcome["outcome"]): HTMLElement {

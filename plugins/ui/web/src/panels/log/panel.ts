@@ -179,7 +179,6 @@ function fill(item: HTMLElement, { level, text, foreign, at_s, times }: Line): H
   mark.className = "level";
   mark.textContent = t(`one ${level}`);
   const span = document.createElement("span");
-  span.lang = "en";
   span.textContent = foreign;
   item.replaceChildren(at, " ", mark, " ", text.slice(0, text.length - foreign.length), span);
   if (times > 1) item.append(" ", t("times", { times }));

@@ -5,6 +5,7 @@ import { LIBRARY } from "../../forms/rows";
 import type { Material, Segment } from "../../server/messages";
 import type { Page } from "../../page";
 import { shownNumber } from "../../words/part_words";
+import { notation } from "../../words/words";
 import type { Panel } from "../panel";
 import { t } from "./words";
 import { materialEdit } from "./edit";
@@ -72,7 +73,6 @@ function line(row: HTMLTableRowElement): HTMLTableRowElement {
   const select = document.createElement("select");
   const why = document.createElement("p");
   why.className = "hint";
-  why.lang = "en";
   row.append(label);
   row.insertCell().append(select, why);
   row.insertCell().className = "number";
@@ -91,9 +91,9 @@ function fill(row: HTMLTableRowElement, { label, material, why, share }: Segment
   select.value = material;
   const reason = choice.querySelector("p")!;
   reason.id = `material-why-${label}`;
-  reason.textContent = why.replace(/^segment \d+: /, "").replace(/ -> .*$/, "");
+  reason.textContent = why.replace(/^\S+ \d+: /, "").replace(/ -> .*$/, "");
   select.setAttribute("aria-describedby", reason.id);
-  area.textContent = `${(100 * share).toPrecision(share < 0.1 ? 2 : 3)} %`;
+  area.textContent = `${notation((100 * share).toPrecision(share < 0.1 ? 2 : 3))} %`;
 }
 
 function figures(library: Listed[]): HTMLElement {
@@ -112,9 +112,9 @@ function figures(library: Listed[]): HTMLElement {
     name.textContent = each.name;
     row.append(name);
     for (const text of [
-      each.stiffness_n_per_m, each.damping_n_s_per_m, `${each.static_friction} / ${each.dynamic_friction}`,
+      each.stiffness_n_per_m, each.damping_n_s_per_m, `${notation(`${each.static_friction}`)} / ${notation(`${each.dynamic_friction}`)}`,
       round(1e6 * each.roughness_m), round(1e3 * each.grain_m), each.texture, each.source,
-    ]) row.insertCell().textContent = String(text);
+    ]) row.insertCell().textContent = notation(String(text));
   }
   box.append(table);
   return box;

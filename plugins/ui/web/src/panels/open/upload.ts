@@ -1,6 +1,7 @@
 /** Upload of files, one after the other; then they are opened together. */
 import type { Server } from "../../page";
 import { token } from "../../server/token";
+import { language } from "../../words/words";
 
 /** Called with the share of a file that is sent, 0 to 100. */
 export type Progress = (name: string, percent: number) => void;
@@ -24,7 +25,7 @@ function sendFile(batch: string, file: File, progress: Progress): Promise<void> 
     request.upload.onprogress = ({ loaded, total }) => progress(file.name, Math.round((100 * loaded) / (total || 1)));
     request.onload = () => (request.status < 300 ? done() : refused(new Error(request.responseText)));
     request.onerror = () => refused(new Error(file.name));
-    request.open("PUT", `/upload/${batch}/${name}?token=${encodeURIComponent(token)}`);
+    request.open("PUT", `/upload/${batch}/${name}?token=${encodeURIComponent(token)}&language=${language}`);
     request.send(file);
   });
 }

@@ -1,4 +1,5 @@
 /** Table of figures by name. */
+import { notation } from "../../words/words";
 import { t } from "./words";
 
 export function table(figures: Record<string, number>): HTMLTableElement {
@@ -17,7 +18,7 @@ export function table(figures: Record<string, number>): HTMLTableElement {
     title.scope = "row";
     title.textContent = name.replaceAll("_", " ");
     row.append(title);
-    row.insertCell().textContent = value === null ? "–" : String(Number(value.toPrecision(4)));
+    row.insertCell().textContent = value === null ? "–" : notation(String(Number(value.toPrecision(4))));
   }
   return tableElement;
 }

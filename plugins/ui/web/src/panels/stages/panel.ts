@@ -127,7 +127,6 @@ function part(name: string, text: string, hidden = false): HTMLElement {
 function text(value: string): HTMLElement {
   const status = document.createElement("p");
   status.className = "hint";
-  status.lang = "en";
   status.textContent = value;
   return status;
 }

@@ -24,7 +24,6 @@ export function verdictTables(all: Verdict[], cure: Cure, more: More = () => nul
 /** Return the program's overall sentence with its symbol. */
 export function gradeSentence(grade: Grade, text: string): HTMLElement {
   const status = paragraph("", `sentence ${grade}`);
-  status.lang = "en";
   status.append(mark(grade), text);
   return status;
 }
@@ -47,7 +46,6 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: Mor
   verdict.append(mark(said.verdict), t(said.verdict));
   const what = document.createElement("th");
   what.scope = "row";
-  what.lang = "en";
   what.textContent = `${said.check}: ${said.of}`;
   element.append(what);
   element.insertCell().append(said.stands);
@@ -58,10 +56,7 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: Mor
   const below = body.insertRow().insertCell();
   below.colSpan = 3;
   below.className = "below";
-  for (const each of texts.map((text) => paragraph(text, "hint"))) {
-    each.lang = "en";
-    below.append(each);
-  }
+  below.append(...texts.map((text) => paragraph(text, "hint")));
   if (also) below.append(also);
   for (const { key, value } of changes) below.append(button(sentenceOf(key, value), () => cure(key, value)));
 }

@@ -6,7 +6,7 @@ export const t = words({
   text: ["The pipeline file on the screen, as YAML", "Die Pipeline-Datei auf dem Bildschirm, als YAML"],
   copy: ["Copy", "Kopieren"],
   copied: ["The text is in the clipboard.", "Der Text ist in der Zwischenablage."],
-  fine: ["No errors.", "Daran ist nichts falsch."],
+  fine: ["No errors.", "Keine Fehler."],
   wrong: ["{count} errors:", "{count} Beanstandungen:"],
   wrongOne: ["One error:", "Eine Beanstandung:"],
   typing: ["Not applied yet.", "Noch nicht übernommen."],

@@ -2,6 +2,7 @@
 import type { Server } from "../../../page";
 import { bulk } from "../../../server/connection";
 import { token } from "../../../server/token";
+import { language as ours } from "../../../words/words";
 import type { HowToPropose } from "../controls/tools";
 import type { Part } from "../drawing/drawing";
 import type { Heights } from "../drawing/picture_details";
@@ -83,7 +84,7 @@ export async function snapOutline(net: Server, points: readonly Point[], reach_p
 export async function saveParts(net: Server, labels: Labels, parts: readonly Part[], args: Record<string, unknown>): Promise<Saved> {
   const upload = await net.ask<string>("batch");
   const gzip = new Blob([labels.data as Uint16Array<ArrayBuffer>]).stream().pipeThrough(new CompressionStream("gzip"));
-  const response = await fetch(`/upload/${upload}/labels.gz?token=${encodeURIComponent(token)}`, {
+  const response = await fetch(`/upload/${upload}/labels.gz?token=${encodeURIComponent(token)}&language=${ours}`, {
     method: "PUT",
     body: await new Response(gzip).blob(),
   });

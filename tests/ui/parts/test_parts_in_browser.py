@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from tangible_core.scene.scene_files import SceneFiles
 from waiting import until
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Locator, Page
 
 WIDTH, HEIGHT = 240, 180
 RELIEF = "workspace: {width_m: 0.08, relief_m: 0.006}\nrender: {use: penalty, stiffness_n_per_m: 400}\n"
@@ -312,6 +313,69 @@ def test_parts_editor_makes_five_parts_by_keyboard(opened: Callable[..., str], o
     assert {each.name for each in parts.values()} == {"wall", "ball", "table", "lamp", "door"}
     assert parts[int(labels[90, 150])].name == "ball"
     assert parts[int(labels[170, 20])].name == "table"
+
+
+class Actions:
+    """What a person does: clicks, choices of a file, names that are typed; each is counted."""
+
+    def __init__(self, page: "Page") -> None:
+        self.page = page
+        self.done: list[str] = []
+
+    def choose(self, where: str, file: Path) -> None:
+        self.page.locator(where).set_input_files(file)
+        self.done.append(f"choose {file.name}")
+
+    def click(self, where: "Locator") -> None:
+        where.click()
+        self.done.append(f"click {where}")
+
+    def type(self, text: str) -> None:
+        """Type where the focus is."""
+        self.page.keyboard.type(text)
+        self.done.append(f"type {text}")
+
+
+def test_photograph_becomes_three_named_parts_on_swell_paper_in_fifteen_actions(
+    opened: Callable[..., str], open_page: OpenPage, photo: Path, tmp_path: Path
+):
+    """From her photograph to the page, its key and the copy in ink; every action is one that a person does."""
+    (tmp_path / "before.yaml").write_text(f"scene: {{photo: {photo}}}\ndepth: luminance\n{RELIEF}")
+    page = open_page(opened(tmp_path / "before.yaml") + "&measure")
+    wait_for_force(page)
+    hers = photo.with_name("her ball.png")
+    photo.rename(hers)
+    act = Actions(page)
+    act.choose("#open-files", hers)
+    until(lambda: "her ball" in page.evaluate("page.document.path"), "opened")
+    act.click(page.locator("#tab-parts"))
+    act.click(page.locator("#parts-edit"))
+    until(lambda: "parts are proposed" in page.locator("#parts-told").inner_text(), "parts are proposed")
+    assert len(names(page)) == 3, "a ball, a wall and a table"
+    for number, name in enumerate(("ball", "table", "wall")):
+        act.click(page.locator("#parts-list [role=option]").nth(number))
+        act.type(name)
+        until(lambda name=name: name in names(page), name)
+    act.click(page.locator("#parts-save"))
+    until(lambda: "Saved: " in page.locator("#parts-told").inner_text(), "saved, and where")
+    act.click(page.get_by_role("button", name="Close"))
+    act.click(page.locator("#tab-hand-on"))
+    panel = page.locator("#export")
+    act.click(panel.get_by_label("Swell paper (SVG, PDF)"))
+    until(lambda: panel.locator(".previews img").count() == 1, "the page is seen before it is made")
+    act.click(panel.get_by_role("button", name="Export", exact=True))
+    until(lambda: "5 files are ready." in panel.inner_text(), "made")
+    with page.expect_download() as waited:
+        act.click(panel.locator("#export-zip"))
+    assert len(act.done) <= 15, act.done
+    with ZipFile(waited.value.path()) as files:
+        assert sorted(Path(each).name.rpartition("-swell")[2] for each in files.namelist()) == [
+            "-ink.pdf", "-ink.svg", "-key.svg", ".pdf", ".svg",
+        ]  # fmt: skip
+        key = files.read(next(each for each in files.namelist() if each.endswith("-key.svg"))).decode()
+        assert all(f'aria-label="{name}"' in key for name in ("ball", "table", "wall"))
+        pdf = files.read(next(each for each in files.namelist() if each.endswith("swell.pdf")))
+        assert pdf.startswith(b"%PDF") and pdf.count(b"/Type /Page\n") + pdf.count(b"/Type /Page ") >= 2
 
 
 def press(page: "Page", *keys: str) -> None:

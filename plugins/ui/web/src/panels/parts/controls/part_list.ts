@@ -41,9 +41,12 @@ export class PartList {
     this.list.id = "parts-list";
     this.list.tabIndex = 0;
     this.list.addEventListener("keydown", (event) => this.key(event));
-    this.list.addEventListener("click", ({ target }) => {
-      const label = (target as HTMLElement).closest("li")?.dataset.label;
-      if (label !== undefined) this.onSelect(Number(label));
+    this.list.addEventListener("click", (event) => {
+      const label = (event.target as HTMLElement).closest("li")?.dataset.label;
+      if (label === undefined) return;
+      this.onSelect(Number(label));
+      const isMouse = (event as PointerEvent).pointerType === "mouse"; // a finger would bring up the keyboard of a phone
+      if (isMouse && !this.drawing.part(Number(label))?.name) this.name.focus(); // its name is what is missing
     });
     this.material.add(new Option(t("byRules"), ""));
     for (const each of materials) this.material.add(new Option(each, each));

@@ -158,6 +158,15 @@ def test_solid_picture_width_follows_longer_side(cls: type[Exporter], aspect: fl
     assert cls.model_validate({"longer_side_m": "12 cm"}).picture_width_m(aspect) == pytest.approx(width_m)
 
 
+def test_print_keeps_cliffs_that_a_device_has_as_ramps(tmp_path: Path):
+    cliff = np.repeat(np.float32([[2, 9]]), 60, axis=1).repeat(90, axis=0)
+    Pipeline(Scene.pair(cliff, cliff, disparity=cliff), cached=False).export(tmp_path, [Stl()])
+    (file,) = tmp_path.glob("*.stl")
+    faces = trimesh.load_mesh(file).face_normals
+    inside = (np.abs(faces[:, 2]) > 1e-3) & (faces[:, 2] < 0.999) & (np.abs(faces[:, 1]) < 0.05)
+    assert np.hypot(faces[inside, 0], faces[inside, 1]).max() > 0.97  # 76 degrees; a ramp has 48
+
+
 def test_pipeline_export_makes_relief_as_wide_as_the_print(tmp_path: Path):
     photo = (255 * np.random.default_rng(0).random((30, 60))).astype(np.uint8)
     done = Pipeline(Scene.photo(photo), depth=Luminance()).export(tmp_path, [Stl(longer_side_m=0.1, braille=False)])

@@ -164,7 +164,7 @@ def test_print_keeps_cliffs_that_a_device_has_as_ramps(tmp_path: Path):
     (file,) = tmp_path.glob("*.stl")
     faces = trimesh.load_mesh(file).face_normals
     inside = (np.abs(faces[:, 2]) > 1e-3) & (faces[:, 2] < 0.999) & (np.abs(faces[:, 1]) < 0.05)
-    assert np.hypot(faces[inside, 0], faces[inside, 1]).max() > 0.97  # 76 degrees; a ramp has 48
+    assert np.hypot(faces[inside, 0], faces[inside, 1]).max() > 0.9  # 64 degrees; a ramp has 48
 
 
 def test_pipeline_export_makes_relief_as_wide_as_the_print(tmp_path: Path):

@@ -4,6 +4,6 @@ import { words } from "../words/words";
 export const t = words({
   legible: ["Legible to fingers", "Für Finger lesbar"],
   description: ["Description", "Beschreibung"],
-  export: ["Export", "Weitergeben"],
+  export: ["Export", "Exportieren"],
   failed: ["This panel could not be shown: {error}", "Dieser Abschnitt konnte nicht gezeigt werden: {error}"],
 });

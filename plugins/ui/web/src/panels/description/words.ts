@@ -3,7 +3,7 @@ import { words } from "../../words/words";
 /** Texts of the description panel. */
 export const t = words({
   about: ["The surface in words, to read before touching it or instead. “Export” writes the text into files.",
-    "Was zu fühlen ist, in Worten: um es vorher zu lesen oder stattdessen. „Weitergeben“ schreibt den Text in Dateien."],
+    "Was zu fühlen ist, in Worten: um es vorher zu lesen oder stattdessen. „Exportieren“ schreibt den Text in Dateien."],
   language: ["Language", "Sprache"],
   en: ["English", "Englisch"],
   de: ["German", "Deutsch"],

@@ -11,6 +11,7 @@ export const t = words({
   swell: ["Swell paper (SVG, PDF)", "Schwellpapier (SVG, PDF)"],
   pins: ["Pin display", "Taktiles Display"],
   heights: ["Heights (PNG, TIFF)", "Höhen (PNG, TIFF)"],
+  sheet: ["Sheet of all products (PNG, SVG, PDF)", "Blatt mit allen Ergebnissen (PNG, SVG, PDF)"],
   text: ["Description (text, HTML)", "Beschreibung (Text, HTML)"],
   another: ["Add another with different options", "Dasselbe noch einmal mit anderen Optionen"],
   remove: ["Remove", "Entfernen"],

@@ -30,8 +30,8 @@ class Catalogue:
         templates = [Template(*each) for each in entries.items()]
         self._exact = {each.english: each.translation for each in templates if not each.names}
         varied = sorted((each for each in templates if each.names), key=lambda each: -each.letters)
-        self._strong = [each for each in varied if each.letters >= WEAK]
-        self._weak = [each for each in varied if each.letters < WEAK]
+        self._strong = [each for each in varied if each.letters >= WEAK or "\n" in each.english]
+        self._weak = [each for each in varied if each not in self._strong]
         self._endings = [each for each in varied if each.english[0] in MARKS]
         self._words: dict[str, list[str]] = {}
         for english in self._exact:
@@ -53,7 +53,7 @@ class Catalogue:
         ways = (
             self._exactly, self._strongly, self._counted, self._numerals, self._by_lines, self._without_ending,
             self._by_sentences, self._by_joints, self._weakly, self._by_joint_and_names,
-            self._without_stop,
+            self._without_stop, self._behind_a_name,
         )  # fmt: skip
         found = next(filter(None, (way(bare) for way in ways)), None)
         if found is None and after:  # a template whose last placeholder is empty
@@ -132,6 +132,12 @@ class Catalogue:
             if all(map(fits, parts)) and any(self.find(each) is not None for each in parts):
                 return f"{self(parts[0])}{self._joint(joint)}{self(parts[1])}"
         return None
+
+    def _behind_a_name(self, text: str) -> str | None:
+        """Return a known text behind a name of somebody's own, of whatever words."""
+        name, colon, rest = text.partition(": ")
+        found = self.find(rest) if colon else None
+        return found and f"{name}{colon}{found}"
 
     def _without_stop(self, text: str) -> str | None:
         found = self.find(text[:-1]) if text.endswith(".") else None

@@ -3,7 +3,7 @@
 import re
 
 UNITS = r"%|[mcu]?m|[mu]?s|N|N/m|N/mm|N s/m|m/s|mm/s|k?Hz|px|[kMG]i?B|bytes|deg|min|h|g|J|dB"
-NUMBER = re.compile(rf"([-+±]?)([1-9]\d{{0,2}}(?:,\d{{3}})+|\d+)(?:\.(\d+))?(e[-+]?\d+)?(?:| ?(?:{UNITS}))")
+NUMBER = re.compile(rf"([-\u2212+±]?)([1-9]\d{{0,2}}(?:,\d{{3}})+|\d+)(?:\.(\d+))?(e[-+]?\d+)?(?:| ?(?:{UNITS}))")
 """A number alone, with its unit."""
 MARKS = {"de": (",", "."), "fr": (",", "\u202f")}
 """The decimal mark, and the mark between thousands."""

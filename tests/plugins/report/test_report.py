@@ -627,9 +627,9 @@ class TestParts:
             surface=surface, title="Haus", language="de-AT",
         )  # fmt: skip
         assert (
-            "Parts, from near to far: 3 parts; 3 a very lo...: ice, 17 %; 2: ice, 17 %; 1 wall: stone, 67 %. " in says
+            "Teile, von nah nach fern: 3 Teile; 3 a very lo...: Eis, 17 %; 2: Eis, 17 %; 1 wall: Stein, 67 %. " in says
         )
-        assert "Segments" not in says and says.startswith("A sheet of 3 pictures of Haus.")
+        assert "Segmente" not in says and says.startswith("Bildseite von Haus, 3 Bilder.")
         assert "Ihre Teile sind, von nah nach fern, a very long name (rechts" in says
 
     @pytest.mark.parametrize(

@@ -18,11 +18,12 @@ from tangible_core.data import DisparityMap, HapticSurface, MaterialMap, PartMap
 from tangible_core.data.products import PRODUCTS
 from tangible_core.errors import OutputError, shown
 from tangible_core.files.writing import atomic_write
-from tangible_core.parts.words.languages import spoken_language
+from tangible_core.parts.words.languages import language_of, spoken_language
 from tangible_core.plugins import hooks
 from tangible_core.plugins.hooks import Panel
 from tangible_core.plugins.registry import default_registry
 from tangible_core.session import Recording
+from tangible_core.translation import LANGUAGES, translate
 
 from ..description import describe
 from .files import describe_sheet, writer
@@ -54,6 +55,8 @@ PANEL_OF: Mapping[type[Record], str] = {
     Recording: "recording",
 }
 """Class of a record that can be drawn -> the product of its panel."""
+MINUS = "\u2212"
+"""The sign before numbers at axes."""
 HEIGHT_IN = 3.5
 """The height of the axes of a new figure, inches."""
 
@@ -80,7 +83,8 @@ def draw_sheet(
     truth: disparity (h, w) in px, not finite where unknown; drawn as an error if the disparity is in px.
     parts: drawn in place of their segments. relief: for a run without a surface, which has its own relief.
     recording: drawn with the relief on which it was recorded. language: tag of the language of the title and names; the
-    surface is described in it if its words are known. others: further products by name, for panels of plugins.
+    sheet and the description of the surface are in it if its words are known. others: further products by name, for
+    panels of plugins.
     Raises: OutputError for another suffix or a file that cannot be written, PictureError if truth and disparity differ
     in size.
     """
@@ -112,7 +116,8 @@ def write_sheet(path: Path, run: Mapping[str, Any], title: str, panels: Sequence
     write = writer(path)
     with style.context(STYLE, after_reset=True):
         figure = draw_figure(run, title, panels)
-        says = describe_sheet(figure)
+        _translate(figure, to := language_of(language))
+        says = translate(describe_sheet(figure), to)
         if isinstance(surface := run.get("surface"), HapticSurface):
             says = f"{says} {describe(surface, '', spoken_language(language, log))}"
         with warnings.catch_warnings(), atomic_write(path) as file:
@@ -135,6 +140,23 @@ def draw_figure(run: Mapping[str, Any], title: str, panels: Sequence[Panel]) -> 
     for letter, panel, box in zip(_letters(), panels, boxes, strict=False):
         _draw_panel(figure, panel, box, run, letter)
     return figure
+
+
+def _translate(figure: Figure, language: str) -> None:
+    """Put headlines, captions, legends and numbers into a language; the title is the user's."""
+    from matplotlib.axis import Axis
+    from matplotlib.text import Text
+    from matplotlib.ticker import FuncFormatter, ScalarFormatter
+
+    if language == LANGUAGES[0]:
+        return
+    for text in figure.findobj(Text):
+        if isinstance(text, Text) and text is not figure.texts[0]:
+            text.set_text(translate(text.get_text(), language))
+    own = FuncFormatter(lambda value, _: translate(f"{value:g}".replace("-", MINUS), language))
+    for axis in figure.findobj(Axis):
+        if isinstance(axis, Axis) and isinstance(axis.get_major_formatter(), ScalarFormatter):
+            axis.set_major_formatter(own)
 
 
 def _letters() -> Iterator[str]:

@@ -15,6 +15,8 @@ from tangible_core.translation.template import PLACEHOLDER
 FOLDER = ROOT / "tangible_core" / "translation"
 WHOLE = ("de",)
 """The languages into which every text is translated; the others have what their catalogues list."""
+FUZZY = re.compile(rf"^#, fuzzy\n{ENTRY.pattern.removeprefix('^').partition('msgstr')[0]}", re.MULTILINE)
+"""An entry that somebody who speaks the language is to look at."""
 HEADER = """# {title}
 # A text in English with its translation; placeholders such as {{name}} may stand in another order. {{name!s}}, and what
 # stands between backticks, is not translated, and numbers in it keep their points: it goes into a file or a terminal.
@@ -124,11 +126,13 @@ def update(language: str) -> None:
     texts = shown() if language in WHOLE else {each: place for each, place in shown().items() if each in known}
     rest = {each: "words" for each, (_, own) in known.items() if own and each not in texts and each not in gone}
     title = {"de": "German", "fr": "French"}[language]
+    unsure = {normal(unquoted(each)) for each in FUZZY.findall((FOLDER / f"{language}.po").read_text(encoding="utf-8"))}
     lines, last = [HEADER.format(title=title, language=language)], ""
     for each, place in {**texts, **rest}.items():
         lines += [f"#: {place}"] if place != last else []
         last = place
         english, own = known.get(each, (named.get(each, each), ""))
+        lines += ["#, fuzzy"] if each in unsure else []
         lines.append(f"msgid {_quoted(english)}\nmsgstr {_quoted(own)}\n")
     (FOLDER / f"{language}.po").write_text("\n".join(lines), encoding="utf-8")
 

@@ -99,6 +99,26 @@ def test_complaint_names_its_field_and_leaves_the_text(run: Run):
     run(check)
 
 
+def test_document_tells_what_its_scene_is_and_what_its_relief_is_made_of(run: Run):
+    async def check(small: SmallSession, ask: Any) -> None:
+        parts = (
+            "scene: {photo: p.png, segments: s.png}\nheights: {by: given}\nparts: {0: {name: wall, height_m: 0.001}}\n"
+        )
+        for text, kinds in (
+            ("scene: {photo: p.png}\n", ("photograph", "photograph")),
+            ("scene: {photo: p.png}\nrelief: edges\n", ("photograph", "edges")),
+            ("scene: {left: l.png, right: r.png}\ndepth: luminance\nrelief: edges\n", ("depth", "edges")),
+            ("scene: {height: h.npy}\n", ("heights", "heights")),
+            (parts, ("photograph", "parts")),
+            ("scene: {photo: p.png\n", (None, None)),
+        ):
+            await ask("edit", text=text)
+            said = small.tab.last("document")
+            assert (said["scene_kind"], said["relief_from"]) == kinds, (text, said["complaints"])
+
+    run(check)
+
+
 def test_changes_at_the_same_time_are_all_kept(run: Run):
     async def check(small: SmallSession, ask: Any) -> None:
         keys = {"render.stiffness_n_per_m": 700, "workspace.width_m": 0.07, "depth.smoothing_px": 2}

@@ -41,6 +41,13 @@ def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[PageServer
         yield page
 
 
+def test_tab_is_told_of_a_start_without_a_file_until_one_is_opened(page: PageServer) -> None:
+    for waits, text, empty in ((True, "", True), (True, "scene: builtin/brick\n", False), (False, "", False)):
+        page.session.waits_for_file, page.session.text = waits, text
+        with page.tab() as tab:
+            assert tab.until(event="hello")["empty"] is empty, (waits, text)
+
+
 def with_key(path: str) -> str:
     return f"{path}?token={KEY}"
 

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-HELP = "A pipeline file, a picture, left and right, or a recording; without one, the built-in example."
+HELP = "A pipeline file, a picture, left and right, or a recording; without one, the page begins with a choice."
 
 
 def ui(

@@ -69,8 +69,10 @@ class LiveTab:
     async def live(self) -> None:
         """Serve the tab until it is closed."""
         await self._socket.accept()
-        self.say({"event": "hello", "version": VERSION, "history": self._session.history, "scene": self._session.scene})
-        self._session.enter(self)
+        session = self._session
+        known = {"history": session.history, "scene": session.scene}
+        self.say({"event": "hello", "version": VERSION, **known, "empty": session.waits_for_file and not session.text})
+        session.enter(self)
         try:
             with suppress(WebSocketDisconnect):
                 async with asyncio.TaskGroup() as group:

@@ -29,7 +29,6 @@ from .connection import PING_S, Connection, Exchange, Strangers
 from .routes import application
 
 log = logging.getLogger(__name__)
-EXAMPLE = Path("builtin/motorcycle")
 MOST_MESSAGE_BYTES = 2**20
 """Size limit of a message, bytes; pipeline files are smaller."""
 THREADS = 32
@@ -44,7 +43,7 @@ LATEST_START_S = 2.0
 def serve(files: list[Path], sets: list[str], address: Address) -> None:
     """Serve until Ctrl-C. Raises: OutputError if no temporary folder can be made."""
     with folder_of_this_process() as folder, channel_of_this_process() as channel:
-        served = Served(folder, channel, files or [EXAMPLE], sets)
+        served = Served(folder, channel, files, sets)
         app = application(lambda: served.session, address.key, address.hosts, served.lifespan)
         server = Server(settings(app), served.asked_to_end)
         server.run(sockets=[address.listening])
@@ -139,7 +138,9 @@ class Served:
         loop.set_exception_handler(partial(_unforeseen, session))
         session.begin(watch(session))
         session.begin(document.offer(session))
-        session.begin(document.begin(session, None, [str(each) for each in self._files]))
+        session.waits_for_file = not self._files
+        if self._files:
+            session.begin(document.begin(session, None, [str(each) for each in self._files]))
         session.begin(_start(session))
         gc.freeze()  # the collector skips what was imported
         try:

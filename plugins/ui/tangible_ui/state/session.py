@@ -52,6 +52,8 @@ class Session:
         """The document: the text of a pipeline file, and its path."""
         self.digest = ""
         """Digest of the text, as events name it."""
+        self.waits_for_file = False
+        """True if the program was started without a file: until one is opened, pages begin with a choice."""
         self.texts = Texts()
         self.long_jobs = LongJobs()
         self.strokes = LatestWins()

@@ -28,10 +28,14 @@ import { Overlay } from "./overlay/overlay";
 import type { Page } from "./page";
 import type { PluginPanel } from "./server/messages";
 import { build } from "./panels/panel";
+import { warnOfNoDepth } from "./notices/no_depth";
+import { offerToMake } from "./notices/pending";
 import { panels } from "./panels";
+import { findCommands } from "./palette/opener";
 import { pluginPanel } from "./panels/plugins";
 import { dataCursor } from "./contact/data_cursor";
 import { listen } from "./shortcuts";
+import { showHint } from "./start/hint";
 import { stroke } from "./sound/sonification";
 import { Sound } from "./sound/sound";
 import { Speech } from "./speech/speech";
@@ -116,6 +120,11 @@ for (const attach of [attachMouse, attachFingers, attachKeyboard, attachGamePad]
 showGraphicsTrouble(page);
 build(page, panels);
 dataCursor(page);
+warnOfNoDepth(page);
+offerToMake(page);
+showHint(page);
+findCommands(page);
+hub.on("hello", ({ empty }) => empty && void import("./start/start").then(({ start }) => start(page)));
 new Frames(page);
 requestAnimationFrame(() => setTimeout(() => view.prepare(recallSettings()))); // after the first paint
 if (measuring) Object.assign(window, { Instrument, stroke }); // for tests

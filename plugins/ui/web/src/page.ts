@@ -16,6 +16,7 @@ import type { Layer } from "./surface/loading";
 import type { Part, Scene } from "./surface/scene";
 import type { FinePatch, Looks } from "./terrain/terrain";
 import type { CameraAct } from "./view/camera_input";
+import type { Edge } from "./view/free_part";
 import type { Trouble } from "./view/view";
 
 /** The program behind the page. */
@@ -54,6 +55,8 @@ export interface Sight {
   focus(centre: Vec, width_m: number): void;
   /** Zoom in by this share of the distance; negative zooms out. */
   zoom(share: number): void;
+  /** Show the surface clear of an element at this edge of the canvas. */
+  keepFree(element: Element, edge: Edge): void;
 }
 
 /** The renderer: what stands still is drawn only when `dirty`, what moves in each frame. */

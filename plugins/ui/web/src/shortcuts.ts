@@ -22,6 +22,7 @@ export const SHORTCUTS = {
   "next region": { keys: ["F6"], where: "page" },
   "previous region": { keys: ["Shift+F6"], where: "page" },
   help: { keys: ["?", "F1"], where: "letter" },
+  palette: { keys: ["Ctrl+k", "Meta+k"], where: "page" },
   "move hand": { keys: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], where: "surface", own: true },
   "move finely": {
     keys: ["Shift+ArrowLeft", "Shift+ArrowRight", "Shift+ArrowUp", "Shift+ArrowDown"], where: "surface", own: true,
@@ -83,6 +84,17 @@ export const letters = {
 /** Set the action of a shortcut. */
 export function on(name: Name, act: () => void): void {
   actions.set(name, act);
+}
+
+/** Do what a shortcut does; one that a part handles itself is pressed on the surface, which gets the focus. */
+export function run(name: Name, surface: HTMLElement): void {
+  const { keys, own }: Shortcut = SHORTCUTS[name];
+  if (!own) return actions.get(name)?.();
+  const parts = keys[0]!.split(/(?<=.)\+/);
+  const held = (key: string): boolean => parts.slice(0, -1).includes(key);
+  const about = { key: parts.at(-1)!, ctrlKey: held("Ctrl"), shiftKey: held("Shift"), altKey: held("Alt"), bubbles: true, cancelable: true };
+  surface.focus();
+  for (const type of ["keydown", "keyup"]) surface.dispatchEvent(new KeyboardEvent(type, about));
 }
 
 /** Listen to the keys of the page; call once. The stop key acts before any part can take it, and stays available to them. */

@@ -16,6 +16,7 @@ from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.config.schema import json_schema
 from tangible_core.pipeline.starter import MAPS, PICTURES, VIDEOS, are_pictures, starter
 from tangible_core.scene.scene_files import BUILTINS
+from tangible_core.scene.workspace import kind_of
 from tangible_core.session.recording.files import SUFFIXES
 
 from ..state import WorkerState
@@ -25,10 +26,10 @@ from .table import job
 @job(quick=True)
 def check(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[str, Any]:
     """Return what a pipeline file says, alone and with every default filled in, or its errors."""
-    values, relief_from, complaints = None, None, list[Complaint]()
+    values, kinds, complaints = None, (None, None), list[Complaint]()
     try:
         config = state.config_of(text, path, sets)
-        values, relief_from = config.as_data(), config.relief_kind
+        values, kinds = config.as_data(), (kind_of(config.scene), config.relief_kind)
     except ConfigError as error:
         complaints = list(error.complaints)
     return {
@@ -37,7 +38,8 @@ def check(state: WorkerState, text: str, path: Path, sets: list[str]) -> dict[st
         "digest": digest_of(text),
         "said": _parse(text, path),
         "values": values,
-        "relief_from": relief_from,
+        "scene_kind": kinds[0],
+        "relief_from": kinds[1],
         "complaints": [each._asdict() for each in complaints],
     }
 

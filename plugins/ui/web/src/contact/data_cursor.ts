@@ -28,6 +28,9 @@ export function dataCursor(page: Parts): void {
   all.append(table, buttons);
   box.append(heading, all);
   document.getElementById("strip")!.append(short, box);
+  all.hidden = true;
+  box.addEventListener("toggle", () => (all.hidden = !box.open));
+  page.view.keepFree(all, "right");
   const under = follow(page);
   setInterval(() => {
     if (document.hidden) return;

@@ -45,10 +45,11 @@ export function rows(live: Reading | null, pointer: SurfacePlace | null): Row[] 
 export function shortRows(live: Reading | null, pointer: SurfacePlace | null): Row[] {
   const held = live?.seen ? live : null;
   const at = held ?? pointer;
+  const height = held?.surfaceM ?? pointer?.at[2] ?? NaN;
   return [
     [t("row_force"), held ? `${formatFixed(held.newtons, 2)} N` : NONE],
     [t("row_material"), at?.material?.name ?? NONE],
-    [t("row_height"), `${formatFixed(MM * (held?.surfaceM ?? pointer?.at[2] ?? NaN), 1)} mm`],
+    [t("row_height"), Number.isFinite(height) ? `${formatFixed(MM * height, 1)} mm` : NONE],
   ];
 }
 

@@ -22,7 +22,7 @@ export const t = words({
   rightSize: ["Width of the right column", "Breite der rechten Spalte"],
   bottomSize: ["Height of the log", "Höhe des Protokolls"],
   theme: ["Colours", "Farben"],
-  system: ["Colours of the system", "Farben des Systems"],
+  system: ["System colours", "Systemfarben"],
   light: ["Light", "Hell"],
   dark: ["Dark", "Dunkel"],
   "contrast-light": ["High contrast, light", "Hoher Kontrast, hell"],

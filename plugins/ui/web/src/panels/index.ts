@@ -1,5 +1,6 @@
 /** The built-in panels, in their order. */
 import { devices } from "./devices/panel";
+import { found } from "./found/panel";
 import { hand } from "./hand/panel";
 import { help } from "./help/panel";
 import { laws } from "./laws/panel";
@@ -28,7 +29,7 @@ import "./export/export.css";
 import "./legibility/legibility.css";
 
 /** The tasks, in which what is needed first stands first. */
-const PICTURE: Panel[] = [open];
+const PICTURE: Panel[] = [open, found];
 const PARTS: Panel[] = [parts, materials];
 const FEEL: Panel[] = [hand, sound, devices, laws, recordings, signs];
 const HAND_ON: Panel[] = [

@@ -160,7 +160,8 @@ export interface Document {
   said: Values | null;
   /** Values with all defaults filled in; null if something is wrong. */
   values: Values | null;
-  /** What the relief is made of; null if something is wrong. */
+  /** What the scene is, and what its relief is made of; null if something is wrong. */
+  scene_kind: "photograph" | "depth" | "heights" | null;
   relief_from: "photograph" | "depth" | "heights" | "edges" | "parts" | null;
   complaints: Complaint[];
   can_undo: boolean;
@@ -181,7 +182,8 @@ interface Said {
 }
 
 export interface Events {
-  hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null };
+  /** empty: true if the program was started without a file, and none is opened yet. */
+  hello: Said & { version: number; history: (Said & { event: keyof Events })[]; scene: (Said & Meta) | null; empty: boolean };
   gone: Said;
   /** Told by the page itself: the server is another one, by its key or by its version. */
   refused: Said & { why: "key" | "version" };

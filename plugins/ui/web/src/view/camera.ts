@@ -1,6 +1,7 @@
 /** The camera: it orbits a place on the surface. */
 import { PerspectiveCamera, Vector3 } from "three";
 import type { Vec } from "../server/protocol";
+import type { Covered } from "./free_part";
 
 const FIELD_DEG = 36;
 const FLIGHT_MS = 260;
@@ -27,6 +28,7 @@ export class Eye {
   ground: (x: number, y: number) => number = () => NaN;
   private size: [number, number] = [0.08, 0.06];
   private span: [number, number] = [0, 0];
+  private covered: Covered = { top: 0, right: 0, bottom: 0 };
   private flight: { from: Pose; to: Pose; begunMs: number } | null = null;
 
   constructor() {
@@ -106,9 +108,23 @@ export class Eye {
   }
 
   resize(width: number, height: number): void {
+    this.keepWhole(() => (this.camera.aspect = width / height));
+  }
+
+  /** Look at the target in the middle of what is free of the canvas, and show the whole surface there. */
+  cover(covered: Covered): void {
+    this.keepWhole(() => {
+      this.covered = covered;
+      const { top, right, bottom } = covered;
+      this.camera.setViewOffset(1, 1, right / 2, (bottom - top) / 2, 1, 1);
+    });
+  }
+
+  /** Change the projection; a surface that is shown whole stays whole. */
+  private keepWhole(change: () => void): void {
     const atHome = this.pose.azimuth === HOME.azimuth && this.pose.polar === HOME.polar && !this.flight;
     const wholePose = atHome && Math.abs(this.pose.distance / this.whole(HOME.polar).distance - 1) < 1e-6;
-    this.camera.aspect = width / height;
+    change();
     this.camera.updateProjectionMatrix();
     if (wholePose) this.pose = this.whole(HOME.polar);
     this.place();
@@ -155,7 +171,8 @@ export class Eye {
 
   private sees(point: Vec): boolean {
     const { x, y, z } = new Vector3(...point).project(this.camera);
-    return Math.abs(x) < MARGIN && Math.abs(y) < MARGIN && z < 1;
+    const { top, right, bottom } = this.covered;
+    return Math.abs(x + right) < MARGIN * (1 - right) && Math.abs(y + top - bottom) < MARGIN * (1 - top - bottom) && z < 1;
   }
 
   private clampDistance(distance: number): number {

@@ -16,6 +16,7 @@ import { Eye } from "./camera";
 import { attachCameraInput, type CameraAct } from "./camera_input";
 import { EyeDome, fullScreenQuad } from "./eye_dome";
 import type { Vec } from "../server/protocol";
+import { type Edge, FreePart } from "./free_part";
 import type { Scene } from "../surface/scene";
 import { flatSurface, type Looks, Terrain } from "../terrain/terrain";
 
@@ -74,6 +75,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   /** Pixels drawn per CSS pixel, per side. */
   private ratio = 1;
   private scene: Scene | null = null;
+  private free: FreePart;
 
   constructor(private canvas: HTMLCanvasElement) {
     this.renderer = rendererOf(canvas);
@@ -84,6 +86,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     canvas.addEventListener("webglcontextlost", (event) => this.onContextLost(event));
     canvas.addEventListener("webglcontextrestored", () => this.onContextRestored());
     new ResizeObserver(() => this.size()).observe(canvas);
+    this.free = new FreePart(canvas, (covered) => this.eye.cover(covered));
     this.size();
   }
 
@@ -95,6 +98,11 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     renderer.setRenderTarget(drawn);
     renderer.render(this.prepared.group, this.camera);
     this.dirty = true;
+  }
+
+  /** Show the surface clear of an element at this edge of the canvas. */
+  keepFree(element: Element, edge: Edge): void {
+    this.free.keep(element, edge);
   }
 
   /** Draw another surface; one of a different size is shown whole. */

@@ -3,6 +3,7 @@ import { test } from "node:test";
 import { Vector3 } from "three";
 import { Eye } from "../../src/view/camera";
 import { handleKey } from "../../src/view/camera_input";
+import { shareOf } from "../../src/view/free_part";
 
 const still = { matches: true } as MediaQueryList;
 globalThis.matchMedia ??= () => still;
@@ -27,6 +28,33 @@ for (const [w, l] of [[0.08, 0.06], [0.06, 0.3], [10, 0.001], [1e-6, 1e-6]])
 
 /** The hand's, with Shift finely and with Ctrl coarsely. */
 const HANDS = [{}, { shiftKey: true }, { ctrlKey: true }].flatMap((held) => ["ArrowLeft", "ArrowUp"].map((each) => pressed(each, held)));
+
+test("what covers the canvas does not cover the surface, which stays whole in the rest", () => {
+  const eye = new Eye();
+  eye.resize(1600, 1000);
+  eye.frame(0.08, 0.06, [0, 0.004]);
+  const covered = { top: 0.1, right: 0.3, bottom: 0.2 };
+  for (const each of [covered, { ...covered, right: 0 }, covered]) eye.cover(each);
+  const corners = [-0.04, 0.04].flatMap((x) => [-0.03, 0.03].flatMap((y) => [0, 0.004].map((z) => new Vector3(x, y, z).project(eye.camera))));
+  const [xs, ys] = [corners.map(({ x }) => (x + 1) / 2), corners.map(({ y }) => (1 - y) / 2)];
+  assert.ok(Math.min(...xs) > 0 && Math.max(...xs) < 0.7, String(xs));
+  assert.ok(Math.min(...ys) > 0.1 && Math.max(...ys) < 0.8, String(ys));
+  assert.ok(Math.max(...xs) - Math.min(...xs) > 0.55, "it fills what is free");
+  eye.cover({ top: 0, right: 0, bottom: 0 });
+  const before = eye.pose.distance;
+  eye.home();
+  eye.advance(performance.now() + 1000);
+  assert.ok(Math.abs(eye.pose.distance / before - 1) < 1e-6, "it is whole again at the old distance");
+});
+
+test("a box covers the share of the canvas up to its far side, and none while it is not shown", () => {
+  const box = (left: number, top: number, width: number, height: number) => ({ left, top, width, height, right: left + width, bottom: top + height, x: left, y: top });
+  const canvas = box(100, 50, 400, 200);
+  assert.equal(shareOf(box(110, 60, 80, 36), canvas, "top"), 0.25);
+  assert.equal(shareOf(box(110, 204, 80, 36), canvas, "bottom"), 0.25);
+  assert.equal(shareOf(box(404, 60, 90, 36), canvas, "right"), 0.25);
+  assert.equal(shareOf(box(0, 0, 0, 0), canvas, "right"), 0);
+});
 
 test("keys turn, move, zoom, and come home; nobody flies where motion is not wanted", () => {
   const eye = new Eye();

@@ -22,6 +22,7 @@ export class ScaleBar implements Piece {
     this.box.className = "scale-bar";
     this.box.append(this.bar, this.words);
     layer.append(this.box);
+    view.keepFree(this.box, "bottom");
   }
 
   put(live: Reading | null, { show, metresPerNewton }: Settings, sight: Sight): void {

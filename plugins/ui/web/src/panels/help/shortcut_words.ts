@@ -6,6 +6,7 @@ export const t = words({
   "next region": ["Go to the next part of the page", "Zum nächsten Bereich der Seite"],
   "previous region": ["Go to the previous part of the page", "Zum vorigen Bereich der Seite"],
   help: ["Show all keys", "Alle Tasten zeigen"],
+  palette: ["Find a command, a panel or a setting by its name", "Befehl, Abschnitt oder Einstellung beim Namen suchen"],
   "move hand": ["Move the hand by a millimetre; held down, 40 mm a second",
     "Die Hand um einen Millimeter bewegen; gedrückt gehalten 40 mm in der Sekunde"],
   "move finely": ["Move it by 0.2 mm; held down, 8 mm a second", "Um 0,2 mm; gedrückt gehalten 8 mm in der Sekunde"],

@@ -12,8 +12,10 @@ interface Listed {
   more: number;
 }
 
+/** Return the browser of folders in a box that opens and closes; when it is opened first, the current folder is listed. */
 export function folder(net: Server, open: (paths: string[]) => void, say: (text: string) => void): HTMLElement {
-  const box = document.createElement("div");
+  const box = document.createElement("details");
+  const heading = Object.assign(document.createElement("summary"), { textContent: t("folder") });
   const path = document.createElement("input");
   path.id = "open-folder";
   path.spellcheck = false;
@@ -25,12 +27,13 @@ export function folder(net: Server, open: (paths: string[]) => void, say: (text:
   let shown: Listed | null = null;
 
   async function show(place: string): Promise<void> {
+    const before = path.value;
     try {
       shown = await net.ask<Listed>("folder", { path: place });
     } catch (error) {
       return say((error as Error).message);
     }
-    path.value = shown.folder;
+    if (path.value === before) path.value = shown.folder;
     list.replaceChildren(
       ...shown.entries.map(({ name, kind }) => new Option(t("entry", { name, kind: t(`kind_${kind}`) }), name)),
     );
@@ -50,7 +53,9 @@ export function folder(net: Server, open: (paths: string[]) => void, say: (text:
   list.onkeydown = (event) => {
     if (event.key === "Enter") chosen();
   };
+  box.addEventListener("toggle", () => box.open && !shown && void show(""));
   box.append(
+    heading,
     field(t("folder"), path),
     button(t("go"), () => void show(path.value)),
     button(t("up"), () => void show(shown?.parent ?? "")),

@@ -41,7 +41,7 @@ function build(page: Page, root: HTMLElement): void {
     draftOffer(page),
     ...chooser(take),
     examples(page, open),
-    foldable(t("folder"), folder(page.net, open, say)),
+    folder(page.net, open, say),
     foldable(t("camera"), camera(take, say)),
     exchange(page),
     status,

@@ -362,7 +362,10 @@ class TestSaid:
             "new Set(heard.map((each) => each.text).filter((each) => /^(Touching|Up|Down|Level)\\b/.test(each))).size"
         )
         drag(page, lambda: page.evaluate(touching) > 1)
-        until(lambda: last(page).startswith(("In the air", "No hand")), "the end of the touch is announced")
+        until(
+            lambda: last(page).endswith(("In the air.", "No hand is on the surface.")),
+            "the end of the touch is announced",
+        )
         heard = page.evaluate("heard")
         texts = [each["text"] for each in heard]
         assert all(before != after for before, after in pairwise(texts)), texts
@@ -382,9 +385,24 @@ class TestSaid:
         assert all(part in where for part in ("right of the middle", "away from you", "high", "newtons")), where
         page.keyboard.press("d")
         assert "materials: " in last(page)
+
+        # zoom and depth say what they did, moves are described in the air, and a tour ends with Escape
+        assert answer_to(page, "+", "The view shows ").endswith(" mm.")
+        assert answer_to(page, "PageDown", "Presses ").endswith(" mm deep.")
+        page.keyboard.press(" ")
+        answer_to(page, "Shift+D", "What the hand moves over is described")
+        page.keyboard.down("ArrowLeft")
+        until(
+            lambda: page.evaluate("heard.some(({ text }) => / mm: |^Level: |Left rim/.test(text))"), "it is described"
+        )
+        page.keyboard.up("ArrowLeft")
+        answer_to(page, "Shift+D", "no longer described")
+        answer_to(page, "g", "A tour of ")
+        until(lambda: page.evaluate("heard.some(({ text }) => / mm high; /.test(text))"), "the first part")
         page.keyboard.press("Escape")
-        page.wait_for_function("() => document.querySelector('#said').textContent.includes('no force')")
+        page.wait_for_function("() => heard.some(({ text }) => text.includes('no force'))")
         assert page.locator("#alerted").inner_text() == "", "what somebody asked for is no alarm"
+        assert page.locator("#sound button[aria-keyshortcuts=G]").get_attribute("aria-pressed") == "false"
         assert page.locator("#status").get_attribute("data-state") == "stopped"
         page.locator("#again").click()
         wait_for_force(page)

@@ -53,6 +53,7 @@ export function progress(page: Page, names: () => string[]): HTMLElement {
     text.textContent = "";
   });
   page.hub.on("stage", ({ product, done }) => {
+    if (box.hidden) return; // something else is made
     text.textContent = steps.take(product, !!done.outcome);
     bar.value = steps.value;
   });

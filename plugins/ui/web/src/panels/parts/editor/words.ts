@@ -82,7 +82,7 @@ export const t = words({
   tooHigh: ["The height must be between 0 and {top} mm.", "Eine Höhe ist von 0 bis {top} mm."],
   feltLater: ["Its outline can be felt after saving.", "Ihr Umriss ist zu fühlen, wenn gespeichert ist."],
   material: ["Material", "Material"],
-  byRules: ["plain, unless a rule of the file names another", "schlicht, wenn keine Regel der Datei etwas anderes sagt"],
+  byRules: ["not chosen: plain", "nicht gewählt: schlicht"],
   forward: ["Bring forward", "Nach vorn"],
   backward: ["Send back", "Nach hinten"],
   joinWith: ["Join with", "Verbinden mit"],

@@ -108,24 +108,21 @@ export class Eye {
   }
 
   resize(width: number, height: number): void {
-    this.keepWhole(() => (this.camera.aspect = width / height));
+    this.project(width / height, this.covered);
   }
 
   /** Look at the target in the middle of what is free of the canvas, and show the whole surface there. */
   cover(covered: Covered): void {
-    this.keepWhole(() => {
-      this.covered = covered;
-      const { top, right, bottom } = covered;
-      this.camera.setViewOffset(1, 1, right / 2, (bottom - top) / 2, 1, 1);
-    });
+    this.project(this.camera.aspect, covered);
   }
 
   /** Change the projection; a surface that is shown whole stays whole. */
-  private keepWhole(change: () => void): void {
+  private project(aspect: number, covered: Covered): void {
     const atHome = this.pose.azimuth === HOME.azimuth && this.pose.polar === HOME.polar && !this.flight;
     const wholePose = atHome && Math.abs(this.pose.distance / this.whole(HOME.polar).distance - 1) < 1e-6;
-    change();
-    this.camera.updateProjectionMatrix();
+    this.covered = covered;
+    const { top, right, bottom } = covered;
+    this.camera.setViewOffset(aspect, 1, (aspect * right) / 2, (bottom - top) / 2, aspect, 1); // sets the aspect too
     if (wholePose) this.pose = this.whole(HOME.polar);
     this.place();
   }

@@ -40,6 +40,9 @@ test("what covers the canvas does not cover the surface, which stays whole in th
   assert.ok(Math.min(...xs) > 0 && Math.max(...xs) < 0.7, String(xs));
   assert.ok(Math.min(...ys) > 0.1 && Math.max(...ys) < 0.8, String(ys));
   assert.ok(Math.max(...xs) - Math.min(...xs) > 0.55, "it fills what is free");
+  const at = (x: number, z: number): Vector3 => new Vector3(x, 0, z).project(eye.camera);
+  const side = 0.001 * Math.sin(eye.pose.polar);
+  assert.ok(Math.abs((1.6 * (at(0.001, 0).x - at(0, 0).x)) / (at(0, 0.001).y - at(0, 0).y) / (0.001 / side) - 1) < 0.02, "a square stays one");
   eye.cover({ top: 0, right: 0, bottom: 0 });
   const before = eye.pose.distance;
   eye.home();

@@ -26,10 +26,10 @@ export class ScaleBar implements Piece {
   }
 
   put(live: Reading | null, { show, metresPerNewton }: Settings, sight: Sight): void {
-    this.box.hidden = !show.arrow;
+    this.box.classList.toggle("unseen", !show.arrow); // its room stays, so that the surface does not move
     const now = performance.now();
-    this.late = !this.box.hidden && now - this.readMs < EVERY_MS;
-    if (this.box.hidden || this.late) return;
+    this.late = show.arrow && now - this.readMs < EVERY_MS;
+    if (!show.arrow || this.late) return;
     this.readMs = now;
     const pixel = metresPerPixel(sight, live?.contact ?? this.view.eye.pose.target);
     const newtons = roundDown125((MOST_PX * pixel) / metresPerNewton);

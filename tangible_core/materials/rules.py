@@ -25,9 +25,9 @@ class MaterialRule(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     segment: Annotated[int, Field(ge=0)] | None = None
-    """The segment with this label, as numbered in the report; all of its parts, if there are parts."""
+    """The segment with this label, 0 for segment 1; all of its parts, if there are parts."""
     part: Annotated[int, Field(ge=0)] | str | None = None
-    """The part with this number, or of this name in `parts:`."""
+    """The part with this key of `parts:`, 0 for part 1, or of this name there."""
     at: tuple[Place, Place] | None = None
     """The segment or part at this pixel of the left picture: [x, y], counted from the upper left corner."""
     colour: Colour | None = None

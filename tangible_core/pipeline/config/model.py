@@ -77,7 +77,7 @@ class PipelineConfig(BaseModel):
         Mapping[int, PartChoice] | None,
         PartsBlock("A word alone is a name (`{0: wall, 6: helmet}`), or ([more](parts.md)):"),
     ] = None
-    """The names, heights and materials of the connected parts of the segments, by number: parts are numbered from 0 in
+    """The names, heights and materials of the connected parts of the segments, by key: 0 for part 1, 1 for part 2, in
     the order of their first pixels, row by row. With it, each part has one material."""
     heights: Annotated[HeightChoice | None, Block("A word alone is `by` (`heights: given`), or:", word="by")] = None
     """The relief is made of parts, each of one height, with rounded rims and a little of the picture's brightness, in

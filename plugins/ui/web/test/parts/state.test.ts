@@ -32,6 +32,11 @@ const strokeOf = async (state: EditorState, ...points: Point[]): Promise<void> =
 };
 
 describe("editor state", () => {
+  test("people know a part by its number from 1, as everywhere", () => {
+    const { state } = editor(["ab", "ab"]);
+    assert.deepEqual([0, 1].map((label) => state.numberOf(label)), [1, 2]);
+  });
+
   test("is saved at first, with a brush of a fortieth of the picture", () => {
     const { state } = editor(Array(2).fill("a".repeat(80) + "b".repeat(80)));
     assert.ok(state.isSaved);

@@ -220,8 +220,14 @@ _REPR.maxlevel = 3
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return a hint to append to a complaint; "" if no word is close.
 
-    >>> did_you_mean("stifness", ["stiffness", "damping"])
-    " (did you mean 'stiffness'?)"
+    >>> did_you_mean("stifness", ["stiffness", "damping"]), did_you_mean("cat.yaml", ["sky.yaml"])
+    (" (did you mean 'stiffness'?)", '')
     """
     near = get_close_matches(word, list(known), n=1) if len(word) <= MOST_QUOTED else []
-    return f" (did you mean {quoted(near[0])}?)" if near else ""
+    return f" (did you mean {quoted(near[0])}?)" if near and _are_near(word, near[0]) else ""
+
+
+def _are_near(word: str, other: str) -> bool:
+    """Return True unless two names have little more in common than an ending, as files of one kind have."""
+    (stem, _, ending), (another, _, same) = word.rpartition("."), other.rpartition(".")
+    return not stem or ending != same or bool(get_close_matches(stem, [another], n=1))

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 def run_summary(run: Run) -> str:
     """Return what a run made, the size of the surface, and the forces on a simulated hand."""
     scene, products = without_folders(run.scene), [name for name, value in run.products.items() if value is not None]
+    if made_simpler(run.outcomes):
+        scene += ", its parts simplified,"
     size, touch = "", ""
     if (surface := run.products.get("surface")) is not None:
         width_m, length_m = surface.extent_m
@@ -42,14 +44,18 @@ def where(files: Sequence[Path]) -> str:
 
 
 def export_summary(scene: str, done: Export) -> str:
-    """Return what a scene was exported as, which exports failed, and what fingers cannot read of them."""
-    written = [each.name for each in done.exports if each.files]
+    """Return what a scene was exported as, and which exports failed; a warning tells what fingers cannot read."""
+    written = [f"{each.name}{' (parts simplified)' * made_simpler(each.made)}" for each in done.exports if each.files]
     failed = [each.name for each in done.exports if not each.files]
     text = f"{scene} is written as {_and(written)}." if written else f"Nothing of {scene} was written."
     if written and failed:
         text += f" {_and(failed)} could not be written."
-    illegible = [each for each in done.exports if each.files and each.legible is not None and not each.legible.readable]
-    return " ".join([text, *(f"{each.name}: {each.legible.sentence}" for each in illegible if each.legible)])
+    return text
+
+
+def made_simpler(outcomes: Sequence[Outcome]) -> bool:
+    """Return True if the parts were simplified on the way to a product."""
+    return any(each.product == "simplified" and each.outcome in ("ran", "cached") for each in outcomes)
 
 
 def parts_summary(name: str, parts: int) -> str:

@@ -137,20 +137,26 @@ def parts_felt(parts: Sequence[PartFelt]) -> None:
         table(("part", "name", "material", "% of the contact", "peak N"), cells)
 
 
-def verdicts(heading: str, rows: Sequence[Verdict], colours: Mapping[str, str], widths: tuple[int, int]) -> None:
+def verdicts(
+    heading: str, rows: Sequence[Verdict], colours: Mapping[str, str], widths: tuple[int, int], verbose: bool = False
+) -> None:
     """Print verdicts with their cures below a heading, and the number of verdicts of each grade.
 
-    colours: grade -> rich's style. widths: of the columns of grades and of checks.
+    colours: grade -> rich's style. widths: of the columns of grades and of checks. verbose: print what is ok, too.
     """
     say(f"{heading}\n")
     widths = (
         max(widths[0], *(len(localise(grade)) for grade in colours)),
         max(widths[1], *(len(localise(each.check)) for each in rows), 0),
     )
-    for verdict in rows:
-        say(verdict_line(verdict, colours, widths))
-    grades = Counter(each.verdict for each in rows)
-    say("\n" + ", ".join(f"{grades[grade]} {grade}" for grade in colours))
+    lines = {verdict_line(each, colours, widths): each.verdict for each in rows}  # one for all segments of a material
+    shown = [line for line, grade in lines.items() if verbose or grade != "ok"]
+    for line in shown:
+        say(line)
+    grades = Counter(lines.values())
+    more = " (--verbose lists them)" if grades["ok"] and not verbose else ""
+    counts = ", ".join(f"{grades[grade]} {grade}{more if grade == 'ok' else ''}" for grade in colours)
+    say(f"\n{counts}" if shown else counts)
 
 
 def verdict_line(verdict: Verdict, colours: Mapping[str, str], widths: tuple[int, int]) -> str:

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping
 from decimal import Decimal
+from math import isfinite
 from typing import TYPE_CHECKING, Any, cast
 
 from pydantic import BaseModel, GetJsonSchemaHandler, ValidationError, ValidationInfo, field_validator
@@ -142,6 +143,21 @@ def _as_number(value: Any, units: Mapping[str, Decimal]) -> Any:
         return float(Decimal(match[1]) * worth)  # in decimals: 30 um is 3e-05 to the last digit
     except ArithmeticError as error:
         raise ValueError("this number is too large") from error
+
+
+def in_unit_of(name: str, text: object, value: object) -> object:
+    """Return a number as text in the unit in which an option was written before; anything else as it is.
+
+    >>> in_unit_of("relief_m", "6 mm", 0.0045), in_unit_of("relief_m", 0.006, 0.0045)
+    ('4.5 mm', 0.0045)
+    """
+    match = _QUANTITY.fullmatch(text) if isinstance(text, str) else None
+    if match is None or isinstance(value, bool) or not isinstance(value, int | float):
+        return value
+    worth = next((each for unit, each in units_of(name).items() if _plain(unit) == _plain(match[2])), None)
+    if worth is None or not isfinite(value):
+        return value
+    return f"{(Decimal(repr(value)) / Decimal(worth)).normalize():f} {match[2]}"
 
 
 def _plain(unit: str) -> str:

@@ -33,7 +33,7 @@ class Record:
         settle(self)
         for name, value in items_of(self):
             if isinstance(value, np.ndarray):
-                object.__setattr__(self, name, frozen(cast(np.ndarray, value)))
+                object.__setattr__(self, name, as_read_only(cast(np.ndarray, value)))
 
     def _repr_html_(self) -> str:
         """Return a small picture with units, for a notebook."""
@@ -45,7 +45,7 @@ class Record:
         return digest_of(self)
 
 
-def frozen(array: np.ndarray) -> np.ndarray:
+def as_read_only(array: np.ndarray) -> np.ndarray:
     """Return a read-only view of an array."""
     view = array.view()
     view.flags.writeable = False

@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float32, Int32, Integer
 
 from ..errors import GeometryError, PictureError
 from .pictures import check_picture, check_same_shape, size_in_words
-from .records import Record, frozen, settle
+from .records import Record, as_read_only, settle
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +47,9 @@ class Views(Record):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        object.__setattr__(self, "left", frozen(check_picture(self.left, "left view")))
+        object.__setattr__(self, "left", as_read_only(check_picture(self.left, "left view")))
         if self.right is not None:
-            object.__setattr__(self, "right", frozen(check_picture(self.right, "right view")))
+            object.__setattr__(self, "right", as_read_only(check_picture(self.right, "right view")))
             if self.left.shape[:2] != self.right.shape[:2]:
                 raise PictureError(
                     f"the left view is {size_in_words(self.left)} and the right one {size_in_words(self.right)}; "

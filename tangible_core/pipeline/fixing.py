@@ -12,6 +12,7 @@ from ..preflight.verdict import Change
 from .config.editing import edit_text, relocate_text, with_overrides
 from .config.parsing import parse_config
 from .feeling import Feeling
+from .losses import losses
 from .pipeline import Pipeline
 
 ROUNDS = 24
@@ -26,6 +27,8 @@ class Fixed:
 
     changes: Mapping[str, str]
     """New values by key, in the order of the changes."""
+    losses: Sequence[str]
+    """What each change takes away, as the end of a sentence about the surface."""
     flight: Flight
     verdicts: Preflight
     text: str
@@ -55,7 +58,8 @@ def fix(path: Path, sets: Iterable[str], hand: Hand, loop: Loop, out: Path, cach
         pipeline.engine.cache = None
     cured = cure(with_overrides(read_text(path), path, sets), path, pipeline, hand, loop)
     changes = {key: change.value for key, change in cured.changes.items()}
-    return Fixed(changes, cured.flight, cured.verdicts, relocate_text(cured.text, path, cured.pipeline.config, out))
+    text = relocate_text(cured.text, path, cured.pipeline.config, out)
+    return Fixed(changes, losses(pipeline.config, cured.changes), cured.flight, cured.verdicts, text)
 
 
 def cure(

@@ -33,22 +33,14 @@ SIDE_MM = 80
 """The longer side of the surface, mm: the reach of a small desktop device."""
 SMOOTH_MM: Mapping[str, float] = {"photo": 1.5, "heights": 0.0}
 """The smoothing of a relief of brightness, and of a map of heights, mm."""
-PHOTOS: Mapping[str, Mapping[str, str]] = {
-    "edges": {
-        "felt": "Its edges are felt as raised lines, on low steps from dark to light",
-        "relief": "relief: edges                      # 2 mm high, or `relief_m` above; disparity: lighter is higher",
-    },
-    "depth": {
-        "felt": "Nearer parts are felt as higher, by the depth that a network finds",
-        "relief": "relief: {slope: 1.1}               # 5 mm high, or `relief_m` above; 0 keeps cliffs",
-    },
-    "brightness": {
-        "felt": "Lighter parts are felt as higher",
-        "relief": "  relief_m: $relief_mm mm            # height of the lightest point above the darkest; $why\n"
-        "  smooth_m: $smooth_mm mm            # less keeps finer detail, and makes steeper edges",
-    },
+PHOTOS: Mapping[str, str] = {
+    "edges": "relief: edges                      # edges: raised lines, on low steps from dark to light; disparity: "
+    "lighter is higher",
+    "depth": "relief: {slope: 1.1}               # slope: nowhere steeper; less is gentler, 0 keeps cliffs",
+    "brightness": "  relief_m: $relief_mm mm            # from the lowest point to the highest; more is steeper\n"
+    "  smooth_m: $smooth_mm mm            # less keeps finer detail, and makes steeper edges",
 }
-"""Texts for one picture: felt by its edges, its depth or its brightness."""
+"""Lines for one picture: felt by its edges, its depth or its brightness; each comment stays true when values change."""
 STEEPEST = 0.6
 """The slope that at most a twentieth of the relief exceeds: from 1 on, 45 degrees, the sideways force is larger than
 the force down."""
@@ -64,6 +56,14 @@ Kind = Literal["photo", "pair", "heights"]
 def are_pictures(paths: Iterable[Path]) -> bool:
     """Return True for pictures, videos, maps and builtin scenes, which are not pipeline files."""
     return all(_is_builtin(path) or path.suffix.lower() in PICTURES | VIDEOS or _is_map(path) for path in paths)
+
+
+def not_pictures(paths: Iterable[Path]) -> ConfigError:
+    """Return the error for files that a surface cannot be made of, such as a PDF."""
+    names = ", ".join(map(str, paths))
+    return ConfigError(
+        f"{names}: name a picture (.png, .jpg, ...), left and right, a video, or a map of heights (.npy)"
+    )
 
 
 class Starter(NamedTuple):
@@ -147,10 +147,9 @@ def _size(scene: Scene, kind: Kind) -> dict[str, object]:
     slope = _slope(shades, SMOOTH_MM[kind])
     least, most = LEAST_MM, MOST_MM[kind]
     relief_mm = max(least, min(most, floor(2 * STEEPEST / slope) / 2)) if slope > 0 else most
-    why = "more would make its edges walls" if relief_mm < most else "its edges would bear more"
-    size |= {"relief_mm": f"{relief_mm:g}", "smooth_mm": f"{SMOOTH_MM[kind]:g}", "why": why}
+    size |= {"relief_mm": f"{relief_mm:g}", "smooth_mm": f"{SMOOTH_MM[kind]:g}"}
     if kind == "photo":
-        size |= {name: Template(text).substitute(size) for name, text in PHOTOS[_felt_of(scene)].items()}
+        size["relief"] = Template(PHOTOS[_felt_of(scene)]).substitute(size)
     return size
 
 

@@ -19,8 +19,8 @@ from .listed_parts import ListedPart
 
 RELIEF_MM = 6.0
 """The height of the whole relief, mm: as `workspace` has it for parts."""
-GUESSED = "it is a guess, as a picture does not show which parts are in front."
-MEASURED = "it is by depth, of which this is the median over the part."
+GUESSED = "`tangible parts` wrote a guess, as a picture does not show which parts are in front."
+MEASURED = "`tangible parts` wrote the median of the depth over the part."
 
 
 def parts_starter(
@@ -30,7 +30,6 @@ def parts_starter(
     scene, heights = pipeline.scene, HeightChoice(by="given")
     rows, columns = scene.shape
     longer = max(rows, columns)
-    above_mm = 1000 * (heights.bulge_m + heights.detail_m)
     guessed = all("guess" in each.why for each in listed)
     depth = pipeline.config.depth
     values = {
@@ -40,8 +39,7 @@ def parts_starter(
         "title": in_yaml(title), "heights": GUESSED if guessed else MEASURED, "parts": _lines(listed),
         "round_mm": f"{1000 * heights.round_m:g}", "bulge_mm": f"{1000 * heights.bulge_m:g}",
         "detail_mm": f"{1000 * heights.detail_m:g}", "relief_mm": f"{RELIEF_MM:g}",
-        "top_mm": f"{RELIEF_MM - above_mm:g}", "width_mm": f"{SIDE_MM * columns / longer:.3g}",
-        "length_mm": f"{SIDE_MM * rows / longer:.3g}", "side_mm": SIDE_MM,
+        "width_mm": f"{SIDE_MM * columns / longer:.3g}",
         "depth": f"depth: {{use: {depth.name}}}" if depth and not guessed else "",
     }  # fmt: skip
     text = files("tangible_core.pipeline").joinpath("starter_parts.yaml").read_text(encoding="utf-8")
@@ -63,15 +61,10 @@ def _count_in_words(parts: int) -> str:
 
 
 def _lines(listed: Sequence[ListedPart]) -> str:
-    """Write a line for each part, with its place and the reason of its height."""
+    """Write a line for each part, with its number and place, which stay true when the height changes."""
     parts = {each.number: {"name": "", "height_m": f"{1000 * (each.height_m or 0):.1f} mm"} for each in listed}
-    comments = {each.number: f"{name_part(each.number)}: {each.where}, {_briefly(each.why)}" for each in listed}
+    comments = {each.number: f"{name_part(each.number)}: {each.where}" for each in listed}
     return part_lines(parts, comments).removesuffix("\n")
-
-
-def _briefly(why: str) -> str:
-    """Return the source of a height, without the details."""
-    return re.split("[:;]", why)[0]
 
 
 def _scene_in_yaml(scene: Scene, folder: Path, labels: str) -> str:

@@ -3,7 +3,9 @@
 import errno
 import logging
 import math
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
@@ -56,7 +58,7 @@ def make_scene(job: Job) -> Row:
     """Make the scene, write its files, and return its row, with the error if anything fails."""
     start_s, row = perf_counter(), _row(job, "ok", None)
     try:
-        with limited_threads(job.threads):
+        with limited_threads(job.threads), naming_scene(job.id):
             row |= _make(job)
     except Exception as error:
         if _disk_is_full(error):
@@ -67,6 +69,28 @@ def make_scene(job: Job) -> Row:
         row |= {"outcome": "failed", "error": shown(" ".join(message.split()), MOST_IN_ERROR)}
     row["seconds"] = round(perf_counter() - start_s, 4)
     return row
+
+
+@contextmanager
+def naming_scene(name: str) -> Generator[None]:
+    """Begin each warning that is logged in this block with the name of the scene: many scenes log at once."""
+    plain, token = logging.getLogRecordFactory(), _scene.set(name)
+
+    def with_name(*arguments: Any, **options: Any) -> logging.LogRecord:
+        record = plain(*arguments, **options)
+        if record.levelno >= logging.WARNING and (scene := _scene.get()):
+            record.msg, record.args = f"{scene}: {record.getMessage()}", ()
+        return record
+
+    logging.setLogRecordFactory(with_name)
+    try:
+        yield
+    finally:
+        logging.setLogRecordFactory(plain)
+        _scene.reset(token)
+
+
+_scene: ContextVar[str] = ContextVar("tangible_scene", default="")
 
 
 def dead_row(job: Job, death: str) -> Row:

@@ -3,7 +3,8 @@
 import csv
 import glob
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from os.path import commonpath
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -28,16 +29,22 @@ class SceneRow(NamedTuple):
     """The changes, `key.key=value` each, as for `--set`."""
 
 
-def rows_of(over: str, besides: Path | None = None) -> Iterator[SceneRow]:
+def rows_of(over: str | Sequence[str], besides: Path | None = None) -> Iterator[SceneRow]:
     """Yield the rows of a .csv or .parquet file, or one for each picture or pair of a folder or a glob, in order.
 
-    besides: a folder whose pictures are left out: that of the results.
+    over: a file, a folder or a glob; or the pictures that a shell has made of a glob. besides: a folder whose pictures
+    are left out: that of the results.
 
     In a manifest, the column `id` names the row (by default its number), and each other column is a key of the pipeline
     file (`scene.left`, `workspace.width_m`); empty cells change nothing. In a folder or glob, two pictures whose names
     end with `_left` and `_right` are a pair; without any picture, the videos are taken.
     Raises: BatchError if there is no such file, nothing in it, or two rows have the same name.
     """
+    several = () if isinstance(over, str) else tuple(over)
+    over = over if isinstance(over, str) else ", ".join(several)
+    if len(several) > 1:
+        yield from _check_names(_pictures(_existing_pictures(several), _common(several)), "--over: ")
+        return
     path = as_path(over, "--over")
     if path.suffix.lower() in MANIFESTS:
         rows = _read_manifest(path)
@@ -55,6 +62,21 @@ def rows_of(over: str, besides: Path | None = None) -> Iterator[SceneRow]:
             f"{over}: holds no picture and no row; name a folder or a glob of pictures ('archive/*.jpg', in quotes), "
             "or a .csv or .parquet file whose columns are keys of the pipeline file"
         )
+
+
+def _existing_pictures(names: Iterable[str]) -> list[Path]:
+    """Return the pictures and videos of these names, in order. Raises: BatchError for any other file, or none."""
+    files = [as_path(name, "--over") for name in names]
+    taken = PICTURES | VIDEOS
+    if odd := next((file for file in files if file.suffix.lower() not in taken or not file.is_file()), None):
+        why = "there is no such file" if not odd.exists() else "is not a picture or a video"
+        raise BatchError(f"{odd}: {why}; after --over stand pictures, or one folder, glob, .csv or .parquet file")
+    return sorted(files)
+
+
+def _common(names: Iterable[str]) -> Path:
+    """Return the folder that holds all of these files."""
+    return Path(commonpath([Path(name).absolute().parent for name in names]))
 
 
 def rows_from(rows: Iterable[Mapping[str, Any]], base: Path) -> Iterator[SceneRow]:
@@ -153,6 +175,7 @@ def _pictures(files: list[Path], base: Path) -> Iterator[SceneRow]:
 
 def _name(file: Path, base: Path) -> str:
     """Return the name of a file relative to a folder, without its suffix."""
+    file = file.absolute() if base.is_absolute() else file
     return str((file.relative_to(base) if file.is_relative_to(base) else Path(file.name)).with_suffix(""))
 
 

@@ -5,8 +5,10 @@ from html import escape
 from itertools import islice
 from pathlib import Path
 from typing import Any, cast
+from urllib.parse import quote
 
 from tangible_core.files.json_lines import read_rows
+from tangible_core.files.paths import without_folders
 from tangible_core.files.writing import atomic_write, write_text
 
 from .extra import need
@@ -97,12 +99,38 @@ def _page(title: str, rows: Iterable[Row], pages: Iterable[Path], own: Path) -> 
 
 
 def _figure(row: Row) -> str:
-    name, error = escape(printable(row["id"])), escape(printable(row.get("error") or ""))
-    image = (
-        f'<img loading="lazy" src="{escape(row["folder"])}/{escape(row["card"])}" alt="">' if row.get("card") else ""
-    )
-    why = f" <em>{error}</em>" if error else ""
-    return f'<figure class="{row["outcome"]}">{image}<figcaption>{name}{why}</figcaption></figure>'
+    name, scene = escape(printable(row["id"])), escape(printable(without_folders(row.get("scene") or "")))
+    folder, found = quote(printable(row["folder"])), escape(printable(_summary(row)))
+    image = ""
+    if card := row.get("card"):
+        sheet = next((file for file in row.get("files", ()) if file.startswith("sheet.")), card)
+        image = (
+            f'<a href="{folder}/{escape(sheet)}"><img loading="lazy" src="{folder}/{escape(card)}" title="{scene}" '
+            f'alt="{name}: the picture, and the {escape(_product(row))} made of it"></a>'
+        )
+    caption = f'<a href="{folder}/">{name}</a>' if image else name
+    line = f"<em>{found}</em>" if row["outcome"] != "ok" else found
+    return f'<figure class="{row["outcome"]}">{image}<figcaption>{caption} <br>{line}</figcaption></figure>'
+
+
+def _product(row: Row) -> str:
+    """Return the product that was kept, such as `relief`."""
+    records = [file.removesuffix(".npz") for file in row.get("files", ()) if file.endswith(".npz")]
+    return next((each for each in reversed(records) if each != "recording"), "surface")
+
+
+def _summary(row: Row) -> str:
+    """Return a line on a scene: what was made, how wrong it is where that is known, and the warnings; or the error."""
+    if row["outcome"] != "ok":
+        return row.get("error") or "failed"
+    figures, parts = row.get("figures") or {}, [f"{_product(row)} made in {row['seconds']:.2g} s"]
+    if (bad := (figures.get("disparity") or {}).get("bad2")) is not None:
+        parts.append(f"{bad:.0f} % of the pixels are off by more than 2 px")
+    if materials := figures.get("materials"):
+        parts.append(f"{len(materials)} segments")
+    if force := figures.get("force"):
+        parts.append(f"felt with up to {force['peak_force_n']:.1f} N")
+    return "; ".join([*parts, *(f"warning: {each}" for each in row.get("notes", ()))])
 
 
 STYLE = (

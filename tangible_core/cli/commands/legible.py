@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
-from ..options import FAILED, Config, Json, NoCache, Sets
+from ..options import FAILED, Config, Json, NoCache, Sets, Verbose
 from .run import open_pipeline
 
 if TYPE_CHECKING:
     from ...legibility import Legibility
+    from ...plugins.interfaces import Medium
 
 COLOURS = {"ok": "green", "warn": "yellow", "illegible": "bold red"}
 WIDTHS = 9, 15
@@ -30,39 +31,67 @@ class ReadOn(StrEnum):
 def legible(
     config: Config,
     medium: Annotated[
-        ReadOn, typer.Option("--for", help="Medium: swell paper, a printed solid, pins or a force device.")
-    ],
+        ReadOn | None,
+        typer.Option(
+            "--for",
+            help="Medium: swell paper, a printed solid, pins or a force device [default: each].",
+            show_default=False,
+        ),
+    ] = None,
     sets: Sets = None,
     width_m: Annotated[float | None, typer.Option("--width-m", help="Width of the picture on the medium, m.")] = None,
+    verbose: Verbose = False,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
     """Check whether fingers can read a picture on paper, print, pins or a device.
 
-    Prints by the rules of tactile graphics what is ok, what is not and where, and its cure. Writes nothing. Exit 1 if
-    something is illegible.
+    Prints by the rules of tactile graphics what is not legible and where, and its cure; with --verbose also what is ok.
+    Writes nothing. Exit 1 if something is illegible.
     """
+    from ...files.paths import without_folders
     from ...pipeline.feeling import Feeling
+    from .. import show
 
     pipeline = open_pipeline(config, sets or [], not no_cache)
-    width_m = Feeling(pipeline).width_on(medium.value) if width_m is None else width_m
-    verdicts = Feeling(pipeline).legible(medium.value, width_m)
-    _print(pipeline.scene.name, medium.value, width_m, verdicts, as_json)
-    if not verdicts.readable:
+    feeling, scene = Feeling(pipeline), pipeline.scene.name
+    found = list[Found]()
+    media: list[Medium] = [medium.value] if medium else ["swell", "print", "pins", "force"]
+    for name in media:
+        wide_m = feeling.width_on(name) if width_m is None else width_m
+        found.append(Found(name, wide_m, feeling.legible(name, wide_m)))
+    if as_json:
+        documents = [each.as_data() for each in found]
+        show.print_json({"scene": scene, **(documents[0] if medium else {"media": documents})})
+    elif medium or verbose:
+        for each in found:
+            show.verdicts(_heading(without_folders(scene), each), each.verdicts, COLOURS, WIDTHS, verbose)
+    else:
+        for each in found:
+            show.say(_heading(without_folders(scene), each))
+        show.plain(f"\n`tangible legible {config} --for swell` (or print, pins, force) says where, and the cures")
+    if not all(each.verdicts.readable for each in found):
         raise typer.Exit(FAILED)
 
 
-def _print(scene: str, medium: str, width_m: float, verdicts: Legibility, as_json: bool) -> None:
+class Found(NamedTuple):
+    """The verdicts on a picture of a width on a medium."""
+
+    medium: str
+    width_m: float
+    verdicts: Legibility
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the verdicts as JSON data."""
+        return {"medium": self.medium, "width_m": self.width_m, **self.verdicts.as_data()}
+
+
+def _heading(scene: str, found: Found) -> str:
     from rich.markup import escape
 
     from ...legibility import PROFILES
     from ...preflight.wording import quantity
-    from .. import show
 
-    if as_json:
-        show.print_json({"scene": scene, "medium": medium, "width_m": width_m, **verdicts.as_data()})
-        return
-    where = next(profile.text for name, profile in PROFILES.items() if name == medium)
-    sentence = f"[{COLOURS[verdicts.grade]}]{escape(verdicts.sentence)}[/]"
-    heading = f"{escape(scene)}, {quantity(width_m, 'm')} wide, on {where}: {sentence}"
-    show.verdicts(heading, verdicts, COLOURS, WIDTHS)
+    where = next(profile.text for name, profile in PROFILES.items() if name == found.medium)
+    sentence = f"[{COLOURS[found.verdicts.grade]}]{escape(found.verdicts.sentence)}[/]"
+    return f"{escape(scene)}, {quantity(found.width_m, 'm')} wide, on {where}: {sentence}"

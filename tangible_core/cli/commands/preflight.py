@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import FAILED, Config, Json, NoCache, Sets
+from ..options import FAILED, Config, Json, NoCache, Sets, Verbose
 from .run import device_of, open_pipeline
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from ...pipeline.fixing import Fixed
     from ...preflight import Flight, Hand, Loop, Preflight
 
 COLOURS = {"ok": "green", "warn": "yellow", "unsafe": "bold red"}
@@ -31,15 +32,18 @@ def preflight(
     rate: Annotated[float, typer.Option(help="Rate of the force loop, Hz.")] = 1000.0,
     speed: Annotated[float, typer.Option(help="Speed of the hand's stroke, m/s.")] = 0.12,
     press: Annotated[float, typer.Option(help="Pressing force of the hand, N.")] = 3.0,
+    verbose: Verbose = False,
     as_json: Json = False,
     no_cache: NoCache = False,
 ) -> None:
     """Check, before a motor moves, what is safe.
 
-    Prints what is ok, what is not, and its cure. Opens no device. Exit 1 if something is unsafe. With --fix, the cures
-    are tried, and a file with the necessary ones is written; if they are not enough, no file is, and the exit is 1.
+    Prints what is wrong, and its cure; with --verbose also what is ok. Opens no device. Exit 1 if something is unsafe.
+    With --fix, the cures are tried, and a file with the necessary ones is written; if they are not enough, no file is,
+    and the exit is 1.
     """
     from ...errors import OutputError
+    from ...files.paths import without_folders
     from ...pipeline.feeling import Feeling
     from ...preflight import Hand, Loop, judge
 
@@ -52,45 +56,58 @@ def preflight(
         flight = Feeling(pipeline).flight(hand=hand, loop=loop)
         verdicts, fixed = judge(flight), {}
     else:
-        flight, verdicts, fixed = _fix(config, sets or [], hand, loop, fix, not no_cache)
-    _print(pipeline.scene.name, device.name, flight, verdicts, fixed, as_json)
+        flight, verdicts, fixed = _fix(config, sets or [], hand, loop, fix, not no_cache, as_json)
+    if as_json:
+        _print_json(pipeline.scene.name, device.name, flight, verdicts, fixed)
+    else:
+        _print(without_folders(pipeline.scene.name), device.name, verdicts, verbose)
     if not verdicts.safe:
         raise typer.Exit(FAILED)
 
 
 def _fix(
-    config: Path, sets: Sequence[str], hand: Hand, loop: Loop, out: Path, cached: bool
+    config: Path, sets: Sequence[str], hand: Hand, loop: Loop, out: Path, cached: bool, as_json: bool
 ) -> tuple[Flight, Preflight, dict[str, Any]]:
     """Try the cures and write the file if they are enough; return the state after them, and the file and changes."""
     from ...files.writing import write_text
     from ...pipeline.fixing import fix
+    from .. import show
 
     found = fix(config, sets, hand, loop, out, cached)
     if found.verdicts.safe:
         write_text(out, found.text)
+    if not as_json:
+        show.plain(_heading_of_fix(out, found))
+        for loss in found.losses:
+            show.plain(f"  {loss}")
+        show.plain("")
     return found.flight, found.verdicts, {"file": str(out) if found.verdicts.safe else None, "changes": found.changes}
 
 
-def _print(
-    scene: str, device: str, flight: Flight, verdicts: Preflight, fixed: Mapping[str, Any], as_json: bool
-) -> None:
-    from dataclasses import asdict
+def _heading_of_fix(out: Path, found: Fixed) -> str:
+    """Return whether a file was written, and what leads to the list of what it changes."""
+    if found.verdicts.safe:
+        return f"Written: {out}, in which the surface" if found.losses else f"Written: {out}; nothing had to change"
+    return "Nothing was written: no cure is enough" + (", not even a surface that" if found.losses else "")
 
+
+def _print(scene: str, device: str, verdicts: Preflight, verbose: bool) -> None:
     from rich.markup import escape
 
     from .. import show
 
-    if as_json:
-        head = {"scene": scene, "device": device, "sentence": verdicts.sentence, "grade": verdicts.grade}
-        rows = [{**asdict(each), "changes": {change.key: change.value for change in each.changes}} for each in verdicts]
-        show.print_json({**head, **fixed, **_figures(flight), "verdicts": rows})
-        return
     sentence = f"[{COLOURS[verdicts.grade]}]{escape(verdicts.sentence)}[/]"
-    show.verdicts(f"{escape(scene)} on {escape(device)}: {sentence}", verdicts, COLOURS, WIDTHS)
-    if fixed:
-        changes = "; ".join(f"{key}: {value}" for key, value in fixed["changes"].items()) or "nothing had to change"
-        file = fixed["file"]
-        show.plain(f"{changes}: {f'written to {file}' if file else 'tried, but not enough; nothing was written'}")
+    show.verdicts(f"{escape(scene)} on {escape(device)}: {sentence}", verdicts, COLOURS, WIDTHS, verbose)
+
+
+def _print_json(scene: str, device: str, flight: Flight, verdicts: Preflight, fixed: Mapping[str, Any]) -> None:
+    from dataclasses import asdict
+
+    from .. import show
+
+    head = {"scene": scene, "device": device, "sentence": verdicts.sentence, "grade": verdicts.grade}
+    rows = [{**asdict(each), "changes": {change.key: change.value for change in each.changes}} for each in verdicts]
+    show.print_json({**head, **fixed, **_figures(flight), "verdicts": rows})
 
 
 def _figures(flight: Flight) -> dict[str, Any]:

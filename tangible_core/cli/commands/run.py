@@ -117,7 +117,7 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
     """Open the pipeline of a file, or of pictures without one; cached: with the user's cache."""
     from ...errors import ConfigError
     from ...pipeline.pipeline import load_pipeline
-    from ...pipeline.starter import are_pictures, pipeline_of
+    from ...pipeline.starter import are_pictures, not_pictures, pipeline_of
     from .. import show
 
     files = [config] if isinstance(config, Path) else config
@@ -126,6 +126,8 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
         if not is_quiet():
             command = shlex.join(["tangible", "new", *map(str, files)])
             show.note(f"without a pipeline file, values that suit the picture are used: `{command}` writes them down")
+    elif any(file.suffix.lower() in OTHER_FILES for file in files):
+        raise not_pictures(files)
     elif len(files) > 1:
         raise ConfigError(f"{', '.join(map(str, files))}: name one pipeline file, one picture, or left and right")
     else:
@@ -133,6 +135,12 @@ def open_pipeline(config: Path | Sequence[Path], sets: Sequence[str], cached: bo
     if not cached:
         pipeline.engine.cache = None
     return pipeline
+
+
+OTHER_FILES = frozenset(
+    (".pdf", ".svg", ".eps", ".ai", ".psd", ".doc", ".docx", ".odt", ".pptx", ".html", ".stl", ".obj")
+)
+"""Suffixes of files that people try, and that are neither pictures nor pipeline files."""
 
 
 def device_of(pipeline: Pipeline) -> NamedMethod[HapticDevice]:

@@ -8,10 +8,11 @@ from typing import Any, cast
 
 from pydantic import BaseModel
 
+from ...data.quantities import in_unit_of
 from ...errors import ConfigError, quoted
 from ...files.paths import as_path
 from ...files.yaml.editing import REMOVE, Changes, change_text
-from ...files.yaml.source import Location, parse_override, parse_source, plain
+from ...files.yaml.source import Location, key_of, parse_override, parse_source, plain
 from .keys import MethodBlock, MethodList
 from .keys.method import index_of
 from .model import KEYS, PipelineConfig
@@ -24,18 +25,43 @@ __all__ = ["REMOVE", "Changes", "edit_text", "read_values", "relocate_text", "wi
 def edit_text(text: str, path: Path, changes: Changes) -> str:
     """Return a pipeline file's text with other values of these keys; comments elsewhere, and the order, stay.
 
-    Another `depth.use` clears the options of the method before. A stage that is None is removed, as with `REMOVE`. The
-    key `export.NAME.key` is an option of the exporter of that name, which is listed if it is not yet.
+    A number that was written with a unit is written with that unit again. Another `depth.use` clears the options of
+    the method before. A stage that is None is removed, as with `REMOVE`. The key `export.NAME.key` is an option of the
+    exporter of that name, which is listed if it is not yet.
     path: the name in complaints. Nothing is checked but that it is YAML: see `parse_config`.
     Raises: ConfigError if the text is not YAML, or a key leads into a list; ArgumentError for values that JSON has not.
     """
     changes = {key: REMOVE if value is None and _is_stage(key) else value for key, value in changes.items()}
+    changes = _in_their_units(text, path, changes)
     within = {key: value for key, value in changes.items() if _is_within_list(key)}
     text = change_text(text, path, {key: value for key, value in changes.items() if key not in within}, shorthand)
     for key, value in within.items():
         parts = _parts_of(key)
         text = change_text(text, path, {parts[:1]: _list_with(text, path, parts, value)})
     return text
+
+
+def _in_their_units(text: str, path: Path, changes: Changes) -> Changes:
+    """Return the changes with each number in the unit that the text has for its key."""
+    tree: Any = plain(parse_source(text, path, EXPECTED, empty=True).tree)
+    places = {key: _parts_of(key) for key in changes}
+    return {key: _as_before(places[key][-1:], _at(tree, places[key]), value) for key, value in changes.items()}
+
+
+def _as_before(name: Location, before: Any, value: Any) -> Any:
+    """Return a value, or a block of values, with numbers in the units of the value before."""
+    if isinstance(value, dict) and isinstance(before, dict):
+        block, old = cast("dict[Any, Any]", value), cast("dict[Any, Any]", before)
+        return {key: _as_before((key,), old.get(key), each) for key, each in block.items()}
+    return in_unit_of(str(name[0]), before, cast(Any, value)) if name else cast(Any, value)
+
+
+def _at(node: Any, parts: Location) -> Any:
+    """Return the value at a key; None if there is none."""
+    for part in parts:
+        block: dict[Any, Any] = cast("dict[Any, Any]", node) if isinstance(node, dict) else {}
+        node = block.get(key_of(part, block))
+    return node
 
 
 def _parts_of(key: str | Location) -> Location:

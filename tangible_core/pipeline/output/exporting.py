@@ -199,7 +199,7 @@ class _ExportRun:
                 files = self._write(chosen, work, place / stem)
             seconds = perf_counter() - start
             kind: OutcomeKind = "ran"
-            notes = [*_illegible(legible), *notes]
+            notes = [*_illegible(chosen.name, legible), *notes]
             why = with_notes(notes, REQUESTED)
         except Stopped:
             raise
@@ -272,10 +272,10 @@ def legible_for(engine: Engine, chosen: NamedMethod[Exporter]) -> Legibility | N
     return with_cures_of(chosen, judge_products(engine, exporter.medium, parts, judged), columns / rows)
 
 
-def _illegible(legible: Legibility | None) -> list[Note]:
+def _illegible(name: str, legible: Legibility | None) -> list[Note]:
     if legible is None or legible.readable:
         return []
-    log.warning("%s", legible.sentence)
+    log.warning("%s: %s", name, legible.sentence)
     return [Note(legible.sentence, "warning")]
 
 

@@ -248,3 +248,29 @@ def test_warning_on_a_product_is_printed_once_whether_it_is_made_or_cached(
         assert done.stderr == "warning: hardly any contrast\n", words
         assert "hardly any" not in done.stdout
     assert "hardly any contrast" in tangible("plan", "p.yaml", cwd=folder).stdout, "no warning stands elsewhere"
+
+
+@pytest.mark.parametrize("command", ["new", "run", "plan", "legible"])
+def test_file_that_is_not_a_picture_gets_the_same_sentence_everywhere(command: str, folder: Path):
+    (folder / "leaflet.pdf").write_bytes(b"%PDF-1.7")
+    done = tangible(command, "leaflet.pdf", cwd=folder)
+    said = "leaflet.pdf: name a picture (.png, .jpg, ...), left and right, a video, or a map of heights (.npy)\n"
+    assert (done.returncode, done.stderr) == (2, said)
+
+
+def test_page_of_a_missing_file_is_not_opened(folder: Path):
+    done = tangible("ui", "dots.png", "--no-browser", cwd=folder)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "dots.png: there is no such file (did you mean 'dot.png'?)\n"
+
+
+def test_name_with_only_its_ending_in_common_is_not_suggested(folder: Path):
+    assert tangible("run", "q.yaml", cwd=folder).stderr == "q.yaml: there is no such file\n"
+    assert tangible("run", "pp.yaml", cwd=folder).stderr.endswith("(did you mean 'p.yaml'?)\n")
+
+
+@pytest.mark.parametrize("command", ["new", "parts"])
+def test_command_that_prepares_a_file_names_the_page_next(command: str, folder: Path):
+    done = tangible(command, "dot.png", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"^  tangible ui dot\.yaml  ", done.stdout, re.MULTILINE)

@@ -83,7 +83,6 @@ def test_legible_with_a_cure_passes(folder, words):
     ("words", "complaint"),
     [
         (["--for", "paper"], "'paper'"),
-        ([], "--for"),
         (["--for", "swell", "--width-m", "-1"], "width"),
         (["--for", "swell", "--width-m", "nan"], "width"),
     ],
@@ -92,3 +91,20 @@ def test_legible_wrong_option_exits_with_2(folder, words, complaint):
     found = tangible("legible", "house.yaml", *words, cwd=folder)
     assert found.returncode == 2
     assert complaint in found.stderr
+
+
+def test_legible_without_a_medium_judges_each(folder):
+    found = tangible("legible", "house.yaml", cwd=folder)
+    assert found.returncode == 1
+    headings = [line for line in found.stdout.splitlines() if line.startswith("photo.png, ")]
+    assert [each.partition(" wide, on ")[2].partition(":")[0] for each in headings] == [
+        "swell paper",
+        "a 3-D print",
+        "a pin display",
+        "a force device",
+    ]
+    assert len(found.stdout.splitlines()) == 6, "where and how to cure it is for one medium"
+    assert "cure:" in tangible("legible", "house.yaml", "-v", cwd=folder).stdout
+    said = json.loads(tangible("legible", "house.yaml", "--json", cwd=folder).stdout)
+    assert [each["medium"] for each in said["media"]] == ["swell", "print", "pins", "force"]
+    assert {"width_m", "grade", "sentence", "verdicts"} <= said["media"][0].keys()

@@ -1,6 +1,7 @@
 """`tangible preflight --fix`: one file that passes, with its own comments and keys; or none."""
 
 import json
+import re
 from pathlib import Path
 
 import cv2
@@ -41,7 +42,12 @@ def test_unsafe_file_is_fixed_and_keeps_the_users_text(folder: Path):
     assert tangible(*asked, cwd=folder).returncode == 1
     done = tangible(*asked, "--fix", "kept/fixed.yaml", "--set", "workspace.width_m=0.06", cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert done.stdout.rstrip().endswith(": written to kept/fixed.yaml")
+    assert done.stdout.startswith("Written: kept/fixed.yaml, in which the surface\n  ")
+    first, *others = done.stdout.partition("\n\n")[0].splitlines()[1:]
+    assert re.fullmatch(
+        r"  (has materials that are felt more gently .*|is \d+ % as high \(`workspace.+`.*\))", first
+    ), first
+    assert others
     text = (folder / "kept/fixed.yaml").read_text()
     for kept in ("# a photograph of mine", "# beside this file", "# as high as it goes", "width_m: 0.06"):
         assert kept in text
@@ -71,7 +77,7 @@ def test_safe_file_is_written_unchanged(folder: Path):
     )
     (folder / "p.yaml").write_text(calm)
     done = tangible("preflight", "p.yaml", "--seconds", 0.05, "--fix", "fixed.yaml", cwd=folder)
-    assert done.stdout.rstrip().endswith("nothing had to change: written to fixed.yaml")
+    assert done.stdout.startswith("Written: fixed.yaml; nothing had to change\n\n")
     assert (folder / "fixed.yaml").read_text() == calm
 
 
@@ -89,7 +95,7 @@ def test_file_without_cure_is_not_written(folder: Path):
     done = tangible("preflight", "p.yaml", "--seconds", 0.05, "--rate", 100, "--fix", "fixed.yaml", cwd=folder)
     assert done.returncode == 1
     assert "on mock: Unsafe, because " in done.stdout
-    assert done.stdout.rstrip().endswith("tried, but not enough; nothing was written")
+    assert done.stdout.startswith("Nothing was written: no cure is enough")
     assert not (folder / "fixed.yaml").exists()
 
 

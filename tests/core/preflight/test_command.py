@@ -39,7 +39,10 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_preflight_safe_file_exits_with_0(folder: Path):
-    done = tangible("preflight", "p.yaml", "--seconds", 0.1, cwd=folder)
+    short = tangible("preflight", "p.yaml", "--seconds", 0.1, cwd=folder).stdout.splitlines()
+    assert not [line for line in short if line.startswith("ok")]
+    assert re.search(r"\d\d ok \(--verbose lists them\)", short[-1])
+    done = tangible("preflight", "p.yaml", "--seconds", 0.1, "--verbose", cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
     sentence, _, *verdicts, _, summary = done.stdout.splitlines()
     assert re.fullmatch(r".*hills\.npy on mock: Safe(: nothing is wrong|, but .*)\.", sentence)

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 from pathlib import Path
 from threading import Event
 
@@ -74,7 +75,28 @@ class TestScenes:
         assert sorted(table["id"]) == sorted(rows)
         assert set(table["outcome"]) == {"ok"}
         page = (out / "gallery.html").read_text()
-        assert all(f'src="scenes/p{number}/card.jpg"' in page for number in range(4))
+        for number in range(4):
+            found = re.search(rf'<figure class="ok">.{{0,60}}src="scenes/p{number}/card.jpg".*?</figure>', page)
+            assert found, number
+            assert f'title="p{number}.png"' in found[0]
+            assert f'alt="p{number}: the picture, and the relief made of it"' in found[0]
+            assert f'<a href="scenes/p{number}/">p{number}</a>' in found[0]
+            assert re.search(r"relief made in [\d.e-]+ s", found[0])
+
+    def test_pictures_that_a_shell_expanded_are_taken(self, archive: Path):
+        pictures = [f"archive/p{number}.png" for number in range(3)]
+        done = tangible("batch", "mine.yaml", "--over", *pictures, cwd=archive.parent)
+        assert done.returncode == 0, done.stderr
+        assert "3 of 3 scenes are made." in done.stdout
+        before = tangible("batch", "--over", *pictures, "mine.yaml", "--json", cwd=archive.parent)
+        assert json.loads(before.stdout)["kept"] == 3, "the same names, wherever the words stand"
+        odd = tangible("batch", "mine.yaml", "--over", *pictures, "archive/nothing.png", cwd=archive.parent)
+        assert (odd.returncode, odd.stderr.partition(";")[0]) == (2, "archive/nothing.png: there is no such file")
+
+    def test_warning_names_its_picture(self, archive: Path):
+        done = self.run(archive.parent, "--set", "depth=auto", "--set", "relief=disparity")
+        said = re.findall(r"(\w+): one picture contains no depth", done.stderr)
+        assert sorted(said) == ["p0", "p1", "p2", "p3"], done.stderr
 
     def test_scene_equals_that_of_a_run(self, archive: Path, tmp_path: Path):
         from tangible_core.pipeline.engine.cache import read_record
@@ -461,7 +483,7 @@ def test_gallery_has_every_scene_once_and_its_error_as_text(tmp_path: Path, monk
     lines = [{"id": name, "outcome": "failed", "error": "<b>no</b> & never", "folder": name} for name in names]
     (tmp_path / "rows.jsonl").write_text("".join(f"{json.dumps(each)}\n" for each in lines))
     pages = [path.read_text() for path in results.write_gallery(tmp_path, names)]
-    assert [[name for name in names if f"<figcaption>{name} " in page] for page in pages] == [
+    assert [[name for name in names if f"<figcaption>{name} <br>" in page] for page in pages] == [
         ["s0", "s1"], ["s2", "s3"], ["s4"],
     ]  # fmt: skip
     assert all("&lt;b&gt;no&lt;/b&gt; &amp; never" in page for page in pages)

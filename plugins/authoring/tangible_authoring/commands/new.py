@@ -22,12 +22,12 @@ def new(
     Its values suit these pictures, and comments say what they mean.
     """
     from tangible_core.cli import show
-    from tangible_core.errors import ConfigError, OutputError
+    from tangible_core.errors import OutputError
     from tangible_core.files.writing import write_text
-    from tangible_core.pipeline.starter import are_pictures, starter
+    from tangible_core.pipeline.starter import are_pictures, not_pictures, starter
 
     if not are_pictures(pictures):
-        raise ConfigError("new: name a picture (.png, .jpg, ...), left and right, a video, or a map of heights (.npy)")
+        raise not_pictures(pictures)
     file = out or Path(f"{pictures[0].stem}.yaml")
     if file.exists() and not force:
         raise OutputError(f"{file}: is there already; --out FILE writes another one, --force writes over it")

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tangible_core.cli.options import FAILED, Config, Json, Sets
+from tangible_core.cli import completing
+from tangible_core.cli.options import FAILED, Json, Sets
 from tangible_core.cli.verbosity import is_quiet
 
 if TYPE_CHECKING:
@@ -20,12 +21,20 @@ if TYPE_CHECKING:
 
 
 def batch(
-    config: Config,
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="FILE...",
+            help="Pipeline file (YAML), or a picture; further pictures belong to --over.",
+            show_default=False,
+            autocompletion=completing.scenes,
+        ),
+    ],
     over: Annotated[
-        str,
+        list[str],
         typer.Option(
             "--over",
-            metavar="GLOB | FOLDER | rows.csv | rows.parquet",
+            metavar="PICTURES | GLOB | FOLDER | rows.csv | rows.parquet",
             help="Pictures and pairs, or rows of settings.",
             show_default=False,
         ),
@@ -67,6 +76,7 @@ def batch(
     from ..results import ROWS, write_gallery, write_index
     from ..running import Tally, Workforce, run_batch
 
+    config, pictures = _divide(files, over)
     timeout_s = LONGEST_S if timeout is None else timeout
     check_positive("--timeout", timeout_s)
     name = default_name(config)
@@ -75,7 +85,7 @@ def batch(
     tally, workforce = Tally(), Workforce(workers, threads, scheduler)
     options = BatchOptions(retry, sheets, cache, chunk, timeout_s)
     wanted: list[str] = []
-    scenes = _collect_names(rows_of(over, besides=place), wanted)
+    scenes = _collect_names(rows_of(pictures, besides=place), wanted)
     rows = run_batch(text, config.absolute(), scenes, place, workforce, options, tally)
     try:
         for row in _show_progress(rows, tally, name):
@@ -88,6 +98,12 @@ def batch(
     _print(tally, [str(path) for path in written], as_json)
     if tally.failed:
         raise typer.Exit(FAILED)
+
+
+def _divide(files: Sequence[Path], over: Sequence[str]) -> tuple[Path, list[str]]:
+    """Return the pipeline file, and what it runs over: a shell makes many words of `--over *.jpg`."""
+    configs = [each for each in files if each.suffix.lower() in (".yaml", ".yml")] or list(files[:1])
+    return configs[0], [*over, *(str(each) for each in files if each != configs[0])]
 
 
 def _collect_names(scenes: Iterable[SceneRow], names: list[str]) -> Iterator[SceneRow]:

@@ -18,6 +18,7 @@ def ui(
 
     The page is served to this machine alone; its address holds a key that changes with every start. Ctrl-C ends it.
     """
+    _check_files(files or [])
     from ..address import Address
     from ..prestart import prestart_worker
 
@@ -26,3 +27,12 @@ def ui(
         from ..serving.serve import serve
 
         serve(files or [], sets or [], address)
+
+
+def _check_files(files: list[Path]) -> None:
+    """Refuse a file that does not exist before a page is opened for it. Raises: PictureError, with a similar name."""
+    for file in files:
+        if not file.exists() and file.parts[:1] != ("builtin",):
+            from tangible_core.scene.formats.decoding import absent
+
+            raise absent(file, "file")

@@ -1,6 +1,8 @@
 """A pipeline file edited key by key: it says what was set, and all else of it stands as it stood."""
 
 import json
+import re
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +39,8 @@ device: mock
 @pytest.mark.parametrize(
     ("changes", "before", "after"),
     [
-        ({"workspace.relief_m": 0.004}, "relief_m: 6 mm ", "relief_m: 0.004 "),
+        ({"workspace.relief_m": 0.004}, "relief_m: 6 mm ", "relief_m: 4 mm "),
+        ({"workspace.relief_m": 0.00705}, "relief_m: 6 mm ", "relief_m: 7.05 mm "),
         ({"workspace.relief_m": "4 mm"}, "relief_m: 6 mm ", "relief_m: 4 mm "),
         ({"workspace.relief_m": "6 mm"}, "", ""),
         ({"workspace.width_m": 0.1}, "as high as it goes\n", "as high as it goes\n  width_m: 0.1\n"),
@@ -45,13 +48,13 @@ device: mock
         ({"workspace": REMOVE}, "workspace:\n  relief_m: 6 mm   # as high as it goes\n", ""),
         ({"workspace.smooth_m": REMOVE}, "", ""),
         ({"safety.ramp_s": REMOVE}, "", ""),
-        ({"workspace": {"relief_m": 0.1}}, ":\n  relief_m: 6 mm   # as high as it goes", ": {relief_m: 0.1}"),
+        ({"workspace": {"relief_m": 0.1}}, ":\n  relief_m: 6 mm   # as high as it goes", ": {relief_m: 100 mm}"),
         ({"depth.confidence": REMOVE}, "  confidence: 0.5   # half\n", ""),
         ({"depth.use": "zncc"}, "semi-global  # the best one", "zncc  # the best one"),
         ({"depth": "zncc"}, "", None),
         ({"depth": None}, "", None),
         ({"depth": {"use": "zncc", "window_px": 9}}, "", None),
-        ({"render.stiffness_n_per_m": 500}, "800 N/m", "500"),
+        ({"render.stiffness_n_per_m": 500}, "800 N/m", "500 N/m"),
         ({"render.stiffness_n_per_m": REMOVE}, ", stiffness_n_per_m: 800 N/m", ""),
         ({"render.damping_n_s_per_m": 0}, "N/m}", "N/m, damping_n_s_per_m: 0}"),
         ({"render.use": "penalty"}, "{use: proxy, stiffness_n_per_m: 800 N/m}", "{use: penalty}"),
@@ -76,9 +79,18 @@ def test_change_of_a_key_leaves_the_rest(changes: dict, before: str, after: str 
         assert comment in text
     assert edit_text(OF_MINE.replace("\n", "\r\n"), PATH, changes) == text.replace("\n", "\r\n")
     for key, value in changes.items():
-        assert value in (None, REMOVE) or _at(read_values(text, PATH), key) == value
+        assert value in (None, REMOVE) or _in_metres(_at(read_values(text, PATH), key)) == _in_metres(value)
     left = [key for key in read_values(text, PATH) if key in read_values(OF_MINE, PATH)]
     assert left == [key for key in read_values(OF_MINE, PATH) if key in left]
+
+
+def _in_metres(value: Any) -> Any:
+    """The value as a change has it: a number without its unit."""
+    if isinstance(value, dict):
+        return {key: _in_metres(each) for key, each in value.items()}
+    if isinstance(value, str) and (written := re.fullmatch(r"([\d.]+) (mm|N/m)", value)):
+        return float(Decimal(written[1]) * Decimal("0.001" if written[2] == "mm" else 1))
+    return value
 
 
 def _at(tree: Any, key: Any) -> Any:

@@ -13,6 +13,7 @@ import pytest
 
 from command_line import tangible
 from full_disk import files_up_to
+from pictures import write_png
 from tangible_core import DisparityMap, Pipeline, Recording, Scene, SegmentMap, Views
 from tangible_core.data import TICK_COLUMNS, PartMap
 from tangible_core.data.products import PRODUCTS
@@ -587,6 +588,18 @@ class TestCommand:
         assert [each["outcome"]["outcome"] for each in said["exports"]] == ["ran"]
         assert said["exports"][0]["files"] == [f"here/map-heights.{end}" for end in ("json", "png", "tif")]
         assert said["exports"][0]["legible"] is None
+
+    def test_command_says_that_parts_were_simplified(self, place: Path):
+        labels = np.zeros((60, 80), np.uint8)
+        labels[:, 40:] = 1
+        write_png(place / "labels.png", labels)
+        write_png(place / "photo.png", np.full((60, 80), 9, np.uint8))
+        (place / "two.yaml").write_text("scene: {photo: photo.png, segments: labels.png}\nsimplify: {}\nwant: relief\n")
+        sets = ("--set", "depth=luminance")
+        ran = tangible("export", "two.yaml", "--to", "swell,heights", *sets, cwd=place)
+        assert " is written as swell (parts simplified) and heights" in " ".join(ran.stdout.split()), ran.stderr
+        run = tangible("run", "two.yaml", "--set", "heights.by=guess", *sets, cwd=place)
+        assert run.stdout.startswith("photo.png, its parts simplified, is done: "), run.stderr
 
     def test_command_exports_a_recording_as_csv(self, place: Path):
         rows = np.arange(3.0 * len(TICK_COLUMNS)).reshape(3, -1)

@@ -1,0 +1,41 @@
+"""What a cure takes away is said in numbers that a person can judge."""
+
+from pathlib import Path
+
+import pytest
+
+from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.pipeline.losses import losses
+from tangible_core.plugins.registry import default_registry
+from tangible_core.preflight.verdict import Change
+
+TEXT = """\
+scene: builtin/brick
+want: touch
+workspace: {smooth_m: 2 mm, relief_m: 5 mm}
+relief: {slope: 2}
+render: {use: proxy, stiffness_n_per_m: 800}
+"""
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("workspace.smooth_m", "0.007", "blurs 3.5 times as much (`workspace.smooth_m: 7 mm` in place of 2 mm)"),
+        ("workspace.relief_m", "0.002", "is 40 % as high (`workspace.relief_m: 2 mm` in place of 5 mm)"),
+        ("relief.slope", "0.9", "has no slope above 0.9, so that steep edges become ramps (`relief.slope: 0.9` in"),
+        ("render.stiffness_n_per_m", "400", "is 50 % as stiff (`render.stiffness_n_per_m: 400 N/m` in place of 800"),
+        ("materials.fit", "device", "has materials that are felt more gently than they are, where the device cannot"),
+        ("safety.coupling", "auto", "is felt through a spring, which makes hard things softer (`safety.coupling: a"),
+    ],
+)  # fmt: skip
+def test_cure_is_said_with_what_it_takes_away(key: str, value: str, said: str):
+    config = parse_config(TEXT, Path("p.yaml"), default_registry())
+    (sentence,) = losses(config, {key: Change(key, value, "at most")})
+    assert sentence.startswith(said)
+
+
+def test_smoothing_of_a_sharp_relief_is_said_by_its_length():
+    config = parse_config(TEXT.replace("2 mm", "0"), Path("p.yaml"), default_registry())
+    (sentence,) = losses(config, {"workspace.smooth_m": Change("workspace.smooth_m", "0.007", "at least")})
+    assert sentence == "blurs what was sharp (`workspace.smooth_m: 7 mm` in place of 0 m)"

@@ -31,6 +31,24 @@ test("nothing in the German column is English", () => {
   for (const [key, [, german]] of texts()) assert.doesNotMatch(german.replace(/\{\w+\}/g, "").replace(GERMAN, ""), ENGLISH, `${key}: ${german}`);
 });
 
+/** Tables of the main tasks: to open, draw parts, feel, hand on, the head and speech. */
+const FRENCH = [
+  "frame/", "frame/status_", "frame/task_", "start/", "palette/", "notices/", "panels/", "panels/open/", "panels/open/draft_",
+  "panels/save/", "panels/found/", "panels/parts/", "panels/parts/editor/", "words/place_", "words/product_", "panels/export/",
+  "panels/legibility/", "panels/verdicts/", "panels/description/", "panels/settings/", "speech/", "hand/", "panels/sound/",
+  "panels/materials/", "panels/signs/",
+];
+
+test("the main tasks are in French, and no French text is English", async () => {
+  for (const name of FRENCH) {
+    const { text } = sources(".", "words.ts").find((each) => each.name === `${name}words.ts`)!;
+    const rows = text.match(/\[\s*"(?:[^"\\]|\\.)*",\s*"(?:[^"\\]|\\.)*"/g)!.length;
+    const french = text.match(/\[(?:\s*"(?:[^"\\]|\\.)*",?){3}\s*\]/g)?.length;
+    assert.equal(french, rows, name);
+  }
+  for (const [key, row] of texts()) if (row[2]) assert.doesNotMatch(row[2].replace(/\{\w+\}|Learned depth/g, ""), /\b(the|and|of|is|with|your|what)\b/i, key);
+});
+
 test("people are told Sie, never Du, and quotation marks are theirs", () => {
   for (const [key, [, german]] of texts()) {
     assert.doesNotMatch(german, /\b(du|dich|dir|dein\w*)\b/i, key);

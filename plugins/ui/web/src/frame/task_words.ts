@@ -2,10 +2,10 @@ import { words } from "../words/words";
 
 /** The tasks of the page. */
 export const t = words({
-  tasks: ["Tasks", "Aufgaben"],
-  picture: ["Picture", "Bild"],
-  parts: ["Parts", "Teile"],
-  feel: ["Feel", "Fühlen"],
-  "hand-on": ["Hand on", "Weitergeben"],
-  advanced: ["Advanced", "Erweitert"],
+  tasks: ["Tasks", "Aufgaben", "Tâches"],
+  picture: ["Picture", "Bild", "Image"],
+  parts: ["Parts", "Teile", "Parties"],
+  feel: ["Feel", "Fühlen", "Toucher"],
+  "hand-on": ["Hand on", "Weitergeben", "Transmettre"],
+  advanced: ["Advanced", "Erweitert", "Avancé"],
 });

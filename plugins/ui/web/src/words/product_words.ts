@@ -1,16 +1,16 @@
 import { words } from "./words";
 
 const t = words({
-  views: ["Pictures", "Bilder"],
-  disparity: ["Disparity", "Disparität"],
-  relief: ["Relief", "Relief"],
-  segments: ["Segments", "Segmente"],
-  parts: ["Parts", "Teile"],
-  simplified: ["Legible parts", "Lesbare Teile"],
-  materials: ["Materials", "Materialien"],
-  surface: ["Surface", "Oberfläche"],
-  touch: ["Force law", "Kraftgesetz"],
-  export: ["Export as {name}", "Export als {name}"],
+  views: ["Pictures", "Bilder", "Images"],
+  disparity: ["Disparity", "Disparität", "Disparité"],
+  relief: ["Relief", "Relief", "Relief"],
+  segments: ["Segments", "Segmente", "Segments"],
+  parts: ["Parts", "Teile", "Parties"],
+  simplified: ["Legible parts", "Lesbare Teile", "Parties lisibles"],
+  materials: ["Materials", "Materialien", "Matières"],
+  surface: ["Surface", "Oberfläche", "Surface"],
+  touch: ["Force law", "Kraftgesetz", "Loi de force"],
+  export: ["Export as {name}", "Export als {name}", "Export en {name}"],
 });
 
 /** The program's prefix of exported products. */

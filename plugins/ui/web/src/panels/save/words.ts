@@ -2,11 +2,11 @@ import { words } from "../../words/words";
 
 /** Saving of the pipeline file. */
 export const t = words({
-  title: ["Save the pipeline file", "Pipeline-Datei speichern"],
-  download: ["Download", "Herunterladen"],
-  save: ["Save", "Speichern"],
-  path: ["File on this computer", "Datei auf diesem Computer"],
-  replace: ["Replace a file of this name", "Eine Datei dieses Namens ersetzen"],
-  saved: ["Saved: {path}", "Gespeichert: {path}"],
-  failed: ["Not saved: {why}", "Nicht gespeichert: {why}"],
+  title: ["Save the pipeline file", "Pipeline-Datei speichern", "Enregistrer le fichier de pipeline"],
+  download: ["Download", "Herunterladen", "Télécharger"],
+  save: ["Save", "Speichern", "Enregistrer"],
+  path: ["File on this computer", "Datei auf diesem Computer", "Fichier sur cet ordinateur"],
+  replace: ["Replace a file of this name", "Eine Datei dieses Namens ersetzen", "Remplacer un fichier de ce nom"],
+  saved: ["Saved: {path}", "Gespeichert: {path}", "Enregistré : {path}"],
+  failed: ["Not saved: {why}", "Nicht gespeichert: {why}", "Non enregistré : {why}"],
 });

@@ -107,7 +107,7 @@ export const t = words({
     "Ihr Umriss ist zu fühlen, wenn gespeichert ist.",
     "Son contour se touchera une fois enregistré."],
   material: ["Material", "Material", "Matière"],
-  byRules: ["not chosen: plain", "nicht gewählt: schlicht"],
+  byRules: ["not chosen: plain", "nicht gewählt: schlicht", "non choisie : neutre"],
   forward: ["Bring forward", "Nach vorn", "Avancer"],
   backward: ["Send back", "Nach hinten", "Reculer"],
   joinWith: ["Join with", "Verbinden mit", "Réunir avec"],

@@ -161,7 +161,8 @@ def _read(part: str, path: Path, files: SceneFiles, notify: Notify) -> dict[str,
         return {part: read_truth(path, files.truth_scale, notify)}
     if part not in _PICTURES:
         return {part: _READERS[part](path, notify)}
-    picture = read_picture(path, files.non_finite, notify)
+    may_shrink = part == "photo" and files.crop is None and files.segments is None and files.disparity is None
+    picture = read_picture(path, files.non_finite, notify, reduce=may_shrink)
     depth = None
     if part == "photo" and files.photo_depth and files.disparity is None:
         depth = read_phone_depth(path, (picture.shape[0], picture.shape[1]), notify)

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...errors import PictureError, did_you_mean, shown
 from ...files import arrays
-from ...files.reading import TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
+from ...files.reading import MOST_PIXELS, TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
 from ...runtime.opencv import silent_opencv
 from .multi_picture import Notify, count_pictures, ignore
 from .tiff_tags import TIFF, Shape, tiff_size
@@ -35,6 +35,11 @@ PICTURES = frozenset(
 
 VIDEOS = frozenset((".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".wmv", ".ogv", ".3gp", ".mts"))
 """Suffixes of videos."""
+
+JPEG = b"\xff\xd8\xff"
+"""The first bytes of a JPEG."""
+MOST_REDUCED = 10 * MOST_PIXELS
+"""The most pixels of a JPEG that is reduced while it is decoded: more would take minutes."""
 
 _ORIENTATION, _BITS_PER_SAMPLE = 0x0112, 0x0102  # tags of EXIF and of TIFF
 
@@ -86,12 +91,44 @@ def decode(path: Path, data: bytes, indices: bool = False, notify: Notify = igno
         return _decode(path, data, indices, notify, frame)
 
 
+def decode_reduced(path: Path, data: bytes, notify: Notify = ignore) -> np.ndarray | None:
+    """Decode a JPEG of more than MOST_PIXELS at a half, a quarter or an eighth of its sides; None for any other file.
+
+    The decoder leaves out the finer waves of each block, so that the whole picture is never in memory.
+    """
+    if data[:3] != JPEG:
+        return None
+    from PIL.JpegImagePlugin import JpegImageFile
+
+    with _picture_errors(path), JpegImageFile(BytesIO(data)) as image:
+        columns, rows = image.size
+        if not MOST_PIXELS < columns * rows <= MOST_REDUCED:
+            return None
+        times = next(each for each in (2, 4, 8) if columns * rows <= MOST_PIXELS * each**2)
+        image.draft(image.mode, (columns // times, rows // times))
+        check_size((image.height, image.width, len(image.getbands())), 4)
+        notify(
+            f"{path.name} has {columns * rows / 1e6:.0f} megapixels; it is reduced to {image.width} x {image.height} "
+            "pixels while it is read"
+        )
+        image.load()
+        return np.ascontiguousarray(upright(_values(image, indices=False), orientation(image)))
+
+
 def look_at(path: Path, data: bytes, look: Callable[["Image"], T]) -> T:
     """Return what `look` finds in an open file whose pixels are not decoded yet."""
     from PIL import Image
+    from PIL.JpegImagePlugin import JpegImageFile
 
-    with _picture_errors(path), Image.open(BytesIO(data), formats=FORMATS) as image:
-        return look(image)
+    with _picture_errors(path):
+        large = data[:3] == JPEG and is_too_large(JpegImageFile(BytesIO(data)))  # `decode_reduced` has read it
+        with JpegImageFile(BytesIO(data)) if large else Image.open(BytesIO(data), formats=FORMATS) as image:
+            return look(image)
+
+
+def is_too_large(image: "Image") -> bool:
+    """Return True for a picture with more pixels than are decoded."""
+    return image.width * image.height > MOST_PIXELS
 
 
 @contextmanager

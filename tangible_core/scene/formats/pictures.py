@@ -9,7 +9,7 @@ from pydantic import Field
 
 from ...data.pictures import check_finite, check_picture, opaque
 from ...errors import PictureError
-from .decoding import bytes_of, values_of
+from .decoding import bytes_of, decode_reduced, values_of
 from .multi_picture import Notify, ignore
 from .tiff_tags import TIFF, stated_nodata
 
@@ -20,15 +20,21 @@ MAX_LABELS = 4096
 """Largest number of labels in a label picture; a picture with more colours is taken for a photo."""
 
 
-def read_picture(path: Path, non_finite: NonFinite = "error", notify: Notify = ignore) -> np.ndarray:
+def read_picture(
+    path: Path, non_finite: NonFinite = "error", notify: Notify = ignore, reduce: bool = False
+) -> np.ndarray:
     """Read a picture file as (h, w[, 3|4]) RGB(A), upright by its EXIF orientation: uint8, uint16, or its own dtype.
 
     A palette becomes colours, transparency a fourth channel. `.npy` and `.npz` files hold the array itself.
     non_finite: NaN and infinity raise an error, or, for `mask`, stay in the array.
-    notify: receives a remark if the file holds more pictures, of which the first is taken.
+    notify: receives a remark if the file holds more pictures, of which the first is taken, or if it is reduced.
+    reduce: halve the sides of a JPEG that is too large, up to three times, while it is decoded.
     Raises: PictureError if the file is missing, not a picture, damaged, cut short or too large.
     """
-    return picture_of(values_of(path, bytes_of(path), notify), str(path), non_finite)
+    data = bytes_of(path)
+    if reduce and (reduced := decode_reduced(path, data, notify)) is not None:
+        return picture_of(reduced, str(path), non_finite)
+    return picture_of(values_of(path, data, notify), str(path), non_finite)
 
 
 def picture_of(values: np.ndarray, name: str, non_finite: NonFinite = "error") -> np.ndarray:

@@ -13,9 +13,11 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from hostile import SIDE, npy_header, npz_bomb, tiff
+from tangible_core import Scene
 from tangible_core.data import Views
 from tangible_core.data.pictures import check_picture, fill_non_finite, full_scale, to_grey, to_rgb8
 from tangible_core.errors import PictureError, shown
+from tangible_core.scene.formats import decoding
 from tangible_core.scene.formats.pictures import MAX_LABELS, read_labels, read_map, read_picture
 
 NAN = np.nan
@@ -548,3 +550,28 @@ def test_integer_picture_is_finite_everywhere():
 def test_picture_without_finite_pixels_cannot_be_filled():
     with pytest.raises(PictureError, match="none of the 6 pixels is finite"):
         fill_non_finite(np.full((2, 3), np.nan))
+
+
+def test_jpeg_that_is_too_large_is_reduced_while_it_is_read(tmp_path, monkeypatch):
+    """A picture of 96 x 64 pixels where 2000 are the most: half of its sides have 1536."""
+    monkeypatch.setattr(decoding, "MOST_PIXELS", 2000)
+    monkeypatch.setattr(decoding, "MOST_REDUCED", 20_000)
+    grey = np.repeat(np.linspace(0, 255, 96).astype(np.uint8)[None], 64, axis=0)
+    path = put(tmp_path, "wide.jpg", encode(Image.fromarray(grey), "JPEG", quality=95))
+    said = []
+    reduced = read_picture(path, notify=said.append, reduce=True)
+    assert reduced.shape == (32, 48)
+    np.testing.assert_allclose(reduced, grey[::2, ::2], atol=6)
+    assert said == ["wide.jpg has 0 megapixels; it is reduced to 48 x 32 pixels while it is read"]
+    assert read_picture(path).shape == (64, 96), "labels, truths and pairs keep their pixels"
+    monkeypatch.setattr(decoding, "MOST_REDUCED", 4000)
+    assert read_picture(path, reduce=True).shape == (64, 96)
+
+
+def test_jpeg_of_a_hundred_megapixels_is_read_as_a_photo(tmp_path):
+    path = put(tmp_path, "scan.jpg", encode(Image.new("L", (10_000, 10_000), 200), "JPEG", quality=30))
+    with pytest.raises(PictureError, match="larger than 89 megapixels"):
+        read_picture(path)
+    scene = Scene.photo(path)
+    assert scene.views.left.shape == (5000, 5000)
+    assert scene.notes == ("scan.jpg has 100 megapixels; it is reduced to 5000 x 5000 pixels while it is read",)

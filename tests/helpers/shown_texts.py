@@ -85,7 +85,8 @@ def described() -> Iterator[str]:
     from tangible_core.plugins.registry import default_registry
 
     hooks.tell(default_registry().plugins, "tangible_commands", app=app)
-    for source in {part for each in load_library().values() for part in re.split(r"; |\w+: ", each.source) if part}:
+    sources = {part for each in load_library().values() for part in re.split(r"; |\w+: ", each.source) if part}
+    for source in sorted(sources):
         yield _unique(re.sub(r"(?<![\^\w])[\d.]+", "{number}", source))
     for text in [*_of_schema(json_schema()), *_of_schema(materials_schema()),
                  *(text for name in COMMANDS for text in _of_command(load(name))),

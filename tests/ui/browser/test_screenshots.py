@@ -34,7 +34,7 @@ PICTURES: dict[str, dict[str, Any]] = {
 
 
 HERE = """() => {
-  const [text, path] = ["yaml-text", "yaml-path"].map((id) => document.getElementById(id));
+  const [text, path] = ["yaml-text", "save-path"].map((id) => document.getElementById(id));
   const folder = path.value.replace(/[^/]*$/, "");
   for (const each of [text, path]) each.value = each.value.replaceAll(folder, "");
 }"""
@@ -57,6 +57,44 @@ def test_screenshot_of_the_page(open_page: Callable[..., Any], url: str, tmp_pat
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     page.mouse.up()
     keep(picture, tmp_path, name)
+
+
+VARIANTS: dict[str, dict[str, Any]] = {
+    "": {"viewport": {"width": 1240, "height": 780}, "color_scheme": "light"},
+    "-dark": {"viewport": {"width": 1240, "height": 780}, "color_scheme": "dark"},
+    "-phone": {"viewport": {"width": 390, "height": 844}, "color_scheme": "light", "has_touch": True},
+}
+TASKS = {"parts": "parts-task", "feel": "feel", "hand-on": "hand-on"}
+
+
+@pytest.mark.nightly
+def test_screenshots_of_start_and_tasks(
+    opened: Callable[..., str], serve: Callable[..., Any], open_page: Callable[..., Any], tmp_path: Path
+):
+    """The start without a file, and each task, in light, in dark and on a phone."""
+    empty, url = serve().url, opened(astronaut_file(tmp_path))
+    for variant, options in VARIANTS.items():
+        page = open_page(empty, draws=True, **options)
+        page.locator("#start .tile button", has_text="coins").wait_for()
+        keep(shot(page), tmp_path, f"ui/start{variant}")
+        page.close()
+        page = open_page(url, draws=True, **options)
+        page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
+        for task, name in TASKS.items():
+            page.locator(f"#tab-{task}").click()
+            if task == "hand-on":
+                page.wait_for_selector("#export .exporters")
+                page.evaluate(HERE)
+            page.evaluate(SETTLED)
+            if task == "feel":
+                touch(page)
+            keep(shot(page), tmp_path, f"ui/{name}{variant}")
+            page.mouse.up()
+        page.close()  # the next one gets the hand
+
+
+def shot(page: "Page") -> Image.Image:
+    return Image.open(io.BytesIO(page.screenshot())).convert("RGB")
 
 
 @pytest.mark.nightly
@@ -85,16 +123,8 @@ def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_p
 @pytest.mark.nightly
 def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: Callable[..., Any], tmp_path: Path):
     """A photograph with parts that were drawn by hand; and one that is proposed."""
-    astronaut = drawn("astronaut")
-    Image.fromarray(astronaut.picture).save(tmp_path / "astronaut.png")
-    Image.fromarray(astronaut.parts.labels.astype(np.uint8)).save(tmp_path / "parts.png")
-    names = [name if astronaut.names.count(name) == 1 else f"{name} {n}" for n, name in enumerate(astronaut.names)]
-    parts = [f"  {n}: {{name: {name}, height_m: {astronaut.heights_m[n]}}}\n" for n, name in enumerate(names)]
-    text = "scene: {photo: astronaut.png, segments: parts.png}\nworkspace: {width_m: 0.1, relief_m: 0.0064}\n"
-    text += f"render: {{use: penalty, stiffness_n_per_m: 400}}\nheights: {{by: given}}\nparts:\n{''.join(parts)}"
-    (tmp_path / "astronaut.yaml").write_text(text)
     page = open_page(
-        opened(tmp_path / "astronaut.yaml"), draws=True, viewport={"width": 1180, "height": 720}, color_scheme="light"
+        opened(astronaut_file(tmp_path)), draws=True, viewport={"width": 1180, "height": 720}, color_scheme="light"
     )
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
     bring(page, "parts").locator("#parts-edit").click()
@@ -118,6 +148,19 @@ def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: 
     keep(picture.resize((picture.width * 3 // 4, picture.height * 3 // 4)), tmp_path, "ui/parts-proposal")
 
 
+def astronaut_file(folder: Path) -> Path:
+    """Write a photograph with parts that were drawn by hand, and its pipeline file; return that."""
+    astronaut = drawn("astronaut")
+    Image.fromarray(astronaut.picture).save(folder / "astronaut.png")
+    Image.fromarray(astronaut.parts.labels.astype(np.uint8)).save(folder / "parts.png")
+    names = [name if astronaut.names.count(name) == 1 else f"{name} {n}" for n, name in enumerate(astronaut.names)]
+    parts = [f"  {n}: {{name: {name}, height_m: {astronaut.heights_m[n]}}}\n" for n, name in enumerate(names)]
+    text = "scene: {photo: astronaut.png, segments: parts.png}\nworkspace: {width_m: 0.1, relief_m: 0.0064}\n"
+    text += f"render: {{use: penalty, stiffness_n_per_m: 400}}\nheights: {{by: given}}\nparts:\n{''.join(parts)}"
+    (folder / "astronaut.yaml").write_text(text)
+    return folder / "astronaut.yaml"
+
+
 def prepare(page: "Page", name: str) -> None:
     """Bring a panel to where it has something to say."""
     if name == "methods":
@@ -136,7 +179,7 @@ def prepare(page: "Page", name: str) -> None:
         page.wait_for_selector("#export .outcome")
     elif name == "description":
         page.wait_for_selector("#description li")
-    elif name == "yaml":  # without the place of this machine where the test runs
+    elif name in ("yaml", "save"):  # without the place of this machine where the test runs
         page.evaluate(HERE)
     elif name == "materials":
         page.wait_for_function("() => document.querySelector('#materials select, #materials td')")

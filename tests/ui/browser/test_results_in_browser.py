@@ -115,7 +115,7 @@ class TestExport:
         until(lambda: "heights" in text_of(page), "written")
         assert page.evaluate("page.document.said.export") == [{"use": "stl", "rim_m": 0.01}, "heights"]
         assert page.evaluate("page.document.complaints") == []
-        page.locator("#undo").press("Enter")
+        open_panel(page, "methods").locator("#undo").press("Enter")
         until(lambda: panel.get_by_label("3D print (3MF)").is_checked(), "undone")
 
     def test_export_with_an_invalid_option_shows_the_reason(self, show: Callable[..., "Page"]) -> None:
@@ -184,7 +184,7 @@ class TestLegible:
         until(lambda: panel.locator(".sentence.ok").count() == 1, "cured")
         assert page.evaluate("page.document.said.simplify.gap_m") == 0.0032
         assert marks.count() == places.count() == 0
-        page.locator("#undo").press("Enter")
+        open_panel(page, "methods").locator("#undo").press("Enter")
         until(lambda: text_of(page) == before, "undone in one step")
         until(lambda: "changed since this check" in panel.inner_text(), "stale")
 

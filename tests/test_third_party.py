@@ -90,7 +90,7 @@ def test_third_party_tests_pass(environment, tmp_path):
 def test_third_party_force_law_and_device_work_together(environment, tmp_path):
     """The example's surface is felt with the example's law on the example's device."""
     law = ["--set", "render.use=acme-cushion-compiled"]
-    ran = environment.run("feel", DEVICE / "handle.yaml", *law, "--seconds", "0.5", cwd=tmp_path)
+    ran = environment.run("feel", DEVICE / "handle.yaml", *law, "--seconds", "0.5", "--verbose", cwd=tmp_path)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert "acme-cushion-compiled" in ran.stdout
     figures = dict(line.split() for line in ran.stdout.partition("figure ")[2].splitlines()[1:])

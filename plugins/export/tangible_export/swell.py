@@ -59,13 +59,13 @@ class Swell(Exporter, Previewing):
         Raises: PictureError where there are no parts, or a page could not be read; GeometryError where it has no room;
         BrailleError for a title or a name that has no braille; BrokenMethod without shapely.
         """
+        pages = self._pages(work)
         from .paper.lettering import words
         from .paper.marks.ink import ink_svg, write_ink_pdf
         from .paper.marks.reading import read
         from .paper.marks.rendering import write_pdf
         from .paper.marks.svg import svg
 
-        pages = self._pages(work)
         texts, note = [svg(each) for each in pages], words(work.language).ink
         files = {f"{stem.name}-swell{'-key' * (n > 0)}{f'-{n}' * (n > 1)}.svg": text for n, text in enumerate(texts)}
         pdf, ink, ink_pdf = (stem.with_name(f"{stem.name}-swell{each}") for each in (".pdf", "-ink.svg", "-ink.pdf"))

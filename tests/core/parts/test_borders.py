@@ -163,5 +163,5 @@ def test_wrong_lengths_are_refused(width_m, tolerance_m):
 
 def test_missing_shapely_names_its_installation(monkeypatch):
     monkeypatch.setitem(sys.modules, "shapely", None)
-    with pytest.raises(BrokenMethod, match=r"pip install 'tangible-images\[export\]'"):
+    with pytest.raises(BrokenMethod, match=r"pip install shapely"):
         shared_borders(parts_of([[0, 1]]), 0.08, 0)

@@ -161,7 +161,7 @@ def test_relief_without_rounding_has_steps():
         (np.zeros((60, 61), np.uint8), "61 x 60"),
         (np.zeros((60, 60, 2), np.uint8), "a picture is"),
         (np.zeros((0, 0), np.uint8), "at least one pixel"),
-        (np.zeros((60, 60), np.int64), "int64"),
+        (np.zeros((60, 60), np.complex64), "complex64"),
     ],
 )
 def test_picture_that_does_not_fit_the_parts_is_refused(picture, message):

@@ -105,4 +105,4 @@ def test_as_data_has_all_fields_and_applicable_changes():
     assert (fine["changes"], fine["cure"], fine["stands"]) == ([], "", "1 N/m <= 2 N/m")
     text = "scene: builtin/brick\nmaterials: {by: rules}  # mine\nworkspace: {relief_m: 4 mm}\n"
     cured = edit_text(text, Path("p.yaml"), {each["key"]: each["value"] for each in wrong["changes"]})
-    assert cured == text.replace("rules}", "rules, fit: device}").replace("4 mm", "0.0012")
+    assert cured == text.replace("rules}", "rules, fit: device}").replace("4 mm", "1.2 mm")

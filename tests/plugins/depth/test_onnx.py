@@ -264,7 +264,7 @@ class TestMistakes:
         from tangible_depth.network import runtimes
 
         runtimes._load.cache_clear()
-        with pytest.raises(BrokenMethod, match=r"pip install 'tangible-images\[onnx\]'"):
+        with pytest.raises(BrokenMethod, match=r"pip install onnxruntime"):
             Onnx(model=networks / "mono.onnx", runtime="onnxruntime").estimate(wall())
 
 

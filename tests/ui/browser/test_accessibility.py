@@ -11,7 +11,7 @@ from accessible_names import controls_of, faults_of
 from browser_tabs import SETTLED
 from needed import lacking
 from page_files import WEB
-from page_panels import bring, show_everything
+from page_panels import bring, open_panel, show_everything
 from waiting import until
 
 if TYPE_CHECKING:
@@ -499,6 +499,7 @@ class TestLog:
             ["log", {"at_s": 1, "level": "warning", "logger": "somebody", "text": "it is dark"}]
         ] * 3
         lines += [["error", {"at_s": 2, "text": "the disk is full"}]]
+        open_panel(page, "log-panel")
         page.get_by_role("button", name="Clear").click()
         page.evaluate(tell, lines)
         log = page.locator("#log")

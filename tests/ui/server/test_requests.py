@@ -424,9 +424,9 @@ def test_panel_has_an_address_and_the_folder_of_its_module(
     with_session(check)
 
 
-@pytest.mark.parametrize("saved", [True, False, None])
-def test_saved_parts_leave_no_upload_and_a_draft_unless_the_file_was_written(
-    with_session: Callable[[Check], None], tmp_path: Path, saved: bool | None
+@pytest.mark.parametrize("saved", [True, False])
+def test_saved_parts_leave_no_upload_and_no_draft(
+    with_session: Callable[[Check], None], tmp_path: Path, saved: bool
 ) -> None:
     async def check(session: Session, tab: Heard, ask: Ask) -> None:
         async def labels() -> Any:
@@ -434,18 +434,19 @@ def test_saved_parts_leave_no_upload_and_a_draft_unless_the_file_was_written(
 
         batch = await ask("batch")
         await session.uploads.put(batch, "labels.gz", labels())
-        found = {"text": "with parts", "moved": {"before": "moved"}, "saved": saved}
-        worker(session).answers["parts_save"] = ConfigError("no") if saved is None else found
+        found = {"text": "with parts", "moved": {"before": "moved"}, "file": tmp_path / "mine.yaml"}
+        worker(session).answers["parts_save"] = found if saved else ConfigError("no")
         session.text = "before"
         session.drafts.remember_opened("before")
-        if saved is None:
+        if saved:
+            assert await ask("parts_save", upload=batch, parts=[]) == {"file": str(tmp_path / "mine.yaml")}
+            assert (session.text, session.path) == ("with parts", tmp_path / "mine.yaml")
+            assert session.texts.before().text == "moved"
+        else:
             with pytest.raises(ConfigError):
                 await ask("parts_save", upload=batch, parts=[])
-        else:
-            assert await ask("parts_save", upload=batch, parts=[]) == {"saved": saved}
-            assert session.texts.before() == Text("moved", session.path)
-        assert session.text == ("before" if saved is None else "with parts")
-        assert session.drafts.opened_text == ("with parts" if saved else "before")
+            assert session.text == "before"
+        assert session.drafts.opened_text == session.text
         assert not list((tmp_path / "incoming").iterdir())
 
     with_session(check)

@@ -69,6 +69,8 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   /** Terrain of `prepare`, which keeps compiled shaders until a surface uses them. */
   private prepared: Terrain | null = null;
   private resting = 0;
+  /** Time before which the camera does not count as at rest, milliseconds of the page. */
+  private restsMs = 0;
   private putMs = -Infinity;
   /** Time to draw all of the terrain, ms; infinite until measured. */
   private takesMs = Infinity;
@@ -118,7 +120,8 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     }
     if (String(before?.extent_m) !== String(scene.meta.extent_m)) this.frame(...scene.meta.extent_m);
     const now = performance.now();
-    this.onMove(!before ? FIRST_MS : now - this.putMs < FOLLOWING_MS ? FOLLOWING_MS : REST_MS);
+    this.restsMs = now + (!before ? FIRST_MS : now - this.putMs < FOLLOWING_MS ? FOLLOWING_MS : REST_MS);
+    this.onMove();
     this.putMs = now;
   }
 
@@ -222,7 +225,8 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
     return t > 0 ? [o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]] : null;
   }
 
-  private onMove(restMs = REST_MS): void {
+  private onMove(): void {
+    const restMs = Math.max(REST_MS, this.restsMs - performance.now()); // a layout that settles is no reason to be early
     this.dirty = true;
     if (this.terrain && this.takesMs > SLOW_MS) this.terrain.moving = true;
     clearTimeout(this.resting);

@@ -226,7 +226,7 @@ void main() { ivec2 p = ivec2(gl_FragCoord.xy); colour = texelFetch(colours, p, 
   }
 
   private onMove(): void {
-    const restMs = Math.max(REST_MS, this.restsMs - performance.now()); // a layout that settles is no reason to be early
+    const restMs = Math.max(REST_MS, this.restsMs - performance.now()); // a layout that settles moves the camera
     this.dirty = true;
     if (this.terrain && this.takesMs > SLOW_MS) this.terrain.moving = true;
     clearTimeout(this.resting);

@@ -31,7 +31,7 @@ from ..engine.engine import Engine
 from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
 from .export_folder import check_writable, check_written, move
-from .legible import judge_products, names_of_parts, with_cures_of, with_width
+from .legible import drawn_width_m, judge_products, names_of_parts, with_cures_of, with_width
 from .run_folder import default_name, relative_source
 
 log = logging.getLogger(__name__)
@@ -174,7 +174,7 @@ class _ExportRun:
         config = engine.config
         self.upright_slope = config.relief.slope if "slope" in config.relief.model_fields_set else 0.0
         """The slope limit for exporters that need none."""
-        self.engines = {(width_m, config.relief.slope): engine for width_m in (None, config.size.width_m)}
+        self.engines = {(config.size.width_m, config.relief.slope): engine}
 
     def export(self, name: str, stem: str, chosen: NamedMethod[Exporter]) -> Exported:
         """Make the products for an exporter, and run it."""
@@ -214,8 +214,7 @@ class _ExportRun:
 
     def _engine(self, chosen: NamedMethod[Exporter]) -> Engine:
         """Return the engine for the width at which this exporter writes, and for its slopes."""
-        rows, columns = self.engine.scene.shape
-        width_m = chosen.method.picture_width_m(columns / rows)
+        width_m = drawn_width_m(self.engine, chosen)
         slope = self.engine.config.relief.slope if chosen.method.limits_slopes else self.upright_slope
         if (width_m, slope) not in self.engines:
             self.engines[width_m, slope] = _with_slope(with_width(self.engine, width_m), slope)
@@ -264,12 +263,12 @@ def work_for(engine: Engine, exporter: Exporter) -> Work:
 
 def legible_for(engine: Engine, chosen: NamedMethod[Exporter]) -> Legibility | None:
     """Judge the legibility by the products that an exporter needs; None for files that are not touched."""
-    exporter, (rows, columns) = chosen.method, engine.scene.shape
+    exporter = chosen.method
     if exporter.medium is None:
         return None
     parts = "simplified" if "simplified" in exporter.needs else engine.config.felt_parts
     judged = set[str]().union(*map(engine.inputs_of, exporter.needs))
-    return with_cures_of(chosen, judge_products(engine, exporter.medium, parts, judged), columns / rows)
+    return with_cures_of(engine, chosen, judge_products(engine, exporter.medium, parts, judged))
 
 
 def _illegible(name: str, legible: Legibility | None) -> list[Note]:

@@ -36,7 +36,7 @@ def legible(engine: Engine, medium: Medium, width_m: float | None = None) -> Leg
     judged = with_width(engine, drawn_width_m(engine, exporter) if width_m is None else width_m)
     parts = engine.config.felt_parts
     found = judge_products(judged, medium, parts, {parts, *JUDGED.get(medium, ())})
-    return found if exporter is None else with_cures_of(exporter, found, _aspect(engine))
+    return found if exporter is None else with_cures_of(engine, exporter, found)
 
 
 def exporter_for(engine: Engine, medium: Medium) -> NamedMethod[Exporter] | None:
@@ -58,8 +58,9 @@ def drawn_width_m(engine: Engine, exporter: NamedMethod[Exporter] | None) -> flo
     return engine.config.size.width_m if width_m is None else width_m
 
 
-def with_cures_of(exporter: NamedMethod[Exporter], found: Legibility, aspect: float) -> Legibility:
+def with_cures_of(engine: Engine, exporter: NamedMethod[Exporter], found: Legibility) -> Legibility:
     """Return the verdicts with cures that change the width in the exporter's options, where it has its own width."""
+    aspect = _aspect(engine)
     if exporter.method.picture_width_m(aspect) is None:
         return found
     return Legibility(_with_width_of(exporter, each, aspect) for each in found)

@@ -42,11 +42,9 @@ class Label:
 
 def ink_svg(drawing: Drawing, note: str, named: bool) -> str:
     """Return a page in ink as SVG. note: a sentence at its foot. named: True if its areas are parts, with names."""
-    grey = svg(drawing).replace('stroke="#000"', f'stroke="{GREY}"').replace("<svg ", f'<svg fill="{GREY}" ', 1)
     y, (left, right) = _foot_mm(drawing), _scale_mm()
-    texts = "\n".join(map(_text, labels(drawing, note, named)))
     bar = f'<path data-mark="scale" stroke="#000" stroke-width="0.5" d="M{left:g} {y:g}L{right:g} {y:g}"/>'
-    return grey.replace("</svg>", f"{bar}\n{texts}\n</svg>")
+    return svg(drawing, GREY, [bar, *map(_text, labels(drawing, note, named))])
 
 
 def write_ink_pdf(path: Path, pages: Sequence[Drawing], note: str) -> None:

@@ -2,7 +2,7 @@
 # shapely has no types.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
@@ -16,6 +16,7 @@ from ..fills import DOT_MM as FILL_DOT_MM
 from ..fills import Fill
 from ..sheet import CORNER_MM, LINE_MM, MARGIN_MM, Sheet
 
+BLACK = "#000"
 BRAILLE_DOT_MM = 1000 * DOT_DIAMETER_M
 NO_DOTS = np.zeros((0, 2))
 
@@ -53,19 +54,24 @@ class Drawing:
     texts: tuple[Braille, ...]
 
 
-def svg(drawing: Drawing) -> str:
-    """Return the text of the file. The attribute `data-mark` has a mark's role: outline, fill, braille or corner."""
+def svg(drawing: Drawing, colour: str = BLACK, over: Sequence[str] = ()) -> str:
+    """Return the text of the file. The attribute `data-mark` has a mark's role: outline, fill, braille or corner.
+
+    colour: of the marks. over: elements that lie over them.
+    """
     sheet = drawing.sheet
+    paint = "" if colour == BLACK else f'fill="{colour}" '
     width, length = f"{sheet.width_mm:g}", f"{sheet.length_mm:g}"
     lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{length}mm" '
+        f'<svg {paint}xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{length}mm" '
         f'viewBox="0 0 {width} {length}" lang={quoteattr(drawing.language)} xml:lang={quoteattr(drawing.language)} '
         'role="graphics-document document" aria-labelledby="title" aria-describedby="description">',
         f'<title id="title">{escape(drawing.title)}</title>',
         f'<desc id="description">{escape(drawing.description)}</desc>',
         *(_braille(text) for text in drawing.texts),
         _corner(drawing),
-        *(_area(area) for area in drawing.areas),
+        *(_area(area, colour) for area in drawing.areas),
+        *over,
         "</svg>",
     ]
     return "\n".join(lines) + "\n"
@@ -77,25 +83,25 @@ def _corner(drawing: Drawing) -> str:
     return f'<path data-mark="corner" role="img" aria-label={quoteattr(drawing.corner)} d="{_line(corner)}Z"/>'
 
 
-def _area(area: Area) -> str:
+def _area(area: Area, colour: str) -> str:
     rings = shapely.get_rings(shapely.get_parts(area.outline))
     outline = "".join(f"{_line(shapely.get_coordinates(each)[:-1])}Z" for each in rings)
     inside = [
-        f'<path data-mark="outline" fill="none" stroke="#000" stroke-width="{LINE_MM:g}" stroke-linejoin="round" '
+        f'<path data-mark="outline" fill="none" stroke="{colour}" stroke-width="{LINE_MM:g}" stroke-linejoin="round" '
         f'd="{outline}"/>'
     ]
     inside += [_braille(area.letter)] if area.letter else []
-    inside += [_fill(area.fill)] if area.fill else []
+    inside += [_fill(area.fill, colour)] if area.fill else []
     return "\n".join([f'<g role="img" aria-label={quoteattr(area.label)}>', *inside, "</g>"])
 
 
-def _fill(fill: Fill) -> str:
+def _fill(fill: Fill, colour: str) -> str:
     strokes = "".join(_line(shapely.get_coordinates(each)) for each in fill.strokes)
     if not strokes:
         return f'<g data-mark="fill">{_discs(fill.dots_mm, FILL_DOT_MM)}</g>'
     return (
-        f'<path data-mark="fill" fill="none" stroke="#000" stroke-width="{fill.stroke_mm:g}" stroke-linecap="round" '
-        f'stroke-linejoin="round" d="{strokes}"/>'
+        f'<path data-mark="fill" fill="none" stroke="{colour}" stroke-width="{fill.stroke_mm:g}" '
+        f'stroke-linecap="round" stroke-linejoin="round" d="{strokes}"/>'
     )
 
 

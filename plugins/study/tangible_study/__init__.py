@@ -1,0 +1,1 @@
+"""Studies: experiments with people from one file, on any device, with every answer kept."""

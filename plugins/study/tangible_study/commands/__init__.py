@@ -1,0 +1,18 @@
+"""The commands for studies. They are listed at each start of `tangible`, so this room imports next to nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangible_core.plugins import hookimpl
+
+if TYPE_CHECKING:
+    from typer import Typer
+
+
+@hookimpl
+def tangible_commands(app: Typer) -> None:
+    """Add `tangible study`."""
+    from tangible_core.cli.command_table import add
+
+    add("study", "tangible_study.commands.study:app", "Run an experiment with people from a file; check it first.")

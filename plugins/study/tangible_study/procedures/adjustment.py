@@ -1,0 +1,48 @@
+"""The method of adjustment."""
+
+from typing import final
+
+import numpy as np
+
+from ..design.study import Comparison
+from .cells import asks, in_rounds, without_levels
+from .procedure import Course, Listed, Procedure, Stimulus, Trial
+
+
+@final
+class Adjustment(Procedure):
+    """Adjustment: the participant changes the second interval until it is equal to the first, the standard.
+
+    Trials begin at the least and at the greatest level in turn; the response is the level that was set.
+    """
+
+    def refusal(self, comparison: Comparison) -> str:
+        """Return what is missing: levels, a standard, or the question."""
+        return asks(comparison, "equal") or without_levels(comparison)
+
+    def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
+        """Return all trials in rounds."""
+
+        def make(name: str, number: int) -> Trial:
+            return _from(comparison, name, comparison.levels[-(number % 2)])
+
+        return Listed(in_rounds(comparison.conditions, comparison.repetitions, generator, make))
+
+    def stimuli(self, comparison: Comparison) -> tuple[Stimulus, ...]:
+        """Return all levels and the standard, in each condition."""
+        levels = (comparison.standard, *comparison.levels)
+        return tuple(dict.fromkeys(Stimulus(name, level) for name in comparison.conditions for level in levels))
+
+
+def _from(comparison: Comparison, name: str, start: float) -> Trial:
+    return Trial(
+        comparison.name,
+        comparison.question,
+        "adjustment",
+        (Stimulus(name, comparison.standard), Stimulus(name, start)),
+        tuple(map(repr, comparison.levels)),
+        name,
+        None,
+        start,
+        comparison.standard,
+    )

@@ -1,0 +1,97 @@
+"""What procedures share: balanced positions, rounds in random order, and sentences about what is missing."""
+
+from collections.abc import Callable, Iterable, Sequence
+from itertools import combinations
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+from ..design.study import Comparison
+from .procedure import Stimulus, Trial
+
+T = TypeVar("T")
+
+
+class Cell(NamedTuple):
+    """Two things that are compared: one under test, and the one that it is compared with."""
+
+    test: Stimulus
+    against: Stimulus
+
+
+def cells_of(comparison: Comparison) -> list[Cell]:
+    """Return each level against the standard, for each condition; without levels, each pair of conditions."""
+    if comparison.levels:
+        return [
+            Cell(Stimulus(name, level), Stimulus(name, comparison.standard))
+            for name in comparison.conditions
+            for level in comparison.levels
+        ]
+    return [Cell(Stimulus(one), Stimulus(other)) for one, other in combinations(comparison.conditions, 2)]
+
+
+def stimuli_of(cells: Iterable[Cell]) -> tuple[Stimulus, ...]:
+    """Return everything that cells present, each once."""
+    return tuple(dict.fromkeys(stimulus for cell in cells for stimulus in cell))
+
+
+def compared(comparison: Comparison, procedure: str, cell: Cell, position: int, intervals: int = 2) -> Trial:
+    """Return a trial in which the test is in one interval, and what it is compared with in all others."""
+    test, against = cell
+    return Trial(
+        comparison.name,
+        comparison.question,
+        procedure,
+        tuple(test if number == position else against for number in range(1, intervals + 1)),
+        tuple(map(str, range(1, intervals + 1))),
+        test.condition,
+        against.condition if against.condition != test.condition else None,
+        test.level,
+        against.level,
+        position,
+    )
+
+
+def one_interval(
+    comparison: Comparison, procedure: str, stimulus: Stimulus, choices: tuple[str, ...], target: str | None = None
+) -> Trial:
+    """Return a trial of one interval."""
+    return Trial(
+        comparison.name,
+        comparison.question,
+        procedure,
+        (stimulus,),
+        choices,
+        stimulus.condition,
+        level=stimulus.level,
+        target=target,
+    )
+
+
+def in_rounds(
+    things: Sequence[T], repetitions: int, generator: np.random.Generator, make: Callable[[T, int], Trial]
+) -> list[Trial]:
+    """Return trials in rounds: each round has everything once, in random order, so that fatigue meets all alike.
+
+    make: called with a thing and its number of the round, from a random start, to balance what alternates.
+    """
+    starts = generator.integers(0, 1 << 16, len(things)).tolist()
+    return [
+        make(things[index], starts[index] + turn)
+        for turn in range(repetitions)
+        for index in generator.permutation(len(things)).tolist()
+    ]
+
+
+def without_levels(comparison: Comparison) -> str:
+    """Return what is missing for a comparison of levels with a standard; "" if nothing is."""
+    if not comparison.vary or len(comparison.levels) < 1 or comparison.standard is None:
+        return "write the key that varies (`vary:`), its `levels:` and the `standard:` that each is compared with"
+    return ""
+
+
+def asks(comparison: Comparison, *questions: str) -> str:
+    """Return a complaint if a procedure cannot ask the question of this comparison; "" if it can."""
+    if comparison.question in questions:
+        return ""
+    return f"does not ask for {comparison.question!r}; it asks for {' or '.join(questions)}"

@@ -1,0 +1,125 @@
+"""The interface of procedures: which trial is next, given the answers so far."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple, final
+
+import numpy as np
+
+from tangible_core.scene.workspace import Section
+
+from ..design.study import Comparison
+
+EQUAL = "="
+"""Choice that ends an adjustment; the response is then the level."""
+
+
+class Stimulus(NamedTuple):
+    """A surface in an interval: that of a condition, at a level if one varies."""
+
+    condition: str
+    level: float | None = None
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A trial as a procedure asks for it; what it is called on the screen is its intervals' numbers alone."""
+
+    comparison: str
+    question: str
+    procedure: str
+    intervals: tuple[Stimulus, ...]
+    """What is presented in each interval, in their order."""
+    choices: tuple[str, ...]
+    """Possible responses; of an adjustment, the levels that can be set, as text."""
+    condition: str
+    """Name of the condition under test."""
+    other: str | None = None
+    """Name of the condition with which it is compared."""
+    level: float | None = None
+    standard: float | None = None
+    position: int | None = None
+    """Interval, from 1, of the comparison or of the odd one."""
+    target: str | None = None
+    """Name of the part that is to be named."""
+    phase: str = "test"
+
+
+class Score(NamedTuple):
+    """A response in numbers: None where the question has no such answer."""
+
+    chosen: int | None = None
+    """1 if the comparison was chosen over the other, 0 if not."""
+    correct: int | None = None
+    """1 or 0, where an answer can be right."""
+
+
+def score(trial: Trial, response: str) -> Score:
+    """Return what a response means: the condition or level that it chose, and whether it is right.
+
+    >>> score(Trial("a", "same", "oddity", (), ("1", "2", "3"), "x", "y", position=3), "3")
+    Score(chosen=None, correct=1)
+    """
+    if trial.question == "name":
+        return Score(None, int(response == trial.target))
+    if trial.question == "same":
+        return Score(None, int(response == str(trial.position)))
+    if trial.position is None:
+        return Score()
+    chosen = int(response == str(trial.position))
+    if trial.level is None or trial.standard is None or trial.level == trial.standard:
+        return Score(chosen)
+    return Score(chosen, int(chosen == (trial.level > trial.standard)))
+
+
+class Course(ABC):
+    """The course of a procedure with one participant. Its state follows from the answers that it was given."""
+
+    @abstractmethod
+    def next(self) -> Trial | None:
+        """Return the next trial; the same one until it is answered, and None at the end."""
+
+    @abstractmethod
+    def take(self, trial: Trial, response: str) -> None:
+        """Take the response to the trial that `next` returned."""
+
+
+class Procedure(Section, ABC):
+    """A procedure by its options, which are its fields; `tangible.procedure` is the group of its entry point.
+
+    The same comparison, seed and answers must give the same trials: a study resumes by answering them again.
+    """
+
+    @abstractmethod
+    def refusal(self, comparison: Comparison) -> str:
+        """Return why a comparison cannot be run by this procedure, with the cure; "" if it can."""
+
+    @abstractmethod
+    def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
+        """Begin with a participant. generator: the only source of chance."""
+
+    @abstractmethod
+    def stimuli(self, comparison: Comparison) -> tuple[Stimulus, ...]:
+        """Return everything that may be presented, each once, so that it is made and checked before."""
+
+    def trials(self, comparison: Comparison) -> int:
+        """Return the number of trials with one participant."""
+        return comparison.repetitions * len(comparison.conditions)
+
+
+@final
+class Listed(Course):
+    """A course of trials that are known from the start."""
+
+    def __init__(self, trials: Iterable[Trial]) -> None:
+        self._trials = list(trials)
+        self._at = 0
+
+    def next(self) -> Trial | None:
+        """Return the next trial of the list."""
+        return self._trials[self._at] if self._at < len(self._trials) else None
+
+    def take(self, trial: Trial, response: str) -> None:
+        """Go on to the next trial."""
+        self._at += 1

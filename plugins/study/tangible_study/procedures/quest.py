@@ -1,0 +1,129 @@
+"""QUEST+, which places each trial where it tells most about the threshold."""
+
+from functools import cached_property
+from typing import Annotated, Any, final
+
+import numpy as np
+from pydantic import Field
+
+from ..design.study import Comparison
+from ..extra import need
+from .cells import Cell, asks, cells_of, compared, stimuli_of, without_levels
+from .oddity import odd_one
+from .procedure import Course, Procedure, Stimulus, Trial, score
+
+
+@final
+class Quest(Procedure):
+    """QUEST+: the next level is where the answer is expected to tell most (Watson 2017, J. Vision 17(3):10).
+
+    Two intervals and the question for more give the point of equality and the slope; three and the question for the odd
+    one (`same`) a threshold of the difference. The trials of several conditions take turns.
+    """
+
+    lapses: Annotated[tuple[float, ...], Field(min_length=1, max_length=5)] = (0.02,)
+    """Shares of the trials in which a participant answers without attention, each as likely."""
+
+    def refusal(self, comparison: Comparison) -> str:
+        """Return what is missing: levels, a standard, or the question."""
+        if comparison.question == "same" and comparison.standard in comparison.levels:
+            return "cannot tell the standard from itself; leave the `standard:` out of the `levels:`"
+        return asks(comparison, "rougher", "higher", "same") or without_levels(comparison)
+
+    def course(self, comparison: Comparison, generator: np.random.Generator) -> Course:
+        """Begin one track a condition."""
+        return _Tracks(self, comparison, generator)
+
+    def stimuli(self, comparison: Comparison) -> tuple[Stimulus, ...]:
+        """Return all levels and the standard, in each condition."""
+        return stimuli_of(cells_of(comparison))
+
+
+@final
+class _Tracks(Course):
+    """Tracks of several conditions, in rounds."""
+
+    def __init__(self, options: Quest, comparison: Comparison, generator: np.random.Generator) -> None:
+        self._comparison = comparison
+        self._tracks = {name: _Track(options.lapses, comparison) for name in comparison.conditions}
+        names, turns = comparison.conditions, comparison.repetitions
+        starts = generator.integers(0, 6, len(names)).tolist()
+        self._order = [
+            (names[index], starts[index] + turn)
+            for turn in range(turns)
+            for index in generator.permutation(len(names)).tolist()
+        ]
+        self._at = 0
+        self._trial: Trial | None = None
+
+    def next(self) -> Trial | None:
+        if self._trial is None and self._at < len(self._order):
+            name, number = self._order[self._at]
+            cell = Cell(Stimulus(name, self._tracks[name].level()), Stimulus(name, self._comparison.standard))
+            if self._comparison.question == "same":
+                self._trial = odd_one(self._comparison, "quest", cell, number)
+            else:
+                self._trial = compared(self._comparison, "quest", cell, 1 + number % 2)
+        return self._trial
+
+    def take(self, trial: Trial, response: str) -> None:
+        assert trial.level is not None
+        each = score(trial, response)
+        self._tracks[trial.condition].update(trial.level, bool(each.correct if each.chosen is None else each.chosen))
+        self._at, self._trial = self._at + 1, None
+
+
+@final
+class _Track:
+    """The knowledge about one condition."""
+
+    def __init__(self, lapses: tuple[float, ...], comparison: Comparison) -> None:
+        self._lapses, self._comparison = lapses, comparison
+
+    @cached_property
+    def _quest(self) -> Any:
+        levels = np.array(_intensities(self._comparison))
+        span = float(np.ptp(levels)) or abs(float(levels[0])) or 1.0
+        widths = np.geomspace(span / 30, 2 * span, 12)
+        plus: Any = need("questplus").QuestPlus
+        if self._comparison.question == "same":
+            return plus(
+                stim_domain={"intensity": levels},
+                param_domain={
+                    "threshold": np.geomspace(span / 30, 2 * max(span, float(levels.max())), 30),
+                    "slope": [1.0, 2.0, 4.0],
+                    "lower_asymptote": [1 / 3],
+                    "lapse_rate": list(self._lapses),
+                },
+                outcome_domain={"response": [1, 0]},
+                func="weibull",
+                stim_scale="linear",
+            )
+        return plus(
+            stim_domain={"intensity": levels},
+            param_domain={
+                "mean": np.linspace(levels.min(), levels.max(), 31),
+                "sd": widths,
+                "lower_asymptote": list(self._lapses[:1]),
+                "lapse_rate": list(self._lapses),
+            },
+            outcome_domain={"response": [1, 0]},
+            func="norm_cdf",
+            stim_scale="linear",
+        )
+
+    def level(self) -> float:
+        """Return the level of the next trial."""
+        where = int(np.argmin(np.abs(_intensities(self._comparison) - self._quest.next_stim["intensity"])))
+        return self._comparison.levels[where]
+
+    def update(self, level: float, yes: bool) -> None:
+        """Take an answer."""
+        intensity = _intensities(self._comparison)[self._comparison.levels.index(level)]
+        self._quest.update(stim={"intensity": intensity}, outcome={"response": int(yes)})
+
+
+def _intensities(comparison: Comparison) -> np.ndarray:
+    """Return the levels as QUEST+ has them: their distance from the standard, if the question is for the odd one."""
+    levels = np.array(comparison.levels)
+    return np.abs(levels - (comparison.standard or 0.0)) if comparison.question == "same" else levels

@@ -1,0 +1,1 @@
+"""A participant's session: the order of trials, where it stopped, and what is kept."""

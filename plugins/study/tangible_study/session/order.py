@@ -1,0 +1,107 @@
+"""The course of a participant through a whole study: comparisons in balanced order, training first."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import final
+
+import numpy as np
+
+from tangible_core.errors import ResultsError
+
+from ..procedures.procedure import Course, Trial
+from ..study_file import StudyFile
+from ..trials import Answer
+
+TRAINING, TEST = 1, 2
+"""Streams of chance for training and for test."""
+
+
+def latin_square(count: int, row: int) -> list[int]:
+    """Return a row of a balanced Latin square (Williams 1949): over `count` rows, or twice as many if that is odd, each
+    thing comes at each place, and after each other one, equally often.
+
+    >>> [latin_square(4, row) for row in range(4)]
+    [[0, 3, 1, 2], [1, 0, 2, 3], [2, 1, 3, 0], [3, 2, 0, 1]]
+    """
+    first = [place // 2 if place % 2 == 0 else count - 1 - place // 2 for place in range(count)]
+    order = [(each + row) % count for each in first]
+    return order[::-1] if count % 2 and row // count % 2 else order
+
+
+def comparison_order(file: StudyFile, participant: int) -> list[int]:
+    """Return the order of the comparisons for a participant, by their index. participant: number from 0."""
+    count = len(file.study.comparisons)
+    if file.study.order == "as-written":
+        return list(range(count))
+    if file.study.order == "random":
+        return np.random.default_rng([file.study.seed, participant]).permutation(count).tolist()
+    return latin_square(count, participant)
+
+
+@final
+class StudyCourse(Course):
+    """All trials of a participant. Its state follows from the study file, the participant's number and the answers."""
+
+    def __init__(self, file: StudyFile, participant: int) -> None:
+        """Begin before the first trial. participant: number from 0, in the order of their first trials."""
+        self._file = file
+        self._left = [
+            (index, phase)
+            for index in comparison_order(file, participant)
+            for phase in (TRAINING, TEST)
+            if phase == TEST or file.study.comparisons[index].training
+        ]
+        self._participant = participant
+        self._course: Course | None = None
+        self._taken = 0
+
+    def next(self) -> Trial | None:
+        """Return the next trial, of the next comparison if one is over."""
+        while self._left:
+            index, phase = self._left[0]
+            comparison = self._file.study.comparisons[index]
+            if self._course is None:
+                seed = [self._file.study.seed, self._participant, index, phase]
+                procedure = self._file.procedures[comparison.name]
+                self._course, self._taken = procedure.course(comparison, np.random.default_rng(seed)), 0
+            over = phase == TRAINING and self._taken >= comparison.training
+            if not over and (trial := self._course.next()) is not None:
+                return replace(trial, phase="training") if phase == TRAINING else trial
+            self._left.pop(0)
+            self._course = None
+        return None
+
+    def take(self, trial: Trial, response: str) -> None:
+        """Take the response to the trial that `next` returned."""
+        assert self._course is not None
+        self._course.take(trial, response)
+        self._taken += 1
+
+    @property
+    def trials(self) -> int:
+        """Number of all trials of a participant."""
+        comparisons = self._file.study.comparisons
+        counts = {each.name: self._file.procedures[each.name].trials(each) for each in comparisons}
+        return sum(counts[each.name] + min(each.training, counts[each.name]) for each in comparisons)
+
+
+def replay(course: Course, answers: Iterable[Answer]) -> int:
+    """Answer the trials of a course by the answers of an earlier start, and return their number.
+
+    Raises: ResultsError if they are answers to other trials: the study file or the program has changed since.
+    """
+    done = list(answers)
+    for answer in done:
+        trial = course.next()
+        if trial is None or not _same(trial, answer):
+            raise ResultsError(
+                f"trial {answer.trial}: is an answer to another trial than this study asks now; run the study with the "
+                "version of the program that began it, which the file next to the answers names"
+            )
+        course.take(trial, answer.response)
+    return len(done)
+
+
+def _same(trial: Trial, answer: Answer) -> bool:
+    fields: Sequence[str] = ("phase", "comparison", "condition", "other", "level", "standard", "position", "target")
+    return all(getattr(trial, each) == getattr(answer, each) for each in fields)

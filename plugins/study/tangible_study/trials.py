@@ -1,0 +1,172 @@
+"""The table of a participant's answers: a line of a TSV file for each answered trial, as BIDS has behavioural data."""
+
+import errno
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import astuple, dataclass, fields
+from io import FileIO
+from pathlib import Path
+from typing import Any, Self, final, get_args
+
+from tangible_core.errors import OutputError, ResultsError
+from tangible_core.files.json_lines import read_lines
+from tangible_core.files.writing import BINARY, lock
+
+MISSING = "n/a"
+"""The text of a missing value, as BIDS has it."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """An answered trial: a line of the table; None is a missing value."""
+
+    trial: int
+    """Number of the trial, from 1, in the order of presentation."""
+    phase: str
+    """training or test."""
+    comparison: str
+    """Name of the comparison in the study file, to which question and procedure belong."""
+    question: str
+    """rougher, higher, same, equal, name or rating."""
+    procedure: str
+    """constant, 2afc, oddity, quest, adjustment, rating, or the name of another installed procedure."""
+    condition: str
+    """Name of the condition under test."""
+    other: str | None = None
+    """Name of the condition with which it is compared."""
+    level: float | None = None
+    """Level of the quantity that varies, in the unit that the sidecar names; of an adjustment, where it began."""
+    standard: float | None = None
+    """Level of the standard."""
+    position: int | None = None
+    """Interval, from 1, in which the comparison (or the odd one) was presented."""
+    response: str = ""
+    """Answer: the number of an interval, the name of a part, the level that was set, or a rating."""
+    chosen: int | None = None
+    """1 if the comparison was chosen over the standard or the other condition, 0 if not."""
+    correct: int | None = None
+    """1 or 0, where an answer can be right."""
+    response_time: float = 0.0
+    """Seconds from the end of the last interval to the answer, by a clock that nobody sets."""
+    repeat: int = 0
+    """Number of times that this trial was begun before this answer."""
+    rendered: bool = True
+    """True if the device rendered what was requested."""
+    why: str | None = None
+    """Reason why it did not."""
+    recording: str | None = None
+    """Path of the recording of the forces, relative to the study's folder."""
+    target: str | None = None
+    """Name of the part that was to be named."""
+
+    def line(self) -> str:
+        """Return the line of the table, without its end."""
+        return "\t".join(map(_text, astuple(self)))
+
+    @classmethod
+    def of(cls, cells: Mapping[str, str]) -> Self:
+        """Read an answer from the cells of a line, by column. Raises: ValueError, KeyError."""
+        return cls(**{each.name: _value(cells[each.name], each.type) for each in fields(cls)})
+
+
+COLUMNS = tuple(each.name for each in fields(Answer))
+"""Names of the columns, in their order."""
+
+
+def read_answers(path: Path) -> list[Answer]:
+    """Read a table of answers; [] if there is no such file. A last line that a crash cut off is left out.
+
+    Further columns are ignored. Raises: ResultsError for a file that cannot be read, with the line.
+    """
+    try:
+        lines = list(read_lines(path))
+    except FileNotFoundError:
+        return []
+    except (OSError, UnicodeDecodeError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise ResultsError(f"{path}: cannot be read as a table of answers: {why}; name another folder") from error
+    return list(_answers(path, lines))
+
+
+def _answers(path: Path, lines: list[tuple[int, str]]) -> Iterable[Answer]:
+    header = lines[0][1].split("\t") if lines else []
+    if lines and (missing := [name for name in COLUMNS if name not in header]):
+        raise ResultsError(f"{path}:1: has no column {missing[0]}; name a table that `tangible study run` wrote")
+    for number, line in lines[1:]:
+        try:
+            yield Answer.of(dict(zip(header, line.split("\t"), strict=True)))
+        except (ValueError, KeyError) as error:
+            raise ResultsError(f"{path}:{number}: is not an answer: {error}; correct the line") from error
+
+
+@final
+class AnswerFile:
+    """A table of answers that one process appends to: an answer is on the disk before `add` returns."""
+
+    def __init__(self, path: Path) -> None:
+        """Open the table, with its header if it is new; an incomplete last line is removed.
+
+        Raises: OutputError if it cannot be written, or another process is writing to it.
+        """
+        self.path = path
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | BINARY, 0o666), "a+")
+        except OSError as error:
+            raise self._error(error) from error
+        try:
+            lock(self._file)
+            whole = path.read_bytes().rfind(b"\n") + 1
+            self._file.truncate(whole)
+            if not whole:
+                self._append("\t".join(COLUMNS))
+        except (BlockingIOError, PermissionError) as error:
+            self._file.close()
+            raise OutputError(f"{path}: another program runs this participant; end that one first") from error
+        except OSError as error:
+            self._file.close()
+            raise self._error(error) from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._file.close()
+
+    def add(self, answer: Answer) -> None:
+        """Append an answer and wait until it is on the disk.
+
+        Raises: OutputError if it cannot be written; the file is then as before, and the call can be repeated.
+        """
+        before = os.fstat(self._file.fileno()).st_size
+        try:
+            self._append(answer.line())
+        except OSError as error:
+            self._file.truncate(before)
+            raise self._error(error) from error
+
+    def _append(self, line: str) -> None:
+        data = f"{line}\n".encode(errors="backslashreplace")
+        if self._file.write(data) < len(data):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        os.fsync(self._file.fileno())
+
+    def _error(self, error: OSError) -> OutputError:
+        return OutputError(f"{self.path}: cannot be written: {error.strerror}; free some space")
+
+
+def _text(value: Any) -> str:
+    if value is None or value == "":
+        return MISSING
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(value) if isinstance(value, float) else " ".join(str(value).split())
+
+
+def _value(text: str, kind: Any) -> Any:
+    kinds = get_args(kind) or (kind,)
+    if text == MISSING:
+        return None if type(None) in kinds else kinds[0]()
+    if bool in kinds:
+        return {"true": True, "false": False}[text]
+    return next(each for each in kinds if each is not type(None))(text)

@@ -4,7 +4,8 @@ The names below are for users of pipelines; `tangible_core.plugins` has those fo
 on first use, so that `tangible --help` does not wait for numpy.
 """
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from .lazily import lazily
 from .provenance.watching import watch_numba
@@ -42,6 +43,7 @@ _OLD = {
 }  # fmt: skip
 """Names that moved to `tangible_core.plugins`; they stay here for one release."""
 
+__getattr__: Callable[[str], Any]
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,
     {

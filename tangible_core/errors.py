@@ -52,7 +52,9 @@ class ConfigError(TangibleError):
         """
         super().__init__(*sentences)
         records = tuple(complaints) or tuple(Complaint((), str(each)) for each in sentences)
-        self.complaints = tuple(each._replace(text=shown(each.text, MOST_IN_LINE)) for each in records)
+        self.complaints: tuple[Complaint, ...] = tuple(
+            each._replace(text=shown(each.text, MOST_IN_LINE)) for each in records
+        )
 
 
 class OptionError(ConfigError, ValueError):

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 ENDED_BY = 128
 """The exit code of a program that a signal has ended, less the signal's number, as in shells."""
 
-app = typer.Typer(
+app: typer.Typer = typer.Typer(
     name="tangible",
     cls=LazyGroup,
     help="Turn pictures into something one can feel: `tangible demo` shows all of it.",

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple, Self, final
 from ..runtime.child_process import command, dumps, pipe_of
 from ..runtime.stopping import check_stopped
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 LATE_STEPS = "late steps of the depth"
 """The name of the steps that `DepthEstimator.rehearse` runs."""
 LOOK_EVERY_S = 0.1

@@ -9,16 +9,19 @@ from collections.abc import Callable
 from time import perf_counter
 from typing import Any, cast
 
+from numba import njit as _njit
 from numba.core import event
 from numba.extending import overload, register_jitable
 
 from .background import start_waiting
 from .loading import load_kernels_alone
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 BYTECODE = {"depth": 28_500, "texture": 3_700, "render": 10_600, "core": 14_000}
 """The bytes of bytecode that a process of a first `tangible demo` compiles, by family: time is proportional to them."""
 
+njit: Any = _njit
+"""Numba's decorator. What it returns is called from Python and from kernels, with types that no checker knows."""
 KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
 """The options of a kernel that allocates no arrays: it does not count references, which would be two atomic operations
 for each array and call; it has no entry point for C, because nothing uses that."""

@@ -12,9 +12,8 @@ Source: Moshier, Cephes mathematical library, expf, logf and tanhf: polynomials 
 from typing import Any
 
 import numpy as np
-from numba import njit
 
-from .compiling import KERNEL
+from .compiling import KERNEL, njit
 
 _LEAST, _MOST = np.float32(-87), np.float32(88)
 _LOG2_E, _HALF, _ONE, _TWO = np.float32(1.44269504088896341), np.float32(0.5), np.float32(1), np.float32(2)

@@ -8,13 +8,13 @@ from importlib import import_module
 from typing import Any, final
 
 import numpy as np
-from numba import njit, typeof, types
+from numba import typeof, types
 from numba.core import cgutils
 from numba.core.registry import cpu_target
 from numba.experimental.function_type import FunctionModel
 from numba.extending import NativeValue, register_model, typeof_impl, unbox
 
-from .compiling import KERNEL
+from .compiling import KERNEL, njit
 
 
 class KernelType(types.FunctionType):

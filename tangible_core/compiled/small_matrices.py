@@ -8,9 +8,8 @@ its last bits depend on the processor.
 # pyright: basic
 
 import numpy as np
-from numba import njit
 
-from . import compiling as compiling  # for its notice while kernels are compiled
+from .compiling import njit
 
 ROUNDS = 50
 """The most QL steps for one eigenvalue; two or three are usual."""

@@ -40,9 +40,9 @@ class CompiledTouch(Touch):
     ) -> None:
         self.tick = tick
         self.fixed = fixed
-        self.memory = np.full(3, np.nan) if memory is None else memory
+        self.memory: np.ndarray = np.full(3, np.nan) if memory is None else memory
         self.stiffness_n_per_m = stiffness
-        self.moving = _still() if moving is None else moving
+        self.moving: np.ndarray = _still() if moving is None else moving
         self._address: Any = None
 
     def __reduce__(self) -> tuple[Any, ...]:

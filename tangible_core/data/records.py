@@ -27,7 +27,7 @@ class Record:
         """Give a record the short form of its fields before `dataclass` gives it the long one."""
         super().__init_subclass__(**options)
         if "__repr__" not in cls.__dict__:
-            cls.__repr__ = lambda self: short_repr(self)
+            setattr(cls, "__repr__", short_repr)  # noqa: B010 - an assignment would declare another type of it
 
     def __post_init__(self) -> None:
         settle(self)

@@ -4,15 +4,17 @@
 # pyright: basic
 
 from functools import cache
+from typing import Any
 
-from numba import float64, int64, njit, typeof, types, void
+import numpy as np
+from numba import float64, int64, typeof, types, void
 
-from ..compiled.compiling import KERNEL
+from ..compiled.compiling import KERNEL, njit
 from ..compiled.kernels import Address
 from ..compiled.touch import LinkKernels
 from .placement import Placement
 
-PLACEMENT = typeof(Placement())
+PLACEMENT: Any = typeof(Placement())
 ARRAY = float64[::1]
 VECTOR = types.UniTuple(float64, 3)
 DRIFT_X, DRIFT_Y, HAND_X, HAND_Y, STARTED, BARRED, MUTED = range(7)
@@ -57,7 +59,7 @@ def push(to, memory, fx, fy, fz):
     return to.cos * fx - to.sin * fy, to.sin * fx + to.cos * fy, fz
 
 
-def mapped_read(to, memory, fixed, read, write, state):
+def _mapped_read(to, memory, fixed, read, write, state):
     """Read the device, and convert a fresh state."""
     fresh = read(*fixed, state)
     if fresh:
@@ -65,20 +67,20 @@ def mapped_read(to, memory, fixed, read, write, state):
     return fresh
 
 
-def mapped_write(to, memory, fixed, read, write, fx, fy, fz):
+def _mapped_write(to, memory, fixed, read, write, fx, fy, fz):
     """Convert the force, and send it to the device."""
     x, y, z = push(to, memory, fx, fy, fz)
     write(*fixed, x, y, z)
 
 
-def around(device: LinkKernels, to: Placement, memory) -> LinkKernels:
+def around(device: LinkKernels, to: Placement, memory: np.ndarray) -> LinkKernels:
     """Return kernels that call the device's by their addresses: compiled once for all devices, and cached on disk."""
     # the addresses come last: numba warns of a tuple that begins with a function
     fixed = (to, memory, device.fixed, Address(device.read), Address(device.write))
     kinds = [typeof(each) for each in fixed]
     return LinkKernels(
-        _compile(mapped_read, int64(*kinds, ARRAY)),
-        _compile(mapped_write, void(*kinds, float64, float64, float64)),
+        _compile(_mapped_read, int64(*kinds, ARRAY)),
+        _compile(_mapped_write, void(*kinds, float64, float64, float64)),
         fixed,
     )
 

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import ConfigDict, Field
 
@@ -17,7 +17,7 @@ Size = Annotated[float, Field(gt=0, le=10)]
 class WorkspaceMapping(Quantities):
     """The mapping from hand to picture; without options they coincide."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     scale: Annotated[float, Field(ge=1e-3, le=1e3)] | None = None
     """Hand movement per movement on the picture. By default 1, or, with `region_m`, what fits the region to the

@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Self
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -12,7 +12,7 @@ from ..data.part_words import missing_key, name_part
 from ..errors import MaterialError, quoted
 from .colours import Colour, segment_colours
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 Place = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Choice = tuple[str, str]
@@ -22,7 +22,7 @@ Choice = tuple[str, str]
 class MaterialRule(BaseModel):
     """A material, and the segments or parts that get it, by one of `segment`, `part`, `at` and `colour`."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     segment: Annotated[int, Field(ge=0)] | None = None
     """The segment with this label, 0 for segment 1; all of its parts, if there are parts."""

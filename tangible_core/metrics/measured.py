@@ -32,7 +32,7 @@ class Measured:
     """The reason why a method has no figures, by its name."""
 
 
-Kinds = TypeAdapter(dict[str, Measured])
+Kinds: TypeAdapter[dict[str, Measured]] = TypeAdapter(dict[str, Measured])
 
 
 @cache

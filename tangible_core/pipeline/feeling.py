@@ -83,7 +83,7 @@ class Feeling:
         if device is not None:
             check_kind("device", device)
         self.pipeline = pipeline
-        self.engine = pipeline.engine
+        self.engine: Engine = pipeline.engine
         self.given = device
 
     @property

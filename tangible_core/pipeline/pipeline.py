@@ -107,7 +107,7 @@ class Pipeline:
             language=language,
             **{"want": "surface" if render is None else "touch", **others},
         )
-        self.engine = Engine(config, registry, Cache() if cached else None, threads)
+        self.engine: Engine = Engine(config, registry, Cache() if cached else None, threads)
 
     @classmethod
     def from_yaml(

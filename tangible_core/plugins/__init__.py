@@ -3,7 +3,8 @@
 Authors of plugins need the names below; each is imported when first used.
 """
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from ..lazily import lazily
 
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from .touch import PlainTouch as PlainTouch
     from .touch import Touch as Touch
 
+__getattr__: Callable[[str], Any]
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,
     {

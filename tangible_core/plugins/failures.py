@@ -12,7 +12,7 @@ from ..runtime.failure_log import where_kept
 from .interfaces import KINDS, Link, Touch
 from .naming import package, plugin_name, points
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 OURS = package(__name__)
 _PLACE = "tangible_place"
 """The attribute of an error from another process that holds its place there."""

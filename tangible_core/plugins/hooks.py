@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     from ..data import Kind, Outcome, Plan, ServoReport
 
-log = logging.getLogger(__name__)
-hookspec = pluggy.HookspecMarker("tangible")
-hookimpl = pluggy.HookimplMarker("tangible")
+log: logging.Logger = logging.getLogger(__name__)
+hookspec: pluggy.HookspecMarker = pluggy.HookspecMarker("tangible")
+hookimpl: pluggy.HookimplMarker = pluggy.HookimplMarker("tangible")
 _failed: WeakKeyDictionary[pluggy.PluginManager, set[tuple[str, str]]] = WeakKeyDictionary()
 """Observers that failed and the hooks in which they did: a hook may run ten times a second, and is reported once."""
 

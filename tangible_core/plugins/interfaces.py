@@ -92,7 +92,7 @@ def guard_verb(cls: type, verb: Verb) -> None:
 class Method(Quantities, ABC):
     """A named way to do one stage; its fields are its options, each with a default."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     version: ClassVar[int] = 1
     """A number to raise when results change: it is part of the cache key."""
@@ -114,7 +114,9 @@ class Method(Quantities, ABC):
 class DepthEstimator(Method):
     """The interface of a method that makes a disparity map from one picture or two."""
 
-    verbs: ClassVar = (Verb("depth", "estimate", DisparityMap, taking("views", Views, ", such as Views(left, right)")),)
+    verbs: ClassVar[tuple[Verb, ...]] = (
+        Verb("depth", "estimate", DisparityMap, taking("views", Views, ", such as Views(left, right)")),
+    )
 
     needs_pair: ClassVar[bool] = False
     """True for a method that finds nothing without a right view: the plan then refuses it before anything is made."""
@@ -132,7 +134,7 @@ class DepthEstimator(Method):
 class Segmenter(Method):
     """The interface of a method that divides a picture into segments of one texture each."""
 
-    verbs: ClassVar = (Verb("texture", "segment", SegmentMap, partial(as_picture, "picture")),)
+    verbs: ClassVar[tuple[Verb, ...]] = (Verb("texture", "segment", SegmentMap, partial(as_picture, "picture")),)
 
     @abstractmethod
     def segment(self, picture: np.ndarray) -> SegmentMap:
@@ -142,7 +144,7 @@ class Segmenter(Method):
 class ForceRenderer(Method):
     """The interface of a force law: positions on a surface become forces."""
 
-    verbs: ClassVar = (
+    verbs: ClassVar[tuple[Verb, ...]] = (
         Verb("render", "touch", Touch, taking("surface", HapticSurface, ", such as from_heights makes")),
     )
 
@@ -163,7 +165,7 @@ class ForceRenderer(Method):
 class HapticDevice(Method):
     """The interface of a device that has a position and applies a force."""
 
-    verbs: ClassVar = (Verb("device", "spec", DeviceSpec), Verb("device", "open", Link))
+    verbs: ClassVar[tuple[Verb, ...]] = (Verb("device", "spec", DeviceSpec), Verb("device", "open", Link))
 
     @abstractmethod
     def spec(self) -> DeviceSpec:
@@ -181,7 +183,7 @@ Medium = Literal["swell", "print", "pins", "force"]
 class Exporter(Method):
     """The interface of a method that writes products as files: for a printer, a pin display, a reader."""
 
-    verbs: ClassVar = (Verb("export", "write", tuple),)
+    verbs: ClassVar[tuple[Verb, ...]] = (Verb("export", "write", tuple),)
 
     needs: ClassVar[tuple[str, ...]] = ()
     """The products that it reads, such as `relief`; only these are made for it."""

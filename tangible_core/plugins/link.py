@@ -10,7 +10,7 @@ from ..data import NO_FORCE, Force, HapticState, limited
 from ..data.arguments import as_force, as_state
 from ..errors import ArgumentError, BrokenMethod, DeviceError, what_is, wrong_argument
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 
 class Link(ABC):

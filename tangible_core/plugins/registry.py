@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Method, Segmenter
 
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Registry:
     """The registry of installed plugins: listing reads metadata only, `load` alone imports a plugin."""
 
     def __init__(self, plugins: pluggy.PluginManager | None = None) -> None:
-        self.plugins = hooks.manager() if plugins is None else plugins
+        self.plugins: pluggy.PluginManager = hooks.manager() if plugins is None else plugins
 
     @cached_property
     def listings(self) -> tuple[Listing, ...]:

@@ -15,7 +15,7 @@ from typing import Any
 
 from .closure import closure_of_function
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 KEPT = 4
 """The number of closures of a kernel whose code is kept, so that branches and environments can share a folder."""

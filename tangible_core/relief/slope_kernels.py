@@ -3,9 +3,7 @@
 # ruff: noqa: ANN001, ANN201, ANN202 -- numba finds the types of what it compiles; the docstrings say them
 # pyright: basic
 
-from numba import njit
-
-from ..compiled.compiling import KERNEL, inner
+from ..compiled.compiling import KERNEL, inner, njit
 
 
 @inner()

@@ -4,7 +4,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
@@ -52,7 +52,7 @@ class SceneFiles(Quantities):
     """A scene in files: a pair (left and right, or both in one file, stereo), one photo, a height map, or a video.
     Relative paths start at the YAML file."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     left: Path | None = None
     """The left view of a rectified pair."""
@@ -217,7 +217,7 @@ class SceneReader(Quantities, ABC):
     only blocks of this form have, such as `set` in `scene: {set: kitti-2015, name: 000000_10}`.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     @abstractmethod
     def files(self) -> SceneFiles:

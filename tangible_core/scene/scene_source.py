@@ -28,7 +28,7 @@ from .rig import StereoRig, rectify_views
 from .scene_files import SceneFiles
 from .video.files import parts_of, read_video, still
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 _PICTURES = {"left", "right", "photo", "stereo"}
 _PARTS = ("left", "right", "stereo", "photo", "video", "height", "disparity", "segments", "truth")

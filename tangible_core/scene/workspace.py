@@ -1,6 +1,6 @@
 """The size of the surface under the hand, and its defaults for each kind of scene."""
 
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 from pydantic import ConfigDict, Field
 
@@ -29,7 +29,7 @@ rounded. A height map is not smoothed, and the borders of parts only enough to s
 class Section(Quantities):
     """Base of the configuration's own blocks."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
 
 class FeltSize(NamedTuple):

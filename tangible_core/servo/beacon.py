@@ -93,9 +93,9 @@ class BeaconMemory:
     def __init__(
         self, words: np.ndarray | None = None, numbers: np.ndarray | None = None, field: np.ndarray | None = None
     ) -> None:
-        self.words = np.zeros(WORDS, np.int64) if words is None else words
-        self.numbers = np.zeros(NUMBERS) if numbers is None else numbers
-        self.field = np.zeros(1, np.float32) if field is None else field
+        self.words: np.ndarray = np.zeros(WORDS, np.int64) if words is None else words
+        self.numbers: np.ndarray = np.zeros(NUMBERS) if numbers is None else numbers
+        self.field: np.ndarray = np.zeros(1, np.float32) if field is None else field
 
     @classmethod
     def ready(cls) -> Self:

@@ -9,9 +9,9 @@ on the way back is not a credit of the force law. What sampling adds is observed
 # pyright: basic
 
 import numpy as np
-from numba import float32, float64, int64, njit, types
+from numba import float32, float64, int64, types
 
-from ..compiled.compiling import KERNEL, inner
+from ..compiled.compiling import KERNEL, inner, njit
 from ..data.ticks import BEACON_SHIFT, TickFlag
 from . import beacon as at
 from .guard import layout

@@ -53,9 +53,9 @@ class Servo:
         self._ring: Ring | None = None
         self._film: Film | None = None
         self._sent = [touch.parcel] if isinstance(touch, Packed) else list[Path]()
-        self.how = ""
+        self.how: str = ""
         """A sentence about the granted rights, the kind of loop, and the stiffness of the current scene if measured."""
-        self.start_s = 0.0
+        self.start_s: float = 0.0
         """Time from the request for the loop to its first tick."""
 
     def __enter__(self) -> Self:

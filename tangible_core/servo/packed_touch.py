@@ -30,8 +30,8 @@ class Packed(Touch):
         path, stiffness_n_per_m: those of the `Packed` that `pack_touch` returned in the process that made the touch.
         Raises: DeviceError if the parcel does not exist any more, or is not a parcel.
         """
-        self.stiffness_n_per_m = float(stiffness_n_per_m)
-        self.parcel = parcel.adopt(Path(path))
+        self.stiffness_n_per_m: float | None = float(stiffness_n_per_m)
+        self.parcel: Path = parcel.adopt(Path(path))
         """The file, renamed to this process."""
         self.film: Film | None = None
         """The film, if the touch is one, in the process that packed it: reliefs shown here move the surface there."""

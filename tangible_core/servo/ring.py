@@ -85,10 +85,15 @@ class Ring:
         for name, (kind, shape) in sections.items():
             arrays[name] = np.frombuffer(file, kind, int(np.prod(shape)), at).reshape(shape)
             at += _padded_size(arrays[name].nbytes)
-        self.header, self.sums, self.guard = arrays["header"], arrays["sums"], arrays["guard"]
-        self.late, self.period, self.contact = arrays["late"], arrays["period"], arrays["contact"]
-        self.stamps, self.ticks = arrays["stamps"], arrays["ticks"]
-        self.beacon = BeaconMemory(arrays["asked"], arrays["pull"], arrays["field"])
+        self.header: np.ndarray = arrays["header"]
+        self.sums: np.ndarray = arrays["sums"]
+        self.guard: np.ndarray = arrays["guard"]
+        self.late: np.ndarray = arrays["late"]
+        self.period: np.ndarray = arrays["period"]
+        self.contact: np.ndarray = arrays["contact"]
+        self.stamps: np.ndarray = arrays["stamps"]
+        self.ticks: np.ndarray = arrays["ticks"]
+        self.beacon: BeaconMemory = BeaconMemory(arrays["asked"], arrays["pull"], arrays["field"])
 
     @classmethod
     def create(cls, slots: int = 8192) -> Self:

@@ -16,7 +16,7 @@ from ..runtime.child_process import command, pipe_of
 from .framing import End, Refusal, Start, receive, send, sendable
 from .ring import COUNT, LAST, STOP, Ring
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 COMPILING_S = 300.0
 """Longest time until the first tick; compiling everything takes a tenth of it."""
 STOPPING_S = 3.0
@@ -39,7 +39,7 @@ class LoopProcess:
         self._child: subprocess.Popen[bytes] | None = None
         self._listener: threading.Thread | None = None
         self._over = threading.Event()
-        self.why = ""
+        self.why: str = ""
         """The reason for which the host ends the loop."""
         self.ended: End | None = None
         """The last message, once the loop is over."""

@@ -19,7 +19,7 @@ from .recording import INTERRUPTED, STOPPED, Recording
 from .recording.tick_file import About
 from .recording.writer import Writer
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 LOOK_EVERY_S = 0.05
 """Interval at which ticks are taken from the loop's ring, and so the most that a crash can lose of a recording."""
 REPORT_EVERY_S = 0.1

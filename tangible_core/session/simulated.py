@@ -23,7 +23,7 @@ from .live import ignore
 from .recording import INTERRUPTED, STOPPED, Recording
 from .recording.replay import proxy_of
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 MOST_TICKS = 3_600_000
 """Greatest number of ticks of a recording in memory, at which the loop stops: an hour at 1 kHz, half a gigabyte."""
 REPORT_EVERY_S = 0.1

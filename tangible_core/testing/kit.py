@@ -14,7 +14,7 @@ from .checks import Check, CheckFailure
 from .every_method import LISTING_CHECKS, OPTION_CHECKS
 from .kinds import depth, device, export, film, render, texture, touch
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 FAMILIES: dict[str, tuple[Check, ...]] = {
     "depth": depth.CHECKS,

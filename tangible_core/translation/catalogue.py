@@ -38,7 +38,7 @@ class Catalogue:
             if english.count(" ") >= MOST_WORDS or english[0] in MARKS:
                 self._words.setdefault(english[-LAST:], []).append(english)
         self._numerals = numerals
-        self.find = lru_cache(CACHED)(self._find)
+        self.find: Callable[[str], str | None] = lru_cache(CACHED)(self._find)
 
     def __call__(self, text: str) -> str:
         """Return a text in the language; what the catalogue does not know stays English, as a whole."""

@@ -15,10 +15,11 @@ class Template:
     """
 
     def __init__(self, english: str, translation: str) -> None:
-        self.english, self.translation = english, translation
-        self.literals = tuple(PLACEHOLDER.split(english)[::3])
-        self.letters = sum(map(str.isalpha, "".join(self.literals)))
-        self.longest = max(self.literals, key=len)
+        self.english = english
+        self.translation = translation
+        self.literals: tuple[str, ...] = tuple(PLACEHOLDER.split(english)[::3])
+        self.letters: int = sum(map(str.isalpha, "".join(self.literals)))
+        self.longest: str = max(self.literals, key=len)
 
     @cached_property
     def names(self) -> tuple[str, ...]:

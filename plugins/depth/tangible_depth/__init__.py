@@ -1,6 +1,7 @@
 """Depth estimators, from pictures to disparity. Each method is imported when it is first used."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from tangible_core.lazily import lazily
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from .ssd import Ssd as Ssd
     from .zncc import Zncc as Zncc
 
+__getattr__: Callable[[str], Any]
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,
     {

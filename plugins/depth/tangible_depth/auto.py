@@ -15,7 +15,7 @@ from .luminance import Luminance
 from .onnx import Onnx
 from .semi_global import SemiGlobal
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 VARIABLE = "TANGIBLE_MODELS_DIR"
 """Environment variable of the folder of networks."""
 

@@ -18,7 +18,7 @@ from .network.conversion import to_disparity
 from .network.fitting import Colours, Map, fit_size, map_in_strips, restore_size, tensor
 from .network.runtimes import Runtime, run
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 
 class Onnx(DepthEstimator, Skippable):

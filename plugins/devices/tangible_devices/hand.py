@@ -2,7 +2,7 @@
 
 import cmath
 import math
-from typing import Annotated, final
+from typing import Annotated, ClassVar, final
 
 from pydantic import ConfigDict, Field
 
@@ -16,7 +16,7 @@ class VirtualHand(Quantities):
     The defaults are of the order of a relaxed hand holding a handle.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     mass_kg: Annotated[float, Field(ge=1e-3, le=100)] = 0.1
     """Mass of hand and handle together."""
@@ -33,7 +33,7 @@ class MovingHand:
     """A hand in motion, one period at a time; exact if the force and the target are constant during the period."""
 
     def __init__(self, hand: VirtualHand, position_m: Vector, period_s: float) -> None:
-        self.position_m = position_m
+        self.position_m: Vector = position_m
         self.velocity_m_per_s: Vector = (0.0, 0.0, 0.0)
         self._stiffness = hand.stiffness_n_per_m
         self._reach_down_m = hand.press_n / hand.stiffness_n_per_m

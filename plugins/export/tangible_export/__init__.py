@@ -3,7 +3,8 @@
 Each exporter is imported when it is first used.
 """
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from tangible_core.lazily import lazily
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from .swell import Swell as Swell
     from .three_mf import ThreeMF as ThreeMF
 
+__getattr__: Callable[[str], Any]
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,
     {

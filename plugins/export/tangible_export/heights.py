@@ -15,7 +15,7 @@ from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import note
 from tangible_core.scene.formats.height_maps import MM, HeightsMetadata, levels
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 FINE_MM = 2e-4
 """Largest step of the PNG's 16-bit numbers that keeps rounding below a tenth of a micrometre."""

@@ -18,7 +18,7 @@ from .pin_display.displays import DISPLAYS, HEXADECIMAL, PITCH_M, Display, Named
 if TYPE_CHECKING:
     from .pin_display.raising import Place
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 LEAST_PINS = 3
 """Shortest side of a picture in pins; fewer leave nothing between two borders."""

@@ -1,6 +1,7 @@
 """Force laws, from a position to a force. Each is imported when it is first used."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from tangible_core.lazily import lazily
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from .tangible_mask import TangibleMask as TangibleMask
     from .with_materials import WithMaterials as WithMaterials
 
+__getattr__: Callable[[str], Any]
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,
     {

@@ -14,7 +14,7 @@ from tangible_core.plugins.notes import note
 from .borders.distance import border_distance
 from .effects.inner_law import Law, build_law, complete_options
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 FEWEST_CELLS = 6
 """The least cells across a groove: with fewer, a cubic spline changes its section."""
 

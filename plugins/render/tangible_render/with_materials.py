@@ -97,7 +97,7 @@ class MaterialsAdapter(PlainTouch):
     """
 
     def __init__(self, law: Touch, wrapped: CompiledTouch) -> None:
-        self.stiffness_n_per_m = wrapped.stiffness_n_per_m
+        self.stiffness_n_per_m: float | None = wrapped.stiffness_n_per_m
         self._law, self._wrapped = law, wrapped
 
     def force(self, state: HapticState) -> Force:

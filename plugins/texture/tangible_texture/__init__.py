@@ -1,6 +1,7 @@
 """Texture segmenters: a picture to segments of one texture each. Each method is imported when it is first used."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from tangible_core.lazily import lazily
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from .kornia_gradient import KorniaGradient as KorniaGradient
     from .report import Report as Report
 
+__getattr__: Callable[[str], Any]
 __all__, __getattr__ = lazily(  # pyright: ignore[reportUnsupportedDunderAll]
     __name__,
     {

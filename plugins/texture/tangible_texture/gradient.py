@@ -16,7 +16,7 @@ from .signal.skipping import one_segment, reason_to_skip
 if TYPE_CHECKING:
     from .regions.landscape import Landscape
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 NOTHING = 1e-6
 """The largest slope per pixel that rounding can produce in a picture of one colour, when white is 1."""

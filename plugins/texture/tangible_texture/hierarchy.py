@@ -13,7 +13,7 @@ from tangible_core.plugins.notes import note
 
 from .signal.skipping import one_segment, reason_to_skip
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 LEAST_LEVEL = 0.12
 """The level of a border that chance makes: such regions are joined, however many segments are requested."""

@@ -28,7 +28,7 @@ FLAT_SHARE = 0.8
 NOTHING = 1e-6
 """The largest difference of grey that rounding can produce in a picture of one colour, when white is 1."""
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 
 class Histogram(Segmenter, Skippable):

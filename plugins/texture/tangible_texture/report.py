@@ -18,7 +18,7 @@ from .signal.skipping import one_segment, reason_to_skip
 if TYPE_CHECKING:
     from .energies.gabor_bank import Gabor
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 
 class Report(Segmenter, Skippable):

@@ -9,7 +9,7 @@ import typer
 from ...errors import ConfigError
 from ..options import Json, is_listing
 
-app = typer.Typer(name="cache", rich_markup_mode=None, add_completion=False)
+app: typer.Typer = typer.Typer(name="cache", rich_markup_mode=None, add_completion=False)
 
 
 @app.callback(invoke_without_command=True)

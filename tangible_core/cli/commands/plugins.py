@@ -27,7 +27,7 @@ Name = Annotated[
     ),
 ]
 
-app = typer.Typer(name="plugins", rich_markup_mode=None, add_completion=False)
+app: typer.Typer = typer.Typer(name="plugins", rich_markup_mode=None, add_completion=False)
 
 
 @app.callback(invoke_without_command=True)

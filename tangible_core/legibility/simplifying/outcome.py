@@ -16,7 +16,7 @@ from .choice import SimplifyChoice
 from .opening import too_small
 from .textures import count_textures
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 SIZE_STEP = 1.1
 """Ratio of one size to the next when a size that would pass is searched."""
 MOST_STEPS = 40

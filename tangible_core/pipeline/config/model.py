@@ -9,7 +9,7 @@ from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 from re import match
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from ruamel.yaml import YAML
@@ -59,7 +59,7 @@ def _check_tag(language: str) -> str:
 class PipelineConfig(BaseModel):
     """A checked configuration. Its fields with a marker are the keys of the pipeline file, in their order there."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     scene: Annotated[str | SceneFiles | Scene, SceneBlock()]
     """The pictures, or the heights, that the surface is made of."""

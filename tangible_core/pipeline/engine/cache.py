@@ -26,7 +26,7 @@ from ...files.paths import as_path
 from ...files.reading import check_file
 from ...files.writing import atomic_write
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 DEFAULT_BYTES = 2 << 30
 LEFT = 7 / 8
@@ -94,7 +94,7 @@ class Cache:
     """A folder of records, bounded in size: the entries used longest ago are deleted first."""
 
     def __init__(self, folder: Path | None = None, max_bytes: int = DEFAULT_BYTES) -> None:
-        self.folder = default_folder() if folder is None else folder
+        self.folder: Path = default_folder() if folder is None else folder
         self.max_bytes = max_bytes
         self._tally = Tally(self.folder / TALLY)
 

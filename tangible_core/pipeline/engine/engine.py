@@ -29,7 +29,7 @@ from .keys import product_key
 from .planning import REQUESTED, SAME, Outlook, foresee, needed_for, not_needed, notes_ahead, with_notes
 from .stage import Context, Progress, Stage, StageEvent, ignore_event, stage_class
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 
 class Engine:

@@ -21,7 +21,7 @@ from .stages.disparity import DisparityStage
 from .stages.relief import ReliefStage
 from .stages.touch import fit_to_device
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 
 @final

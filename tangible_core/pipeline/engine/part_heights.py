@@ -12,7 +12,7 @@ from ...parts import HeightChoice, PartHeights, depth_heights, guess_heights
 from ...plugins.notes import note
 from .working_grid import transparent_parts
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 FINEST_DIGITS = 5
 """The decimals of a computed height in metres: a hundredth of a millimetre cannot be felt, and is easy to read."""

@@ -17,7 +17,7 @@ from ..config.model import PipelineConfig
 from ..config.part_checks import ROUNDING_M
 from ..config.part_names import Wrong, names_of, numbers_of
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 MOST_PARTS = 4096
 """The most parts, as many as a label picture may have labels: more are the grain of a photograph."""

@@ -75,8 +75,8 @@ class Stage(ABC):
 
     def __init__(self, context: Context) -> None:
         self.context = context
-        self.config = context.config
-        self.grid = context.grid
+        self.config: PipelineConfig = context.config
+        self.grid: WorkingGrid = context.grid
 
     @property
     def method(self) -> str:

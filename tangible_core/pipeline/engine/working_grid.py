@@ -22,10 +22,10 @@ class WorkingGrid:
 
     def __init__(self, scene: Scene, size: FeltSize) -> None:
         self.scene = scene
-        self.factor = scaling.felt_factor(scene.shape[1], size.width_m, size.finest_m)
-        self.shape = scaling.reduced_shape(scene.shape, self.factor)
+        self.factor: float = scaling.felt_factor(scene.shape[1], size.width_m, size.finest_m)
+        self.shape: tuple[int, int] = scaling.reduced_shape(scene.shape, self.factor)
         """(h, w) of the grid."""
-        self.note = _note(self.factor, size.finest_m)
+        self.note: str = _note(self.factor, size.finest_m)
         """A sentence about the reduction; empty for a grid of the pictures' size."""
 
     @property

@@ -34,7 +34,7 @@ from .export_folder import check_writable, check_written, move
 from .legible import drawn_width_m, judge_products, names_of_parts, with_cures_of, with_width
 from .run_folder import default_name, relative_source
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 PREFIX = "export: "
 """The prefix of an exporter's name in the product of its outcome."""

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from ...data import Record
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 SHEET = "sheet"
 """The exporter that draws runs and products."""

@@ -10,7 +10,7 @@ from ..hooks import hookimpl
 if TYPE_CHECKING:
     from ...data import Outcome, Plan, ServoReport
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 
 @hookimpl

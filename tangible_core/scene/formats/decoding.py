@@ -21,7 +21,7 @@ from .tiff_tags import TIFF, Shape, tiff_size
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 T = TypeVar("T")
 

@@ -6,7 +6,7 @@ The metadata are a JSON text: a file next to a PNG of 16 bits, or tag 270 (Image
 import json
 import mmap
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, cast
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, cast
 
 import numpy as np
 from jaxtyping import Float32, UInt16
@@ -32,7 +32,7 @@ Count = Annotated[int, Field(ge=1)]
 class HeightsMetadata(BaseModel):
     """The meaning of a picture's numbers: the height of a number is `low_mm` plus `step_mm` times the number."""
 
-    model_config = ConfigDict(frozen=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True)
 
     format: Literal["tangible heights 1"] = FORMAT
     title: str = ""

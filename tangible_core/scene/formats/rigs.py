@@ -12,7 +12,7 @@ from ...errors import ConfigError, GeometryError, quoted
 from ...files.yaml.source import parse_source, read_text
 from ..rig import Camera, Distortion, StereoRig
 
-OPENCV = {
+OPENCV: Mapping[str, tuple[str, ...]] = {
     "left matrix": ("M1", "K1", "cameraMatrix1", "camera_matrix_1", "left_camera_matrix"),
     "left distortion": ("D1", "distCoeffs1", "dist_coeffs_1", "left_distortion_coefficients"),
     "right matrix": ("M2", "K2", "cameraMatrix2", "camera_matrix_2", "right_camera_matrix"),

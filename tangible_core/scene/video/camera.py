@@ -133,7 +133,7 @@ class CameraFrames(VideoFrames):
         try:
             capture = self._open(self._camera, self._requested_fps)
             if capture.isOpened():
-                self.fps = self._requested_fps or stated_fps(capture) or USUAL_FPS
+                self.fps: float = self._requested_fps or stated_fps(capture) or USUAL_FPS
                 self._take_all(capture)
         except PictureError as error:
             return error

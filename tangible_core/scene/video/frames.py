@@ -32,7 +32,7 @@ class VideoFrames(ABC):
 
     def __init__(self, fps: float, views_of: ViewsOf) -> None:
         """fps: approximate frames a second. views_of: converts each picture."""
-        self.fps = fps
+        self.fps: float = fps
         self.skipped = 0
         """Number of frames that were skipped because a later one was due, or because they were damaged."""
         self.size: tuple[int, int] | None = None

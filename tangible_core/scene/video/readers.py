@@ -45,7 +45,7 @@ class FileFrames(VideoFrames):
         """
         self._capture: Capture | None = open_file(path)
         super().__init__(fps or stated_fps(self._capture) or USUAL_FPS, views_of)
-        self.count = stated_count(self._capture)
+        self.count: int | None = stated_count(self._capture)
         self._path, self._repeat, self._timed = path, repeat, fps is None
         self._grabbed = self._in_round = self._damaged = 0
         self._waiting = False
@@ -161,7 +161,7 @@ class FolderFrames(VideoFrames):
         """fps: 30 a second by default. Raises: PictureError if the folder has no picture."""
         super().__init__(fps or USUAL_FPS, views_of)
         self._pictures = pictures_of(folder)
-        self.count = len(self._pictures)
+        self.count: int | None = len(self._pictures)
         self._folder, self._repeat = folder, repeat
         self._number = 0
 

@@ -9,9 +9,9 @@ interaction with virtual environments, IEEE Trans. Robotics and Automation 15(3)
 # pyright: basic
 
 import numpy as np
-from numba import float64, njit, types
+from numba import float64, types
 
-from ...compiled.compiling import KERNEL, inner
+from ...compiled.compiling import KERNEL, inner, njit
 from . import layout as at
 from .vectors import clip, zero_or_nan
 

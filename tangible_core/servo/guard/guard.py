@@ -8,9 +8,9 @@ without a fresh position is `wait` instead of all three. The arrays are those of
 # pyright: basic
 
 import numpy as np
-from numba import float64, int64, njit, types, void
+from numba import float64, int64, types, void
 
-from ...compiled.compiling import KERNEL, inner
+from ...compiled.compiling import KERNEL, inner, njit
 from ...data import TickFlag
 from . import layout as at
 from .coupling import READ, WRITTEN, tool_force

@@ -11,7 +11,7 @@ from ...data import DeviceSpec, Force, HapticState, Vector
 from ...errors import BrokenMethod
 from ...plugins.interfaces import Touch
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 PLACES = 64
 """Number of places at which a force law is probed, from the middle of the picture outwards."""
 DEPTHS_M = (5e-5, 5e-4, 2e-3)

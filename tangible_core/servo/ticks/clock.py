@@ -12,9 +12,9 @@ import sys
 from typing import Any, final
 
 import numpy as np
-from numba import int32, njit, types, uintp
+from numba import int32, types, uintp
 
-from ...compiled.compiling import KERNEL
+from ...compiled.compiling import KERNEL, njit
 
 MONOTONIC, ABSOLUTE = 1, 1
 """CLOCK_MONOTONIC and TIMER_ABSTIME of Linux."""

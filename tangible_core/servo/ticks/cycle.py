@@ -8,11 +8,12 @@ all of it in the ring.
 # pyright: basic, reportCallIssue=false
 
 import math
+from typing import Any
 
-from numba import int64, njit, types
+from numba import int64, types
 from numba.extending import intrinsic
 
-from ...compiled.compiling import KERNEL
+from ...compiled.compiling import KERNEL, njit
 from ...compiled.touch import FRAME
 from ...compiled.touch import RISE_M as RISE
 from ...data import TICK_COLUMNS, TickFlag
@@ -43,7 +44,8 @@ FLAGS = TICK_COLUMNS.index("flags")
 STATE = 7
 """Length of a device's state, as in `LinkKernels`."""
 OVERRUN = int(TickFlag.OVERRUN)
-begin_tick, going = njit(**KERNEL)(schedule.begin_tick), njit(**KERNEL)(schedule.going)
+begin_tick: Any = njit(**KERNEL)(schedule.begin_tick)
+going: Any = njit(**KERNEL)(schedule.going)
 AT, LATE = 0, 1
 """Indices in `now` of the generators below: when a tick began, and how late it was, nanoseconds."""
 NO_MORE = -1

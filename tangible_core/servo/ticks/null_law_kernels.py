@@ -3,9 +3,9 @@
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 # pyright: basic
 
-from numba import float64, njit, types
+from numba import float64, types
 
-from ...compiled.compiling import KERNEL
+from ...compiled.compiling import KERNEL, njit
 
 
 @njit(types.UniTuple(float64, 3)(*[float64] * 6), **KERNEL)

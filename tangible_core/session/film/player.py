@@ -20,7 +20,7 @@ from ...runtime.threads import limited_threads, processors, thread_limit
 from ...scene.video.frames import VideoFrame, VideoFrames
 from .reliefs import FrameRelief, Reliefs
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 STOPPING_S = 0.5
 """Time to wait for a player to end; if it still computes then, it is abandoned."""
 OPEN_AGAIN_S = 1.0

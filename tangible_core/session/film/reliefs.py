@@ -55,7 +55,7 @@ class Scale:
     """The scale of the first frame, which follows that of later ones slowly."""
 
     def __init__(self, first: ReliefScale, time_s: float = 0.0) -> None:
-        self.current = first
+        self.current: ReliefScale = first
         self._time_s = time_s
 
     def look(self, seen: ReliefScale, time_s: float) -> None:

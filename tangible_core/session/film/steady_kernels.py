@@ -4,9 +4,8 @@
 # pyright: basic
 
 import numpy as np
-from numba import njit
 
-from ...compiled.compiling import KERNEL
+from ...compiled.compiling import KERNEL, njit
 
 
 @njit(**KERNEL)

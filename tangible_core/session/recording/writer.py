@@ -28,7 +28,7 @@ class Writer:
         """private: a new file is for this user alone."""
         start = tick_file.header((about or NO_INFORMATION).with_versions())
         self.path = path
-        self.ticks = 0
+        self.ticks: int = 0
         """Number of ticks in the file."""
         self._stopped_at = start.index(tick_file.CUT_OFF.encode())
         self._ticks_at = len(start)

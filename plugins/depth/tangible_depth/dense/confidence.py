@@ -4,9 +4,9 @@
 
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int16, UInt8
-from numba import int32, njit
+from numba import int32
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 from .span import UNKNOWN
 

@@ -10,9 +10,9 @@ ICCV 2013, reduced to two candidates and to the pixels that have a choice.
 
 import numpy as np
 from jaxtyping import Int16, UInt8
-from numba import int32, njit, uint16
+from numba import int32, uint16
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 
 from ..simd.lane_reductions import total
 from ..simd.lanes import Lanes, add, load, maximum, minimum, multiply, splat, subtract

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Int16, Int32
-from numba import int64, njit
+from numba import int64
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.compiled.threads import in_blocks
 
 from .span import UNKNOWN

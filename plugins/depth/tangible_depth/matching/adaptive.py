@@ -24,7 +24,7 @@ from ..search.pairs import Pair
 from ..sgm.costs import HEAVY, LEVELS, LIGHT, SHARP, Cost
 from ..sgm.strips import WARM_ROWS, StripMatches, sweep, unknown_matches
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 NOISE = 0.20
 """Loss from which the heavy cost is used."""
 LEVELS_LOSS, LEVELS_DIFFERING = 0.06, 0.265

@@ -19,7 +19,7 @@ from ..search.bands import match_bands
 from ..search.disparity_range import Auto, find_disparity_range
 from ..search.pairs import Pair, grey_pair
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 Matcher = Callable[[Pair, Span], DenseMatches]
 """A method that matches a pair along its rows over a range of disparities."""

@@ -22,7 +22,7 @@ from ..sparse.corner_range import MOST_CORNERS, MaxDisparity, clip_range, range_
 from ..sparse.harris import corners, least_response, row_edges
 from ..sparse.matches import Matches, corner_matches
 
-logger = logging.getLogger(__name__)
+logger: logging.Logger = logging.getLogger(__name__)
 
 Grey = Float32[np.ndarray, "h w"]
 Row = Float32[np.ndarray, "n"]

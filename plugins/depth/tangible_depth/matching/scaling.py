@@ -17,7 +17,7 @@ from ..sgm.costs import COSTS, SHARP, Penalties, p2_by_grey_step
 from ..sgm.strips import MOST_LANES, strips
 from .adaptive import match
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 CHECK_TOLERANCE = {"soft": 1.08, "strict": 1.0}
 """Factor on the best cost of the right pixel that a match may have, by the option `check`."""
 HALVED = SHARP._replace(penalties=Penalties(np.uint8(8), np.uint8(8), p2_by_grey_step(40, 10, 2.0)))

@@ -30,7 +30,7 @@ from .rectifying_rotation import (
     verified_range,
 )
 
-logger = logging.getLogger(__name__)
+logger: logging.Logger = logging.getLogger(__name__)
 
 FEWEST_TO_TELL = 20
 """Fewest matches that decide about a pair; with fewer, it is taken as rectified."""

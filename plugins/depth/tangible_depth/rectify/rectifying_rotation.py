@@ -15,7 +15,7 @@ from .homographies import transform
 from .lenses import undistort
 from .parallax import Plane, best_plane
 
-logger = logging.getLogger(__name__)
+logger: logging.Logger = logging.getLogger(__name__)
 
 LEAST_TRUSTED = 30
 """Fewest inliers of a trusted geometry: a few wrong matches agree on one by chance."""

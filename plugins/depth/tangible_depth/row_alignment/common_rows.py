@@ -20,7 +20,7 @@ from .corner_check import corners_correspond
 from .profile_check import rows_match_elsewhere
 from .row_offset import CELL_PX, LEAST_ROW_OFFSET_PX, LEAST_VOTES, row_votes, shift_rows
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 LEAST_AGREED = 0.45
 """Lowest share of the edges with a row offset in a pair whose rows correspond."""

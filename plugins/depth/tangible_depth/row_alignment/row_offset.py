@@ -7,9 +7,8 @@ Half a pixel of vertical offset already costs a matcher along rows a good part o
 
 import numpy as np
 from jaxtyping import Float32, Int16, Int64
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.compiled.threads import in_blocks
 from tangible_core.runtime.opencv import plain_opencv
 

@@ -9,9 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Int16, Int64
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 
 from ..dense.confidence import FLAT_REACH
 from ..dense.span import UNKNOWN, Span

@@ -13,7 +13,7 @@ from .bands import Bands
 from .pairs import Pair
 from .range_in_bands import MARGIN, find_range, reach_px
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 Auto = Literal["auto"]
 LEAST_BEYOND = 0.01
 """Lowest share of the bands' matches in a step beyond verified ones that extends the range by that step."""

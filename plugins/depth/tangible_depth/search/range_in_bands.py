@@ -6,9 +6,8 @@ from math import ceil, floor
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 from ..dense.span import UNKNOWN, Span
 from .bands import FINE_WIDTH, Bands, match_bands

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Int16, UInt8
-from numba import njit, uint8
+from numba import uint8
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 
 from ..dense.span import UNKNOWN, Span
 from ..dense.subpixel import equiangular

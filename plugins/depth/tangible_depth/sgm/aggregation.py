@@ -17,9 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Int32, UInt8
-from numba import njit, uint8, uint64
+from numba import uint8, uint64
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 
 from ..dense.span import UNKNOWN
 from ..dense.subpixel import equiangular

@@ -10,9 +10,8 @@ from collections.abc import Sequence
 
 import numpy as np
 from jaxtyping import UInt8
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 from tangible_core.compiled.threads import in_blocks
 
 RADIUS = 2

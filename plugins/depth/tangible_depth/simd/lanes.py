@@ -17,9 +17,9 @@ from numba.extending import NativeValue, intrinsic, models, register_model, type
 
 operation: Any = intrinsic
 """Decorator of an intrinsic; callers omit its first parameter, the typing context, which type checkers cannot know."""
-INDEX = ir.IntType(32)
+INDEX: Any = ir.IntType(32)
 """Machine type of a lane's index."""
-WORD = ir.IntType(64)
+WORD: Any = ir.IntType(64)
 """Machine type of offsets and masks."""
 
 
@@ -27,14 +27,18 @@ class Lanes:
     """The lane count, bytes of a code, and most that its level counts, as an argument of kernels."""
 
     def __init__(self, count: int, planes: int = 0, most_level: int = 0) -> None:
-        self.count, self.planes, self.most_level = count, planes, most_level
+        self.count = count
+        self.planes = planes
+        self.most_level = most_level
 
 
 class LanesType(types.Type):
     """The numba type of `Lanes`: the numbers are part of the type, the value is empty."""
 
     def __init__(self, count: int, planes: int, most_level: int) -> None:
-        self.count, self.planes, self.most_level = count, planes, most_level
+        self.count = count
+        self.planes = planes
+        self.most_level = most_level
         super().__init__(name=f"Lanes({count},{planes},{most_level})")
 
 
@@ -42,8 +46,9 @@ class Vec(types.Type):
     """`count` lanes of one numba scalar type."""
 
     def __init__(self, element: Any, count: int) -> None:
-        self.element, self.count = element, count
-        self.real = isinstance(element, types.Float)
+        self.element = element
+        self.count = count
+        self.real: bool = isinstance(element, types.Float)
         super().__init__(name=f"Vec({element},{count})")
 
     @property
@@ -53,7 +58,7 @@ class Vec(types.Type):
         return [(sum(widths[:i]), Vec(self.element, each)) for i, each in enumerate(widths)]
 
     @property
-    def llvm(self) -> ir.VectorType | ir.LiteralStructType:
+    def llvm(self) -> Any:
         """The machine type: a vector, or a struct of the parts' vectors."""
         element = ir.FloatType() if self.real else ir.IntType(self.element.bitwidth)
         if self.count & (self.count - 1) == 0:
@@ -150,14 +155,14 @@ def _from_intrinsic(name: str) -> Any:
     return _pairwise(lambda b, vec, x, y: emit_call(b, f"llvm.{name}.{vec.mangled}", vec.llvm, [x, y]))
 
 
-saturating_add = _from_intrinsic("uadd.sat")
+saturating_add: Any = _from_intrinsic("uadd.sat")
 """Sum that saturates, 250 + 10 = 255, so that high costs stay high."""
-minimum = _from_intrinsic("umin")
-maximum = _from_intrinsic("umax")
-add = _pairwise(lambda b, vec, x, y: b.fadd(x, y) if vec.real else b.add(x, y))
-subtract = _pairwise(lambda b, vec, x, y: b.fsub(x, y) if vec.real else b.sub(x, y))
-multiply = _pairwise(lambda b, vec, x, y: b.fmul(x, y) if vec.real else b.mul(x, y))
-larger = _pairwise(lambda b, vec, x, y: b.select(b.fcmp_ordered(">", x, y), x, y))
+minimum: Any = _from_intrinsic("umin")
+maximum: Any = _from_intrinsic("umax")
+add: Any = _pairwise(lambda b, vec, x, y: b.fadd(x, y) if vec.real else b.add(x, y))
+subtract: Any = _pairwise(lambda b, vec, x, y: b.fsub(x, y) if vec.real else b.sub(x, y))
+multiply: Any = _pairwise(lambda b, vec, x, y: b.fmul(x, y) if vec.real else b.mul(x, y))
+larger: Any = _pairwise(lambda b, vec, x, y: b.select(b.fcmp_ordered(">", x, y), x, y))
 """Maximum of floats without NaN, lane by lane."""
 
 

@@ -5,7 +5,8 @@ sum (I_p - mean)(I_q - mean) / sqrt(sum (I_p - mean)^2 sum (I_q - mean)^2), in -
 """
 
 import numpy as np
-from numba import njit
+
+from tangible_core.compiled.compiling import njit
 
 
 @njit(cache=True, nogil=True)

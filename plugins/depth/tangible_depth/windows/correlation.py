@@ -12,9 +12,9 @@ Lane k stands for the disparity top - k, as in `sweep`: for pixel x the right vi
 from typing import NamedTuple
 
 import numpy as np
-from numba import float32, int32, njit
+from numba import float32, int32
 
-from tangible_core.compiled.compiling import inner
+from tangible_core.compiled.compiling import inner, njit
 
 from ..dense.span import UNKNOWN
 from ..dense.subpixel import parabola

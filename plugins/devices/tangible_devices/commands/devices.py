@@ -25,7 +25,7 @@ DeviceSets = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set an option of the device; repeatable.")
 ]
 
-app = typer.Typer(name="devices", rich_markup_mode=None, add_completion=False)
+app: typer.Typer = typer.Typer(name="devices", rich_markup_mode=None, add_completion=False)
 
 
 @app.callback(invoke_without_command=True)

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from jaxtyping import Float64
@@ -26,7 +26,7 @@ MOST_COUNTS, MOST_N = 4095, 8.0
 class Calibration(BaseModel):
     """The conversion of counts to angles, of newtons to counts, and of the device's axes to the workspace's."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     encoder_offset_deg: tuple[Angle, Angle, Angle] = (35.0, 35.0, 35.0)
     """Angles of the arms (top, right, left) at encoder count 0; about 35 according to the source."""

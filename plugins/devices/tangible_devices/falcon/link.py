@@ -19,7 +19,7 @@ from .usb.errors import REPLUG
 from .usb.firmware import NULL
 from .usb.port import READ_BYTES, Port
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 FRAME_S = 0.0009
 """Shortest time between two packets: USB carries one a millisecond, and more would only queue."""
 QUIET, SILENCES = 20, 5

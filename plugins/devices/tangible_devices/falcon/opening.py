@@ -14,7 +14,7 @@ from .link import FalconLink
 from .usb.firmware import open_running
 from .usb.port import open_port
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 GUIDE = "pull its grip all the way out, then push it all the way in; its light turns from red to green"
 AT_ONCE_S = 0.1
 """Time before the user is asked to home the device: it may be homed already."""

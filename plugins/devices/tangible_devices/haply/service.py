@@ -59,7 +59,7 @@ class Session:
         self._connection = _connect(self._open, uri, timeout_s)
         self._owed = 1  # the snapshot comes without a message
         try:
-            self.arms = tuple(_arm(each) for each in _devices(self._receive(), "inverse3"))
+            self.arms: tuple[Arm, ...] = tuple(_arm(each) for each in _devices(self._receive(), "inverse3"))
         except BaseException:
             self.close()
             raise

@@ -118,13 +118,13 @@ class Channel:
 
         Raises: DeviceError if the name is invalid, the side is taken, or the file is missing or cannot be created.
         """
-        self.path = channel_path(name)
-        self.lock = Lock(self.path.with_suffix(f".{side}"))
+        self.path: Path = channel_path(name)
+        self.lock: Lock = Lock(self.path.with_suffix(f".{side}"))
         if not any(self.lock.take() or time.sleep(0.01) for _ in range(5)):  # a test by `_lives` takes it briefly
             self.lock.close()
             raise DeviceError(f"pointer {name!r} has a {side} already ({self.path}); end it, or use another channel")
         try:
-            self.memory = _map(self.path, side == "device")
+            self.memory: mmap.mmap = _map(self.path, side == "device")
         except (OSError, ValueError) as error:
             self.lock.close()
             raise DeviceError(f"pointer {name!r}: {self.path} cannot be used: {error}; is a device open?") from error

@@ -5,6 +5,7 @@ The library is called by ctypes. The package `louis` on PyPI is something else.
 
 import ctypes
 import sys
+from collections.abc import Mapping
 from functools import cache
 from threading import Lock
 from typing import Any, NamedTuple
@@ -15,7 +16,7 @@ from .cells import Cells
 
 TABLES = {"en": "en-ueb-g1.ctb", "de": "de-g0.utb", "fr": "fr-bfu-comp6.utb"}
 """Tables of uncontracted braille: Unified English Braille, German Basisschrift, French Braille uniformisé."""
-NAMES = {
+NAMES: Mapping[str, tuple[str, ...]] = {
     "linux": ("liblouis.so.20", "liblouis.so"),
     "darwin": ("liblouis.20.dylib", "liblouis.dylib", "/opt/homebrew/lib/liblouis.dylib"),
     "win32": ("liblouis.dll",),

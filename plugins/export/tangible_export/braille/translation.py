@@ -12,7 +12,7 @@ from .cells import width_m as width_of_m
 from .latin import LANGUAGES, code_of, translate_by_table
 from .louis import TABLES, louis, missing_character
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 _APOSTROPHE = re.compile("(?<=\\w)\u2019(?=\\w)")
 """A typographic apostrophe between letters: it is not a closing quotation mark."""

@@ -15,7 +15,7 @@ from tangible_core.plugins.notes import note
 from ..labels import first_labels, label_of
 from .sheet import GAP_MM, LINE_MM
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 PITCH_M = 0.25e-3
 """Pitch of the grid of parts, about."""

@@ -30,7 +30,7 @@ from .opening import open_at
 from .sheet import CLEAR_MM, GAP_MM, Page, Sheet
 from .smoothing import smooth_borders
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 ROUNDS = 6
 """Largest number of rounds of measuring and correcting a page."""

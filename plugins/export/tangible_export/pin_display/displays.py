@@ -1,6 +1,6 @@
 """Displays of raised pins."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -13,7 +13,7 @@ PITCH_M = 0.0025
 class Display(Quantities):
     """An array of pins."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     columns: Annotated[int, Field(ge=3, le=1000)]
     """Pins from left to right."""

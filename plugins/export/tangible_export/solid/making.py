@@ -14,7 +14,7 @@ from .plate import LEAST_RIM_M, Layout, plate
 from .printable import note_print_problems
 from .triangles import Triangles, all_triangles, few_triangles, sample_nodes
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 INSTALL = "pip install pydelatin"
 MOST_NODES = 24_000_000

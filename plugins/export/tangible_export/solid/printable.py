@@ -10,7 +10,7 @@ from tangible_core.data import Relief
 from tangible_core.plugins.notes import note
 from tangible_core.runtime.opencv import plain_opencv
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 THIN_BASE_M = 0.0008
 """Thinnest base that neither bends nor breaks; 0.0015 is better (Round Table, Guidelines for producing accessible 3D

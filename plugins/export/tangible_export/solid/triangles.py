@@ -16,7 +16,7 @@ from tangible_core.data.records import Record
 from tangible_core.plugins.notes import note
 from tangible_core.runtime.opencv import plain_opencv
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 LEAST_NODES = 2
 """Nodes along a side at least: one pixel is a surface too."""

@@ -15,9 +15,8 @@ Imports numba: a method imports this module inside its verb.
 import math
 
 import numpy as np
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_render.haptic_textures.forces import STATE, texture_force
 from tangible_render.haptic_textures.heights import texture_height
 from tangible_render.haptic_textures.table import COUNT, DRAG, HEAD

@@ -7,9 +7,9 @@ Imports numba: a method imports this module inside its verb.
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
-from numba import float64, njit
+from numba import float64
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 from ..surface.bilinear import NEWTONS
 

@@ -7,9 +7,9 @@ vector instructions. No sum has an order that the compiler might change. Imports
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 
 import numpy as np
-from numba import float32, njit, types, uint8, void
+from numba import float32, types, uint8, void
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 
 from ..surface.bilinear import HEIGHTS
 from ..surface.coefficients import BORDER

@@ -12,10 +12,10 @@ Imports numba: a method imports this module inside its verb.
 # pyright: basic, reportCallIssue=false
 
 import numpy as np
-from numba import float32, float64, int64, njit, types
+from numba import float32, float64, int64, types
 from numba.extending import intrinsic
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.compiled.touch import FRAME, RISE_M
 
 from ..contact.approach import TOUCHING

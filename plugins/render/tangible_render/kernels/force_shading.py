@@ -5,9 +5,9 @@
 import math
 
 import numpy as np
-from numba import float32, float64, njit, types
+from numba import float32, float64, types
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 from ..surface.bilinear import HEIGHTS, LABELS, NEWTONS, TABLE, bilinear, cell, over
 

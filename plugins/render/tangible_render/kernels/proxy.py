@@ -5,9 +5,9 @@
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
-from numba import float64, njit
+from numba import float64
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 from ..contact.spring import MATERIALS, MEMORY, SURFACE, spring_and_damper
 from ..surface.bilinear import LABELS, NEWTONS

@@ -3,9 +3,9 @@
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
 import numpy as np
-from numba import float64, int64, njit, types
+from numba import float64, int64, types
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 from ..surface.bilinear import HEIGHTS, NEWTONS, cell, over
 

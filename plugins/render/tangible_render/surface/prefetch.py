@@ -3,20 +3,23 @@
 Imports numba: a method imports this module inside its verb.
 """
 
-# ruff: noqa: ANN001, ANN201, ANN202 -- the types are those that numba infers
+# ruff: noqa: ANN001, ANN202 -- the types are those that numba infers
 # pyright: basic
+
+from typing import Any
 
 from llvmlite import ir
 from numba import int64, types
 from numba.extending import intrinsic
 
-BYTE, FLAG = ir.IntType(8).as_pointer(), ir.IntType(32)
+BYTE: Any = ir.IntType(8).as_pointer()
+FLAG: Any = ir.IntType(32)
 READ, KEEP, DATA = 0, 3, 1
 """The flags of LLVM's prefetch: for reading, into all levels of the cache, data rather than instructions."""
 
 
 @intrinsic
-def prefetch_line(context, array, offset):
+def prefetch_line(context: Any, array: Any, offset: Any) -> Any:
     """Prefetch the cache line at a byte offset into an array; it neither waits nor fails."""
 
     def generate(context, builder, signature, arguments):

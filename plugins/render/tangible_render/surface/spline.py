@@ -9,9 +9,9 @@ Source: Unser, Aldroubi & Eden, B-spline signal processing, IEEE Trans. Signal P
 
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 
-from numba import njit, types
+from numba import types
 
-from tangible_core.compiled.compiling import KERNEL, inner, inner_by_type
+from tangible_core.compiled.compiling import KERNEL, inner, inner_by_type, njit
 
 from .prefetch import prefetch_line
 

@@ -14,7 +14,7 @@ from tangible_core.plugins.notes import note
 from ..features.features import Features
 from .joining import Step
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 PRINCIPAL_AXES = 14
 """The number of principal axes along which cells are divided."""

@@ -4,8 +4,8 @@
 
 import numpy as np
 from jaxtyping import Float32, Int32
-from numba import njit
 
+from tangible_core.compiled.compiling import njit
 from tangible_core.compiled.elementary import exponential, logarithms
 from tangible_core.compiled.threads import in_blocks
 from tangible_core.runtime.opencv import plain_opencv

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float32, Float64, Int32
-from numba import njit
 
+from tangible_core.compiled.compiling import njit
 from tangible_core.compiled.small_matrices import cholesky, whiten
 
 from .discriminants import discriminant_axes

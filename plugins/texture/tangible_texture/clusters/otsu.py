@@ -21,7 +21,7 @@ class OtsuClasses:
         spread = _spread_within(levels - np.average(levels, weights=counts), counts)
         self._rounding = counts.sum() * np.ptp(levels) ** 2 / (12 * 255**2)  # the variance of rounding to 8 bits
         best = spread[0]
-        self.spreads = [best[-1]]
+        self.spreads: list[float] = [best[-1]]
         """The sums of squares within the classes, for 1, 2, ... classes."""
         self._last_starts: list[np.ndarray] = []
         for _ in range(1, min(most, len(levels))):

@@ -9,8 +9,8 @@ from collections.abc import Iterable
 
 import numpy as np
 from jaxtyping import Float32, Float64
-from numba import njit
 
+from tangible_core.compiled.compiling import njit
 from tangible_core.compiled.threads import in_turns, thread_count
 
 BLOCK = 1024

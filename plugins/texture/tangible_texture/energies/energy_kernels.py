@@ -5,7 +5,8 @@
 from math import exp
 
 import numpy as np
-from numba import njit
+
+from tangible_core.compiled.compiling import njit
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

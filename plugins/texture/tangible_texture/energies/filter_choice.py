@@ -12,7 +12,7 @@ from tangible_core.plugins.notes import note
 from .gabor_bank import Gabor
 from .local_energy import fft, mean_energies, spectrum_of, standardise
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 ENOUGH = 0.95
 """The share of the energy in all filters that remains when weak ones are dropped."""

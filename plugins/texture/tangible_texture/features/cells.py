@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 import numpy as np
 from jaxtyping import Float32
-from numba import njit
 
+from tangible_core.compiled.compiling import njit
 from tangible_core.compiled.threads import in_turns
 from tangible_core.runtime.opencv import plain_opencv
 

@@ -10,7 +10,7 @@ from tangible_core.data.pictures import to_grey
 from tangible_core.plugins.notes import note
 from tangible_core.runtime.opencv import plain_opencv
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 NARROW_PX, MIDDLE_PX, WIDE_PX = 5.0, 10.0, 18.0
 """The standard deviations of the windows, px: along borders, for the classes, and for the initial division."""

@@ -13,8 +13,8 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 from jaxtyping import Float32, UInt64
-from numba import njit
 
+from tangible_core.compiled.compiling import njit
 from tangible_core.compiled.threads import in_blocks
 from tangible_core.runtime.opencv import plain_opencv
 

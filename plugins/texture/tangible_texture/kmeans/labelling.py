@@ -12,7 +12,7 @@ from tangible_core.plugins.notes import note
 from .count import choose_count
 from .lloyd import kmeans
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 MOST_SEGMENTS = 8
 """The largest number of segments under `auto`."""
 

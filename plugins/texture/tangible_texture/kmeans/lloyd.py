@@ -7,8 +7,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from jaxtyping import Float32, Int32
-from numba import njit
 
+from tangible_core.compiled.compiling import njit
 from tangible_core.compiled.threads import in_turns
 
 SAME = 1e-5

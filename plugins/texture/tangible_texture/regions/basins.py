@@ -6,9 +6,8 @@ from collections.abc import Iterable
 
 import numpy as np
 from jaxtyping import Float32, Int32
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 
 from .watershed import UNSEEN
 

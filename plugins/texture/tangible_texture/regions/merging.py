@@ -6,9 +6,8 @@ import heapq
 
 import numpy as np
 from jaxtyping import Int32
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 from .borders import Border
 

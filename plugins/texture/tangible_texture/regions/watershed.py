@@ -4,9 +4,8 @@
 
 import numpy as np
 from jaxtyping import Float32, Int32
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 
 LEVELS = 1024
 """The number of levels of height; low ones, where most waters meet, are finer than high ones."""

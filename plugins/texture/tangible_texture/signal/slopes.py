@@ -6,9 +6,8 @@ from math import log, sqrt
 
 import numpy as np
 from jaxtyping import Float32
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.runtime.opencv import plain_opencv
 
 TILE_PX = 128

@@ -4,9 +4,8 @@
 
 import numpy as np
 from jaxtyping import Float32
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 from tangible_core.runtime.opencv import plain_opencv
 
 WIDER = 1.75

@@ -13,9 +13,8 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 from jaxtyping import Float32
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 from tangible_core.compiled.threads import in_turns
 from tangible_core.runtime.opencv import plain_opencv
 

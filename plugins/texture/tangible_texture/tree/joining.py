@@ -4,9 +4,8 @@
 
 import numpy as np
 from jaxtyping import Float64, Int32
-from numba import njit
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.compiled.elementary import logarithm
 
 from .regions import Regions

@@ -13,7 +13,7 @@ from ....scene.scene_files import SceneFiles
 from ..stage import Inputs, MethodStage, no_picture
 from ..working_grid import known_disparity
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 
 class DisparityStage(MethodStage):

@@ -14,7 +14,7 @@ from ..part_heights import warn_missing_heights
 from ..stage import Inputs, Stage
 from ..working_grid import flatten_transparent, relief_of_layers
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 SPREAD = "heights are spread so that borders can be felt; `relief: depth` keeps true proportions"
 """The note on a relief whose heights are not proportional to depth."""
 LINEAR = ReliefChoice(by="depth", slope=0, grain_m=0)

@@ -11,7 +11,7 @@ from ....preflight import fit_surface
 from ...config.model import PipelineConfig
 from ..stage import Inputs, MethodStage
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 
 class TouchStage(MethodStage):

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 import numpy as np
 from jaxtyping import Int16, UInt8
-from numba import int32, njit, uint16
+from numba import int32, uint16
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.compiled.threads import in_blocks, in_turns
 
 from ..span import UNKNOWN

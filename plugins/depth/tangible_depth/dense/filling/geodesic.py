@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Int16, Int32, Int64, UInt8
-from numba import int32, njit
+from numba import int32
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 from ..span import UNKNOWN
 

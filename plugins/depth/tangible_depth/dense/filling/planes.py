@@ -9,9 +9,9 @@ keeps the slopes near 0 where these pixels lie too close together to determine t
 
 import numpy as np
 from jaxtyping import Int16, UInt8
-from numba import int16, int32, njit, uint16
+from numba import int16, int32, uint16
 
-from tangible_core.compiled.compiling import KERNEL, inner
+from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.compiled.threads import in_blocks
 
 from ...simd.lane_reductions import total

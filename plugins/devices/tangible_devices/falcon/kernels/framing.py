@@ -5,9 +5,9 @@ Imports numba: a method imports this module inside its verb.
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
-from numba import int64, njit, void
+from numba import int64, void
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 from .packet import BYTES, SIZE, START, is_packet
 

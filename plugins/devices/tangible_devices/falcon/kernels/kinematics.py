@@ -11,9 +11,9 @@ Imports numba: a method imports this module inside its verb.
 import math
 
 import numpy as np
-from numba import boolean, float64, njit, types
+from numba import boolean, float64, types
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 THIGH_M, SHIN_M, HINGE_M, ENDS_M = 0.060, 0.1025, 0.01443, 0.01125 + 0.01125
 """Stamper's a, b, c and d + e: thigh, shin parallelogram, offset of the tip's hinge, the two ends of the shin."""

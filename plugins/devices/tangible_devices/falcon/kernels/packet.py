@@ -7,9 +7,9 @@ Source: libnifalcon, FalconFirmwareNovintSDK.cpp. Imports numba: a method import
 
 # ruff: noqa: ANN001, ANN201 -- the types are in the signatures that numba compiles
 
-from numba import boolean, float64, int64, njit, types, uint8, void
+from numba import boolean, float64, int64, types, uint8, void
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 SIZE = 16
 START, END, ZERO = 0x3C, 0x3E, 0x41

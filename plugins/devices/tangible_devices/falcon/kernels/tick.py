@@ -8,9 +8,9 @@ Both kernels take the arrays of `Buffers` first. Imports numba: a method imports
 from typing import NamedTuple
 
 import numpy as np
-from numba import boolean, float64, int64, njit, void
+from numba import boolean, float64, int64, void
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 from . import framing
 from .framing import DOUBTFUL, FRESH

@@ -6,9 +6,9 @@ Imports numba: a method imports this module inside its verb.
 # ruff: noqa: ANN001, ANN201, ANN202 -- the types are in the signatures that numba compiles
 
 import numpy as np
-from numba import boolean, float64, int64, njit, types
+from numba import boolean, float64, int64, types
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 BAND_COUNTS = 1.0
 """Largest distance of a sample from the line, as an encoder rounds to whole counts."""

@@ -32,8 +32,8 @@ class Body:
 
     def __init__(self, hand: Holder, feel: np.ndarray, counts_per_newton_metre: float = 10_000.0) -> None:
         self.torque_counts: tuple[int, ...] = (0, 0, 0)
-        self.info = 0
-        self.tip = np.array([0.0, 0.0, 0.125, 0.0, 0.0, 0.0])
+        self.info: int = 0
+        self.tip: np.ndarray = np.array([0.0, 0.0, 0.125, 0.0, 0.0, 0.0])
         self._hand = hand
         self._feel = feel
         self._newton_metres = -1.0 / counts_per_newton_metre

@@ -3,37 +3,39 @@
 import struct
 from array import array
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from types import SimpleNamespace
-from typing import final
+from typing import TYPE_CHECKING, Any, final
 
-from usb.backend import IBackend
 from usb.core import USBError, USBTimeoutError
 
-from ..usb.port import IN, OUT, PRODUCT, VENDOR
+from ..usb.port import IN, OUT, PRODUCT, VENDOR, Octets
 from .chip import PACKET_BYTES, Chip, StallError
 from .faults import ERRORS, Fault, Step
 
-# The methods of pyusb have no annotations.
-# pyright: reportIncompatibleMethodOverride=false
+if TYPE_CHECKING:
+    Backend = object
+    """The base class of pyusb's backends; pyusb has no annotations."""
+else:
+    from usb.backend import IBackend as Backend
 
 PRODUCT_NAME = "FALCON HAPTIC"
-DEVICE = {
+DEVICE: Mapping[str, Any] = {
     **{"bLength": 18, "bDescriptorType": 1, "bcdUSB": 0x0200, "bDeviceClass": 0, "bDeviceSubClass": 0},
     **{"bDeviceProtocol": 0, "bMaxPacketSize0": 8, "idVendor": VENDOR, "idProduct": PRODUCT, "bcdDevice": 0x0600},
     **{"iManufacturer": 0, "iProduct": 2, "iSerialNumber": 3, "bNumConfigurations": 1},
     **{"bus": 1, "port_number": 1, "port_numbers": (1,), "speed": 2},
 }
-CONFIGURATION = {
+CONFIGURATION: Mapping[str, Any] = {
     **{"bLength": 9, "bDescriptorType": 2, "wTotalLength": 32, "bNumInterfaces": 1, "bConfigurationValue": 1},
     **{"iConfiguration": 0, "bmAttributes": 0x80, "bMaxPower": 45, "extra_descriptors": []},
 }
-PORT = {
+PORT: Mapping[str, Any] = {
     **{"bLength": 9, "bDescriptorType": 4, "bInterfaceNumber": 0, "bAlternateSetting": 0, "bNumEndpoints": 2},
     **{"bInterfaceClass": 255, "bInterfaceSubClass": 255, "bInterfaceProtocol": 255, "iInterface": 2},
     "extra_descriptors": [],
 }
-ENDPOINT = {
+ENDPOINT: Mapping[str, Any] = {
     **{"bLength": 7, "bDescriptorType": 5, "bmAttributes": 2, "wMaxPacketSize": PACKET_BYTES, "bInterval": 0},
     **{"bRefresh": 0, "bSynchAddress": 0, "extra_descriptors": []},
 }
@@ -46,10 +48,10 @@ class Unit:
     def __init__(self, chip: Chip, serial: str = "SIM0001", kernel_driver: bool = True) -> None:
         self.chip = chip
         self.serial = serial
-        self.kernel_driver = kernel_driver
+        self.kernel_driver: bool = kernel_driver
         """True while the system's serial driver has it."""
-        self.plugged = True
-        self.configuration = 0
+        self.plugged: bool = True
+        self.configuration: int = 0
         self.claimed_by: Handle | None = None
 
     def unplug(self) -> None:
@@ -72,12 +74,12 @@ class Handle:
 
 
 @final
-class Bus(IBackend):
+class Bus(Backend):
     """A backend of pyusb, in place of libusb; `faults` may be changed at any time."""
 
     def __init__(self, units: Iterable[Unit], faults: Iterable[Fault] = ()) -> None:
-        self.units = list(units)
-        self.faults = list(faults)
+        self.units: list[Unit] = list(units)
+        self.faults: list[Fault] = list(faults)
         self._steps: Counter[str] = Counter()
 
     def fail(self, fault: Fault) -> None:
@@ -157,7 +159,14 @@ class Bus(IBackend):
             dev_handle.unit.claimed_by = None
 
     def ctrl_transfer(
-        self, dev_handle: Handle, bmRequestType: int, bRequest: int, wValue: int, wIndex: int, data: array, timeout: int
+        self,
+        dev_handle: Handle,
+        bmRequestType: int,
+        bRequest: int,
+        wValue: int,
+        wIndex: int,
+        data: Octets,
+        timeout: int,
     ) -> int:
         """Pass vendor requests to the chip, and return strings. Raises: USBError for all other requests."""
         self._step("control", dev_handle.unit)
@@ -171,14 +180,14 @@ class Bus(IBackend):
             raise failure("stall") from error
         return 0
 
-    def bulk_write(self, dev_handle: Handle, ep: int, intf: int, data: array, timeout: int) -> int:
+    def bulk_write(self, dev_handle: Handle, ep: int, intf: int, data: Octets, timeout: int) -> int:
         """Write all bytes to the chip."""
         self._step("write", dev_handle.unit)
         self._check(dev_handle, ep == OUT)
         dev_handle.unit.chip.write(data.tobytes())
         return len(data)
 
-    def bulk_read(self, dev_handle: Handle, ep: int, intf: int, buff: array, timeout: int) -> int:
+    def bulk_read(self, dev_handle: Handle, ep: int, intf: int, buff: Octets, timeout: int) -> int:
         """Read the chip's data, at least its status. Raises: USBError if the buffer is not whole packets long."""
         self._step("read", dev_handle.unit)
         self._check(dev_handle, ep == IN)
@@ -207,13 +216,13 @@ class Bus(IBackend):
                 raise failure(fault.error)
 
 
-def failure(error: str) -> USBError:
+def failure(error: str) -> OSError:
     """Return the error that libusb would raise."""
     kind = USBTimeoutError if error == "timeout" else USBError
     return kind(error, -1, ERRORS[error])
 
 
-def _write_string(unit: Unit, index: int, data: array) -> int:
+def _write_string(unit: Unit, index: int, data: Octets) -> int:
     text = {2: PRODUCT_NAME, 3: unit.serial}.get(index, "")
     body = struct.pack("<H", 0x0409) if index == 0 else text.encode("utf-16-le")
     descriptor = bytes([2 + len(body), 3]) + body

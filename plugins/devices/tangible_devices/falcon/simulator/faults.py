@@ -1,6 +1,6 @@
 """Faults of a USB device, on demand."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -19,7 +19,7 @@ ERRORS = {
 class Fault(BaseModel):
     """A step of USB that fails; an unplugged device stays unplugged until `Unit.plug_in`."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     at: Step = "read"
     """Step that fails: looking for devices, opening one, asking for its configuration, detaching the system's driver,

@@ -7,9 +7,9 @@ Imports numba: a method imports this module inside its verb.
 
 import math
 
-from numba import float64, int64, njit, void
+from numba import float64, int64, void
 
-from tangible_core.compiled.compiling import KERNEL
+from tangible_core.compiled.compiling import KERNEL, njit
 
 from ..kernels.kinematics import CENTRE_M, force, inverse, jacobian
 

@@ -14,7 +14,7 @@ from . import port as ftdi
 from .image import WHENCE
 from .port import READ_BYTES, Port
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 TRIES = 10
 """Attempts to load; the first one often fails."""
 GREETINGS, PROBES = 100, 10

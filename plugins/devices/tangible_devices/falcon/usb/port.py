@@ -4,7 +4,7 @@ import logging
 from array import array
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
-from typing import Any, final
+from typing import TYPE_CHECKING, Any, final
 
 import usb.core
 import usb.util
@@ -14,7 +14,13 @@ from tangible_core.errors import DeviceAbsent, DeviceError
 from ..kernels.framing import STATUS, USB_PACKET
 from .errors import NO_LIBUSB, NO_PERMISSION, device_error, error_of_cause
 
-log = logging.getLogger(__name__)
+if TYPE_CHECKING:
+    Octets = array[int]
+    """An array of bytes; it takes no brackets before Python 3.12."""
+else:
+    Octets = array
+
+log: logging.Logger = logging.getLogger(__name__)
 VENDOR, PRODUCT = 0x0403, 0xCB48
 INTERFACE, IN, OUT = 0, 0x81, 0x02
 READ_BYTES = 512
@@ -68,7 +74,7 @@ class Port:
         self.request(RESET, PURGE_IN)
         self.request(RESET, PURGE_OUT)
 
-    def write(self, data: array) -> None:
+    def write(self, data: Octets) -> None:
         """Send bytes."""
         try:
             sent = self._device.write(OUT, data, TIMEOUT_MS)
@@ -77,7 +83,7 @@ class Port:
         if sent != len(data):
             raise DeviceError(f"{self.place}: it took {sent} of {len(data)} bytes; open it again")
 
-    def read(self, chunk: array) -> int:
+    def read(self, chunk: Octets) -> int:
         """Make one IN transfer, unchanged: packets of 64 bytes, 2 of them status, the last one perhaps shorter."""
         try:
             return self._device.read(IN, chunk, TIMEOUT_MS)

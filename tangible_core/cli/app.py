@@ -152,7 +152,8 @@ def _report_unexpected(error: BaseException) -> int:
         return _report(text.getvalue().rstrip(), MISTAKE)
     from ..plugins import failures
 
-    return _report(failures.sentence(error), FAILED if failures.place_of(error) is None else MISTAKE)
+    explained = failures.place_of(error) or failures.missing_package(error)
+    return _report(failures.sentence(error), MISTAKE if explained else FAILED)
 
 
 def _report(message: str, code: int) -> int:

@@ -1,8 +1,10 @@
 """Unforeseen errors in one sentence: the plugin that failed, the verb, and the file with the traceback."""
 
 import logging
+import sys
 from collections.abc import Generator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from traceback import walk_tb
 from types import FrameType
 from typing import Any, NamedTuple
@@ -14,6 +16,14 @@ from .naming import package, plugin_name, points
 
 log: logging.Logger = logging.getLogger(__name__)
 OURS = package(__name__)
+PACKAGES = {
+    "PIL": "pillow",
+    "cv2": "opencv-contrib-python-headless",
+    "ruamel": "ruamel.yaml",
+    "skimage": "scikit-image",
+    "usb": "pyusb",
+}
+"""Packages whose modules have another name."""
 _PLACE = "tangible_place"
 """The attribute of an error from another process that holds its place there."""
 
@@ -61,12 +71,27 @@ def remember_place(error: BaseException, trace: str) -> None:
 def sentence(error: BaseException) -> str:
     """Describe an error in a sentence for a person, and write its traceback to a file."""
     place, text = place_of(error), shown(str(error), MOST_IN_LINE // 2)
+    if missing := missing_package(error):
+        who = "tangible" if place is None else plugin_name(place.kind, place.module, place.owner)
+        return f"{who} needs the package {missing}, which is not installed; pip install {missing}"
     what = f"{type(error).__name__}: {text}" if text else type(error).__name__
     log.debug("the traceback", exc_info=error)
     if place is None:
         return f"tangible itself failed: {what}; please report it: {where_kept(error)}"
     name = plugin_name(place.kind, place.module, place.owner)
     return f"{name} failed in {place.function}: {what}; {where_kept(error)}"
+
+
+def missing_package(error: BaseException) -> str | None:
+    """Return the package whose absence made an import fail; None for any other error.
+
+    >>> missing_package(ModuleNotFoundError("No module named 'acme'", name="acme.arm"))
+    'acme'
+    """
+    module = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
+    if not module or module in sys.stdlib_module_names or find_spec(module):
+        return None
+    return PACKAGES.get(module, module)
 
 
 def _method(frame: FrameType) -> Place | None:

@@ -5,7 +5,7 @@ import pytest
 from tangible_core import Force
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.plugins import PlainTouch
-from tangible_core.plugins.failures import Place, place_of
+from tangible_core.plugins.failures import Place, missing_package, place_of, sentence
 
 
 class Law(PlainTouch):
@@ -34,3 +34,16 @@ def test_error_of_the_core_has_no_plugin():
     with pytest.raises(TypeError, match="'NoneType' object is not callable") as raised:
         touch.force((0, 0, 0))  # pyright: ignore[reportArgumentType]
     assert place_of(raised.value) is None
+
+
+@pytest.mark.parametrize(("module", "package"), [("cv2.ximgproc", "opencv-contrib-python-headless"), ("acme", "acme")])
+def test_missing_package_is_named_with_the_command_that_installs_it(
+    module: str, package: str, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr("tangible_core.plugins.failures.find_spec", lambda name: None)
+    error = ModuleNotFoundError(f"No module named {module!r}", name=module)
+    assert sentence(error) == f"tangible needs the package {package}, which is not installed; pip install {package}"
+
+
+def test_missing_module_of_an_installed_package_is_no_missing_package():
+    assert missing_package(ModuleNotFoundError("No module named 'cv2.gone'", name="cv2.gone")) is None

@@ -23,9 +23,9 @@ PROGRAM = Path(__file__).parent / "helpers" / "every_processor.py"
 SIMPLEST_CORE = {"x86_64": "Prescott", "AMD64": "Prescott", "aarch64": "ARMV8", "arm64": "ARMV8"}
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OPENCV_FOR_THREADS_NUM")
 
+PLAIN_KERNELS = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
+"""Of numba, which compiles all kernels anew for it: a minute, for what differs under `fastmath` alone."""
 PLAIN = {
-    "NUMBA_CPU_NAME": "generic",
-    "NUMBA_CPU_FEATURES": "",
     "NPY_DISABLE_CPU_FEATURES": ",".join(each for each in __cpu_dispatch__ if __cpu_features__.get(each)),
     "OPENBLAS_CORETYPE": SIMPLEST_CORE.get(platform.machine(), ""),
     "OPENCV_CPU_DISABLE": "SSSE3,SSE4.1,POPCNT,SSE4.2,AVX,FP16,AVX2,FMA3,AVX512-SKX",
@@ -36,7 +36,6 @@ PLAIN = {
     "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX512F,-AVX2,-FMA,-FMA4",
 }
 """Another processor: no vectors but the narrowest, and no fused multiplication and addition, from C's library up."""
-
 
 ROOT = Path(__file__).parents[1]
 FREE = {"fastmath"}
@@ -66,7 +65,7 @@ class Running:
         with self.errors.open("w") as errors:
             self.process = subprocess.Popen(
                 [sys.executable, "-P", PROGRAM, folder, str(thread_count)],
-                env={name: value for name, value in given.items() if value or name == "NUMBA_CPU_FEATURES"},
+                env={name: value for name, value in given.items() if value or name in PLAIN_KERNELS},
                 stdout=subprocess.DEVNULL,
                 stderr=errors,
             )
@@ -85,12 +84,17 @@ class Running:
             return json.loads((self.folder / "digests.json").read_text()), dict(arrays)
 
 
-@pytest.mark.timeout(1200)  # the plain kernels are compiled, which a machine at work takes minutes for
-def test_results_are_the_same_on_every_processor_and_with_any_number_of_threads(tmp_path: Path):
+@pytest.mark.timeout(1200)  # kernels are compiled, which a machine at work takes minutes for
+@pytest.mark.parametrize(
+    "plain",
+    [PLAIN, pytest.param(PLAIN | PLAIN_KERNELS, marks=pytest.mark.nightly)],
+    ids=["same kernels", "own kernels"],
+)
+def test_results_are_the_same_on_every_processor_and_with_any_number_of_threads(tmp_path: Path, plain: dict[str, str]):
     with ExitStack() as running:
         there, here = (
             running.enter_context(Running(tmp_path / name, thread_count, environment))
-            for name, thread_count, environment in (("plain", 1, PLAIN), ("here", 7, {}))
+            for name, thread_count, environment in (("plain", 1, plain), ("here", 7, {}))
         )
         expected, found = there.found(), here.found()
         assert len(expected[0]) > 100

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from shapely import get_coordinates
 
+from compiled_once import compile_once
 from tangible_core import load_method
 from tangible_core.compiled import threads
 from tangible_core.data import DisparityMap, HapticSurface, Relief, SegmentMap, Views, digest_of
@@ -251,6 +252,7 @@ PARTS: dict[str, Callable[[], Found]] = {
 
 def main(folder: str, thread_count: str, *wanted: str) -> None:
     """Write down what all parts find, or those named."""
+    compile_once()
     threads.thread_count = lambda: int(thread_count)
     found = {name: result for part in wanted or PARTS for name, result in PARTS[part]()}
     torch = {name for kind in ("depth", "texture") for name, _, options in ours(kind) if options}

@@ -22,16 +22,19 @@ HERE = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
 
 
 class Environment:
-    """A virtual environment: our wheel and the example's are installed in it, the rest, pip too, is borrowed."""
+    """A virtual environment: the examples' wheels are installed in it, the rest, ours and pip too, is borrowed.
+
+    A wheel of ours would compile its kernels anew in each run; `.ci/run` builds, installs and uses one.
+    """
 
     def __init__(self, folder: Path) -> None:
         venv.create(folder, with_pip=find_spec("pip") is None, symlinks=os.name != "nt")
         scripts = "Scripts" if os.name == "nt" else "bin"
         self.python = folder / scripts / "python"
-        self.tangible = folder / scripts / "tangible"
         paths = {"base": str(folder), "platbase": str(folder)}
         self.site = Path(sysconfig.get_path("purelib", vars=paths))
-        self.site.joinpath("borrowed.pth").write_text("\n".join(HERE))
+        borrowed = [f"import site; site.addsitedir({each!r})" for each in sorted(HERE)]
+        self.site.joinpath("borrowed.pth").write_text("\n".join(borrowed))
 
     def install(self, *wheels: Path) -> None:
         """Install wheels, with nothing fetched from anywhere."""
@@ -40,7 +43,7 @@ class Environment:
 
     def run(self, *words: str | Path, cwd: Path, **variables: str) -> subprocess.CompletedProcess[str]:
         """`tangible ...` as its user would call it."""
-        command = [self.tangible, *words]
+        command = [self.python, "-c", "from tangible_core.cli import main; main()", *words]
         env = {**os.environ, **variables}
         return subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, check=False)
 
@@ -57,7 +60,7 @@ def build(project: Path, out: Path) -> Path:
 def environment(tmp_path_factory: pytest.TempPathFactory) -> Environment:
     folder = tmp_path_factory.mktemp("fresh")
     environment = Environment(folder / "venv")
-    environment.install(*(build(project, folder / project.name) for project in (ROOT, *EXAMPLES)))
+    environment.install(*(build(project, folder / project.name) for project in EXAMPLES))
     return environment
 
 

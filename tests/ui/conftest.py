@@ -34,6 +34,7 @@ FLAGS = [
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist",
+    "--disable-gpu-rasterization",  # in software, a processor draws text and boxes sooner than it plays a graphics card
     "--autoplay-policy=no-user-gesture-required",
 ]
 DIRS = ("CACHE", "RUNTIME", "CONFIG", "LOG", "DATA")

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tangible_core.cli.options import Json
 from tangible_core.cli.verbosity import is_quiet
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..session.stimuli import Stimuli
+
 app = typer.Typer(name="study", rich_markup_mode=None, add_completion=False, no_args_is_help=True)
 StudyPath = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (YAML).", show_default=False)]
+Device = Annotated[str | None, typer.Option(help="Device of all conditions [default: that of their pipelines].")]
+DeviceSets = Annotated[
+    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Set one value of the device; repeatable.")
+]
 
 
 @app.callback()
@@ -20,16 +30,89 @@ def study() -> None:
 
 
 @app.command()
-def check(file: StudyPath, as_json: Json = False) -> None:
-    """Check a study file before anybody sits down."""
+def check(file: StudyPath, device: Device = None, sets: DeviceSets = None, as_json: Json = False) -> None:
+    """Check a study file, and that the device renders all that it asks for.
+
+    No device is opened. Exit 2 if anything is wrong.
+    """
     from tangible_core.cli import show
 
     from ..session.order import StudyCourse
+
+    stimuli = _open(file, device, sets)
+    stimuli.make(_progress(stimuli))
+    stimuli.check()
+    trials = StudyCourse(stimuli.file, 0).trials
+    if as_json:
+        facts = {"study": stimuli.file.study.study, "device": stimuli.device, "surfaces": len(stimuli)}
+        show.print_json({**facts, "trials": trials, "digest": stimuli.file.digest})
+    elif not is_quiet():
+        show.sentence(
+            f"{file}: nothing is wrong. A participant has {trials} trials, with {len(stimuli)} surfaces on the device "
+            f"{stimuli.device}.",
+            apart=False,
+        )
+
+
+@app.command()
+def run(
+    file: StudyPath,
+    participant: Annotated[str, typer.Option("--participant", help="Name of the participant, such as P7.")],
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for all results [default: out/NAME].")] = None,
+    device: Device = None,
+    sets: DeviceSets = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on where this participant stopped.")] = False,
+) -> None:
+    """Run a study with a participant, at the keyboard.
+
+    Each question is a line, each answer a key and Enter. Nothing shown tells which condition is presented. `q` leaves,
+    and --resume goes on from there.
+    """
+    from tangible_core.cli import show
+    from tangible_core.translation import translate
+
+    from ..session.desk import Left, Terminal
+    from ..session.start import begin
+    from ..session.stimuli import folder_of
+
+    stimuli = _open(file, device, sets)
+    language = stimuli.file.study.language
+    desk = Terminal(sys.stdin, _print, lambda text: translate(text, language))
+    root = out or folder_of(file)
+    try:
+        session = begin(stimuli.file, stimuli, participant, root, desk, resume=resume, progress=_progress(stimuli))
+        if session is None:
+            show.note("The participant does not agree; nothing was kept.")
+            return
+        done = session.run()
+    except Left:
+        show.note(f"the answers so far are kept in {root}; --resume goes on from there")
+        return
+    if not is_quiet():
+        show.plain(f"{done} answers are kept in {root}")
+
+
+def _open(file: Path, device: str | None, sets: list[str] | None) -> Stimuli:
+    from ..session.start import device_changes
+    from ..session.stimuli import Stimuli
     from ..study_file import load_study
 
-    found = load_study(file)
-    trials = StudyCourse(found, 0).trials
-    if as_json:
-        show.print_json({"study": found.study.study, "digest": found.digest, "trials": trials})
-    elif not is_quiet():
-        show.sentence(f"{file}: nothing is wrong; a participant has {trials} trials.")
+    return Stimuli(load_study(file), device_changes(device, sets or []))
+
+
+def _progress(stimuli: Stimuli) -> Callable[[int], None]:
+    """Return a function that prints how many surfaces are made, without their names."""
+    from tangible_core.cli import show
+
+    def count(made: int) -> None:
+        if not is_quiet():
+            show.note(f"{made} of {len(stimuli)} surfaces are ready")
+
+    return count
+
+
+def _print(text: str) -> None:
+    """Print a line at once, in the language of the participant and not in that of the terminal."""
+    from tangible_core.runtime.standard_output import stream
+
+    print(text, file=stream(), flush=True)

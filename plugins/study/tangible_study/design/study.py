@@ -28,7 +28,7 @@ class Scale(Section):
     of: str = "roughness"
     """Word for what is rated, in the language of the participants."""
     least: Annotated[int, Field(ge=0, le=9)] = 1
-    """Least rating."""
+    """The least rating."""
     most: Annotated[int, Field(ge=1, le=9)] = 7
     """Greatest rating; each rating is a key."""
     ends: tuple[str, str] | None = None
@@ -73,7 +73,7 @@ class Breaks(Section):
     every: Annotated[int, Field(ge=1, le=1000)] = 30
     """Number of trials from break to break."""
     seconds: Annotated[float, Field(ge=0, le=3600)] = 60.0
-    """Least duration of a break."""
+    """The least duration of a break."""
 
 
 class Limits(Section):
@@ -115,9 +115,9 @@ class Study(Quantities):
     language: Literal["en", "de"] = "en"
     """Language of what the program says to participants."""
     hears: str = "nothing"
-    """What a participant hears, such as pink noise on headphones; it is kept with the results."""
+    """Sounds that a participant hears, such as pink noise on headphones; they are kept with the results."""
     sees: str = "a dark screen"
-    """What a participant sees; it is kept with the results."""
+    """The view of a participant, such as a dark screen; it is kept with the results."""
     consent: str = ""
     """Text to which each participant agrees before the first trial; a copy is kept with the answers."""
 

@@ -1,4 +1,4 @@
-"""What procedures share: balanced positions, rounds in random order, and sentences about what is missing."""
+"""Pieces that procedures share: balanced positions, rounds in random order, and complaints about missing keys."""
 
 from collections.abc import Callable, Iterable, Sequence
 from itertools import combinations
@@ -35,7 +35,7 @@ def stimuli_of(cells: Iterable[Cell]) -> tuple[Stimulus, ...]:
     return tuple(dict.fromkeys(stimulus for cell in cells for stimulus in cell))
 
 
-def compared(comparison: Comparison, procedure: str, cell: Cell, position: int, intervals: int = 2) -> Trial:
+def comparison_trial(comparison: Comparison, procedure: str, cell: Cell, position: int, intervals: int = 2) -> Trial:
     """Return a trial in which the test is in one interval, and what it is compared with in all others."""
     test, against = cell
     return Trial(

@@ -5,7 +5,7 @@ from typing import final
 import numpy as np
 
 from ..design.study import Comparison
-from .cells import asks, cells_of, compared, in_rounds, stimuli_of, without_levels
+from .cells import asks, cells_of, comparison_trial, in_rounds, stimuli_of, without_levels
 from .procedure import Course, Listed, Procedure, Stimulus
 
 
@@ -24,7 +24,7 @@ class Constant(Procedure):
             cells,
             comparison.repetitions,
             generator,
-            lambda cell, number: compared(comparison, "constant", cell, 1 + number % 2),
+            lambda cell, number: comparison_trial(comparison, "constant", cell, 1 + number % 2),
         )
         return Listed(trials)
 

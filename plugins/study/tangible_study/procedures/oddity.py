@@ -6,7 +6,7 @@ from typing import final
 import numpy as np
 
 from ..design.study import Comparison
-from .cells import Cell, asks, cells_of, compared, in_rounds, stimuli_of
+from .cells import Cell, asks, cells_of, comparison_trial, in_rounds, stimuli_of
 from .procedure import Course, Listed, Procedure, Stimulus, Trial
 
 
@@ -46,7 +46,7 @@ class Oddity(Procedure):
 
 def odd_one(comparison: Comparison, procedure: str, cell: Cell, number: int) -> Trial:
     """Return one of the six arrangements of a pair in three intervals, by a number."""
-    trial = compared(comparison, procedure, cell, 1 + number % 3, intervals=3)
+    trial = comparison_trial(comparison, procedure, cell, 1 + number % 3, intervals=3)
     if number // 3 % 2 == 0:
         return trial
     others = {cell.test: cell.against, cell.against: cell.test}

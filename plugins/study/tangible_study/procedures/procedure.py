@@ -11,9 +11,6 @@ from tangible_core.scene.workspace import Section
 
 from ..design.study import Comparison
 
-EQUAL = "="
-"""Choice that ends an adjustment; the response is then the level."""
-
 
 class Stimulus(NamedTuple):
     """A surface in an interval: that of a condition, at a level if one varies."""
@@ -30,7 +27,7 @@ class Trial:
     question: str
     procedure: str
     intervals: tuple[Stimulus, ...]
-    """What is presented in each interval, in their order."""
+    """The stimulus of each interval, in their order."""
     choices: tuple[str, ...]
     """Possible responses; of an adjustment, the levels that can be set, as text."""
     condition: str

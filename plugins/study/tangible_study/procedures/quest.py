@@ -8,7 +8,7 @@ from pydantic import Field
 
 from ..design.study import Comparison
 from ..extra import need
-from .cells import Cell, asks, cells_of, compared, stimuli_of, without_levels
+from .cells import Cell, asks, cells_of, comparison_trial, stimuli_of, without_levels
 from .oddity import odd_one
 from .procedure import Course, Procedure, Stimulus, Trial, score
 
@@ -63,7 +63,7 @@ class _Tracks(Course):
             if self._comparison.question == "same":
                 self._trial = odd_one(self._comparison, "quest", cell, number)
             else:
-                self._trial = compared(self._comparison, "quest", cell, 1 + number % 2)
+                self._trial = comparison_trial(self._comparison, "quest", cell, 1 + number % 2)
         return self._trial
 
     def take(self, trial: Trial, response: str) -> None:

@@ -5,7 +5,7 @@ from typing import final
 import numpy as np
 
 from ..design.study import Comparison
-from .cells import asks, cells_of, compared, in_rounds, stimuli_of
+from .cells import asks, cells_of, comparison_trial, in_rounds, stimuli_of
 from .procedure import Course, Listed, Procedure, Stimulus
 
 
@@ -23,7 +23,7 @@ class TwoAfc(Procedure):
             cells_of(comparison),
             comparison.repetitions,
             generator,
-            lambda cell, number: compared(comparison, "2afc", cell, 1 + number % 2),
+            lambda cell, number: comparison_trial(comparison, "2afc", cell, 1 + number % 2),
         )
         return Listed(trials)
 

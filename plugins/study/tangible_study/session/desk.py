@@ -1,0 +1,66 @@
+"""The place at which a participant sits: sentences to hear, and keys that answer."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from typing import IO, final
+
+LEAVE = "q"
+"""Key that leaves the study; it goes on later with --resume."""
+
+
+class Left(Exception):
+    """The participant left; what was answered is kept."""
+
+
+class Desk(ABC):
+    """A place at which a participant hears what to do, and answers by keys."""
+
+    @abstractmethod
+    def say(self, text: str) -> None:
+        """Say a text; it does not wait."""
+
+    @abstractmethod
+    def ask(self, text: str, choices: Mapping[str, str]) -> str:
+        """Ask, wait for one of the keys, and return it; keys from before the question do not count.
+
+        choices: what each key means; "" is Enter. Raises: Left.
+        """
+
+
+@final
+class Terminal(Desk):
+    """A terminal: each text is a line, and each answer is a key and Enter, so that a screen reader reads it all."""
+
+    def __init__(self, keys: IO[str], write: Callable[[str], None], translate: Callable[[str], str]) -> None:
+        """keys: of the keyboard. write: prints a line. translate: to the language of the participant."""
+        self._keys, self._write, self._translate = keys, write, translate
+
+    def say(self, text: str) -> None:
+        """Print a line."""
+        self._write(self._translate(text))
+
+    def ask(self, text: str, choices: Mapping[str, str]) -> str:
+        """Print the question with its keys, and read lines until one of them is a key."""
+        keys = [f"{key} = {self._translate(meaning)}" if meaning else key for key, meaning in choices.items() if key]
+        listed = f" ({', '.join(keys)})" if keys else ""
+        self._write(f"{self._translate(text)}{listed}")
+        _forget_typed(self._keys)
+        while True:
+            line = self._keys.readline()
+            key = line.strip().casefold()
+            if not line or key == LEAVE:
+                raise Left
+            if key in choices:
+                return key
+            self.say("That key has no meaning here.")
+            self._write(f"{self._translate(text)}{listed}")
+
+
+def _forget_typed(keys: IO[str]) -> None:
+    """Forget what was typed at a terminal before a question."""
+    if keys.isatty():
+        try:
+            from termios import TCIFLUSH, tcflush
+        except ImportError:  # Windows
+            return
+        tcflush(keys, TCIFLUSH)

@@ -1,0 +1,216 @@
+"""The folder of a study's results: the design as it is run, the participants, and a folder for each of them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from hashlib import sha256
+from json import loads
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from tangible_core.errors import ConfigError, OutputError, ResultsError, quoted
+from tangible_core.files.json_text import write_figures
+from tangible_core.files.reading import read_bytes
+from tangible_core.files.writing import folder_lock, write_text
+from tangible_core.provenance.versions import versions
+
+from ..design.study import Study
+from ..study_file import StudyFile
+from ..trials import MISSING
+from .columns import describe_answers, describe_participants
+
+BIDS = "1.10.0"
+"""Version of the Brain Imaging Data Structure that the folder follows."""
+
+
+class Participant(NamedTuple):
+    """A line of participants.tsv."""
+
+    participant_id: str
+    language: str
+    started: str
+    finished: str = MISSING
+
+    @property
+    def has_finished(self) -> bool:
+        """True once all trials were answered."""
+        return self.finished != MISSING
+
+
+@dataclass(frozen=True)
+class Place:
+    """The paths of one participant."""
+
+    root: Path
+    name: str
+    task: str
+
+    @property
+    def folder(self) -> Path:
+        """The participant's folder."""
+        return self.root / f"sub-{self.name}"
+
+    @property
+    def answers(self) -> Path:
+        """The table of answers."""
+        return self.folder / "beh" / f"sub-{self.name}_task-{self.task}_beh.tsv"
+
+    @property
+    def sidecar(self) -> Path:
+        """The description of the table of answers."""
+        return self.answers.with_suffix(".json")
+
+    @property
+    def consent(self) -> Path:
+        """The text to which the participant agreed."""
+        return self.folder / "consent.txt"
+
+    def recording(self, trial: int, run: int) -> Path:
+        """Return the path of the recording of a trial. run: number of the start, from 1."""
+        name = f"sub-{self.name}_task-{self.task}_trial-{trial:04d}_run-{run}.nc"
+        return self.folder / "recordings" / name
+
+    def runs(self, trial: int) -> int:
+        """Return how often a trial was started before, by its recordings."""
+        return len(list(self.recording(trial, 1).parent.glob(f"*_trial-{trial:04d}_run-*.nc")))
+
+
+def now() -> str:
+    """Return date and time in UTC, ISO 8601; for people only, as a clock may be set at any time."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def design_digest(file: StudyFile) -> str:
+    """Return the digest of the study file and of all pipeline files that it names."""
+    digest = sha256(file.text.encode())
+    for path in sorted({recipe.pipeline for recipe in file.recipes().values()}):
+        try:
+            digest.update(read_bytes(path))
+        except OSError as error:
+            raise ConfigError(f"{path}: cannot be read: {error.strerror or error}") from error
+    return digest.hexdigest()[:16]
+
+
+def prepare(root: Path, file: StudyFile) -> None:
+    """Write what belongs to the whole study, for its first participant.
+
+    Raises: OutputError if the folder has another study, or cannot be written.
+    """
+    there, digest = root / "dataset_description.json", design_digest(file)
+    if (root / "study.yaml").exists():
+        try:
+            before = loads(there.read_text(encoding="utf-8")).get("Design")
+        except (OSError, ValueError, AttributeError):
+            before = None
+        if before != digest:
+            raise OutputError(
+                f"{root}: has participants of another version of this study; restore {root / 'study.yaml'} and its "
+                "pipelines as they were, or name another folder with --out"
+            )
+        return
+    if root.is_dir() and any(root.iterdir()):
+        raise OutputError(f"{root}: holds other files; name an empty folder with --out")
+    program = {"Name": "Tangible Images", "Version": versions()["tangible-images"]}
+    description = {
+        "Name": file.study.title or file.study.study,
+        "BIDSVersion": BIDS,
+        "DatasetType": "raw",
+        "GeneratedBy": [program],
+        "Design": digest,
+        "Versions": versions("questplus", "psignifit"),
+    }
+    write_figures(there, description)
+    write_figures(root / "participants.json", describe_participants())
+    write_text(root / "study.yaml", file.text)
+
+
+def participants(root: Path) -> list[Participant]:
+    """Return the participants in the order of their first trials. Raises: ResultsError for a damaged list."""
+    path = root / "participants.tsv"
+    try:
+        lines = read_bytes(path).decode().splitlines()[1:]
+        return [Participant(*line.split("\t")) for line in lines]
+    except FileNotFoundError:
+        return []
+    except (OSError, UnicodeDecodeError, TypeError) as error:
+        raise ResultsError(f"{path}: is not a list of participants: {error}; restore it") from error
+
+
+def check_name(root: Path, name: str, resume: bool) -> int | None:
+    """Return the number of the participant who resumes, from 0; None for a new one.
+
+    Raises: ConfigError for a name that is taken, or nobody has, or that is not letters and digits.
+    """
+    if not (name.isascii() and name.isalnum()):
+        raise ConfigError(f"--participant {quoted(name)}: a name has letters and digits alone, such as P7")
+    known = participants(root)
+    names = [each.participant_id.casefold() for each in known]  # a file system may not tell p7 from P7
+    number = names.index(f"sub-{name}".casefold()) if f"sub-{name}".casefold() in names else None
+    if number is None:
+        if resume:
+            raise ConfigError(f"--participant {name}: has not begun yet; leave out --resume")
+    elif known[number].has_finished:
+        raise ConfigError(f"--participant {name}: has answered all trials; give this participant another name")
+    elif not resume:
+        raise ConfigError(
+            f"--participant {name}: has begun already; --resume goes on where this participant stopped, and somebody "
+            "else needs another name"
+        )
+    elif known[number].participant_id != f"sub-{name}":
+        raise ConfigError(f"--participant {name}: is written {known[number].participant_id.removeprefix('sub-')}")
+    return number
+
+
+def enrol(root: Path, name: str, study: Study, resume: bool) -> int:
+    """Add a participant, or find the one who resumes; return the participant's number, from 0.
+
+    Raises: ConfigError as `check_name`; OutputError.
+    """
+    with folder_lock(root):
+        if (number := check_name(root, name, resume)) is not None:
+            return number
+        known = participants(root)
+        _write(root, [*known, Participant(f"sub-{name}", study.language, now())])
+        return len(known)
+
+
+def finish(root: Path, name: str) -> None:
+    """Note that a participant has answered all trials. Raises: OutputError."""
+    with folder_lock(root):
+        known = participants(root)
+        _write(
+            root,
+            [each._replace(finished=now()) if each.participant_id == f"sub-{name}" else each for each in known],
+        )
+
+
+def _write(root: Path, known: list[Participant]) -> None:
+    lines = ["\t".join(each) for each in (Participant._fields, *known)]
+    write_text(root / "participants.tsv", "\n".join(lines) + "\n")
+
+
+def faults_before(place: Place) -> list[str]:
+    """Return the faults of earlier starts of this participant, from the description of the answers."""
+    try:
+        faults: list[str] = loads(place.sidecar.read_text(encoding="utf-8"))["Faults"]
+    except (OSError, ValueError, KeyError):
+        return []
+    return faults
+
+
+def write_sidecar(place: Place, file: StudyFile, facts: Mapping[str, Any]) -> None:
+    """Write the description of the table of answers. facts: of this participant, such as the device."""
+    study = file.study
+    units = {each.name: each.unit for each in study.comparisons if each.unit}
+    about = {
+        "TaskName": study.study,
+        "TaskDescription": study.title,
+        "Instructions": {each.name: each.instruction for each in study.comparisons if each.instruction},
+        "Hears": study.hears,
+        "Sees": study.sees,
+        "Seed": study.seed,
+        "Design": design_digest(file),
+        "Versions": versions("questplus", "psignifit"),
+        **facts,
+    }
+    write_figures(place.sidecar, {**describe_answers(units), **about})

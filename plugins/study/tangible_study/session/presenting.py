@@ -1,0 +1,86 @@
+"""A trial on the device: its intervals one after the other, recorded, with no force between them."""
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tangible_core.data import TICK_COLUMNS
+from tangible_core.errors import DeviceError
+from tangible_core.pipeline.output.runs import about, join_descriptions
+from tangible_core.servo import Servo
+from tangible_core.session import INTERRUPTED, About, Writer
+
+from ..procedures.procedure import Stimulus, Trial
+from .desk import Desk
+from .rendering import Rendering
+from .stimuli import Stimuli
+
+TIME = TICK_COLUMNS.index("time_s")
+PERIOD_S = 0.001
+"""Period of the force loop; an interval begins at least so long after the last tick of the one before."""
+
+
+@dataclass
+class Presenter:
+    """Presents trials to a participant."""
+
+    stimuli: Stimuli
+    desk: Desk
+    in_real_time: bool = True
+    """False runs a simulated device by its own clock, without waiting."""
+
+    def about(self, trial: Trial) -> About:
+        """Describe the scenes of a trial for its recording, in the order of its intervals."""
+        each = [about(self.stimuli.feeling(trial.comparison, stimulus).engine) for stimulus in trial.intervals]
+        return join_descriptions(replace(each[0], device=self.stimuli.device), each)
+
+    def present(
+        self, trial: Trial, intervals: tuple[Stimulus, ...], writer: Writer, start_s: float, rendering: Rendering
+    ) -> None:
+        """Present intervals, and append their ticks to the recording, by the time since the trial began.
+
+        start_s: monotonic time at which the trial began. rendering: counts the ticks.
+
+        Raises: DeviceError if the device fails in an interval, KeyboardInterrupt, OutputError for the recording; the
+        force is zero then.
+        """
+        study = self.stimuli.file.study
+        for number, stimulus in enumerate(intervals, 1):
+            self._pause(study.pause_s if number > 1 else 0.0)
+            name = f"Interval {number}." if len(intervals) > 1 else "Feel now."
+            self._present_one(trial, stimulus, name, writer, start_s, rendering)
+        self.desk.say("Stop.")
+
+    def _present_one(
+        self, trial: Trial, stimulus: Stimulus, name: str, writer: Writer, start_s: float, rendering: Rendering
+    ) -> None:
+        feeling, seconds = self.stimuli.feeling(trial.comparison, stimulus), self.stimuli.file.study.feel_s
+        since_s = max(time.monotonic() - start_s, rendering.last_s + PERIOD_S)
+
+        def begin(_: Servo) -> None:
+            nonlocal since_s
+            since_s = max(time.monotonic() - start_s, since_s)
+            self.desk.say(name)
+
+        def keep(rows: np.ndarray) -> None:
+            rows = rows.copy()
+            rows[:, TIME] += since_s
+            rendering.add(rows)
+            writer.append(rows)
+
+        if self.in_real_time:
+            ended = feeling.run(seconds, keep=keep, on_start=begin, beacon=trial.target).stopped
+        else:
+            self.desk.say(name)
+            recording = feeling.run(seconds, in_real_time=False, beacon=trial.target)
+            keep(recording.rows)
+            ended = recording.stopped
+        if ended == INTERRUPTED:
+            raise KeyboardInterrupt
+        if ended:
+            raise DeviceError(ended)
+
+    def _pause(self, seconds: float) -> None:
+        if self.in_real_time and seconds:
+            time.sleep(seconds)

@@ -1,0 +1,188 @@
+"""A participant's session: trial after trial until the study is over, with every answer on the disk before the next."""
+
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+from tangible_core.errors import DeviceError, OutputError
+from tangible_core.files.writing import write_text
+from tangible_core.session import Writer
+
+from ..procedures.procedure import Stimulus, Trial, score
+from ..trials import Answer, AnswerFile, read_answers
+from . import folder
+from .desk import Desk
+from .order import StudyCourse, replay
+from .presenting import Presenter
+from .rendering import Rendering
+from .stimuli import Stimuli
+from .words import EQUAL, MORE, choices, question, response, right_answer
+
+CONSENT = "Do you agree?"
+AGREE = {"y": "yes", "n": "no"}
+GO_ON = {"": ""}
+"""Enter alone."""
+
+
+@dataclass
+class Session:
+    """A session of one participant at a desk."""
+
+    stimuli: Stimuli
+    place: folder.Place
+    number: int
+    """Number of the participant, from 0."""
+    desk: Desk
+    presenter: Presenter
+    wait: Callable[[float], None] = time.sleep
+    lateness_s: list[float] = field(default_factory=list[float])
+    faults: list[str] = field(default_factory=list[str])
+
+    def run(self) -> int:
+        """Run all trials that are not answered yet; return the number of all that are.
+
+        Raises: Left, KeyboardInterrupt; all answers are kept. ResultsError if the answers fit another study.
+        """
+        file, course = self.stimuli.file, StudyCourse(self.stimuli.file, self.number)
+        before = read_answers(self.place.answers)
+        done, last = replay(course, before), before[-1].comparison if before else ""
+        self.faults += folder.faults_before(self.place)
+        self._save_facts()
+        with AnswerFile(self.place.answers) as table:
+            try:
+                while (trial := course.next()) is not None:
+                    if trial.comparison != last:
+                        self._introduce(trial)
+                        last = trial.comparison
+                    elif done and done % file.study.breaks.every == 0:
+                        self._take_break(done, course.trials)
+                    answer = self._run_trial(trial, done + 1, course.trials)
+                    self._keep(table, answer)
+                    course.take(trial, answer.response)
+                    done += 1
+                    if trial.phase == "training":
+                        self._give_feedback(trial, answer)
+            finally:
+                with suppress(OutputError):  # a description; each answer is saved already
+                    self._save_facts()
+        folder.finish(self.place.root, self.place.name)
+        self.desk.say("That was the last trial. Thank you.")
+        return done
+
+    def ask_consent(self) -> bool:
+        """Read the consent text to the participant, unless that was done; return whether the participant agrees.
+
+        Raises: Left.
+        """
+        study = self.stimuli.file.study
+        if not study.consent or self.place.consent.exists():
+            return True
+        self.desk.say(study.consent)
+        return self.desk.ask(CONSENT, AGREE) == "y"
+
+    def save_consent(self) -> None:
+        """Keep the text to which the participant agreed. Raises: OutputError."""
+        consent = self.stimuli.file.study.consent
+        if consent and not self.place.consent.exists():
+            write_text(self.place.consent, "\n\n".join((consent.rstrip(), f"agreed: {folder.now()}\n")))
+
+    def _introduce(self, trial: Trial) -> None:
+        comparison = self.stimuli.file.study.comparison(trial.comparison)
+        if comparison.instruction:
+            self.desk.say(comparison.instruction)
+        if trial.phase == "training":
+            self.desk.say("First some trials for training.")
+        self.desk.ask("Press Enter to begin.", GO_ON)
+
+    def _take_break(self, done: int, trials: int) -> None:
+        seconds = self.stimuli.file.study.breaks.seconds
+        self.desk.say(f"A break of {seconds:.0f} seconds. {done} of {trials} trials are done.")
+        self.wait(seconds)
+        self.desk.ask("Press Enter to go on.", GO_ON)
+
+    def _run_trial(self, trial: Trial, number: int, trials: int) -> Answer:
+        """Present a trial until it is answered; a device or a disk that fails makes it begin again."""
+        while True:
+            repeat = self.place.runs(number)
+            path = self.place.recording(number, repeat + 1)
+            self.desk.say(f"Trial {number} of {trials}.")
+            try:
+                with Writer(path, self.presenter.about(trial)) as writer:
+                    key, rendering, seconds = self._present_and_ask(trial, writer)
+            except (DeviceError, OutputError) as error:
+                self.faults.append(f"{path.name}: {error}")
+                self.desk.say(f"The trial was interrupted, and there is no force. {error}")
+                self.desk.ask("Press Enter to repeat the trial.", GO_ON)
+                continue
+            self.lateness_s += rendering.late_s
+            why, (chosen, correct) = rendering.why_not(self.stimuli.file.study.limits), score(trial, key)
+            return Answer(
+                number,
+                trial.phase,
+                trial.comparison,
+                trial.question,
+                trial.procedure,
+                trial.condition,
+                trial.other,
+                trial.level,
+                trial.standard,
+                trial.position,
+                key,
+                chosen,
+                correct,
+                round(seconds, 4),
+                repeat,
+                why is None,
+                why,
+                path.relative_to(self.place.root).as_posix(),
+                trial.target,
+            )
+
+    def _present_and_ask(self, trial: Trial, writer: Writer) -> tuple[str, Rendering, float]:
+        """Return the response to a trial, what was rendered, and the time of the answer, s."""
+        comparison, start_s = self.stimuli.file.study.comparison(trial.comparison), time.monotonic()
+        intervals, whole = trial.intervals, Rendering()
+        while True:
+            self.presenter.present(trial, intervals, writer, start_s, whole)
+            asked_s = time.monotonic()
+            key = self.desk.ask(question(trial, comparison), choices(trial, comparison))
+            if trial.question != "equal":
+                return response(trial, key), whole, time.monotonic() - asked_s
+            level = intervals[-1].level
+            assert level is not None
+            if key == EQUAL:
+                return repr(level), whole, time.monotonic() - asked_s
+            intervals = (*intervals[:-1], Stimulus(trial.condition, self._next_level(trial, level, key == MORE)))
+
+    def _next_level(self, trial: Trial, level: float, more: bool) -> float:
+        levels = [float(each) for each in trial.choices]
+        there = levels.index(level) + (1 if more else -1)
+        if not 0 <= there < len(levels):
+            self.desk.say("This is the end of the range.")
+        return levels[min(max(there, 0), len(levels) - 1)]
+
+    def _keep(self, table: AnswerFile, answer: Answer) -> None:
+        """Keep an answer; if the disk is full, tell so and try again until it is kept."""
+        while True:
+            try:
+                return table.add(answer)
+            except OutputError as error:
+                self.desk.say(f"The answer is not saved yet. {error}")
+                self.desk.ask("Press Enter to save it again.", GO_ON)
+
+    def _give_feedback(self, trial: Trial, answer: Answer) -> None:
+        if right := right_answer(trial):
+            self.desk.say("Right." if answer.response == right else f"Not right. The answer is {right}.")
+
+    def _save_facts(self) -> None:
+        """Describe the table of answers, with the device and its lateness so far."""
+        late_s = self.lateness_s
+        facts: dict[str, Any] = {
+            "Participant": self.number,
+            "Device": self.stimuli.device,
+            "Lateness": {"p99_s": max(late_s[::2], default=None), "max_s": max(late_s[1::2], default=None)},
+            "Faults": self.faults,
+        }
+        folder.write_sidecar(self.place, self.stimuli.file, facts)

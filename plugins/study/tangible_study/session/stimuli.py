@@ -1,0 +1,128 @@
+"""All stimuli of a study, made before the first trial: so that no trial waits, and none fails for what was known."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from tangible_core.errors import ConfigError, TangibleError
+from tangible_core.pipeline.feeling import Feeling
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.plugins.registry import Registry, default_registry
+from tangible_core.preflight import Hand, Loop, Preflight, Verdict
+
+from ..procedures.procedure import Stimulus
+from ..study_file import Recipe, StudyFile, config_of_recipe
+
+QUICK = Loop(seconds=0.2)
+"""Time for which this machine's lateness is measured for each stimulus."""
+NOT_RENDERED = frozenset(("clipping", "contact", "workspace"))
+"""Checks of preflight that tell that a device renders something else than requested, even if that is safe."""
+
+
+class Stimuli:
+    """The surfaces of a study on a device, by comparison and stimulus; equal ones are made once."""
+
+    def __init__(
+        self, file: StudyFile, device: tuple[str, ...] = (), registry: Registry | None = None, cached: bool = True
+    ) -> None:
+        """Read all pipelines; nothing is made yet.
+
+        device: changes of each pipeline that choose the device, `key.key=value` each.
+        Raises: ConfigError for a pipeline without a device or a force law, or devices that differ.
+        """
+        self.file = file
+        registry = registry or default_registry()
+        self._pipelines: dict[Recipe, Pipeline] = {}
+        self.recipes: Mapping[tuple[str, Stimulus], Recipe] = {
+            key: Recipe(each.pipeline, (*each.sets, *device)) for key, each in file.recipes().items()
+        }
+        for key, recipe in self.recipes.items():
+            if recipe not in self._pipelines:
+                config = config_of_recipe(recipe, registry)
+                for missing in ("device", "render"):
+                    if getattr(config, missing) is None:
+                        file.source.complain(file.place(*key), str(config.missing(missing)))
+                like = next(iter(self._pipelines.values()), None)
+                made = (
+                    Pipeline.from_config(config, registry, like=like)
+                    if like
+                    else Pipeline.from_config(config, registry)
+                )
+                if not cached:
+                    made.engine.cache = None
+                self._pipelines[recipe] = made
+        file.source.settle()
+        devices = {each.config.device.name for each in self._pipelines.values() if each.config.device}
+        if len(devices) > 1:
+            raise ConfigError(
+                f"{file.path}: its pipelines have different devices, {' and '.join(sorted(devices))}, which would tell "
+                "conditions apart; choose one with --device"
+            )
+        self.device = next(iter(devices))
+
+    def __len__(self) -> int:
+        return len(self._pipelines)
+
+    def feeling(self, comparison: str, stimulus: Stimulus) -> Feeling:
+        """Return the surface of a stimulus on its device."""
+        return Feeling(self._pipelines[self.recipes[comparison, stimulus]])
+
+    def make(self, progress: Callable[[int], None]) -> None:
+        """Make every surface and force law. progress: called with the number that are made.
+
+        Raises: ConfigError that names the condition or level of what cannot be made.
+        """
+        made = set[Recipe]()
+        for key, recipe in self.recipes.items():
+            if recipe not in made:
+                try:
+                    self._pipelines[recipe].make("touch")
+                except TangibleError as error:
+                    self.file.source.complain(self.file.place(*key), str(error))
+                made.add(recipe)
+                progress(len(made))
+        self._check_names()
+        self.file.source.settle()
+
+    def check(self, hand: Hand | None = None) -> None:
+        """Check by preflight that the device renders everything; no device is opened.
+
+        Raises: ConfigError with a sentence for each condition or level that it does not, and its place.
+        """
+        checked = set[Recipe]()
+        for key, recipe in self.recipes.items():
+            if recipe not in checked:
+                checked.add(recipe)
+                if problem := _problem(self.feeling(*key).preflight(hand, QUICK)):
+                    self.file.source.complain(self.file.place(*key), f"{self.device} cannot render this: {problem}")
+        self.file.source.settle()
+
+    def _check_names(self) -> None:
+        """Complain about names that are to be chosen and that a surface has no part of."""
+        for (comparison, stimulus), recipe in self.recipes.items():
+            names = self.file.study.comparison(comparison).names
+            if not names or self.file.study.comparison(comparison).question != "name":
+                continue
+            there = self._pipelines[recipe].surface.names or ()
+            for name in names:
+                if name not in there:
+                    index = [each.name for each in self.file.study.comparisons].index(comparison)
+                    known = ", ".join(filter(None, there)) or "none"
+                    where = ("comparisons", index, "names", names.index(name))
+                    self.file.source.complain(
+                        where, f"{stimulus.condition} has no part named {name!r}; it has: {known} (see `parts:`)"
+                    )
+
+
+def _problem(verdicts: Preflight) -> str:
+    """Return why a device does not render what was requested; "" if it does."""
+    wrong = [each for each in verdicts if each.verdict == "unsafe" or _alters(each)]
+    return "; ".join(f"{each.says} ({each.cure})" if each.cure else each.says for each in wrong[:2])
+
+
+def _alters(verdict: Verdict) -> bool:
+    return verdict.verdict != "ok" and verdict.check in NOT_RENDERED
+
+
+def folder_of(path: Path) -> Path:
+    """Return the folder of the results of a study if none is named."""
+    return Path("out", path.stem)

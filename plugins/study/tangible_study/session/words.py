@@ -1,0 +1,52 @@
+"""The words for a participant: sentences of each question, and the keys that answer."""
+
+from ..design.study import Comparison
+from ..procedures.procedure import Trial
+
+MORE, LESS, EQUAL = "1", "2", "3"
+"""Keys of an adjustment."""
+
+
+def question(trial: Trial, comparison: Comparison) -> str:
+    """Return the question after a trial."""
+    match trial.question:
+        case "rougher":
+            return "Which interval was rougher?"
+        case "higher":
+            return "Which interval was higher?"
+        case "same":
+            return "Which interval was not the same as the others?"
+        case "equal":
+            return "Was interval 2 equal to interval 1?"
+        case "name":
+            return "Which part was this?"
+        case _:
+            return f"How would you rate {comparison.scale.of}?"
+
+
+def choices(trial: Trial, comparison: Comparison) -> dict[str, str]:
+    """Return the keys that answer a trial, each with its meaning."""
+    if trial.question == "equal":
+        return {MORE: "no, it needs more", LESS: "no, it needs less", EQUAL: "yes"}
+    if trial.question == "name":
+        return {str(number): name for number, name in enumerate(trial.choices, 1)}
+    if trial.question == "rating":
+        ends = comparison.scale.ends or ("", "")
+        return dict.fromkeys(trial.choices, "") | {trial.choices[0]: ends[0], trial.choices[-1]: ends[1]}
+    return dict.fromkeys(trial.choices, "")
+
+
+def response(trial: Trial, key: str) -> str:
+    """Return the response of a key."""
+    return trial.choices[int(key) - 1] if trial.question == "name" else key
+
+
+def right_answer(trial: Trial) -> str:
+    """Return the right answer of a trial, for training; "" if there is none."""
+    if trial.question == "name":
+        return trial.target or ""
+    if trial.question == "same":
+        return str(trial.position)
+    if trial.level is None or trial.standard is None or trial.position is None or trial.level == trial.standard:
+        return ""
+    return str(trial.position if trial.level > trial.standard else 3 - trial.position)

@@ -261,7 +261,7 @@ def test_installed_methods_are_listed():
 
 
 @pytest.mark.parametrize(
-    ("name", "bytes_a_pixel"), [("gabor", 60), ("gradient", 40), ("hierarchy", 40), ("histogram", 50)]
+    ("name", "bytes_a_pixel"), [("gabor", 64), ("gradient", 40), ("hierarchy", 40), ("histogram", 50)]
 )
 def test_memory_stated_is_enough_for_four_megapixels(name: str, bytes_a_pixel: int):
     """The bound holds for grey, above the picture, with 16 MiB for constant parts."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float32, Float64, Int32
+from jaxtyping import Bool, Float32, Float64, Int32
 
 from tangible_core.compiled.compiling import njit
 from tangible_core.compiled.small_matrices import cholesky, whiten
@@ -34,6 +34,10 @@ class Step(NamedTuple):
     clusters: int
     cost: float
     """The cost by `joining_costs`; infinite where there is one cluster only."""
+    distance: float = np.inf
+    """The squared Mahalanobis distance between the two that are joined next."""
+    size: float = 0.0
+    """Their combined size a b / (a + b), as a share of all cells."""
 
 
 def join_clusters(
@@ -58,7 +62,7 @@ def join_clusters(
             break
         costs = joining_costs(projected, labels, shape, power)
         other, one = np.unravel_index(costs.argmin(), costs.shape)
-        yield Step(labels, count, float(costs[other, one]))
+        yield _step(labels, count, costs[other, one], labels == one, labels == other, power)
         names = np.arange(count, dtype=np.int32)
         names[other:] -= 1
         names[other] = one
@@ -66,6 +70,19 @@ def join_clusters(
         if count <= renewed:
             labels = refit_labels(projected, labels, shape, 1, 1)
     yield Step(np.zeros_like(labels), 1, np.inf)
+
+
+def _step(
+    labels: Int32[np.ndarray, "n"],
+    count: int,
+    cost: float,
+    one: Bool[np.ndarray, "n"],
+    other: Bool[np.ndarray, "n"],
+    power: float,
+) -> Step:
+    a, b = np.count_nonzero(one), np.count_nonzero(other)
+    size = a * b / (a + b) / labels.size
+    return Step(labels, count, float(cost), float(cost) / (size * count) ** power, size)
 
 
 def axes_between(

@@ -13,7 +13,10 @@ from tangible_core.cli.verbosity import is_quiet
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from contextlib import ExitStack
 
+    from ..design import Study
+    from ..session.desk import Desk
     from ..session.stimuli import Stimuli
 
 app = typer.Typer(name="study", rich_markup_mode=None, add_completion=False, no_args_is_help=True)
@@ -61,35 +64,62 @@ def run(
     out: Annotated[Path | None, typer.Option("--out", help="Folder for all results [default: out/NAME].")] = None,
     device: Device = None,
     sets: DeviceSets = None,
+    page: Annotated[
+        bool, typer.Option("--page", help="Address the participant on a page in the browser, which reads aloud.")
+    ] = False,
     resume: Annotated[bool, typer.Option("--resume", help="Go on where this participant stopped.")] = False,
 ) -> None:
-    """Run a study with a participant, at the keyboard.
+    """Run a study with a participant, at the keyboard or on a page.
 
-    Each question is a line, each answer a key and Enter. Nothing shown tells which condition is presented. `q` leaves,
-    and --resume goes on from there.
+    At a terminal, each question is a line, each answer a key and Enter. Nothing shown tells which condition is
+    presented. `q` leaves, and --resume goes on from there.
     """
-    from tangible_core.cli import show
-    from tangible_core.translation import translate
+    from contextlib import ExitStack
 
-    from ..session.desk import Left, Terminal
+    from tangible_core.cli import show
+
+    from ..session.desk import Left
     from ..session.start import begin
     from ..session.stimuli import folder_of
 
     stimuli = _open(file, device, sets)
-    language = stimuli.file.study.language
-    desk = Terminal(sys.stdin, _print, lambda text: translate(text, language))
     root = out or folder_of(file)
-    try:
-        session = begin(stimuli.file, stimuli, participant, root, desk, resume=resume, progress=_progress(stimuli))
-        if session is None:
-            show.note("The participant does not agree; nothing was kept.")
+    with ExitStack() as stack:
+        desk = _open_page(stimuli.file.study, stack) if page else _terminal(stimuli.file.study)
+        try:
+            session = begin(stimuli.file, stimuli, participant, root, desk, resume=resume, progress=_progress(stimuli))
+            if session is None:
+                show.note("The participant does not agree; nothing was kept.")
+                return
+            done = session.run()
+        except Left:
+            show.note(f"the answers so far are kept in {root}; --resume goes on from there")
             return
-        done = session.run()
-    except Left:
-        show.note(f"the answers so far are kept in {root}; --resume goes on from there")
-        return
     if not is_quiet():
         show.plain(f"{done} answers are kept in {root}")
+
+
+def _terminal(design: Study) -> Desk:
+    from tangible_core.translation import translate
+
+    from ..session.desk import Terminal
+
+    return Terminal(sys.stdin, _print, lambda text: translate(text, design.language))
+
+
+def _open_page(design: Study, stack: ExitStack) -> Desk:
+    """Serve the page until the stack ends, and open it in the browser."""
+    import webbrowser
+
+    from tangible_core.cli import show
+    from tangible_core.translation import translate
+
+    from ..session.page import Page
+
+    served = stack.enter_context(Page(design.language, lambda text: translate(text, design.language)))
+    show.note(f"the page of the participant: {served.address}")
+    webbrowser.open(served.address)
+    return served
 
 
 def _open(file: Path, device: str | None, sets: list[str] | None) -> Stimuli:

@@ -25,8 +25,8 @@ class Condition(Section):
 class Scale(Section):
     """A scale for ratings in whole numbers."""
 
-    of: str = "roughness"
-    """Word for what is rated, in the language of the participants."""
+    of: str = ""
+    """Word for what is rated, such as the roughness, in the language of the participants."""
     least: Annotated[int, Field(ge=0, le=9)] = 1
     """The least rating."""
     most: Annotated[int, Field(ge=1, le=9)] = 7

@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from threading import Event
 from typing import IO, final
 
 LEAVE = "q"
@@ -14,6 +15,11 @@ class Left(Exception):
 
 class Desk(ABC):
     """A place at which a participant hears what to do, and answers by keys."""
+
+    @property
+    @abstractmethod
+    def stop(self) -> Event:
+        """An event that ends the force at once, when the participant sets it."""
 
     @abstractmethod
     def say(self, text: str) -> None:
@@ -34,6 +40,12 @@ class Terminal(Desk):
     def __init__(self, keys: IO[str], write: Callable[[str], None], translate: Callable[[str], str]) -> None:
         """keys: of the keyboard. write: prints a line. translate: to the language of the participant."""
         self._keys, self._write, self._translate = keys, write, translate
+        self._stop = Event()
+
+    @property
+    def stop(self) -> Event:
+        """An event that nobody sets: at a terminal, Ctrl-C ends the force and the session."""
+        return self._stop
 
     def say(self, text: str) -> None:
         """Print a line."""

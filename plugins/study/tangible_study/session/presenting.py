@@ -46,11 +46,12 @@ class Presenter:
         force is zero then.
         """
         study = self.stimuli.file.study
+        self.desk.stop.clear()
         for number, stimulus in enumerate(intervals, 1):
             self._pause(study.pause_s if number > 1 else 0.0)
             name = f"Interval {number}." if len(intervals) > 1 else "Feel now."
             self._present_one(trial, stimulus, name, writer, start_s, rendering)
-        self.desk.say("Stop.")
+        self.desk.say("Please stop now.")
 
     def _present_one(
         self, trial: Trial, stimulus: Stimulus, name: str, writer: Writer, start_s: float, rendering: Rendering
@@ -70,10 +71,10 @@ class Presenter:
             writer.append(rows)
 
         if self.in_real_time:
-            ended = feeling.run(seconds, keep=keep, on_start=begin, beacon=trial.target).stopped
+            ended = feeling.run(seconds, keep=keep, on_start=begin, beacon=trial.target, stop=self.desk.stop).stopped
         else:
             self.desk.say(name)
-            recording = feeling.run(seconds, in_real_time=False, beacon=trial.target)
+            recording = feeling.run(seconds, in_real_time=False, beacon=trial.target, stop=self.desk.stop)
             keep(recording.rows)
             ended = recording.stopped
         if ended == INTERRUPTED:

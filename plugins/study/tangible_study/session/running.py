@@ -21,7 +21,7 @@ from .stimuli import Stimuli
 from .words import EQUAL, MORE, choices, question, response, right_answer
 
 CONSENT = "Do you agree?"
-AGREE = {"y": "yes", "n": "no"}
+AGREE = {"y": "yes, I agree", "n": "no, I do not"}
 GO_ON = {"": ""}
 """Enter alone."""
 
@@ -174,7 +174,7 @@ class Session:
 
     def _give_feedback(self, trial: Trial, answer: Answer) -> None:
         if right := right_answer(trial):
-            self.desk.say("Right." if answer.response == right else f"Not right. The answer is {right}.")
+            self.desk.say("That is right." if answer.response == right else f"Not right. The answer is {right}.")
 
     def _save_facts(self) -> None:
         """Describe the table of answers, with the device and its lateness so far."""

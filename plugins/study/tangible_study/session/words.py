@@ -21,13 +21,14 @@ def question(trial: Trial, comparison: Comparison) -> str:
         case "name":
             return "Which part was this?"
         case _:
-            return f"How would you rate {comparison.scale.of}?"
+            of = comparison.scale.of
+            return f"How would you rate {of}?" if of else "Which number fits best?"
 
 
 def choices(trial: Trial, comparison: Comparison) -> dict[str, str]:
     """Return the keys that answer a trial, each with its meaning."""
     if trial.question == "equal":
-        return {MORE: "no, it needs more", LESS: "no, it needs less", EQUAL: "yes"}
+        return {MORE: "no, it needs more", LESS: "no, it needs less", EQUAL: "yes, it was equal"}
     if trial.question == "name":
         return {str(number): name for number, name in enumerate(trial.choices, 1)}
     if trial.question == "rating":

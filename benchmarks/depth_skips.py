@@ -64,11 +64,11 @@ def skips(scene: KnownScene) -> Iterator[Skip]:
     same, still_px = Views(views.left, views.left), np.zeros(views.shape, np.float32)
     peer = OpenCVSGBM(max_disparity_px=told, fill=True)
     once = peer.model_copy(update={"second_pass": False})
-    sharp = {"cost": "sharp", "realign_rows": False}
+    levels = {"cost": "levels", "realign_rows": False}
     best: dict[str, object] = {"effort": "best"}
     yield other("disparities outside the range found", "`max_disparity_px`: auto, 256", {}, {"max_disparity_px": 256})
-    yield other("the trial of costs and rows", "`cost`: sharp, auto; `realign_rows`", sharp, {})
-    yield other("the comparison of grey levels, `effort: best`", "`cost`: sharp, auto", best | {"cost": "sharp"}, best)
+    yield other("the trial of costs and rows", "`cost`: levels, auto; `realign_rows`", levels, {})
+    yield other("the comparison of grey levels", "`cost`: sharp, auto", {"cost": "sharp"}, {})
     yield other("what the best effort adds", "`effort`: balanced, best", {}, best)
     yield other("the strict check from the right", "`check`: soft, strict", {}, {"check": "strict"})
     yield other("full resolution", "`resolution`: half, full", {"resolution": "half"}, {"resolution": "full"})

@@ -42,10 +42,8 @@ Rows = Sequence[tuple[int, int]]
 
 
 class _Spending(NamedTuple):
-    """The cost that an effort tries first, its thresholds for noise, and the rows that it spends on seams."""
+    """The thresholds of an effort for noise, and the rows that it spends on seams."""
 
-    first: Cost
-    """The cost that is tried first."""
     speckle_threshold: float
     """Loss from which `sharp` gives way to a cost for noise."""
     differing_threshold: float
@@ -55,8 +53,8 @@ class _Spending(NamedTuple):
 
 
 SPENDING: dict[Effort, _Spending] = {
-    "balanced": _Spending(SHARP, 0.06, 0.28, WARM_ROWS),
-    "best": _Spending(LEVELS, 0.11, 0.315, 48),
+    "balanced": _Spending(0.06, 0.28, WARM_ROWS),
+    "best": _Spending(0.11, 0.315, 48),
 }
 
 
@@ -70,7 +68,7 @@ def match(
     effort: Effort,
 ) -> tuple[StripMatches, Cost]:
     """Match the strips `rows` with the given cost or, if None, with the one chosen by a trial; return the cost too."""
-    trial = _Trial(pair, span, cost or SPENDING[effort].first, check_tolerance, effort)
+    trial = _Trial(pair, span, cost or LEVELS, check_tolerance, effort)
     if cost and not realign_rows:
         trial.sweep(rows)
         return trial.out, cost
@@ -158,14 +156,13 @@ class _Trial:
 
     def levels_apart(self, rows: Rows) -> float:
         """Return the share of matches in these rows whose levels differ by the most that counts."""
-        apart = matches = 0
-        for y in (y for a, b in rows for y in range(a, b, EVERY_ROW)):
-            (x,) = np.nonzero(self.out.disparity[y] != UNKNOWN)
-            there = np.clip(x - ((self.out.disparity[y, x] + 8) >> 4), 0, self.pair.width - 1)
-            apart_here = np.abs((self.pair.left[y, x] >> 1).astype(np.int16) - (self.pair.right[y, there] >> 1))
-            apart += np.count_nonzero(apart_here >= self.cost.most_level)
-            matches += len(x)
-        return apart / max(1, matches)
+        y = np.array([y for a, b in rows for y in range(a, b, EVERY_ROW)], np.int64)
+        disparity = self.out.disparity[y]
+        i, x = np.nonzero(disparity != UNKNOWN)
+        there = np.clip(x - ((disparity[i, x] + 8) >> 4), 0, self.pair.width - 1)
+        levels = (self.pair.left[y[i], x] >> 1).astype(np.int16), self.pair.right[y[i], there] >> 1
+        apart = np.count_nonzero(np.abs(np.subtract(*levels)) >= self.cost.most_level)
+        return apart / max(1, len(x))
 
 
 def _probes(rows: Rows) -> tuple[Rows, Rows]:

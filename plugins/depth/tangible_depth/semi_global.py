@@ -36,8 +36,8 @@ class SemiGlobal(DepthEstimator, Following):
     """Resolution of the matching. auto: full, unless the search range is too large. half: a preview in a fraction of
     the time, without tests for noise and for vertical offset: `cost` auto is sharp, and rows are not realigned."""
     effort: Literal["balanced", "best"] = "balanced"
-    """best: gaps are filled from eight directions instead of four, along the plane of each surface; about 4 % fewer wrong
-    pixels than balanced for about half as much processor time again."""
+    """best: gaps are filled from eight directions instead of four, along the plane of each surface; about 4 % fewer
+    wrong pixels than balanced for about half as much processor time again."""
     cost: Literal["auto", "sharp", "levels", "light", "heavy"] = "auto"
     """Matching cost: sharp compares the order of grey values, levels the values as well, for clean pictures of the
     same exposure; light and heavy are for light and heavy noise; auto: chosen by a test on part of the picture."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from threading import Event
 
 import numpy as np
 
@@ -35,7 +36,11 @@ class Scripted(Desk):
 
     def __init__(self, answer: Answering) -> None:
         self.said = list[str]()
-        self._answer = answer
+        self._answer, self._stop = answer, Event()
+
+    @property
+    def stop(self) -> Event:
+        return self._stop
 
     def say(self, text: str) -> None:
         self.said.append(text)

@@ -116,7 +116,7 @@ class Stimuli:
 def _problem(verdicts: Preflight) -> str:
     """Return why a device does not render what was requested; "" if it does."""
     wrong = [each for each in verdicts if each.verdict == "unsafe" or _alters(each)]
-    return "; ".join(f"{each.says} ({each.cure})" if each.cure else each.says for each in wrong[:2])
+    return next((f"{each.says} ({each.cure})" if each.cure else each.says for each in wrong), "")
 
 
 def _alters(verdict: Verdict) -> bool:

@@ -1,0 +1,1 @@
+"""A procedure for studies of Tangible Images: a staircase."""

@@ -1,0 +1,86 @@
+"""Studies on force loops in real time: what is left when a device is pulled out, and procedures of other packages."""
+
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from command_line import tangible
+from distributions import distribution
+from loop_devices import Failing
+from studies import Scripted, first_key, write_study
+from tangible_core.pipeline.feeling import Feeling
+from tangible_core.session import Recording
+from tangible_study.procedures.installed import load_procedure
+from tangible_study.session.start import begin
+from tangible_study.session.stimuli import Stimuli
+from tangible_study.study_file import load_study, parse_study
+from tangible_study.trials import read_answers
+
+RATING = """\
+study: small
+pipeline: feel.yaml
+feel_s: 0.2
+conditions: {plain: {}, mellow: {set: {render.stiffness_n_per_m: 200}}}
+comparisons: [{name: rate, question: rating, repetitions: 1}]
+"""
+
+
+def test_device_that_is_pulled_out_holds_no_force_and_the_trial_begins_again(
+    tmp_path: Path, loop_in_thread: None, monkeypatch: pytest.MonkeyPatch
+):
+    study, held = write_study(tmp_path, RATING), tmp_path / "held.txt"
+    file, starts = parse_study(RATING, study), list[int]()
+    stimuli, of_study = Stimuli(file), Stimuli.feeling
+
+    def feeling(self: Stimuli, *key: object) -> Feeling:
+        found = of_study(self, *key)
+        fault = "unplugged" if not starts else "none"
+        return Feeling(found.pipeline, Failing(at=100, fault=fault, record=str(held)))
+
+    run = Feeling.run
+    monkeypatch.setattr(Stimuli, "check", lambda self: None)
+    monkeypatch.setattr(Stimuli, "feeling", feeling)
+    monkeypatch.setattr(Feeling, "run", lambda self, *args, **more: (run(self, *args, **more), starts.append(1))[0])
+    forces = list[float]()
+
+    def answer(text: str, choices: dict[str, str]) -> str:
+        forces.append(float(held.read_text() or 0) if held.exists() else 0.0)
+        return first_key(text, choices)
+
+    session = begin(file, stimuli, "P1", tmp_path / "out", Scripted(answer))
+    assert session.run() == 2
+    kept = read_answers(tmp_path / "out/sub-P1/beh/sub-P1_task-small_beh.tsv")
+    assert [each.repeat for each in kept] == [1, 0]
+    assert set(forces) == {0.0}
+    cut = Recording.load(tmp_path / "out" / kept[0].recording.replace("run-2", "run-1"))
+    assert "does not answer" in cut.stopped
+    assert cut.peak_force_n > 0
+    assert Recording.load(tmp_path / "out" / kept[0].recording).stopped == ""
+
+
+def test_procedure_of_another_package_runs_a_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    example = Path(find_spec("studies").origin).parents[2] / "examples/procedure"
+    monkeypatch.syspath_prepend(example)
+    distribution(
+        tmp_path / "site",
+        "acme-staircase",
+        {"tangible.procedure": {"acme-staircase": "acme_staircase.staircase:Staircase"}},
+    )
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    assert load_procedure("acme-staircase").__name__ == "Staircase"
+    file = load_study(example / "study.yaml")
+    assert len(file.recipes()) == 6
+    sys.modules.pop("acme_staircase", None)
+
+
+def test_command_checks_and_names_a_level_that_the_device_cannot_render(tmp_path: Path):
+    study = write_study(tmp_path, RATING.replace("200", "90000"))
+    done = tangible("study", "check", "study.yaml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.count("study.yaml:4:25: mock cannot render this: ") == 1
+    study.write_text(RATING)
+    done = tangible("study", "check", "study.yaml", cwd=tmp_path)
+    assert (done.returncode, done.stdout.split(".")[0]) == (0, "study")
+    assert "A participant has 2 trials, with 2 surfaces on the device mock." in " ".join(done.stdout.split())

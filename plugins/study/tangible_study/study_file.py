@@ -69,6 +69,18 @@ def load_study(path: Path, registry: Registry | None = None) -> StudyFile:
     return parse_study(read_text(path), path, registry)
 
 
+def read_design(path: Path) -> Study:
+    """Read the keys of a study file alone, without pipelines and procedures: those of a finished study may be gone.
+
+    Raises: ConfigError with all mistakes.
+    """
+    source = parse_source(read_text(path), path, EXPECTED)
+    study: Study | None = source.model((), Study, _expand(source.tree))
+    source.settle()
+    assert study is not None
+    return study.model_copy(update={"comparisons": tuple(map(_with_conditions(study), study.comparisons))})
+
+
 def parse_study(text: str, path: Path, registry: Registry | None = None) -> StudyFile:
     """Check the text of a study file, as `load_study` does. path: the file that complaints name."""
     source = parse_source(text, path, EXPECTED)

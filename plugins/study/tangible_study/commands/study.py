@@ -11,6 +11,8 @@ import typer
 from tangible_core.cli.options import Json
 from tangible_core.cli.verbosity import is_quiet
 
+from .results import analyse, simulate
+
 if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import ExitStack
@@ -146,3 +148,7 @@ def _print(text: str) -> None:
     from tangible_core.runtime.standard_output import stream
 
     print(text, file=stream(), flush=True)
+
+
+app.command()(simulate)
+app.command()(analyse)

@@ -1,0 +1,55 @@
+"""Answers that are numbers: levels that were set, and ratings."""
+
+from math import nan
+
+import numpy as np
+
+from tangible_core.errors import ResultsError, quoted
+
+from ..design.study import Comparison
+from ..statistics import intervals
+from ..statistics.intervals import Estimate
+from ..trials import Answer
+from .cells import ByParticipant, grouped, label
+from .rows import Result, Row, What, contrasts, over_participants
+
+ERROR = "constant error"
+RATING = "mean rating"
+SPREAD = "standard deviation"
+
+
+def analyse_adjustments(comparison: Comparison, answers: ByParticipant) -> Result:
+    """Analyse how far above the standard the level was set that a participant called equal to it."""
+    return _analyse(comparison, answers, ERROR, comparison.standard or 0.0, 0.0)
+
+
+def analyse_ratings(comparison: Comparison, answers: ByParticipant) -> Result:
+    """Analyse the ratings of each condition, and how conditions differ."""
+    return _analyse(comparison, answers, RATING, 0.0, nan)
+
+
+def _analyse(comparison: Comparison, answers: ByParticipant, measure: str, origin: float, chance: float) -> Result:
+    rows: list[Row] = []
+    unit = comparison.unit if measure == ERROR else ""
+    about = (lambda each: each.condition) if measure == ERROR else label
+    for name, some in answers.items():
+        for condition, cell in grouped(some, about).items():
+            values = [_number(each) - origin for each in cell]
+            p = nan if chance != chance else intervals.p_of_mean(values, chance)
+            rows.append(Row(What(measure, condition), name, intervals.mean(values), unit, len(cell), None, chance, p))
+            if len(values) > 1:
+                spread = Estimate(float(np.std(values, ddof=1)))
+                rows.append(Row(What(SPREAD, condition), name, spread, unit, len(cell)))
+    if len(answers) > 1:
+        rows += over_participants(rows)
+    rows += contrasts(measure, rows)
+    return Result(comparison.name, comparison.question, list(answers), rows, measure)
+
+
+def _number(answer: Answer) -> float:
+    try:
+        return float(answer.response)
+    except ValueError as error:
+        raise ResultsError(
+            f"trial {answer.trial} of {answer.comparison}: {quoted(answer.response)} is not a number; correct it"
+        ) from error

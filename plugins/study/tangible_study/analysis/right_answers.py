@@ -1,0 +1,55 @@
+"""Answers that are right or wrong: the odd one of three, and names of parts."""
+
+from dataclasses import replace
+from math import nan
+
+from ..design.study import Comparison
+from ..statistics import sensitivity
+from ..statistics.intervals import Estimate
+from ..trials import Answer
+from .cells import ByParticipant, grouped, label, together
+from .rows import Result, Row, What, contrasts, over_participants, proportion_row
+
+CORRECT = "proportion correct"
+DPRIME = "d'"
+
+
+def analyse_odd(comparison: Comparison, answers: ByParticipant) -> Result:
+    """Analyse how often the odd one of three was named, for each pair of conditions."""
+    return _analyse(comparison, answers, 1 / 3)
+
+
+def analyse_names(comparison: Comparison, answers: ByParticipant) -> Result:
+    """Analyse how often parts were named rightly in each condition, and how conditions differ."""
+    return _analyse(comparison, answers, 1 / len(comparison.names))
+
+
+def with_dprime(row: Row, comparison: Comparison) -> Row:
+    """Return the row of d' that belongs to a row of proportions.
+
+    All right, or all wrong, counts as half an answer less (Macmillan & Kaplan 1985); the bounds are not corrected.
+    """
+    inverse = {
+        "same": sensitivity.oddity,
+        "name": lambda proportion: sensitivity.naming(proportion, len(comparison.names)),
+    }.get(comparison.question, sensitivity.two_afc)
+    edge = 0.5 / max(row.trials, 1)
+    found = row.estimate.mapped(inverse)
+    value = inverse(min(max(row.estimate.value, edge), 1 - edge)) if row.estimate.value == row.estimate.value else nan
+    return replace(row, what=row.what._replace(measure=DPRIME), estimate=Estimate(value, *found[1:]), chance=0.0)
+
+
+def _analyse(comparison: Comparison, answers: ByParticipant, chance: float) -> Result:
+    def rows_of(name: str, some: list[Answer]) -> list[Row]:
+        cells = grouped(some, lambda each: What(CORRECT, label(each), each.other or ""))
+        return [
+            proportion_row(what, name, [each.correct or 0 for each in cell], chance, one_sided=True)
+            for what, cell in cells.items()
+        ]
+
+    single = [row for name, some in answers.items() for row in rows_of(name, list(some))]
+    pooled = {row.what: row for row in rows_of("pooled", together(answers))}
+    rows = [*single, *(over_participants(single, pooled) if len(answers) > 1 else ())]
+    between = contrasts(CORRECT, rows, pooled) if comparison.question == "name" else []
+    dprimes = [with_dprime(row, comparison) for row in rows]
+    return Result(comparison.name, comparison.question, list(answers), [*rows, *dprimes, *between], CORRECT)

@@ -1,0 +1,149 @@
+"""The rows of a result: a measure, of whom, its estimate, and what it would be by chance."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import combinations
+from math import isfinite, nan
+from typing import Any, NamedTuple
+
+from ..statistics import intervals
+from ..statistics.intervals import Estimate
+from ..statistics.psychometric import Blocks, Curve
+
+ALL = "all"
+"""Participant of a row about all participants."""
+
+
+class What(NamedTuple):
+    """What a row is about."""
+
+    measure: str
+    condition: str
+    other: str = ""
+    """Condition with which it is compared."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A figure of one participant, or of all."""
+
+    what: What
+    participant: str
+    estimate: Estimate
+    unit: str = ""
+    trials: int = 0
+    count: int | None = None
+    """Number of trials that were right, or with the condition chosen."""
+    chance: float = nan
+    """Value by chance alone; NaN if there is none."""
+    p: float = nan
+    """Probability of a value this far from chance by chance alone."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """All that is known about one comparison."""
+
+    comparison: str
+    question: str
+    participants: Sequence[str]
+    rows: Sequence[Row]
+    main: str
+    """Measure that the question is about."""
+    curves: Mapping[str, Curve] = field(default_factory=dict[str, Curve])
+    """Fitted functions by participant and condition, joined by a slash."""
+    blocks: Mapping[str, Blocks] = field(default_factory=dict[str, Blocks])
+    notes: Sequence[str] = ()
+    """What a reader should know, as sentences."""
+
+    def of_all(self, measure: str) -> list[Row]:
+        """Return the rows of a measure about all participants; those of the only participant if there is one."""
+        whom = ALL if len(self.participants) > 1 else self.participants[0]
+        return [each for each in self.rows if each.what.measure == measure and each.participant == whom]
+
+
+def proportion_row(what: What, participant: str, hits: Sequence[int], chance: float, one_sided: bool = False) -> Row:
+    """Return the share of hits (1 or 0 each) with its exact interval and test against chance."""
+    count, trials = sum(hits), len(hits)
+    p = intervals.p_of_count(count, trials, chance, one_sided)
+    return Row(what, participant, intervals.proportion(count, trials), "", trials, count, chance, p)
+
+
+def over_participants(rows: Iterable[Row], pooled: Mapping[What, Row] | None = None) -> list[Row]:
+    """Return a row about all participants for each thing: the mean over them.
+
+    pooled: rows of all trials together. The interval then holds that of the pooled trials and Student's interval of the
+    participants, and the greater p counts: participants who differ make a result uncertain, as do few trials.
+    """
+    groups: dict[What, list[Row]] = {}
+    for row in rows:
+        groups.setdefault(row.what, []).append(row)
+    return [_mean_of(what, group, (pooled or {}).get(what)) for what, group in groups.items()]
+
+
+def _mean_of(what: What, group: Sequence[Row], pooled: Row | None) -> Row:
+    values = [each.estimate.value for each in group if isfinite(each.estimate.value)]
+    estimate, chance = intervals.mean(values), group[0].chance
+    p = intervals.p_of_mean(values, chance) if isfinite(chance) else nan
+    trials = sum(each.trials for each in group)
+    row = Row(what, ALL, estimate, group[0].unit, trials, None, chance, p)
+    if pooled is None:
+        return row
+    wider = intervals.wider(Estimate(estimate.value, *estimate[1:]), pooled.estimate)
+    known = [each for each in (p, pooled.p) if each == each]
+    bounded = Estimate(wider.value, max(wider.low, 0.0), min(wider.high, 1.0))
+    return replace(row, estimate=bounded, count=pooled.count, p=max(known, default=nan))
+
+
+def contrast(one: Row, other: Row, groups: tuple[Sequence[Row], Sequence[Row]], pooled: Estimate | None = None) -> Row:
+    """Return how much larger a measure is in one condition than in another, by the participants who have both.
+
+    groups: the rows of single participants in both conditions. pooled: the difference of all trials together, whose
+    interval is within the result's. With one participant, the interval follows from both intervals.
+    """
+    what = What(f"difference of {one.what.measure}", one.what.condition, other.what.condition)
+    row = Row(what, one.participant, Estimate(nan), one.unit, one.trials + other.trials, None, 0.0)
+    seconds = {each.participant: each.estimate.value for each in groups[1]}
+    pairs = [(each.estimate.value, seconds[each.participant]) for each in groups[0] if each.participant in seconds]
+    differences = [first - second for first, second in pairs if isfinite(first - second)]
+    if len(differences) < 2:
+        return replace(row, estimate=intervals.difference(one.estimate, other.estimate))
+    estimate, p = intervals.mean(differences), intervals.p_of_mean(differences, 0.0)
+    return replace(row, estimate=estimate if pooled is None else intervals.wider(estimate, pooled), p=p)
+
+
+def contrasts(measure: str, rows: Sequence[Row], pooled: Mapping[What, Row] | None = None) -> list[Row]:
+    """Return the differences of a measure between all pairs of conditions, later ones less earlier ones.
+
+    rows: those of single participants and of all. pooled: as in `over_participants`.
+    """
+    known = [each for each in rows if each.what.measure == measure]
+    names = list(dict.fromkeys(each.what for each in known))
+    found: list[Row] = []
+    for other, one in combinations(names, 2):
+        groups = tuple(
+            [each for each in known if each.what == what and each.participant != ALL] for what in (one, other)
+        )
+        totals = [next((row for row in reversed(known) if row.what == what), None) for what in (one, other)]
+        if totals[0] is not None and totals[1] is not None:
+            both = None if pooled is None else intervals.difference(pooled[one].estimate, pooled[other].estimate)
+            found.append(contrast(totals[0], totals[1], (groups[0], groups[1]), both))
+    return found
+
+
+def as_record(row: Row) -> dict[str, Any]:
+    """Return a row as the table of results and `--json` have it."""
+    return {
+        "measure": row.what.measure,
+        "condition": row.what.condition,
+        "other": row.what.other or None,
+        "participant": row.participant,
+        "value": row.estimate.value,
+        "low": row.estimate.low,
+        "high": row.estimate.high,
+        "unit": row.unit or None,
+        "trials": row.trials,
+        "count": row.count,
+        "chance": row.chance,
+        "p": row.p,
+    }

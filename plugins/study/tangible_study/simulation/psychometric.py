@@ -1,0 +1,65 @@
+"""The psychometric observer."""
+
+from typing import Annotated, Self, final
+
+import numpy as np
+from pydantic import Field
+from scipy import stats
+
+from ..design.study import Comparison
+from ..procedures.procedure import Trial
+from .observer import Observer, nearest, number_of
+
+GAUSSIAN = 3.28970725
+"""Width from 5 to 95 % of a cumulative Gaussian, in standard deviations."""
+
+
+@final
+class Psychometric(Observer):
+    """Psychometric function: threshold, width and lapses, as `tangible study analyse` finds them."""
+
+    threshold: float | None = None
+    """Level that feels equal to the standard, by default the standard; of the odd one (`same`), the distance from the
+    standard at which 67 % of the answers are right, by default half of the greatest."""
+    width: Annotated[float, Field(gt=0)] | None = None
+    """Distance of the levels at which 5 and 95 % of the way are done, by default half of the range of levels."""
+    slope: Annotated[float, Field(gt=0)] = 2.0
+    """Exponent of the Weibull function of the odd one."""
+    difference: float = 0.0
+    """Difference of the threshold from each condition to the next, in the unit of the levels."""
+    personal: Annotated[float, Field(ge=0)] = 0.1
+    """Standard deviation of the threshold over participants, as a share of the width."""
+    shift: float = 0.0
+    """Difference of one participant's threshold from that of others, as a share of the width."""
+
+    def participant(self, generator: np.random.Generator) -> Self:
+        """Return a participant with a threshold and a difference between conditions of their own."""
+        difference = self.difference * (1 + self.spread * generator.standard_normal())
+        shift = self.shift + self.personal * generator.standard_normal()
+        return self.model_copy(update={"difference": float(difference), "shift": float(shift)})
+
+    def refusal(self, comparison: Comparison) -> str:
+        """Return what is missing: levels."""
+        asks = ("rougher", "higher", "same", "equal")
+        if not comparison.levels or comparison.question not in asks:
+            return "has no levels that are compared, which this observer needs; take the observer `detection`"
+        return ""
+
+    def respond(self, trial: Trial, comparison: Comparison, generator: np.random.Generator) -> str:
+        """Return a response by the function of the condition."""
+        levels, standard = np.array(comparison.levels), comparison.standard or 0.0
+        width = self.width or 0.5 * float(np.ptp(levels)) or 1.0
+        step = self.difference * number_of(comparison, trial.condition) + self.shift * width
+        level = trial.level or 0.0
+        if trial.question == "same":
+            farthest = float(np.abs(levels - standard).max())
+            threshold = max((self.threshold or farthest / 2) + step, 1e-3 * farthest)
+            share = 1 / 3 + 2 / 3 * (1 - 0.5 ** ((abs(level - standard) / threshold) ** self.slope))
+        else:
+            threshold = (standard if self.threshold is None else self.threshold) + step
+            if trial.question == "equal":
+                return nearest(generator.normal(threshold, width / GAUSSIAN), trial)
+            share = float(stats.norm.cdf((level - threshold) / (width / GAUSSIAN)))
+        if generator.random() < share:
+            return str(trial.position)
+        return str(generator.choice([each for each in trial.choices if each != str(trial.position)]))

@@ -1,0 +1,65 @@
+"""Participants who are models: their answers, by the same procedures as those of people."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..analysis.results_folder import Kept
+from ..procedures.procedure import Trial, score
+from ..session.order import StudyCourse
+from ..study_file import StudyFile
+from ..trials import Answer
+from .observer import Observer
+
+MEDIAN_S = 1.2
+"""Median of the simulated response times, seconds; they say nothing about people."""
+
+
+def simulate(file: StudyFile, observer: Observer, number: int, seed: int) -> list[Answer]:
+    """Return the answers of one participant to the whole study. number: of the participant, from 0."""
+    generator = np.random.default_rng([seed, number, 1])
+    individual = observer.participant(generator)
+    course, answers = StudyCourse(file, number), list[Answer]()
+    while (trial := course.next()) is not None:
+        response = individual.answer(trial, file.study.comparison(trial.comparison), generator)
+        seconds = MEDIAN_S * float(np.exp(0.4 * generator.standard_normal()))
+        answers.append(answer_of(trial, len(answers) + 1, response, seconds))
+        course.take(trial, response)
+    return answers
+
+
+def answer_of(trial: Trial, number: int, response: str, seconds: float) -> Answer:
+    """Return the line of the table for a response to a trial. number: of the trial, from 1."""
+    chosen, correct = score(trial, response)
+    return Answer(
+        number,
+        trial.phase,
+        trial.comparison,
+        trial.question,
+        trial.procedure,
+        trial.condition,
+        trial.other,
+        trial.level,
+        trial.standard,
+        trial.position,
+        response,
+        chosen,
+        correct,
+        round(seconds, 4),
+        target=trial.target,
+    )
+
+
+def names_of(participants: int) -> list[str]:
+    """Return the names of simulated participants."""
+    return [f"S{number + 1:02d}" for number in range(participants)]
+
+
+def kept_of(file: StudyFile, answers: Sequence[Sequence[Answer]]) -> Kept:
+    """Return answers as the analysis reads them from a folder, without writing them."""
+    tests = {
+        name: [each for each in some if each.phase == "test"]
+        for name, some in zip(names_of(len(answers)), answers, strict=True)
+    }
+    training = sum(each.phase == "training" for some in answers for each in some)
+    return Kept(file.study, tests, training, 0)

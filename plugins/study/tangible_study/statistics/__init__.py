@@ -1,0 +1,1 @@
+"""Statistics of studies: intervals, sensitivity, scales of paired comparisons, psychometric functions."""

@@ -1,0 +1,82 @@
+"""The scale of Bradley & Terry (1952), Biometrika 39:324, from paired comparisons."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float64
+from scipy import stats
+from scipy.sparse.csgraph import connected_components
+
+from .intervals import LEVEL, Estimate
+
+FEWEST = 5
+"""Fewest participants from whose differences the uncertainty is estimated."""
+
+
+class Scale(NamedTuple):
+    """Values on a scale on which one is chosen over another with the probability 1 / (1 + exp(other - one))."""
+
+    values: Float64[np.ndarray, "n"]
+    """Values, their mean zero."""
+    covariance: Float64[np.ndarray, "n n"]
+    degrees: float
+    """Degrees of freedom of the intervals."""
+    was_completed: bool
+    """True if one always won or lost, so that half a win was added to each pair."""
+
+    def estimate(self, index: int) -> Estimate:
+        """Return a value with its interval."""
+        return self._estimate(float(self.values[index]), float(self.covariance[index, index]))
+
+    def difference(self, one: int, other: int) -> Estimate:
+        """Return how far one is above another, with its interval."""
+        weights = np.zeros(len(self.values))
+        weights[one], weights[other] = 1.0, -1.0
+        return self._estimate(float(weights @ self.values), float(weights @ self.covariance @ weights))
+
+    def _estimate(self, value: float, variance: float) -> Estimate:
+        half = float(stats.t.ppf((1 + LEVEL) / 2, self.degrees)) * max(variance, 0.0) ** 0.5
+        return Estimate(value, value - half, value + half)
+
+
+def fit_scale(wins: Sequence[Float64[np.ndarray, "n n"]]) -> Scale:
+    """Fit the scale by maximum likelihood. wins: for each participant, how often each row was chosen over each column.
+
+    From five participants on, their differences count: the covariance is the sandwich of Liang & Zeger (1986), where it
+    is larger. Half a win is added to each pair that was compared if the likelihood has no maximum.
+    """
+    total = np.sum(wins, axis=0)
+    count = len(total)
+    strongly = connected_components(total > 0, directed=True, connection="strong")[0] == 1
+    if not strongly:
+        total = total + 0.5 * (total + total.T > 0)
+    values = np.zeros(count)
+    centre = np.eye(count) - 1 / count
+    for _ in range(100):
+        score, information = _derivatives(total, values)
+        step = np.linalg.pinv(information) @ score
+        values = values + step / max(1.0, float(np.abs(step).max()))
+        if np.abs(step).max() < 1e-10:
+            break
+    covariance = centre @ np.linalg.pinv(_derivatives(total, values)[1]) @ centre
+    degrees = np.inf
+    if len(wins) >= FEWEST:
+        scores = np.array([_derivatives(each, values)[0] for each in wins])
+        robust = covariance @ (scores.T @ scores) @ covariance * len(wins) / (len(wins) - 1)
+        if np.trace(robust) > np.trace(covariance):
+            covariance, degrees = robust, len(wins) - 1.0
+    return Scale(values - values.mean(), covariance, degrees, not strongly)
+
+
+def _derivatives(
+    wins: Float64[np.ndarray, "n n"], values: Float64[np.ndarray, "n"]
+) -> tuple[Float64[np.ndarray, "n"], Float64[np.ndarray, "n n"]]:
+    """Return the slope of the log likelihood, and the information."""
+    chance = 1 / (1 + np.exp(values[None, :] - values[:, None]))
+    trials = wins + wins.T
+    score = (wins - trials * chance).sum(axis=1)
+    information = -trials * chance * (1 - chance)
+    np.fill_diagonal(information, 0.0)
+    np.fill_diagonal(information, -information.sum(axis=1))
+    return score, information

@@ -1,0 +1,94 @@
+"""Estimates with their 95 % intervals: proportions, means, and differences of both."""
+
+from collections.abc import Callable, Sequence
+from math import hypot, isfinite, nan
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy import stats
+
+LEVEL = 0.95
+"""Confidence level of all intervals."""
+
+
+class Estimate(NamedTuple):
+    """An estimate with its interval; the bounds are NaN where the data give none."""
+
+    value: float
+    low: float = nan
+    high: float = nan
+
+    @property
+    def has_interval(self) -> bool:
+        """True if both bounds are known; either may be infinite."""
+        return self.low == self.low and self.high == self.high
+
+    def holds(self, value: float) -> bool:
+        """Return True if a value is within the interval, or there is no interval that could exclude it."""
+        return not self.has_interval or self.low <= value <= self.high
+
+    def mapped(self, function: Callable[[float], float]) -> "Estimate":
+        """Return the estimate on another scale. function: rises with its argument."""
+        return Estimate(*(function(each) if each == each else nan for each in self))
+
+
+def proportion(count: int, trials: int) -> Estimate:
+    """Return count / trials with the exact interval of Clopper & Pearson (1934), Biometrika 26:404.
+
+    >>> [round(each, 4) for each in proportion(7, 10)]
+    [0.7, 0.3475, 0.9333]
+    """
+    if trials < 1:
+        return Estimate(nan)
+    tail = (1 - LEVEL) / 2
+    low = float(stats.beta.ppf(tail, count, trials - count + 1)) if count else 0.0
+    high = float(stats.beta.ppf(1 - tail, count + 1, trials - count)) if count < trials else 1.0
+    return Estimate(count / trials, low, high)
+
+
+def mean(values: Sequence[float]) -> Estimate:
+    """Return the mean with Student's interval; without bounds for a single value.
+
+    >>> [round(each, 3) for each in mean([1.0, 2.0, 3.0])]
+    [2.0, -0.484, 4.484]
+    """
+    count = len(values)
+    if not count:
+        return Estimate(nan)
+    middle = float(np.mean(values))
+    if count < 2 or not all(map(isfinite, values)):
+        return Estimate(middle)
+    half = float(stats.t.ppf((1 + LEVEL) / 2, count - 1) * np.std(values, ddof=1) / count**0.5)
+    return Estimate(middle, middle - half, middle + half)
+
+
+def difference(one: Estimate, other: Estimate) -> Estimate:
+    """Return one - other, with the interval that follows from both intervals if they are independent.
+
+    Source: Zou & Donner (2008), Statistics in Medicine 27:1693.
+    """
+    value = one.value - other.value
+    low = value - hypot(one.value - one.low, other.high - other.value)
+    return Estimate(value, low, value + hypot(one.high - one.value, other.value - other.low))
+
+
+def wider(one: Estimate, other: Estimate) -> Estimate:
+    """Return the first estimate with an interval that holds both intervals; one without bounds is left out."""
+    if not (one.has_interval and other.has_interval):
+        return Estimate(one.value, *(other if other.has_interval else one)[1:])
+    return Estimate(one.value, min(one.low, other.low), max(one.high, other.high))
+
+
+def p_of_mean(values: Sequence[float], expected: float) -> float:
+    """Return the probability, two-sided by Student's t, of a mean this far from the expected one; NaN if unknown."""
+    if len(values) < 2 or np.ptp(values) == 0:
+        return nan
+    found: Any = stats.ttest_1samp(values, expected)
+    return float(found.pvalue)
+
+
+def p_of_count(count: int, trials: int, chance: float, one_sided: bool) -> float:
+    """Return the exact binomial probability of a count this far from chance; one-sided, of one as high as this."""
+    if trials < 1:
+        return nan
+    return float(stats.binomtest(count, trials, chance, "greater" if one_sided else "two-sided").pvalue)

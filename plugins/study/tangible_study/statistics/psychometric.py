@@ -1,0 +1,96 @@
+"""Psychometric functions, fitted by psignifit: threshold, width, and their intervals.
+
+Source: Schütt, Harmeling, Macke & Wichmann (2016), Vision Research 122:105.
+"""
+
+import warnings
+from math import exp, log
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Float64
+
+from ..extra import need
+from .intervals import LEVEL, Estimate
+
+JND = 0.20503033
+"""Half the distance from 25 to 75 % as a share of the width (5 to 95 %) of a cumulative Gaussian: 0.6745 / 3.2897."""
+STEPS = {"threshold": 60, "width": 60, "lambda": 20}
+"""Steps of the grid: intervals of psignifit are exact to half a step (`python -m benchmarks study`)."""
+
+
+class Blocks(NamedTuple):
+    """Answers by level, as psignifit takes them."""
+
+    levels: Float64[np.ndarray, "n"]
+    counts: Float64[np.ndarray, "n"]
+    """Trials with the comparison chosen, or with a right answer."""
+    trials: Float64[np.ndarray, "n"]
+
+
+class Curve(NamedTuple):
+    """A fitted function."""
+
+    threshold: Estimate
+    """Level at which the function is halfway up."""
+    width: Estimate
+    """Distance from 5 to 95 % of the way up; of a threshold of the difference, in natural logarithms."""
+    lapses: float
+    """Share of the trials that were answered without attention."""
+    chance: float
+    """Share of right answers by guessing alone; 0 where each level is chosen or not."""
+
+    def at(self, levels: Float64[np.ndarray, "n"]) -> Float64[np.ndarray, "n"]:
+        """Return the share of the trials with the comparison chosen, or with a right answer."""
+        from scipy import stats
+
+        if self.chance:
+            steep = (log(-log(0.05)) - log(-log(0.95))) / self.width.value
+            height = 1 - 0.5 ** ((levels / self.threshold.value) ** steep)
+            return self.chance + (1 - self.chance - self.lapses) * height
+        sd = self.width.value / 3.28970725
+        return self.lapses + (1 - 2 * self.lapses) * stats.norm.cdf((levels - self.threshold.value) / sd)
+
+
+def fit_choice(blocks: Blocks, span: tuple[float, float]) -> Curve:
+    """Fit how often a level is chosen over the standard: a cumulative Gaussian, its threshold the point of equality.
+
+    span: least and greatest level of the study. Raises: ConfigError if psignifit is not installed.
+    """
+    found = _fit(blocks, sigmoid="norm", experiment_type="equal asymptote", stimulus_range=span)
+    return Curve(_estimate(found, "threshold"), _estimate(found, "width"), found.parameter_estimate["lambda"], 0.0)
+
+
+def fit_difference(blocks: Blocks, span: tuple[float, float], choices: int = 3) -> Curve:
+    """Fit how often a difference is found: a Weibull function of the distance from the standard, from chance upwards.
+
+    blocks: levels are distances, above 0. The threshold is halfway from chance to certainty: 67 % right answers of
+    three intervals. Raises: ConfigError if psignifit is not installed.
+    """
+    logs = blocks._replace(levels=np.log(blocks.levels))
+    within = (log(span[0]), log(span[1]))
+    found = _fit(logs, sigmoid="weibull", experiment_type=f"{choices}AFC", stimulus_range=within)
+    return Curve(
+        _estimate(found, "threshold").mapped(exp),
+        _estimate(found, "width"),
+        found.parameter_estimate["lambda"],
+        1 / choices,
+    )
+
+
+def _fit(blocks: Blocks, **options: Any) -> Any:
+    psignifit = need("psignifit")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # about adaptive data, for which the range of levels is given
+        return psignifit.psignifit(
+            np.column_stack(blocks),
+            verbose=False,
+            fixed_parameters={"eta": 0.0},
+            grid_steps=STEPS,
+            **options,
+        )
+
+
+def _estimate(result: Any, name: str) -> Estimate:
+    low, high = result.confidence_intervals[name][str(LEVEL)]
+    return Estimate(float(result.parameter_estimate[name]), float(low), float(high))

@@ -1,0 +1,70 @@
+"""Sensitivity d': the distance of two things in standard deviations of the observer's noise, from proportions correct.
+
+Source: Macmillan & Creelman, Detection Theory: A User's Guide, 2nd ed. (2005), ch. 7, 9 and 10, tables A5.2 and A5.5.
+"""
+
+from collections.abc import Callable
+from functools import cache
+from math import inf, sqrt
+
+from numpy.polynomial.hermite_e import hermegauss
+from numpy.polynomial.legendre import leggauss
+from scipy import optimize, stats
+
+LARGEST = 12.0
+"""Largest d' that is looked for; the proportion correct is 1 in double precision long before."""
+_NODES, _WEIGHTS = hermegauss(100)
+_WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
+_HALF = 4.5 * (1 + leggauss(100)[0])
+_HALF_WEIGHTS = 9 * leggauss(100)[1] * stats.norm.pdf(_HALF)
+"""Nodes and weights of a mean over the upper half of a normal distribution, of which 1e-18 is beyond 9."""
+
+
+def two_afc(proportion: float) -> float:
+    """Return d' from the proportion correct in two-interval forced choice; negative below one half.
+
+    >>> [round(two_afc(each), 2) for each in (0.5, 0.76, 0.92)]
+    [0.0, 1.0, 1.99]
+    """
+    return sqrt(2) * float(stats.norm.ppf(proportion))
+
+
+def oddity(proportion: float) -> float:
+    """Return d' from the proportion correct when the odd one of three is named, by the differencing rule.
+
+    0 at and below chance, 1/3. The odd one is the one farthest from the other two. Source: Frijters (1979).
+
+    >>> [round(oddity(each), 2) for each in (0.3, 0.5, 0.8)]
+    [0.0, 1.47, 3.13]
+    """
+    return _inverse(oddity_correct, proportion, 1 / 3)
+
+
+def naming(proportion: float, choices: int) -> float:
+    """Return d' from the proportion correct when one of n choices is named, each as different from the others.
+
+    >>> [round(naming(each, 4), 2) for each in (0.25, 0.6)]
+    [0.0, 1.15]
+    """
+    return _inverse(lambda dprime: naming_correct(dprime, choices), proportion, 1 / choices)
+
+
+@cache
+def oddity_correct(dprime: float) -> float:
+    """Return the proportion correct of an observer who names the odd one of three."""
+    shift = dprime * sqrt(2 / 3)
+    return float(_HALF_WEIGHTS @ (stats.norm.cdf(shift - sqrt(3) * _HALF) + stats.norm.cdf(-shift - sqrt(3) * _HALF)))
+
+
+@cache
+def naming_correct(dprime: float, choices: int) -> float:
+    """Return the proportion correct of an observer who names the one of n choices with the most evidence."""
+    return float(_WEIGHTS @ stats.norm.cdf(_NODES + dprime) ** (choices - 1))
+
+
+def _inverse(correct: Callable[[float], float], proportion: float, chance: float) -> float:
+    if proportion <= chance:
+        return 0.0
+    if proportion >= correct(LARGEST):
+        return inf
+    return float(optimize.brentq(lambda dprime: correct(dprime) - proportion, 0.0, LARGEST))  # pyright: ignore[reportArgumentType]

@@ -1,0 +1,191 @@
+"""The analysis of a folder: what counts, what is found in simulated answers, and the files that are written."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from tangible_core.errors import ConfigError, ResultsError
+from tangible_study.analysis.analysing import analyse, analyse_kept
+from tangible_study.analysis.files import write_results
+from tangible_study.analysis.rows import ALL, What
+from tangible_study.analysis.sentences import counts
+from tangible_study.commands.results import analyse as analyse_study
+from tangible_study.commands.results import simulate as simulate_study
+from tangible_study.simulation.observers import observer_of
+from tangible_study.simulation.simulating import kept_of, simulate
+from tangible_study.simulation.writing import write_folder
+from tangible_study.study_file import StudyFile, parse_study
+from tangible_study.trials import AnswerFile, read_answers
+
+LEVELS = "vary: workspace.relief_m, levels: [0.001, 0.0015, 0.002, 0.0025, 0.003], standard: 0.002, unit: m"
+OTHERS = LEVELS.replace("0.002, ", "", 1)
+STUDY = """\
+study: s
+pipeline: feel.yaml
+conditions: {one: {}, two: {set: {render.use: penalty}}, three: {set: {render.use: force-shading}}}
+comparisons:
+"""
+COMPARISONS = {
+    "odd": "{name: odd, question: same, conditions: [one, two], repetitions: 30, training: 2}",
+    "pair": "{name: pair, question: rougher, repetitions: 20}",
+    "higher": f"{{name: higher, question: higher, conditions: [one, two], {LEVELS}, repetitions: 30}}",
+    "distance": f"{{name: distance, question: same, conditions: [one], {OTHERS}, repetitions: 30}}",
+    "equal": f"{{name: equal, question: equal, conditions: [one, two], {LEVELS}, repetitions: 10}}",
+    "parts": "{name: parts, question: name, conditions: [one, two], names: [nose, ear, eye, chin], repetitions: 6}",
+    "rate": "{name: rate, question: rating, repetitions: 8}",
+}
+
+
+def study_of(folder: Path, *names: str) -> StudyFile:
+    (folder / "feel.yaml").write_text("scene: builtin/brick\nwant: touch\nrender: proxy\ndevice: mock\n")
+    text = STUDY + "".join(f"- {COMPARISONS[name]}\n" for name in names)
+    (folder / "study.yaml").write_text(text)
+    return parse_study(text, folder / "study.yaml")
+
+
+def found(file: StudyFile, participants: int, model: str = "detection", *sets: str):
+    observer = observer_of(model, sets, file)
+    kept = kept_of(file, [simulate(file, observer, number, 5) for number in range(participants)])
+    analysis = analyse_kept(kept)
+    [result] = analysis.results
+    rows = {(row.what, row.participant): row for row in result.rows}
+    assert len(rows) == len(result.rows)
+    return rows, " ".join(analysis.sentences[result.comparison])
+
+
+def test_answers_that_do_not_count_are_left_out_and_counted(tmp_path: Path):
+    file = study_of(tmp_path, "odd")
+    out = tmp_path / "out"
+    write_folder(out, file, observer_of("detection", ["difference=3"], file), 1, 0)
+    table = next(out.glob("sub-*/beh/*.tsv"))
+    answers = read_answers(table)
+    table.unlink()
+    with AnswerFile(table) as again:
+        for answer in answers:
+            wrong = replace(answer, rendered=False, why="late", correct=0)
+            again.add(wrong if answer.phase == "test" and answer.trial < 13 else answer)
+    analysis = analyse(out)
+    assert counts(analysis.kept) == (
+        "20 answers of 1 participant count; 2 training trials and 10 that the device did not render as requested are "
+        "left out."
+    )
+    [row] = analysis.results[0].of_all("proportion correct")
+    assert row.trials == 20
+    assert row.count == sum(answer.correct for answer in answers if answer.trial >= 13)
+
+
+def test_folder_without_a_study_is_refused(tmp_path: Path):
+    with pytest.raises(ResultsError, match="is not the folder of a study"):
+        analyse(tmp_path)
+    study_of(tmp_path, "odd")
+    with pytest.raises(ResultsError, match="no answer that counts yet"):
+        analyse(tmp_path)
+
+
+def test_odd_one_is_found_and_one_participant_is_said_to_be_few(tmp_path: Path):
+    file = study_of(tmp_path, "odd")
+    rows, text = found(file, 1, "detection", "difference=3", "spread=0")
+    share, dprime = rows[What("proportion correct", "one", "two"), "S01"], rows[What("d'", "one", "two"), "S01"]
+    assert share.estimate.holds(0.78)
+    assert dprime.estimate.holds(3)
+    assert share.p < 0.001
+    assert text.startswith("one and two can be told apart: 1 participant found the odd one in ")
+    assert "in fewer than 1 of 10,000 studies" in text
+    assert "says little about other people" in text
+    _, text = found(file, 4, "detection", "difference=0")
+    assert text.startswith("It is open whether one and two can be told apart")
+
+
+def test_scale_has_the_order_and_the_distances_of_the_observers(tmp_path: Path):
+    rows, text = found(study_of(tmp_path, "pair"), 8, "detection", "difference=1.2", "lapse=0", "spread=0")
+    assert text.startswith("From most to least rough: three, two, one. Each of them differs")
+    per_step = 1.39  # logit of the probability with which d' = 1.2 is chosen, Phi(1.2 / sqrt 2) = 0.802
+    assert rows[What("difference of scale value", "two", "one"), ALL].estimate.holds(per_step)
+    assert rows[What("d'", "one", "two"), ALL].estimate.holds(-1.2)
+
+
+def test_points_of_equality_differ_between_conditions(tmp_path: Path):
+    sets = ["difference=0.0004", "width=0.001", "personal=0", "spread=0"]
+    rows, text = found(study_of(tmp_path, "higher"), 3, "psychometric", *sets)
+    for name in ("S01", "S02", "S03"):
+        assert rows[What("point of equality", "two"), name].estimate.value == pytest.approx(0.0024, abs=0.00015)
+    noticed = rows[What("just noticeable difference", "one"), "S01"].estimate
+    assert noticed.holds(0.000205)
+    difference = rows[What("difference of point of equality", "two", "one"), ALL]
+    assert difference.estimate.value == pytest.approx(0.0004, abs=0.00015)
+    assert "With two, the level that feels equal is " in text
+
+
+def test_threshold_of_a_difference_is_found(tmp_path: Path):
+    rows, text = found(study_of(tmp_path, "distance"), 1, "psychometric", "threshold=0.0006", "personal=0")
+    assert rows[What("threshold", "one"), "S01"].estimate.holds(0.0006)
+    assert "is named rightly in two of three trials" in text
+
+
+def test_adjustments_names_and_ratings_are_compared(tmp_path: Path):
+    rows, _ = found(study_of(tmp_path, "equal"), 6, "psychometric", "difference=0.0005", "width=0.0005", "spread=0")
+    assert rows[What("difference of constant error", "two", "one"), ALL].estimate.holds(0.0005)
+    rows, text = found(study_of(tmp_path, "parts"), 8, "detection", "difference=1.5", "base=1", "spread=0.1")
+    assert "With two, the share of parts named rightly is" in text
+    assert rows[What("proportion correct", "one"), ALL].estimate.holds(0.53)
+    assert rows[What("d'", "two"), ALL].estimate.holds(2.5)
+    rows, text = found(study_of(tmp_path, "rate"), 8, "detection", "difference=1.5")
+    assert "With three, the rating is" in text
+    assert rows[What("mean rating", "two"), ALL].estimate.holds(5.5)
+
+
+def test_participants_who_all_say_the_same_leave_the_exact_interval(tmp_path: Path):
+    """Student's interval would have no width, as if the answer were known without doubt."""
+    rows, _ = found(study_of(tmp_path, "odd"), 3, "detection", "difference=20", "lapse=0", "spread=0")
+    row = rows[What("proportion correct", "one", "two"), ALL]
+    assert row.estimate.value == 1.0
+    assert row.estimate.low == pytest.approx(0.025 ** (1 / 90))
+
+
+def test_files_have_every_figure_and_plots_have_a_description(tmp_path: Path):
+    file = study_of(tmp_path, "odd", "higher")
+    kept = kept_of(file, [simulate(file, observer_of("detection", [], file), number, 1) for number in range(2)])
+    paths = write_results(tmp_path / "analysis", analyse_kept(kept))
+    assert {path.name for path in paths} == {
+        "results.md", "results.tsv", "odd.png", "odd.svg", "higher.png", "higher.svg",
+    }  # fmt: skip
+    lines = [line.split("\t") for line in (tmp_path / "analysis/results.tsv").read_text().splitlines()]
+    assert lines[0][:4] == ["comparison", "measure", "condition", "other"]
+    assert {len(line) for line in lines} == {len(lines[0])}
+    assert {"S01", "S02", "all"} == {line[4] for line in lines[1:]}
+    paper = (tmp_path / "analysis/results.md").read_text()
+    assert "| proportion correct | one | two |" in paper
+    drawn = ElementTree.parse(tmp_path / "analysis/higher.svg").getroot()
+    described = drawn.findtext("{http://www.w3.org/2000/svg}desc")
+    assert described is not None
+    assert "feels equal to the standard" in described
+
+
+def test_command_simulates_and_analyses_again_alike(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    study_of(tmp_path, "odd", "parts")
+    out = tmp_path / "out"
+    simulate_study(tmp_path / "study.yaml", sets=["difference=2"], participants=3, out=out, as_json=True)
+    first = json.loads(capsys.readouterr().out)
+    analyse_study(out, as_json=True)
+    assert json.loads(capsys.readouterr().out) == first
+    assert first["trials"] == 3 * (30 + 48)
+    assert (out / "participants.tsv").read_text().count("\n") == 4
+    sidecar = json.loads(next(out.glob("sub-S01/beh/*.json")).read_text())
+    assert sidecar["Observer"]["difference"] == 2
+    with pytest.raises(ConfigError, match="has answered all trials"):
+        simulate_study(tmp_path / "study.yaml", participants=3, out=out)
+    analyse_study(out)
+    printed = capsys.readouterr().out
+    assert all(text in printed for each in first["comparisons"] for text in [f"{each['name']}:\n", *each["found"]])
+
+
+def test_command_tells_how_many_participants_are_needed(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    study_of(tmp_path, "parts")
+    simulate_study(tmp_path / "study.yaml", sets=["difference=1"], power=True, as_json=True)
+    needs = json.loads(capsys.readouterr().out)
+    assert [each["repetitions"] for each in needs] == [3, 6, 12, 24]
+    assert needs[0]["participants"] > needs[-1]["participants"] > 2
+    assert not (tmp_path / "out").exists()

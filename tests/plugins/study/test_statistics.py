@@ -1,0 +1,139 @@
+"""Statistics: figures that were published, and answers that follow from simulation or symmetry."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from tangible_study.statistics import sensitivity
+from tangible_study.statistics.bradley_terry import fit_scale
+from tangible_study.statistics.intervals import Estimate, difference, mean, p_of_count, proportion, wider
+from tangible_study.statistics.psychometric import JND, Blocks, fit_choice, fit_difference
+
+BASEBALL = np.array(
+    [
+        [0, 7, 9, 7, 7, 9, 11],
+        [6, 0, 7, 5, 11, 9, 9],
+        [4, 6, 0, 7, 7, 8, 12],
+        [6, 8, 6, 0, 6, 7, 10],
+        [6, 2, 6, 7, 0, 7, 12],
+        [4, 4, 5, 6, 6, 0, 6],
+        [2, 4, 1, 3, 1, 7, 0],
+    ],
+    float,
+)
+"""Wins of the American League East in 1987: Milwaukee, Detroit, Toronto, New York, Boston, Cleveland, Baltimore
+(Agresti, Categorical Data Analysis, 2nd ed., table 10.10)."""
+DETECTION = [
+    (0.0010, 45), (0.0015, 50), (0.0020, 44), (0.0025, 44), (0.0030, 52), (0.0035, 53), (0.0040, 62), (0.0045, 64),
+    (0.0050, 76), (0.0060, 79), (0.0070, 88), (0.0080, 90), (0.0100, 90),
+]  # fmt: skip
+"""Right answers of 90 at each level: the example of psignifit's documentation."""
+
+
+def blocks(rows: list[tuple[float, int]], trials: int) -> Blocks:
+    levels, counts = np.array(rows, float).T
+    return Blocks(levels, counts, np.full(len(levels), float(trials)))
+
+
+def test_scale_of_baseball_teams_is_as_published():
+    scale = fit_scale([BASEBALL])
+    assert np.round(scale.values[:-1] - scale.values[-1], 2).tolist() == [1.58, 1.44, 1.29, 1.25, 1.11, 0.68]
+    halves = [scale.difference(team, 6).high - scale.difference(team, 6).value for team in range(6)]
+    assert np.round(np.array(halves) / 1.96, 1).tolist() == [0.3] * 6
+    assert scale.values.mean() == pytest.approx(0, abs=1e-12)
+
+
+def test_scale_with_one_that_always_wins_is_finite_and_is_marked():
+    scale = fit_scale([np.array([[0.0, 9, 9], [0, 0, 5], [0, 4, 0]])])
+    assert scale.was_completed
+    assert np.isfinite(scale.values).all()
+    assert scale.values.argmax() == 0
+    assert not fit_scale([BASEBALL]).was_completed
+
+
+def test_scale_of_participants_who_disagree_is_less_certain():
+    alike = [np.array([[0.0, 6], [4, 0]])] * 8
+    apart = [*[np.array([[0.0, 10], [0, 0]])] * 5, *[np.array([[0.0, 0], [10, 0]])] * 3]
+    widths = [np.ptp(fit_scale(each).difference(0, 1)[1:]) for each in (alike, apart)]
+    assert widths[1] > 2 * widths[0]
+
+
+@pytest.mark.parametrize(
+    ("share", "dprime"), [(0.36, 0.55), (0.5, 1.47), (0.6, 1.98), (0.7, 2.50), (0.8, 3.13), (0.9, 4.03), (0.95, 4.80)]
+)
+def test_dprime_of_the_odd_one_is_that_of_the_triangular_method(share: float, dprime: float):
+    """By the integral of Frijters, Kooistra & Vereijken (1980), Perception & Psychophysics 27:176, solved apart."""
+    assert round(sensitivity.oddity(share), 2) == dprime
+
+
+def test_dprime_of_the_odd_one_is_that_of_simulated_observers():
+    felt = np.random.default_rng(3).standard_normal((200_000, 3)) + np.array([2.0, 0, 0])
+    farthest = np.abs(felt - (felt.sum(1, keepdims=True) - felt) / 2).argmax(1)
+    assert (farthest == 0).mean() == pytest.approx(sensitivity.oddity_correct(2.0), abs=0.004)
+
+
+@pytest.mark.parametrize(("share", "dprime"), [(0.55, 0.18), (0.76, 1.0), (0.85, 1.47), (0.92, 1.99)])
+def test_dprime_of_two_intervals_is_that_of_the_tables(share: float, dprime: float):
+    assert round(sensitivity.two_afc(share), 2) == dprime
+    assert sensitivity.naming(share, 2) == pytest.approx(sensitivity.two_afc(share), abs=1e-6)
+
+
+def test_dprime_at_the_ends():
+    assert sensitivity.oddity(1.0) == np.inf
+    assert sensitivity.oddity(0.2) == 0.0
+    assert sensitivity.naming(0.1, 5) == 0.0
+
+
+def test_exact_interval_is_as_published():
+    """Newcombe (1998), Statistics in Medicine 17:857, table I, method 5."""
+    assert np.round(proportion(81, 263), 4).tolist() == [0.308, 0.2527, 0.3676]
+    assert np.round(proportion(15, 148), 4).tolist() == [0.1014, 0.0578, 0.1617]
+    assert np.round(proportion(0, 20)[1:], 4).tolist() == [0.0, 0.1684]
+    assert np.round(proportion(29, 29)[1:], 4).tolist() == [0.8806, 1.0]
+
+
+def test_exact_intervals_hold_the_truth_at_least_as_often_as_they_say():
+    for share in (0.1, 1 / 3, 0.62, 0.95):
+        counts = np.arange(41)
+        held = [proportion(count, 40).holds(share) for count in counts.tolist()]
+        assert stats.binom.pmf(counts, 40, share)[held].sum() >= 0.95
+
+
+def test_difference_of_two_intervals_is_as_that_of_two_means():
+    one, other = Estimate(3.0, 2.0, 4.0), Estimate(1.0, 0.0, 2.0)
+    assert difference(one, other) == pytest.approx((2.0, 2 - 2**0.5, 2 + 2**0.5))
+    assert wider(one, other) == (3.0, 0.0, 4.0)
+    assert not mean([1.0]).has_interval
+
+
+@pytest.mark.parametrize(
+    ("trials", "fewest"), [(10, (7, 8, 9)), (15, (9, 10, 12)), (24, (13, 15, 16)), (60, (27, 30, 33))]
+)
+def test_fewest_right_answers_of_the_triangular_method_are_as_published(trials: int, fewest: tuple[int, int, int]):
+    """The table of critical numbers in FAO, Manuals of Food Quality Control, at 5, 1 and 0.1 %."""
+    for count, level in zip(fewest, (0.05, 0.01, 0.001), strict=True):
+        assert p_of_count(count, trials, 1 / 3, one_sided=True) <= level
+        assert p_of_count(count - 1, trials, 1 / 3, one_sided=True) > level
+
+
+def test_fit_of_a_difference_is_that_of_psignifit_on_its_own_example():
+    """Two intervals, a Weibull function of the logarithm: threshold and lapses as psignifit alone finds them."""
+    curve = fit_difference(blocks(DETECTION, 90), (0.001, 0.01), choices=2)
+    assert curve.threshold.value == pytest.approx(
+        0.00465, rel=0.02
+    )  # MATLAB's psignifit 4, cumulative Gaussian: 0.004645
+    assert curve.threshold.low < 0.00465 < curve.threshold.high
+    assert curve.at(np.array([1e-9, 1.0])) == pytest.approx([0.5, 1 - curve.lapses], abs=1e-3)
+    assert curve.at(np.array([curve.threshold.value])) == pytest.approx([0.75], abs=0.01)
+
+
+def test_fit_of_choices_finds_the_function_that_made_them():
+    levels = np.linspace(1.4, 2.6, 7)
+    expected = 0.02 + 0.96 * stats.norm.cdf((levels - 2.05) / (0.6 / 3.2897))
+    curve = fit_choice(Blocks(levels, np.round(400 * expected), np.full(7, 400.0)), (1.4, 2.6))
+    assert curve.threshold.value == pytest.approx(2.05, abs=0.01)
+    assert curve.width.value == pytest.approx(0.6, rel=0.05)
+    assert curve.lapses == pytest.approx(0.02, abs=0.01)
+    assert curve.at(levels) == pytest.approx(expected, abs=0.01)
+    assert curve.threshold.holds(2.05)
+    assert pytest.approx(stats.norm.ppf(0.75) / (2 * stats.norm.ppf(0.95)), rel=1e-6) == JND

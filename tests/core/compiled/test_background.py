@@ -81,9 +81,16 @@ def test_background_compiler_is_not_started_without_a_compilation():
 
 
 def test_background_compiler_starts_one_process_for_many_kernels(tmp_path: Path):
-    with BackgroundCompiler(lambda: Work(frozenset(["begun"]), yield_and_mark, (str(tmp_path),))) as block:
+    made: list[Work] = []
+
+    def work() -> Work:
+        made.append(Work(frozenset(["begun"]), yield_and_mark, (str(tmp_path),)))
+        return made[-1]
+
+    with BackgroundCompiler(work) as block:
         for _ in range(3):
             start_waiting()
+        assert len(made) == 1
         block.wait("begun")
         block.wait("what it does not do")
     (number,) = tmp_path.iterdir()

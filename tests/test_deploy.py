@@ -1,0 +1,72 @@
+"""Files for exhibitions, desktops and editors, which no other test reads."""
+
+import json
+import re
+import shlex
+import tomllib
+from configparser import ConfigParser
+from pathlib import Path
+from xml.etree import ElementTree
+
+ROOT = Path(__file__).parents[1]
+DEPLOY = ROOT / "deploy"
+SCRIPTS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["scripts"]
+MIME = "{http://www.freedesktop.org/standards/shared-mime-info}"
+KNOWN = {"COPY", "CMD", "ENTRYPOINT", "ENV", "FROM", "RUN", "USER", "VOLUME", "WORKDIR"}
+
+
+def instructions() -> list[tuple[str, str]]:
+    """Return the instructions of the container file, each with its words in one line."""
+    text = re.sub(r"^#.*\n", "", (DEPLOY / "Containerfile").read_text("utf-8"), flags=re.MULTILINE)
+    lines = re.sub(r"\\\n\s*", " ", text).splitlines()
+    return [(name, words) for name, _, words in (line.partition(" ") for line in lines if line)]
+
+
+def stages() -> dict[str, list[tuple[str, str]]]:
+    """Return the instructions of each stage of the container file."""
+    found: dict[str, list[tuple[str, str]]] = {}
+    for name, words in instructions():
+        if name == "FROM":
+            found[words.rpartition(" AS ")[2]] = []
+        list(found.values())[-1].append((name, words))
+    return found
+
+
+class TestContainer:
+    def test_exhibition_runs_the_program_as_no_root_user(self):
+        exhibition = stages()["exhibition"]
+        assert list(stages())[-1] == "exhibition"
+        assert {name for name, _ in instructions()} <= KNOWN
+        assert [words for name, words in exhibition if name == "USER"] == ["10001"]
+        assert any("useradd --uid 10001 " in words for name, words in stages()["base"] if name == "RUN")
+        [entry] = [json.loads(words) for name, words in exhibition if name == "ENTRYPOINT"]
+        [words] = [json.loads(words) for name, words in exhibition if name == "CMD"]
+        assert entry[0] in SCRIPTS
+        assert "--wait" in words
+
+    def test_only_the_volume_is_written_to(self):
+        settings = dict(stages()["exhibition"])
+        folders = dict(each.split("=", 1) for each in shlex.split(settings["ENV"]) if each.startswith("XDG_"))
+        assert folders == {f"XDG_{each}_HOME": settings["VOLUME"] for each in ("CACHE", "CONFIG", "DATA", "STATE")}
+
+    def test_images_have_a_version_and_stages_exist(self):
+        bases = [words.split()[0] for name, words in instructions() if name == "FROM"]
+        assert all(each in stages() or re.search(r":\d", each) for each in bases)
+
+
+def test_development_container_is_a_stage_of_the_container_file():
+    container = json.loads((ROOT / ".devcontainer/devcontainer.json").read_text("utf-8"))
+    folder = ROOT / ".devcontainer"
+    assert (folder / container["build"]["dockerfile"]).resolve() == DEPLOY / "Containerfile"
+    assert (folder / container["build"]["context"]).resolve() == ROOT
+    assert container["build"]["target"] in stages()
+
+
+def test_desktop_entry_starts_the_page_for_types_that_are_declared():
+    desktop = ConfigParser(interpolation=None, delimiters="=")
+    desktop.optionxform = str  # pyright: ignore[reportAttributeAccessIssue]
+    desktop.read(DEPLOY / "tangible-images.desktop", "utf-8")
+    entry = desktop["Desktop Entry"]
+    declared = {each.get("type") for each in ElementTree.parse(DEPLOY / "tangible-images.xml").iter(f"{MIME}mime-type")}
+    assert entry["Exec"].split()[0] in SCRIPTS
+    assert {each for each in entry["MimeType"].split(";") if "x-tangible" in each} == declared

@@ -66,7 +66,14 @@ class Shown(NamedTuple):
         )
 
     def click(self, *at: float) -> None:
-        """The mouse, on the surface there."""
+        """The mouse, on the surface there, once the view rests: it gives way to a box that grows over the canvas."""
+
+        def rests() -> bool:
+            before = self.on_page(*at)
+            self.wait_until_drawn()
+            return before == self.on_page(*at)
+
+        until(rests)
         self.page.mouse.click(*self.on_page(*at))
 
     def on_page(self, *at: float) -> tuple[float, float]:
@@ -205,21 +212,20 @@ def test_trace_is_drawn_where_the_contact_was(shown: Shown):
 def test_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
     """The force runs from the mouse to the loop and back: F = k d, drawn and in figures."""
     shown.only("device", "labels", "arrow")
-    x, y = shown.on_page(RIGHT, 0.01, HIGH_M)
     mouse = shown.page.mouse
     until(lambda: shown.page.evaluate("() => page.net.latest !== null"))
     until(lambda: "penalty" in shown.page.inner_text("#log"))
-    mouse.move(x - 5, y)
+    mouse.move(*shown.on_page(RIGHT - 0.001, 0.01, HIGH_M))
     mouse.down()
 
     def press() -> Any:
-        mouse.move(x, y)
+        mouse.move(*shown.on_page(RIGHT, 0.01, HIGH_M))  # where it is now: the view gives way to a box that grows
         state = shown.page.evaluate(
             "alone => { const s = page.net.latest; if (!s || (s.flags & 255) !== alone) return null;"
             "page.replayed = s; return { hand: s.hand, force: s.force }; }",
             TOUCHING,
         )
-        if state and abs(state["hand"][0] - RIGHT) < 5e-4 and abs(state["force"][2]) > 0.2:
+        if state and math.dist(state["hand"][:2], (RIGHT, 0.01)) < 5e-4 and abs(state["force"][2]) > 0.2:
             return state
         shown.page.evaluate("() => { page.replayed = null; }")
         return None

@@ -62,6 +62,8 @@ class Work:
     extras: Mapping[str, Any] = field(default_factory=dict[str, Any])
     """Further things that a sheet shows, where they exist: `views`, the `truth` of the disparity (h, w) in px, and the
     `recording` of a run."""
+    film: bool = False
+    """True for a film, of which the products show the first frame."""
 
     @property
     def relief(self) -> Relief:

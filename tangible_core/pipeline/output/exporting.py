@@ -258,6 +258,7 @@ def work_for(engine: Engine, exporter: Exporter) -> Work:
         None if views is None else views.left,
         names_of_parts(engine.config, products),
         {"views": views, "truth": engine.scene.truth},
+        film=engine.scene.frames is not None,
     )
 
 

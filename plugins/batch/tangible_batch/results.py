@@ -109,8 +109,14 @@ def _figure(row: Row) -> str:
             f'alt="{name}: the picture, and the {escape(_product(row))} made of it"></a>'
         )
     caption = f'<a href="{folder}/">{name}</a>' if image else name
+    caption += "".join(f' · <a href="{folder}/{quote(page)}">{escape(page)}</a>' for page in _pages(row))
     line = f"<em>{found}</em>" if row["outcome"] != "ok" else found
     return f'<figure class="{row["outcome"]}">{image}<figcaption>{caption} <br>{line}</figcaption></figure>'
+
+
+def _pages(row: Row) -> list[str]:
+    """Return the exported files that a browser shows, such as pages to send and descriptions."""
+    return [printable(file) for file in row.get("files", ()) if file.endswith(".html")]
 
 
 def _product(row: Row) -> str:

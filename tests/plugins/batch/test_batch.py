@@ -489,6 +489,17 @@ def test_gallery_has_every_scene_once_and_its_error_as_text(tmp_path: Path, monk
     assert all("&lt;b&gt;no&lt;/b&gt; &amp; never" in page for page in pages)
 
 
+def test_gallery_links_exported_pages(tmp_path: Path):
+    row = {"id": "a", "outcome": "ok", "seconds": 1, "folder": "scenes/a", "card": "card.jpg"}
+    (tmp_path / "rows.jsonl").write_text(
+        json.dumps({**row, "files": ["relief.npz", "a&b-page.html", "card.jpg"]}) + "\n"
+    )
+    [page] = results.write_gallery(tmp_path, ["a"])
+    assert re.findall(r'<a href="([^"]+html)">([^<]+)</a>', page.read_text()) == [
+        ("scenes/a/a%26b-page.html", "a&amp;b-page.html")
+    ]
+
+
 def test_table_column_with_a_text_is_text(tmp_path: Path):
     import pyarrow.parquet as pq
 

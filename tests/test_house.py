@@ -47,6 +47,8 @@ PACKAGES = {
 }
 REPORT = ROOT / "plugins/report/tangible_report"
 """A package above the families, with two exporters: the sheet and the description."""
+SEND = ROOT / "plugins/send/tangible_send"
+"""A package above the page, with an exporter that is made of it."""
 MOMENTS = sorted(name for name in vars(hooks.Specs) if name.startswith("tangible_"))
 
 
@@ -146,7 +148,7 @@ def concrete_methods():
     An abstract class of a family, from which others of its classes derive, is not a method itself.
     """
     kinds = {cls.__name__: kind for kind, cls in KINDS.items()}
-    for package in (*PACKAGES.values(), REPORT):
+    for package in (*PACKAGES.values(), REPORT, SEND):
         classes = {
             node.name: (path, [ast.unparse(base).rpartition(".")[2] for base in node.bases])
             for path in sorted(package.rglob("*.py"))
@@ -178,7 +180,7 @@ def test_concrete_methods_are_registered():
 
 def test_methods_live_in_their_family():
     for kind, target in registered():
-        homes = (PACKAGES[kind], REPORT) if kind == "export" else (PACKAGES[kind],)
+        homes = (PACKAGES[kind], REPORT, SEND) if kind == "export" else (PACKAGES[kind],)
         assert target.partition(".")[0] in {each.name for each in homes}, f"{target} is registered as {kind}"
 
 

@@ -10,7 +10,16 @@ from waiting import LONGEST_MS
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-HERE = ("http://127.0.0.1:", "ws://127.0.0.1:", "http://localhost:", "ws://localhost:", "data:", "blob:", "about:")
+HERE = (
+    "http://127.0.0.1:",
+    "ws://127.0.0.1:",
+    "http://localhost:",
+    "ws://localhost:",
+    "data:",
+    "blob:",
+    "about:",
+    "file:",
+)
 OPTIONS = {"locale": "en-GB", "viewport": {"width": 1180, "height": 720}}
 
 FEWER_FRAMES = """(() => {

@@ -1,4 +1,5 @@
-// Bundles the page: `node build.mjs [FOLDER] [--watch]`, without a folder into the Python package beside this one.
+// Bundles the page: `node build.mjs [FOLDER] [--watch]`, without a folder into the Python package beside this one. With it
+// comes the page that is sent to others, `send.js` and `send.css`, each whole, as tangible_send puts them into one file.
 // A folder is replaced whole or not at all: a build that fails or is killed leaves the page of before, or none.
 import { createHash } from "node:crypto";
 import { mkdirSync, mkdtempSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync } from "node:fs";
@@ -63,8 +64,8 @@ function preloading(html, outputs) {
   return html.replace("</head>", `${links.join("")}</head>`);
 }
 
-function finish({ outputFiles, metafile }) {
-  const made = Object.fromEntries(outputFiles.map(({ path, contents }) => [relative(out, path), contents]));
+async function finish({ outputFiles, metafile }) {
+  const made = Object.fromEntries([...outputFiles, ...(await sent())].map(({ path, contents }) => [relative(out, path), contents]));
   const legal = Object.keys(made).filter((name) => name.endsWith(".LEGAL.txt"));
   const texts = [...licences(metafile.inputs), ...legal.map((name) => Buffer.from(made[name]).toString())];
   for (const name of legal) delete made[name];
@@ -74,10 +75,10 @@ function finish({ outputFiles, metafile }) {
   replace(made);
 }
 
-function finishAgain(result) {
+async function finishAgain(result) {
   if (result.errors.length) return;
   try {
-    finish(result);
+    await finish(result);
     console.log(`${new Date().toLocaleTimeString()} built`);
   } catch (error) {
     console.error(error.message);
@@ -96,6 +97,15 @@ const page = {
     if (watching) builder.onEnd(finishAgain);
   },
 };
+
+/** The page that is sent, as one script that needs no other file. */
+async function sent() {
+  const { outputFiles } = await build({
+    ...options, entryPoints: { send: "./src/send/main.ts" }, splitting: false, format: "iife", legalComments: "none", plugins: [],
+    minify: true, sourcemap: false,
+  });
+  return outputFiles;
+}
 
 const options = {
   absWorkingDir: WEB,
@@ -118,7 +128,7 @@ const options = {
 if (watching) await (await context(options)).watch();
 else
   try {
-    finish(await build(options));
+    await finish(await build(options));
   } catch (error) {
     if (!error.errors) console.error(error.message); // what esbuild found, it has printed
     process.exitCode = 1;

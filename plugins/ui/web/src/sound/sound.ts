@@ -14,6 +14,8 @@ const SWEEP_S = 2.5;
 const SWEEP_STEPS = 200;
 /** Milliseconds without a state after which all is silent. */
 const SILENT_MS = 250;
+/** The sound of a border between parts: short and high, unlike the tap of a touch. */
+const CLICK = { hz: 1400, level: 0.25, seconds: 0.02 };
 const NONE = stroke(null, [0, 0, 0], [0, 0, 0]);
 
 export class Sound {
@@ -66,6 +68,11 @@ export class Sound {
     const data = new Float32Array(meter.fftSize);
     meter.getFloatTimeDomainData(data);
     return Math.sqrt(data.reduce((sum, each) => sum + each * each, 0) / data.length);
+  }
+
+  /** Play the click of a border between parts. */
+  click(): void {
+    if (this.sounding && this.has("contact")) this.instrument?.tap(CLICK);
   }
 
   /** Play the heights of a row from left to right, as pitches, also while the sound is off. */

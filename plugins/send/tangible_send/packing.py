@@ -1,0 +1,149 @@
+"""The data of a page to send, as JSON: arrays are deflated and in base64, the picture is a JPEG."""
+
+import io
+import json
+import zlib
+from base64 import b64encode
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from jaxtyping import Shaped
+from PIL import Image
+
+from tangible_core.data import HapticSurface, Material, Relief, Work
+from tangible_core.data.pictures import to_rgb8
+from tangible_core.data.records import digest_of
+from tangible_core.parts.words.languages import LANGUAGES, TABLES, Language, one_line
+from tangible_report.description import describe, facts
+from tangible_report.description.at_length import tell
+from tangible_ui.worker.view.files import material_of
+
+from .surface import SentSurface
+from .words import FIRST_FRAME
+
+MOST_SIDE_PX = 2048
+"""The longest side of the picture: every phone has textures of this size."""
+LEAST_PHOTO = 200_000
+"""The room that is left for a picture at least, bytes: the surface is made coarser for it."""
+QUALITIES = (88, 80, 70, 60)
+SMALLER = 0.8
+PLAIN = Material("", 800.0, 0.0, 0.0, 0.0)
+"""What `proxy` takes for a surface without materials."""
+
+
+def pack(sent: SentSurface, work: Work) -> dict[str, Any]:
+    """Return the data of the page, without the picture."""
+    surface = _surface_in_words(sent, work)
+    materials, kinds = material_of(surface.materials or ())
+    digest = digest_of((sent.numbers, sent.labels, work.title, work.names))
+    return {
+        "meta": _meta(sent, surface, work, materials, digest),
+        "low_m": sent.low_m,
+        "step_m": sent.step_m,
+        "heights": deflate(sent.numbers),
+        "labels": "" if sent.labels is None else deflate(sent.labels),
+        "kinds": kinds.tolist(),
+        "rows": _rows(work.surface.materials if sent.labels is not None else None),
+        "photo": "",
+        **_words(surface, work),
+    }
+
+
+def as_json(data: Mapping[str, Any]) -> str:
+    """Return JSON that may stand in a script of HTML, whatever its texts contain: plain letters, and no `<`."""
+    text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def deflate(numbers: Shaped[np.ndarray, "h w"]) -> str:
+    """Return whole numbers of 16 bits as differences to the plane through three neighbours, deflated, in base64."""
+    values = np.pad(numbers.astype(np.int64), ((1, 0), (1, 0)))
+    plane = values[:-1, 1:] + values[1:, :-1] - values[:-1, :-1]
+    difference = (values[1:, 1:] - plane).astype(np.uint16).astype(np.int16).astype(np.int32)
+    zigzag = ((difference << 1) ^ (difference >> 31)).astype(np.uint16).ravel()
+    low, high = (zigzag & 255).astype(np.uint8), (zigzag >> 8).astype(np.uint8)
+    return b64encode(zlib.compress(low.tobytes() + high.tobytes(), 9)).decode()
+
+
+def _surface_in_words(sent: SentSurface, work: Work) -> HapticSurface:
+    """Return the surface that is described: with the materials of the work where the force law has none."""
+    relief = Relief(np.maximum(sent.height_m, np.float32(0)), sent.extent_m)
+    materials = work.surface.materials
+    if materials is None and work.materials is not None:
+        materials = work.materials.materials
+    if sent.labels is None or materials is None or int(sent.labels.max()) >= len(materials):
+        materials = work.surface.materials
+    return HapticSurface(relief, sent.labels, materials, work.surface.names)
+
+
+def _rows(materials: Sequence[Material] | None) -> list[tuple[float, float, float, float]]:
+    """Return stiffness, damping and frictions of each label, as `proxy` has them; one row if all are alike."""
+    rows = [
+        (each.stiffness_n_per_m, each.damping_n_s_per_m, each.static_friction, each.dynamic_friction)
+        for each in materials or (PLAIN,)
+    ]
+    return rows[:1] if len(set(rows)) == 1 else rows
+
+
+def _meta(
+    sent: SentSurface, surface: HapticSurface, work: Work, materials: Sequence[Material], digest: str
+) -> dict[str, Any]:
+    rows, columns = surface.height_m.shape
+    return {
+        "digest": digest,
+        "name": one_line(work.title),
+        "shows": "surface",
+        "rows": rows,
+        "columns": columns,
+        "extent_m": list(sent.extent_m),
+        "height_m": [float(surface.height_m.min()), float(surface.height_m.max())],
+        "levels": [{"step": 1, "rows": rows, "columns": columns}],
+        "labels": 0 if sent.labels is None else int(sent.labels.max()) + 1,
+        "label_bytes": 2,
+        "materials": [{**asdict(each), "name": one_line(each.name)} for each in materials],
+        "parts": None if surface.names is None else [one_line(each) for each in surface.names],
+        "photo": work.picture is not None,
+        "fine_photo": None,
+        "layers": {},
+    }
+
+
+def _words(surface: HapticSurface, work: Work) -> dict[str, Any]:
+    """Return descriptions by language, and the names of materials."""
+    named = {each.name for each in surface.materials or ()}
+    return {
+        "describes": {each: description(surface, work, each) for each in LANGUAGES},
+        "says": {each: describe(surface, one_line(work.title), each) for each in LANGUAGES},
+        "names": {
+            each: {name: said for name, said in TABLES[each].materials.items() if name in named} for each in LANGUAGES
+        },
+    }
+
+
+def description(surface: HapticSurface, work: Work, language: Language) -> dict[str, Any]:
+    """Return the long description as texts."""
+    kind = None if work.picture is not None else "heights"
+    told = tell(surface, work.title, language, facts(surface), kind)
+    return {
+        "overview": " ".join((*told.overview, *[FIRST_FRAME[language]] * work.film)),
+        "heading": told.heading,
+        "parts": [[each.label, " ".join(each.sentences)] for each in told.parts],
+        "left_out": told.left_out,
+    }
+
+
+def photo(picture: np.ndarray, most_bytes: int) -> str:
+    """Return a JPEG in base64, as large and as good as fits into this number of bytes of base64."""
+    image = Image.fromarray(to_rgb8(picture))
+    share = min(1.0, MOST_SIDE_PX / max(image.size))
+    while True:
+        size = tuple(max(1, round(share * side)) for side in image.size)
+        small = image.resize((size[0], size[1]), Image.Resampling.BOX, reducing_gap=2.0)
+        for quality in QUALITIES:
+            packed = io.BytesIO()
+            small.save(packed, "JPEG", quality=quality, optimize=True)
+            if 4 * -(-packed.tell() // 3) <= most_bytes or max(size) <= 16:
+                return b64encode(packed.getvalue()).decode()
+        share *= SMALLER

@@ -1,0 +1,76 @@
+"""The exporter of a page that anybody can open and explore."""
+
+import logging
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, final
+
+from pydantic import Field
+
+from tangible_core.data import Work
+from tangible_core.errors import ConfigError, OutputError
+from tangible_core.files.writing import write_text
+from tangible_core.parts.words.languages import spoken_language
+from tangible_core.plugins.interfaces import Exporter
+from tangible_core.plugins.notes import note
+from tangible_ui.address import static
+
+log = logging.getLogger(__name__)
+
+MOST_BYTES = 2_000_000
+"""The size of a whole file that mail programs and phones take without a question, bytes."""
+
+
+@final
+class Page(Exporter):
+    """A page to send: one HTML file to see, hear and explore on any phone or computer, without a network.
+
+    The picture is explored by finger, mouse, keyboard or game pad: the page says the names of parts, what they feel
+    like, and how the ground rises and falls; borders click, textures hum and vibrate. The surface has the forces of
+    `proxy`, without its fine textures, with heights to a micrometre where the size of the file allows that.
+    """
+
+    needs: ClassVar[tuple[str, ...]] = ("surface", "materials")
+
+    most_bytes: Annotated[int, Field(ge=1_000_000, le=100_000_000)] = MOST_BYTES
+    """The largest size of the file: the picture is compressed, and the surface made coarser, until it fits."""
+
+    def write(self, work: Work, stem: Path) -> tuple[Path, ...]:
+        """Write one file. Raises: ConfigError if the page was not built; OutputError if it cannot be small enough."""
+        from .html import page_of
+        from .packing import LEAST_PHOTO, pack, photo
+        from .surface import fits, surface_to_send
+
+        script, style, licences = map(_page_file, ("send.js", "send.css", "LICENSES.txt"))
+        language = spoken_language(work.language, log)
+
+        def page(data: Mapping[str, Any]) -> str:
+            return page_of(work.title, language, work.language, data, script, style, licences)
+
+        for sent in surface_to_send(work):
+            data = pack(sent, work)
+            room = self.most_bytes - len(page(data).encode())
+            if room >= (0 if work.picture is None else LEAST_PHOTO):
+                break
+        else:
+            raise OutputError(f"this picture does not fit into {self.most_bytes} bytes; make `most_bytes` larger")
+        if work.picture is not None:
+            data["photo"] = photo(work.picture, room)
+        if said := fits(work, sent):
+            note(log, said)
+        if work.film:
+            note(log, "the page shows the first frame of the film")
+        path = stem.with_name(f"{stem.name}-page.html")
+        write_text(path, page(data))
+        return (path,)
+
+
+def _page_file(name: str) -> str:
+    """Return a file of the built page. Raises: ConfigError if it was not built."""
+    try:
+        return (static() / name).read_text("utf-8")
+    except FileNotFoundError as error:
+        raise ConfigError(
+            "the page was not built when this was installed, as npm could not be reached; install again where it can "
+            "(`pip install --force-reinstall --no-deps .`)"
+        ) from error

@@ -1,0 +1,104 @@
+/** A page that was sent: one file with a picture to explore, without a program behind it and without a network. */
+import "../style/tokens.css";
+import "../style/ground.css";
+import "../style/controls.css";
+import "../style/preferences.css";
+import "./send.css";
+import { Themes, colour } from "../frame/themes";
+import { attachFingers } from "../hand/fingers";
+import { attachGamePad } from "../hand/game_pad";
+import { Hand } from "../hand/hand";
+import { attachKeyboard } from "../hand/keyboard";
+import { attachMouse } from "../hand/mouse";
+import { Hub } from "../hub";
+import { measure } from "../instrumentation";
+import { Overlay } from "../overlay/overlay";
+import type { Page } from "../page";
+import { listen, on } from "../shortcuts";
+import { Sound } from "../sound/sound";
+import { Announcer, liveRegions } from "../speech/announcer";
+import { Narrator } from "../speech/narrator";
+import { Speech } from "../speech/speech";
+import { Frames } from "../view/frames";
+import { DEFAULTS } from "../view/settings";
+import { View } from "../view/view";
+import { language } from "../words/words";
+import { describe, keyTable, partList, switches } from "./controls";
+import { readData, unpack, type Packed } from "./data";
+import { drawFlat } from "./flat_picture";
+import { LocalServer } from "./local_server";
+import { Shaking } from "./shaking";
+import { ProxyLaw } from "./touch/law";
+import { t } from "./words";
+
+const UNSEEN = { device: false, arrow: false, cone: false, labels: false, limits: false };
+
+const element = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
+const now_s = (): number => Date.now() / 1000;
+
+async function open(data: Packed): Promise<void> {
+  const { scene, spline, row } = await unpack(data);
+  const canvas = element<HTMLCanvasElement>("terrain");
+  const hub = new Hub();
+  const speech = new Speech(hub);
+  const shown = liveRegions(element("said"), element("alerted"));
+  const announcer = new Announcer((message) => {
+    shown(message);
+    speech.speak(message);
+  });
+  const view = new View(canvas);
+  const law = new ProxyLaw(spline, row);
+  const sound = new Sound(hub, () => page.scene);
+  const page: Page = {
+    hub, view, canvas, speech, sound,
+    net: new LocalServer(hub, law),
+    overlay: new Overlay(view, canvas),
+    scene: null, hand: null, narration: null, document: null, replayed: null,
+    themes: new Themes(hub),
+    idle: Promise.resolve(),
+    say: (text, how) => announcer.say(text, how),
+    forget: (topic) => announcer.forget(topic),
+  };
+  Object.assign(page.overlay.settings.show, UNSEEN); // these explain a force law, not a picture
+  measure(page);
+  listen(canvas);
+  page.narration = new Narrator(page);
+  const hand = (page.hand = new Hand(page));
+  for (const attach of [attachMouse, attachFingers, attachKeyboard, attachGamePad]) attach(hand, page);
+  const shaking = new Shaking(page, sound);
+  on("stop", () => hand.stop());
+  const ground = (): void => void (view.ground = colour("--ground"));
+  hub.on("theme", ground);
+  ground();
+  drawFlat(page);
+  new Frames(page);
+
+  page.scene = scene;
+  const looks = [...(scene.photo ? ["photo"] : []), "relief", "height", ...(scene.meta.labels > 1 ? ["segments"] : [])];
+  hub.on("shown", () => view.put(scene, { ...DEFAULTS, look: looks[0]! }));
+  const digest = scene.meta.digest;
+  hub.tell("described", { event: "described", at_s: now_s(), digest, says: data.says, names: data.names });
+  hub.tell("loop", { event: "loop", at_s: now_s(), running: true, why: "", own_hand: true });
+  hub.tell("holding", { event: "holding", at_s: now_s(), holding: true, free: false });
+  hub.tell("shown", scene);
+  switches(page, element("controls"), shaking, looks, (look) => {
+    view.terrain?.show({ ...DEFAULTS, look }, null);
+    view.dirty = true;
+  });
+  partList(page, element("parts"));
+  Object.assign(window, { tangible: { page, law } }); // for tests and measurements
+}
+
+/** Put the page's own texts into its language. */
+function greet({ meta }: Packed): void {
+  document.documentElement.lang = language;
+  element("skip").textContent = t("skip");
+  element("how").textContent = t("how");
+  element("terrain").ariaLabel = meta.name ? t("pictureOf", { title: meta.name }) : t("picture");
+  keyTable(element<HTMLDetailsElement>("help"));
+}
+
+const data = readData();
+greet(data);
+describe(data, element("description"));
+open(data).catch((error: Error) => (element("alerted").textContent = t("unreadable", { why: error.message })));

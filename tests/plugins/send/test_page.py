@@ -1,0 +1,125 @@
+import json
+import re
+from base64 import b64decode, b64encode
+from dataclasses import replace
+from hashlib import sha256
+from html.parser import HTMLParser
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from page_files import built_page
+from sent_pages import HOSTILE, MATERIALS, finer, picture_to_send
+from tangible_core.errors import OutputError
+from tangible_core.parts.words.languages import one_line
+from tangible_core.plugins.notes import collect_notes
+from tangible_render.surface.coefficients import spline_coefficients
+from tangible_send.page import Page
+from tangible_send.surface import surface_to_send
+
+pytestmark = pytest.mark.usefixtures("built")
+
+
+@pytest.fixture(scope="module")
+def built() -> None:
+    built_page()
+
+
+class Elements(HTMLParser):
+    """The elements of a page, each with its attributes and its text."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.found: list[tuple[str, dict[str, str | None], list[str]]] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs), []))
+
+    def handle_endtag(self, tag: str) -> None:
+        self.found.append((f"/{tag}", {}, []))
+
+    def handle_data(self, data: str) -> None:
+        if self.found:
+            self.found[-1][2].append(data)
+
+    def texts(self, tag: str) -> list[str]:
+        return ["".join(text) for name, _, text in self.found if name == tag]
+
+
+def test_titles_and_names_stay_text(tmp_path: Path):
+    title = HOSTILE[0] + HOSTILE[1]
+    (path,) = Page().write(picture_to_send(title), tmp_path / "it")
+    assert path.name == "it-page.html"
+    page = Elements(path.read_text("utf-8"))
+    assert [attrs.get("src") for tag, attrs, _ in page.found if tag in ("script", "img")] == [None, None]
+    shown = one_line(title)
+    assert page.texts("title") == [shown]
+    data, script = page.texts("script")
+    assert not re.search("[<>&\u2028\u2029]", data)
+    meta = json.loads(data)["meta"]
+    assert meta["name"] == shown
+    assert [each["name"] for each in meta["materials"]] == [each.name for each in MATERIALS]
+    assert meta["parts"][2] == HOSTILE[2] and HOSTILE[2] in page.texts("bdi")
+    assert script == built_page().joinpath("send.js").read_text("utf-8")
+
+
+def test_policy_allows_this_script_and_style_alone(tmp_path: Path):
+    (path,) = Page().write(picture_to_send(), tmp_path / "it")
+    page = Elements(path.read_text("utf-8"))
+    [policy] = [attrs["content"] for _, attrs, _ in page.found if attrs.get("http-equiv") == "Content-Security-Policy"]
+    allowed = dict(each.strip().split(" ", 1) for each in str(policy).split(";"))
+    for kind, text in (("script", page.texts("script")[1]), ("style", page.texts("style")[0])):
+        assert allowed.pop(f"{kind}-src") == f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
+    assert allowed == {
+        "default-src": "'none'", "base-uri": "'none'", "form-action": "'none'",
+    }  # fmt: skip
+
+
+def test_file_is_as_small_as_is_asked(tmp_path: Path):
+    """Rough heights and a picture of noise, which do not become smaller."""
+    work = finer(picture_to_send(), 8)
+    work = replace(work, picture=np.random.default_rng(1).integers(0, 255, (900, 1200, 3), dtype=np.uint8))
+    with collect_notes() as notes:
+        (path,) = Page(most_bytes=1_200_000).write(work, tmp_path / "it")
+    size = path.stat().st_size
+    assert 1_000_000 < size <= 1_200_000
+    [said] = [note.text for note in notes if "cells" in note.text]
+    assert "of 960 x 720" in said and "steps of" in said
+    photo = json.loads(Elements(path.read_text("utf-8")).texts("script")[0])["photo"]
+    assert Image.open(BytesIO(b64decode(photo))).size[0] > 300
+    with pytest.raises(OutputError, match="make `most_bytes` larger"):
+        Page.model_construct(most_bytes=700_000).write(work, tmp_path / "it")
+
+
+def test_coefficients_are_within_half_a_step():
+    work = picture_to_send()
+    sent = next(surface_to_send(work))
+    assert sent.step_m == 1e-6
+    wanted_m = spline_coefficients(work.surface.height_m)
+    assert np.abs(sent.coefficients - wanted_m).max() < 0.51e-6
+
+
+def test_first_frame_of_a_film_is_named(tmp_path: Path):
+    with collect_notes() as notes:
+        (path,) = Page().write(replace(picture_to_send(), film=True, language="de"), tmp_path / "it")
+    assert "the page shows the first frame of the film" in [note.text for note in notes]
+    assert "Dies ist das erste Bild eines Films." in path.read_text("utf-8")
+
+
+def test_surface_without_parts_or_picture_is_written(tmp_path: Path):
+    work = picture_to_send()
+    bare = replace(work.surface, labels=None, materials=None, names=None)
+    work = replace(work, products={"surface": bare, "materials": None}, picture=None)
+    (path,) = Page().write(work, tmp_path / "it")
+    data = json.loads(Elements(path.read_text("utf-8")).texts("script")[0])
+    assert data["photo"] == data["labels"] == "" and data["rows"] == [[800.0, 0.0, 0.0, 0.0]]
+
+
+def test_page_that_was_not_built_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("tangible_send.page.static", lambda: tmp_path)
+    with pytest.raises(Exception, match="the page was not built"):
+        Page().write(picture_to_send(), tmp_path / "it")

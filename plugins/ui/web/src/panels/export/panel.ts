@@ -46,8 +46,7 @@ export function build(page: Page, root: HTMLElement): void {
     list.replaceChildren(choices.root);
     preview();
   };
-  const run = async (): Promise<void> => {
-    const exports = choices?.blocks ?? [];
+  const run = async (exports = choices?.blocks ?? []): Promise<void> => {
     if (!exports.length) return tell(t("none"), "warn");
     tell(t("running"));
     try {
@@ -72,14 +71,19 @@ export function build(page: Page, root: HTMLElement): void {
     void editor.submit({ changes: { [key]: value } }).then((done) => (done ? run() : undefined));
   };
 
-  const start = button(t("run"), run);
+  const send = button(t("send"), () => {
+    const chosen = choices?.blocks.find((each) => each === SENT || (isMap(each) && each.use === SENT));
+    return run([chosen ?? SENT]);
+  });
+  send.id = "export-send";
+  const start = button(t("run"), () => run());
   start.id = "export-run";
   start.className = "primary";
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   buttons.append(start, stopButton(page), button(t("add"), add));
   const names = (): string[] => (choices?.blocks ?? []).map((each) => String(isMap(each) ? each.use : each));
-  root.append(hint(t("about")), list, previews.root, buttons, progress(page, names), status, results);
+  root.append(send, hint(t("sendAbout")), hint(t("about")), list, previews.root, buttons, progress(page, names), status, results);
   void load().catch((error: Error) => (list.textContent = error.message));
 
   const stale = paragraph(t("stale"), "warn");
@@ -100,8 +104,10 @@ export function build(page: Page, root: HTMLElement): void {
   if (before) show(before);
 }
 
+/** The exporter of a page to send. */
+const SENT = "page";
 /** Order of known exporters by frequency of use; others follow. */
-const ORDER = ["stl", "3mf", "glb", "swell", "pins", "text", "heights"];
+const ORDER = ["page", "stl", "3mf", "glb", "swell", "pins", "text", "heights"];
 
 /** Return installed exporters with their options, from the file's schema. */
 function exportersOf({ properties, $defs }: FileSchema): Exporter[] {

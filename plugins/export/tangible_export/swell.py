@@ -10,6 +10,7 @@ from pydantic import Field
 
 from tangible_core.data import PartMap, Work
 from tangible_core.errors import BrokenMethod, PictureError
+from tangible_core.plugins.failures import missing_package
 from tangible_core.plugins.interfaces import Exporter, Medium, Previewing
 
 from .paper.sheet import Page, check_readable, sheet_for
@@ -92,6 +93,8 @@ class Swell(Exporter, Previewing):
             from .paper.opening import open_parts
             from .paper.page import drawn_pages
         except ImportError as error:
+            if missing_package(error) not in (None, "shapely"):
+                raise
             raise BrokenMethod(f"pages need shapely ({error}); pip install shapely") from error
         if (parts := work.simplified) is None:
             raise PictureError("this scene has no parts to outline; it needs a picture, or its own `parts:`")

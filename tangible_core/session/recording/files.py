@@ -65,7 +65,9 @@ def read(path: Path) -> RecordingContents:
         _check_bits(contents.rows)
     except OSError as error:
         raise OutputError(f"{path}: cannot be read: {error.strerror or error}") from error
-    except Exception as error:  # a damaged file can provoke any
+    except ImportError:  # a package is missing, which is not the file's fault
+        raise
+    except Exception as error:  # a damaged file can provoke any other
         why = shown(str(error), 200)
         raise OutputError(f"{path}: is not a recording, or a damaged one ({why}); record it again") from error
     return contents

@@ -1,11 +1,15 @@
 """The plugin that an error came from: the innermost one, or none for a fault of the core."""
 
+from importlib import import_module
+from pathlib import Path
+
 import pytest
 
 from tangible_core import Force
 from tangible_core.compiled.touch import CompiledTouch
 from tangible_core.plugins import PlainTouch
 from tangible_core.plugins.failures import Place, missing_package, place_of, sentence
+from tangible_core.session.recording.files import READERS, read
 
 
 class Law(PlainTouch):
@@ -47,3 +51,10 @@ def test_missing_package_is_named_with_the_command_that_installs_it(
 
 def test_missing_module_of_an_installed_package_is_no_missing_package():
     assert missing_package(ModuleNotFoundError("No module named 'cv2.gone'", name="cv2.gone")) is None
+
+
+def test_recording_without_scipy_is_not_called_damaged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    (tmp_path / "hand.nc").write_bytes(b"CDF\x02")
+    monkeypatch.setitem(READERS, ".nc", lambda path: import_module("acme_that_is_not_there"))
+    with pytest.raises(ModuleNotFoundError, match="acme"):
+        read(tmp_path / "hand.nc")

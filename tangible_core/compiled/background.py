@@ -12,6 +12,7 @@ import pickle
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from types import TracebackType
@@ -19,12 +20,15 @@ from typing import Any, NamedTuple, Self, final
 
 from ..runtime.child_process import command, dumps, pipe_of
 from ..runtime.stopping import check_stopped
+from ..runtime.system.processes import exit_with_parent
 
 log: logging.Logger = logging.getLogger(__name__)
 LATE_STEPS = "late steps of the depth"
 """The name of the steps that `DepthEstimator.rehearse` runs."""
 LOOK_EVERY_S = 0.1
 """The period, s, at which a waiting thread checks whether it shall stop."""
+LONGEST_S = 300.0
+"""The longest wait for one kernel, s; the slowest takes a tenth of it."""
 
 
 class Work(NamedTuple):
@@ -97,7 +101,7 @@ class BackgroundCompiler:
             try:
                 if (work := make()) is None:
                     return
-                data = dumps((work.function, work.arguments))
+                data = dumps((os.getpid(), work.function, work.arguments))
                 self._child = subprocess.Popen(
                     command(__name__), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
                 )
@@ -111,12 +115,17 @@ class BackgroundCompiler:
     def wait(self, what: str) -> None:
         """Wait until the process has compiled this; return at once if it is not running or does not compile this.
 
+        A process that stands still is waited for no longer than `LONGEST_S`: then this is compiled here.
         Raises: Stopped if the current work shall end.
         """
         with self._progress:
-            while what in self._due:
+            until_s = time.monotonic() + LONGEST_S
+            while what in self._due and time.monotonic() < until_s:
                 self._progress.wait(LOOK_EVERY_S)
                 check_stopped()
+            if what in self._due:
+                log.warning("the process that compiles in the background stands still; %s is compiled here", what)
+                self._due = frozenset()
 
     def _listen(self, child: "subprocess.Popen[bytes]", data: bytes) -> None:
         with suppress(OSError, ValueError):  # the process has ended
@@ -134,13 +143,8 @@ class BackgroundCompiler:
 def main() -> None:
     """Do the work that arrives on standard input, in the background process, and end when that is closed."""
     gc.disable()  # the process ends soon
-    work, arguments = pickle.load(sys.stdin.buffer)
-    threading.Thread(target=_exit_with_parent, daemon=True).start()
+    parent, work, arguments = pickle.load(sys.stdin.buffer)
+    exit_with_parent(parent, sys.stdin.buffer)
     for ready in work(*arguments):
         sys.stdout.write(f"{ready}\n")
         sys.stdout.flush()
-
-
-def _exit_with_parent() -> None:
-    sys.stdin.buffer.read()
-    os._exit(0)

@@ -14,7 +14,8 @@ from itertools import pairwise
 from typing import Any, TypeVar
 
 from ..runtime.stopping import check_stopped
-from ..runtime.threads import processors, thread_limit
+from ..runtime.system.processes import processors
+from ..runtime.threads import thread_limit
 from . import compiling as compiling  # for its notice while kernels are compiled
 
 T = TypeVar("T")

@@ -10,8 +10,8 @@ from time import monotonic
 from typing import Any, Self, cast
 
 from ..errors import OutputError, ResultsError
+from ..runtime.system.files import BINARY, lock
 from .reading import check_file
-from .writing import BINARY, lock
 
 SYNC_EVERY_S = 1.0
 """The longest time, s, until a row is on the disk."""

@@ -3,7 +3,6 @@
 import os
 import re
 import shutil
-import sys
 import time
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
@@ -12,10 +11,7 @@ from pathlib import Path
 from typing import IO
 
 from ..errors import OutputError
-
-BINARY = getattr(os, "O_BINARY", 0)
-"""The flag that makes `os.open` open a file as binary; Windows alone has it."""
-
+from ..runtime.system.files import BINARY, folder_lock, is_in_use, is_locked, lock, wait_for_lock
 
 MOST_OF_NAME = 50
 """Number of characters of a file's name in the name of its temporary file: of four bytes each, they still fit."""
@@ -40,10 +36,12 @@ def atomic_write(path: Path, *, private: bool = False) -> Generator[IO[bytes]]:
         raise OutputError(f"{path}: cannot be written: {error.strerror or error}; choose another folder") from error
     try:
         with os.fdopen(handle, "wb") as file:
-            _lock(handle)
+            wait_for_lock(handle)
             yield file
         part.replace(path)
     except OSError as error:
+        if is_in_use(error, path):
+            raise OutputError(f"{path}: another program has it open; close it there or choose another name") from error
         raise OutputError(
             f"{path}: cannot be written: {error.strerror or error}; free some space or choose another folder"
         ) from error
@@ -68,7 +66,7 @@ def sweep(folder: Path) -> None:
     for path in folder.glob(".*.tangible"):
         with suppress(OSError):
             state = path.lstat()
-            if TEMPORARY.fullmatch(path.name) and time.time() - state.st_mtime > LEFT_S and not _is_locked(path):
+            if TEMPORARY.fullmatch(path.name) and time.time() - state.st_mtime > LEFT_S and not is_locked(path):
                 shutil.rmtree(path) if path.is_dir() else path.unlink()
 
 
@@ -102,64 +100,8 @@ def open_alone(path: Path, *, private: bool = False) -> FileIO:
     return file
 
 
-def lock(file: FileIO) -> None:
-    """Lock an open file until it is closed or this process ends. Raises: OSError if another process holds it."""
-    if sys.platform == "win32":
-        import msvcrt
-
-        file.seek(2**62)  # Windows denies others to read a locked byte: lock one past the end
-        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        file.seek(0)
-    else:
-        import fcntl
-
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-
-@contextmanager
-def folder_lock(folder: Path) -> Generator[None]:
-    """Hold a folder's lock in this block while other processes wait; a file system without locks makes nobody wait."""
-    if sys.platform == "win32":
-        with FileIO(os.open(folder / ".alone", os.O_RDWR | os.O_CREAT | os.O_TEMPORARY), "r+") as file:
-            import msvcrt
-
-            msvcrt.locking(file.fileno(), msvcrt.LK_LOCK, 1)
-            yield
-    else:
-        number = os.open(folder, os.O_RDONLY)
-        try:
-            _lock(number)
-            yield
-        finally:
-            os.close(number)
-
-
 def _temporary(path: Path) -> Path:
     return path.parent / f".{path.name[:MOST_OF_NAME]}.{os.urandom(6).hex()}.tangible"
-
-
-def _lock(number: int) -> None:
-    """Lock an open file or folder until it is closed, where the system can; wait while another process holds it."""
-    if sys.platform != "win32":
-        import fcntl
-
-        with suppress(OSError):
-            fcntl.flock(number, fcntl.LOCK_EX)
-
-
-def _is_locked(path: Path) -> bool:
-    if sys.platform == "win32":
-        return True
-    import fcntl
-
-    number = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
-    try:
-        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    finally:
-        os.close(number)
-    return False
 
 
 def _create(path: Path, flags: int, private: bool) -> int:

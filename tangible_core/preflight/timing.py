@@ -1,9 +1,6 @@
 """Timing of this machine at present: the lateness of its wake-ups, and the duration of a tick."""
 
-import os
 import time
-from collections.abc import Generator
-from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +9,7 @@ from jaxtyping import Float64
 from ..compiled.touch import CompiledTouch
 from ..data import HapticState, Record
 from ..plugins.interfaces import Touch
-from ..servo.ticks.priority import PRIORITY
+from ..runtime.system.priority import real_time as real_time_block
 
 TICKS = 2000
 """Number of ticks of a stroke over the surface that are timed one by one."""
@@ -27,7 +24,7 @@ class Lateness(Record):
     late_s: Float64[np.ndarray, " n"]
     period_s: float
     real_time: bool
-    """True if the loop ran, and so may run, with real-time priority (SCHED_FIFO)."""
+    """True if the loop ran, and so may run, with real-time priority, such as SCHED_FIFO of Linux."""
 
     @property
     def overruns(self) -> float:
@@ -56,12 +53,12 @@ class TickCost(Record):
 
 
 def measure_lateness(seconds: float, period_s: float) -> Lateness:
-    """Measure the lateness of sleeps to absolute deadlines, with SCHED_FIFO if that is permitted.
+    """Measure the lateness of sleeps to absolute deadlines, in real time if that is permitted.
 
     A tick that is more than a period late takes the next deadline to come.
     """
     late_s = np.zeros(max(1, round(seconds / period_s)))
-    with _first_in_line() as real_time:
+    with real_time_block() as real_time:
         deadline = time.perf_counter()
         for tick in range(late_s.size):
             deadline += period_s
@@ -90,24 +87,3 @@ def measure_ticks(touch: Touch, way_m: Float64[np.ndarray, "n 3"], period_s: flo
         touch.force(state)
         clock[tick] = time.perf_counter_ns()
     return TickCost(1e-9 * np.diff(clock), kernel_s, isinstance(touch, CompiledTouch))
-
-
-@contextmanager
-def _first_in_line() -> Generator[bool]:
-    """Run a block with SCHED_FIFO if the system permits it; yield whether it does."""
-    before = _take_fifo()
-    try:
-        yield before is not None
-    finally:
-        if before is not None:
-            os.sched_setscheduler(0, *before)
-
-
-def _take_fifo() -> "tuple[int, os.sched_param] | None":
-    """Request SCHED_FIFO; return the previous scheduling, or None if it is refused."""
-    try:
-        before = os.sched_getscheduler(0), os.sched_getparam(0)
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
-    except (AttributeError, OSError):  # another system; not permitted
-        return None
-    return before

@@ -2,7 +2,6 @@
 
 import hashlib
 import os
-import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -11,6 +10,7 @@ from pathlib import Path
 from types import FunctionType
 from typing import NamedTuple
 
+from ..runtime.system.files import changed_ns
 from . import STARTED_NS, versions
 from .imports import Import, definitions, imports
 from .places import HOME, Place, is_read, place
@@ -155,8 +155,7 @@ def _text(here: Place) -> _Text:
         state, content = Path(here.file).stat(), Path(here.file).read_bytes()
     except OSError:  # in an archive, or gone: the running code is not known
         return _Text()
-    changed_ns = max(state.st_mtime_ns, 0 if sys.platform == "win32" else state.st_ctime_ns)
-    settled = changed_ns < STARTED_NS
+    settled = changed_ns(state) < STARTED_NS
     if not here.file.endswith(".py"):
         return _Text(content, settled=settled)
     try:

@@ -33,17 +33,6 @@ class Place(NamedTuple):
     """The file of the module; "" for a module of Python, or a notebook."""
 
 
-def is_alive(process: int) -> bool:
-    """Return True if a process of this number runs, of any user."""
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True
-
-
 def command(module: str) -> list[str]:
     """Return the command that starts Python and calls `main()` of a module."""
     return python(f"import {module} as child; child.main()")

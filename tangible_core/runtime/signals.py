@@ -1,4 +1,4 @@
-"""Signals that end the program: SIGTERM, SIGHUP and SIGQUIT act as Ctrl-C, so that everything is closed in order."""
+"""Signals that end the program, and the end of its console: they act as Ctrl-C, so that all is closed in order."""
 
 import signal
 import threading
@@ -6,8 +6,8 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from types import FrameType
 
-ENDING = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP", "SIGQUIT") if hasattr(signal, name))
-"""The signals sent by `kill`, by a system that shuts down, by a terminal that is closed, and by Ctrl-\\."""
+from .system.console import ENDING, end_before_console
+
 _received: list[signal.Signals] = []
 
 
@@ -20,6 +20,8 @@ def end_as_ctrl_c() -> Generator[None]:
     """
     _received.clear()
     here = threading.current_thread() is threading.main_thread()
+    over = threading.Event()
+    undo = end_before_console(_interrupt, over, ignore_ctrl_c=False)
     mine = [each for each in ENDING if here and signal.getsignal(each) == signal.SIG_DFL]
     for each in mine:
         signal.signal(each, _receive)
@@ -28,11 +30,19 @@ def end_as_ctrl_c() -> Generator[None]:
     finally:
         for each in mine:
             signal.signal(each, signal.SIG_DFL)
+        over.set()
+        undo()
 
 
 def received_signal() -> signal.Signals | None:
     """Return the signal that ended the program, if one did."""
     return _received[0] if _received else None
+
+
+def _interrupt() -> None:
+    """Interrupt the main thread from the thread of the console."""
+    _received.append(ENDING[-1])
+    signal.raise_signal(signal.SIGINT)
 
 
 def _receive(number: int, _frame: FrameType | None) -> None:

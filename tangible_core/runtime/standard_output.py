@@ -68,10 +68,12 @@ def _lead_nowhere(number: int) -> None:
 
 @final
 class _Output(io.RawIOBase):
-    """A file by its number whose reader may go away."""
+    """A file by its number whose reader may go away; on Windows, also a console, which takes text alone."""
 
     def __init__(self, number: int) -> None:
         self._number = number
+        raw: Any = open(number, "wb", buffering=0, closefd=False)  # noqa: SIM115 - it closes nothing
+        self._console = None if isinstance(raw, io.FileIO) else raw
 
     def fileno(self) -> int:
         return self._number
@@ -84,7 +86,7 @@ class _Output(io.RawIOBase):
 
     def write(self, data: Any, /) -> int:
         try:
-            return os.write(self._number, data)
+            return os.write(self._number, data) if self._console is None else self._console.write(data)
         except BrokenPipeError:
             _lead_nowhere(self._number)
             return memoryview(data).nbytes
@@ -103,7 +105,8 @@ def _move_aside(stdout: io.TextIOWrapper, undo: ExitStack) -> TextIO:
     raw = _Output(os.dup(OUT))
     by_lines, at_once = stdout.line_buffering, stdout.write_through
     binary: Any = raw if at_once else io.BufferedWriter(raw)
-    own = io.TextIOWrapper(binary, stdout.encoding, stdout.errors, line_buffering=by_lines, write_through=at_once)
+    errors = "backslashreplace" if stdout.errors == "strict" else stdout.errors
+    own = io.TextIOWrapper(binary, stdout.encoding, errors, line_buffering=by_lines, write_through=at_once)
     undo.callback(_close, own)
     undo.callback(os.dup2, raw.fileno(), OUT)
     undo.callback(stdout.reconfigure, line_buffering=by_lines)  # this flushes the output of plugins

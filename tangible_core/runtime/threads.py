@@ -54,8 +54,3 @@ def thread_limit() -> int | None:
     if not (text.isascii() and text.isdigit() and int(text) > 0):
         raise ConfigError(f"{VARIABLE}: is {quoted(text)}; set it to a whole number of threads from 1, or unset it")
     return int(text)
-
-
-def processors() -> int:
-    """Return the number of processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

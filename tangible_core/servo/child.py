@@ -15,11 +15,13 @@ from typing import IO, final
 
 from ..errors import DeviceError
 from ..plugins.interfaces import Link, Touch, touch_of
-from ..runtime.signals import ENDING
+from ..runtime.system import priority
+from ..runtime.system.console import ENDING, PAUSING, end_before_console
+from ..runtime.system.streams import take_input
 from . import parcel
 from .framing import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
 from .ring import STOP, SWAP, Ring
-from .ticks import loop, priority
+from .ticks import loop
 
 TERMINATED = "the process received a signal to end"
 PAUSED = "the program was paused from the keyboard"
@@ -54,8 +56,7 @@ class Child:
             self._reply(End(self._stopped))
         finally:
             if self._ring is not None:
-                with suppress(OSError):  # Windows keeps the name of a file that is mapped
-                    self._ring.remove()  # the host has mapped it too, or was killed and cannot remove it
+                self._ring.remove()  # the host has mapped it too, or was killed and cannot remove it
 
     def _open(self, start: Start) -> None:
         self._ring = ring = Ring.attach(Path(start.ring))
@@ -137,12 +138,13 @@ def main() -> None:
     os.dup2(2, 1)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the host too, which decides
     sys.setswitchinterval(SWITCH_S)
-    commands = open(0, "rb", buffering=0)  # noqa: SIM115 - a buffer's lock would outlive the thread that waits
-    child = Child(commands, replies)
+    child, over = Child(take_input(), replies), threading.Event()
+    end_before_console(lambda: child.stop(TERMINATED), over, ignore_ctrl_c=True)
     for number in ENDING:  # they reach the loop too, but must not end it at once
         if signal.getsignal(number) != signal.SIG_IGN:  # nohup ignores it: the program goes on, and so does its loop
             signal.signal(number, lambda _number, _frame: child.stop(TERMINATED))
-    if hasattr(signal, "SIGTSTP"):  # Ctrl-Z: a suspended process would leave its force on
-        signal.signal(signal.SIGTSTP, lambda _number, _frame: child.stop(PAUSED))
+    for number in PAUSING:  # Ctrl-Z: a suspended process would leave its force on
+        signal.signal(number, lambda _number, _frame: child.stop(PAUSED))
     gc.disable()  # a collection takes longer than a tick
     child.main()
+    over.set()

@@ -200,7 +200,7 @@ class Servo:
         """Delete parcels that the loop did not consume; `stop` and `swap` may do so at the same time."""
         with suppress(IndexError):
             while True:
-                self._sent.pop().unlink(missing_ok=True)
+                parcel.discard(self._sent.pop())
 
     def _arrays(self, touch: Touch | Film) -> tuple[Any, Any]:
         spec = self._device.spec()

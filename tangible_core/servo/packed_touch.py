@@ -49,13 +49,13 @@ class Packed(Touch):
 
     def unused_parcel(self) -> Path:
         """Return the parcel, for a loop. Raises: DeviceError if a loop has consumed it, or it was discarded."""
-        if not self.parcel.exists():
+        if not parcel.exists(self.parcel):
             raise DeviceError("this packed touch was already used or discarded; pack a new one")
         return self.parcel
 
     def discard(self) -> None:
         """Delete the parcel, if no loop has; a second call does nothing."""
-        self.parcel.unlink(missing_ok=True)
+        parcel.discard(self.parcel)
 
 
 def pack_touch(touch: Touch | Film, spec: DeviceSpec) -> Packed:

@@ -1,19 +1,18 @@
 """Parcels: objects with large arrays, passed to another process through shared memory without a copy there."""
 
-import mmap
-import os
 import pickle
-import tempfile
 from pathlib import Path
 from typing import Any
 
 from ..errors import DeviceError
 from ..runtime.child_process import dumps
-from .ring import ALIGN, NAME, PREFIX, shared_folder
+from ..runtime.system import shared_memory
+from ..runtime.system.shared_memory import NAME, shared_folder
+from .ring import ALIGN
 
 
 def pack(thing: Any) -> Path:
-    """Write an object to a file, which `unpack` deletes again; return the file's path.
+    """Write an object to shared memory, which `unpack` removes again; return its name, a path.
 
     Raises: DeviceError if there is no room, or if the object cannot be sent to another process.
     """
@@ -24,50 +23,52 @@ def pack(thing: Any) -> Path:
         raise DeviceError(
             f"a {type(thing).__name__} cannot be sent to the force loop's process ({error}); make it picklable"
         ) from error
-    folder = shared_folder()
-    number, name = tempfile.mkstemp(".parcel", f"{PREFIX}{os.getpid()}-", folder)
+    pieces: list[bytes | memoryview] = []
+    for part in (small, *(buffer.raw() for buffer in buffers)):
+        pieces += [len(part).to_bytes(8, "little").ljust(ALIGN, b"\0"), part, bytes(-len(part) % ALIGN)]
     try:
-        with os.fdopen(number, "wb") as file:
-            for part in (small, *(buffer.raw() for buffer in buffers)):
-                file.write(len(part).to_bytes(8, "little").ljust(ALIGN, b"\0"))
-                file.write(part)
-                file.write(bytes(-file.tell() % ALIGN))
+        return shared_memory.write("parcel", pieces)
     except OSError as error:
-        Path(name).unlink(missing_ok=True)
-        raise DeviceError(f"{folder}: no room to pass on the scene: {error.strerror or error}") from error
-    return Path(name)
+        raise DeviceError(f"{shared_folder()}: no room to pass on the scene: {error.strerror or error}") from error
 
 
 def adopt(path: Path) -> Path:
-    """Rename a file of `pack` to this process: it is deleted as stale once this process is gone, not its maker.
+    """Take over the memory of `pack`, and return its name here: it lasts as long as this process, not its maker.
 
-    Raises: DeviceError if the file does not exist any more, or is not a parcel.
+    Raises: DeviceError if the memory does not exist any more, or is not a parcel.
     """
     named = NAME.fullmatch(path.name)
     if named is None or named[2] != "parcel":
         raise DeviceError(f"{path}: is not the file of a packed scene; give the file that `pack_touch` made")
-    mine = path.with_name(f"{PREFIX}{os.getpid()}{path.name[named.end(1) :]}")
     try:
-        return path.rename(mine)
+        return shared_memory.adopt(path)
     except OSError as error:
         raise DeviceError(f"{path}: the packed scene is missing ({error.strerror}); make it again") from error
 
 
 def unpack(path: Path) -> Any:
-    """Load the object from a file of `pack` and delete the file; its memory lasts as long as the object's arrays."""
-    mapped = _map(path)
-    path.unlink()
+    """Load the object from the memory of `pack` and remove its name; the memory lasts as long as the arrays in it.
+
+    Raises: OSError if there is no such memory any more.
+    """
+    mapped = shared_memory.attach(path)
+    shared_memory.remove(path)
     return _load(mapped)
 
 
 def share(path: Path) -> Any:
-    """Load the object from a file of `pack`, which stays: the process that unpacks it later shares its arrays."""
-    return _load(_map(path))
+    """Load the object from the memory of `pack`, which stays: who unpacks it later shares its arrays."""
+    return _load(shared_memory.attach(path))
 
 
-def _map(path: Path) -> memoryview:
-    with path.open("r+b") as file:
-        return memoryview(mmap.mmap(file.fileno(), 0))
+def exists(path: Path) -> bool:
+    """Return True if the memory of `pack` was neither unpacked nor discarded."""
+    return shared_memory.exists(path)
+
+
+def discard(path: Path) -> None:
+    """Remove the memory of `pack`, if nobody has unpacked it."""
+    shared_memory.remove(path)
 
 
 def _load(mapped: memoryview) -> Any:

@@ -1,4 +1,6 @@
-"""The ring: memory that a force loop shares with its observers, a file of fixed layout, mapped by all of them.
+"""The ring: memory that a force loop shares with its observers, of fixed layout, mapped by all of them.
+
+It has the name of a file, in memory; on Windows, which has no such files, of a section of the paging file.
 
 All numbers are in the machine's own byte order, one section after the other, each starting at a multiple of 64 bytes:
 
@@ -21,13 +23,6 @@ beacon, which the program writes that started the loop. A reader of a slot compa
 differs, the slot was overwritten meanwhile, and is read again or given up.
 """
 
-import mmap
-import os
-import re
-import stat
-import sys
-import tempfile
-from contextlib import suppress
 from pathlib import Path
 from typing import Self, final
 
@@ -36,7 +31,8 @@ from jaxtyping import Float64
 
 from ..data import TICK_COLUMNS
 from ..errors import DeviceError
-from ..runtime.child_process import is_alive
+from ..runtime.system import shared_memory
+from ..runtime.system.shared_memory import shared_folder
 from .beacon import HELD, MOST_CELLS, BeaconMemory
 
 MAGIC, LAYOUT = 0x54414E47_49424C45, 5
@@ -74,16 +70,15 @@ ALIGN = 64
 
 @final
 class Ring:
-    """The sections of a ring's file as arrays; `create` makes the file, `attach` opens it."""
+    """The sections of a ring as arrays; `create` makes the memory, `attach` opens it."""
 
-    def __init__(self, path: Path, file: mmap.mmap, slots: int) -> None:
+    def __init__(self, path: Path, memory: memoryview, slots: int) -> None:
         self.path = path
-        self._file = file
         sections = _sections(slots)
         at = 0
         arrays: dict[str, np.ndarray] = {}
         for name, (kind, shape) in sections.items():
-            arrays[name] = np.frombuffer(file, kind, int(np.prod(shape)), at).reshape(shape)
+            arrays[name] = np.frombuffer(memory, kind, int(np.prod(shape)), at).reshape(shape)
             at += _padded_size(arrays[name].nbytes)
         self.header: np.ndarray = arrays["header"]
         self.sums: np.ndarray = arrays["sums"]
@@ -98,28 +93,22 @@ class Ring:
     @classmethod
     def create(cls, slots: int = 8192) -> Self:
         """Create a ring of zeros, with slots for this number of ticks. Raises: DeviceError if there is no room."""
-        _delete_stale_files()
-        folder, name = shared_folder(), ""
+        shared_memory.delete_stale()
         try:
-            number, name = tempfile.mkstemp(".ring", f"{PREFIX}{os.getpid()}-", folder)
-            with os.fdopen(number, "r+b") as file:
-                file.truncate(_size(slots))
-                _allocate(file.fileno(), 0, _size(slots) - _padded_size(4 * MOST_CELLS))
-                ring = cls(Path(name), mmap.mmap(file.fileno(), 0), slots)
+            path, memory = shared_memory.create("ring", _size(slots), _padded_size(4 * MOST_CELLS))
         except OSError as error:
-            if name:
-                Path(name).unlink(missing_ok=True)
-            raise DeviceError(f"{folder}: no room for the loop's shared memory: {error.strerror or error}") from error
+            why = error.strerror or error
+            raise DeviceError(f"{shared_folder()}: no room for the loop's shared memory: {why}") from error
+        ring = cls(path, memory, slots)
         ring.header[[IS_MAGIC, IS_LAYOUT, SLOTS]] = MAGIC, LAYOUT, slots
         ring.beacon.words[HELD] = -1
         return ring
 
     @classmethod
     def attach(cls, path: Path) -> Self:
-        """Open the ring in this file. Raises: DeviceError if the file is not a ring, or has another layout."""
+        """Open the ring of this name. Raises: DeviceError if it is not a ring, or has another layout."""
         try:
-            with path.open("r+b") as file:
-                mapped = mmap.mmap(file.fileno(), 0)
+            mapped = shared_memory.attach(path)
         except (OSError, ValueError) as error:
             raise DeviceError(f"{path}: no force loop runs there: {error}") from error
         magic, layout, slots = np.frombuffer(mapped, np.int64, 3).tolist() if len(mapped) >= 24 else (0, 0, 0)
@@ -134,16 +123,15 @@ class Ring:
         """
         size = self.beacon.field.nbytes
         try:
-            with self.path.open("r+b") as file:
-                _allocate(file.fileno(), _size(len(self.stamps)) - size, size)
-        except FileNotFoundError as error:  # the loop deletes it as it ends
+            shared_memory.make_room(self.path, _size(len(self.stamps)) - size, size)
+        except FileNotFoundError as error:  # the loop removes it as it ends
             raise DeviceError("the force loop has ended") from error
         except OSError as error:
             raise DeviceError(f"{self.path.parent}: no room for a beacon: {error.strerror or error}") from error
 
     def remove(self) -> None:
-        """Delete the file; processes that have mapped it may go on reading."""
-        self.path.unlink(missing_ok=True)
+        """Remove the name; processes that have mapped the memory may go on reading."""
+        shared_memory.remove(self.path)
 
     @property
     def count(self) -> int:
@@ -185,19 +173,6 @@ class Ring:
         return rows[whole], count
 
 
-def shared_folder() -> Path:
-    """Return $TANGIBLE_SHARED_DIR, or a folder in memory if the system has one, as a disk would stall the loop."""
-    if named := os.environ.get("TANGIBLE_SHARED_DIR"):
-        return Path(named)
-    memory = Path("/dev/shm")
-    return memory if sys.platform == "linux" and os.access(memory, os.W_OK) else Path(tempfile.gettempdir())
-
-
-PREFIX = "tangible-"
-NAME = re.compile(rf"{PREFIX}([0-9]{{1,9}})-\w+\.(ring|parcel)")
-"""Pattern of the name of a shared file, which contains the ID of the process that made it."""
-
-
 def _sections(slots: int) -> dict[str, tuple[type, tuple[int, ...]]]:
     return {
         "header": (np.int64, (64,)),
@@ -220,29 +195,3 @@ def _padded_size(size: int) -> int:
 
 def _size(slots: int) -> int:
     return sum(_padded_size(np.dtype(kind).itemsize * int(np.prod(shape))) for kind, shape in _sections(slots).values())
-
-
-def _allocate(number: int, start: int, size: int) -> None:
-    """Allocate a part of a file in memory: where there is no room, a process that writes to it would be killed.
-
-    Raises: OSError if there is no room.
-    """
-    if hasattr(os, "posix_fallocate"):
-        os.posix_fallocate(number, start, size)
-
-
-def _delete_stale_files() -> None:
-    """Delete the files of this user's killed processes, except files that cannot be examined or deleted."""
-    with suppress(OSError):
-        for path in shared_folder().glob(f"{PREFIX}*"):
-            with suppress(OSError):
-                if _is_stale(path):
-                    path.unlink()
-
-
-def _is_stale(path: Path) -> bool:
-    """Return True for a file of `Ring.create` or `parcel.pack` by a process of this user that is gone."""
-    named = NAME.fullmatch(path.name)
-    about = path.lstat()
-    ours = hasattr(os, "getuid") and about.st_uid == os.getuid() and stat.S_ISREG(about.st_mode)
-    return bool(named and ours and not is_alive(int(named[1])))

@@ -2,7 +2,6 @@
 
 import logging
 import queue
-import signal
 import subprocess
 import threading
 from contextlib import suppress
@@ -13,6 +12,7 @@ import numpy as np
 from ..errors import DeviceError
 from ..plugins.interfaces import HapticDevice
 from ..runtime.child_process import command, pipe_of
+from ..runtime.system.processes import start_without_ctrl_c
 from .framing import End, Refusal, Start, receive, send, sendable
 from .ring import COUNT, LAST, STOP, Ring
 
@@ -117,11 +117,9 @@ class LoopProcess:
         self._over.set()
 
     def _run(self, ring: Ring, start: Start) -> End:
-        if hasattr(signal, "pthread_sigmask"):  # the process receives no Ctrl-C before it can ignore it
-            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         words = command(f"{__package__}.child")
         try:
-            self._child = child = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+            self._child = child = start_without_ctrl_c(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         except OSError as error:
             raise DeviceError(f"no process can be started for the force loop: {error.strerror or error}") from error
         with pipe_of(child.stdout) as replies:

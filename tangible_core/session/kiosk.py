@@ -15,6 +15,7 @@ from ..data import TICK_COLUMNS, HapticSurface, ServoReport, TickFlag
 from ..errors import DeviceError, check_positive
 from ..plugins.interfaces import Film, HapticDevice, Touch
 from ..runtime.stopping import stop_asked, stoppable
+from ..runtime.system.timers import now_ns
 from ..servo import OVER, Beacon, Safety, Servo
 from ..servo.beacon import BUTTON
 from ..servo.reports import LoopTotals, brief_report, report
@@ -246,4 +247,4 @@ class _Kiosk:
         """Return the remaining time of the session; None if it has no end."""
         if self._seconds is None or not self._first_ns:
             return self._seconds
-        return self._seconds - (time.monotonic_ns() - self._first_ns) / 1e9
+        return self._seconds - (now_ns() - self._first_ns) / 1e9

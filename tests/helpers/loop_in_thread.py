@@ -12,12 +12,11 @@ import subprocess
 import threading
 from contextlib import closing
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
+from tangible_core.runtime.system import priority
 from tangible_core.servo import child, supervisor
-from tangible_core.servo.ticks import priority
 
 ENDING_S = 120.0
 """Longer than a loop takes to compile what it needs on a busy machine, before it hears that it is to end."""
@@ -78,8 +77,7 @@ class _Commands(io.FileIO):
 
 def loops_in_threads(patch: pytest.MonkeyPatch) -> None:
     """Start each loop in a thread from now on; it locks no memory, and leaves collecting garbage alone."""
-    popen: dict[str, Any] = {**vars(subprocess), "Popen": LoopThread}
-    patch.setattr(supervisor, "subprocess", SimpleNamespace(**popen))
+    patch.setattr(supervisor, "start_without_ctrl_c", LoopThread)
     patch.setattr(supervisor, "STOPPING_S", ENDING_S)
     patch.setattr(child, "gc", SimpleNamespace(freeze=lambda: None, collect=lambda: None))
     asked = priority._c

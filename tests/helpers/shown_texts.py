@@ -115,9 +115,10 @@ def _of_command(command: Any) -> Iterator[str]:
 def _hidden(tree: ast.Module) -> Iterator[ast.AST]:
     """Yield the nodes whose texts are for programs: docstrings, annotations, arguments of calls for programmers."""
     for node in ast.walk(tree):
-        for each in getattr(node, "body", []) if isinstance(getattr(node, "body", None), list) else []:
-            if isinstance(each, ast.Expr) and isinstance(each.value, ast.Constant):
-                yield each.value
+        for block in (getattr(node, "body", None), getattr(node, "orelse", None)):
+            for each in block if isinstance(block, list) else []:
+                if isinstance(each, ast.Expr) and isinstance(each.value, ast.Constant):
+                    yield each.value
         for name in ("annotation", "returns"):
             annotation = getattr(node, name, None)
             if annotation is not None and not _has_help(annotation):
@@ -197,7 +198,7 @@ def _name(value: ast.AST) -> str:
     return plain[0] if plain else "value"
 
 
-NAMES = {"tangible parts", "tangible numbers", "DejaVu Sans", "offset points", "part share {next}"}
+NAMES = {"Pro Audio", "tangible parts", "tangible numbers", "DejaVu Sans", "offset points", "part share {next}"}
 """Texts that are names for programs."""
 DULL = {
     "quoted", "shown", "self", "len", "str", "map", "join", "float", "int", "max", "min", "round", "name_of", "sorted",

@@ -11,7 +11,8 @@ from tangible_core.files.json_lines import JsonLines
 from tangible_core.files.paths import as_path
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.runtime.stopping import check_stopped, stoppable
-from tangible_core.runtime.threads import check_threads, processors
+from tangible_core.runtime.system.processes import processors
+from tangible_core.runtime.threads import check_threads
 
 from .extra import need_all
 from .farm import LONGEST_S, Farm

@@ -2,16 +2,14 @@
 
 import ctypes
 import gc
-import sys
 import tracemalloc
 from collections.abc import Callable
 from contextlib import suppress
-from importlib.util import find_spec
 from pathlib import Path
 
+from tangible_core.runtime.system.resources import highest_bytes
+
 _STATUS, _CLEAR = Path("/proc/self/status"), Path("/proc/self/clear_refs")
-_UNIT = 1 if sys.platform == "darwin" else 1024
-"""`ru_maxrss` is in bytes on macOS and in kilobytes elsewhere (getrusage(2))."""
 
 
 def start_peak() -> Callable[[], int | None]:
@@ -19,17 +17,15 @@ def start_peak() -> Callable[[], int | None]:
 
     On Linux, freed memory is given back to the system and the kernel's mark of the highest resident size is reset
     (proc(5), `clear_refs`, and `VmHWM`). `ru_maxrss` is not enough: a child starts with its parent's mark, and the
-    mark never falls. On other systems there is only `ru_maxrss`, where growth below an earlier peak does not show; on
-    Windows there is nothing, and the function returns None.
+    mark never falls. On other systems there is only the mark, and growth below an earlier peak does not show.
     """
     gc.collect()
-    if sys.platform == "linux" and _reset():
+    if _reset():
         before = _kernel_bytes("VmRSS")
         return lambda: max(0, _kernel_bytes("VmHWM") - before)
-    if find_spec("resource") is None:
+    if (before := highest_bytes()) is None:
         return lambda: None
-    before = _highest()
-    return lambda: _highest() - before
+    return lambda: (highest_bytes() or before) - before
 
 
 def held_bytes(make: Callable[[], object]) -> int:
@@ -50,11 +46,11 @@ def held_bytes(make: Callable[[], object]) -> int:
 
 
 def _reset() -> bool:
-    with suppress(AttributeError):  # not glibc: there is no such call
-        ctypes.CDLL(None).malloc_trim(0)
     try:
+        with suppress(AttributeError):  # not glibc: there is no such call
+            ctypes.CDLL(None).malloc_trim(0)
         _CLEAR.write_text("5")
-    except OSError:
+    except (OSError, TypeError):  # not Linux, and on Windows no library without a name
         return False
     return True
 
@@ -62,9 +58,3 @@ def _reset() -> bool:
 def _kernel_bytes(name: str) -> int:
     lines = _STATUS.read_text().splitlines()
     return next(1024 * int(line.split()[1]) for line in lines if line.startswith(f"{name}:"))
-
-
-def _highest() -> int:
-    import resource  # not on Windows
-
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _UNIT

@@ -10,7 +10,7 @@ from typing import Any, Self, final, get_args
 
 from tangible_core.errors import OutputError, ResultsError
 from tangible_core.files.json_lines import read_lines
-from tangible_core.files.writing import BINARY, lock
+from tangible_core.runtime.system.files import BINARY, lock
 
 MISSING = "n/a"
 """The text of a missing value, as BIDS has it."""

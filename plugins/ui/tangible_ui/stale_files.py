@@ -9,7 +9,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tangible_core.errors import OutputError
-from tangible_core.runtime.child_process import is_alive
+from tangible_core.runtime.system.files import is_mine
+from tangible_core.runtime.system.processes import is_alive
 from tangible_devices.pointer.channel import channel_path
 
 PREFIX = "tangible-ui-"
@@ -53,10 +54,9 @@ def channel_of_this_process() -> Generator[str]:
 
 
 def left_in(folder: Path, pattern: str) -> Iterator[Path]:
-    """Yield this user's files and folders of that pattern whose process is dead; none on systems that cannot tell."""
+    """Yield this user's files and folders of that pattern whose process is dead."""
     for path in sorted(folder.glob(pattern)):
         with suppress(OSError):
             named = NUMBER.fullmatch(path.name)
-            ours = hasattr(os, "getuid") and not path.is_symlink() and path.stat().st_uid == os.getuid()
-            if named and ours and not is_alive(int(named[1])):
+            if named and is_mine(path) and not is_alive(int(named[1])):
                 yield path

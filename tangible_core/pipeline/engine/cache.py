@@ -25,6 +25,7 @@ from ...files.arrays import Archive, write_arrays
 from ...files.paths import as_path
 from ...files.reading import check_file
 from ...files.writing import atomic_write
+from ...runtime.system.files import BINARY
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -70,7 +71,7 @@ class Tally:
         Raises: OSError if the file cannot be read or written.
         """
         try:
-            file = os.open(self.path, os.O_RDWR | os.O_APPEND | getattr(os, "O_BINARY", 0))
+            file = os.open(self.path, os.O_RDWR | os.O_APPEND | BINARY)
         except FileNotFoundError:
             return None
         try:

@@ -13,7 +13,8 @@ from typing import Any, cast
 
 from ...errors import BrokenMethod, OutputError, quoted
 from ...files.reading import content_digest, read_bytes
-from ...files.writing import folder_lock, write_text
+from ...files.writing import write_text
+from ...runtime.system.files import folder_lock
 from .run_folder import make_writable
 
 LISTED = ".exports.json"

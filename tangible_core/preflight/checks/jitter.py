@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from ...runtime.system.priority import ADVICE, NAME
 from ..flight import PASSIVE, Flight
 from ..timing import PERCENTILES
 from ..verdict import Grade, Verdict, check_bound
@@ -13,17 +14,16 @@ HALF = 0.5
 """Share of a period for the force law; the device needs the rest."""
 LATE = "this machine keeps time badly just now"
 CALMER = "stop other work on this machine"
-PRIVILEGE = "permit real-time scheduling (`ulimit -r 99`, or `rtprio` in /etc/security/limits.conf)"
 
 
 def lateness(flight: Flight) -> Iterator[Verdict]:
     """Check the lateness of ticks, the share of lost ones, and the stiffness that is stable with this lateness."""
     late, period_s = flight.lateness, flight.period_s
-    cure = CALMER if late.real_time else f"{PRIVILEGE}, and {CALMER}"
+    cure = CALMER if late.real_time else f"{ADVICE}, and {CALMER}"
     figures = ", ".join(f"{name} {1e6 * late.at(percent):.0f}" for name, percent in PERCENTILES.items())
     yield check_bound(
         *("jitter", "lateness, p99.9", late.at(99.9), "<=", period_s, "s", "a period"),
-        note=f"{figures} us; SCHED_FIFO {'permitted' if late.real_time else 'not permitted'}",
+        note=f"{figures} us; {NAME} {'permitted' if late.real_time else 'not permitted'}",
         says=LATE,
         cure=cure,
     )

@@ -1,6 +1,5 @@
 """The frames of a camera: a thread keeps the newest picture, so that readers need not follow the camera's pace."""
 
-import sys
 from pathlib import Path
 from threading import Condition, Event, Thread
 from time import monotonic
@@ -171,7 +170,5 @@ class CameraFrames(VideoFrames):
 
 def _cameras() -> list[int]:
     """Return the numbers of the cameras that the system lists."""
-    if sys.platform != "linux":
-        return []
     names = (each.name.removeprefix("video") for each in Path("/dev").glob("video*"))
     return sorted(int(name) for name in names if name.isdecimal())

@@ -14,7 +14,8 @@ from ...data.pictures import to_rgb8
 from ...errors import PictureError
 from ...files.reading import TooLargeError, check_size
 from ...runtime.opencv import silent_opencv
-from ...runtime.threads import processors, thread_limit
+from ...runtime.system.processes import processors
+from ...runtime.threads import thread_limit
 from ..formats.decoding import absent
 
 USUAL_FPS = 30.0

@@ -1,35 +1,37 @@
-"""The monotonic clock, and sleeping until a time on it, for compiled code. Imports numba.
+"""The clock of `runtime.system.timers`, and sleeping until a time on it, for compiled code. Imports numba.
 
-Only on Linux can a function that Python can reach sleep until a time without Python's lock; elsewhere a loop calls
-Python to sleep.
+Where compiled code cannot sleep, a loop calls Python to sleep.
 """
 
 # ruff: noqa: ANN001, ANN201 -- the types are those that numba infers
 # pyright: basic
 
-import ctypes
-import sys
 from typing import Any, final
 
 import numpy as np
-from numba import int32, types, uintp
+from numba import int32, int64, njit, types, uint32, uint64, uintp
 
-from ...compiled.compiling import KERNEL, njit
+from ...compiled.compiling import KERNEL
+from ...runtime.system import timers
 
 MONOTONIC, ABSOLUTE = 1, 1
 """CLOCK_MONOTONIC and TIMER_ABSTIME of Linux."""
-SLEEPS = sys.platform == "linux"
+SLEEPS = timers.KIND != ""
 """True if compiled code can sleep on this system."""
 SECOND_NS = 1_000_000_000
+NUMBER, BASE, TIMER = 2, 3, 4
+"""Words of a clock, after two for what a function writes: steps become nanoseconds by NUMBER / BASE; a timer's handle.
+"""
+LONGEST_MS = 1000
+"""The longest single wait for a timer of Windows, ms; a loop with a longer period waits again."""
 
 
 @final
 class _ForeignFunction(types.WrapperAddressProtocol):
-    """A function of the C library."""
+    """A function of the system's library."""
 
-    def __init__(self, name: str, signature: Any) -> None:
-        self._address = ctypes.cast(getattr(ctypes.CDLL(None), name), ctypes.c_void_p).value
-        self._signature = signature
+    def __init__(self, address: int, signature: Any) -> None:
+        self._address, self._signature = address, signature
 
     def signature(self) -> Any:
         return self._signature
@@ -38,34 +40,103 @@ class _ForeignFunction(types.WrapperAddressProtocol):
         return self._address
 
 
-def clock() -> tuple[np.ndarray, Any, Any]:
-    """Return the clock for `now_ns` and `wait_ns`: two words, and two functions of the C library for them."""
-    read = _ForeignFunction("clock_gettime", int32(int32, uintp))
-    sleep = _ForeignFunction("clock_nanosleep", int32(int32, int32, uintp, uintp))
-    return np.zeros(2, np.int64), read, sleep
+SIGNATURES = {
+    "posix": (int32(int32, uintp), int32(int32, int32, uintp, uintp)),
+    "mach": (uint64(), int32(uint64)),
+    "windows": (int32(uintp), int32(uintp, uintp, int32, uintp, uintp, int32), uint32(uintp, uint32)),
+}
+"""Signatures of the functions of a `Timer` that kernels call, in their order, by kind."""
+
+
+def clock(kind: str = timers.KIND, timer: "timers.Timer | None" = None) -> tuple[Any, ...]:
+    """Return the clock for `now_ns` and `wait_ns`: five words, and the functions of the system for them."""
+    numbers, *addresses = timer or timers.timer()
+    words = np.array([0, 0, *numbers], np.int64)
+    return words, *map(_ForeignFunction, addresses[: len(SIGNATURES[kind])], SIGNATURES[kind])
 
 
 @njit(**KERNEL)
-def now_ns(clock):
-    """Return the time of the monotonic clock, nanoseconds."""
+def posix_now_ns(clock):
+    """Return the time of the clock, nanoseconds: a second and a rest."""
     words, read, _ = clock
     read(int32(MONOTONIC), words.ctypes.data)
     return words[0] * SECOND_NS + words[1]
 
 
 @njit(**KERNEL)
-def wait_ns(clock, deadline_ns, lead_ns):
+def posix_wait_ns(clock, deadline_ns, lead_ns):
     """Sleep until lead_ns before the deadline, then spin; return the time of the clock, nanoseconds.
 
     If a signal ends the sleep early, the rest is slept.
     """
     words, _, sleep = clock
     wake_ns = deadline_ns - lead_ns
-    at_ns = now_ns(clock)
+    at_ns = posix_now_ns(clock)
     while at_ns < wake_ns:
         words[0], words[1] = wake_ns // SECOND_NS, wake_ns % SECOND_NS
         sleep(int32(MONOTONIC), int32(ABSOLUTE), words.ctypes.data, uintp(0))
-        at_ns = now_ns(clock)
+        at_ns = posix_now_ns(clock)
     while at_ns < deadline_ns:
-        at_ns = now_ns(clock)
+        at_ns = posix_now_ns(clock)
     return at_ns
+
+
+@njit(**KERNEL)
+def mach_now_ns(clock):
+    """Return the time of the clock, nanoseconds, as `time.perf_counter_ns` rounds it."""
+    words, read, _ = clock
+    steps = int64(read())
+    return steps // words[BASE] * words[NUMBER] + steps % words[BASE] * words[NUMBER] // words[BASE]
+
+
+@njit(**KERNEL)
+def mach_wait_ns(clock, deadline_ns, lead_ns):
+    """Sleep until lead_ns before the deadline, then spin; return the time of the clock, nanoseconds."""
+    words, _, sleep = clock
+    wake_ns = deadline_ns - lead_ns
+    at_ns = mach_now_ns(clock)
+    while at_ns < wake_ns:
+        number, base = words[NUMBER], words[BASE]
+        sleep(uint64(wake_ns // number * base + (wake_ns % number * base + number - 1) // number))
+        at_ns = mach_now_ns(clock)
+    while at_ns < deadline_ns:
+        at_ns = mach_now_ns(clock)
+    return at_ns
+
+
+@njit(**KERNEL)
+def windows_now_ns(clock):
+    """Return the time of the clock, nanoseconds, as `time.perf_counter_ns` rounds it."""
+    words, read = clock[0], clock[1]
+    read(words.ctypes.data)
+    steps = words[0]
+    return steps // words[BASE] * words[NUMBER] + steps % words[BASE] * words[NUMBER] // words[BASE]
+
+
+@njit(**KERNEL)
+def windows_wait_ns(clock, deadline_ns, lead_ns):
+    """Sleep until lead_ns before the deadline, then spin; return the time of the clock, nanoseconds.
+
+    The timer takes steps of 100 ns; a negative number of them is a time from now.
+    """
+    words, _, start, wait = clock
+    wake_ns = deadline_ns - lead_ns
+    at_ns = windows_now_ns(clock)
+    while at_ns < wake_ns:
+        words[1] = -((wake_ns - at_ns + 99) // 100)
+        timer = uintp(words[TIMER])
+        start(timer, words[1:].ctypes.data, int32(0), uintp(0), uintp(0), int32(0))
+        wait(timer, uint32(LONGEST_MS))
+        at_ns = windows_now_ns(clock)
+    while at_ns < deadline_ns:
+        at_ns = windows_now_ns(clock)
+    return at_ns
+
+
+now_ns, wait_ns = {
+    "posix": (posix_now_ns, posix_wait_ns),
+    "mach": (mach_now_ns, mach_wait_ns),
+    "windows": (windows_now_ns, windows_wait_ns),
+    "": (None, posix_wait_ns),
+}[timers.KIND]
+"""The kernels of this system."""

@@ -9,6 +9,7 @@ import numpy as np
 from ...compiled.touch import FRAME, CompiledLink, CompiledTouch, moving_of
 from ...data import TICK_COLUMNS, HapticState, TickFlag
 from ...plugins.interfaces import Link, Touch
+from ...runtime.system.timers import now_ns
 from ..ring import (
     COUNT,
     LEAD_NS,
@@ -92,7 +93,7 @@ def sections(ring: Ring) -> Sections:
 
 def start_clock(header: np.ndarray, real_time: bool) -> None:
     """Schedule the first tick a period from now."""
-    header[START_NS] = time.monotonic_ns() + header[PERIOD_NS]
+    header[START_NS] = now_ns() + header[PERIOD_NS]
     header[NEXT_NS] = header[START_NS]
     header[SPINS] = real_time
 
@@ -182,10 +183,10 @@ def _timed_loop(tick: Timed, kernel: Kernel, header: np.ndarray) -> Callable[[],
 def _begin(header: np.ndarray) -> tuple[int, int]:
     """Wait for the next tick, as `cycle.begin`, in a loop in Python."""
     due_ns, lead_ns = header[[NEXT_NS, LEAD_NS]].tolist()
-    at_ns = time.monotonic_ns()
+    at_ns = now_ns()
     if at_ns < due_ns - lead_ns:
         time.sleep((due_ns - lead_ns - at_ns) / SECOND_NS)
-        at_ns = time.monotonic_ns()
+        at_ns = now_ns()
     while at_ns < due_ns:
-        at_ns = time.monotonic_ns()
+        at_ns = now_ns()
     return at_ns, int(begin_tick(header, at_ns))

@@ -1,9 +1,7 @@
 """Players, which show the reliefs of a film to a force loop: a thread in real time, or a function of simulated time."""
 
 import logging
-import os
 import statistics
-import sys
 import threading
 import time
 from collections import deque
@@ -16,7 +14,8 @@ from ...data import FilmFelt, ServoReport
 from ...errors import BrokenMethod, DeviceError, Stopped, TangibleError
 from ...plugins.interfaces import Film
 from ...runtime.stopping import stoppable
-from ...runtime.threads import limited_threads, processors, thread_limit
+from ...runtime.system.processes import lower_priority, processors
+from ...runtime.threads import limited_threads, thread_limit
 from ...scene.video.frames import VideoFrame, VideoFrames
 from .reliefs import FrameRelief, Reliefs
 
@@ -241,6 +240,4 @@ class _Unopened(Exception):
 
 def _lower_priority() -> None:
     """Lower the priority of this thread; only on Linux does each thread have its own niceness."""
-    if sys.platform == "linux":
-        with suppress(OSError):
-            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), NICENESS)
+    lower_priority({threading.get_native_id()}, NICENESS)

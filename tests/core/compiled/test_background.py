@@ -183,3 +183,11 @@ def test_process_ends_with_its_killed_parent(how: signal.Signals):
         assert is_alive(child)
         program.send_signal(how)
     assert ends_soon(child)
+
+
+def test_wait_for_a_process_that_stands_still_has_a_limit(monkeypatch: pytest.MonkeyPatch, caplog):
+    monkeypatch.setattr(background, "LONGEST_S", 0.0)
+    with BackgroundCompiler(lambda: Work(frozenset(["begun", "never"]), yield_and_sleep, ())) as block:
+        start_waiting()
+        block.wait("never")
+    assert "stands still; never is compiled here" in caplog.text

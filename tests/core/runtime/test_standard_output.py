@@ -188,16 +188,16 @@ class TestStreams:
         assert done.returncode == 2
         assert done.stdout.startswith("no depth method is named 'nosy'")
 
-    def test_stream_has_the_encoding_of_standard_output(self, folder: Path) -> None:
+    @pytest.mark.parametrize("encoding", ["ascii", "cp437"])
+    def test_stream_writes_any_text_in_the_encoding_of_standard_output(self, folder: Path, encoding: str) -> None:
+        """A console or a pipe that has no sign for something shows its number; nothing ends in an error."""
         code = (
             "from tangible_core.runtime.standard_output import protect, stream\n"
-            "with protect(): print('\\u03bc', file=stream())"
+            "with protect(): print('\\u2265\\u2800 \\u00fc', file=stream())"
         )
-        env = {**quiet(), "PYTHONIOENCODING": "ascii:backslashreplace"}
-        assert (
-            subprocess.run([sys.executable, "-c", code], capture_output=True, env=env, check=True).stdout
-            == b"\\u03bc\n"
-        )
+        env = {**quiet(), "PYTHONIOENCODING": encoding}
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, env=env, check=True)
+        assert done.stdout.rstrip() == "\u2265\u2800 \u00fc".encode(encoding, "backslashreplace")
 
     def test_terminal_output_has_its_colours_and_width(self, folder: Path) -> None:
         """132 columns, with standard input and error elsewhere."""

@@ -15,7 +15,8 @@ from tangible_core.compiled.threads import in_blocks, in_turns, thread_count
 from tangible_core.errors import ArgumentError, ConfigError
 from tangible_core.plugins.interfaces import Segmenter
 from tangible_core.runtime.opencv import plain_opencv
-from tangible_core.runtime.threads import check_threads, limited_threads, processors
+from tangible_core.runtime.system.processes import processors
+from tangible_core.runtime.threads import check_threads, limited_threads
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ import pytest
 from ring_ticks import put
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import DeviceError
+from tangible_core.runtime.system import shared_memory
 from tangible_core.servo import Ring, parcel, ring
 from tangible_core.servo.ring import COUNT, IS_LAYOUT, IS_MAGIC, SLOTS, shared_folder
 
@@ -84,7 +85,7 @@ class TestFile:
         assert not list(shared_folder().iterdir())
 
     def test_ring_without_room_is_an_error(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-        monkeypatch.setattr(ring, "shared_folder", lambda: tmp_path / "missing")
+        monkeypatch.setattr(shared_memory, "shared_folder", lambda: tmp_path / "missing")
         with pytest.raises(DeviceError, match="no room"):
             Ring.create()
 
@@ -109,7 +110,7 @@ class TestFile:
 
     def test_files_of_others_and_odd_files_are_not_deleted(self, tmp_path: Path, monkeypatch) -> None:
         """Files of other names, a folder, a link, a file that cannot be deleted, and a file of another user."""
-        monkeypatch.setattr(ring, "shared_folder", lambda: tmp_path)
+        monkeypatch.setattr(shared_memory, "shared_folder", lambda: tmp_path)
         odd = [
             "tangible-²-x.ring",
             "tangible-99999999999999999999-x.ring",

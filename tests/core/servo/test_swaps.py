@@ -19,12 +19,13 @@ from loop_devices import Circling, Failing
 from loop_scenes import proxy
 from tangible_core.errors import DeviceError
 from tangible_core.plugins.interfaces import HapticDevice
+from tangible_core.runtime.system import priority
 from tangible_core.servo import Safety, Servo
 from tangible_core.servo.child import Child
 from tangible_core.servo.framing import Start, StartReply, Swap, SwapReply, receive, send
 from tangible_core.servo.parcel import pack
 from tangible_core.servo.ring import LAST, PERIOD_NS, STOP, SWAP, Ring, shared_folder
-from tangible_core.servo.ticks import loop, priority
+from tangible_core.servo.ticks import loop
 from waiting import until
 
 pytestmark = pytest.mark.usefixtures("own_memory")

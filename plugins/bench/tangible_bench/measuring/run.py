@@ -1,6 +1,7 @@
 """Timed measurements: one new process after the other; each row is saved as soon as it is known."""
 
 import json
+import os
 import subprocess
 import tempfile
 import time
@@ -92,8 +93,8 @@ def _run_worker(wanted: Measurement, timeout_s: float, output: IO[bytes], errors
         try:
             assert process.stdin is not None
             with suppress(BrokenPipeError):  # the worker died before it could read: its exit code is reported
-                process.stdin.write((json.dumps([wanted.place, asdict(wanted.job)]) + "\n").encode())
-            return _wait(process, timeout_s)  # its input stays open: the worker ends when that is closed
+                process.stdin.write((json.dumps([os.getpid(), wanted.place, asdict(wanted.job)]) + "\n").encode())
+            return _wait(process, timeout_s)  # its input stays open, else the worker ends
         finally:
             process.kill()
 

@@ -1,7 +1,7 @@
 """The worker: a process for one measurement. A job comes in and a result goes out, both as JSON.
 
-The job, with the place of its method, is one line on standard input. The process ends when standard input is closed,
-that is, when nobody waits any more. The result is one line on the original standard output; whatever a method prints
+The job, with the place of its method, is one line on standard input. The process ends with the one
+that started it. The result is one line on the original standard output; whatever a method prints
 goes to standard error.
 """
 
@@ -11,7 +11,6 @@ import math
 import os
 import statistics
 import sys
-import threading
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from time import perf_counter
@@ -22,6 +21,7 @@ from tangible_core.errors import TangibleError
 from tangible_core.plugins.registry import load_method
 from tangible_core.runtime.child_process import Place, import_from
 from tangible_core.runtime.failure_log import where_kept
+from tangible_core.runtime.system.processes import exit_with_parent
 
 from ..memory import start_peak
 from ..tasks.task import Task, load_task
@@ -107,8 +107,8 @@ def main() -> None:
     """Run the process."""
     answers = os.dup(1)
     os.dup2(2, 1)
-    place, job = json.loads(sys.stdin.buffer.readline())
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    parent, place, job = json.loads(sys.stdin.buffer.readline())
+    exit_with_parent(parent, sys.stdin.buffer, 1)  # without one that waits, it would only disturb measurements
     fields = answer(Place(*place), Job(**job))
     os.write(answers, (json.dumps(fields, allow_nan=False) + "\n").encode())
 
@@ -121,10 +121,3 @@ def answer(place: Place, job: Job) -> dict[str, Any]:
     except Exception as error:  # noqa: BLE001 - a method's failure is a result
         rest = "" if isinstance(error, TangibleError) else f"; {where_kept(error)}"
         return {"error": f"{type(error).__name__}: {error}{rest}"}
-
-
-def _end_with_parent() -> None:
-    """End this process when its input is closed: a method without a waiting parent would disturb later measurements."""
-    while os.read(0, 1):
-        pass
-    os._exit(1)

@@ -28,13 +28,13 @@ import mmap
 import os
 import re
 import struct
-import sys
 import time
 import warnings
 from pathlib import Path
 from typing import final
 
 from tangible_core.errors import DeviceError
+from tangible_core.runtime.system.files import is_mine, take_lock
 
 MAGIC, DEVICE_OPEN, CLIENT_OPEN = 0, 1, 2
 SAMPLE, SAMPLE_WORDS = 16, 8
@@ -59,7 +59,7 @@ class Lock:
     def take(self) -> bool:
         """Try to take the lock, without waiting."""
         try:
-            _take(self._handle)
+            take_lock(self._handle)
         except OSError:
             return False
         return True
@@ -69,21 +69,6 @@ class Lock:
         if self._open:
             self._open = False
             os.close(self._handle)
-
-
-if sys.platform == "win32":
-
-    def _take(handle: int) -> None:
-        import msvcrt
-
-        msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
-
-else:
-
-    def _take(handle: int) -> None:
-        import fcntl
-
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def checksum(words: tuple[int, ...]) -> int:
@@ -192,7 +177,7 @@ def _runtime_folder() -> Path:
         with warnings.catch_warnings(action="ignore"):  # on servers without such a folder, one in /tmp is used
             folder = user_runtime_path("tangible-images")
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    if sys.platform != "win32" and folder.stat().st_uid != os.getuid():
+    if not is_mine(folder):
         raise DeviceError(f"{folder}: belongs to another user; set TANGIBLE_RUNTIME_DIR to one of your folders")
     return folder
 

@@ -4,24 +4,19 @@ The library is called by ctypes. The package `louis` on PyPI is something else.
 """
 
 import ctypes
-import sys
-from collections.abc import Mapping
 from functools import cache
 from threading import Lock
 from typing import Any, NamedTuple
 
 from tangible_core.errors import BrailleError, quoted
+from tangible_core.runtime.system.resources import library_names
 
 from .cells import Cells
 
 TABLES = {"en": "en-ueb-g1.ctb", "de": "de-g0.utb", "fr": "fr-bfu-comp6.utb"}
 """Tables of uncontracted braille: Unified English Braille, German Basisschrift, French Braille uniformisé."""
-NAMES: Mapping[str, tuple[str, ...]] = {
-    "linux": ("liblouis.so.20", "liblouis.so"),
-    "darwin": ("liblouis.20.dylib", "liblouis.dylib", "/opt/homebrew/lib/liblouis.dylib"),
-    "win32": ("liblouis.dll",),
-}
-"""Names of the library by `sys.platform`; not by `find_library`, which would start a compiler."""
+VERSION = 20
+"""The version of the library's binary interface."""
 _PROBE = "abc"
 _PROBED: Cells = (1, 3, 9)
 _DOTS, _UNICODE, _KNOWN_ALONE = 4, 64, 128
@@ -84,7 +79,7 @@ def _units(character: str, size: int) -> list[int]:
 @cache
 def louis() -> Louis | str:
     """Return the library, or the reason why it is not used."""
-    for name in NAMES.get(sys.platform, NAMES["linux"]):
+    for name in library_names("louis", VERSION):
         try:
             library = ctypes.CDLL(name)
         except OSError:

@@ -13,6 +13,7 @@ from tangible_core.data import Vector
 from tangible_core.errors import DeviceError
 from tangible_core.mapping import MappedDevice, WorkspaceMapping, placement_of
 from tangible_core.plugins.interfaces import HapticDevice
+from tangible_core.runtime.system.timers import now_ns
 from tangible_core.servo import Beacon, Packed, Safety, Servo, null_touch
 from tangible_core.servo.ring import STOP
 
@@ -239,7 +240,7 @@ class Feeling:
         if (row := servo.ring.latest()) is None:
             return None
         t, late, x, y, z, vx, vy, vz, px, py, pz, fx, fy, fz, flags, buttons, _ = row.tolist()
-        sample_ms = 1e3 * (servo.ring.start_ns / 1e9 + t + time.time() - time.monotonic())
+        sample_ms = 1e3 * ((servo.ring.start_ns - now_ns()) / 1e9 + t + time.time())
         tag = int(buttons) >> BUTTON_BITS
         return STATE_FRAME.pack(
             STATE, status, int(flags) & FLAG_BITS, seq & 0xFFFFFFFF, tag, servo.ring.overruns, sample_ms,

@@ -8,11 +8,12 @@ import os
 import queue
 import signal
 import threading
-from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any, final
 
 from tangible_core.errors import OutputError
+from tangible_core.runtime.system.processes import all_threads, lower_priority
+from tangible_core.runtime.system.streams import take_input
 from tangible_core.servo.framing import receive, send, sendable
 
 from .messages import Event, JobFailure, JobRequest, JobResult
@@ -44,7 +45,7 @@ def main() -> None:
     replies = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a plugin prints goes to standard error
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the server, which ends this
-    commands, voice = open(0, "rb", buffering=0), Sender(replies)  # noqa: SIM115 - a buffer's lock outlives its thread
+    commands, voice = take_input(), Sender(replies)
     lanes: dict[bool, queue.SimpleQueue[JobRequest]] = {quick: queue.SimpleQueue() for quick in (True, False)}
     from ..logs import tell_pages
     from .jobs import JOBS
@@ -71,15 +72,8 @@ def _work(state: Any, asks: "queue.SimpleQueue[JobRequest]", voice: Sender, quic
 
 
 def give_precedence() -> None:
-    """Lower the priority of every thread but that of the quick jobs, for which somebody waits.
-
-    In Linux each thread has a niceness of its own.
-    """
-    tasks = Path("/proc/self/task")
-    threads = {int(each.name) for each in tasks.iterdir()} if tasks.is_dir() else {0}
-    for thread in threads - _keep_precedence:
-        with suppress(OSError, AttributeError):  # the thread has ended, or the system has no niceness
-            os.setpriority(os.PRIO_PROCESS, thread, NICENESS)
+    """Lower the priority of every thread but that of the quick jobs, for which somebody waits."""
+    lower_priority(all_threads() - _keep_precedence, NICENESS)
 
 
 def answer(state: Any, ask: JobRequest) -> JobResult | JobFailure:

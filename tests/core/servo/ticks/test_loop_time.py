@@ -112,7 +112,7 @@ class Clock:
         self.over: dict[int, int] = {}
         """By how much longer each of some sleeps takes, nanoseconds."""
 
-    def monotonic_ns(self) -> int:
+    def read_now_ns(self) -> int:
         self.reads += 1
         self.now += self.read_ns
         return self.now
@@ -145,7 +145,7 @@ def simulated_clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     time, words = Clock(), np.zeros(2, np.int64)
 
     def tell(which: int, place: int) -> int:
-        words[:] = divmod(time.monotonic_ns(), SECOND)
+        words[:] = divmod(time.read_now_ns(), SECOND)
         return 0
 
     def sleep(which: int, flags: int, place: int, rest: int) -> int:
@@ -154,6 +154,7 @@ def simulated_clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
     foreign = Foreign(tell, int32(int32, uintp)), Foreign(sleep, int32(int32, int32, uintp, uintp))
     monkeypatch.setattr(loop, "time", time)
+    monkeypatch.setattr(loop, "now_ns", time.read_now_ns)
     monkeypatch.setattr(clock, "clock", lambda: (words, *foreign))
     monkeypatch.setattr(clock, "SLEEPS", True)
     return time

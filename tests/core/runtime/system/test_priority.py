@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from tangible_core.servo.ticks import priority
+from tangible_core.runtime.system import priority
 
 ON_LINUX = "x86_64", 314
 

@@ -1,0 +1,112 @@
+"""Files: locks, owners, times, and the reason why one cannot be written."""
+
+import os
+import sys
+from collections.abc import Generator
+from contextlib import contextmanager, suppress
+from io import FileIO
+from pathlib import Path
+
+_IN_USE = {32, 33}
+"""ERROR_SHARING_VIOLATION and ERROR_LOCK_VIOLATION of Windows."""
+_DENIED = 5
+"""ERROR_ACCESS_DENIED, with which Windows also refuses to replace a file that is open."""
+
+
+def is_in_use(error: OSError, path: Path) -> bool:
+    """Return True if Windows refused to write a file because another program has it open."""
+    code = getattr(error, "winerror", None)
+    return code in _IN_USE or (code == _DENIED and path.is_file() and os.access(path, os.W_OK))
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    BINARY = os.O_BINARY
+    """The flag that makes `os.open` open a file as binary."""
+    _PAST_END = 2**62
+    """The byte that is locked: others are denied to read a locked byte, and no file is so long."""
+
+    def lock(file: FileIO) -> None:
+        """Lock an open file until it is closed or this process ends. Raises: OSError if another process holds it."""
+        file.seek(_PAST_END)
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        file.seek(0)
+
+    def take_lock(number: int) -> None:
+        """Lock an open, empty file by its number. Raises: OSError if another process holds it."""
+        msvcrt.locking(number, msvcrt.LK_NBLCK, 1)
+
+    def wait_for_lock(_number: int) -> None:
+        """Do nothing: a file that is being written cannot be deleted here anyway."""
+
+    @contextmanager
+    def folder_lock(folder: Path) -> Generator[None]:
+        """Hold a folder's lock in this block while other processes wait, however long."""
+        name = folder / ".alone"
+        with FileIO(os.open(name, os.O_RDWR | os.O_CREAT | os.O_TEMPORARY), "r+") as file:
+            while True:
+                with suppress(OSError):  # after ten seconds LK_LOCK gives up
+                    msvcrt.locking(file.fileno(), msvcrt.LK_LOCK, 1)
+                    break
+            yield
+
+    def is_locked(_path: Path) -> bool:
+        """Return True: nobody knows."""
+        return True
+
+    def is_mine(path: Path) -> bool:
+        """Return True for a file or folder of this user; folders for temporary files are each user's own here."""
+        return path.exists()
+
+    def changed_ns(state: os.stat_result) -> int:
+        """Return the time of the last change of a file's content, nanoseconds since 1970."""
+        return state.st_mtime_ns
+
+else:
+    import fcntl
+
+    BINARY = 0
+    """The flag that makes `os.open` open a file as binary: each file is."""
+
+    def lock(file: FileIO) -> None:
+        """Lock an open file until it is closed or this process ends. Raises: OSError if another process holds it."""
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+    def take_lock(number: int) -> None:
+        """Lock an open, empty file by its number. Raises: OSError if another process holds it."""
+        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+    def wait_for_lock(number: int) -> None:
+        """Lock an open file or folder until it is closed, where the file system can; wait while another holds it."""
+        with suppress(OSError):
+            fcntl.flock(number, fcntl.LOCK_EX)
+
+    @contextmanager
+    def folder_lock(folder: Path) -> Generator[None]:
+        """Hold a folder's lock in this block while other processes wait; without locks, nobody waits."""
+        number = os.open(folder, os.O_RDONLY)
+        try:
+            wait_for_lock(number)
+            yield
+        finally:
+            os.close(number)
+
+    def is_locked(path: Path) -> bool:
+        """Return True if a process holds the lock of a file or folder. Raises: OSError if it cannot be opened."""
+        number = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
+        try:
+            fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+        finally:
+            os.close(number)
+        return False
+
+    def is_mine(path: Path) -> bool:
+        """Return True for a file or folder of this user, not a link to one. Raises: OSError if it is gone."""
+        return not path.is_symlink() and path.stat().st_uid == os.getuid()
+
+    def changed_ns(state: os.stat_result) -> int:
+        """Return the time of the last change of a file's content, nanoseconds since 1970."""
+        return max(state.st_mtime_ns, state.st_ctime_ns)

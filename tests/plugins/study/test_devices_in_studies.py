@@ -4,15 +4,19 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from command_line import tangible
 from distributions import distribution
-from loop_devices import Failing
+from loop_devices import Failing, FailingLink
 from studies import Scripted, first_key, write_study
+from tangible_core.data import HapticState
+from tangible_core.errors import DeviceError
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.session import Recording
 from tangible_study.procedures.installed import load_procedure
+from tangible_study.session.desk import Left
 from tangible_study.session.start import begin
 from tangible_study.session.stimuli import Stimuli
 from tangible_study.study_file import load_study, parse_study
@@ -30,19 +34,23 @@ comparisons: [{name: rate, question: rating, repetitions: 1}]
 def test_device_that_is_pulled_out_holds_no_force_and_the_trial_begins_again(
     tmp_path: Path, loop_in_thread: None, monkeypatch: pytest.MonkeyPatch
 ):
+    """The device fails at its first read after a force, once."""
     study, held = write_study(tmp_path, RATING), tmp_path / "held.txt"
-    file, starts = parse_study(RATING, study), list[int]()
-    stimuli, of_study = Stimuli(file), Stimuli.feeling
+    file, failed = parse_study(RATING, study), list[int]()
+    stimuli, of_study, read = Stimuli(file), Stimuli.feeling, FailingLink._read
 
     def feeling(self: Stimuli, *key: object) -> Feeling:
-        found = of_study(self, *key)
-        fault = "unplugged" if not starts else "none"
-        return Feeling(found.pipeline, Failing(at=100, fault=fault, record=str(held)))
+        return Feeling(of_study(self, *key).pipeline, Failing(fault="none", record=str(held)))
 
-    run = Feeling.run
+    def fail_once(self: FailingLink) -> HapticState:
+        if self.applied.z and not failed:
+            failed.append(1)
+            raise DeviceError("the failing device does not answer; plug it in")
+        return read(self)
+
     monkeypatch.setattr(Stimuli, "check", lambda self: None)
     monkeypatch.setattr(Stimuli, "feeling", feeling)
-    monkeypatch.setattr(Feeling, "run", lambda self, *args, **more: (run(self, *args, **more), starts.append(1))[0])
+    monkeypatch.setattr(FailingLink, "_read", fail_once)
     forces = list[float]()
 
     def answer(text: str, choices: dict[str, str]) -> str:
@@ -56,8 +64,36 @@ def test_device_that_is_pulled_out_holds_no_force_and_the_trial_begins_again(
     assert set(forces) == {0.0}
     cut = Recording.load(tmp_path / "out" / kept[0].recording.replace("run-2", "run-1"))
     assert "does not answer" in cut.stopped
-    assert cut.peak_force_n > 0
-    assert Recording.load(tmp_path / "out" / kept[0].recording).stopped == ""
+    whole = Recording.load(tmp_path / "out" / kept[0].recording)
+    assert whole.stopped == ""
+    assert whole.peak_force_n > 0
+    assert whole.time_s.size >= 150
+    assert (np.diff(whole.time_s) > 0).all()
+
+
+def test_stop_of_the_participant_ends_the_force_at_once(tmp_path: Path, loop_in_thread: None):
+    """The desk sets `stop` when the interval is announced; the interval would last for ten minutes."""
+    text = RATING.replace("feel_s: 0.2", "feel_s: 600")
+    study, asked = write_study(tmp_path, text), list[str]()
+    file = parse_study(text, study)
+
+    class Stopping(Scripted):
+        def say(self, text: str) -> None:
+            super().say(text)
+            if text == "Feel now.":
+                self.stop.set()
+
+    def answer(text: str, choices: dict[str, str]) -> str:
+        asked.append(text)
+        if "repeat" in text:
+            raise Left
+        return first_key(text, choices)
+
+    session = begin(file, Stimuli(file), "P1", tmp_path / "out", Stopping(answer))
+    with pytest.raises(Left):
+        session.run()
+    assert asked[-1] == "Press Enter to repeat the trial."
+    assert session.presenter.loop.close() == ""  # nothing runs any more
 
 
 def test_procedure_of_another_package_runs_a_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

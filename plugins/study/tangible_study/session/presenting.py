@@ -1,7 +1,8 @@
 """A trial on the device: its intervals one after the other, recorded, with no force between them."""
 
+import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from tangible_core.session import INTERRUPTED, About, Writer
 
 from ..procedures.procedure import Stimulus, Trial
 from .desk import Desk
+from .held_loop import HeldLoop
 from .rendering import Rendering
 from .stimuli import Stimuli
 
@@ -29,6 +31,7 @@ class Presenter:
     desk: Desk
     in_real_time: bool = True
     """False runs a simulated device by its own clock, without waiting."""
+    loop: HeldLoop = field(default_factory=HeldLoop)
 
     def about(self, trial: Trial) -> About:
         """Describe the scenes of a trial for its recording, in the order of its intervals."""
@@ -57,31 +60,42 @@ class Presenter:
         self, trial: Trial, stimulus: Stimulus, name: str, writer: Writer, start_s: float, rendering: Rendering
     ) -> None:
         feeling, seconds = self.stimuli.feeling(trial.comparison, stimulus), self.stimuli.file.study.feel_s
-        since_s = max(time.monotonic() - start_s, rendering.last_s + PERIOD_S)
+        since_s, first_s = max(time.monotonic() - start_s, rendering.last_s + PERIOD_S), math.nan
 
-        def begin(_: Servo) -> None:
+        def begin(*_: Servo) -> None:
             nonlocal since_s
             since_s = max(time.monotonic() - start_s, since_s)
             self.desk.say(name)
 
         def keep(rows: np.ndarray) -> None:
+            nonlocal first_s
+            first_s = float(rows[0, TIME]) if math.isnan(first_s) else first_s
             rows = rows.copy()
-            rows[:, TIME] += since_s
+            rows[:, TIME] += since_s - first_s
             rendering.add(rows)
             writer.append(rows)
 
-        if self.in_real_time:
-            ended = feeling.run(seconds, keep=keep, on_start=begin, beacon=trial.target, stop=self.desk.stop).stopped
-        else:
+        if not self.in_real_time:
             self.desk.say(name)
             recording = feeling.run(seconds, in_real_time=False, beacon=trial.target, stop=self.desk.stop)
             keep(recording.rows)
-            ended = recording.stopped
-        if ended == INTERRUPTED:
-            raise KeyboardInterrupt
-        if ended:
-            raise DeviceError(ended)
+            _check_end(recording.stopped)
+        elif feeling.engine.scene.frames is None:
+            self.loop.feel(feeling, seconds, keep, begin, trial.target, self.desk.stop)
+        else:  # a film, which is played in a loop of its own
+            self.loop.close()
+            _check_end(
+                feeling.run(seconds, keep=keep, on_start=begin, beacon=trial.target, stop=self.desk.stop).stopped
+            )
 
     def _pause(self, seconds: float) -> None:
         if self.in_real_time and seconds:
             time.sleep(seconds)
+
+
+def _check_end(stopped: str) -> None:
+    """Raise the error for an interval that ended early."""
+    if stopped == INTERRUPTED:
+        raise KeyboardInterrupt
+    if stopped:
+        raise DeviceError(stopped)

@@ -50,7 +50,7 @@ class Session:
         done, last = replay(course, before), before[-1].comparison if before else ""
         self.faults += folder.faults_before(self.place)
         self._save_facts()
-        with AnswerFile(self.place.answers) as table:
+        with AnswerFile(self.place.answers) as table, self.presenter.loop:
             try:
                 while (trial := course.next()) is not None:
                     if trial.comparison != last:

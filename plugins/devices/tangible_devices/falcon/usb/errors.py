@@ -16,7 +16,7 @@ NO_PERMISSION = (
 NO_DRIVER = "the system's driver for it cannot be used; on Windows give it the WinUSB driver with Zadig (zadig.akeo.ie)"
 NO_LIBUSB = (
     "libusb is missing; install it (Debian, Ubuntu: `apt install libusb-1.0-0`; Fedora: `dnf install libusb1`; "
-    "macOS: `brew install libusb`; Windows: libusb-1.0.dll from libusb.info into a folder of the PATH)"
+    "macOS: `brew install libusb`; Windows: `pip install libusb-package`)"
 )
 CAUSES = {
     2: f"it was unplugged; {REPLUG}",

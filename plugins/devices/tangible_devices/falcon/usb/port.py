@@ -4,6 +4,7 @@ import logging
 from array import array
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, final
 
 import usb.core
@@ -130,9 +131,24 @@ def connected_devices(backend: Any) -> list[Any]:
     """
     with usb_errors("Novint Falcon", "looking for it"):
         try:
-            return list(usb.core.find(find_all=True, backend=backend, idVendor=VENDOR, idProduct=PRODUCT) or ())
+            return _find(backend)
         except usb.core.NoBackendError as error:
-            raise DeviceAbsent(f"Novint Falcon: {NO_LIBUSB}") from error
+            if (shipped := _shipped_libusb()) is None:
+                raise DeviceAbsent(f"Novint Falcon: {NO_LIBUSB}") from error
+            return _find(shipped)
+
+
+def _find(backend: Any) -> list[Any]:
+    return list(usb.core.find(find_all=True, backend=backend, idVendor=VENDOR, idProduct=PRODUCT) or ())
+
+
+def _shipped_libusb() -> Any:
+    """Return the libusb of the package `libusb-package` (extra `falcon`) as pyusb's backend; None if there is none."""
+    try:
+        package = import_module("libusb_package")
+    except ImportError:
+        return None
+    return package.get_libusb1_backend()
 
 
 def serial_of(device: Any) -> str | None:

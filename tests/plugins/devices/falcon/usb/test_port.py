@@ -1,15 +1,19 @@
 """The USB side of a Falcon: how it is found, claimed and set up, and how the errors of each system are reported."""
 
 import errno
+import sys
 from array import array
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
-from usb.core import USBError
+from usb.core import NoBackendError, USBError
 
 from falcon_bus import held_bus
-from tangible_core.errors import DeviceError
+from tangible_core.errors import DeviceAbsent, DeviceError
 from tangible_devices.falcon.simulator.bus import Bus
 from tangible_devices.falcon.simulator.faults import Fault
+from tangible_devices.falcon.usb import port
 from tangible_devices.falcon.usb.errors import UDEV_RULE, device_error
 from tangible_devices.falcon.usb.port import connected_devices, open_port, run_time, serial_of
 
@@ -109,3 +113,35 @@ def test_device_error_of_permission_has_rule_on_its_own_line():
 
 def test_device_error_of_wrong_driver_names_zadig():
     assert "Zadig" in str(device_error(NotImplementedError("x"), "the Falcon", "opening it"))
+
+
+@pytest.mark.parametrize("shipped", [True, False])
+def test_libusb_of_the_package_is_used_where_the_system_has_none(shipped: bool, monkeypatch: pytest.MonkeyPatch):
+    bus, _ = held_bus()
+    find = port.usb.core.find
+
+    def without_libusb(*words: object, backend: object = None, **options: object) -> object:
+        if backend is None:
+            raise NoBackendError("No backend available")
+        return find(*words, backend=backend, **options)
+
+    monkeypatch.setattr(port.usb.core, "find", without_libusb)
+    package = SimpleNamespace(get_libusb1_backend=lambda: bus) if shipped else None
+    monkeypatch.setitem(sys.modules, "libusb_package", package)
+    if shipped:
+        assert len(connected_devices(None)) == 1
+    else:
+        with pytest.raises(DeviceAbsent, match="pip install libusb-package"):
+            connected_devices(None)
+
+
+def test_rule_for_udev_that_is_shipped_is_the_one_that_is_told():
+    root = Path(__file__).parents[5]
+    lines = (root / "deploy" / "70-novint-falcon.rules").read_text("utf-8").splitlines()
+    assert [line for line in lines if not line.startswith("#")] == [UDEV_RULE]
+    assert UDEV_RULE in (root / "docs" / "falcon.md").read_text("utf-8")
+
+
+def test_unit_for_systemd_that_is_shipped_is_the_one_of_the_page():
+    root = Path(__file__).parents[5]
+    assert (root / "deploy" / "tangible.service").read_text("utf-8") in (root / "docs" / "kiosk.md").read_text("utf-8")

@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 LOCKED = (ROOT / "requirements-dev.txt").read_text("utf-8")
 WITHOUT_DIGEST = {"torch", "kornia", "pandora"}
-"""Packages of extras that are not locked: torch, what needs it, and what the benchmark alone uses. CI has the system's libusb."""
+"""Packages of extras that are not locked: torch, what needs it, and what the benchmark alone uses."""
 HEADING = re.compile(r"^#+ +(.+?) *#*$", re.MULTILINE)
 LINK = re.compile(r"(?<!\\)\]\(<?([^)\s>]+)>?(?: +\"[^\"]*\")?\)|^\[[^\]]+\]: +(\S+)", re.MULTILINE)
 FENCED = re.compile(r"^ *(`{3,}|~{3,}).*?^ *\1`* *$|`[^`\n]*`", re.MULTILINE | re.DOTALL)

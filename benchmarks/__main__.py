@@ -34,6 +34,7 @@ SECTIONS = {
     "devices": "Devices",
     "ui": "The page",
     "by_ear": "By ear",
+    "study": "Studies with people",
     "tests": "The test run",
     "mutants": "Faults that the tests notice",
 }

@@ -1,0 +1,206 @@
+"""Studies: intervals against observers whose truth is known, published examples, and power that is kept."""
+
+from collections.abc import Iterator
+from math import log
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import process_time
+
+import numpy as np
+from scipy import stats
+
+from tangible_study.analysis.analysing import analyse_comparison, analyse_kept
+from tangible_study.analysis.rows import ALL, Result, What
+from tangible_study.analysis.sentences import is_sure
+from tangible_study.simulation.observers import observer_of
+from tangible_study.simulation.power import plan, shortened
+from tangible_study.simulation.simulating import kept_of, simulate
+from tangible_study.statistics import sensitivity
+from tangible_study.statistics.bradley_terry import fit_scale
+from tangible_study.statistics.intervals import p_of_count
+from tangible_study.statistics.psychometric import JND, Blocks, fit_difference
+from tangible_study.study_file import StudyFile, parse_study
+
+from .figures import Figure, MissedError, judged, part, table
+
+OBSERVERS = 500
+STUDIES = 200
+LEVELS = "vary: render.stiffness_n_per_m, levels: [140, 160, 180, 200, 220, 240, 260], standard: 200"
+DISTANCES = "vary: render.stiffness_n_per_m, levels: [210, 220, 230, 245, 260, 280, 300], standard: 200"
+HEAD = """\
+study: s
+pipeline: feel.yaml
+conditions: {a: {}, b: {set: {render.use: penalty}}, c: {set: {render.use: proxy}}}
+"""
+BASEBALL = "0 7 9 7 7 9 11 6 0 7 5 11 9 9 4 6 0 7 7 8 12 6 8 6 0 6 7 10 6 2 6 7 0 7 12 4 4 5 6 6 0 6 2 4 1 3 1 7 0"
+PUBLISHED = (1.58, 1.44, 1.29, 1.25, 1.11, 0.68)
+"""Milwaukee to Cleveland above Baltimore (Agresti, Categorical Data Analysis, 2nd ed., table 10.11)."""
+DETECTION = ((1.0, 45), (1.5, 50), (2.0, 44), (2.5, 44), (3.0, 52), (3.5, 53), (4.0, 62), (4.5, 64), (5.0, 76),
+             (6.0, 79), (7.0, 88), (8.0, 90), (10.0, 90))  # fmt: skip
+"""The example of psignifit's documentation, in thousandths; 90 trials at each level."""
+MATLAB = 4.6448
+"""Threshold that psignifit 4 for MATLAB finds in it, with a cumulative Gaussian (a test of psignifit's own)."""
+
+Held = tuple[str, bool]
+
+
+def section() -> str:
+    """Return the section; raises MissedError if an interval holds the truth too rarely, or too often."""
+    with TemporaryDirectory() as folder:
+        Path(folder, "feel.yaml").write_text("scene: builtin/brick\nwant: touch\nrender: proxy\ndevice: mock\n")
+        start = process_time()
+        held = part("curves", lambda: list(_curves(Path(folder))))
+        seconds = (process_time() - start) / (2 * OBSERVERS)
+        held += part("counts", lambda: list(_counts(Path(folder))))
+        held += part("groups", lambda: list(_groups(Path(folder))))
+        power = part("power", lambda: _power(Path(folder)))
+    figures = [_coverage(name, [hit for other, hit in held if other == name]) for name in dict.fromkeys(dict(held))]
+    lines = [
+        f"Intervals of 95 % against the truth of {OBSERVERS} simulated observers a row, who went through the procedures",
+        "and the analysis of `tangible study`; the standard error of a share is 1 point. A function of one condition, with",
+        f"its trials, took {seconds:.2f} s of a processor.",
+        "",
+        *judged(figures),
+        "",
+        "Exact intervals hold the truth at least as often as they say, by construction, and more often where trials are",
+        "few; so does the mean over participants, whose interval holds both the exact one and Student's.",
+        "",
+        *_published(),
+        "",
+        f"Power: {power[0]} participants were planned to find d' = 1.6 between two conditions in 80 % of the studies (odd",
+        f"one of three, 12 trials each); of {STUDIES} simulated studies with as many, {100 * power[1]:.0f} % found it.",
+        f"Without a difference, {100 * power[2]:.1f} % found one.",
+    ]
+    text = "\n".join(lines)
+    if not all(each.met for each in figures):
+        raise MissedError(text)
+    return text
+
+
+def _coverage(name: str, hits: list[bool]) -> Figure:
+    share = float(np.mean(hits))
+    return Figure(name, "93 to 97 %", f"{100 * share:.1f} %", 0.93 <= share <= 0.97)
+
+
+def _study(folder: Path, comparison: str) -> StudyFile:
+    return parse_study(f"{HEAD}comparisons:\n- {{{comparison}}}\n", folder / "study.yaml")
+
+
+def _one(file: StudyFile, model: str, number: int, **options: float) -> Result:
+    observer = observer_of(model, [f"{key}={value!r}" for key, value in options.items()], file)
+    return analyse_kept(kept_of(file, [simulate(file, observer, number, 11)])).results[0]
+
+
+def _holds(result: Result, what: What, truth: float) -> bool:
+    return next(row for row in result.rows if row.what == what).estimate.holds(truth)
+
+
+def _curves(folder: Path) -> Iterator[Held]:
+    """Yield whether functions of single participants hold the truth; widths are 1/4 to all of the range."""
+    generator = np.random.default_rng(1)
+    choices = _study(
+        folder, f"name: x, question: higher, procedure: constant, conditions: [a], {LEVELS}, repetitions: 40"
+    )
+    odd = _study(folder, f"name: x, question: same, conditions: [a], {DISTANCES}, repetitions: 40")
+    for number in range(OBSERVERS):
+        threshold, width, lapse = (float(each) for each in generator.uniform((185, 30, 0), (215, 120, 0.06)))
+        found = _one(
+            choices, "psychometric", number, threshold=threshold, width=width, lapse=lapse, personal=0.0, spread=0.0
+        )
+        yield "point of equality, 7 levels of 40 trials", _holds(found, What("point of equality", "a"), threshold)
+        yield (
+            "just noticeable difference, likewise",
+            _holds(found, What("just noticeable difference", "a"), JND * width),
+        )
+        distance, slope = (float(each) for each in generator.uniform((25, 1.5), (60, 3.0)))
+        found = _one(odd, "psychometric", number, threshold=distance, slope=slope, lapse=0.02, personal=0.0, spread=0.0)
+        yield "threshold of the odd one, 7 levels of 40 trials", _holds(found, What("threshold", "a"), distance)
+
+
+def _counts(folder: Path) -> Iterator[Held]:
+    """Yield whether shares, and the scale, of single participants hold the truth."""
+    generator = np.random.default_rng(2)
+    odd = _study(folder, "name: x, question: same, conditions: [a, b], repetitions: 60")
+    pairs = _study(folder, "name: x, question: rougher, repetitions: 40")
+    for number in range(OBSERVERS):
+        dprime = float(generator.uniform(0.8, 3.0))
+        found = _one(odd, "detection", number, difference=dprime, lapse=0.0, spread=0.0)
+        share = sensitivity.oddity_correct(dprime)
+        yield "share of odd ones found, 60 trials", _holds(found, What("proportion correct", "a", "b"), share)
+        yield "d' of it", _holds(found, What("d'", "a", "b"), dprime)
+        step = float(generator.uniform(0.0, 0.8))
+        found = _one(pairs, "detection", number, difference=step, lapse=0.0, spread=0.0)
+        above = float(stats.norm.cdf(step / 2**0.5))
+        truth = log(above / (1 - above))
+        yield (
+            "distance on the scale of 3 conditions, 120 trials",
+            _holds(found, What("difference of scale value", "b", "a"), truth),
+        )
+
+
+def _groups(folder: Path) -> Iterator[Held]:
+    """Yield whether means over 8 participants, who differ, hold the truth of the population."""
+    odd = _study(folder, "name: x, question: same, conditions: [a, b], repetitions: 30")
+    rating = _study(folder, "name: x, question: rating, conditions: [a, b], repetitions: 8")
+    draws = np.random.default_rng(3).normal(1.6, 0.3 * 1.6, 100_000)
+    expected = np.interp(
+        np.abs(draws), np.linspace(0, 6, 601), [*map(sensitivity.oddity_correct, np.linspace(0, 6, 601))]
+    )
+    truth = float(expected.mean())
+    for number in range(OBSERVERS):
+        for file, what, value in (
+            (odd, What("proportion correct", "a", "b"), truth),
+            (rating, What("difference of mean rating", "b", "a"), 0.6),
+        ):
+            observer = observer_of(
+                "detection", ["difference=1.6" if file is odd else "difference=0.6", "lapse=0"], file
+            )
+            kept = kept_of(file, [simulate(file, observer, each, 100 + number) for each in range(8)])
+            [result] = analyse_kept(kept).results
+            row = next(row for row in result.rows if row.what == what and row.participant == ALL)
+            yield f"{what.measure}, 8 participants who differ", row.estimate.holds(value)
+
+
+def _power(folder: Path) -> tuple[int, float, float]:
+    """Return the planned participants, and the shares of studies that found a difference that is, and is not, there."""
+    file = _study(folder, "name: x, question: same, conditions: [a, b], repetitions: 12")
+    need = next(
+        each for each in plan(file, observer_of("detection", ["difference=1.6"], file)) if each.repetitions == 12
+    )
+    assert need.participants is not None
+    one = shortened(file, file.study.comparisons[0], 12)
+    found = [
+        [_finds(one, need.participants, difference, study) for study in range(STUDIES)] for difference in (1.6, 0.0)
+    ]
+    return need.participants, float(np.mean(found[0])), float(np.mean(found[1]))
+
+
+def _finds(file: StudyFile, participants: int, difference: float, study: int) -> bool:
+    observer = observer_of("detection", [f"difference={difference}"], file)
+    kept = kept_of(file, [simulate(file, observer, number, 5000 + study) for number in range(participants)])
+    [odd] = file.study.comparisons
+    [row] = analyse_comparison(odd, kept.of(odd)).of_all("proportion correct")
+    return is_sure(row) and row.estimate.value > 1 / 3
+
+
+def _published() -> list[str]:
+    scale = fit_scale([np.array(BASEBALL.split(), float).reshape(7, 7)])
+    ours = [float(each - scale.values[-1]) for each in scale.values[:-1]]
+    levels, counts = np.array(DETECTION, float).T
+    curve = fit_difference(Blocks(levels, counts, np.full(13, 90.0)), (1.0, 10.0), choices=2)
+    least = next(count for count in range(61) if p_of_count(count, 60, 1 / 3, True) <= 0.01)
+    rows = [
+        ("scale of baseball teams, Agresti (2002), table 10.11", _list(PUBLISHED), _list(ours)),
+        (
+            "threshold of psignifit's own example, cumulative Gaussian",
+            f"{MATLAB:.2f}",
+            f"{curve.threshold.value:.2f} (Weibull)",
+        ),
+        ("fewest of 60 triangular tests at 1 %, FAO", "30", str(least)),
+        ("d' of 76 % in two intervals", "1.00", f"{sensitivity.two_afc(0.76):.2f}"),
+    ]
+    return table(("published example", "published", "here"), rows)
+
+
+def _list(values: object) -> str:
+    return ", ".join(f"{each:.2f}" for each in values)  # pyright: ignore[reportGeneralTypeIssues]

@@ -56,20 +56,20 @@ def section() -> str:
         power = part("power", lambda: _power(Path(folder)))
     figures = [_coverage(name, [hit for other, hit in held if other == name]) for name in dict.fromkeys(dict(held))]
     lines = [
-        f"Intervals of 95 % against the truth of {OBSERVERS} simulated observers a row, who went through the procedures",
-        "and the analysis of `tangible study`; the standard error of a share is 1 point. A function of one condition, with",
-        f"its trials, took {seconds:.2f} s of a processor.",
+        f"Intervals of 95 % against the truth of {OBSERVERS} simulated observers a row, who went through the",
+        "procedures and the analysis of `tangible study`; the standard error of a share is 1 point. A function of one",
+        f"condition, with its trials, took {seconds:.2f} s of a processor.",
         "",
         *judged(figures),
         "",
-        "Exact intervals hold the truth at least as often as they say, by construction, and more often where trials are",
-        "few; so does the mean over participants, whose interval holds both the exact one and Student's.",
+        "Exact intervals hold the truth at least as often as they say, by construction, and more often where trials",
+        "are few; so does the mean over participants, whose interval holds both the exact one and Student's.",
         "",
         *_published(),
         "",
-        f"Power: {power[0]} participants were planned to find d' = 1.6 between two conditions in 80 % of the studies (odd",
-        f"one of three, 12 trials each); of {STUDIES} simulated studies with as many, {100 * power[1]:.0f} % found it.",
-        f"Without a difference, {100 * power[2]:.1f} % found one.",
+        f"Power: {power[0]} participants were planned to find d' = 1.6 between two conditions in 80 % of the studies",
+        f"(odd one of three, 12 trials each); of {STUDIES} simulated studies with as many, {100 * power[1]:.0f} %",
+        f"found it. Without a difference, {100 * power[2]:.1f} % found one.",
     ]
     text = "\n".join(lines)
     if not all(each.met for each in figures):

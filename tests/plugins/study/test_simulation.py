@@ -12,8 +12,9 @@ from tangible_study.simulation.observers import observer_of
 from tangible_study.simulation.power import participants_needed, plan, power_of, shortened
 from tangible_study.simulation.simulating import kept_of, simulate
 from tangible_study.statistics.sensitivity import naming_correct, oddity_correct, two_afc
-from tangible_study.study_file import StudyFile, parse_study
+from tangible_study.study_file import StudyFile, load_study, parse_study
 
+ROOT = Path(__file__).parents[3]
 STUDY = """\
 study: s
 pipeline: feel.yaml
@@ -110,3 +111,12 @@ def test_a_planned_study_finds_the_difference_about_as_often_as_promised(tmp_pat
     assert 0.6 <= found / 60 <= 0.97
     [nothing, *_] = plan(file, observer_of("detection", ["difference=0"], file))
     assert nothing.participants is None
+
+
+@pytest.mark.parametrize("name", ["force-laws", "recognition"])
+def test_examples_can_be_planned(name: str):
+    file = load_study(ROOT / f"configs/studies/{name}.yaml")
+    answers = simulate(file, observer_of("detection", ["difference=2", "spread=0"], file), 0, 1)
+    assert 40 <= len(answers) <= 80  # half an hour
+    assert file.study.consent
+    assert set(file.study.comparisons[0].names) <= {"door", "front wheel", "seat", "tank", "engine"}

@@ -38,8 +38,10 @@ VIDEOS = frozenset((".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".m
 
 JPEG = b"\xff\xd8\xff"
 """The first bytes of a JPEG."""
+PNG = b"\x89PNG\r\n\x1a\n"
+"""The first bytes of a PNG."""
 MOST_REDUCED = 10 * MOST_PIXELS
-"""The most pixels of a JPEG that is reduced while it is decoded: more would take minutes."""
+"""The most pixels of a picture that is reduced while it is decoded: more would take minutes."""
 
 _ORIENTATION, _BITS_PER_SAMPLE = 0x0112, 0x0102  # tags of EXIF and of TIFF
 
@@ -92,43 +94,77 @@ def decode(path: Path, data: bytes, indices: bool = False, notify: Notify = igno
 
 
 def decode_reduced(path: Path, data: bytes, notify: Notify = ignore) -> np.ndarray | None:
-    """Decode a JPEG of more than MOST_PIXELS at a half, a quarter or an eighth of its sides; None for any other file.
+    """Decode a JPEG, PNG or TIFF of more than MOST_PIXELS at a half, a quarter or an eighth of its sides.
 
-    The decoder leaves out the finer waves of each block, so that the whole picture is never in memory.
+    The whole picture is never in memory: the decoder of JPEG leaves out the finer waves of each block, and a PNG or
+    TIFF is decoded in bands of rows.
+    Returns: None for a picture that is not too large, larger than MOST_REDUCED, or of another format.
     """
-    if data[:3] != JPEG:
-        return None
+    with _picture_errors(path):
+        if data[:3] == JPEG:
+            return _reduced_jpeg(path, data, notify)
+        if data[:8] == PNG or data[:4] in TIFF:
+            return _reduced_bands(path, data, notify)
+    return None
+
+
+def _reduced_jpeg(path: Path, data: bytes, notify: Notify) -> np.ndarray | None:
     from PIL.JpegImagePlugin import JpegImageFile
 
-    with _picture_errors(path), JpegImageFile(BytesIO(data)) as image:
-        columns, rows = image.size
-        if not MOST_PIXELS < columns * rows <= MOST_REDUCED:
+    with JpegImageFile(BytesIO(data)) as image:
+        times = _times(image.height, image.width)
+        if times is None:
             return None
-        times = next(each for each in (2, 4, 8) if columns * rows <= MOST_PIXELS * each**2)
-        image.draft(image.mode, (columns // times, rows // times))
+        _notify_reduced(path, image.height, image.width, times, notify)
+        image.draft(image.mode, (image.width // times, image.height // times))
         check_size((image.height, image.width, len(image.getbands())), 4)
-        notify(
-            f"{path.name} has {columns * rows / 1e6:.0f} megapixels; it is reduced to {image.width} x {image.height} "
-            "pixels while it is read"
-        )
         image.load()
         return np.ascontiguousarray(upright(_values(image, indices=False), orientation(image)))
+
+
+def _reduced_bands(path: Path, data: bytes, notify: Notify) -> np.ndarray | None:
+    shape, _ = _png_size(data) if data[:8] == PNG else tiff_size(data)
+    if _times(*shape[:2]) is None:
+        return None
+    from .large.bands import WholePieceError, reduced
+    from .large.png_bands import png_bands
+    from .large.tiff_bands import tiff_bands
+
+    try:
+        bands = png_bands(data) if data[:8] == PNG else tiff_bands(data)
+    except WholePieceError as error:
+        raise PictureError(f"{path}: {TOO_MANY_PIXELS} and cannot be reduced while it is read; {error}") from error
+    times = _times(bands.rows, bands.columns)
+    if times is None:
+        return None
+    _notify_reduced(path, bands.rows, bands.columns, times, notify)
+    pictures = (_decode(path, band, False, ignore, 0) for band in bands.files)
+    return np.ascontiguousarray(upright(reduced(pictures, bands.rows, bands.columns, times), bands.orientation))
+
+
+def _times(rows: int, columns: int) -> int | None:
+    """Return the factor by which the sides of a picture are reduced; None if it is not too large, or much too large."""
+    if not MOST_PIXELS < columns * rows <= MOST_REDUCED:
+        return None
+    return next((each for each in (2, 4, 8) if -(-rows // each) * -(-columns // each) <= MOST_PIXELS), None)
+
+
+def _notify_reduced(path: Path, rows: int, columns: int, times: int, notify: Notify) -> None:
+    notify(
+        f"{path.name} has {columns * rows / 1e6:.0f} megapixels; it is reduced to {-(-columns // times)} x "
+        f"{-(-rows // times)} pixels while it is read"
+    )
 
 
 def look_at(path: Path, data: bytes, look: Callable[["Image"], T]) -> T:
     """Return what `look` finds in an open file whose pixels are not decoded yet."""
     from PIL import Image
-    from PIL.JpegImagePlugin import JpegImageFile
+    from PIL.JpegImagePlugin import jpeg_factory
 
     with _picture_errors(path):
-        large = data[:3] == JPEG and is_too_large(JpegImageFile(BytesIO(data)))  # `decode_reduced` has read it
-        with JpegImageFile(BytesIO(data)) if large else Image.open(BytesIO(data), formats=FORMATS) as image:
+        jpeg = data[:3] == JPEG  # may have more pixels than Pillow opens: `decode_reduced` has read it
+        with jpeg_factory(BytesIO(data)) if jpeg else Image.open(BytesIO(data), formats=FORMATS) as image:
             return look(image)
-
-
-def is_too_large(image: "Image") -> bool:
-    """Return True for a picture with more pixels than are decoded."""
-    return image.width * image.height > MOST_PIXELS
 
 
 @contextmanager

@@ -28,7 +28,7 @@ def read_picture(
     A palette becomes colours, transparency a fourth channel. `.npy` and `.npz` files hold the array itself.
     non_finite: NaN and infinity raise an error, or, for `mask`, stay in the array.
     notify: receives a remark if the file holds more pictures, of which the first is taken, or if it is reduced.
-    reduce: halve the sides of a JPEG that is too large, up to three times, while it is decoded.
+    reduce: halve the sides of a JPEG, PNG or TIFF that is too large, up to three times, while it is decoded.
     Raises: PictureError if the file is missing, not a picture, damaged, cut short or too large.
     """
     data = bytes_of(path)

@@ -22,7 +22,7 @@ Shape = tuple[int, int, int]
 Buffer = bytes | mmap
 
 
-class _Tag(NamedTuple):
+class Tag(NamedTuple):
     """A tag: its number, type and count, and the position of its value, or of the value's offset."""
 
     number: int
@@ -37,17 +37,17 @@ def tiff_size(data: bytes) -> tuple[Shape, int]:
     Source: TIFF 6.0, section 2 and 15 (tiles, which are decoded whole).
     """
     sizes = {256: 1, 257: 1, 258: 1, 277: 1, 322: 1, 323: 1}
-    for tag in _tiff_tags(data):
+    for tag in tiff_tags(data):
         if tag.number in sizes:
-            values = _tag_values(data, tag, f"{min(tag.length, MOST_SAMPLES)}{TAG_TYPES[tag.kind]}")
+            values = tag_values(data, tag, f"{min(tag.length, MOST_SAMPLES)}{TAG_TYPES[tag.kind]}")
             sizes[tag.number] = max(sizes[tag.number], *values)
     rows, columns = max(sizes[257], sizes[323]), max(sizes[256], sizes[322])
     return (rows, columns, sizes[277]), -(-sizes[258] // 8)
 
 
-def _tiff_tags(data: Buffer) -> Iterator[_Tag]:
+def tiff_tags(data: Buffer) -> Iterator[Tag]:
     """Yield the tags of the first directory. Source: TIFF 6.0, section 2; BigTIFF, whose numbers have 8 bytes."""
-    order, big = _order(data)
+    order, big = byte_order(data)
     first, many, place = ("Q", "Q", "Q") if big else ("I", "H", "I")
     (at,) = struct.unpack_from(order + first, data, 8 if big else 4)
     (count,) = struct.unpack_from(order + many, data, at)
@@ -57,20 +57,21 @@ def _tiff_tags(data: Buffer) -> Iterator[_Tag]:
     for _ in range(count):
         number, kind, values = struct.unpack_from(f"{order}HH{place}", data, at)
         at += struct.calcsize(f"{order}HH{place}")
-        yield _Tag(number, kind, values, at)
+        yield Tag(number, kind, values, at)
         at += struct.calcsize(place)
 
 
-def _tag_values(data: Buffer, tag: _Tag, values: str) -> tuple[Any, ...]:
+def tag_values(data: Buffer, tag: Tag, values: str) -> tuple[Any, ...]:
     """Unpack the value of a tag in the format `values` of `struct`; a short value stands in the directory itself."""
-    order, big = _order(data)
+    order, big = byte_order(data)
     place = "Q" if big else "I"
     short = struct.calcsize(order + values) <= struct.calcsize(place)
     at = tag.at if short else struct.unpack_from(order + place, data, tag.at)[0]
     return struct.unpack_from(order + values, data, at)
 
 
-def _order(data: Buffer) -> tuple[str, bool]:
+def byte_order(data: Buffer) -> tuple[str, bool]:
+    """Return the byte order as `struct` writes it, and True for a BigTIFF."""
     return "<" if data[:2] == b"II" else ">", b"+" in data[2:4]
 
 
@@ -90,8 +91,8 @@ def stated_description(data: Buffer) -> bytes:
 
 def _text(data: Buffer, number: int, longest: int) -> bytes:
     """Return the text of a tag up to its NUL; empty without the tag. Raises: ValueError or struct.error if damaged."""
-    for tag in _tiff_tags(data):
+    for tag in tiff_tags(data):
         if tag.number == number:
-            (text,) = _tag_values(data, tag, f"{min(tag.length, longest)}s")
+            (text,) = tag_values(data, tag, f"{min(tag.length, longest)}s")
             return text.split(b"\0")[0]
     return b""

@@ -6,8 +6,10 @@ import struct
 import zipfile
 import zlib
 
+import cv2
 import numpy as np
 import pytest
+import tifffile
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
@@ -18,6 +20,7 @@ from tangible_core.data import Views
 from tangible_core.data.pictures import check_picture, fill_non_finite, full_scale, to_grey, to_rgb8
 from tangible_core.errors import PictureError, shown
 from tangible_core.scene.formats import decoding
+from tangible_core.scene.formats.large import png_bands, tiff_bands
 from tangible_core.scene.formats.pictures import MAX_LABELS, read_labels, read_map, read_picture
 
 NAN = np.nan
@@ -566,6 +569,134 @@ def test_jpeg_that_is_too_large_is_reduced_while_it_is_read(tmp_path, monkeypatc
     assert read_picture(path).shape == (64, 96), "labels, truths and pairs keep their pixels"
     monkeypatch.setattr(decoding, "MOST_REDUCED", 4000)
     assert read_picture(path, reduce=True).shape == (64, 96)
+
+
+SMOOTH = np.add.outer(np.arange(61), np.arange(97))[..., None] + [0, 40, 90] + COLOURS[:1, :1] % 7
+LARGE = (SMOOTH + np.random.default_rng(1).integers(0, 9, SMOOTH.shape)).astype(np.uint8)
+"""A picture of 97 x 61 pixels: where 1600 are the most, a half of its sides, rounded up, has 49 x 31."""
+
+
+def png(mode, **options):
+    return lambda path: Image.fromarray(LARGE).convert(mode).save(path, "PNG", **options)
+
+
+def deep(suffix, channels):
+    pixels = np.ascontiguousarray(LARGE[..., :channels].astype(np.uint16) * 211)
+    return lambda path: path.write_bytes(cv2.imencode(suffix, pixels)[1].tobytes())
+
+
+def strips(compression, mode="RGB", **options):
+    return lambda path: Image.fromarray(LARGE).convert(mode).save(path, "TIFF", compression=compression, **options)
+
+
+def by_tifffile(pixels=LARGE, **options):
+    return lambda path: tifffile.imwrite(path, pixels, metadata=None, **options)
+
+
+REDUCED = {
+    "L.png": png("L"),
+    "RGB.png": png("RGB"),
+    "RGBA.png": png("RGBA"),
+    "LA.png": png("LA"),
+    "P.png": png("P"),
+    "P with 4 bits.png": png("P", bits=4),
+    "1.png": png("1"),
+    "L 16.png": deep(".png", 1),
+    "RGB 16.png": deep(".png", 3),
+    "turned.png": png("RGB", exif=b"Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0"),
+    "one strip.tif": by_tifffile(),
+    "lzw.tif": strips("tiff_lzw", strip_size=97 * 3 * 5),
+    "deflate.tif": strips("tiff_adobe_deflate", strip_size=97 * 3 * 5),
+    "grey.tif": strips("tiff_lzw", "L", strip_size=97 * 5),
+    "fax.tif": strips("group4", "1", strip_size=13 * 5),
+    "jpeg.tif": strips("jpeg", strip_size=97 * 3 * 16),
+    "turned.tif": strips("tiff_lzw", strip_size=97 * 3 * 5, tiffinfo={274: 8}),
+    "tiles.tif": by_tifffile(tile=(16, 32), compression="zlib", predictor=2),
+    "planes.tif": by_tifffile(np.moveaxis(LARGE, 2, 0), planarconfig="separate", photometric="rgb"),
+    "planes in tiles.tif": by_tifffile(
+        np.moveaxis(LARGE, 2, 0), planarconfig="separate", photometric="rgb", tile=(16, 16), compression="zlib"
+    ),
+    "RGB 16.tif": by_tifffile(LARGE.astype(np.uint16) * 211, rowsperstrip=7, compression="zlib"),
+    "float.tif": by_tifffile(LARGE[..., 0].astype(np.float32) / 255, rowsperstrip=7),
+    "big-endian.tif": by_tifffile(byteorder=">", rowsperstrip=4),
+    "big.tif": by_tifffile(bigtiff=True, rowsperstrip=4),
+}
+
+
+@pytest.mark.parametrize("name", REDUCED)
+def test_png_and_tiff_that_are_too_large_are_reduced_while_they_are_read(tmp_path, monkeypatch, name):
+    path = tmp_path / name
+    REDUCED[name](path)
+    whole = read_picture(path)
+    for module in (png_bands, tiff_bands):
+        monkeypatch.setattr(module, "BAND_PIXELS", 600)
+    monkeypatch.setattr(decoding, "MOST_PIXELS", 1600)
+    monkeypatch.setattr(decoding, "MOST_REDUCED", 20_000)
+    said = []
+    picture = read_picture(path, notify=said.append, reduce=True)
+    turn = {"turned.png": 6, "turned.tif": 8}.get(name, 1)
+    stored = decoding.upright(whole, {1: 1, 6: 8, 8: 6}[turn]).astype(float)
+    assert stored.shape[:2] == (61, 97)
+    even = np.pad(stored, [(0, 1), (0, 1)] + [(0, 0)] * (stored.ndim - 2), mode="edge")
+    mean = (even[::2, ::2] + even[1::2, ::2] + even[::2, 1::2] + even[1::2, 1::2]) / 4
+    expected = decoding.upright(mean, turn)
+    assert picture.dtype == whole.dtype
+    np.testing.assert_allclose(picture, expected, atol=1 if whole.dtype.kind == "u" else 1e-6)
+    assert said == [f"{name} has 0 megapixels; it is reduced to 49 x 31 pixels while it is read"]
+
+
+@pytest.mark.parametrize(
+    ("name", "write", "complaint"),
+    [
+        (
+            "a.tif",
+            strips("tiff_lzw", strip_size=1 << 20),
+            "cannot be reduced while it is read; save it in strips or in",
+        ),
+        (
+            "a.png",
+            lambda path: path.write_bytes(png_of(6, interlaced=1)),
+            "while it is read; save it without interlacing",
+        ),
+        ("a.png", lambda path: path.write_bytes(png_of(9)), "damaged or cut short: a row has an unknown filter"),
+        ("a.png", lambda path: path.write_bytes(png_of(3)[:-40]), "damaged or cut short: its rows end early"),
+    ],
+)
+def test_large_picture_that_cannot_be_cut_into_bands_is_refused_with_the_cure(
+    tmp_path, monkeypatch, name, write, complaint
+):
+    write(tmp_path / name)
+    for module in (png_bands, tiff_bands):
+        monkeypatch.setattr(module, "BAND_PIXELS", 600)
+    monkeypatch.setattr(tiff_bands, "MOST_PIXELS", 1600)
+    monkeypatch.setattr(decoding, "MOST_PIXELS", 1600)
+    with pytest.raises(PictureError, match=complaint):
+        read_picture(tmp_path / name, reduce=True)
+
+
+def png_of(row_filter, interlaced=0):
+    """Return a grey PNG of 97 x 61 pixels of noise, each of whose rows has this filter."""
+    noise = np.random.default_rng(0).integers(0, 256, (61, 98), dtype=np.uint8)
+    noise[:, 0] = row_filter
+    chunks = [
+        (b"IHDR", struct.pack(">IIBBBBB", 97, 61, 8, 0, 0, 0, interlaced)),
+        (b"IDAT", zlib.compress(noise.tobytes())),
+        (b"IEND", b""),
+    ]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in chunks
+    )
+
+
+@pytest.mark.parametrize("row_filter", [0, 1, 2, 3, 4])
+def test_each_row_filter_of_a_large_png_is_undone(tmp_path, monkeypatch, row_filter):
+    path = put(tmp_path, "a.png", png_of(row_filter))
+    whole = read_picture(path).astype(float)
+    monkeypatch.setattr(png_bands, "BAND_PIXELS", 600)
+    monkeypatch.setattr(decoding, "MOST_PIXELS", 1600)
+    even = np.pad(whole, [(0, 1), (0, 1)], mode="edge")
+    mean = even.reshape(31, 2, 49, 2).mean(axis=(1, 3))
+    np.testing.assert_allclose(read_picture(path, reduce=True), mean, atol=1)
 
 
 def test_jpeg_of_a_hundred_megapixels_is_read_as_a_photo(tmp_path):

@@ -11,6 +11,7 @@ from PIL import Image, TiffImagePlugin
 
 from tangible_core import Scene
 from tangible_core.errors import PictureError
+from tangible_core.scene.formats import decoding
 from tangible_core.scene.formats.pictures import read_map
 from tangible_core.scene.formats.tiff_tags import stated_nodata
 
@@ -182,6 +183,19 @@ class TestPhoneDepth:
         [note] = scene.notes
         assert note.startswith("portrait.jpg holds a depth map of 16 x 12 (")
         assert note.endswith("which is used; `photo_depth: false` leaves it out")
+
+    @pytest.mark.parametrize("write", [gdepth, dynamic, iphone])
+    def test_phone_depth_is_found_in_a_photo_that_is_reduced(self, tmp_path: Path, monkeypatch, write):
+        """Read a photo of 768 pixels where 500 are the most, for this program and for Pillow, which fails at twice."""
+        (tmp_path / "portrait.jpg").write_bytes(write(jpeg(RAMP)))
+        monkeypatch.setattr(decoding, "MOST_PIXELS", 500)
+        monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 300)
+        scene = Scene.photo(tmp_path / "portrait.jpg")
+        assert scene.disparity is not None
+        near = scene.disparity.disparity_px
+        assert near.shape == (12, 16)
+        np.testing.assert_allclose(near[6], np.linspace(1, 0, 16), atol=0.03)
+        assert [note.split(" ")[1] for note in scene.notes] == ["has", "holds"]
 
     def test_phone_depth_can_be_left_out_or_replaced(self, tmp_path: Path):
         (tmp_path / "portrait.jpg").write_bytes(gdepth(jpeg(RAMP)))

@@ -168,9 +168,11 @@ class HapticSurface(Record):
         """Return the height at points over the surface, metres; NaN beyond its extent, where there is free air.
 
         x_m, y_m: metres from the centre, x to the right, y away from the user, numbers or arrays of one shape, which
-        the result has. Between the centres of the cells the height is bilinear, as in the force law
-        `penalty-gradient`. Laws on a smooth spline, such as `proxy`, have the same heights at the centres, but near
-        steps, and at the outermost half cell.
+        the result has. Between the centres of the cells the height is bilinear, exactly as in the force law
+        `penalty-gradient`. A law on a smooth spline, such as `proxy`, the default, has the same heights at the centres;
+        between them it differs by up to an eighth of the curvature times the square of the pitch, along x and along y
+        together. Its spline is eased at steps, where it passes the centres by up to a third of
+        the step, and smooths heights of few levels.
         Raises: ArgumentError for values that are not numbers.
         """
         return bilinear(self.height_m, self.extent_m, x_m, y_m)[0]
@@ -179,7 +181,8 @@ class HapticSurface(Record):
         """Return the unit normals (x, y, z) at points over the surface, upwards; NaN beyond its extent.
 
         x_m, y_m: as for `height_at`, whose exact gradient they are perpendicular to; the result has one more axis, of
-        three. Raises: ArgumentError for values that are not numbers.
+        three. The slope of a smooth spline differs by up to half of the curvature times the pitch.
+        Raises: ArgumentError for values that are not numbers.
         """
         _, across, along = bilinear(self.height_m, self.extent_m, x_m, y_m)
         length = np.sqrt(1 + across**2 + along**2)

@@ -90,6 +90,15 @@ def test_palette_reaches_commands_panels_views_and_keys_in_both_languages(page: 
         return chosen.inner_text()
 
     page.locator("#terrain").focus()
+    assert page.locator("#legible .inside").inner_html() == "", "panels of a task that nobody has seen are not built"
+    find("Jetzt prüfen")
+    until(lambda: "Check now" in options.first.inner_text(), "controls of panels are found before they were ever open")
+    box.fill("3D-Druck (STL)")
+    until(lambda: "3D print (STL)" in options.first.inner_text(), "also what the server knows")
+    box.fill("Jetzt prüfen")
+    page.keyboard.press("Enter")
+    until(lambda: page.evaluate("document.activeElement.id") == "legible-check", "and used")
+    page.locator("#terrain").focus()
     assert "Data" not in find("Hören der Höhen") and "H" in options.first.locator("kbd").all_inner_texts()
     page.keyboard.press("ArrowDown")
     assert box.get_attribute("aria-activedescendant") == options.nth(1).get_attribute("id")

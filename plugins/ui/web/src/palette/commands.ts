@@ -21,7 +21,7 @@ export interface Command {
 
 const CONTROLS = "button, select, textarea, input:not([type=hidden]), .inside summary";
 
-/** Return all commands; what is loaded later, as the contents of a panel, is among them once it is there. */
+/** Return all commands; those inside of a panel are among them once it is built. */
 export function commands(page: Pick<Page, "hub" | "canvas">): Command[] {
   const other = otherNames();
   const named = (name: string, where: string, run: () => void, keys: readonly string[] = []): Command => ({

@@ -1,6 +1,7 @@
 /** The command palette: a combobox over all commands, in a dialog. */
 import type { Page } from "../page";
 import { caps } from "../panels/help/key_caps";
+import { fillAll } from "../panels/lazy";
 import { keyName, SHORTCUTS } from "../shortcuts";
 import { commands, type Command } from "./commands";
 import { ranked } from "./match";
@@ -24,7 +25,7 @@ export function open(page: Pick<Page, "hub" | "canvas" | "say">): void {
   input.placeholder = t("title");
   const none = Object.assign(document.createElement("p"), { className: "hint", textContent: t("none") });
   dialog.append(input, list, none);
-  const all = commands(page);
+  let all = commands(page);
   const close = (): void => {
     dialog.close();
     dialog.remove(); // the event `close` comes later, when it may be open again
@@ -40,12 +41,15 @@ export function open(page: Pick<Page, "hub" | "canvas" | "say">): void {
     input.setAttribute("aria-activedescendant", chosen.id);
     chosen.scrollIntoView({ block: "nearest" });
   };
-  const look = (): void => {
+  const show = (): void => {
     found = ranked(input.value, all, ({ name, others, where }) => [name, others, `${name} ${where}`]).slice(0, MOST);
     list.replaceChildren(...found.map((each, place) => item(each, place, () => choose(place))));
     list.hidden = !found.length;
     none.hidden = found.length > 0;
     input.ariaExpanded = String(found.length > 0);
+  };
+  const look = (): void => {
+    show();
     mark(0);
     if (input.value) page.say(found.length ? t("count", { count: found.length }) : t("none"), { topic: "palette" });
   };
@@ -71,6 +75,12 @@ export function open(page: Pick<Page, "hub" | "canvas" | "say">): void {
   look();
   dialog.showModal();
   input.focus();
+  void fillAll().then(() => {
+    const chosen = at ? found[at] : undefined; // who has moved down keeps what is chosen
+    all = commands(page);
+    show();
+    mark(chosen ? found.findIndex(({ name, where }) => name === chosen.name && where === chosen.where) : 0);
+  });
 }
 
 function item({ name, where, keys }: Command, place: number, choose: () => void): HTMLElement {

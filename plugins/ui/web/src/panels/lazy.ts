@@ -4,6 +4,11 @@ import type { Page } from "../page";
 import type { Panel } from "./panel";
 import { t } from "./words";
 
+const fillers: (() => Promise<void>)[] = [];
+
+/** Build what is not built yet, seen or not, so that its controls can be found by their names. */
+export const fillAll = async (): Promise<void> => void (await Promise.all(fillers.map((fill) => fill())));
+
 /** Return a panel that builds itself from a module when it is first seen open.
  *
  * If loading or building fails, the panel shows why and tries again when it is opened the next time. */
@@ -13,8 +18,9 @@ export function lazy(about: Omit<Panel, "build">, load: () => Promise<Pick<Panel
   function build(page: Page, root: HTMLElement): void {
     const box = root.closest("details")!;
     let started = false;
+    const seen = (): void => void (box.open && box.checkVisibility() && fill());
     const fill = async (): Promise<void> => {
-      if (started || !box.open || !box.checkVisibility()) return;
+      if (started) return;
       started = true;
       try {
         const panel = await load();
@@ -25,8 +31,9 @@ export function lazy(about: Omit<Panel, "build">, load: () => Promise<Pick<Panel
         root.textContent = t("failed", { error: (error as Error).message });
       }
     };
-    box.addEventListener("toggle", () => void fill());
-    onChange(() => void fill());
-    void fill();
+    fillers.push(fill);
+    box.addEventListener("toggle", seen);
+    onChange(seen);
+    seen();
   }
 }

@@ -14,7 +14,7 @@ import { address, outcomes, formatBytes } from "./outcomes";
 import { Previews } from "./previews";
 import { progress } from "./progress";
 
-export function build(page: Page, root: HTMLElement): void {
+export function build(page: Page, root: HTMLElement): Promise<void> {
   const editor = new DocumentEditor(page);
   const status = document.createElement("p");
   status.setAttribute("role", "status");
@@ -84,7 +84,7 @@ export function build(page: Page, root: HTMLElement): void {
   buttons.append(start, stopButton(page), button(t("add"), add));
   const names = (): string[] => (choices?.blocks ?? []).map((each) => String(isMap(each) ? each.use : each));
   root.append(send, hint(t("sendAbout")), hint(t("about")), list, previews.root, buttons, progress(page, names), status, results);
-  void load().catch((error: Error) => (list.textContent = error.message));
+  const loaded = load().catch((error: Error) => void (list.textContent = error.message));
 
   const stale = paragraph(t("stale"), "warn");
   let exported: Exported | null = null;
@@ -102,6 +102,7 @@ export function build(page: Page, root: HTMLElement): void {
   });
   const before = page.hub.last("exported");
   if (before) show(before);
+  return loaded;
 }
 
 /** The exporter of a page to send. */

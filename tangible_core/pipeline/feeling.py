@@ -27,7 +27,7 @@ from .config.methods import check_kind, named_method
 from .engine.engine import Engine
 from .engine.film import film_of, reliefs_of
 from .engine.stages.touch import fit_to_device
-from .output.legible import drawn_width_m, exporter_for, legible
+from .output.legible import drawn_parts, drawn_width_m, exporter_for, legible
 from .output.runs import about, device_in_workspace, join_descriptions, path_tracking
 
 T = TypeVar("T")
@@ -222,8 +222,8 @@ class Feeling:
     def legible(self, medium: Medium, width_m: float | None = None) -> Legibility:
         """Check whether fingers can read the parts: on swell paper, as a print, on pins, or on a force device.
 
-        width_m: of the whole picture; by default as export draws it, `width_on`. With `simplify`, the simplified parts
-        count.
+        width_m: of the whole picture; by default as export draws it, `width_on`. The simplified parts are judged where
+        `is_simplified_on` this medium.
         Raises: ConfigError for an unknown medium or width; TangibleError as `Pipeline.make`.
         """
         return legible(self.engine, medium, width_m)
@@ -231,6 +231,10 @@ class Feeling:
     def width_on(self, medium: Medium) -> float:
         """Return the width of the whole picture on a medium, m, as export draws it; on a device, the workspace's."""
         return drawn_width_m(self.engine, exporter_for(self.engine, medium))
+
+    def is_simplified_on(self, medium: Medium) -> bool:
+        """Return True if parts are simplified on a medium: by `simplify`, or because its exporter draws no others."""
+        return drawn_parts(self.engine, exporter_for(self.engine, medium)) == "simplified"
 
     def preflight(self, hand: Hand | None = None, loop: Loop | None = None) -> Preflight:
         """Judge the safety and the quality of the surface on the device, which is not opened.

@@ -59,7 +59,7 @@ def legible(
     media: list[Medium] = [medium.value] if medium else ["swell", "print", "pins", "force"]
     for name in media:
         wide_m = feeling.width_on(name) if width_m is None else width_m
-        found.append(Found(name, wide_m, feeling.legible(name, wide_m)))
+        found.append(Found(name, wide_m, feeling.is_simplified_on(name), feeling.legible(name, wide_m)))
     if as_json:
         documents = [each.as_data() for each in found]
         show.print_json({"scene": scene, **(documents[0] if medium else {"media": documents})})
@@ -79,11 +79,18 @@ class Found(NamedTuple):
 
     medium: str
     width_m: float
+    simplified: bool
+    """True if the parts that are drawn there, and judged, are simplified ones."""
     verdicts: Legibility
 
     def as_data(self) -> dict[str, Any]:
         """Return the verdicts as JSON data."""
-        return {"medium": self.medium, "width_m": self.width_m, **self.verdicts.as_data()}
+        return {
+            "medium": self.medium,
+            "width_m": self.width_m,
+            "simplified": self.simplified,
+            **self.verdicts.as_data(),
+        }
 
 
 def _heading(scene: str, found: Found) -> str:
@@ -94,4 +101,7 @@ def _heading(scene: str, found: Found) -> str:
 
     where = next(profile.text for name, profile in PROFILES.items() if name == found.medium)
     sentence = f"[{COLOURS[found.verdicts.grade]}]{escape(found.verdicts.sentence)}[/]"
-    return f"{escape(scene)}, {quantity(found.width_m, 'm')} wide, on {where}: {sentence}"
+    width = quantity(found.width_m, "m")
+    if found.simplified:
+        return f"{escape(scene)}, its parts simplified, {width} wide, on {where}: {sentence}"
+    return f"{escape(scene)}, {width} wide, on {where}: {sentence}"

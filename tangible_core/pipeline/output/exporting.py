@@ -31,7 +31,7 @@ from ..engine.engine import Engine
 from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
 from .export_folder import check_writable, check_written, move
-from .legible import drawn_width_m, judge_products, names_of_parts, with_cures_of, with_width
+from .legible import drawn_parts, drawn_width_m, judge_products, names_of_parts, with_cures_of, with_width
 from .run_folder import default_name, relative_source
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -267,7 +267,7 @@ def legible_for(engine: Engine, chosen: NamedMethod[Exporter]) -> Legibility | N
     exporter = chosen.method
     if exporter.medium is None:
         return None
-    parts = "simplified" if "simplified" in exporter.needs else engine.config.felt_parts
+    parts = drawn_parts(engine, chosen)
     judged = set[str]().union(*map(engine.inputs_of, exporter.needs))
     return with_cures_of(engine, chosen, judge_products(engine, exporter.medium, parts, judged))
 

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any, cast, get_args
+from typing import Any, Literal, cast, get_args
 
 from ...data import PartMap, Record
 from ...errors import ConfigError, TangibleError, did_you_mean, quoted
@@ -34,7 +34,7 @@ def legible(engine: Engine, medium: Medium, width_m: float | None = None) -> Leg
         raise ConfigError(f"medium: is {quoted(medium)}{did_you_mean(str(medium), media)}; it is {', '.join(media)}")
     exporter = exporter_for(engine, medium)
     judged = with_width(engine, drawn_width_m(engine, exporter) if width_m is None else width_m)
-    parts = engine.config.felt_parts
+    parts = drawn_parts(engine, exporter)
     found = judge_products(judged, medium, parts, {parts, *JUDGED.get(medium, ())})
     return found if exporter is None else with_cures_of(engine, exporter, found)
 
@@ -50,6 +50,12 @@ def exporter_for(engine: Engine, medium: Medium) -> NamedMethod[Exporter] | None
             if cls.medium == medium:
                 return NamedMethod(name, registry.find("export", name).origin, cls())
     return None
+
+
+def drawn_parts(engine: Engine, exporter: NamedMethod[Exporter] | None) -> Literal["parts", "simplified"]:
+    """Return the product with the parts that an exporter draws; the parts that are felt without one."""
+    needs = () if exporter is None else exporter.method.needs
+    return "simplified" if "simplified" in needs else engine.config.felt_parts
 
 
 def drawn_width_m(engine: Engine, exporter: NamedMethod[Exporter] | None) -> float:

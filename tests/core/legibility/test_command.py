@@ -18,8 +18,9 @@ def folder(tmp_path):
     (tmp_path / "parts.png").write_bytes(label_picture(labels))
     write_png(tmp_path / "photo.png", np.full((100, 150, 3), 128, np.uint8))
     scene = "scene: {photo: photo.png, segments: parts.png}\nworkspace: {width_m: 60 mm}\ndepth: luminance\n"
-    drawn = "export: [{use: swell, width_m: 60 mm}]\n"
-    (tmp_path / "house.yaml").write_text(f"{scene}parts: {{2: window}}\n{drawn}")
+    drawn = "parts: {2: window}\nexport: [{use: swell, width_m: 60 mm}]\n"
+    (tmp_path / "house.yaml").write_text(f"{scene}{drawn}simplify: {{gap_m: 0, part_m: 0}}\n")
+    (tmp_path / "drawn.yaml").write_text(f"{scene}{drawn}")
     return tmp_path
 
 
@@ -35,6 +36,21 @@ def test_legible_small_part_prints_its_cure_and_exits_with_1(folder):
         .split("cure: ")[1]
         .startswith("`simplify.part_m: 0.0064`, `export.swell.width_m: 0.0")
     )
+
+
+def test_legible_judges_the_parts_that_export_draws_and_says_that_they_are_simplified(folder):
+    """Judge a file without `simplify`: swell paper gets simplified parts all the same, a print does not."""
+    found = tangible("legible", "drawn.yaml", "--for", "swell", cwd=folder)
+    heading = found.stdout.splitlines()[0]
+    assert heading.startswith("photo.png, its parts simplified, 60 mm wide, on swell paper: Legible"), heading
+    assert "window" in found.stderr, "what is left out is said"
+    exported = tangible("export", "drawn.yaml", "--json", cwd=folder)
+    (drawn,) = json.loads(exported.stdout)["exports"]
+    judged = json.loads(tangible("legible", "drawn.yaml", "--for", "swell", "--json", cwd=folder).stdout)
+    assert judged["simplified"] is True
+    assert judged["verdicts"] == drawn["legible"]["verdicts"]
+    printed = tangible("legible", "drawn.yaml", "--for", "print", cwd=folder).stdout
+    assert printed.startswith("photo.png, 160 mm wide, on a 3-D print: Illegible"), printed
 
 
 def test_legible_json_has_the_verdicts_and_places(folder):
@@ -96,7 +112,7 @@ def test_legible_wrong_option_exits_with_2(folder, words, complaint):
 def test_legible_without_a_medium_judges_each(folder):
     found = tangible("legible", "house.yaml", cwd=folder)
     assert found.returncode == 1
-    headings = [line for line in found.stdout.splitlines() if line.startswith("photo.png, ")]
+    headings = [line for line in found.stdout.splitlines() if line.startswith("photo.png, its parts simplified, ")]
     assert [each.partition(" wide, on ")[2].partition(":")[0] for each in headings] == [
         "swell paper",
         "a 3-D print",

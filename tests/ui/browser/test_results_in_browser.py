@@ -146,12 +146,13 @@ class TestExport:
 
 class TestLegible:
     def test_legibility_fault_is_marked_announced_and_cured(self, show: Callable[..., "Page"]) -> None:
-        page = show(scene=striped_scene)
+        page = show("simplify: {gap_m: 0, part_m: 0}\n", scene=striped_scene)
         panel = open_panel(page, "legible")
         panel.get_by_label("Read on").select_option("swell")
         panel.get_by_label("Width, mm").fill("80")
         panel.get_by_role("button", name="Check now").press("Enter")
         until(lambda: panel.locator(".sentence.illegible").count() == 1, "judged")
+        assert "80 mm wide, its parts simplified as “Export” draws them" in panel.inner_text()
         until(lambda: page.evaluate("heard.some((each) => each.startsWith('Illegible'))"), "said")
         places = panel.locator(".places button")
         marks = page.locator(".overlay .fault")

@@ -102,9 +102,10 @@ def legible(
         state.tell("making", want="legible", digest=digest)
         pipeline.make("parts", stage_reporter(state, work), work.stop)
         with stoppable(work.stop):
-            width_m = Feeling(pipeline).width_on(medium) if width_m is None else width_m
-            judged = Feeling(pipeline).legible(medium, width_m)
-    found = {"digest": digest, "medium": medium, "width_m": width_m, **judged.as_data()}
+            feeling = Feeling(pipeline)
+            width_m = feeling.width_on(medium) if width_m is None else width_m
+            judged, simplified = feeling.legible(medium, width_m), feeling.is_simplified_on(medium)
+    found = {"digest": digest, "medium": medium, "width_m": width_m, "simplified": simplified, **judged.as_data()}
     state.tell("legible", **found)
     state.tell("made", want="legible", digest=digest, outcome="made", why="", seconds=perf_counter() - begun_s)
     return found

@@ -135,6 +135,8 @@ export interface Legible {
   digest: string;
   medium: Medium;
   width_m: number;
+  /** True if the parts that are drawn there, and judged, are simplified ones. */
+  simplified: boolean;
   grade: Grade;
   sentence: string;
   verdicts: Verdict[];

@@ -71,7 +71,7 @@ export function build(page: Page, root: HTMLElement): void {
     const failing = numberFaults(verdict.verdicts);
     const more = (each: Legible["verdicts"][number]): HTMLElement | null =>
       failing.has(each) ? faultList(page, each, failing.get(each)!, marks) : null;
-    const of = paragraph(t("of", { medium: t(`${verdict.medium}Of`), width: decimal(1000 * verdict.width_m, 0) }), "hint");
+    const of = paragraph(t(verdict.simplified ? "ofSimplified" : "of", { medium: t(`${verdict.medium}Of`), width: decimal(1000 * verdict.width_m, 0) }), "hint");
     results.replaceChildren(gradeSentence(verdict.grade, verdict.sentence), of, ...simplifyButton(verdict, editor, work), ...verdictTables(verdict.verdicts, cure, more));
     const all = [...failing.values()].flat();
     marked.root.hidden = !all.length;

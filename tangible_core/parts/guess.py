@@ -5,6 +5,8 @@ from jaxtyping import Float64, Int64
 
 from ..data import PartMap
 from ..data.part_words import name_part, shown_number
+from ..data.pictures import to_rgb8
+from ..runtime.opencv import plain_opencv
 from ..scene.scaling import reduced_shape
 from .find import part_sizes, reduced_parts
 from .heights import PartHeights
@@ -14,6 +16,11 @@ FOOT, MIDDLE, RIM, SIZE, ENCLOSED, FRONT = 0.7, 0.3, 1.5, 0.1, 0.25, 0.5
 """Weights of the cues to nearness: the height of a part's foot and of its middle in the picture, its share of the upper
 and the side rims, its share of the picture, enclosure by another part, occlusion of another part. Chosen on three
 pictures whose depth is known (`python -m benchmarks parts`)."""
+LIKE = 0.5
+"""Largest difference in colour of a hole from a part beyond, as a share of that from the part around it. Of 134
+enclosed parts in people's drawings of 40 photographs (BSDS500), 84 are such holes."""
+APART = 1e-6
+"""Nearness by which a hole is in front of what is seen through it, so that the two have an order."""
 OWN = 0.5
 """Weight of a part's own cues; those of its neighbours have weight 1."""
 ROUNDS = 40
@@ -26,13 +33,16 @@ SPECK = 0.001
 """Share of the picture below which a part shares a neighbour's height step."""
 
 
-def guess_heights(parts: PartMap, top_m: float) -> PartHeights:
+def guess_heights(parts: PartMap, top_m: float, picture: np.ndarray | None = None) -> PartHeights:
     """Guess a height for each part by size, place and border ownership: even steps from 0 to top_m, in their order.
 
     Parts low in a picture are near; parts that fill much of its upper and side rims, or of the whole picture, are far.
     Where three parts meet, the one whose border runs straight on hides the two others; a part that another encloses is
-    in front of it. Nearness is the best fit to these cues: a mean of a part's own cues, and of its neighbours' nearness
-    with the cues between them. The cues do not know what is shown: a table may come to lie before the things on it.
+    in front of it, unless its colour is that of a part beyond: then it is a hole, such as the water between the legs of
+    a bear, and is behind. Nearness is the best fit to these cues: a mean of a part's own cues, and of its neighbours'
+    nearness with the cues between them. The cues do not know what is shown: a table may come to lie before the things
+    on it.
+    picture: (h, w[, 3|4]) of the parts; without it no hole is found.
     """
     parts = reduced_parts(parts, _coarse(parts.labels.shape))
     sizes = part_sizes(parts)
@@ -40,7 +50,12 @@ def guess_heights(parts: PartMap, top_m: float) -> PartHeights:
     own = FOOT * foot + MIDDLE * middle - RIM * rim - SIZE * sizes / parts.labels.size
     pairs = neighbours(parts)
     sure = in_front(parts, pairs)
-    nearness = _relax(own, pairs, FRONT * sure + ENCLOSED * _enclosure(pairs, parts.count))
+    enclosed = _enclosure(parts, pairs)
+    nearness = _relax(own, pairs, FRONT * sure + ENCLOSED * enclosed)
+    for pair, beyond in _holes(parts, sizes, pairs, enclosed, picture).items():
+        hole, around = _ends(pairs, pair, enclosed[pair])
+        nearness[hole] = min(nearness[beyond] + APART, nearness[around] - APART)
+        sure[pair] = -enclosed[pair]
     rank, steps = _rank(nearness, sizes)
     heights_m = top_m * rank / max(1, steps - 1)
     reasons = (
@@ -64,10 +79,59 @@ def _places(
     return foot, middle, np.bincount(rim, minlength=parts.count) / rim.size
 
 
-def _enclosure(pairs: Neighbours, count: int) -> Float64[np.ndarray, "m"]:
-    """Return, for each pair, 1 if `low` is the only neighbour of `high`, -1 for the reverse, 0 for neither or both."""
-    many = np.bincount(pairs.low, minlength=count) + np.bincount(pairs.high, minlength=count)
-    return (many[pairs.high] == 1).astype(np.float64) - (many[pairs.low] == 1)
+def _enclosure(parts: PartMap, pairs: Neighbours) -> Float64[np.ndarray, "m"]:
+    """Return, for each pair, 1 if `low` encloses `high`, -1 for the reverse, 0 for neither.
+
+    A part is enclosed if it has one neighbour and no pixel at the rims of the picture.
+    """
+    labels, count = parts.labels, parts.count
+    inside = np.bincount(pairs.low, minlength=count) + np.bincount(pairs.high, minlength=count) == 1
+    inside[np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]])] = False
+    return inside[pairs.high].astype(np.float64) - inside[pairs.low]
+
+
+def _holes(
+    parts: PartMap,
+    sizes: Int64[np.ndarray, "n"],
+    pairs: Neighbours,
+    enclosed: Float64[np.ndarray, "m"],
+    picture: np.ndarray | None,
+) -> dict[int, int]:
+    """Return the pairs of a hole and the part around it, each with the part beyond that is seen through the hole.
+
+    Parts that are enclosed as well are not beyond: two birds before a sky are not holes in it.
+    """
+    found = dict[int, int]()
+    if picture is None or not enclosed.any():
+        return found
+    lab = _mean_colours(parts, sizes, picture)
+    ends = {pair: _ends(pairs, pair, enclosed[pair]) for pair in np.flatnonzero(enclosed).tolist()}
+    inside = [hole for hole, _ in ends.values()]
+    for pair, (hole, around) in ends.items():
+        beside = np.concatenate([pairs.low[pairs.high == around], pairs.high[pairs.low == around]])
+        beyond = np.setdiff1d(beside, inside)
+        differ = np.linalg.norm(lab[beyond] - lab[hole], axis=1)
+        if beyond.size and differ.min() < LIKE * np.linalg.norm(lab[around] - lab[hole]):
+            found[pair] = int(beyond[differ.argmin()])
+    return found
+
+
+def _ends(pairs: Neighbours, pair: int, enclosed: float) -> tuple[int, int]:
+    """Return the enclosed part of a pair, and the part around it."""
+    low, high = int(pairs.low[pair]), int(pairs.high[pair])
+    return (high, low) if enclosed > 0 else (low, high)
+
+
+def _mean_colours(parts: PartMap, sizes: Int64[np.ndarray, "n"], picture: np.ndarray) -> Float64[np.ndarray, "n 3"]:
+    """Return the mean of each part's colours in CIELAB."""
+    import cv2
+
+    labels = parts.labels
+    with plain_opencv():
+        small = cv2.resize(to_rgb8(picture), labels.shape[::-1], interpolation=cv2.INTER_AREA)
+        lab = cv2.cvtColor(small, cv2.COLOR_RGB2LAB).reshape(-1, 3)
+    sums = [np.bincount(labels.reshape(-1), lab[:, channel], parts.count) for channel in range(3)]
+    return np.stack(sums, axis=1) / np.maximum(sizes, 1)[:, None]
 
 
 def _relax(

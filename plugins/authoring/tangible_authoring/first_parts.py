@@ -168,7 +168,8 @@ def proposed_heights(pipeline: Pipeline, parts: PartMap, top_m: float | None = N
     two_views = scene.views is not None and scene.views.right is not None and pipeline.config.depth is not None
     disparity = pipeline.make("disparity") if scene.disparity is not None or two_views else None
     by_depth = choice.model_copy(update={"by": "depth"})
-    found = heights_of(parts, choice if disparity is None else by_depth, top_m, {}, disparity, scene.shown)
+    by, picture = choice if disparity is None else by_depth, scene.views.left if scene.views else None
+    found = heights_of(parts, by, top_m, {}, disparity, scene.shown, picture)
     rounded = (floor(height_m * STEPS_PER_M + 1e-6) / STEPS_PER_M for height_m in found.heights_m)
     return PartHeights(tuple(rounded), found.reasons)
 

@@ -98,7 +98,8 @@ def list_parts(pipeline: Pipeline) -> ListedParts:
     if config.heights is not None:
         given_m = {number: height_m for number, height_m in config.given_heights_m.items() if number < parts.count}
         disparity = alone.make("disparity") if config.heights.by == "depth" else None
-        heights = heights_of(parts, config.heights, config.top_m, given_m, disparity, scene.shown)
+        picture = scene.views.left
+        heights = heights_of(parts, config.heights, config.top_m, given_m, disparity, scene.shown, picture)
     rows = list_rows(parts, heights, config.parts or {})
     names = [each.name for each in rows]
     numbered = numbered_parts(scene.views.left, parts, names)

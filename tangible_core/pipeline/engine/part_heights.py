@@ -27,13 +27,14 @@ def heights_of(
     given_m: Mapping[int, float],
     disparity: DisparityMap | None = None,
     shown: Bool[np.ndarray, "h w"] | None = None,
+    picture: np.ndarray | None = None,
 ) -> PartHeights:
     """Return the height of each part with its reason: the given heights, and computed ones for the other parts.
 
     top_m: the greatest computed height. disparity: on the grid of the parts; None without depth.
-    shown: True where the picture is opaque; transparent parts lie at 0.
+    shown: True where the picture is opaque; transparent parts lie at 0. picture: in whose colours a guess sees holes.
     """
-    computed = _compute(parts, heights, max(0.0, top_m), disparity)
+    computed = _compute(parts, heights, max(0.0, top_m), disparity, picture)
     heights_m = {number: min(round(each, FINEST_DIGITS), top_m) for number, each in enumerate(computed.heights_m)}
     reasons = dict(enumerate(computed.reasons))
     for number in transparent_parts(parts, shown):
@@ -43,9 +44,11 @@ def heights_of(
     return PartHeights(tuple(heights_m.values()), tuple(reasons.values()))
 
 
-def _compute(parts: PartMap, heights: HeightChoice, top_m: float, disparity: DisparityMap | None) -> PartHeights:
+def _compute(
+    parts: PartMap, heights: HeightChoice, top_m: float, disparity: DisparityMap | None, picture: np.ndarray | None
+) -> PartHeights:
     if heights.by == "guess":
-        return guess_heights(parts, top_m)
+        return guess_heights(parts, top_m, picture)
     if heights.by == "depth" and disparity is not None:
         return depth_heights(parts, disparity, top_m)
     why = "no height is given, so it lies at 0" if heights.by == "given" else "the views show no depth, so it lies at 0"

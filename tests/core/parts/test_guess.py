@@ -80,6 +80,28 @@ def test_enclosed_part_is_in_front():
     assert heights_m[0] < heights_m[1] < heights_m[2]
 
 
+@pytest.mark.parametrize(("inside", "order"), [([60, 90, 160], (0, 2, 1)), ([220, 40, 30], (0, 1, 2))])
+def test_enclosed_part_of_the_colour_beyond_is_a_hole(inside, order):
+    """A dark ring low in the picture on blue; its middle is blue too, or red as a thing on a plate."""
+    labels = discs((150, 140), radius=50)
+    labels[discs((150, 150), radius=25) == 1] = 2
+    picture = np.uint8([[70, 95, 150], [50, 40, 30], inside])[labels]
+    parts = parts_of(labels)
+    heights = guess_heights(parts, 0.004, picture)
+    by_label = dict(zip(parts.segments, heights.heights_m, strict=True))
+    assert sorted(by_label, key=by_label.__getitem__) == [order.index(rank) for rank in range(3)]
+    assert ("it is behind part 2" in heights.reasons[2]) == (order == (0, 2, 1))
+    assert dict(zip(parts.segments, guess_heights(parts, 0.004).heights_m, strict=True))[2] == 0.004
+
+
+def test_two_parts_that_one_encloses_are_not_holes_in_it():
+    labels = discs((80, 100), (220, 100))
+    picture = np.uint8([[150, 180, 230], [30, 30, 30], [32, 30, 30]])[labels]
+    parts = parts_of(labels)
+    heights_m = guess_heights(parts, 0.004, picture).heights_m
+    assert heights_m[0] == 0 < min(heights_m[1:])
+
+
 def test_guess_does_not_depend_on_the_resolution():
     few = guess_heights(drawn("coffee").parts, 0.004)
     labels = drawn("coffee").parts.labels.repeat(2, axis=0).repeat(2, axis=1)  # large enough to be reduced again

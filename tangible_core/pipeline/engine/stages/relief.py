@@ -95,7 +95,10 @@ class ReliefStage(Stage):
         if disparity is not None:
             disparity = scaling.reduced_disparity(disparity, grid.shape)
         on_grid, given_m = grid.parts(parts, config.felt_parts), config.given_heights_m
-        return part_heights.heights_of(on_grid, config.heights, config.top_m, given_m, disparity, grid.opaque_mask)
+        left = grid.views.left if grid.views else None
+        return part_heights.heights_of(
+            on_grid, config.heights, config.top_m, given_m, disparity, grid.opaque_mask, left
+        )
 
     def _from_parts(self, parts: PartMap, disparity: DisparityMap | None) -> Relief:
         config, grid = self.config, self.grid

@@ -8,7 +8,7 @@ import os
 import sys
 from io import StringIO
 from traceback import walk_tb
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -17,7 +17,7 @@ from ..plugins import hooks
 from ..plugins.registry import default_registry
 from ..runtime import signals, standard_output
 from ..translation import LANGUAGES, language, localise
-from .command_table import COMMANDS, LazyGroup
+from .command_table import COMMANDS, LazyGroup, load
 from .options import DONE, FAILED, INTERRUPTED, MISTAKE
 from .verbosity import parse_verbosity
 
@@ -147,6 +147,8 @@ def _exit_code(work: Callable[[], int]) -> int:
 
 def _report_unexpected(error: BaseException) -> int:
     """Report typer's error about the words of the call, or a fault of the program or a plugin."""
+    if without_value := _option_without_value(error):
+        return _report(without_value, MISTAKE)
     if (show := getattr(error, "show", None)) is not None:
         show(text := StringIO())
         return _report(text.getvalue().rstrip(), MISTAKE)
@@ -154,6 +156,17 @@ def _report_unexpected(error: BaseException) -> int:
 
     explained = failures.place_of(error) or failures.missing_package(error)
     return _report(failures.sentence(error), MISTAKE if explained else FAILED)
+
+
+def _option_without_value(error: BaseException) -> str:
+    """Return a sentence about an option after which nothing stands, with what it takes; "" for another error."""
+    option = str(getattr(error, "option_name", ""))
+    if "requires an argument" not in str(getattr(error, "message", "")):
+        return ""
+    command = next((word for word in sys.argv[1:] if not word.startswith("-")), "")
+    known: list[Any] = load(command).params if command in COMMANDS else []
+    takes = next((f" {each.metavar or 'VALUE'}" for each in known if option in each.opts), " VALUE")
+    return f"{option}: has nothing after it; write what it takes, as `tangible {command} {option}{takes}`"
 
 
 def _report(message: str, code: int) -> int:

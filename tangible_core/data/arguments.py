@@ -4,9 +4,9 @@ A list becomes an array; numbers change their type if no value changes by more t
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
-from inspect import Parameter, signature
+from inspect import Parameter, Signature, signature
 from os import PathLike
 from typing import Any, TypeVar, cast
 
@@ -18,6 +18,7 @@ from .device import Force, HapticState
 NUMBERS = "buif"
 """The kinds of NumPy types that hold numbers."""
 F = TypeVar("F", bound=Callable[..., Any])
+C = TypeVar("C", bound=type)
 READERS = "; Scene and numpy.load read files"
 
 
@@ -35,6 +36,37 @@ def named_options(function: F) -> F:
         return function(*arguments, **options)
 
     return cast(F, call)
+
+
+def named_fields(cls: C) -> C:
+    """Let a dataclass raise an ArgumentError, with its fields, for one that is unknown, missing or given twice."""
+    build = cast(Any, cls).__init__
+    takes = signature(build)
+    known = list(takes.parameters)[1:]
+
+    @wraps(build)
+    def init(self: object, *values: Any, **fields: Any) -> None:
+        try:
+            takes.bind(self, *values, **fields)
+        except TypeError as error:
+            what = _misnamed(takes, known, len(values), fields)
+            raise ArgumentError(f"{cls.__name__}: {what}; its fields: {', '.join(known)}") from error
+        build(self, *values, **fields)
+
+    cast(Any, cls).__init__ = init
+    return cls
+
+
+def _misnamed(takes: Signature, known: Sequence[str], values: int, fields: Mapping[str, Any]) -> str:
+    """Return what is wrong with the arguments of a dataclass, of which `values` are given by place."""
+    if unknown := next((name for name in fields if name not in known), None):
+        return f"{unknown}: unknown field{did_you_mean(unknown, known)}"
+    if values > len(known):
+        return f"is given {values} values"
+    if twice := next((name for name in known[:values] if name in fields), None):
+        return f"{twice}: is given twice"
+    needed = [name for name in known[values:] if takes.parameters[name].default is Parameter.empty]
+    return f"{next(name for name in needed if name not in fields)}: is missing"
 
 
 _BY_NAME = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)

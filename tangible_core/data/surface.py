@@ -9,7 +9,7 @@ from jaxtyping import Float32, Float64, Int32
 from numpy.typing import ArrayLike
 
 from ..errors import GeometryError, MaterialError, PictureError, did_you_mean, quoted
-from .arguments import as_array, as_number
+from .arguments import as_array, as_number, named_fields
 from .interpolation import bilinear
 from .pictures import check_finite, size_in_words
 from .records import Record
@@ -19,6 +19,7 @@ TEXTURES: tuple[Texture, ...] = get_args(Texture)
 """The models of a material's fine texture."""
 
 
+@named_fields
 @dataclass(frozen=True, eq=False)
 class Relief(Record):
     """The heights of a surface: float32 (h, w) metres >= 0 over extent_m = (width, length) metres.
@@ -52,6 +53,7 @@ class Relief(Record):
         return self.extent_m[0] / columns, self.extent_m[1] / rows
 
 
+@named_fields
 @dataclass(frozen=True)
 class Material:
     """The properties by which a segment feels; `source` is their reference, or says that they are a guess."""
@@ -109,6 +111,7 @@ class Material:
             yield "texture drag needs a drag_n_s_per_m above 0"
 
 
+@named_fields
 @dataclass(frozen=True, eq=False)
 class MaterialMap(Record):
     """The material of each segment, and the reason for each choice."""
@@ -117,6 +120,7 @@ class MaterialMap(Record):
     reasons: tuple[str, ...]
 
 
+@named_fields
 @dataclass(frozen=True, eq=False)
 class HapticSurface(Record):
     """The surface that a force law renders: the relief and, where the scene has them, a material for each label.

@@ -10,10 +10,12 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int32, Integer
 
 from ..errors import GeometryError, PictureError
+from .arguments import named_fields
 from .pictures import check_picture, check_same_shape, size_in_words
 from .records import Record, as_read_only, settle
 
 
+@named_fields
 @dataclass(frozen=True, eq=False)
 class Calibration(Record):
     """A rectified pair of cameras: Z = focal_px * baseline_m / (disparity_px + offset_px).
@@ -34,6 +36,7 @@ class Calibration(Record):
             )
 
 
+@named_fields
 @dataclass(frozen=True, eq=False)
 class Views(Record):
     """A picture of a scene, or a pair of pictures.
@@ -62,6 +65,7 @@ class Views(Record):
         return self.left.shape[:2]
 
 
+@named_fields
 @dataclass(frozen=True, eq=False)
 class DisparityMap(Record):
     """The shift of each left pixel against the right view, or relative nearness from one picture.
@@ -87,6 +91,7 @@ class DisparityMap(Record):
         super().__post_init__()
 
 
+@named_fields
 @dataclass(frozen=True, eq=False)
 class SegmentMap(Record):
     """The texture segment of each pixel.
@@ -111,6 +116,7 @@ class SegmentMap(Record):
         return int(self.labels.max()) + 1
 
 
+@named_fields
 @dataclass(frozen=True, eq=False)
 class SegmentTree(Record):
     """Regions of a picture joined pair by pair, from the smallest ones to the whole: any number of segments at once.
@@ -140,6 +146,7 @@ class SegmentTree(Record):
         return SegmentMap(names.astype(np.int32)[self.labels], sure[roots[:count]][self.labels])
 
 
+@named_fields
 @dataclass(frozen=True, eq=False)
 class PartMap(Record):
     """The part of each pixel. A part is a piece of one segment whose pixels are connected by their sides.

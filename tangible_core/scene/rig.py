@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, Float64
 
 from ..data import Calibration, Record, Views
+from ..data.arguments import named_fields
 from ..errors import GeometryError, PictureError, quoted
 from ..runtime.opencv import plain_opencv
 
@@ -21,6 +22,7 @@ GROWTH = 2.0
 """Largest width and height of a rectified picture, as a multiple of the raw one."""
 
 
+@named_fields
 @dataclass(frozen=True, eq=False)
 class Camera(Record):
     """A camera: K in pixels, (3, 3), and the distortion of its lens.
@@ -46,6 +48,7 @@ class Camera(Record):
             )
 
 
+@named_fields
 @dataclass(frozen=True, eq=False)
 class StereoRig(Record):
     """Two cameras: a point X_left in metres is X_right = rotation X_left + translation_m.

@@ -6,13 +6,13 @@ from dataclasses import asdict, dataclass, replace
 from html import escape
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from ...data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Record, ServoReport, Work
 from ...data.products import IN_REPORT
-from ...errors import ConfigError, OutputError
+from ...errors import ConfigError, OutputError, did_you_mean, wrong_argument
 from ...files.json_text import write_figures
 from ...files.paths import without_folders
 from ...files.writing import write_text
@@ -104,6 +104,8 @@ def make_run(
     device for these seconds of its time; a real device is not moved.
     Raises: OutputError if the folder cannot be written; TangibleError as `Engine.make` and `run_simulated`.
     """
+    if sheet not in (kinds := get_args(Sheet)):
+        raise wrong_argument("sheet", sheet, f"one of {', '.join(kinds)}{did_you_mean(str(sheet), kinds)}")
     engine.check(want)
     check_folder(out, engine.config.path)
     with warm_up(engine, want) as engine.compiler:

@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float64, Int64
 
 from ...data import TICK_COLUMNS, Record, TickFlag
+from ...data.arguments import named_fields
 from ...data.ticks import BEACON_SHIFT
 from ...errors import DeviceError, OutputError
 from ...files.paths import as_path
@@ -27,6 +28,7 @@ STOPPED = "stopped by the program"
 """Reason of a recording that another thread ended."""
 
 
+@named_fields
 @dataclass(frozen=True, eq=False)
 class Recording(Record):
     """A session tick by tick, in the workspace frame: rows of `TICK_COLUMNS`.

@@ -48,6 +48,21 @@ def test_misspelt_command_is_refused_with_a_suggestion(tmp_path: Path):
     assert "Did you mean 'plugins'" in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("words", "takes"),
+    [
+        (("preflight", "p.yaml", "--fix"), "preflight --fix OUT.yaml"),
+        (("legible", "--width-m"), "legible --width-m VALUE"),
+    ],
+)
+def test_option_with_nothing_after_it_gets_a_sentence_with_what_it_takes(
+    words: tuple[str, ...], takes: str, tmp_path: Path
+):
+    done = tangible(*words, cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr == f"{words[-1]}: has nothing after it; write what it takes, as `tangible {takes}`\n"
+
+
 def complete(words: str) -> list[str]:
     """Return what bash offers after these words."""
     variables = {

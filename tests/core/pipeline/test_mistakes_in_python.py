@@ -6,7 +6,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tangible_core import DisparityMap, HapticSurface, Pipeline, PlainTouch, Scene, Workspace, load_method
+from tangible_core import (
+    Calibration,
+    Camera,
+    DisparityMap,
+    HapticSurface,
+    Material,
+    Pipeline,
+    PlainTouch,
+    Relief,
+    Scene,
+    Workspace,
+    load_method,
+)
 from tangible_core.data import Force, HapticState, Views
 from tangible_core.errors import OptionError, TangibleError
 from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, Touch
@@ -39,6 +51,13 @@ def scene() -> Scene:
         (lambda: Scene.photo(GREY, non_finite="msk"), "Input should be 'error' or 'mask', not 'msk' (did you mean"),
         (lambda: Scene.of(phto=GREY), "scene.phto: unknown option (did you mean 'photo'?)"),
         (lambda: Pipeline(scene()).run("out", secnds=3), "Pipeline.run: secnds: unknown option (did you mean 'sec"),
+        (lambda: Pipeline(scene()).run("out", sheet="pgn"), "sheet: is the str 'pgn'; it must be one of png, svg, pdf"),
+        (lambda: Calibration(focal_px=1, basline_m=2), "Calibration: basline_m: unknown field (did you mean 'base"),
+        (lambda: Calibration(focal_px=1), "Calibration: baseline_m: is missing; its fields: focal_px, baseline_m"),
+        (lambda: Material("clay", stifness_n_per_m=1), "Material: stifness_n_per_m: unknown field (did you mean 'sti"),
+        (lambda: Relief(np.ones((2, 2), np.float32), (1, 1), 3), "Relief: is given 3 values; its fields: height_m, ex"),
+        (lambda: Calibration(1, focal_px=2, baseline_m=1), "Calibration: focal_px: is given twice; its fields: focal_"),
+        (lambda: Camera(matrx=np.eye(3)), "Camera: matrx: unknown field (did you mean 'matrix'?); its fields: matrix,"),
         (lambda: Pipeline(scene()).feel(secnds=3), "secnds: unknown option (did you mean 'seconds'?)"),
         (lambda: DisparityMap(np.float32([[1, np.inf]])), "disparity_px: 1 of 2 values is infinite; write NaN where"),
         (lambda: Views(np.int64([[1, 70_000]])), "left view: holds whole numbers from 1 to 70000"),

@@ -10,6 +10,7 @@ from urllib.parse import quote
 from tangible_core.files.json_lines import read_rows
 from tangible_core.files.paths import without_folders
 from tangible_core.files.writing import atomic_write, write_text
+from tangible_core.translation import language, localise
 
 from .extra import need
 from .job import Row
@@ -92,7 +93,7 @@ def _page(title: str, rows: Iterable[Row], pages: Iterable[Path], own: Path) -> 
     )
     figures = "\n".join(map(_figure, rows))
     return (
-        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+        f'<!doctype html>\n<html lang="{language()}"><head><meta charset="utf-8"><title>{escape(title)}</title>'
         f"<style>{STYLE}</style></head>\n<body><h1>{escape(title)}</h1><nav>{links}</nav>\n<main>{figures}</main>"
         "</body></html>\n"
     )
@@ -101,12 +102,13 @@ def _page(title: str, rows: Iterable[Row], pages: Iterable[Path], own: Path) -> 
 def _figure(row: Row) -> str:
     name, scene = escape(printable(row["id"])), escape(printable(without_folders(row.get("scene") or "")))
     folder, found = quote(printable(row["folder"])), escape(printable(_summary(row)))
+    shows = escape(localise(f"{printable(row['id'])}: the picture, and the {_product(row)} made of it"))
     image = ""
     if card := row.get("card"):
         sheet = next((file for file in row.get("files", ()) if file.startswith("sheet.")), card)
         image = (
             f'<a href="{folder}/{escape(sheet)}"><img loading="lazy" src="{folder}/{escape(card)}" title="{scene}" '
-            f'alt="{name}: the picture, and the {escape(_product(row))} made of it"></a>'
+            f'alt="{shows}"></a>'
         )
     caption = f'<a href="{folder}/">{name}</a>' if image else name
     caption += "".join(f' · <a href="{folder}/{quote(page)}">{escape(page)}</a>' for page in _pages(row))
@@ -128,7 +130,7 @@ def _product(row: Row) -> str:
 def _summary(row: Row) -> str:
     """Return a line on a scene: what was made, how wrong it is where that is known, and the warnings; or the error."""
     if row["outcome"] != "ok":
-        return row.get("error") or "failed"
+        return localise(row.get("error") or "failed")
     figures, parts = row.get("figures") or {}, [f"{_product(row)} made in {row['seconds']:.2g} s"]
     if (bad := (figures.get("disparity") or {}).get("bad2")) is not None:
         parts.append(f"{bad:.0f} % of the pixels are off by more than 2 px")
@@ -136,7 +138,8 @@ def _summary(row: Row) -> str:
         parts.append(f"{len(materials)} segments")
     if force := figures.get("force"):
         parts.append(f"felt with up to {force['peak_force_n']:.1f} N")
-    return "; ".join([*parts, *(f"warning: {each}" for each in row.get("notes", ()))])
+    warnings = (f"{localise('warning')}: {localise(each)}" for each in row.get("notes", ()))
+    return "; ".join([*map(localise, parts), *warnings])
 
 
 STYLE = (

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from command_line import tangible
+from english import english_of
 from farm_here import Here
 from full_disk import files_up_to
 from pictures import write_png
@@ -82,6 +83,17 @@ class TestScenes:
             assert f'alt="p{number}: the picture, and the relief made of it"' in found[0]
             assert f'<a href="scenes/p{number}/">p{number}</a>' in found[0]
             assert re.search(r"relief made in [\d.e-]+ s", found[0])
+
+    def test_gallery_is_in_the_language_of_the_terminal(self, archive: Path):
+        (archive / "p3.png").write_bytes(b"no")
+        done = self.run(archive.parent, "--lang", "de")
+        assert done.returncode == 1
+        page = (archive.parent / "out/mine-batch/gallery.html").read_text()
+        assert '<html lang="de">' in page
+        assert 'alt="p0: das Bild, und daraus berechnet: Relief"' in page
+        assert re.search(r"Relief in [\d,e-]+ s berechnet", page)
+        assert "ist kein Bild" in page, "the error of a picture too"
+        assert not english_of(re.sub(r"<style>.*?</style>|<[^>]*>", " ", page))
 
     def test_pictures_that_a_shell_expanded_are_taken(self, archive: Path):
         pictures = [f"archive/p{number}.png" for number in range(3)]

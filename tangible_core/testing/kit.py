@@ -118,7 +118,7 @@ def run_checks(kind: str, name: str, registry: Registry | None = None, **options
             log.debug("%s %s fails in %s", kind, name, check.__name__, exc_info=True)
             yield CheckResult(check.__name__, False, _describe(error), reason)
         else:
-            message = PASSES.format(check=check.__name__, reason=reason) if reason else _demand(check)
+            message = PASSES.format(check=check.__name__, reason=reason) if reason else demand(check)
             yield CheckResult(check.__name__, True, message, reason)
 
 
@@ -139,10 +139,10 @@ def _unknown(kind: str, reasons: Mapping[str, str]) -> str:
     return f"expected_failures: no {kind} check is named {unknown!r}{did_you_mean(unknown, names)}"
 
 
-def _demand(check: Check) -> str:
+def demand(check: Check) -> str:
     """Return the demand of a check: its docstring's first paragraph, without "Check that"."""
-    demand = " ".join((check.__doc__ or "").split("\n\n")[0].split()).removeprefix("Check that ")
-    return demand[:1].upper() + demand[1:]
+    said = " ".join((check.__doc__ or "").split("\n\n")[0].split()).removeprefix("Check that ")
+    return said[:1].upper() + said[1:]
 
 
 def _run(registry: Registry, check: Check, kind: str, name: str, options: dict[str, Any]) -> None:

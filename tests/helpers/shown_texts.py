@@ -41,7 +41,6 @@ NOT_SHOWN = (
     "tangible_core/translation",  # is in the language itself
     "tangible_core/parts/words",  # has its own words in each language
     "plugins/send/tangible_send/words.py",  # likewise
-    "tangible_core/testing",  # the conformance kit, for authors of methods
 )
 
 
@@ -75,7 +74,7 @@ def is_prose(template: str) -> bool:
 
 
 def described() -> Iterator[str]:
-    """Yield the descriptions and titles of options, and the help of commands."""
+    """Yield the demands of checks, the descriptions and titles of options, and the help of commands."""
     import typer
 
     from tangible_core.cli.app import app
@@ -84,7 +83,9 @@ def described() -> Iterator[str]:
     from tangible_core.pipeline.config.schema import json_schema, materials_schema
     from tangible_core.plugins import hooks
     from tangible_core.plugins.registry import default_registry
+    from tangible_core.testing import kit
 
+    yield from dict.fromkeys(kit.demand(check) for kind in kit.FAMILIES for check in kit.checks(kind))
     hooks.tell(default_registry().plugins, "tangible_commands", app=app)
     sources = {part for each in load_library().values() for part in re.split(r"; |\w+: ", each.source) if part}
     for source in sorted(sources):

@@ -8,6 +8,7 @@ from command_line import tangible
 from english import english_of
 from shown_texts import is_prose, literals
 from tangible_core.errors import UnknownMethod, did_you_mean
+from tangible_core.testing.kit import CheckResult, checks, demand
 from tangible_core.translation import language_of_environment, translate
 from tangible_core.translation.catalogue import Catalogue, parse
 from tangible_core.translation.numerals import Numerals
@@ -151,6 +152,17 @@ def test_mistakes_are_told_in_german(words: tuple[str, ...], tmp_path: Path) -> 
     assert done.returncode == 2
     assert not english_of(done.stderr)
     assert english_of(tangible(*words, cwd=tmp_path).stderr)
+
+
+def test_checks_of_a_method_are_told_in_german(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    wrong = "the wall is shifted by 5 px; the median error is 3.2 px"
+    found = [CheckResult(each.__name__, True, demand(each)) for each in checks("depth")]
+    found += [CheckResult("error", False, wrong)]
+    monkeypatch.setattr("tangible_core.testing.run_checks", lambda kind, name: found)
+    done = tangible("--lang", "de", "check", "depth", "luminance", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "die Wand ist um 5 px verschoben; der Median des Fehlers ist 3,2 px" in " ".join(done.stdout.split())
+    assert not english_of(done.stdout)
 
 
 def test_results_are_told_in_german_and_data_in_english(tmp_path: Path) -> None:

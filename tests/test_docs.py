@@ -35,6 +35,13 @@ def test_architecture_page_draws_the_floors_as_they_are():
     assert not [layers for layers in floors if "```text\n" + "\n".join(layers) + "\n```" not in page]
 
 
+def test_tasks_of_the_accessibility_page_have_the_tests_that_it_names():
+    page = ROOT.joinpath("docs/accessibility.md").read_text(encoding="utf-8")
+    named = re.findall(r"^\| An? .* \| `(tests/\S+\.py)::(test_\w+)` \|$", page, re.MULTILINE)
+    assert len(named) >= 10
+    assert not [(file, name) for file, name in named if f"def {name}(" not in (ROOT / file).read_text("utf-8")]
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_links_lead_somewhere(page):
     links = re.findall(r"\]\((?!https?:|#|mailto:)([^)#\s]+)", page.read_text(encoding="utf-8"))

@@ -36,7 +36,7 @@ const FRENCH = [
   "frame/", "frame/status_", "frame/task_", "start/", "palette/", "notices/", "panels/", "panels/open/", "panels/open/draft_",
   "panels/save/", "panels/found/", "panels/parts/", "panels/parts/editor/", "words/place_", "words/product_", "panels/export/",
   "panels/legibility/", "panels/verdicts/", "panels/description/", "panels/settings/", "speech/", "hand/", "panels/sound/",
-  "panels/materials/", "panels/signs/",
+  "panels/materials/", "panels/signs/", "panels/laws/", "panels/devices/",
 ];
 
 test("the main tasks are in French, and no French text is English", async () => {

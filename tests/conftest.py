@@ -4,14 +4,16 @@ import gc
 import os
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from importlib import metadata
 from itertools import count
 from pathlib import Path
+from typing import Any
 from unittest.mock import patch
 
 import jaxtyping
 import pytest
+from _pytest.doctest import DoctestModule
 from hypothesis import settings
 
 from checked_calls import check
@@ -54,8 +56,20 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     return 0 if config.args_source is pytest.Config.ArgsSource.ARGS else processors + processors // 2
 
 
+class DoctestsWhereThereAreSome:
+    """A plugin for all folders: a file without a prompt is not imported for its docstrings."""
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_collect_file(self, file_path: Path) -> Generator[None, list[Any], list[Any]]:
+        found = yield
+        if not any(isinstance(each, DoctestModule) for each in found) or ">>>" in file_path.read_text("utf-8"):
+            return found
+        return [each for each in found if not isinstance(each, DoctestModule)]
+
+
 def pytest_configure(config: pytest.Config) -> None:
     """Beside others, compile what they do not."""
+    config.pluginmanager.register(DoctestsWhereThereAreSome())
     if "PYTEST_XDIST_WORKER" in os.environ:
         from compiled_once import compile_once
 

@@ -3,16 +3,18 @@
 import io
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import lib3mf
 import numpy as np
-import trimesh
 from PIL import Image
 
 from tangible_core.data import Relief, Work
 from tangible_core.plugins.interfaces import Exporter
 from tangible_export import Glb, Stl, ThreeMF
+
+if TYPE_CHECKING:
+    import trimesh
 
 SEEN_STEP_MM = 0.3
 FORMATS: dict[str, type[Exporter]] = {"stl": Stl, "3mf": ThreeMF, "glb": Glb}
@@ -89,8 +91,10 @@ def _glb(path: Path) -> Mesh:
     return Mesh(vertices - np.array([*vertices.min(axis=0)[:2], 0]), np.asarray(mesh.faces))
 
 
-def read_glb(path: Path) -> trimesh.Trimesh:
+def read_glb(path: Path) -> "trimesh.Trimesh":
     """Return the one mesh of a GLB unchanged."""
+    import trimesh  # half a second, which not every worker needs
+
     scene = trimesh.load(io.BytesIO(path.read_bytes()), file_type="glb", process=False)
     (mesh,) = scene.geometry.values()
     return mesh

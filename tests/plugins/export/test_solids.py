@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import trimesh
 
 from needed import lacking
 from solids import (
@@ -159,6 +158,8 @@ def test_solid_picture_width_follows_longer_side(cls: type[Exporter], aspect: fl
 
 
 def test_print_keeps_cliffs_that_a_device_has_as_ramps(tmp_path: Path):
+    import trimesh
+
     cliff = np.repeat(np.float32([[2, 9]]), 60, axis=1).repeat(90, axis=0)
     Pipeline(Scene.pair(cliff, cliff, disparity=cliff), cached=False).export(tmp_path, [Stl()])
     (file,) = tmp_path.glob("*.stl")
@@ -408,6 +409,8 @@ class TestGlb:
 
 @EVERY
 def test_solid_is_a_volume_for_trimesh(tmp_path: Path, cls: type[Exporter]):
+    import trimesh
+
     mesh = trimesh.Trimesh(*write_and_read(cls(), work(rough(), 0.05, "Coffee"), tmp_path))
     assert mesh.is_watertight and mesh.is_winding_consistent and mesh.is_volume and mesh.euler_number == 2
 

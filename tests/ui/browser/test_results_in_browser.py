@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from zipfile import ZipFile
 
 import pytest
-import trimesh
 
 from browser_tabs import OpenPage
 from lasting_server import LastingServer
@@ -67,6 +66,8 @@ def text_of(page: "Page") -> str:
 
 class TestExport:
     def test_export_of_a_solid_and_a_zip_works_by_the_keyboard(self, show: Callable[..., "Page"]) -> None:
+        import trimesh
+
         page = show()
         panel = open_panel(page, "export")
         panel.get_by_label("3D print (STL)").press(" ")

@@ -9,7 +9,6 @@ from zipfile import ZipFile
 
 import numpy as np
 import pytest
-import trimesh
 from PIL import Image
 
 from sessions import TEXT, SmallSession, small_scene, striped_scene
@@ -52,6 +51,8 @@ def folders(small: SmallSession) -> list[Path]:
 
 class TestExport:
     def test_export_writes_the_document_on_the_screen_and_tells_every_tab(self, small: Any) -> None:
+        import trimesh
+
         async def check(small: SmallSession, ask: Ask) -> None:
             await ask("edit", text=TEXT.replace("relief_m: 0.004", "relief_m: 0.001"))  # and it is not saved
             found = await ask("export", exports=[STL])

@@ -1,5 +1,6 @@
 """The budget of the tests themselves: whose seconds are counted, and by room."""
 
+import os
 import subprocess
 import sys
 import time
@@ -53,3 +54,12 @@ def test_bounds_of_rooms_leave_time_for_the_others():
 def test_test_with_one_slow_case_is_slow():
     spent = {"tests/test_a.py::test_b[x]": 0.05, "tests/test_a.py::test_b[y]": 0.3, "tests/test_a.py::test_c": 0.05}
     assert tests.slow_tests(spent) == ["tests/test_a.py::test_b"]
+
+
+def test_kernels_kept_since_a_moment_are_counted(tmp_path: Path):
+    for name, at_s in (("before.nbc", 90.0), ("in/since.nbc", 100.0), ("in/since.nbi", 110.0)):
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.touch()
+        os.utime(path, (at_s, at_s))
+    assert tests.compiled_since(100.0, tmp_path) == 1

@@ -20,18 +20,20 @@ def is_in_use(error: OSError, path: Path) -> bool:
 
 
 if sys.platform == "win32":
+    import ctypes
     import msvcrt
 
     BINARY = os.O_BINARY
     """The flag that makes `os.open` open a file as binary."""
-    _PAST_END = 2**62
-    """The byte that is locked: others are denied to read a locked byte, and no file is so long."""
+    _PAST_END = 2**30
+    """The upper 32 bits of the byte that is locked: others may not read a locked byte, and no file is so long."""
 
     def lock(file: FileIO) -> None:
         """Lock an open file until it is closed or this process ends. Raises: OSError if another process holds it."""
-        file.seek(_PAST_END)
-        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        file.seek(0)
+        handle = ctypes.c_void_p(msvcrt.get_osfhandle(file.fileno()))
+        kernel = ctypes.WinDLL("kernel32", use_last_error=True)
+        if not kernel.LockFile(handle, 0, _PAST_END, 1, 0):
+            raise ctypes.WinError(ctypes.get_last_error())
 
     def take_lock(number: int) -> None:
         """Lock an open, empty file by its number. Raises: OSError if another process holds it."""

@@ -1,0 +1,162 @@
+"""Use the installed program as people do, in this folder, and write what came out as `tried.json`.
+
+Run it with the Python into which the wheel was installed, in an empty folder: `python tried.py CONFIGS [STEP...]`.
+Every command has a limit of time: one that hangs is written down, and the next one begins.
+"""
+
+import hashlib
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.request
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+LIMIT_S = float(os.environ.get("TRIED_LIMIT_S", "900"))
+CONFIGS = Path(sys.argv[1])
+COMMAND = [sys.executable, "-c", "from tangible_core.cli import main; main()"]
+
+
+def tangible(*words: str) -> str:
+    """Run a command of the program; return what it printed. Raises: AssertionError with the last line if it failed."""
+    done = subprocess.run(
+        [*COMMAND, *words], capture_output=True, timeout=LIMIT_S, stdin=subprocess.DEVNULL, check=False
+    )
+    said = done.stdout.decode("utf-8", "replace")
+    lines = done.stderr.decode("utf-8", "replace").strip().splitlines() or ["it printed nothing"]
+    assert done.returncode == 0, f"exit code {done.returncode}: {lines[-1]}"
+    return said
+
+
+def demo() -> str:
+    """Make the built-in example, with digests of its products for a comparison with other systems."""
+    tangible("demo", "--out", "demo", "--seconds", "2")
+    return "to the end"
+
+
+def run() -> str:
+    """Run the file that the demo wrote."""
+    tangible("run", "demo/config.yaml", "--out", "run")
+    return "to the end"
+
+
+def feel() -> str:
+    """Feel on the mock device; the rate of ticks is by the loop's own clock."""
+    words = "feel", "demo/config.yaml", "--seconds", "4", "--record", "felt.nc", "--json"
+    figures = json.loads(tangible(*words))["figures"]
+    rate_hz = (figures["ticks"] - 1) / figures["seconds"]
+    assert abs(rate_hz - 1000) < 20, f"{rate_hz:.1f} ticks a second"
+    return f"{rate_hz:.1f} ticks a second"
+
+
+def ui() -> str:
+    """Serve the page and fetch it."""
+    with subprocess.Popen([*COMMAND, "ui", "--no-browser"], stdout=subprocess.PIPE, stdin=subprocess.DEVNULL) as server:
+        ended = threading.Timer(LIMIT_S, server.kill)
+        ended.start()
+        try:
+            assert server.stdout is not None
+            words = next(each for each in iter(server.stdout.readline, b"") if b"http://" in each).decode().split()
+            page = urllib.request.urlopen(next(each for each in words if each.startswith("http://"))).read().decode()
+            assert "app.js" in page, "the page has no program"
+        finally:
+            server.kill()
+            ended.cancel()
+    return "page served"
+
+
+def compare() -> str:
+    """Compare two methods on one scene."""
+    Path("compare.yaml").write_text("compare: depth\nmethods: [ssd, opencv-sgbm]\nscenes: [synthetic/steps]\n", "utf-8")
+    tangible("compare", "compare.yaml", "--quick", "--out", "compared")
+    return "to the end"
+
+
+def export() -> str:
+    """Write what a printer and a reader take."""
+    tangible("export", "demo/config.yaml", "--to", "stl,heights,text", "--out", "exported")
+    return "to the end"
+
+
+def batch() -> str:
+    """Run two pictures through one file."""
+    import cv2
+    import numpy as np
+
+    y, x = np.mgrid[:120, :160]
+    for number in range(2):
+        cv2.imwrite(f"picture{number}.png", np.uint8(127 + 120 * np.sin(x / (9 + number)) * np.cos(y / 11)))
+    tangible("batch", str(CONFIGS / "relief.yaml"), "--over", "picture*.png", "--out", "batched", "--workers", "1")
+    return "to the end"
+
+
+def video() -> str:
+    """Read a film that OpenCV writes, and feel it."""
+    import cv2
+    import numpy as np
+
+    writer = cv2.VideoWriter("film.avi", cv2.VideoWriter.fourcc(*"MJPG"), 10, (160, 120))
+    for frame in range(20):
+        picture = np.zeros((120, 160, 3), np.uint8)
+        cv2.circle(picture, (40 + 4 * frame, 60), 30, (255, 255, 255), -1)
+        writer.write(picture)
+    writer.release()
+    words = "scene: {video: film.avi}\ndepth: luminance\nwant: touch\nrender: {use: proxy}\ndevice: {use: mock}\n"
+    Path("film.yaml").write_text(words, "utf-8")
+    tangible("feel", "film.yaml", "--seconds", "2")
+    return "to the end"
+
+
+STEPS: list[Callable[[], str]] = [demo, run, feel, export, ui, compare, batch, video]
+
+
+def digests() -> dict[str, str]:
+    """Return the digest of each array of the demo's products."""
+    import numpy as np
+
+    found: dict[str, str] = {}
+    for name in ("disparity", "segments", "surface"):
+        with np.load(Path("demo") / f"{name}.npz") as product:
+            for each in product.files:
+                if product[each].dtype.kind in "fiub":
+                    found[f"{name}.{each}"] = hashlib.sha256(product[each].tobytes()).hexdigest()[:16]
+    return found
+
+
+def main() -> None:
+    """Try every step, or those that are named."""
+    wanted = sys.argv[2:] or [each.__name__ for each in STEPS]
+    before = {each.name for each in Path(tempfile.gettempdir()).iterdir()}
+    result: dict[str, Any] = {
+        "system": f"{platform.system()} {platform.release()}, {platform.machine()}",
+        "python": platform.python_version(),
+        "date": time.strftime("%Y-%m-%d"),
+        "steps": {},
+    }
+    for step in STEPS:
+        if step.__name__ not in wanted:
+            continue
+        try:
+            result["steps"][step.__name__] = step()
+        except subprocess.TimeoutExpired:
+            result["steps"][step.__name__] = f"FAILED: took longer than {LIMIT_S:g} s and was ended"
+        except Exception as error:  # noqa: BLE001 - whatever fails is a result
+            result["steps"][step.__name__] = f"FAILED: {type(error).__name__}: {error}"
+        sys.stdout.write(f"{step.__name__}: {result['steps'][step.__name__]}\n")
+        sys.stdout.flush()
+        Path("tried.json").write_text(json.dumps(result, indent=1), "utf-8")
+    left = {each.name for each in Path(tempfile.gettempdir()).iterdir()} - before
+    result["left"] = sorted(each for each in left if each.startswith("tangible"))
+    if Path("demo/surface.npz").exists():
+        result["digests"] = digests()
+    Path("tried.json").write_text(json.dumps(result, indent=1), "utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -81,6 +81,9 @@ def test_dprime_of_two_intervals_is_that_of_the_tables(share: float, dprime: flo
 def test_dprime_at_the_ends():
     assert sensitivity.oddity(1.0) == np.inf
     assert sensitivity.oddity(0.2) == 0.0
+    for near in np.linspace(-1e-13, 1e-13, 9).tolist():  # means of shares, such as (0.25 + 0.25 + 0.5) / 3
+        assert sensitivity.oddity(1 / 3 + near) == pytest.approx(0.0, abs=1e-3)
+        assert sensitivity.naming(0.2 + near, 5) == pytest.approx(0.0, abs=1e-3)
     assert sensitivity.naming(0.1, 5) == 0.0
 
 

@@ -37,7 +37,7 @@ def oddity(proportion: float) -> float:
     >>> [round(oddity(each), 2) for each in (0.3, 0.5, 0.8)]
     [0.0, 1.47, 3.13]
     """
-    return _inverse(oddity_correct, proportion, 1 / 3)
+    return _inverse(oddity_correct, proportion)
 
 
 def naming(proportion: float, choices: int) -> float:
@@ -46,7 +46,7 @@ def naming(proportion: float, choices: int) -> float:
     >>> [round(naming(each, 4), 2) for each in (0.25, 0.6)]
     [0.0, 1.15]
     """
-    return _inverse(lambda dprime: naming_correct(dprime, choices), proportion, 1 / choices)
+    return _inverse(lambda dprime: naming_correct(dprime, choices), proportion)
 
 
 @cache
@@ -62,8 +62,8 @@ def naming_correct(dprime: float, choices: int) -> float:
     return float(_WEIGHTS @ stats.norm.cdf(_NODES + dprime) ** (choices - 1))
 
 
-def _inverse(correct: Callable[[float], float], proportion: float, chance: float) -> float:
-    if proportion <= chance:
+def _inverse(correct: Callable[[float], float], proportion: float) -> float:
+    if proportion <= correct(0.0):  # chance, with the error of the integral
         return 0.0
     if proportion >= correct(LARGEST):
         return inf

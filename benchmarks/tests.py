@@ -41,7 +41,7 @@ SLOW_S = 0.1
 def section() -> str:
     """Return the section of RESULTS.md, as Markdown."""
     head = (
-        "README's second command without the installation; what is kept of the kernels that numba compiled before is used. "
+        "README's second command without the installation; kernels that numba compiled before and kept are used. "
         "A room that grows past its processor seconds pays: its tests get quicker, or another room gives up as many."
     )
     whole: dict[str, float] = {}

@@ -8,6 +8,8 @@ const STEP_M = LEAP_M / 20;
 const MOST_TICKS = 200;
 /** Times between two positions that give a velocity, seconds. */
 const BETWEEN_S = { least: 0.001, most: 0.1 };
+/** Time after which a hand that left is reported once more, ms: the narration waits for it to come back. */
+const LEFT_MS = 1100;
 const KEPT_TAGS = 512;
 const NOWHERE: Vec = [0, 0, 2 * NOBODY_M];
 const NONE: Vec = [0, 0, 0];
@@ -17,6 +19,7 @@ export class LocalServer {
   latest: State | null = null;
   readonly sentMs = new Map<number, number>();
   private seq = 0;
+  private leaving = 0;
   private last: { hand: Vec; ms: number } | null = null;
 
   constructor(
@@ -41,7 +44,10 @@ export class LocalServer {
   release(): void {
     this.law.release();
     this.last = null;
-    this.tell(NOWHERE, NONE, NONE, NO_PROXY, 0);
+    const gone = (): void => this.tell(NOWHERE, NONE, NONE, NO_PROXY, 0);
+    gone();
+    clearTimeout(this.leaving);
+    this.leaving = window.setTimeout(() => this.last ?? gone(), LEFT_MS);
   }
 
   stop(): Promise<void> {

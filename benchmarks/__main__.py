@@ -33,6 +33,7 @@ SECTIONS = {
     "record": "Recordings",
     "devices": "Devices",
     "ui": "The page",
+    "page_to_send": "The page to send",
     "by_ear": "By ear",
     "study": "Studies with people",
     "tests": "The test run",

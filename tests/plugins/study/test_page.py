@@ -11,10 +11,10 @@ import pytest
 
 from studies import write_study
 from tangible_core.translation import translate
-from tangible_study.session.desk import Left
-from tangible_study.session.page import Page
+from tangible_study.desks.desk import Left
+from tangible_study.desks.page import Page
+from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.session.start import begin
-from tangible_study.session.stimuli import Stimuli
 from tangible_study.study_file import parse_study
 from tangible_study.trials import read_answers
 

@@ -13,10 +13,10 @@ from studies import PIPELINE, STUDY, Scripted, first_key, leave_after, sit_down,
 from tangible_core.errors import ConfigError, OutputError
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.session import Recording, Writer
-from tangible_study.session.desk import Left
+from tangible_study.desks.desk import Left
+from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.session.folder import participants
 from tangible_study.session.start import begin
-from tangible_study.session.stimuli import Stimuli
 from tangible_study.study_file import parse_study
 from tangible_study.trials import AnswerFile, read_answers
 

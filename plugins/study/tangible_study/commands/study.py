@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from contextlib import ExitStack
 
     from ..design import Study
-    from ..session.desk import Desk
-    from ..session.stimuli import Stimuli
+    from ..desks.desk import Desk
+    from ..presenting.stimuli import Stimuli
 
 app = typer.Typer(name="study", rich_markup_mode=None, add_completion=False, no_args_is_help=True)
 StudyPath = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (YAML).", show_default=False)]
@@ -80,9 +80,9 @@ def run(
 
     from tangible_core.cli import show
 
-    from ..session.desk import Left
+    from ..desks.desk import Left
+    from ..presenting.stimuli import folder_of
     from ..session.start import begin
-    from ..session.stimuli import folder_of
 
     stimuli = _open(file, device, sets)
     root = out or folder_of(file)
@@ -104,7 +104,7 @@ def run(
 def _terminal(design: Study) -> Desk:
     from tangible_core.translation import translate
 
-    from ..session.desk import Terminal
+    from ..desks.desk import Terminal
 
     return Terminal(sys.stdin, _print, lambda text: translate(text, design.language))
 
@@ -116,7 +116,7 @@ def _open_page(design: Study, stack: ExitStack) -> Desk:
     from tangible_core.cli import show
     from tangible_core.translation import translate
 
-    from ..session.page import Page
+    from ..desks.page import Page
 
     served = stack.enter_context(Page(design.language, lambda text: translate(text, design.language)))
     show.note(f"the page of the participant: {served.address}")
@@ -125,8 +125,8 @@ def _open_page(design: Study, stack: ExitStack) -> Desk:
 
 
 def _open(file: Path, device: str | None, sets: list[str] | None) -> Stimuli:
+    from ..presenting.stimuli import Stimuli
     from ..session.start import device_changes
-    from ..session.stimuli import Stimuli
     from ..study_file import load_study
 
     return Stimuli(load_study(file), device_changes(device, sets or []))

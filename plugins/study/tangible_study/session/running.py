@@ -10,14 +10,14 @@ from tangible_core.errors import DeviceError, OutputError
 from tangible_core.files.writing import write_text
 from tangible_core.session import Writer
 
+from ..desks.desk import Desk
+from ..presenting.presenter import Presenter
+from ..presenting.rendering import Rendering
+from ..presenting.stimuli import Stimuli
 from ..procedures.procedure import Stimulus, Trial, score
 from ..trials import Answer, AnswerFile, read_answers
 from . import folder
-from .desk import Desk
 from .order import StudyCourse, replay
-from .presenting import Presenter
-from .rendering import Rendering
-from .stimuli import Stimuli
 from .words import EQUAL, MORE, choices, question, response, right_answer
 
 CONSENT = "Do you agree?"

@@ -5,12 +5,12 @@ from pathlib import Path
 
 from tangible_core.errors import ConfigError, quoted
 
+from ..desks.desk import Desk
+from ..presenting.presenter import Presenter
+from ..presenting.stimuli import Stimuli
 from ..study_file import StudyFile
 from . import folder
-from .desk import Desk
-from .presenting import Presenter
 from .running import Session
-from .stimuli import Stimuli
 
 CHOOSES_DEVICE = ("device.", "mapping.")
 """Keys of a pipeline that may be set for a session: they belong to the place and not to the design."""

@@ -39,7 +39,7 @@ class Page(Desk):
         self._answer: str | None = None
         self._fetched = 0
         self._token = secrets.token_urlsafe(16)
-        html = files("tangible_study.session").joinpath("page.html").read_text(encoding="utf-8")
+        html = files("tangible_study.desks").joinpath("page.html").read_text(encoding="utf-8")
         self.html = html.replace("LANGUAGE", language)
         self._server = ThreadingHTTPServer((HOST, 0), _handler(self, self._token))
         self._server.daemon_threads = True

@@ -1,0 +1,1 @@
+"""The places at which a participant answers: a terminal, and a page in the browser."""

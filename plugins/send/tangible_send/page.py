@@ -15,7 +15,7 @@ from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import note
 from tangible_ui.address import static
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 MOST_BYTES = 2_000_000
 """The size of a whole file that mail programs and phones take without a question, bytes."""

@@ -8,7 +8,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any, Literal
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 GROUP = "tangible.page"
 
 

@@ -67,7 +67,7 @@ def read(path: Path) -> RecordingContents:
         raise OutputError(f"{path}: cannot be read: {error.strerror or error}") from error
     except ImportError:  # a package is missing, which is not the file's fault
         raise
-    except Exception as error:  # a damaged file can provoke any other
+    except Exception as error:  # a damaged file can provoke any
         why = shown(str(error), 200)
         raise OutputError(f"{path}: is not a recording, or a damaged one ({why}); record it again") from error
     return contents

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..desks.desk import Desk
     from ..presenting.stimuli import Stimuli
 
-app = typer.Typer(name="study", rich_markup_mode=None, add_completion=False, no_args_is_help=True)
+app: typer.Typer = typer.Typer(name="study", rich_markup_mode=None, add_completion=False, no_args_is_help=True)
 StudyPath = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (YAML).", show_default=False)]
 Device = Annotated[str | None, typer.Option(help="Device of all conditions [default: that of their pipelines].")]
 DeviceSets = Annotated[

@@ -1,9 +1,9 @@
 """The keys of a study file: what varies, the questions, the procedures, and what a participant hears."""
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from tangible_core.data.quantities import Quantities
 from tangible_core.scene.workspace import Section
@@ -88,7 +88,7 @@ class Limits(Section):
 class Study(Quantities):
     """A study file after all checks."""
 
-    model_config = Section.model_config
+    model_config: ClassVar[ConfigDict] = Section.model_config
 
     study: Annotated[str, Field(pattern=r"^[A-Za-z0-9]+$", max_length=40)]
     """Name of the study in the names of its files: letters and digits."""

@@ -40,7 +40,7 @@ class Page(Desk):
         self._fetched = 0
         self._token = secrets.token_urlsafe(16)
         html = files("tangible_study.desks").joinpath("page.html").read_text(encoding="utf-8")
-        self.html = html.replace("LANGUAGE", language)
+        self.html: str = html.replace("LANGUAGE", language)
         self._server = ThreadingHTTPServer((HOST, 0), _handler(self, self._token))
         self._server.daemon_threads = True
         self._thread = Thread(target=self._server.serve_forever, daemon=True)

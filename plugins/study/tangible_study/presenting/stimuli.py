@@ -57,7 +57,7 @@ class Stimuli:
                 f"{file.path}: its pipelines have different devices, {' and '.join(sorted(devices))}, which would tell "
                 "conditions apart; choose one with --device"
             )
-        self.device = next(iter(devices))
+        self.device: str = next(iter(devices))
 
     def __len__(self) -> int:
         return len(self._pipelines)

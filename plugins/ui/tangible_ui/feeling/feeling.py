@@ -94,9 +94,9 @@ class Feeling:
     def __init__(self, channel: str) -> None:
         """channel: of the page's own pointer device."""
         self.channel = channel
-        self.hand = Hand(channel)
+        self.hand: Hand = Hand(channel)
         self.felt: LoopInput | None = None
-        self.stopped = False
+        self.stopped: bool = False
         """True after a stop: no loop starts until `allow`."""
         self._stops = 0
         self._servo: Servo | None = None

@@ -56,7 +56,7 @@ class Exchange(H11Protocol):
     def connection_made(self, transport: Any) -> None:
         """Note the stranger, and wait for a request."""
         super().connection_made(transport)
-        self.app_state = {**self.app_state, "show_key": partial(self._strangers.remove, transport)}
+        self.app_state: dict[str, Any] = {**self.app_state, "show_key": partial(self._strangers.remove, transport)}
         self._strangers.add(transport)
         self._limit_head()
 

@@ -28,7 +28,7 @@ from ..state.session import Session
 from .connection import PING_S, Connection, Exchange, Strangers
 from .routes import application
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 MOST_MESSAGE_BYTES = 2**20
 """Size limit of a message, bytes; pipeline files are smaller."""
 THREADS = 32

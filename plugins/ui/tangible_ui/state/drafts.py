@@ -14,7 +14,7 @@ from tangible_core.files.writing import write_text
 from ..stale_files import left_in
 from .texts import Text
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 MOST_LEFT = 10
 """Number of drafts that are kept; older ones are removed."""
 

@@ -11,12 +11,12 @@ class LongJobs:
     """Numbers of long jobs: a newer one replaces those before it."""
 
     def __init__(self) -> None:
-        self.newest = 0
+        self.newest: int = 0
         self.running: set[int] = set()
         """Numbers of the jobs that somebody waits for."""
-        self.apply_after = False
+        self.apply_after: bool = False
         """True if edits came during the running job: when it ends, apply them unless something slow has to run."""
-        self.killed = False
+        self.killed: bool = False
         """True if the worker was killed for an earlier job: if the newest job died with it, it is requested again."""
 
     def begin(self) -> int:

@@ -45,28 +45,31 @@ class Session:
     """The state of one program; used in the event loop's thread alone."""
 
     def __init__(self, folder: Path, feeling: Feeling, sets: Iterable[str]) -> None:
-        self.folder, self.feeling = folder, feeling
-        self.sets = list(sets)
+        self.folder = folder
+        self.feeling = feeling
+        self.sets: list[str] = list(sets)
         """Changes from the command line, which override the file."""
-        self.text, self.path = "", Path.cwd() / "untitled.yaml"
+        self.text: str = ""
+        self.path: Path = Path.cwd() / "untitled.yaml"
         """The document: the text of a pipeline file, and its path."""
         self.digest = ""
         """Digest of the text, as events name it."""
         self.waits_for_file = False
         """True if the program was started without a file: until one is opened, pages begin with a choice."""
-        self.texts = Texts()
-        self.long_jobs = LongJobs()
-        self.strokes = LatestWins()
+        self.texts: Texts = Texts()
+        self.long_jobs: LongJobs = LongJobs()
+        self.strokes: LatestWins = LatestWins()
         """Requests for a part under a stroke."""
-        self.heights, self.drawn = LatestWins(), LatestWins(DRAWN_PAUSE_S)
+        self.heights: LatestWins = LatestWins()
+        self.drawn: LatestWins = LatestWins(DRAWN_PAUSE_S)
         """Requests for other heights of parts: to feel them, and to draw them."""
-        self.choice = Choice()
+        self.choice: Choice = Choice()
         """The chosen device."""
-        self.drafts = Drafts(user_folder("unsaved"))
-        self.uploads = UploadStore(user_folder("opened"), folder / "incoming")
+        self.drafts: Drafts = Drafts(user_folder("unsaved"))
+        self.uploads: UploadStore = UploadStore(user_folder("opened"), folder / "incoming")
         self.recorder: Recorder | None = None
         """The last recording, or the running one."""
-        self.laws = Laws(ComparisonLoop(f"{feeling.channel}-beside"))
+        self.laws: Laws = Laws(ComparisonLoop(f"{feeling.channel}-beside"))
         self.scene: dict[str, Any] | None = None
         self.panel_folders: dict[str, Path] = {}
         """Folders of the ES modules of plugins' panels, by name of the panel."""
@@ -77,8 +80,8 @@ class Session:
         """The latest event of each kind in `LATEST_ONLY`."""
         self._history: deque[dict[str, Any]] = deque(maxlen=MOST_HISTORY)
         self._logged: deque[dict[str, Any]] = deque(maxlen=MOST_LOGGED)
-        self.worker = Worker(folder, self._hear)
-        self.began_s = time.time()
+        self.worker: Worker = Worker(folder, self._hear)
+        self.began_s: float = time.time()
         self._tasks: set[asyncio.Task[Any]] = set()
 
     def felt_sets(self) -> list[str]:

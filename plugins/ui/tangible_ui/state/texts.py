@@ -21,7 +21,7 @@ class Texts:
     """Texts to undo and to redo."""
 
     def __init__(self) -> None:
-        self.lock = Lock()
+        self.lock: Lock = Lock()
         """Lock for reading the document, computing another text of it, and replacing it."""
         self._before: deque[Text] = deque(maxlen=MOST_STEPS)
         self._after: list[Text] = []

@@ -48,7 +48,7 @@ class Work:
 
     def __init__(self, pipeline: Pipeline) -> None:
         self.pipeline = pipeline
-        self.stop = Event()
+        self.stop: Event = Event()
         self.worth = False
         """True if there is something to show, even if the rest fails."""
         self._product = ""
@@ -80,7 +80,8 @@ class WorkerState:
 
     def __init__(self, folder: Path, tell: Tell, cache: Cache | None = None) -> None:
         """cache: of results; the user's own by default."""
-        self.folder, self.tell = folder, tell
+        self.folder = folder
+        self.tell = tell
         self.registry: Registry = default_registry()
         self.pipeline: Pipeline | None = None
         self.shown = ""

@@ -24,7 +24,7 @@ from tangible_core.scene.scene_files import BUILTINS, SceneFiles, builtin_files
 from .label_files import NAME, is_ours
 from .opening import Opened
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 MOST_EDITED = 200
 """Maximum number of keys that are changed one by one, each in its place; beyond it the whole block is rewritten."""
 SAID = ("name", "height_m", "material")

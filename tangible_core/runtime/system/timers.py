@@ -6,9 +6,10 @@ The clock is the monotonic one of the system with the finest steps, the same in 
 import ctypes
 import sys
 import time
+from collections.abc import Callable
 from typing import Any, Literal, NamedTuple
 
-now_ns = time.perf_counter_ns
+now_ns: Callable[[], int] = time.perf_counter_ns
 """The clock: nanoseconds from some start that all processes share."""
 Kind = Literal["posix", "mach", "windows", ""]
 

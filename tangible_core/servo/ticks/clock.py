@@ -9,9 +9,9 @@ Where compiled code cannot sleep, a loop calls Python to sleep.
 from typing import Any, final
 
 import numpy as np
-from numba import int32, int64, njit, types, uint32, uint64, uintp
+from numba import int32, int64, types, uint32, uint64, uintp
 
-from ...compiled.compiling import KERNEL
+from ...compiled.compiling import KERNEL, njit
 from ...runtime.system import timers
 
 MONOTONIC, ABSOLUTE = 1, 1
@@ -40,7 +40,7 @@ class _ForeignFunction(types.WrapperAddressProtocol):
         return self._address
 
 
-SIGNATURES = {
+SIGNATURES: dict[str, Any] = {
     "posix": (int32(int32, uintp), int32(int32, int32, uintp, uintp)),
     "mach": (uint64(), int32(uint64)),
     "windows": (int32(uintp), int32(uintp, uintp, int32, uintp, uintp, int32), uint32(uintp, uint32)),

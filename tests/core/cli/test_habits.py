@@ -34,7 +34,7 @@ def folder(tmp_path: Path) -> Path:
 def test_version_option_prints_the_version(tmp_path: Path):
     done = tangible("--version", cwd=tmp_path)
     assert done.returncode == 0
-    assert re.fullmatch(r"tangible \d+\.\d+\.\d+\n", done.stdout)
+    assert re.fullmatch(r"tangible \d+\.\d+\.\d+(\.dev\d+)?\n", done.stdout)
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from functools import cache
 from math import inf, sqrt
 
+import numpy as np
 from numpy.polynomial.hermite_e import hermegauss
 from numpy.polynomial.legendre import leggauss
 from scipy import optimize, stats
@@ -53,13 +54,14 @@ def naming(proportion: float, choices: int) -> float:
 def oddity_correct(dprime: float) -> float:
     """Return the proportion correct of an observer who names the odd one of three."""
     shift = dprime * sqrt(2 / 3)
-    return float(_HALF_WEIGHTS @ (stats.norm.cdf(shift - sqrt(3) * _HALF) + stats.norm.cdf(-shift - sqrt(3) * _HALF)))
+    shares = stats.norm.cdf(shift - sqrt(3) * _HALF) + stats.norm.cdf(-shift - sqrt(3) * _HALF)
+    return float(np.einsum("i,i", _HALF_WEIGHTS, shares))
 
 
 @cache
 def naming_correct(dprime: float, choices: int) -> float:
     """Return the proportion correct of an observer who names the one of n choices with the most evidence."""
-    return float(_WEIGHTS @ stats.norm.cdf(_NODES + dprime) ** (choices - 1))
+    return float(np.einsum("i,i", _WEIGHTS, stats.norm.cdf(_NODES + dprime) ** (choices - 1)))
 
 
 def _inverse(correct: Callable[[float], float], proportion: float) -> float:

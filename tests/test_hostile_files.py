@@ -97,7 +97,8 @@ def test_hostile_maps_and_pictures_are_refused(refused, folder: Path):
         words = ("plan", "p.yaml", "--set", f"scene.height={name}")
         assert said in refused(*words)
     assert "1424 MB" in refused("run", "p.yaml", "--set", "scene={photo: a.npz}")
-    assert "89 mega" in refused("run", "p.yaml", "--set", "scene={photo: b.tif}")
+    tiff(folder / "e.tif", 3 * SIDE, 3 * SIDE)  # a photograph is reduced up to ten times as many pixels
+    assert "89 mega" in refused("run", "p.yaml", "--set", "scene={photo: e.tif}")
 
 
 def test_hostile_recordings_are_refused(refused, folder: Path):

@@ -150,7 +150,7 @@ class TestSeen:
         page.get_by_label("3D-Druck (3MF)").check()
         page.locator("#export-run").click()
         page.wait_for_selector("#export .outcome")
-        page.locator("#legible").get_by_label("Breite, mm").fill("30")
+        page.locator("#legible select").select_option("print")
         page.locator("#legible-check").click()
         page.wait_for_selector("#legible .sentence")
         show_everything(page)

@@ -1,4 +1,4 @@
-"""Standard input of a helper process, moved to where no library looks at it."""
+"""Standard input: of a helper process, moved to where no library looks at it; of a terminal, what waits to be read."""
 
 import os
 import sys
@@ -29,7 +29,17 @@ if sys.platform == "win32":
         """Tell Windows too: libraries with a C library of their own ask it, not ours."""
         ctypes.WinDLL("kernel32").SetStdHandle(-10, ctypes.c_void_p(msvcrt.get_osfhandle(IN)))
 
+    def forget_typed(keys: IO[str]) -> None:
+        """Forget what was typed at this terminal and not read yet."""
+        while msvcrt.kbhit():
+            msvcrt.getwch()
+
 else:
+    import termios
+
+    def forget_typed(keys: IO[str]) -> None:
+        """Forget what was typed at this terminal and not read yet."""
+        termios.tcflush(keys, termios.TCIFLUSH)
 
     def _name_for_libraries() -> None:
         """Do nothing: file 0 is standard input for every library."""

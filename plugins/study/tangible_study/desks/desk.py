@@ -5,6 +5,8 @@ from collections.abc import Callable, Mapping
 from threading import Event
 from typing import IO, final
 
+from tangible_core.runtime.system.streams import forget_typed
+
 LEAVE = "q"
 """Key that leaves the study; it goes on later with --resume."""
 
@@ -56,7 +58,8 @@ class Terminal(Desk):
         keys = [f"{key} = {self._translate(meaning)}" if meaning else key for key, meaning in choices.items() if key]
         listed = f" ({', '.join(keys)})" if keys else ""
         self._write(f"{self._translate(text)}{listed}")
-        _forget_typed(self._keys)
+        if self._keys.isatty():
+            forget_typed(self._keys)
         while True:
             line = self._keys.readline()
             key = line.strip().casefold()
@@ -66,13 +69,3 @@ class Terminal(Desk):
                 return key
             self.say("That key has no meaning here.")
             self._write(f"{self._translate(text)}{listed}")
-
-
-def _forget_typed(keys: IO[str]) -> None:
-    """Forget what was typed at a terminal before a question."""
-    if keys.isatty():
-        try:
-            from termios import TCIFLUSH, tcflush
-        except ImportError:  # Windows
-            return
-        tcflush(keys, TCIFLUSH)

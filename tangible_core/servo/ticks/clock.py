@@ -133,6 +133,8 @@ def windows_wait_ns(clock, deadline_ns, lead_ns):
     return at_ns
 
 
+now_ns: Any
+wait_ns: Any
 now_ns, wait_ns = {
     "posix": (posix_now_ns, posix_wait_ns),
     "mach": (mach_now_ns, mach_wait_ns),

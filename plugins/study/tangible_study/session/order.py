@@ -8,7 +8,7 @@ import numpy as np
 
 from tangible_core.errors import ResultsError
 
-from ..procedures.procedure import Course, Trial
+from ..procedures.procedure import Course, Trial, score
 from ..study_file import StudyFile
 from ..trials import Answer
 
@@ -105,3 +105,25 @@ def replay(course: Course, answers: Iterable[Answer]) -> int:
 def _same(trial: Trial, answer: Answer) -> bool:
     fields: Sequence[str] = ("phase", "comparison", "condition", "other", "level", "standard", "position", "target")
     return all(getattr(trial, each) == getattr(answer, each) for each in fields)
+
+
+def answer_of(trial: Trial, number: int, response: str, seconds: float) -> Answer:
+    """Return the line of the table for a response to a trial. number: of the trial, from 1."""
+    chosen, correct = score(trial, response)
+    return Answer(
+        number,
+        trial.phase,
+        trial.comparison,
+        trial.question,
+        trial.procedure,
+        trial.condition,
+        trial.other,
+        trial.level,
+        trial.standard,
+        trial.position,
+        response,
+        chosen,
+        correct,
+        round(seconds, 4),
+        target=trial.target,
+    )

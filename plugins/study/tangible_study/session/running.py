@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tangible_core.errors import DeviceError, OutputError
@@ -14,10 +14,10 @@ from ..desks.desk import Desk
 from ..presenting.presenter import Presenter
 from ..presenting.rendering import Rendering
 from ..presenting.stimuli import Stimuli
-from ..procedures.procedure import Stimulus, Trial, score
+from ..procedures.procedure import Stimulus, Trial
 from ..trials import Answer, AnswerFile, read_answers
 from . import folder
-from .order import StudyCourse, replay
+from .order import StudyCourse, answer_of, replay
 from .words import EQUAL, MORE, choices, question, response, right_answer
 
 CONSENT = "Do you agree?"
@@ -117,27 +117,13 @@ class Session:
                 self.desk.ask("Press Enter to repeat the trial.", GO_ON)
                 continue
             self.lateness_s += rendering.late_s
-            why, (chosen, correct) = rendering.why_not(self.stimuli.file.study.limits), score(trial, key)
-            return Answer(
-                number,
-                trial.phase,
-                trial.comparison,
-                trial.question,
-                trial.procedure,
-                trial.condition,
-                trial.other,
-                trial.level,
-                trial.standard,
-                trial.position,
-                key,
-                chosen,
-                correct,
-                round(seconds, 4),
-                repeat,
-                why is None,
-                why,
-                path.relative_to(self.place.root).as_posix(),
-                trial.target,
+            why = rendering.why_not(self.stimuli.file.study.limits)
+            return replace(
+                answer_of(trial, number, key, seconds),
+                repeat=repeat,
+                rendered=why is None,
+                why=why,
+                recording=path.relative_to(self.place.root).as_posix(),
             )
 
     def _present_and_ask(self, trial: Trial, writer: Writer) -> tuple[str, Rendering, float]:

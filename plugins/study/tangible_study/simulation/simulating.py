@@ -5,8 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..analysis.results_folder import Kept
-from ..procedures.procedure import Trial, score
-from ..session.order import StudyCourse
+from ..session.order import StudyCourse, answer_of
 from ..study_file import StudyFile
 from ..trials import Answer
 from .observer import Observer
@@ -26,28 +25,6 @@ def simulate(file: StudyFile, observer: Observer, number: int, seed: int) -> lis
         answers.append(answer_of(trial, len(answers) + 1, response, seconds))
         course.take(trial, response)
     return answers
-
-
-def answer_of(trial: Trial, number: int, response: str, seconds: float) -> Answer:
-    """Return the line of the table for a response to a trial. number: of the trial, from 1."""
-    chosen, correct = score(trial, response)
-    return Answer(
-        number,
-        trial.phase,
-        trial.comparison,
-        trial.question,
-        trial.procedure,
-        trial.condition,
-        trial.other,
-        trial.level,
-        trial.standard,
-        trial.position,
-        response,
-        chosen,
-        correct,
-        round(seconds, 4),
-        target=trial.target,
-    )
 
 
 def names_of(participants: int) -> list[str]:

@@ -7,6 +7,7 @@ from functools import cache, wraps
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from weakref import WeakSet
 
 import typer
 from typer.core import TyperGroup
@@ -52,6 +53,10 @@ def add(name: str, place: str, summary: str) -> None:
     place: `package.module:name` of its function, or of its group of commands. summary: the first line of its help.
     """
     COMMANDS.setdefault(name, Command(place, summary))
+
+
+_prepared: WeakSet[Callable[..., Any]] = WeakSet()
+"""The functions of commands that `prepare` has wrapped."""
 
 
 class LazyGroup(TyperGroup):
@@ -103,24 +108,34 @@ def load(name: str) -> Any:
     app = command if isinstance(command, typer.Typer) else typer.Typer(rich_markup_mode=None, add_completion=False)
     if app is not command:
         app.command(name)(command)
-    for each in _all_commands(app):
-        each.callback = each.callback and standard_output.protect()(_expand_homes(each.callback))
+    prepare(app)
     return typer.main.get_command(app)
 
 
-def _expand_homes(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Wrap a command so that `~` is a home folder also where a shell leaves it, as in --out=~/maps."""
+def prepare(app: typer.Typer) -> None:
+    """Give every command of a group what all have: paths that are checked, and a standard output of its own."""
+    for each in _all_commands(app):
+        if each.callback and each.callback not in _prepared:
+            each.callback = standard_output.protect()(_check_paths(each.callback))
+            _prepared.add(each.callback)
+
+
+def _check_paths(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Wrap a command so that `~` is a home folder also where a shell leaves it, as in --out=~/maps.
+
+    A name that no file can have is refused. Raises: as `as_path`.
+    """
 
     @wraps(command)
     def run(**options: Any) -> Any:
-        return command(**{name: _expand_home(value) for name, value in options.items()})
+        return command(**{name: _as_paths(value) for name, value in options.items()})
 
     return run
 
 
-def _expand_home(value: Any) -> Any:
+def _as_paths(value: Any) -> Any:
     if isinstance(value, list):
-        return [_expand_home(each) for each in cast("list[Any]", value)]
+        return [_as_paths(each) for each in cast("list[Any]", value)]
     return as_path(value) if isinstance(value, Path) else value
 
 

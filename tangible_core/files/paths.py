@@ -9,6 +9,9 @@ from ..errors import ConfigError, quoted, wrong_argument
 MOST_NAME_BYTES = 255
 """The most bytes of a file's name; every common file system allows as many and no more."""
 
+MOST_PATH_BYTES = 4095
+"""The most bytes of a path on Linux; other systems allow fewer, and then their own message is shown."""
+
 
 def as_path(value: object, name: str = "path") -> Path:
     """Return a value as a path; a leading `~` or `~user` becomes that user's home folder.
@@ -46,3 +49,5 @@ def _check_name(path: Path) -> None:
         raise ConfigError(f"{quoted(str(path))}: no file can have this name; use letters, digits and other characters")
     if max(sizes, default=0) > MOST_NAME_BYTES:
         raise ConfigError(f"{quoted(str(path))}: a file's name has at most {MOST_NAME_BYTES} bytes; use a shorter one")
+    if len(fsencode(path)) > MOST_PATH_BYTES:
+        raise ConfigError(f"{quoted(str(path))}: a path has at most {MOST_PATH_BYTES} bytes; use fewer folders")

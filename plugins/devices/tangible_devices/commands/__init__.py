@@ -15,7 +15,5 @@ def tangible_commands(app: Typer) -> None:
     """Add `tangible devices` and `tangible pointer`."""
     from tangible_core.cli.command_table import add
 
-    from .pointer import pointer
-
     add("devices", f"{__package__}.devices:app", "List devices; examine, home or calibrate one.")
-    app.command()(pointer)
+    add("pointer", f"{__package__}.pointer:pointer", "Move a `pointer` device by hand and see the forces.")

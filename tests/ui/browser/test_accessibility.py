@@ -100,16 +100,43 @@ def wait_for_force(page: "Page") -> None:
 
 class TestSeen:
     @pytest.mark.parametrize("locale", ["en-GB", "de-DE"])
-    def test_page_has_no_violations_by_axe(self, show: Show, locale: str):
-        """Every panel is open, in all themes and widths; in German, where colours are the same, in one theme."""
+    def test_page_with_results_has_no_violations_by_axe_and_fits_every_size(self, show: Show, locale: str):
+        """Every panel is open, with verdicts, cures, files, decisions and a refusal.
+
+        In English in all themes; in German, where colours are the same and words longer, from a phone to a wall.
+        """
         if not AXE.is_file():
             lacking("axe-core is not installed: npm ci in plugins/ui/web")
         page = show(locale=locale)
         assert page.evaluate("document.documentElement.lang") == locale[:2]
+        wait_for_force(page)
         show_everything(page)
         page.wait_for_function("() => document.querySelector('#materials datalist').childElementCount")
         assert_controls_have_names(page, 150)
-        assert axe_finds(page, every_theme=locale == "en-GB") == []
+        for form in ("STL", "3MF"):
+            page.get_by_label(f"({form})").check()
+        page.locator("#export-run").click()
+        page.wait_for_selector("#export .outcome")
+        page.locator("#legible select").select_option("print")
+        page.locator("#legible-check").click()
+        page.wait_for_selector("#legible .sentence")
+        show_everything(page)
+        assert page.locator("#legible .places button").count() > 0
+        page.evaluate("document.querySelector('#left').scrollTo(0, 0)")  # a heading that sticks covers what is below it
+        assert axe_finds(page, colours=locale == "en-GB") == []
+        for name, (width, height) in SIZES.items() if locale == "de-DE" else ():
+            page.set_viewport_size({"width": width, "height": height})
+            page.evaluate(SETTLED)
+            assert page.evaluate("document.documentElement.scrollWidth") <= width, name
+            for region in ("#left", "#right", "#bottom"):
+                sides = page.locator(region).evaluate("(each) => [each.scrollWidth, each.clientWidth]")
+                assert sides[0] <= sides[1], (name, region)
+            stop, surface = page.locator("#stop").bounding_box(), page.locator("#terrain").bounding_box()
+            assert stop and surface
+            assert stop["height"] >= 44 and stop["x"] >= 0 and stop["x"] + stop["width"] <= width, name
+            assert stop["y"] >= 0 and stop["y"] + stop["height"] <= height, name
+            assert surface["width"] >= 300 and surface["height"] >= 150, name
+            assert page.evaluate(SMALL) == [], name
 
     def test_parts_editor_has_no_violations_by_axe_in_any_size(self, show: Show):
         """The language is German, whose words are longer; a proposal, a complaint and all folded controls are open."""
@@ -126,7 +153,7 @@ class TestSeen:
         assert "von 0 bis" in page.locator("#parts-height-mm-complaint").inner_text()
         page.evaluate("document.querySelectorAll('#parts-editor details').forEach((each) => (each.open = true))")
         assert_controls_have_names(page, 20)
-        assert axe_finds(page, every_theme=True) == []
+        assert axe_finds(page, "#parts-editor") == []
         for name, (width, height) in SIZES.items():
             page.set_viewport_size({"width": width, "height": height})
             page.evaluate(SETTLED)
@@ -137,50 +164,6 @@ class TestSeen:
             assert picture and stop
             assert picture["width"] >= 300 and picture["height"] >= 150, name
             assert stop["x"] >= 0 and stop["x"] + stop["width"] <= width, name
-            assert page.evaluate(SMALL) == [], name
-
-    def test_export_panels_have_no_violations_by_axe_in_any_size(self, show: Show):
-        """The page in German shows verdicts with places and cures, files with decisions, a refusal, the description."""
-        if not AXE.is_file():
-            lacking("axe-core is not installed: npm ci in plugins/ui/web")
-        page = show(locale="de-DE")
-        wait_for_force(page)
-        show_everything(page)
-        page.get_by_label("3D-Druck (STL)").check()
-        page.get_by_label("3D-Druck (3MF)").check()
-        page.locator("#export-run").click()
-        page.wait_for_selector("#export .outcome")
-        page.locator("#legible select").select_option("print")
-        page.locator("#legible-check").click()
-        page.wait_for_selector("#legible .sentence")
-        show_everything(page)
-        assert page.locator("#legible .places button").count() > 0
-        page.evaluate("document.querySelector('#left').scrollTo(0, 0)")  # a heading that sticks covers what is below it
-        assert axe_finds(page, every_theme=True) == []
-        for name, (width, height) in SIZES.items():
-            page.set_viewport_size({"width": width, "height": height})
-            page.evaluate(SETTLED)
-            assert page.evaluate("document.documentElement.scrollWidth") <= width, name
-            sides = page.locator("#left").evaluate("(each) => [each.scrollWidth, each.clientWidth]")
-            assert sides[0] <= sides[1], name
-            assert page.evaluate(SMALL) == [], name
-
-    def test_page_fits_every_size_from_a_phone_to_a_wall(self, show: Show):
-        """The language is German, whose words are longer."""
-        page = show(locale="de-DE")
-        show_everything(page)
-        for name, (width, height) in SIZES.items():
-            page.set_viewport_size({"width": width, "height": height})
-            page.evaluate(SETTLED)
-            assert page.evaluate("document.documentElement.scrollWidth") <= width, name
-            for region in ("#left", "#right", "#bottom"):
-                sides = page.locator(region).evaluate("(each) => [each.scrollWidth, each.clientWidth]")
-                assert sides[0] <= sides[1], (name, region)
-            stop, surface = page.locator("#stop").bounding_box(), page.locator("#terrain").bounding_box()
-            assert stop and surface
-            assert stop["height"] >= 44 and stop["x"] >= 0 and stop["x"] + stop["width"] <= width, name
-            assert stop["y"] >= 0 and stop["y"] + stop["height"] <= height, name
-            assert surface["width"] >= 300 and surface["height"] >= 150, name
             assert page.evaluate(SMALL) == [], name
 
     def test_colours_follow_the_system_or_the_choice_and_forced_colours_work(self, show: Show):
@@ -226,30 +209,36 @@ def assert_controls_have_names(page: "Page", least: int) -> None:
     assert faults_of(controls) == []
 
 
-def axe_finds(page: "Page", *, every_theme: bool) -> list[str]:
-    """Return axe's violations in the light theme or in all themes, in forced colours, and in small windows."""
+def axe_finds(page: "Page", *within: str, colours: bool = True) -> list[str]:
+    """Return axe's violations in the light theme and on a phone; with colours, in all themes and in forced colours.
+
+    within: Elements by selector; without, all of the page.
+    """
     page.evaluate(AXE.read_text(encoding="utf-8"))
     found: list[str] = []
-    for name, media in THEMES.items() if every_theme else [("light", THEMES["light"])]:
+    for name, media in THEMES.items() if colours else [("light", THEMES["light"])]:
         page.emulate_media(**media)
         page.wait_for_function("(name) => name.startsWith(document.documentElement.dataset.scheme)", arg=name)
         more = name.endswith("more")
         page.wait_for_function("(more) => (document.documentElement.dataset.contrast === 'more') === more", arg=more)
-        found += violations(page, name, RULES if name == "light" else COLOURS)
-    page.emulate_media(contrast="no-preference", forced_colors="active")
-    found += violations(page, "forced colours", COLOURS)
-    page.emulate_media(forced_colors="none")
+        found += violations(page, name, RULES if name == "light" else COLOURS, within)
+    if colours:
+        page.emulate_media(contrast="no-preference", forced_colors="active")
+        found += violations(page, "forced colours", COLOURS, within)
+        page.emulate_media(forced_colors="none")
     for size, rules in (("phone", RULES), ("zoomed to 400 %", SIZES_OF_TARGETS)):
         width, height = SIZES[size]
         page.set_viewport_size({"width": width, "height": height})
-        found += violations(page, size, rules)
+        found += violations(page, size, rules, within)
     return found
 
 
-def violations(page: "Page", where: str, rules: dict[str, Any]) -> list[str]:
+def violations(page: "Page", where: str, rules: dict[str, Any], within: tuple[str, ...]) -> list[str]:
     page.evaluate(SETTLED)
     found = page.evaluate(
-        "(runOnly) => axe.run(document, { runOnly, resultTypes: ['violations'], elementRef: false })", rules
+        """([within, runOnly]) => axe.run(within.length ? { include: within } : document,
+          { runOnly, resultTypes: ["violations"], elementRef: false })""",
+        [list(within), rules],
     )
     return [
         f"{where}: {each['id']} {node['target']} {node['failureSummary']}"

@@ -3,16 +3,15 @@
 import re
 from pathlib import Path
 
+from lasting_server import LastingServer
 from page_files import built_page
 from waiting import until
 
 TEXT = "scene: builtin/brick\nrender: {use: penalty, stiffness_n_per_m: 431}\n"
 
 
-def test_address_of_an_earlier_start_is_reported(serve, open_page, complaints: list[str]):
-    built_page()
-    server = serve("builtin/brick")
-    page = open_page(re.sub("token=.*", "token=of-yesterday", server.url))
+def test_address_of_an_earlier_start_is_reported(lasting: LastingServer, open_page, complaints: list[str]):
+    page = open_page(re.sub("token=.*", "token=of-yesterday", lasting.url))
     status = page.locator("#status")
     status.filter(has_text="belongs to an earlier start").wait_for()
     assert "tangible ui" in status.inner_text()

@@ -12,6 +12,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from forks import Forks
 from tangible_core.provenance import numba_cache
 from tangible_core.provenance.numba_cache import KEPT, extend
 
@@ -37,19 +38,11 @@ ACME = {
     "neighbour": "",
 }
 CALL = "import tangible_core; from acme.kernels import law; print(law(1.0), len(law.stats.cache_misses))"
-FORKING = """
-import os, sys
+BEGUN = """
 import numba, numba.core.caching
 numba.njit("float64(float64)")(lambda x: x)
-for line in sys.stdin:
-    if not os.fork():
-        sys.path.insert(0, "")
-        exec(line)
-        sys.stdout.flush()
-        os._exit(0)
-    os.wait()
 """
-"""A process that has imported numba and compiled with it; it runs each line of code in a new fork."""
+"""What has imported numba and compiled with it."""
 
 
 class Acme:
@@ -74,20 +67,16 @@ class Acme:
         return subprocess.check_output([sys.executable, "-c", code], text=True, **self._world).split()
 
     @cached_property
-    def _forking(self) -> "subprocess.Popen[str]":
-        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "bufsize": 1}
-        return subprocess.Popen([sys.executable, "-c", FORKING], **pipes, **self._world)
+    def _forks(self) -> Forks:
+        return Forks([sys.executable, "-c", BEGUN], **self._world)
 
     def run_soon(self, code: str = CALL) -> list[str]:
         """Run code in a fork of a process that had imported numba; return its words."""
-        assert self._forking.stdin
-        assert self._forking.stdout
-        self._forking.stdin.write(code + "\n")
-        return self._forking.stdout.readline().split()
+        return self._forks.run(f"import sys; sys.path.insert(0, ''); {code}").stdout.split()
 
     def close(self) -> None:
-        if "_forking" in vars(self):
-            self._forking.communicate()
+        if "_forks" in vars(self):
+            self._forks.close()
 
 
 @pytest.fixture

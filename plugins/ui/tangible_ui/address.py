@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Self
 
 from tangible_core.errors import ConfigError
+from tangible_core.runtime.standard_output import stream
 
 HOST = "127.0.0.1"
 HTTP_PORT = 80
@@ -61,7 +62,7 @@ class Address:
     def announce(self, browser: bool) -> None:
         """Print the address. browser: open it too."""
         url = f"http://{HOST}:{self.port}/?token={self.key}"
-        print(url, flush=True)  # noqa: T201 - what the command is called for
+        print(url, file=stream(), flush=True)
         if browser:  # in a thread, as a browser in the terminal blocks until it ends
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
 

@@ -22,10 +22,12 @@ def pointer(
     Typed positions are lines of `x y z` in millimetres, with the buttons as an optional fourth number. A
     line that is not a position gives a message, and the next one may be typed.
     """
+    from tangible_core.runtime.standard_output import stream
+
     from ..pointer.following import follow
 
     def complain(text: str) -> None:
         print(text, file=sys.stderr, flush=True)  # noqa: T201
 
     for line in follow(path, channel, seconds, height_mm / 1000, speed_mm_per_s / 1000, wait, as_json, complain):
-        print(line, flush=True)  # noqa: T201
+        print(line, file=stream(), flush=True)

@@ -67,7 +67,19 @@ class UnknownMethod(TangibleError):
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         names, name = sorted(set(known)), str(name)
         hint, there = did_you_mean(name, names), ", ".join(names) or "none"
-        super().__init__(f"no {kind} method is named {quoted(name)}{hint}; installed: {there}")
+        super().__init__(self._sentence(kind, quoted(name), hint, there))
+
+    @staticmethod
+    def _sentence(kind: str, name: str, hint: str, there: str) -> str:
+        return f"no {kind} method is named {name}{hint}; installed: {there}"
+
+
+class UnknownName(UnknownMethod):
+    """A name that nothing of its kind has, where that is not a method: a product, or a kind of methods."""
+
+    @staticmethod
+    def _sentence(kind: str, name: str, hint: str, there: str) -> str:
+        return f"no {kind} is named {name}{hint}; known: {there}"
 
 
 class BrokenMethod(TangibleError):

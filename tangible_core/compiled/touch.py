@@ -45,6 +45,10 @@ class CompiledTouch(Touch):
         self.moving: np.ndarray = _still() if moving is None else moving
         self._address: Any = None
 
+    def __repr__(self) -> str:
+        function = self.tick.py_func  # pyright: ignore[reportFunctionMemberAccess]
+        return f"CompiledTouch({function.__module__}.{function.__qualname__})"
+
     def __reduce__(self) -> tuple[Any, ...]:
         function = self.tick.py_func  # pyright: ignore[reportFunctionMemberAccess]
         kernel = place(function.__module__, function.__qualname__)

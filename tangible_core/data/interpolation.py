@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Float32, Float64
 from numpy.typing import ArrayLike
 
+from ..errors import ArgumentError
 from .arguments import as_array
 
 Numbers = Float64[np.ndarray, "..."]
@@ -17,8 +18,13 @@ def bilinear(
     x_m, y_m: points in metres from the centre, x to the right, y away from the user; the results have their common
     shape, and are NaN beyond the extent. From the outermost centres to the edge the heights continue unchanged, as the
     force laws have it.
+    Raises: ArgumentError for values that are not numbers, and for shapes that do not go together.
     """
-    both = np.broadcast_arrays(as_array("x_m", x_m, "float64"), as_array("y_m", y_m, "float64"))
+    x_m, y_m = as_array("x_m", x_m, "float64"), as_array("y_m", y_m, "float64")
+    try:
+        both = np.broadcast_arrays(x_m, y_m)
+    except ValueError as error:
+        raise ArgumentError(f"x_m and y_m: shapes {x_m.shape} and {y_m.shape} do not go together") from error
     x, y = (np.ravel(each) for each in both)
     (rows, columns), (width_m, length_m) = height_m.shape, extent_m
     left, right, across = _between(x * (columns / width_m) + 0.5 * (columns - 1), columns)

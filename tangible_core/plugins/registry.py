@@ -12,7 +12,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
-from ..errors import BrokenMethod, UnknownMethod, did_you_mean, shown
+from ..errors import BrokenMethod, UnknownMethod, UnknownName, did_you_mean, shown
 from ..runtime.failure_log import where_kept
 from ..runtime.slowness import warn_if_slow
 from . import hooks
@@ -83,7 +83,7 @@ class Registry:
         Raises: UnknownMethod if there is none, BrokenMethod if two distributions offer it and none is named.
         """
         if kind not in KIND_NAMES:
-            raise UnknownMethod("plugin", kind, KIND_NAMES)
+            raise UnknownName("kind of methods", kind, KIND_NAMES)
         distribution, _, short = str(name).rpartition("/")
         listings = [
             each

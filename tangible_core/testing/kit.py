@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
-from ..errors import BrokenMethod, DeviceAbsent, ModelAbsent, TangibleError, UnknownMethod, did_you_mean
+from ..errors import BrokenMethod, DeviceAbsent, ModelAbsent, TangibleError, UnknownName, did_you_mean
 from ..plugins.interfaces import HapticDevice
 from ..plugins.registry import Registry, default_registry
 from .checks import Check, CheckFailure
@@ -50,10 +50,10 @@ class CheckResult(NamedTuple):
 def checks(kind: str) -> tuple[Check, ...]:
     """Return every check of this kind, in the order in which they run.
 
-    Raises: UnknownMethod if there is no such kind.
+    Raises: UnknownName if there is no such kind.
     """
     if kind not in FAMILIES:
-        raise UnknownMethod("plugin", kind, FAMILIES)
+        raise UnknownName("kind of methods", kind, FAMILIES)
     return (*LISTING_CHECKS, *OPTION_CHECKS, *FAMILIES[kind])
 
 

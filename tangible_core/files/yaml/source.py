@@ -51,6 +51,8 @@ class Source:
         for depth, part in enumerate(parts[:-1], 1):
             key = part if isinstance(node, list) else key_of(part, node)
             below = cast(Any, node)[key] if has(node, key) else None
+            if not has(node, key):
+                self.overridden.setdefault(tuple(map(str, parts[:depth])), text)
             if isinstance(below, list) and not has(below, parts[depth]):
                 raise _override_error(text, keys, f"{part} is a list; set it as a whole: {part}=[...]")
             if not isinstance(below, dict | list):

@@ -66,4 +66,9 @@ def check_kind(kind: str, method: object) -> None:
     """Refuse a method of another kind. Raises: ConfigError."""
     wanted = KINDS[cast(Any, kind)]
     if not isinstance(method, wanted):
-        raise ConfigError(f"{kind}: takes a {wanted.__name__}, such as an object of one, not {quoted(method)}")
+        if isinstance(method, str):
+            raise ConfigError(
+                f"{kind}: takes an object, not the name {quoted(method)}; "
+                f"`load_method({kind!r}, {method!r})()` makes one"
+            )
+        raise ConfigError(f"{kind}: takes an object of a class of {wanted.__name__}, not {quoted(method)}")

@@ -3,7 +3,7 @@
 from typing import Any
 
 from ...data.quantities import title_of
-from ...errors import UnknownMethod
+from ...errors import UnknownName
 from ...materials.assignment import library
 from ...materials.files import MaterialBlock
 from ...plugins.registry import Registry, default_registry
@@ -37,10 +37,10 @@ def stage_schema(
 ) -> dict[str, Any]:
     """Return the schema of one stage alone (depth, texture, render, device), or of the list of exporters (export).
 
-    Raises: UnknownMethod for an unknown stage.
+    Raises: UnknownName for an unknown stage.
     """
     if kind not in (known := [name for name, key in KEYS.items() if isinstance(key, MethodBlock | MethodList)]):
-        raise UnknownMethod("stage", kind, known)
+        raise UnknownName("stage", kind, known)
     forms = Forms(registry or default_registry(), distribution)
     return {
         "$schema": DIALECT,

@@ -12,7 +12,7 @@ from typing import Any
 from ...compiled.background import BackgroundCompiler
 from ...data import Note, Outcome, Outcomes, Plan, Record
 from ...data.products import PRODUCTS
-from ...errors import TangibleError, UnknownMethod
+from ...errors import TangibleError, UnknownName
 from ...files.paths import without_folders
 from ...plugins import hooks
 from ...plugins.failures import naming_plugins
@@ -103,7 +103,7 @@ class Engine:
         return products
 
     def plan(self, want: str | None = None) -> Plan:
-        """Foresee the outcomes of making a product. Raises: TangibleError for an unreadable scene, UnknownMethod."""
+        """Foresee the outcomes of making a product. Raises: TangibleError for an unreadable scene, UnknownName."""
         want = self._product(want)
         ahead = Outlook(self.stages, self.scene_products, self.source_of, self.cache_for, self.key)
         plan = Plan(want, tuple(foresee(ahead, want, REQUESTED, {}).values()))
@@ -292,7 +292,7 @@ class Engine:
     def _product(self, want: str | None) -> str:
         product = want or self.config.want
         if product not in PRODUCTS:
-            raise UnknownMethod("product", product, PRODUCTS)
+            raise UnknownName("product", product, PRODUCTS)
         return product
 
     def _note(self, outcome: Outcome) -> None:

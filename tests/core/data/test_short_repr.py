@@ -6,6 +6,7 @@ import pytest
 from tangible_core import HapticSurface, Pipeline, Scene, Views
 from tangible_core.data import DisparityMap, Material, MaterialMap, Record, SegmentMap
 from tangible_depth import Luminance
+from tangible_render import Penalty
 
 GREY = np.arange(6000, dtype=np.uint8).reshape(60, 100)
 ICE = Material("ice", 1000.0, 1.0, 0.1, 0.05, texture="smooth")
@@ -36,6 +37,11 @@ def test_scene_and_pipeline_are_shown_in_a_short_line():
     pipeline = Pipeline(scene, depth=Luminance(), cached=False)
     assert repr(pipeline) == "Pipeline('arrays', want='surface', depth='luminance')"
     assert repr(pipeline.config) == "PipelineConfig('arrays', want='surface', depth='luminance')"
+
+
+def test_touch_is_shown_by_its_kernel():
+    surface = HapticSurface.from_heights(np.zeros((6, 10)))
+    assert repr(Penalty().touch(surface)) == "CompiledTouch(tangible_render.kernels.penalty.tick)"
 
 
 def test_range_of_an_array_leaves_out_unknown_numbers():

@@ -34,6 +34,10 @@ def scene() -> Scene:
     return Scene.photo(GREY)
 
 
+def flat() -> HapticSurface:
+    return HapticSurface.from_heights(np.zeros((4, 4)))
+
+
 @pytest.mark.parametrize(
     ("build", "sentence"),
     [
@@ -59,6 +63,11 @@ def scene() -> Scene:
         (lambda: Calibration(1, focal_px=2, baseline_m=1), "Calibration: focal_px: is given twice; its fields: focal_"),
         (lambda: Camera(matrx=np.eye(3)), "Camera: matrx: unknown field (did you mean 'matrix'?); its fields: matrix,"),
         (lambda: Pipeline(scene()).feel(secnds=3), "secnds: unknown option (did you mean 'seconds'?)"),
+        (lambda: Pipeline(scene(), texture="hierarchy"), "texture: takes an object, not the name 'hierarchy'; `load_m"),
+        (lambda: Pipeline(scene(), depth=Proxy()), "depth: takes an object of a class of DepthEstimator, not Proxy("),
+        (lambda: Pipeline(scene()).make("surfce"), "no product is named 'surfce' (did you mean 'surface'?); known: d"),
+        (lambda: load_method("rendr", "proxy"), "no kind of methods is named 'rendr' (did you mean 'render'?); known"),
+        (lambda: flat().height_at([0, 1], [1, 2, 3]), "x_m and y_m: shapes (2,) and (3,) do not go together"),
         (lambda: DisparityMap(np.float32([[1, np.inf]])), "disparity_px: 1 of 2 values is infinite; write NaN where"),
         (lambda: Views(np.int64([[1, 70_000]])), "left view: holds whole numbers from 1 to 70000"),
     ],

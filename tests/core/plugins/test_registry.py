@@ -74,7 +74,7 @@ def test_name_that_is_not_installed_is_refused_with_the_nearest(install, name, c
 
 
 def test_unknown_kind_is_refused_with_the_nearest(install):
-    with pytest.raises(UnknownMethod, match=r"no plugin method is named 'dept' \(did you mean 'depth'\?\)"):
+    with pytest.raises(UnknownMethod, match=r"no kind of methods is named 'dept' \(did you mean 'depth'\?\)"):
         Registry().load("dept", "mine")
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, cast
 
-from tangible_core.errors import BrokenMethod, UnknownMethod, shown
+from tangible_core.errors import BrokenMethod, UnknownName, shown
 
 from .procedure import Procedure
 
@@ -36,10 +36,10 @@ def procedure_names() -> list[str]:
 
 
 def load_procedure(name: str) -> type[Procedure]:
-    """Import the class of a procedure; its fields are its options. Raises: UnknownMethod, BrokenMethod."""
+    """Import the class of a procedure; its fields are its options. Raises: UnknownName, BrokenMethod."""
     points = _points()
     if name not in points:
-        raise UnknownMethod("procedure", name, points)
+        raise UnknownName("procedure", name, points)
     try:
         procedure = cast(Any, points[name].load())
     except (Exception, SystemExit) as error:

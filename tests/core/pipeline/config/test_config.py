@@ -244,6 +244,8 @@ def test_override_wins_over_the_file_and_complains_alike():
     assert (grey.name, grey.method.force_at_white_n) == ("grey-level", 2)
     (found,) = complaints(text, "render.stiffness_n_per_m=-5")
     assert found.startswith("--set render.stiffness_n_per_m=-5: render.stiffness_n_per_m")
+    (found,) = complaints(text, "rendr.use=penalty")
+    assert found.startswith("--set rendr.use=penalty: unknown key 'rendr' (did you mean 'render'?)")
     (found,) = complaints(text, "render.stifness_n_per_m=5")
     assert "did you mean 'stiffness_n_per_m'?" in found
 

@@ -118,7 +118,7 @@ def _make(job: Job) -> Row:
     files += _export(pipeline, folder)
     return {
         "scene": pipeline.scene.name,
-        "figures": _plain(figures),
+        "figures": _plain({**figures, **_size(pipeline)}),
         "stages": {each.product: round(each.seconds, 5) for each in pipeline.outcomes if each.outcome == "ran"},
         "notes": [note.text for each in pipeline.outcomes for note in each.notes if note.kind != "decision"],
         "files": [*files, card],
@@ -149,6 +149,17 @@ def _figures(pipeline: Pipeline) -> dict[str, Any]:
     truth = pipeline.scene.truth
     disparity = pipeline.make("disparity") if truth is not None else None
     return {} if truth is None or disparity is None else {"disparity": disparity_errors(disparity.disparity_px, truth)}
+
+
+def _size(pipeline: Pipeline) -> dict[str, Any]:
+    """Return the size and the number of segments of the surface that was made, if one was."""
+    if pipeline.config.want not in ("surface", "touch"):
+        return {}
+    surface = pipeline.surface
+    width_m, length_m = surface.extent_m
+    size = {"width_mm": 1e3 * width_m, "length_mm": 1e3 * length_m, "height_mm": 1e3 * float(surface.height_m.max())}
+    segments = 0 if surface.labels is None else int(surface.labels.max()) + 1
+    return {"surface": {**{name: round(each, 3) for name, each in size.items()}, "segments": segments}}
 
 
 def _plain(figures: Mapping[Any, Any]) -> dict[str, Any]:

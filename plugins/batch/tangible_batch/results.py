@@ -128,14 +128,17 @@ def _product(row: Row) -> str:
 
 
 def _summary(row: Row) -> str:
-    """Return a line on a scene: what was made, how wrong it is where that is known, and the warnings; or the error."""
+    """Return a line on a scene: what was made and found, how wrong it is if known, and the warnings; or the error."""
     if row["outcome"] != "ok":
         return localise(row.get("error") or "failed")
     figures, parts = row.get("figures") or {}, [f"{_product(row)} made in {row['seconds']:.2g} s"]
+    if surface := figures.get("surface"):
+        size = f"{surface['width_mm']:.0f} x {surface['length_mm']:.0f} mm"
+        parts.append(f"{size}, {surface['height_mm']:.3g} mm high")
     if (bad := (figures.get("disparity") or {}).get("bad2")) is not None:
         parts.append(f"{bad:.0f} % of the pixels are off by more than 2 px")
-    if materials := figures.get("materials"):
-        parts.append(f"{len(materials)} segments")
+    if segments := len(figures.get("materials") or ()) or (surface or {}).get("segments"):
+        parts.append(f"{segments} segments")
     if force := figures.get("force"):
         parts.append(f"felt with up to {force['peak_force_n']:.1f} N")
     warnings = (f"{localise('warning')}: {localise(each)}" for each in row.get("notes", ()))

@@ -84,6 +84,13 @@ class TestScenes:
             assert f'<a href="scenes/p{number}/">p{number}</a>' in found[0]
             assert re.search(r"relief made in [\d.e-]+ s", found[0])
 
+    def test_gallery_says_what_was_found_of_a_surface(self, archive: Path):
+        done = self.run(archive.parent, "--set", "want=surface", "--set", "texture={use: histogram, segments: 2}")
+        assert done.returncode == 0, done.stderr
+        page = (archive.parent / "out/mine-batch/gallery.html").read_text()
+        found = r"surface made in [\d.e-]+ s; 40 x \d+ mm, [\d.]+ mm high; [12] segments"
+        assert len(re.findall(found, page)) == 4, page
+
     def test_gallery_is_in_the_language_of_the_terminal(self, archive: Path):
         (archive / "p3.png").write_bytes(b"no")
         done = self.run(archive.parent, "--lang", "de")

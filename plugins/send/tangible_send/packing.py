@@ -15,7 +15,7 @@ from PIL import Image
 from tangible_core.data import HapticSurface, Material, Relief, Work
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
-from tangible_core.parts.words.languages import LANGUAGES, TABLES, Language, one_line
+from tangible_core.parts.words.languages import LANGUAGES, Language, one_line
 from tangible_report.description import describe, facts
 from tangible_report.description.at_length import tell
 from tangible_ui.worker.view.files import material_of
@@ -111,14 +111,10 @@ def _meta(
 
 
 def _words(surface: HapticSurface, work: Work) -> dict[str, Any]:
-    """Return descriptions by language, and the names of materials."""
-    named = {each.name for each in surface.materials or ()}
+    """Return descriptions by language."""
     return {
         "describes": {each: description(surface, work, each) for each in LANGUAGES},
         "says": {each: describe(surface, one_line(work.title), each) for each in LANGUAGES},
-        "names": {
-            each: {name: said for name, said in TABLES[each].materials.items() if name in named} for each in LANGUAGES
-        },
     }
 
 

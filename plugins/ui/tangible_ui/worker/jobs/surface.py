@@ -11,7 +11,7 @@ from jaxtyping import Float32, Float64, Shaped
 from tangible_core.data import Material
 from tangible_core.data.records import digest_of
 from tangible_core.errors import GeometryError
-from tangible_core.parts.words.languages import LANGUAGES, TABLES, Language
+from tangible_core.parts.words.languages import LANGUAGES, Language
 from tangible_core.pipeline.output.exporting import title_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.workspace import kind_of
@@ -110,14 +110,10 @@ def description(state: WorkerState, language: Language) -> dict[str, Any] | None
 
 
 def description_data(pipeline: Pipeline, seen: SurfaceView) -> dict[str, Any]:
-    """Return descriptions by language, and names of the materials; one without a name in a language keeps its own."""
+    """Return descriptions by language."""
     scene = pipeline.scene
     kind = kind_of(scene)
-    names = {each.name for each in seen.materials}
     return {
         "digest": seen.digest,
         "says": {each: describe(seen.surface, scene.name, each, kind) for each in LANGUAGES},
-        "names": {
-            each: {name: said for name, said in TABLES[each].materials.items() if name in names} for each in LANGUAGES
-        },
     }

@@ -1,6 +1,7 @@
 /** Values of the data cursor: as rows of words, as text, and as JSON. */
 import type { Vec } from "../server/protocol";
 import { t } from "../overlay/words";
+import { materialWord } from "../words/material_words";
 import { shownNumber } from "../words/part_words";
 import { notation } from "../words/words";
 import { LIMITS } from "./limits";
@@ -48,16 +49,17 @@ export function shortRows(live: Reading | null, pointer: SurfacePlace | null): R
   const height = held?.surfaceM ?? pointer?.at[2] ?? NaN;
   return [
     [t("row_force"), held ? `${formatFixed(held.newtons, 2)} N` : NONE],
-    [t("row_material"), at?.material?.name ?? NONE],
+    [t("row_material"), at?.material ? materialWord(at.material.name) : NONE],
     [t("row_height"), Number.isFinite(height) ? `${formatFixed(MM * height, 1)} mm` : NONE],
   ];
 }
 
 function materialName(at: Pick<Reading, "material" | "part" | "name"> | null): string {
   if (!at || at.part === null) return NONE;
-  if (at.name) return at.material ? `${at.name}, ${at.material.name}` : at.name;
+  const material = at.material && materialWord(at.material.name);
+  if (at.name) return material ? `${at.name}, ${material}` : at.name;
   const number = shownNumber(at.part);
-  return at.material ? t("part", { name: at.material.name, number }) : t("noMaterial", { number });
+  return material ? t("part", { name: material, number }) : t("noMaterial", { number });
 }
 
 const limitsOf = (live: Reading) => LIMITS.filter(({ bit }) => live.state.flags & bit).map(({ word }) => word);

@@ -30,7 +30,6 @@ export interface Packed {
   photo: string;
   describes: ByLanguage<Description>;
   says: ByLanguage<string>;
-  names: ByLanguage<Record<string, string>>;
 }
 
 export interface Sent {

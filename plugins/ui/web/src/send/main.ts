@@ -77,7 +77,7 @@ async function open(data: Packed): Promise<void> {
   const looks = [...(scene.photo ? ["photo"] : []), "relief", "height", ...(scene.meta.labels > 1 ? ["segments"] : [])];
   hub.on("shown", () => view.put(scene, { ...DEFAULTS, look: looks[0]! }));
   const digest = scene.meta.digest;
-  hub.tell("described", { event: "described", at_s: now_s(), digest, says: data.says, names: data.names });
+  hub.tell("described", { event: "described", at_s: now_s(), digest, says: data.says });
   hub.tell("loop", { event: "loop", at_s: now_s(), running: true, why: "", own_hand: true });
   hub.tell("holding", { event: "holding", at_s: now_s(), holding: true, free: false });
   hub.tell("shown", scene);

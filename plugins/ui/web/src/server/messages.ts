@@ -205,8 +205,8 @@ export interface Events {
   exported: Said & Exported;
   stage: Said & { product: string; method: string; done: Partial<Outcome> };
   scene: Said & Meta;
-  /** Description of the surface with this digest, and names of its materials, by language. */
-  described: Said & { digest: string; says: Record<string, string>; names: Record<string, Record<string, string>> };
+  /** Description of the surface with this digest, by language. */
+  described: Said & { digest: string; says: Record<string, string> };
   document: Said & Document;
   touch: Said & { law: string; seconds: number; how: string };
   /** stopped: by the stop button; lost: the device was disconnected; waiting: the device is being searched for. */

@@ -1,5 +1,6 @@
 /** Legends of colours and patterns. */
 import type { Scene } from "../surface/scene";
+import { materialWord } from "../words/material_words";
 import { shownNumber } from "../words/part_words";
 import { notation } from "../words/words";
 import { t } from "../view/words";
@@ -25,7 +26,7 @@ export function legend(scene: Scene, look: string): HTMLElement | null {
 function partName(scene: Scene, label: number): string {
   const material = scene.meta.materials[scene.kinds[label]];
   const number = shownNumber(label);
-  return material ? t("partOf", { number, material: material.name }) : t("part", { number });
+  return material ? t("partOf", { number, material: materialWord(material.name) }) : t("part", { number });
 }
 
 function scale(low: number, high: number, unit: string, unknowns: boolean): HTMLElement {

@@ -5,6 +5,7 @@ import type { State } from "../server/protocol";
 import { finePatch } from "../surface/fine_texture";
 import type { Settings } from "./settings";
 import type { FinePatch } from "../terrain/terrain";
+import { materialWord } from "../words/material_words";
 import { t } from "./words";
 
 const PIXELS = 192;
@@ -97,8 +98,8 @@ export class Magnifier {
     const side = (1000 * patch.side_m).toFixed(0);
     const [grain, depth] = material ? [(1000 * material.grain_m).toPrecision(2), (1e6 * material.roughness_m).toFixed(0)] : [];
     this.caption.textContent = material?.roughness_m
-      ? t("lensTextured", { side, material: material.name, grain: grain!, depth: depth! })
-      : t("lensSmooth", { side, material: material?.name ?? t("noMaterial") });
+      ? t("lensTextured", { side, material: materialWord(material.name), grain: grain!, depth: depth! })
+      : t("lensSmooth", { side, material: material ? materialWord(material.name) : t("noMaterial") });
     this.canvas.setAttribute("aria-label", this.caption.textContent);
     this.box.hidden = false;
   }

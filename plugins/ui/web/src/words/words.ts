@@ -1,4 +1,5 @@
-/** Texts of the page: tables of [English, German, French], one per area, next to the code that uses them. Without French, English. */
+/** Texts of the page: tables of [English, German, French], one per area, next to the code that uses them.
+ * Of a plugin's table without French, the English is shown. */
 import { recall, remember } from "../preferences";
 
 export type Table = Record<string, readonly [english: string, german: string, french?: string]>;

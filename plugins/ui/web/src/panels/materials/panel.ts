@@ -4,8 +4,9 @@ import { DocumentEditor } from "../../forms/editor";
 import { LIBRARY } from "../../forms/rows";
 import type { Material, Segment } from "../../server/messages";
 import type { Page } from "../../page";
+import { materialWord } from "../../words/material_words";
 import { shownNumber } from "../../words/part_words";
-import { notation } from "../../words/words";
+import { decimal, notation } from "../../words/words";
 import type { Panel } from "../panel";
 import { t } from "./words";
 import { materialEdit } from "./edit";
@@ -48,7 +49,7 @@ function build(page: Page, root: HTMLElement): void {
     const listed = await page.net.ask<Listed[]>("library").catch(() => null);
     if (!listed) return void (of = "");
     names = listed.map(({ name }) => name);
-    list.replaceChildren(...names.map((each) => new Option(each, each)));
+    list.replaceChildren(...names.map((each) => new Option(materialWord(each), each)));
     heading.textContent = t("library", { count: listed.length });
     library.replaceChildren(heading, figures(listed));
     show();
@@ -87,13 +88,13 @@ function fill(row: HTMLTableRowElement, { label, material, why, share }: Segment
   select.dataset.at = String(row.sectionRowIndex);
   select.setAttribute("aria-label", t("choose", { number: shownNumber(label) }));
   const all = names.includes(material) ? names : [material, ...names];
-  if (select.options.length !== all.length) select.replaceChildren(...all.map((each) => new Option(each, each)));
+  if (select.options.length !== all.length) select.replaceChildren(...all.map((each) => new Option(materialWord(each), each)));
   select.value = material;
   const reason = choice.querySelector("p")!;
   reason.id = `material-why-${label}`;
   reason.textContent = why.replace(/^\S+ \d+: /, "").replace(/ -> .*$/, "");
   select.setAttribute("aria-describedby", reason.id);
-  area.textContent = `${notation((100 * share).toPrecision(share < 0.1 ? 2 : 3))} %`;
+  area.textContent = share < 0.0005 ? `< ${decimal(0.1, 1)} %` : `${decimal(100 * share, 1)} %`;
 }
 
 function figures(library: Listed[]): HTMLElement {
@@ -109,7 +110,7 @@ function figures(library: Listed[]): HTMLElement {
     const row = body.insertRow();
     const name = document.createElement("th");
     name.scope = "row";
-    name.textContent = each.name;
+    name.textContent = materialWord(each.name);
     row.append(name);
     for (const text of [
       each.stiffness_n_per_m, each.damping_n_s_per_m, `${notation(`${each.static_friction}`)} / ${notation(`${each.dynamic_friction}`)}`,

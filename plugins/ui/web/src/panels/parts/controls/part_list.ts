@@ -1,5 +1,6 @@
 /** List of the parts from front to back, and fields of the selected one. */
 import { button, field, hint } from "../../../elements";
+import { materialWord } from "../../../words/material_words";
 import { shownNumber } from "../../../words/part_words";
 import { t } from "../editor/words";
 import type { Drawing, Part } from "../drawing/drawing";
@@ -49,7 +50,7 @@ export class PartList {
       if (isMouse && !this.drawing.part(Number(label))?.name) this.name.focus(); // its name is what is missing
     });
     this.material.add(new Option(t("byRules"), ""));
-    for (const each of materials) this.material.add(new Option(each, each));
+    for (const each of materials) this.material.add(new Option(materialWord(each), each));
     this.build();
   }
 

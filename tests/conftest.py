@@ -109,13 +109,12 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 @pytest.fixture(autouse=True)
 def own_dir(folders: Iterator[Path]) -> Iterator[Path]:
-    """A folder for what a test would read from, and leave in, the developer's own; one fixture, as all pay it."""
+    """A folder for what a test would read from, and leave in, the developer's own; one fixture, as all pay it.
+
+    It is not there at first, nor are those in it: whoever needs one makes it, and most tests need none.
+    """
     folder = next(folders)
-    os.mkdir(folder)  # noqa: PTH102 - pathlib would take most of the time
-    told = {f"TANGIBLE_{kind.upper()}_DIR": f"{folder}/{kind}" for kind in OWN}
-    for path in told.values():
-        os.mkdir(path)  # noqa: PTH102
-    with patch.dict(os.environ, told):
+    with patch.dict(os.environ, {f"TANGIBLE_{kind.upper()}_DIR": f"{folder}/{kind}" for kind in OWN}):
         yield folder
 
 
@@ -148,25 +147,30 @@ def own_memory(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 @pytest.fixture
 def cache_dir(own_dir: Path) -> Path:
     """The cache of this test, empty at first."""
-    return own_dir / "cache"
+    return _made(own_dir / "cache")
 
 
 @pytest.fixture
 def runtime_dir(own_dir: Path) -> Path:
     """Shared memory of this test: two at a time do not meet on one channel."""
-    return own_dir / "runtime"
+    return _made(own_dir / "runtime")
 
 
 @pytest.fixture
 def config_dir(own_dir: Path) -> Path:
     """The configuration of this test: no calibration of a developer's own device is read or written."""
-    return own_dir / "config"
+    return _made(own_dir / "config")
 
 
 @pytest.fixture
 def log_dir(own_dir: Path) -> Path:
     """The log of this test: tracebacks of failures on purpose are kept in no developer's log."""
-    return own_dir / "log"
+    return _made(own_dir / "log")
+
+
+def _made(folder: Path) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
 
 
 @pytest.fixture

@@ -50,10 +50,13 @@ SLOW = set(Path(__file__).with_name("slow.txt").read_text().splitlines())
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     """None beside this process where files are named: a debugger works, nothing is waited for.
 
-    Otherwise one more for two processors: a third of the time, a worker waits for a browser or another process.
+    Otherwise one more for two processors: a third of the time, a worker waits for a browser or another process. Tests
+    that are fast wait for none, and each worker spends ten seconds on collecting them.
     """
+    if config.args_source is pytest.Config.ArgsSource.ARGS:
+        return 0
     processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return 0 if config.args_source is pytest.Config.ArgsSource.ARGS else processors + processors // 2
+    return processors if config.option.markexpr == "fast" else processors + processors // 2
 
 
 class DoctestsWhereThereAreSome:

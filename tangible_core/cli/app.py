@@ -17,7 +17,7 @@ from ..plugins import hooks
 from ..plugins.registry import default_registry
 from ..runtime import signals, standard_output
 from ..translation import LANGUAGES, language, localise
-from .command_table import COMMANDS, LazyGroup, load, prepare
+from .command_table import COMMANDS, LazyGroup, check_paths, load
 from .options import DONE, FAILED, INTERRUPTED, MISTAKE
 from .verbosity import parse_verbosity
 
@@ -96,7 +96,7 @@ def _run_app() -> int:
 
             localise_help()
         hooks.tell(default_registry().plugins, "tangible_commands", app=app)
-        prepare(app)
+        check_paths(app)
     try:
         code = app(words, standalone_mode=False, default_map=_without_help())
     except OSError as error:

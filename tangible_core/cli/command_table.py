@@ -55,8 +55,8 @@ def add(name: str, place: str, summary: str) -> None:
     COMMANDS.setdefault(name, Command(place, summary))
 
 
-_prepared: WeakSet[Callable[..., Any]] = WeakSet()
-"""The functions of commands that `prepare` has wrapped."""
+_checked: WeakSet[Callable[..., Any]] = WeakSet()
+"""The functions of commands that `check_paths` has wrapped."""
 
 
 class LazyGroup(TyperGroup):
@@ -108,16 +108,18 @@ def load(name: str) -> Any:
     app = command if isinstance(command, typer.Typer) else typer.Typer(rich_markup_mode=None, add_completion=False)
     if app is not command:
         app.command(name)(command)
-    prepare(app)
+    check_paths(app)
+    for each in _all_commands(app):
+        each.callback = each.callback and standard_output.protect()(each.callback)
     return typer.main.get_command(app)
 
 
-def prepare(app: typer.Typer) -> None:
-    """Give every command of a group what all have: paths that are checked, and a standard output of its own."""
+def check_paths(app: typer.Typer) -> None:
+    """Let every command of a group refuse a path that no file can have; one that is checked stays as it is."""
     for each in _all_commands(app):
-        if each.callback and each.callback not in _prepared:
-            each.callback = standard_output.protect()(_check_paths(each.callback))
-            _prepared.add(each.callback)
+        if each.callback and each.callback not in _checked:
+            each.callback = _check_paths(each.callback)
+            _checked.add(each.callback)
 
 
 def _check_paths(command: Callable[..., Any]) -> Callable[..., Any]:

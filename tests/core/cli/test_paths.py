@@ -8,7 +8,7 @@ import pytest
 import typer
 
 from tangible_core.cli.app import app
-from tangible_core.cli.command_table import COMMANDS, load, prepare
+from tangible_core.cli.command_table import COMMANDS, check_paths, load
 from tangible_core.errors import ConfigError
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import default_registry
@@ -63,7 +63,7 @@ def test_command_that_a_plugin_adds_to_the_app_itself_has_its_paths_checked_once
         seen.append(file)
 
     for _ in range(2):
-        prepare(group)
+        check_paths(group)
     command = typer.main.get_command(group)
     command.main(["~"], standalone_mode=False)
     assert seen == [Path.home()]

@@ -57,7 +57,7 @@ from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_ma
 from tangible_render.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke
 
 Found = Iterator[tuple[str, Any]]
-SIZE = slice(90, 346), slice(200, 520)
+SIZE = slice(122, 314), slice(232, 488)
 """Of the motorcycle: the part that has most in it."""
 
 SLOW = {"kornia-report", "kornia-zncc", "report"}

@@ -1,6 +1,5 @@
 """The server's force loop: started before there is a scene, swapped, watched. This module does not import numba."""
 
-import math
 import pickle
 import time
 from collections.abc import Callable, Iterator
@@ -9,20 +8,17 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, NamedTuple, final
 
-from tangible_core.data import Vector
 from tangible_core.errors import DeviceError
 from tangible_core.mapping import MappedDevice, WorkspaceMapping, placement_of
 from tangible_core.plugins.interfaces import HapticDevice
-from tangible_core.runtime.system.timers import now_ns
 from tangible_core.servo import Beacon, Packed, Safety, Servo, null_touch
 from tangible_core.servo.ring import STOP
 
-from ..framing import BUTTON_BITS, FLAG_BITS, STATE, STATE_FRAME
+from ..framing import BUTTON_BITS
 from .ending import end_loop
-from .hand import HIGH_M, Hand
+from .hand import Hand
+from .state_frame import ALONE, OtherLaw, frame_of, frame_without_loop
 
-NOBODY: Vector = (0.0, 0.0, 0.0)
-UNKNOWN: Vector = (math.nan, math.nan, math.nan)
 STALE_AFTER_S = 0.3
 """Silence of the server after which the loop releases the page's hand, s: a machine that starts a browser keeps the
 server waiting for a quarter of a second. A page's own silence is `hand.SILENT_S`."""
@@ -62,18 +58,6 @@ class LoopInput(NamedTuple):
     def unmapped_device(self) -> HapticDevice:
         """The device without the mapping."""
         return without_mapping(self.device)
-
-
-class OtherLaw(NamedTuple):
-    """The second force law, as frames show it."""
-
-    force_n: Vector = NOBODY
-    """Force of that law on the same hand."""
-    blind: bool = False
-    """True if the page must not reveal which law acts: the proxy is then hidden too, as not every law has one."""
-
-
-ALONE = OtherLaw()
 
 
 class LoopEnd(NamedTuple):
@@ -235,18 +219,8 @@ class Feeling:
         """Return the newest tick as a STATE frame, without a loop a hand that is nowhere; None if overwritten."""
         servo = self._servo
         if servo is None or not self.running:
-            nowhere = *HIGH_M, *UNKNOWN, *NOBODY, *NOBODY, *NOBODY
-            return STATE_FRAME.pack(STATE, status, 0, seq & 0xFFFFFFFF, 0, 0, 1e3 * time.time(), *nowhere, 0.0)
-        if (row := servo.ring.latest()) is None:
-            return None
-        t, late, x, y, z, vx, vy, vz, px, py, pz, fx, fy, fz, flags, buttons, _ = row.tolist()
-        sample_ms = 1e3 * ((servo.ring.start_ns - now_ns()) / 1e9 + t + time.time())
-        tag = int(buttons) >> BUTTON_BITS
-        return STATE_FRAME.pack(
-            STATE, status, int(flags) & FLAG_BITS, seq & 0xFFFFFFFF, tag, servo.ring.overruns, sample_ms,
-            x, y, z, *(UNKNOWN if other_law.blind else (px, py, pz)), fx, fy, fz, vx, vy, vz,
-            *other_law.force_n, 1e6 * late,
-        )  # fmt: skip
+            return frame_without_loop(seq, status)
+        return frame_of(servo, seq, status, other_law)
 
     @contextmanager
     def _unless_stopped(self) -> Iterator[Callable[[], bool]]:

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from ..feeling.comparison import ComparisonLoop
-from ..feeling.feeling import ALONE, Feeling, OtherLaw
+from ..feeling.feeling import Feeling
+from ..feeling.state_frame import ALONE, OtherLaw
 
 Choice = Literal[0, 1, 2]
 """The law named 1 or 2; 0 for neither."""

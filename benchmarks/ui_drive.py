@@ -27,6 +27,8 @@ FLAGS = [
     "--ignore-gpu-blocklist",
     "--enable-precise-memory-info",
 ]
+BROWSERS = ("chromium", "google-chrome", "google-chrome-stable", "chromium-browser", "chromium-headless-shell")
+"""The first that is installed is measured; the shell is the same without windows."""
 SIZE = {"width": 1180, "height": 720}
 LONGEST_S = 120.0
 CONFIG = """\
@@ -100,7 +102,8 @@ def browser() -> "Generator[Browser]":
     """Chromium without a window and without a graphics card."""
     from playwright.sync_api import sync_playwright
 
-    path = os.environ.get("TANGIBLE_UI_BROWSER") or shutil.which("chromium") or shutil.which("google-chrome")
+    found = (path for name in BROWSERS if (path := shutil.which(name)))
+    path = os.environ.get("TANGIBLE_UI_BROWSER") or next(found, None)
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=path, args=FLAGS)
         try:

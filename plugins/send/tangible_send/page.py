@@ -8,12 +8,12 @@ from typing import Annotated, Any, ClassVar, final
 from pydantic import Field
 
 from tangible_core.data import Work
-from tangible_core.errors import ConfigError, OutputError
+from tangible_core.errors import OutputError
 from tangible_core.files.writing import write_text
 from tangible_core.parts.words.languages import spoken_language
 from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import note
-from tangible_ui.address import static
+from tangible_ui.address import page_file
 
 log: logging.Logger = logging.getLogger(__name__)
 
@@ -27,7 +27,7 @@ class Page(Exporter):
 
     The picture is explored by finger, mouse, keyboard or game pad: the page says the names of parts, what they feel
     like, and how the ground rises and falls; borders click, textures hum and vibrate. The surface has the forces of
-    `proxy`, without its fine textures, with heights to a micrometre where the size of the file allows that.
+    `proxy` with `texture: false`, with heights to a micrometre where the size of the file allows that.
     """
 
     needs: ClassVar[tuple[str, ...]] = ("surface", "materials")
@@ -41,7 +41,7 @@ class Page(Exporter):
         from .packing import LEAST_PHOTO, pack, photo
         from .surface import fits, surface_to_send
 
-        script, style, licences = map(_page_file, ("send.js", "send.css", "LICENSES.txt"))
+        script, style, licences = map(page_file, ("send.js", "send.css", "LICENSES.txt"))
         language = spoken_language(work.language, log)
 
         def page(data: Mapping[str, Any]) -> str:
@@ -63,14 +63,3 @@ class Page(Exporter):
         path = stem.with_name(f"{stem.name}-page.html")
         write_text(path, page(data))
         return (path,)
-
-
-def _page_file(name: str) -> str:
-    """Return a file of the built page. Raises: ConfigError if it was not built."""
-    try:
-        return (static() / name).read_text("utf-8")
-    except FileNotFoundError as error:
-        raise ConfigError(
-            "the page was not built when this was installed, as npm could not be reached; install again where it can "
-            "(`pip install --force-reinstall --no-deps .`)"
-        ) from error

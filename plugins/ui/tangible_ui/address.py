@@ -21,6 +21,11 @@ from tangible_core.runtime.standard_output import stream
 HOST = "127.0.0.1"
 HTTP_PORT = 80
 """The port that an address may leave out."""
+NOT_BUILT = (
+    "the page was not built when this was installed, as npm could not be reached; install again where it can (`pip "
+    "install --force-reinstall --no-deps .`), or build it: `npm ci && npm run build` in plugins/ui/web"
+)
+"""Complaint of everything that needs the built page."""
 
 
 @dataclass(frozen=True)
@@ -35,11 +40,7 @@ class Address:
     def of(cls, port: int) -> Generator[Self]:
         """Listen on a port; 0 takes a free one. Raises: ConfigError if the page was not built, or the port is taken."""
         if not (static() / "app.js").is_file():
-            raise ConfigError(
-                "the page was not built when this was installed, as npm could not be reached; install again where it "
-                "can (`pip install --force-reinstall --no-deps .`), or build it: `npm ci && npm run build` in "
-                "plugins/ui/web"
-            )
+            raise ConfigError(NOT_BUILT)
         try:
             listening = socket.create_server((HOST, port))
         except OSError as error:
@@ -75,3 +76,11 @@ def new_key() -> str:
 def static() -> Path:
     """Return the folder of the built page; it does not exist if the page was not built."""
     return Path(str(files("tangible_ui"))) / "static"
+
+
+def page_file(name: str) -> str:
+    """Return the text of a file of the built page. Raises: ConfigError if the page was not built."""
+    try:
+        return (static() / name).read_text("utf-8")
+    except FileNotFoundError as error:
+        raise ConfigError(NOT_BUILT) from error

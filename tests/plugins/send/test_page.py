@@ -13,12 +13,15 @@ from PIL import Image
 
 from page_files import built_page
 from sent_pages import HOSTILE, MATERIALS, finer, picture_to_send
+from tangible_core import Pipeline, Scene
 from tangible_core.errors import OutputError
 from tangible_core.parts.words.languages import one_line
 from tangible_core.plugins.notes import collect_notes
+from tangible_depth import Luminance
 from tangible_render.surface.coefficients import spline_coefficients
 from tangible_send.page import Page
 from tangible_send.surface import surface_to_send
+from videos import write_video
 
 pytestmark = pytest.mark.usefixtures("built")
 
@@ -110,6 +113,22 @@ def test_first_frame_of_a_film_is_named(tmp_path: Path):
     assert "Dies ist das erste Bild eines Films." in path.read_text("utf-8")
 
 
+def test_film_is_sent_by_its_first_frame(tmp_path: Path):
+    """A file of a video, through the whole pipeline: its first frame is dark on the left, the others on the right."""
+    first, other = (np.zeros((48, 64, 3), np.uint8) for _ in range(2))
+    first[:, 32:], other[:, :32] = 200, 200
+    write_video(tmp_path / "film.avi", [first, other, other])
+    pipeline = Pipeline(Scene.video(tmp_path / "film.avi"), depth=Luminance())
+    with collect_notes() as notes:
+        done = pipeline.export(tmp_path / "out", ["page"])
+    [path] = done.files["page"]
+    page = Elements(path.read_text("utf-8"))
+    assert "This is the first frame of a film." in path.read_text("utf-8")
+    assert "the page shows the first frame of the film" in str([note.text for note in notes]) + str(done)
+    picture = np.asarray(Image.open(BytesIO(b64decode(json.loads(page.texts("script")[0])["photo"]))).convert("L"))
+    assert picture[:, :20].mean() < 50 < 150 < picture[:, -20:].mean()
+
+
 def test_surface_without_parts_or_picture_is_written(tmp_path: Path):
     work = picture_to_send()
     bare = replace(work.surface, labels=None, materials=None, names=None)
@@ -120,6 +139,6 @@ def test_surface_without_parts_or_picture_is_written(tmp_path: Path):
 
 
 def test_page_that_was_not_built_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("tangible_send.page.static", lambda: tmp_path)
+    monkeypatch.setattr("tangible_ui.address.static", lambda: tmp_path)
     with pytest.raises(Exception, match="the page was not built"):
         Page().write(picture_to_send(), tmp_path / "it")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from browser_tabs import OpenPage
+from browser_tabs import SETTLED, OpenPage
 from firefox import firefox
 from page_files import WEB, built_page
 from sent_pages import HOSTILE, MATERIALS, picture_to_send, touches
@@ -21,6 +21,17 @@ if TYPE_CHECKING:
 PLACES = 1000
 AXE = WEB / "node_modules/axe-core/axe.min.js"
 RULES = {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
+COLOURS = {"type": "rule", "values": ["color-contrast", "link-in-text-block"]}
+"""All that a theme can break."""
+MOVES = """(() => {
+  const { eye } = tangible.page.view;
+  eye.home();
+  const before = JSON.stringify(eye.pose);
+  eye.top();
+  const still = [...document.querySelectorAll("*")].every((each) => getComputedStyle(each).transitionDuration === "0s");
+  return [JSON.stringify(eye.pose) !== before, still];
+})()"""
+"""Whether the camera is at its goal at once, and whether nothing has a transition."""
 SHAKEN = """
 window.pulses = [];
 navigator.vibrate = (ms) => pulses.push(ms);
@@ -62,6 +73,8 @@ def test_page_is_explored_by_keyboard_mouse_and_pad(sent: str, open_page: OpenPa
     assert_words_of_the_language(tab)
     assert_forces_are_those_of_proxy(tab)
     assert axe_finds(tab) == []
+    assert_colours_of_all_themes(tab)
+    assert_camera_jumps_only_where_motion_is_unwanted(tab)
     tab.set_viewport_size({"width": 320, "height": 568})
     assert tab.evaluate("document.documentElement.scrollWidth") <= 320
     assert axe_finds(tab) == []
@@ -157,9 +170,35 @@ def assert_forces_are_those_of_proxy(tab: "Tab"):
     assert np.degrees(np.arccos(np.clip((one * other).sum(axis=1), -1, 1))).max() < 1
 
 
-def axe_finds(tab: "Tab") -> list[str]:
+def assert_colours_of_all_themes(tab: "Tab"):
+    """In the dark, in high contrast, and where the system forces its colours."""
+    grounds = set[str]()
+    for scheme in ("dark", "light"):
+        for contrast in ("no-preference", "more"):
+            tab.emulate_media(color_scheme=scheme, contrast=contrast)
+            tab.wait_for_function("(name) => document.documentElement.dataset.scheme === name", arg=scheme)
+            tab.evaluate(SETTLED)
+            assert axe_finds(tab, COLOURS) == [], (scheme, contrast)
+            grounds.add(tab.evaluate("getComputedStyle(document.documentElement).backgroundColor"))
+    assert len(grounds) >= 3, "the themes differ"
+    tab.emulate_media(contrast="no-preference", forced_colors="active")
+    assert tab.evaluate("matchMedia('(forced-colors: active)').matches")
+    tab.evaluate(SETTLED)
+    assert axe_finds(tab, COLOURS) == []
+    tab.emulate_media(forced_colors="none")
+
+
+def assert_camera_jumps_only_where_motion_is_unwanted(tab: "Tab"):
+    assert tab.evaluate(MOVES) == [True, True]
+    tab.emulate_media(reduced_motion="no-preference")
+    assert tab.evaluate(MOVES)[0] is False, "the camera flies"
+    tab.emulate_media(reduced_motion="reduce")
+    tab.evaluate("tangible.page.view.eye.top()")
+
+
+def axe_finds(tab: "Tab", rules: dict[str, Any] = RULES) -> list[str]:
     tab.evaluate(AXE.read_text(encoding="utf-8"))
-    found = tab.evaluate("(runOnly) => axe.run(document, { runOnly, resultTypes: ['violations'] })", RULES)
+    found = tab.evaluate("(runOnly) => axe.run(document, { runOnly, resultTypes: ['violations'] })", rules)
     return [f"{each['id']} {node['target']}" for each in found["violations"] for node in each["nodes"]]
 
 

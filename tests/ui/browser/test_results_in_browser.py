@@ -100,6 +100,20 @@ class TestExport:
             assert packed.namelist() == ["mine.3mf", "mine.stl"]
             assert packed.testzip() is None
 
+    def test_picture_is_sent_as_a_page_by_its_button(self, show: Callable[..., "Page"]) -> None:
+        """The other exporters that are chosen are not made."""
+        page = show("export: [stl]\n")
+        panel = open_panel(page, "export")
+        panel.get_by_role("button", name="Send as a page").press("Enter")
+        until(lambda: "One file is ready." in panel.inner_text(), "the file")
+        until(lambda: page.evaluate("document.activeElement.id") == "export-status", "the focus is at the result")
+        with page.expect_download() as waited:
+            panel.get_by_role("link", name="mine-page.html").press("Enter")
+        sent = content_of(waited.value).decode()
+        assert sent.startswith("<!doctype html>") and "default-src 'none'" in sent
+        assert len(sent) < 2_000_000
+        assert panel.locator(".outcome").count() == 1
+
     def test_export_choices_are_written_to_the_file_and_read_from_it(self, show: Callable[..., "Page"]) -> None:
         page = show("export: [{use: stl, rim_m: 0.01}, 3mf]\n")
         panel = open_panel(page, "export")

@@ -77,6 +77,10 @@ class Specs:
         """Return panels to add to the end of a run's sheet; called for every sheet."""
 
     @hookspec
+    def tangible_listings(self) -> Sequence[Any]:  # pyright: ignore[reportReturnType]
+        """Return what `tangible plugins` lists besides methods, a `registry.Listing` each; nothing is imported."""
+
+    @hookspec
     def tangible_commands(self, app: Typer) -> None:
         """Add commands to `tangible`."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from itertools import chain
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -40,11 +41,14 @@ def plugins(context: typer.Context, as_json: Json = False) -> None:
         return
     import json
 
+    from ...plugins.hooks import tell
     from ...plugins.registry import default_registry
     from ...runtime.standard_output import stream
     from ...translation import localise
 
-    rows = [{column: getattr(each, column) for column in (*COLUMNS, "target")} for each in default_registry().listings]
+    registry = default_registry()
+    listings = (*registry.listings, *chain.from_iterable(tell(registry.plugins, "tangible_listings")))
+    rows = [{column: getattr(each, column) for column in (*COLUMNS, "target")} for each in listings]
     if as_json:
         print(json.dumps(rows, indent=2, ensure_ascii=False), file=stream())
         return

@@ -15,6 +15,7 @@ FACTS = {
     "tangible_stage_finished": {"outcome": RAN},
     "tangible_servo_report": {"report": ServoReport(1, 0.001, HapticState((0, 0, 0)), NO_FORCE, 1.0, 0.0)},
     "tangible_panels": {},
+    "tangible_listings": {},
     "tangible_commands": {"app": object()},
 }
 
@@ -55,6 +56,10 @@ class Witness:
     @hookimpl
     def tangible_panels(self):
         self.calls.append(("tangible_panels", {}))
+
+    @hookimpl
+    def tangible_listings(self):
+        self.calls.append(("tangible_listings", {}))
 
     @hookimpl
     def tangible_commands(self, app):

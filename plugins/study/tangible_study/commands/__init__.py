@@ -9,6 +9,8 @@ from tangible_core.plugins import hookimpl
 if TYPE_CHECKING:
     from typer import Typer
 
+    from tangible_core.plugins.registry import Listing
+
 
 @hookimpl
 def tangible_commands(app: Typer) -> None:
@@ -16,3 +18,11 @@ def tangible_commands(app: Typer) -> None:
     from tangible_core.cli.command_table import add
 
     add("study", "tangible_study.commands.study:app", "Run an experiment with people from a file; check it first.")
+
+
+@hookimpl
+def tangible_listings() -> list[Listing]:
+    """List the installed procedures."""
+    from ..points import procedure_listings
+
+    return procedure_listings()

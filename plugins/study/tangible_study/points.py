@@ -1,0 +1,35 @@
+"""The entry points of procedures: ours, and those of other packages by the group `tangible.procedure`."""
+
+from importlib.metadata import EntryPoint, distribution, entry_points
+
+from tangible_core.plugins.naming import origin
+from tangible_core.plugins.registry import Listing
+
+GROUP = "tangible.procedure"
+OURS = {
+    "constant": "constant:Constant",
+    "2afc": "two_afc:TwoAfc",
+    "oddity": "oddity:Oddity",
+    "same-different": "same_different:SameDifferent",
+    "quest": "quest:Quest",
+    "adjustment": "adjustment:Adjustment",
+    "naming": "naming:Naming",
+    "rating": "rating:Rating",
+}
+"""Our own procedures below `procedures/`, which no other package can replace."""
+
+
+def points() -> dict[str, EntryPoint]:
+    """Return the entry points of all installed procedures by name, ours first. Nothing is imported."""
+    others = {each.name: each for each in entry_points(group=GROUP)}
+    ours = {name: EntryPoint(name, f"{__package__}.procedures.{place}", GROUP) for name, place in OURS.items()}
+    return {**ours, **{name: point for name, point in others.items() if name not in ours}}
+
+
+def procedure_listings() -> list[Listing]:
+    """Return all installed procedures as `tangible plugins` lists them. Nothing is imported."""
+    own = distribution("tangible-images")
+    return [
+        Listing("procedure", name, point.value, str(origin(point.dist or own)), point)
+        for name, point in points().items()
+    ]

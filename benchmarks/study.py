@@ -25,6 +25,7 @@ from .figures import Figure, MissedError, judged, part, table
 
 OBSERVERS = 500
 STUDIES = 200
+QUEST_TRIALS = 120
 LEVELS = "vary: render.stiffness_n_per_m, levels: [140, 160, 180, 200, 220, 240, 260], standard: 200"
 DISTANCES = "vary: render.stiffness_n_per_m, levels: [210, 220, 230, 245, 260, 280, 300], standard: 200"
 HEAD = """\
@@ -50,7 +51,7 @@ def section() -> str:
         Path(folder, "feel.yaml").write_text("scene: builtin/brick\nwant: touch\nrender: proxy\ndevice: mock\n")
         start = process_time()
         held = part("curves", lambda: list(_curves(Path(folder))))
-        seconds = (process_time() - start) / (2 * OBSERVERS)
+        seconds = (process_time() - start) / (3 * OBSERVERS)
         held += part("counts", lambda: list(_counts(Path(folder))))
         held += part("groups", lambda: list(_groups(Path(folder))))
         power = part("power", lambda: _power(Path(folder)))
@@ -101,17 +102,19 @@ def _curves(folder: Path) -> Iterator[Held]:
     choices = _study(
         folder, f"name: x, question: higher, procedure: constant, conditions: [a], {LEVELS}, repetitions: 40"
     )
+    quest = _study(
+        folder, f"name: x, question: higher, procedure: quest, conditions: [a], {LEVELS}, repetitions: {QUEST_TRIALS}"
+    )
     odd = _study(folder, f"name: x, question: same, conditions: [a], {DISTANCES}, repetitions: 40")
     for number in range(OBSERVERS):
         threshold, width, lapse = (float(each) for each in generator.uniform((185, 30, 0), (215, 120, 0.06)))
-        found = _one(
-            choices, "psychometric", number, threshold=threshold, width=width, lapse=lapse, personal=0.0, spread=0.0
-        )
-        yield "point of equality, 7 levels of 40 trials", _holds(found, What("point of equality", "a"), threshold)
-        yield (
-            "just noticeable difference, likewise",
-            _holds(found, What("just noticeable difference", "a"), JND * width),
-        )
+        for file, trials in ((choices, "7 levels of 40 trials"), (quest, f"QUEST+, {QUEST_TRIALS} trials")):
+            found = _one(
+                file, "psychometric", number, threshold=threshold, width=width, lapse=lapse, personal=0.0, spread=0.0
+            )
+            yield f"point of equality, {trials}", _holds(found, What("point of equality", "a"), threshold)
+            noticed = What("just noticeable difference", "a")
+            yield f"just noticeable difference, {trials}", _holds(found, noticed, JND * width)
         distance, slope = (float(each) for each in generator.uniform((25, 1.5), (60, 3.0)))
         found = _one(odd, "psychometric", number, threshold=distance, slope=slope, lapse=0.02, personal=0.0, spread=0.0)
         yield "threshold of the odd one, 7 levels of 40 trials", _holds(found, What("threshold", "a"), distance)

@@ -74,7 +74,7 @@ def is_prose(template: str) -> bool:
 
 
 def described() -> Iterator[str]:
-    """Yield the demands of checks, the descriptions and titles of options, and the help of commands."""
+    """Yield the demands of checks, the descriptions of options and of what is listed, and the help of commands."""
     import typer
 
     from tangible_core.cli.app import app
@@ -87,6 +87,8 @@ def described() -> Iterator[str]:
 
     yield from dict.fromkeys(kit.demand(check) for kind in kit.FAMILIES for check in kit.checks(kind))
     hooks.tell(default_registry().plugins, "tangible_commands", app=app)
+    for listings in hooks.tell(default_registry().plugins, "tangible_listings"):
+        yield from (each.summary for each in listings if each.distribution == "tangible-images")
     sources = {part for each in load_library().values() for part in re.split(r"; |\w+: ", each.source) if part}
     for source in sorted(sources):
         yield _unique(re.sub(r"(?<![\^\w])[\d.]+", "{number}", source))

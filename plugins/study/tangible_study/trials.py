@@ -27,9 +27,9 @@ class Answer:
     comparison: str
     """Name of the comparison in the study file, to which question and procedure belong."""
     question: str
-    """rougher, higher, same, equal, name or rating."""
+    """rougher, higher, same, different, equal, name or rating."""
     procedure: str
-    """constant, 2afc, oddity, quest, adjustment, rating, or the name of another installed procedure."""
+    """constant, 2afc, oddity, same-different, quest, adjustment, rating, or the name of another installed procedure."""
     condition: str
     """Name of the condition under test."""
     other: str | None = None
@@ -57,7 +57,7 @@ class Answer:
     recording: str | None = None
     """Path of the recording of the forces, relative to the study's folder."""
     target: str | None = None
-    """Name of the part that was to be named."""
+    """Right answer, where it is not the number of an interval: the name of a part, or `same` or `different`."""
 
     def line(self) -> str:
         """Return the line of the table, without its end."""

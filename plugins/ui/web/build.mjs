@@ -1,5 +1,6 @@
 // Bundles the page: `node build.mjs [FOLDER] [--watch]`, without a folder into the Python package beside this one. With it
-// comes the page that is sent to others, `send.js` and `send.css`, each whole, as tangible_send puts them into one file.
+// come the page that is sent to others, `send.js` and `send.css`, and that of a participant of a study, `study.js` and
+// `study.css`, each whole, as tangible_send and tangible_study put them into one file.
 // A folder is replaced whole or not at all: a build that fails or is killed leaves the page of before, or none.
 import { createHash } from "node:crypto";
 import { mkdirSync, mkdtempSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync } from "node:fs";
@@ -65,7 +66,7 @@ function preloading(html, outputs) {
 }
 
 async function finish({ outputFiles, metafile }) {
-  const made = Object.fromEntries([...outputFiles, ...(await sent())].map(({ path, contents }) => [relative(out, path), contents]));
+  const made = Object.fromEntries([...outputFiles, ...(await whole())].map(({ path, contents }) => [relative(out, path), contents]));
   const legal = Object.keys(made).filter((name) => name.endsWith(".LEGAL.txt"));
   const texts = [...licences(metafile.inputs), ...legal.map((name) => Buffer.from(made[name]).toString())];
   for (const name of legal) delete made[name];
@@ -98,10 +99,10 @@ const page = {
   },
 };
 
-/** The page that is sent, as one script that needs no other file. */
-async function sent() {
+/** The pages that are one file: each with one script that needs no other. */
+async function whole() {
   const { outputFiles } = await build({
-    ...options, entryPoints: { send: "./src/send/main.ts" }, splitting: false, format: "iife", legalComments: "none", plugins: [],
+    ...options, entryPoints: { send: "./src/send/main.ts", study: "./src/study/main.ts" }, splitting: false, format: "iife", legalComments: "none", plugins: [],
     minify: true, sourcemap: false,
   });
   return outputFiles;

@@ -1,5 +1,6 @@
 import json
 import re
+import zlib
 from base64 import b64decode, b64encode
 from dataclasses import replace
 from hashlib import sha256
@@ -14,11 +15,14 @@ from PIL import Image
 from page_files import built_page
 from sent_pages import HOSTILE, MATERIALS, finer, picture_to_send
 from tangible_core import Pipeline, Scene
+from tangible_core.data import Relief
 from tangible_core.errors import OutputError
 from tangible_core.parts.words.languages import one_line
 from tangible_core.plugins.notes import collect_notes
 from tangible_depth import Luminance
 from tangible_render.surface.coefficients import spline_coefficients
+from tangible_send.html import page_of
+from tangible_send.packing import deflate
 from tangible_send.page import Page
 from tangible_send.surface import surface_to_send
 from videos import write_video
@@ -104,6 +108,62 @@ def test_coefficients_are_within_half_a_step():
     assert sent.step_m == 1e-6
     wanted_m = spline_coefficients(work.surface.height_m)
     assert np.abs(sent.coefficients - wanted_m).max() < 0.51e-6
+
+
+def test_numbers_are_packed_as_the_page_unpacks_them():
+    """Unpacked by the rule that stands in the page's `unfold`, one number after the other; labels use all 16 bits."""
+    numbers = np.random.default_rng(3).integers(0, 2**16, (7, 5), dtype=np.uint16)
+    packed = zlib.decompress(b64decode(deflate(numbers)))
+    found = np.zeros((8, 6), np.int64)
+    for k in range(35):
+        row, column = divmod(k, 5)
+        zigzag = packed[k] | packed[35 + k] << 8
+        plane = found[row, column + 1] + found[row + 1, column] - found[row, column]
+        found[row + 1, column + 1] = (plane + ((zigzag >> 1) ^ -(zigzag & 1))) % 2**16
+    assert (found[1:, 1:] == numbers).all()
+
+
+def test_data_have_the_materials_of_each_part(tmp_path: Path):
+    (path,) = Page().write(picture_to_send(), tmp_path / "it")
+    data = json.loads(Elements(path.read_text("utf-8")).texts("script")[0])
+    assert data["rows"] == [[300.0, 1.5, 0.5, 0.4], [900.0, 0.5, 0.2, 0.1], [1200.0, 0.0, 0.0, 0.0]]
+
+
+def test_high_surface_has_larger_steps():
+    work = picture_to_send()
+    relief = Relief(work.surface.height_m * np.float32(40), work.surface.extent_m)
+    high = replace(work, products={**work.products, "surface": replace(work.surface, relief=relief)})
+    sent = next(surface_to_send(high))
+    assert sent.step_m > 1e-6
+    assert np.abs(sent.coefficients - spline_coefficients(relief.height_m)).max() < 0.51 * sent.step_m
+
+
+def test_drawn_heights_are_those_of_the_spline():
+    from tangible_render.surface.spline import slope
+
+    sent = next(surface_to_send(picture_to_send()))
+    rows, columns = sent.height_m.shape
+    width_m, length_m = sent.extent_m
+    for row, column in ((0, 0), (20, 15), (44, 60), (89, 119)):
+        x, y = (column + 0.5) / columns * width_m - width_m / 2, length_m / 2 - (row + 0.5) / rows * length_m
+        height_m = slope(sent.coefficients, columns / width_m, rows / length_m, x, y)[0]
+        assert sent.height_m[row, column] == pytest.approx(height_m, abs=2e-7)
+
+
+def test_labels_of_a_reduced_surface_are_where_its_parts_are():
+    whole = finer(picture_to_send(), 8)
+    sent = next(surface_to_send(whole))
+    assert sent.labels is not None and sent.labels.shape < whole.surface.height_m.shape
+    for label in (1, 2):
+        both = (sent.labels, whole.surface.labels)
+        here, there = (np.argwhere(each == label).mean(axis=0) / each.shape for each in both)
+        assert here == pytest.approx(there, abs=2 / len(sent.labels))
+
+
+def test_script_that_would_end_its_element_is_refused():
+    for script, style in (("a</SCRIPT>", ""), ("", "a</style")):
+        with pytest.raises(ValueError, match="must not end their elements"):
+            page_of("title", "en", "en", {}, script, style, "")
 
 
 def test_first_frame_of_a_film_is_named(tmp_path: Path):

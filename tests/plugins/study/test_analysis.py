@@ -35,6 +35,7 @@ COMPARISONS = {
     "distance": f"{{name: distance, question: same, conditions: [one], {OTHERS}, repetitions: 30}}",
     "equal": f"{{name: equal, question: equal, conditions: [one, two], {LEVELS}, repetitions: 10}}",
     "parts": "{name: parts, question: name, conditions: [one, two], names: [nose, ear, eye, chin], repetitions: 6}",
+    "differ": "{name: differ, question: different, conditions: [one, two], repetitions: 40}",
     "rate": "{name: rate, question: rating, repetitions: 8}",
 }
 
@@ -97,6 +98,18 @@ def test_odd_one_is_found_and_one_participant_is_said_to_be_few(tmp_path: Path):
     assert "says little about other people" in text
     _, text = found(file, 4, "detection", "difference=0")
     assert text.startswith("It is open whether one and two can be told apart")
+
+
+def test_two_that_differ_are_told_apart_by_same_or_different(tmp_path: Path):
+    file = study_of(tmp_path, "differ")
+    rows, said = found(file, 10, "detection", "difference=2.5", "lapse=0", "spread=0")
+    share, dprime = rows[What("proportion correct", "one", "two"), ALL], rows[What("d'", "one", "two"), ALL]
+    assert share.chance == 0.5 and share.estimate.low > 0.5
+    assert dprime.estimate.holds(2.5) and dprime.estimate.high < 3.2
+    assert said.startswith("one and two can be told apart: 10 participants answered rightly in ")
+    rows, said = found(file, 10, "detection", "difference=0", "lapse=0")
+    assert rows[What("d'", "one", "two"), "S01"].estimate.low == 0.0
+    assert said.startswith("It is open whether one and two can be told apart: 10 participants answered rightly in ")
 
 
 def test_scale_has_the_order_and_the_distances_of_the_observers(tmp_path: Path):

@@ -2,21 +2,36 @@
 
 import json
 import re
-from concurrent.futures import ThreadPoolExecutor
+from base64 import b64decode
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from urllib.error import HTTPError
 from urllib.request import Request, urlopen
 
+import numpy as np
 import pytest
 
+from sent_pages import HOSTILE, MATERIALS, picture_to_send
 from studies import write_study
+from tangible_core.data import TICK_COLUMNS, HapticSurface
+from tangible_core.errors import DeviceError
 from tangible_core.translation import translate
 from tangible_study.desks.desk import Left
 from tangible_study.desks.page import Page
+from tangible_study.desks.page_hand import PageHand
+from tangible_study.desks.page_surface import surface_for_page
+from tangible_study.presenting.held_loop import HeldLoop
 from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.session.start import begin
 from tangible_study.study_file import parse_study
 from tangible_study.trials import read_answers
+from tangible_ui.framing import ACK, POINTER, POINTER_FRAME, RELEASE, RELEASE_FRAME, STATE_FRAME
+from waiting import until
+
+FORCE = [TICK_COLUMNS.index(each) for each in ("fx_n", "fy_n", "fz_n")]
 
 
 def fetch(page: Page, path: str, body: object = None):
@@ -73,3 +88,122 @@ def test_page_asks_nobody_else_and_nobody_else_finds_it():
         for path in ("", "events?after=0", "x/events?after=0", "../"):
             with pytest.raises(HTTPError, match="404"):
                 urlopen(page.address.rpartition("/")[0].rpartition("/")[0] + "/" + path)
+
+
+def test_answer_to_an_earlier_question_is_not_taken():
+    with Page("en", str) as page, ThreadPoolExecutor(1) as background:
+        for number in (1, 2):
+            asked = background.submit(page.ask, "Which?", {"1": ""})
+            until(lambda number=number: len(page.events_after(0)) == number, "the question")
+            if number == 2:
+                assert not fetch(page, "answer", {"number": 1, "key": "1"})
+            assert fetch(page, "answer", {"number": number, "key": "1"})
+            assert asked.result() == "1"
+
+
+@pytest.mark.usefixtures("loop_in_thread")
+class TestHand:
+    """The page as the device: a surface is felt for as long as a test needs, at the address that the page asks."""
+
+    @pytest.fixture
+    def feel(self, tmp_path: Path) -> Iterator[Callable[[], tuple[Page, list[np.ndarray], Future[None]]]]:
+        study, hand = write_study(tmp_path), PageHand()
+        stimuli = Stimuli(parse_study(study.read_text(), study), hand.device)
+        comparison, stimulus = next(iter(stimuli.recipes))
+        feeling, rows = stimuli.feeling(comparison, stimulus), list[np.ndarray]()
+        feeling.touch  # noqa: B018 - made before the interval begins
+        with ThreadPoolExecutor(1) as background, Page("en", str, hand, ["force"]) as page, HeldLoop() as loop:
+
+            def start() -> tuple[Page, list[np.ndarray], Future[None]]:
+                return page, rows, background.submit(loop.feel, feeling, 600.0, rows.append, page, lambda: None, None)
+
+            yield start
+            page.stop.set()
+
+    def test_surface_is_there_while_it_is_felt_alone(self, feel: Any):
+        page, _, done = feel()
+        told = begun(page)
+        assert told["surface"] == 1 and told["sounds"] == ["force"] and told["lead"] is None
+        for number in (0, 2):
+            with pytest.raises(HTTPError, match="404"):
+                fetch(page, f"surface?{number}")
+        page.stop.set()
+        assert isinstance(done.exception(), DeviceError)
+        assert page.events_after(0)[-1]["surface"] == 0
+        with pytest.raises(HTTPError, match="404"):
+            fetch(page, "surface?1")
+
+    def test_hand_that_leaves_feels_nothing(self, feel: Any):
+        page, rows, _ = feel()
+        begun(page)
+        press_until_felt(page)
+        state = exchange(page, RELEASE_FRAME.pack(RELEASE))
+        until(lambda: not newest_n(rows), "the force falls to zero")
+        assert len(state) == STATE_FRAME.size
+
+    def test_silent_page_is_released(self, feel: Any):
+        page, rows, _ = feel()
+        begun(page)
+        press_until_felt(page)
+        until(lambda: not newest_n(rows), "the force falls to zero")
+
+    def test_hand_takes_whole_messages_alone(self, feel: Any):
+        page, rows, _ = feel()
+        begun(page)
+        for message in (b"", b"x", pointer()[:-1], pointer() + b"0", bytes([ACK]) * 8):
+            assert exchange(page, message) == b""
+        assert not newest_n(rows)
+
+    def test_page_that_does_not_answer_interrupts_the_trial(self, feel: Any, monkeypatch: pytest.MonkeyPatch):
+        monkeypatch.setattr("tangible_study.desks.page.SURFACE_S", 0.05)
+        _, rows, done = feel()
+        assert "does not answer" in str(done.exception())
+        assert not newest_n(rows)
+
+
+def test_surface_of_the_page_has_no_name():
+    """Its cells and labels are those of the surface, in their order."""
+    work = picture_to_send()
+    surface = replace(work.surface, materials=MATERIALS)
+    sent = surface_for_page(surface, 3)
+    text = json.dumps(sent)
+    assert not any(name in text for name in (*HOSTILE, "felt", "ice"))
+    assert [each["roughness_m"] for each in sent["meta"]["materials"]] == [each.roughness_m for each in MATERIALS]
+    labels = np.frombuffer(b64decode(sent["labels"]), "<u2").reshape(surface.height_m.shape)
+    assert surface.labels is not None and (labels == surface.labels).all()
+    heights = np.frombuffer(b64decode(sent["heights"]), "<f4").reshape(surface.height_m.shape)
+    assert (heights == surface.height_m).all()
+    bare = surface_for_page(HapticSurface(surface.relief), 1)
+    assert bare["labels"] == "" and bare["meta"]["materials"] == bare["kinds"] == []
+
+
+def begun(page: Page) -> dict[str, Any]:
+    """Fetch the surface as the page does, and return the event that told of it."""
+    told = next(each for each in page.events_after(0) if each.get("surface"))
+    fetch(page, f"surface?{told['surface']}")
+    return told
+
+
+def pointer() -> bytes:
+    """The message of a hand that is in the middle of the surface."""
+    return POINTER_FRAME.pack(POINTER, 1, 7, 0.0, 0.0, 0.0, 0.002)
+
+
+def exchange(page: Page, message: bytes) -> bytes:
+    with urlopen(Request(page.address + "hand", message)) as answer:
+        return answer.read()
+
+
+def press_until_felt(page: Page) -> None:
+    """Press as the page does, until a state has a force."""
+
+    def is_felt() -> bool:
+        state = exchange(page, pointer())
+        return bool(state) and STATE_FRAME.unpack(state)[15] > 0.05
+
+    until(is_felt, "a force")
+
+
+def newest_n(rows: list[np.ndarray]) -> float:
+    """The greatest component of the force of the last tick, newtons; 0 before the first one."""
+    return float(np.abs(rows[-1][-1, FORCE]).max()) if rows else 0.0

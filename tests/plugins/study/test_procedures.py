@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tangible_core.errors import ResultsError
+from tangible_core.errors import ConfigError, ResultsError
 from tangible_study.procedures import Trial, score
 from tangible_study.session.order import StudyCourse, comparison_order, latin_square, replay
 from tangible_study.study_file import StudyFile, parse_study
@@ -26,6 +26,8 @@ comparisons:
 - {{name: quest, question: higher, procedure: quest, {LEVELS}, repetitions: 8}}
 - {{name: equal, question: equal, {LEVELS}, repetitions: 2}}
 - {{name: rate, question: rating, repetitions: 2}}
+- {{name: differ, question: different, repetitions: 8, training: 2}}
+- {{name: parts, question: name, names: [cup, plate, knife], repetitions: 4}}
 """
 
 
@@ -56,6 +58,43 @@ def test_each_position_and_each_odd_one_come_equally_often(file: StudyFile):
     assert all(Counter(each.intervals).most_common()[0][1] == 2 for each in tests)
     levels = [trial for trial, _ in run(file) if trial.comparison == "levels"]
     assert set(Counter((each.level, each.position) for each in levels).values()) == {2}
+
+
+def test_same_and_different_pairs_come_equally_often(file: StudyFile):
+    tests = [trial for trial, _ in run(file) if trial.comparison == "differ" and trial.phase == "test"]
+    pairs = Counter((*(each.condition for each in trial.intervals), trial.target) for trial in tests)
+    assert pairs == {
+        ("one", "two", "different"): 2, ("two", "one", "different"): 2,
+        ("one", "one", "same"): 2, ("two", "two", "same"): 2,
+    }  # fmt: skip
+
+
+def test_each_part_is_named_equally_often_in_each_condition(file: StudyFile):
+    tests = [trial for trial, _ in run(file) if trial.comparison == "parts"]
+    names = ("cup", "plate", "knife")
+    expected = {(condition, name): 4 for condition in ("one", "two") for name in names}
+    assert Counter((each.condition, each.target) for each in tests) == expected
+    assert all(each.choices == names and len(each.intervals) == 1 for each in tests)
+    turns = [Counter((each.condition, each.target) for each in tests[at : at + 6]) for at in range(0, 24, 6)]
+    assert turns == [dict.fromkeys(expected, 1)] * 4, "each once before any comes again"
+    assert {tuple(each.target for each in tests[at : at + 6]) for at in range(0, 24, 6)} != {tests[0].target}
+
+
+@pytest.mark.parametrize(
+    ("comparison", "said"),
+    [
+        ("question: name, names: [cup]", "write at least two different `names:`"),
+        ("question: name, names: [cup, cup]", "write at least two different `names:`"),
+        ("question: rating, procedure: naming, names: [cup, plate]", "does not ask for 'rating'"),
+        (f"question: different, {LEVELS}", "compares conditions and no levels"),
+        ("question: same, procedure: same-different", "does not ask for 'same'"),
+    ],
+)
+def test_what_a_procedure_cannot_ask_is_refused(tmp_path: Path, comparison: str, said: str):
+    (tmp_path / "feel.yaml").write_text("scene: builtin/brick\nwant: touch\nrender: proxy\ndevice: mock\n")
+    head = STUDY.partition("comparisons:")[0]
+    with pytest.raises(ConfigError, match=said):
+        parse_study(f"{head}comparisons:\n- {{name: x, {comparison}}}\n", tmp_path / "study.yaml")
 
 
 def test_number_of_trials_is_the_one_foretold(file: StudyFile):
@@ -106,7 +145,7 @@ def test_order_is_the_one_in_the_file(tmp_path: Path):
     (tmp_path / "feel.yaml").write_text("scene: builtin/brick\nwant: touch\nrender: proxy\ndevice: mock\n")
     written = parse_study(f"order: as-written\n{STUDY}", tmp_path / "study.yaml")
     drawn = parse_study(f"order: random\n{STUDY}", tmp_path / "study.yaml")
-    assert [comparison_order(written, each) for each in (0, 1)] == [list(range(6))] * 2
+    assert [comparison_order(written, each) for each in (0, 1)] == [list(range(8))] * 2
     assert len({tuple(comparison_order(drawn, each)) for each in range(8)}) > 4
 
 
@@ -118,6 +157,8 @@ def test_order_is_the_one_in_the_file(tmp_path: Path):
         (Trial("a", "higher", "constant", (), (), "x", level=1.0, standard=1.0, position=2), "1", (0, None)),
         (Trial("a", "rougher", "2afc", (), (), "x", "y", position=1), "1", (1, None)),
         (Trial("a", "same", "oddity", (), (), "x", "y", position=1), "3", (None, 0)),
+        (Trial("a", "different", "same-different", (), (), "x", "y", target="same"), "different", (None, 0)),
+        (Trial("a", "different", "same-different", (), (), "x", "y", target="different"), "different", (None, 1)),
         (Trial("a", "name", "naming", (), (), "x", target="cup"), "cup", (None, 1)),
         (Trial("a", "rating", "rating", (), (), "x"), "4", (None, None)),
         (Trial("a", "equal", "adjustment", (), (), "x", level=2.0, standard=1.0), "1.5", (None, None)),

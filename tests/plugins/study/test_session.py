@@ -15,8 +15,10 @@ from tangible_core.pipeline.feeling import Feeling
 from tangible_core.session import Recording, Writer
 from tangible_study.desks.desk import Left
 from tangible_study.presenting.stimuli import Stimuli
+from tangible_study.procedures import Trial
 from tangible_study.session.folder import participants
 from tangible_study.session.start import begin
+from tangible_study.session.words import response, right_answer
 from tangible_study.study_file import parse_study
 from tangible_study.trials import AnswerFile, read_answers
 
@@ -208,6 +210,27 @@ def test_adjustment_ends_at_the_level_that_was_set(tmp_path: Path):
     kept = read_answers(study.parent / "out/sub-P1/beh/sub-P1_task-small_beh.tsv")
     assert {each.level for each in kept} == {100.0, 300.0}
     assert [each.response for each in kept] == ["300.0", "300.0"]
+
+
+@pytest.mark.parametrize(
+    ("trial", "key", "given", "right"),
+    [
+        (Trial("a", "name", "naming", (), ("cup", "knife"), "x", target="knife"), "2", "knife", "knife"),
+        (
+            Trial("a", "different", "same-different", (), ("same", "different"), "x", "y", target="same"),
+            "1",
+            "same",
+            "same",
+        ),
+        (Trial("a", "same", "oddity", (), ("1", "2", "3"), "x", "y", position=3), "2", "2", "3"),
+        (Trial("a", "higher", "constant", (), ("1", "2"), "x", level=2.0, standard=1.0, position=2), "1", "1", "2"),
+        (Trial("a", "higher", "constant", (), ("1", "2"), "x", level=0.5, standard=1.0, position=2), "2", "2", "1"),
+        (Trial("a", "higher", "constant", (), ("1", "2"), "x", level=1.0, standard=1.0, position=2), "2", "2", ""),
+        (Trial("a", "rougher", "2afc", (), ("1", "2"), "x", "y", position=1), "2", "2", ""),
+    ],
+)
+def test_right_answer_is_told_in_training(trial: Trial, key: str, given: str, right: str):
+    assert (response(trial, key), right_answer(trial)) == (given, right)
 
 
 def test_break_comes_after_every_few_trials_and_lasts(study: Path):

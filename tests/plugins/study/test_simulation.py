@@ -53,6 +53,15 @@ def test_shares_of_right_answers_are_those_of_theory(
     assert np.mean(correct) == pytest.approx(share, abs=3.5 * (share * (1 - share) / len(correct)) ** 0.5)
 
 
+def test_psychometric_observer_has_its_threshold(tmp_path: Path):
+    """By the definition of a threshold of three intervals: halfway from chance, 67 %."""
+    distances = "vary: render.stiffness_n_per_m, levels: [120, 160], standard: 100"
+    file = study_of(tmp_path, f"- {{name: far, question: same, conditions: [one], {distances}, repetitions: 600}}\n")
+    observer = observer_of("psychometric", ["threshold=20", "lapse=0", "spread=0", "personal=0"], file)
+    right = [each.correct for each in simulate(file, observer, 0, 7) if each.level == 120]
+    assert np.mean(right) == pytest.approx(2 / 3, abs=0.07)
+
+
 def test_a_noticeable_difference_of_force_is_noticed_in_three_of_four_trials(tmp_path: Path):
     file = study_of(tmp_path, FORCES)
     answers = simulate(file, observer_of("hand", ["lapse=0", "spread=0"], file), 0, 7)

@@ -72,6 +72,48 @@ def test_dprime_of_the_odd_one_is_that_of_simulated_observers():
     assert (farthest == 0).mean() == pytest.approx(sensitivity.oddity_correct(2.0), abs=0.004)
 
 
+@pytest.mark.parametrize("dprime", [0.0, 0.5, 1.0, 2.0, 3.0, 4.5, 6.0])
+def test_share_of_odd_ones_is_that_of_the_model_integrated_over_two_intervals(dprime: float):
+    """The third interval is named where the first two are closest: the integral over these, by the trapezoidal rule."""
+    felt = np.linspace(-8, 8, 801)
+    first, second = felt[:, None], felt[None]
+    low, high, gap = np.minimum(first, second), np.maximum(first, second), np.abs(first - second)
+    named = stats.norm.sf(high + gap - dprime) + stats.norm.cdf(low - gap - dprime)
+    density = stats.norm.pdf(felt) * (felt[1] - felt[0])
+    assert sensitivity.oddity_correct(dprime) == pytest.approx(
+        float(np.einsum("i,ij,j", density, named, density)), abs=2e-5
+    )
+
+
+def test_dprime_of_same_or_different_is_that_of_simulated_observers():
+    """Whatever the criterion; 200,000 trials of each kind."""
+    noise = np.random.default_rng(4).standard_normal((2, 200_000)) * 2**0.5
+    for dprime, criterion in ((0.7, 1.0), (1.5, 1.5), (1.5, 2.5), (3.0, 1.8)):
+        hits, alarms = ((np.abs(noise[0] + dprime) > criterion).sum(), (np.abs(noise[1]) > criterion).sum())
+        found = sensitivity.same_different(int(hits), 200_000, int(alarms), 200_000)
+        assert found.value == pytest.approx(dprime, abs=0.04)
+        assert found.high - found.low < 0.12
+
+
+def test_intervals_of_same_or_different_hold_the_truth_as_often_as_they_say():
+    random = np.random.default_rng(5)
+    held = []
+    for _ in range(600):
+        dprime, criterion = random.uniform(1.0, 3.0), random.uniform(1.2, 2.2)
+        alarms = random.binomial(30, 2 * stats.norm.cdf(-criterion / 2**0.5))
+        share = stats.norm.cdf((dprime - criterion) / 2**0.5) + stats.norm.cdf((-dprime - criterion) / 2**0.5)
+        held.append(sensitivity.same_different(random.binomial(30, share), 30, alarms, 30).holds(dprime))
+    assert 0.92 < np.mean(held) < 0.98
+
+
+def test_dprime_of_same_or_different_at_the_ends():
+    none = sensitivity.same_different(5, 10, 5, 10)
+    assert none.value == none.low == 0.0
+    every = sensitivity.same_different(20, 20, 0, 20)
+    assert every.value > 4 and every.high == np.inf
+    assert np.isnan(sensitivity.same_different(3, 10, 0, 0).value)
+
+
 @pytest.mark.parametrize(("share", "dprime"), [(0.55, 0.18), (0.76, 1.0), (0.85, 1.47), (0.92, 1.99)])
 def test_dprime_of_two_intervals_is_that_of_the_tables(share: float, dprime: float):
     assert round(sensitivity.two_afc(share), 2) == dprime
@@ -107,6 +149,17 @@ def test_difference_of_two_intervals_is_as_that_of_two_means():
     assert difference(one, other) == pytest.approx((2.0, 2 - 2**0.5, 2 + 2**0.5))
     assert wider(one, other) == (3.0, 0.0, 4.0)
     assert not mean([1.0]).has_interval
+
+
+def test_difference_of_two_intervals_takes_the_side_that_faces():
+    """By hand: the lower bound needs the lower side of the first and the upper side of the second."""
+    found = difference(Estimate(3.0, 2.0, 5.0), Estimate(1.0, 0.0, 1.5))
+    assert found == pytest.approx((2.0, 2 - 1.25**0.5, 2 + 5**0.5))
+
+
+def test_interval_of_a_mean_is_students():
+    """4.303 is the quantile of the table for two degrees of freedom, and the standard deviation is 1."""
+    assert mean([1.0, 2.0, 3.0]) == pytest.approx((2.0, 2 - 4.3027 / 3**0.5, 2 + 4.3027 / 3**0.5), abs=1e-4)
 
 
 @pytest.mark.parametrize(

@@ -32,6 +32,8 @@ PAGE = {
     "send.css",
     "send.js",
     "start.css",
+    "study.css",
+    "study.js",
     *LATER,
 }
 DIGEST = re.compile(r"-[A-Z0-9]{8}(?=\.(js|css)$)")
@@ -326,7 +328,7 @@ class TestPage:
         first = fetched_first(page)
         size = sum(len(gzip.compress((page / name).read_bytes(), 9)) for name in first)
         assert 1_000 < size <= MOST_BYTES
-        sent = {"send.js"}  # which `export --to page` reads, and no browser fetches
+        sent = {"send.js", "study.js"}  # which `export --to page` and `study run --page` read
         later = {DIGEST.sub("", path.name) for path in page.glob("*.js") if path.name not in first} - sent
         assert LATER - {"chunk.js"} <= later <= LATER, "what comes when it is opened"
 

@@ -11,7 +11,7 @@ from .curves import analyse_levels
 from .pairs import analyse_pairs
 from .quantities import analyse_adjustments, analyse_ratings
 from .results_folder import Kept, read_results
-from .right_answers import analyse_names, analyse_odd
+from .right_answers import analyse_differences, analyse_names, analyse_odd
 from .rows import Result, as_record
 from .sentences import sentences
 
@@ -22,6 +22,7 @@ ANALYSES: Mapping[tuple[str, bool], Callable[[Comparison, ByParticipant], Result
     ("higher", True): analyse_levels,
     ("same", False): analyse_odd,
     ("same", True): analyse_levels,
+    ("different", False): analyse_differences,
     ("equal", True): analyse_adjustments,
     ("name", False): analyse_names,
     ("name", True): analyse_names,

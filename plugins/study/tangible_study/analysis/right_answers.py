@@ -1,9 +1,10 @@
-"""Answers that are right or wrong: the odd one of three, and names of parts."""
+"""Answers that are right or wrong: the odd one of three, the same or different, and names of parts."""
 
 from dataclasses import replace
-from math import nan
+from math import inf, nan
 
 from ..design.study import Comparison
+from ..procedures.procedure import DIFFERENT, SAME
 from ..statistics import sensitivity
 from ..statistics.intervals import Estimate
 from ..trials import Answer
@@ -24,6 +25,26 @@ def analyse_names(comparison: Comparison, answers: ByParticipant) -> Result:
     return _analyse(comparison, answers, 1 / len(comparison.names))
 
 
+def analyse_differences(comparison: Comparison, answers: ByParticipant) -> Result:
+    """Analyse how rightly two intervals were called the same or different, for each pair of conditions."""
+    result = _analyse(comparison, answers, 0.5, with_dprimes=False)
+    single = [row for name, some in answers.items() for row in _dprimes(name, list(some))]
+    pooled = {row.what: row for row in _dprimes("pooled", together(answers))}
+    dprimes = [*single, *(over_participants(single, pooled, bounds=(0.0, inf)) if len(answers) > 1 else ())]
+    return replace(result, rows=[*result.rows, *dprimes])
+
+
+def _dprimes(name: str, answers: list[Answer]) -> list[Row]:
+    rows: list[Row] = []
+    for what, cell in grouped(answers, lambda each: What(DPRIME, each.condition, each.other or "")).items():
+        different = [each for each in cell if each.target == DIFFERENT]
+        equal = [each for each in cell if each.target == SAME]
+        hits, alarms = ([each.response for each in some].count(DIFFERENT) for some in (different, equal))
+        estimate = sensitivity.same_different(hits, len(different), alarms, len(equal))
+        rows.append(Row(what, name, estimate, "", len(cell), None, 0.0))
+    return rows
+
+
 def with_dprime(row: Row, comparison: Comparison) -> Row:
     """Return the row of d' that belongs to a row of proportions.
 
@@ -39,7 +60,7 @@ def with_dprime(row: Row, comparison: Comparison) -> Row:
     return replace(row, what=row.what._replace(measure=DPRIME), estimate=Estimate(value, *found[1:]), chance=0.0)
 
 
-def _analyse(comparison: Comparison, answers: ByParticipant, chance: float) -> Result:
+def _analyse(comparison: Comparison, answers: ByParticipant, chance: float, with_dprimes: bool = True) -> Result:
     def rows_of(name: str, some: list[Answer]) -> list[Row]:
         cells = grouped(some, lambda each: What(CORRECT, label(each), each.other or ""))
         return [
@@ -51,5 +72,5 @@ def _analyse(comparison: Comparison, answers: ByParticipant, chance: float) -> R
     pooled = {row.what: row for row in rows_of("pooled", together(answers))}
     rows = [*single, *(over_participants(single, pooled) if len(answers) > 1 else ())]
     between = contrasts(CORRECT, rows, pooled) if comparison.question == "name" else []
-    dprimes = [with_dprime(row, comparison) for row in rows]
+    dprimes = [with_dprime(row, comparison) for row in rows] if with_dprimes else []
     return Result(comparison.name, comparison.question, list(answers), [*rows, *dprimes, *between], CORRECT)

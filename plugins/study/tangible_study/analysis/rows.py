@@ -69,19 +69,22 @@ def proportion_row(what: What, participant: str, hits: Sequence[int], chance: fl
     return Row(what, participant, intervals.proportion(count, trials), "", trials, count, chance, p)
 
 
-def over_participants(rows: Iterable[Row], pooled: Mapping[What, Row] | None = None) -> list[Row]:
+def over_participants(
+    rows: Iterable[Row], pooled: Mapping[What, Row] | None = None, bounds: tuple[float, float] = (0.0, 1.0)
+) -> list[Row]:
     """Return a row about all participants for each thing: the mean over them.
 
     pooled: rows of all trials together. The interval then holds that of the pooled trials and Student's interval of the
     participants, and the greater p counts: participants who differ make a result uncertain, as do few trials.
+    bounds: the least and greatest value of the measure, beyond which no such interval reaches.
     """
     groups: dict[What, list[Row]] = {}
     for row in rows:
         groups.setdefault(row.what, []).append(row)
-    return [_mean_of(what, group, (pooled or {}).get(what)) for what, group in groups.items()]
+    return [_mean_of(what, group, (pooled or {}).get(what), bounds) for what, group in groups.items()]
 
 
-def _mean_of(what: What, group: Sequence[Row], pooled: Row | None) -> Row:
+def _mean_of(what: What, group: Sequence[Row], pooled: Row | None, bounds: tuple[float, float]) -> Row:
     values = [each.estimate.value for each in group if isfinite(each.estimate.value)]
     estimate, chance = intervals.mean(values), group[0].chance
     p = intervals.p_of_mean(values, chance) if isfinite(chance) else nan
@@ -91,7 +94,7 @@ def _mean_of(what: What, group: Sequence[Row], pooled: Row | None) -> Row:
         return row
     wider = intervals.wider(Estimate(estimate.value, *estimate[1:]), pooled.estimate)
     known = [each for each in (p, pooled.p) if each == each]
-    bounded = Estimate(wider.value, max(wider.low, 0.0), min(wider.high, 1.0))
+    bounded = Estimate(wider.value, max(wider.low, bounds[0]), min(wider.high, bounds[1]))
     return replace(row, estimate=bounded, count=pooled.count, p=max(known, default=nan))
 
 

@@ -70,6 +70,13 @@ def _describe(result: Result, row: Row, who: str) -> Iterator[str]:
                 else f"It is open whether {one} and {other} can be told apart: {who} found the odd one in {share}, "
                 f"and guessing gives {guess:.0f} %."
             )
+        case "proportion correct" if result.question == "different":
+            yield (
+                f"{one} and {other} can be told apart: {who} answered rightly in {share}; guessing gives {guess:.0f} %."
+                if is_sure(row)
+                else f"It is open whether {one} and {other} can be told apart: {who} answered rightly in {share}, and "
+                f"guessing gives {guess:.0f} %."
+            )
         case "proportion correct":
             yield f"With {one}, {who} named the right part in {share}; guessing gives {guess:.0f} %."
         case "proportion chosen":

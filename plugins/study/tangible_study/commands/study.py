@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,6 +11,7 @@ import typer
 
 from tangible_core.cli.options import Json
 from tangible_core.cli.verbosity import is_quiet
+from tangible_core.errors import ConfigError
 
 from .results import analyse, simulate
 
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 
     from ..design import Study
     from ..desks.desk import Desk
+    from ..desks.page_hand import PageHand
     from ..presenting.stimuli import Stimuli
 
 app: typer.Typer = typer.Typer(name="study", rich_markup_mode=None, add_completion=False, no_args_is_help=True)
@@ -67,7 +70,12 @@ def run(
     device: Device = None,
     sets: DeviceSets = None,
     page: Annotated[
-        bool, typer.Option("--page", help="Address the participant on a page in the browser, which reads aloud.")
+        bool,
+        typer.Option(
+            "--page",
+            help="Address the participant on a page in the browser, which reads aloud; without --device, surfaces are "
+            "felt and heard there too, by keyboard, mouse, finger or game pad.",
+        ),
     ] = False,
     resume: Annotated[bool, typer.Option("--resume", help="Go on where this participant stopped.")] = False,
 ) -> None:
@@ -84,10 +92,13 @@ def run(
     from ..presenting.stimuli import folder_of
     from ..session.start import begin
 
-    stimuli = _open(file, device, sets)
+    hand = _own_hand(sets) if page and device is None else None
+    stimuli = _open(file, device, sets, () if hand is None else hand.device)
+    if hand is not None and stimuli.has_film:
+        raise ConfigError(f"{file}: has a film, which is not felt on the page; name a device with --device")
     root = out or folder_of(file)
     with ExitStack() as stack:
-        desk = _open_page(stimuli.file.study, stack) if page else _terminal(stimuli.file.study)
+        desk = _open_page(stimuli.file.study, hand, stack) if page else _terminal(stimuli.file.study)
         try:
             session = begin(stimuli.file, stimuli, participant, root, desk, resume=resume, progress=_progress(stimuli))
             if session is None:
@@ -109,7 +120,16 @@ def _terminal(design: Study) -> Desk:
     return Terminal(sys.stdin, _print, lambda text: translate(text, design.language))
 
 
-def _open_page(design: Study, stack: ExitStack) -> Desk:
+def _own_hand(sets: list[str] | None) -> PageHand:
+    """Return the hand by which the page is the device. Raises: ConfigError if keys of another device are set."""
+    from ..desks.page_hand import PageHand
+
+    if any(each.startswith("device.") for each in sets or ()):
+        raise ConfigError("--set device...: the page is the device; name another one with --device")
+    return PageHand()
+
+
+def _open_page(design: Study, hand: PageHand | None, stack: ExitStack) -> Desk:
     """Serve the page until the stack ends, and open it in the browser."""
     import webbrowser
 
@@ -118,18 +138,19 @@ def _open_page(design: Study, stack: ExitStack) -> Desk:
 
     from ..desks.page import Page
 
-    served = stack.enter_context(Page(design.language, lambda text: translate(text, design.language)))
+    translated = partial(translate, to=design.language)
+    served = stack.enter_context(Page(design.language, translated, hand, design.sounds))
     show.note(f"the page of the participant: {served.address}")
     webbrowser.open(served.address)
     return served
 
 
-def _open(file: Path, device: str | None, sets: list[str] | None) -> Stimuli:
+def _open(file: Path, device: str | None, sets: list[str] | None, own: tuple[str, ...] = ()) -> Stimuli:
     from ..presenting.stimuli import Stimuli
     from ..session.start import device_changes
     from ..study_file import load_study
 
-    return Stimuli(load_study(file), device_changes(device, sets or []))
+    return Stimuli(load_study(file), (*own, *device_changes(device, sets or [])))
 
 
 def _progress(stimuli: Stimuli) -> Callable[[int], None]:

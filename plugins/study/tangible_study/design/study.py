@@ -8,9 +8,11 @@ from pydantic import ConfigDict, Field
 from tangible_core.data.quantities import Quantities
 from tangible_core.scene.workspace import Section
 
-Question = Literal["rougher", "higher", "same", "equal", "name", "rating"]
+Question = Literal["rougher", "higher", "same", "different", "equal", "name", "rating"]
 """The question of a comparison."""
 Order = Literal["latin-square", "random", "as-written"]
+Sound = Literal["contact", "texture", "force", "height"]
+"""A sound of a touch on the page."""
 
 
 class Condition(Section):
@@ -42,7 +44,7 @@ class Comparison(Section):
     """Name of the comparison in the results: lower-case words joined by hyphens."""
     question: Question
     """Question after each trial: which is rougher, which is higher, which one is not the same as the others (`same`),
-    adjust until they are equal, name the part, or a rating."""
+    whether two are `different`, adjust until they are equal, name the part, or a rating."""
     procedure: Annotated[dict[str, Any], Field(default_factory=dict)]
     """Procedure, with its options."""
     conditions: tuple[str, ...] = ()
@@ -114,6 +116,9 @@ class Study(Quantities):
     """Limits above which a trial is marked as not rendered."""
     language: Literal["en", "de"] = "en"
     """Language of what the program says to participants."""
+    sounds: tuple[Sound, ...] = ("contact", "texture", "force", "height")
+    """Sounds by which the page renders touch where it is the device: taps, the material under a stroke, the force, and
+    heights as tones. A device with a motor needs none."""
     hears: str = "nothing"
     """Sounds that a participant hears, such as pink noise on headphones; they are kept with the results."""
     sees: str = "a dark screen"

@@ -2,10 +2,13 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from threading import Event
 from typing import IO, final
 
+from tangible_core.pipeline.feeling import Feeling
 from tangible_core.runtime.system.streams import forget_typed
+from tangible_core.servo import Servo
 
 LEAVE = "q"
 """Key that leaves the study; it goes on later with --resume."""
@@ -33,6 +36,13 @@ class Desk(ABC):
 
         choices: what each key means; "" is Enter. Raises: Left.
         """
+
+    def exploring(self, feeling: Feeling, servo: Servo, part: str | None) -> AbstractContextManager[None]:
+        """Return a block in which a surface can be felt: a desk with a hand of its own moves the device meanwhile.
+
+        part: name of the part to which the hand is led. Raises: DeviceError.
+        """
+        return nullcontext()
 
 
 @final

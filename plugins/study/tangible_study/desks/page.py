@@ -1,9 +1,9 @@
-"""A page in the browser as the desk of a participant: it speaks and shows no picture, and answers by keys."""
+"""A page in the browser as the desk of a participant: it speaks, shows no picture, and may be the device as well."""
 
 import json
 import secrets
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
@@ -12,7 +12,15 @@ from types import TracebackType
 from typing import Any, Self, final
 from urllib.parse import parse_qs, urlsplit
 
+from tangible_core.errors import DeviceError
+from tangible_core.pipeline.feeling import Feeling
+from tangible_core.servo import Servo
+from tangible_core.servo.beacon import part_number
+from tangible_ui.address import page_file
+
 from .desk import LEAVE, Desk, Left
+from .page_hand import PageHand
+from .page_surface import surface_for_page
 
 HOST = "127.0.0.1"
 """The address of this computer alone: no other one reaches the page."""
@@ -20,27 +28,44 @@ POLL_S = 20.0
 """The longest time for which a request of the page waits for something to say, s."""
 LAST_S = 2.0
 """The longest time for which the end of a session waits for the page, s."""
+SURFACE_S = 5.0
+"""The longest time for which an interval waits for the page to fetch its surface, s."""
 MOST_BYTES = 1000
 """The most bytes of an answer."""
 POLICY = "default-src 'none'; script-src 'nonce-{nonce}'; style-src 'nonce-{nonce}'; connect-src 'self'"
+NO_SURFACE: Mapping[str, Any] = {"surface": 0}
 
 
 @final
 class Page(Desk):
     """A server of the page, as a context manager. Reloading the page goes on with the current question."""
 
-    def __init__(self, language: str, translate: Callable[[str], str]) -> None:
-        """language: of the participant. translate: to that language.
+    def __init__(
+        self,
+        language: str,
+        translate: Callable[[str], str],
+        hand: PageHand | None = None,
+        sounds: Sequence[str] = (),
+    ) -> None:
+        """Build the page; nothing is served yet.
 
+        language: of the participant. translate: to that language. hand: moves the device from the page; None if
+        another device is felt. sounds: by which the page renders touch.
         The page does not show the title of a study, which may name conditions.
+        Raises: ConfigError if the page was not built.
         """
         self._translate, self._stop, self._changed = translate, Event(), Condition()
         self._events: list[dict[str, Any]] = []
         self._answer: str | None = None
         self._fetched = 0
         self._token = secrets.token_urlsafe(16)
+        self.hand = hand
+        self._sounds = list(sounds)
+        self._surfaces = self._seen = 0
+        self._surface: dict[str, Any] | None = None
         html = files("tangible_study.desks").joinpath("page.html").read_text(encoding="utf-8")
-        self.html: str = html.replace("LANGUAGE", language)
+        html = html.replace("LANGUAGE", language).replace("STYLE", page_file("study.css"), 1)
+        self.html: str = html.replace("SCRIPT", page_file("study.js"), 1)
         self._server = ThreadingHTTPServer((HOST, 0), _handler(self, self._token))
         self._server.daemon_threads = True
         self._thread = Thread(target=self._server.serve_forever, daemon=True)
@@ -82,9 +107,44 @@ class Page(Desk):
                 raise Left
             return self._answer
 
-    def _add(self, text: str, choices: list[list[str]] | None) -> None:
+    @contextmanager
+    def exploring(self, feeling: Feeling, servo: Servo, part: str | None) -> Iterator[None]:
+        """Put a surface under the hand of the page, if that is the device; it begins once the page has it."""
+        device = feeling.device
+        if self.hand is None or not self.hand.moves(device):
+            yield
+            return
+        surface = feeling.pipeline.make("surface")
+        lead = None if part is None else part_number(surface, part)
         with self._changed:
-            self._events.append({"number": len(self._events) + 1, "text": text, "choices": choices})
+            self._surfaces += 1
+            number = self._surfaces
+            self._surface = surface_for_page(surface, number)
+            self._add("", None, {"surface": number, "sounds": self._sounds, "lead": lead})
+            there = self._changed.wait_for(lambda: self._seen >= number or self._stop.is_set(), SURFACE_S)
+        try:
+            if not there:
+                raise DeviceError("the page of the participant does not answer; open it again")
+            with self.hand.within(servo, device):
+                yield
+        finally:
+            self._surface = None
+            self._add("", None, NO_SURFACE)
+
+    def surface(self, number: int) -> bytes | None:
+        """Return the surface of this number as JSON; None if it is not the present one."""
+        surface = self._surface
+        if surface is None or number != self._surfaces:
+            return None
+        with self._changed:
+            self._seen = number
+            self._changed.notify_all()
+        return json.dumps(surface).encode()
+
+    def _add(self, text: str, choices: list[list[str]] | None, more: Mapping[str, Any] | None = None) -> None:
+        with self._changed:
+            event = {"number": len(self._events) + 1, "text": text, "choices": choices}
+            self._events.append({**event, **(more or {})})
             self._changed.notify_all()
 
     def events_after(self, number: int) -> list[dict[str, Any]]:
@@ -122,6 +182,8 @@ def _handler(page: Page, token: str) -> type[BaseHTTPRequestHandler]:
                 self._send("text/html;charset=utf-8", page.html.replace("NONCE", nonce).encode(), policy)
             elif url.path == f"/{token}/events" and after.isdecimal():
                 self._send("application/json", json.dumps(page.events_after(int(after))).encode())
+            elif url.path == f"/{token}/surface" and url.query.isdecimal() and (found := page.surface(int(url.query))):
+                self._send("application/json", found)
             else:
                 self.send_error(HTTPStatus.NOT_FOUND)
 
@@ -133,6 +195,8 @@ def _handler(page: Page, token: str) -> type[BaseHTTPRequestHandler]:
                 self._send("application/json", b"true")
             elif self.path == f"/{token}/answer":
                 self._send("application/json", json.dumps(_take(page, body)).encode())
+            elif self.path == f"/{token}/hand" and page.hand is not None:
+                self._send("application/octet-stream", page.hand.take(body))
             else:
                 self.send_error(HTTPStatus.NOT_FOUND)
 

@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable
-from threading import Event
 from types import TracebackType
 from typing import Self, final
 
@@ -13,6 +12,8 @@ from tangible_core.pipeline.feeling import Feeling
 from tangible_core.plugins.interfaces import HapticDevice
 from tangible_core.servo import Servo, beacon_to, null_touch
 from tangible_core.session import STOPPED, RingDrain
+
+from ..desks.desk import Desk
 
 LOOK_EVERY_S = 0.05
 """Interval at which ticks are taken from the loop, and so the most that a crash can lose of a recording."""
@@ -44,14 +45,14 @@ class HeldLoop:
         feeling: Feeling,
         seconds: float,
         keep: Callable[[np.ndarray], None],
+        desk: Desk,
         on_start: Callable[[], None],
         part: str | None,
-        stop: Event,
     ) -> None:
         """Present a surface for some seconds, then nothing.
 
-        keep: called with all ticks. on_start: called when the surface is there. part: a part to which the hand is
-        pulled. stop: ends the force at once.
+        keep: called with all ticks. desk: may have a hand of its own; its `stop` ends the force at once. on_start:
+        called when the surface is there. part: a part to which the hand is pulled.
         Raises: DeviceError if the device fails, or after `stop`; whatever `keep` or a faulty plugin raises. The loop
         has ended then, and the next call opens the device anew.
         """
@@ -59,15 +60,17 @@ class HeldLoop:
             servo = self._servo_on(feeling)
             servo.swap(feeling.touch, feeling.engine.config.safety)
             servo.pull_to(None if part is None else beacon_to(feeling.pipeline.make("surface"), part))
-            drain, until_s = RingDrain(servo, keep, servo.ring.count), time.monotonic() + seconds
-            on_start()
-            while servo.running and (left_s := until_s - time.monotonic()) > 0 and not stop.is_set():
-                stop.wait(min(left_s, LOOK_EVERY_S))
-                drain.look()
-            if stop.is_set() or not servo.running:
-                ended = self.close()
-                drain.look()
-                raise DeviceError(STOPPED if stop.is_set() else ended)
+            with desk.exploring(feeling, servo, part):
+                drain, stop = RingDrain(servo, keep, servo.ring.count), desk.stop
+                until_s = time.monotonic() + seconds
+                on_start()
+                while servo.running and (left_s := until_s - time.monotonic()) > 0 and not stop.is_set():
+                    stop.wait(min(left_s, LOOK_EVERY_S))
+                    drain.look()
+                if stop.is_set() or not servo.running:
+                    ended = self.close()
+                    drain.look()
+                    raise DeviceError(STOPPED if stop.is_set() else ended)
             servo.pull_to(None)
             servo.swap(null_touch())
         except BaseException:

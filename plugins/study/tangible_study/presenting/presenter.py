@@ -81,7 +81,7 @@ class Presenter:
             keep(recording.rows)
             _check_end(recording.stopped)
         elif feeling.engine.scene.frames is None:
-            self.loop.feel(feeling, seconds, keep, begin, trial.target, self.desk.stop)
+            self.loop.feel(feeling, seconds, keep, self.desk, begin, trial.target)
         else:  # a film, which is played in a loop of its own
             self.loop.close()
             _check_end(

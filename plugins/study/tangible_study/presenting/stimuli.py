@@ -62,6 +62,11 @@ class Stimuli:
     def __len__(self) -> int:
         return len(self._pipelines)
 
+    @property
+    def has_film(self) -> bool:
+        """True if anything that may be presented is a film."""
+        return any(each.engine.scene.frames is not None for each in self._pipelines.values())
+
     def feeling(self, comparison: str, stimulus: Stimulus) -> Feeling:
         """Return the surface of a stimulus on its device."""
         return Feeling(self._pipelines[self.recipes[comparison, stimulus]])

@@ -11,6 +11,9 @@ from tangible_core.scene.workspace import Section
 
 from ..design.study import Comparison
 
+SAME, DIFFERENT = "same", "different"
+"""Responses to two intervals that may be equal."""
+
 
 class Stimulus(NamedTuple):
     """A surface in an interval: that of a condition, at a level if one varies."""
@@ -39,7 +42,7 @@ class Trial:
     position: int | None = None
     """Interval, from 1, of the comparison or of the odd one."""
     target: str | None = None
-    """Name of the part that is to be named."""
+    """Right answer, where it is not the number of an interval: the name of a part, or `same` or `different`."""
     phase: str = "test"
 
 
@@ -58,7 +61,7 @@ def score(trial: Trial, response: str) -> Score:
     >>> score(Trial("a", "same", "oddity", (), ("1", "2", "3"), "x", "y", position=3), "3")
     Score(chosen=None, correct=1)
     """
-    if trial.question == "name":
+    if trial.target is not None:
         return Score(None, int(response == trial.target))
     if trial.question == "same":
         return Score(None, int(response == str(trial.position)))

@@ -5,6 +5,8 @@ from ..procedures.procedure import Trial
 
 MORE, LESS, EQUAL = "1", "2", "3"
 """Keys of an adjustment."""
+NAMED = ("name", "different")
+"""Questions whose responses are words, each with a number as its key, in the order of the choices."""
 
 
 def question(trial: Trial, comparison: Comparison) -> str:
@@ -16,6 +18,8 @@ def question(trial: Trial, comparison: Comparison) -> str:
             return "Which interval was higher?"
         case "same":
             return "Which interval was not the same as the others?"
+        case "different":
+            return "Were the two intervals the same, or different?"
         case "equal":
             return "Was interval 2 equal to interval 1?"
         case "name":
@@ -29,6 +33,8 @@ def choices(trial: Trial, comparison: Comparison) -> dict[str, str]:
     """Return the keys that answer a trial, each with its meaning."""
     if trial.question == "equal":
         return {MORE: "no, it needs more", LESS: "no, it needs less", EQUAL: "yes, it was equal"}
+    if trial.question == "different":
+        return {"1": "they were the same", "2": "they were different"}
     if trial.question == "name":
         return {str(number): name for number, name in enumerate(trial.choices, 1)}
     if trial.question == "rating":
@@ -39,13 +45,13 @@ def choices(trial: Trial, comparison: Comparison) -> dict[str, str]:
 
 def response(trial: Trial, key: str) -> str:
     """Return the response of a key."""
-    return trial.choices[int(key) - 1] if trial.question == "name" else key
+    return trial.choices[int(key) - 1] if trial.question in NAMED else key
 
 
 def right_answer(trial: Trial) -> str:
     """Return the right answer of a trial, for training; "" if there is none."""
-    if trial.question == "name":
-        return trial.target or ""
+    if trial.target is not None:
+        return trial.target
     if trial.question == "same":
         return str(trial.position)
     if trial.level is None or trial.standard is None or trial.position is None or trial.level == trial.standard:

@@ -10,9 +10,13 @@ from pydantic import Field
 from tangible_core.scene.workspace import Section
 
 from ..design.study import Comparison
-from ..procedures.procedure import Stimulus, Trial
+from ..procedures.procedure import DIFFERENT, SAME, Stimulus, Trial
 
 Share = Annotated[float, Field(ge=0, le=0.5)]
+
+
+CRITERION = 1.5
+"""Difference from which two intervals are called different, in standard deviations of the noise of one."""
 
 
 class Observer(Section, ABC):
@@ -53,6 +57,8 @@ def decide(trial: Trial, magnitude: Callable[[Stimulus], float], base: float, ge
         case "same":
             others = (felt.sum() - felt) / (len(felt) - 1)
             return str(int(np.argmax(np.abs(felt - others))) + 1)
+        case "different":
+            return DIFFERENT if abs(felt[0] - felt[1]) > CRITERION else SAME
         case "name":
             evidence = generator.standard_normal(len(trial.choices))
             evidence[trial.choices.index(trial.target or "")] += max(base + magnitude(trial.intervals[0]), 0.0)

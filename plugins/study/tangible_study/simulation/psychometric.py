@@ -8,10 +8,8 @@ from scipy import stats
 
 from ..design.study import Comparison
 from ..procedures.procedure import Trial
+from ..statistics.psychometric import GAUSSIAN
 from .observer import Observer, nearest, number_of
-
-GAUSSIAN = 3.28970725
-"""Width from 5 to 95 % of a cumulative Gaussian, in standard deviations."""
 
 
 @final

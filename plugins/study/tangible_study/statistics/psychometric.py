@@ -4,7 +4,7 @@ Source: Schütt, Harmeling, Macke & Wichmann (2016), Vision Research 122:105.
 """
 
 import warnings
-from math import exp, log
+from math import exp, inf, log
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +17,14 @@ JND = 0.20503033
 """Half the distance from 25 to 75 % as a share of the width (5 to 95 %) of a cumulative Gaussian: 0.6745 / 3.2897."""
 STEPS = {"threshold": 60, "width": 60, "lambda": 20}
 """Steps of the grid: intervals of psignifit are exact to half a step (`python -m benchmarks study`)."""
+
+
+GAUSSIAN = 3.28970725
+"""Width from 5 to 95 % of a cumulative Gaussian, in standard deviations."""
+FARTHEST = 6.0
+"""Factor from the width to the farthest bound that is looked for."""
+MOST_LAPSES = 0.15
+"""Most lapses on each side, as a share of the trials, for which the likelihood of a width is looked for."""
 
 
 class Blocks(NamedTuple):
@@ -48,7 +56,7 @@ class Curve(NamedTuple):
             steep = (log(-log(0.05)) - log(-log(0.95))) / self.width.value
             height = 1 - 0.5 ** ((levels / self.threshold.value) ** steep)
             return self.chance + (1 - self.chance - self.lapses) * height
-        sd = self.width.value / 3.28970725
+        sd = self.width.value / GAUSSIAN
         return self.lapses + (1 - 2 * self.lapses) * stats.norm.cdf((levels - self.threshold.value) / sd)
 
 
@@ -58,7 +66,35 @@ def fit_choice(blocks: Blocks, span: tuple[float, float]) -> Curve:
     span: least and greatest level of the study. Raises: ConfigError if psignifit is not installed.
     """
     found = _fit(blocks, sigmoid="norm", experiment_type="equal asymptote", stimulus_range=span)
-    return Curve(_estimate(found, "threshold"), _estimate(found, "width"), found.parameter_estimate["lambda"], 0.0)
+    threshold, width = _estimate(found, "threshold"), float(found.parameter_estimate["width"])
+    return Curve(threshold, width_interval(blocks, threshold, width), found.parameter_estimate["lambda"], 0.0)
+
+
+def width_interval(blocks: Blocks, threshold: Estimate, width: float) -> Estimate:
+    """Return the width of a cumulative Gaussian with equal lapses, with the interval of the likelihood ratio.
+
+    Threshold and lapses are at their best for each width. A bound beyond six times the width, or a sixth of it, is
+    infinite, or 0. The interval of psignifit is as long and leans towards the middle of its prior, so that it holds
+    widths there in 97 % (docs/decisions/0042-studies-with-people.md).
+    """
+    from scipy import stats
+
+    reach = threshold.high - threshold.low
+    thresholds = np.linspace(threshold.low - reach, threshold.high + reach, 61)
+    widths = width * np.geomspace(1 / FARTHEST, FARTHEST, 121)
+    lapses = np.linspace(0, MOST_LAPSES, 16)
+    likelihood = np.zeros((len(lapses), len(thresholds), len(widths)))
+    for level, count, trials in zip(*blocks, strict=True):
+        rise = stats.norm.cdf((level - thresholds[:, None]) / (widths / GAUSSIAN))
+        share = np.clip(lapses[:, None, None] + (1 - 2 * lapses[:, None, None]) * rise, 1e-12, 1 - 1e-12)
+        likelihood += count * np.log(share) + (trials - count) * np.log1p(-share)
+    profile = likelihood.max(axis=(0, 1))
+    lack = 2 * (profile.max() - profile) - stats.chi2.ppf(LEVEL, 1)
+    inside = np.flatnonzero(lack <= 0)
+    first, last = int(inside[0]), int(inside[-1])
+    low = 0.0 if first == 0 else float(np.interp(0, lack[[first, first - 1]], widths[[first, first - 1]]))
+    high = inf if last == len(widths) - 1 else float(np.interp(0, lack[[last, last + 1]], widths[[last, last + 1]]))
+    return Estimate(width, min(low, width), max(high, width))
 
 
 def fit_difference(blocks: Blocks, span: tuple[float, float], choices: int = 3) -> Curve:

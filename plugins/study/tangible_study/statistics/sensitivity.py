@@ -5,12 +5,15 @@ Source: Macmillan & Creelman, Detection Theory: A User's Guide, 2nd ed. (2005), 
 
 from collections.abc import Callable
 from functools import cache
-from math import inf, sqrt
+from math import inf, nan, sqrt
 
 import numpy as np
+from jaxtyping import Float64
 from numpy.polynomial.hermite_e import hermegauss
 from numpy.polynomial.legendre import leggauss
 from scipy import optimize, stats
+
+from .intervals import LEVEL, Estimate
 
 LARGEST = 12.0
 """Largest d' that is looked for; the proportion correct is 1 in double precision long before."""
@@ -19,6 +22,8 @@ _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 _HALF = 4.5 * (1 + leggauss(100)[0])
 _HALF_WEIGHTS = 9 * leggauss(100)[1] * stats.norm.pdf(_HALF)
 """Nodes and weights of a mean over the upper half of a normal distribution, of which 1e-18 is beyond 9."""
+_DPRIMES, _CRITERIA = np.linspace(0, 8, 401), np.linspace(0, 10, 401)
+"""d' and criteria among which those of two intervals that are the same or different are looked for."""
 
 
 def two_afc(proportion: float) -> float:
@@ -48,6 +53,39 @@ def naming(proportion: float, choices: int) -> float:
     [0.0, 1.15]
     """
     return _inverse(lambda dprime: naming_correct(dprime, choices), proportion)
+
+
+def same_different(hits: int, differing: int, alarms: int, equal: int) -> Estimate:
+    """Return d' of two intervals that are the same or different, by the differencing rule, with its interval.
+
+    hits: `different` of trials that differ. alarms: `different` of trials that are equal. For the value, half an answer
+    is added to each count (Hautus 1995), so that it is finite. The interval is that of the likelihood ratio, with the
+    criterion at its best for each d'; its upper bound may be infinite. NaN without trials of a kind.
+    Source: Macmillan & Creelman, ch. 9.
+    """
+    if not (differing and equal):
+        return Estimate(nan)
+    counts = np.array([hits, differing - hits, alarms, equal - alarms], float)
+    value = _DPRIMES[_likelihood(counts + 0.5).argmax()]
+    likelihood = _likelihood(counts)
+    within = np.flatnonzero(2 * (likelihood.max() - likelihood) <= stats.chi2.ppf(LEVEL, 1))
+    high = inf if within[-1] == len(_DPRIMES) - 1 else float(_DPRIMES[within[-1]])
+    return Estimate(float(value), float(_DPRIMES[within[0]]), high)
+
+
+def _likelihood(counts: Float64[np.ndarray, "4"]) -> Float64[np.ndarray, "d"]:
+    """Return the logarithm of the likelihood of each d', with the best criterion."""
+    return np.einsum("i,ijk->jk", counts, _same_different_logs()).max(axis=1)
+
+
+@cache
+def _same_different_logs() -> Float64[np.ndarray, "4 d k"]:
+    """Return the logarithms of the shares of hits, misses, false alarms and their absence, by d' and criterion."""
+    dprime, criterion = _DPRIMES[:, None], _CRITERIA[None]
+    alarms = 2 * stats.norm.cdf(-criterion / sqrt(2)) + 0 * dprime
+    hits = stats.norm.cdf((dprime - criterion) / sqrt(2)) + stats.norm.cdf((-dprime - criterion) / sqrt(2))
+    shares = np.stack([hits, 1 - hits, alarms, 1 - alarms])
+    return np.log(np.clip(shares, 1e-300, 1))
 
 
 @cache

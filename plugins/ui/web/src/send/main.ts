@@ -37,8 +37,10 @@ const element = <T extends HTMLElement>(id: string): T => document.getElementByI
 const now_s = (): number => Date.now() / 1000;
 
 async function open(data: Packed): Promise<void> {
-  const { scene, spline, row } = await unpack(data);
   const canvas = element<HTMLCanvasElement>("terrain");
+  const view = new View(canvas);
+  view.prepare(DEFAULTS); // shaders are compiled while the data are unpacked
+  const { scene, spline, row } = await unpack(data);
   const hub = new Hub();
   const speech = new Speech(hub);
   const shown = liveRegions(element("said"), element("alerted"));
@@ -46,7 +48,6 @@ async function open(data: Packed): Promise<void> {
     shown(message);
     speech.speak(message);
   });
-  const view = new View(canvas);
   const law = new ProxyLaw(spline, row);
   const sound = new Sound(hub, () => page.scene);
   const page: Page = {

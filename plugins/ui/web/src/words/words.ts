@@ -10,10 +10,11 @@ const KEPT = "language";
 
 export const language: Language = chosen();
 
-/** Return the chosen language, or the browser's first supported one, or English. */
+/** Return the language that the page was made for, or the chosen one, or the browser's first supported one, or English. */
 function chosen(): Language {
   const browsers = globalThis.navigator?.languages ?? []; // tests run without a browser
-  const wanted = [recall(KEPT, ""), ...browsers.map((each) => each.slice(0, 2))];
+  const fixed = globalThis.document?.documentElement?.dataset?.language ?? "";
+  const wanted = [fixed, recall(KEPT, ""), ...browsers.map((each) => each.slice(0, 2))];
   return wanted.find(isLanguage) ?? LANGUAGES[0];
 }
 

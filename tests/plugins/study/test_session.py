@@ -233,6 +233,16 @@ def test_right_answer_is_told_in_training(trial: Trial, key: str, given: str, ri
     assert (response(trial, key), right_answer(trial)) == (given, right)
 
 
+def test_same_or_different_is_asked_without_a_part(tmp_path: Path):
+    text = STUDY.partition("comparisons:")[0] + "comparisons: [{name: differ, question: different, repetitions: 4}]\n"
+    path = write_study(tmp_path, text)
+    session = sit_down(path, answer=lambda _, choices: "2" if "2" in choices else next(iter(choices)))
+    assert session.run() == 4
+    kept = read_answers(session.place.answers)
+    assert [each.response for each in kept] == ["different"] * 4
+    assert sorted(each.correct for each in kept) == [0, 0, 1, 1]
+
+
 def test_break_comes_after_every_few_trials_and_lasts(study: Path):
     session, waits = sit_down(study), list[float]()
     session.wait = waits.append

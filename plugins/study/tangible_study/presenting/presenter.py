@@ -77,16 +77,14 @@ class Presenter:
 
         if not self.in_real_time:
             self.desk.say(name)
-            recording = feeling.run(seconds, in_real_time=False, beacon=trial.target, stop=self.desk.stop)
+            recording = feeling.run(seconds, in_real_time=False, beacon=trial.part, stop=self.desk.stop)
             keep(recording.rows)
             _check_end(recording.stopped)
         elif feeling.engine.scene.frames is None:
-            self.loop.feel(feeling, seconds, keep, self.desk, begin, trial.target)
+            self.loop.feel(feeling, seconds, keep, self.desk, begin, trial.part)
         else:  # a film, which is played in a loop of its own
             self.loop.close()
-            _check_end(
-                feeling.run(seconds, keep=keep, on_start=begin, beacon=trial.target, stop=self.desk.stop).stopped
-            )
+            _check_end(feeling.run(seconds, keep=keep, on_start=begin, beacon=trial.part, stop=self.desk.stop).stopped)
 
     def _pause(self, seconds: float) -> None:
         if self.in_real_time and seconds:

@@ -30,7 +30,7 @@ class SameDifferent(Procedure):
         """Return all trials in rounds; the same and different pairs come equally often."""
 
         def make(cell: Cell, number: int) -> Trial:
-            return _arranged(comparison, cell, number % ARRANGEMENTS)
+            return _arrangement(comparison, cell, number % ARRANGEMENTS)
 
         return Listed(in_rounds(cells_of(comparison), comparison.repetitions, generator, make))
 
@@ -43,7 +43,7 @@ class SameDifferent(Procedure):
         return comparison.repetitions * len(cells_of(comparison))
 
 
-def _arranged(comparison: Comparison, cell: Cell, number: int) -> Trial:
+def _arrangement(comparison: Comparison, cell: Cell, number: int) -> Trial:
     one, other = cell
     return Trial(
         comparison.name,

@@ -12,7 +12,7 @@ export const t = words({
   force: ["a force device", "einem haptischen Gerät", "un appareil haptique"],
   width: ["Width, mm", "Breite, mm", "Largeur, mm"],
   widthHint: ["Width of the whole picture; if empty, as wide as “Export” makes it.",
-    "Die des ganzen Bildes; ohne Angabe so breit, wie „Export“ es macht.",
+    "Die des ganzen Bildes; ohne Angabe so breit, wie „Exportieren“ es macht.",
     "Largeur de toute l'image ; si ce champ est vide, celle que fait « Exporter »."],
   check: ["Check now", "Jetzt prüfen", "Vérifier"],
   again: ["Check again", "Noch einmal prüfen", "Vérifier à nouveau"],

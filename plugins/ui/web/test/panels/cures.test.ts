@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Steps } from "../../src/panels/export/progress";
-import { restOf, sentenceOf } from "../../src/panels/verdicts/cures";
+import { distinct, restOf, sentenceOf } from "../../src/panels/verdicts/cures";
 
 test("cures are sentences without keys", () => {
   const said = [
@@ -13,6 +13,12 @@ test("cures are sentences without keys", () => {
     "Give places narrower than 3.2 mm to their neighbours", "Use at most 5 textures", "Make no slope steeper than 45°",
   ]);
   assert.equal(sentenceOf("acme.grip", 2), "Set acme.grip to 2", "of a plugin");
+});
+
+test("a verdict that two segments share stands once", () => {
+  const metal = { check: "texture", of: "metal", stands: "550 um < 600 um" };
+  const wood = { ...metal, of: "wood" };
+  assert.deepEqual(distinct([metal, wood, { ...metal }]), [metal, wood]);
 });
 
 test("what a cure says besides its buttons stays", () => {

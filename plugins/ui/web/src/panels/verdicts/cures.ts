@@ -6,6 +6,11 @@ import { t } from "./words";
 type Value = Verdict["changes"][number]["value"];
 type Word = Parameters<typeof t>[0];
 
+/** Return the verdicts, each once: two segments of a material have the same one. */
+export function distinct<T extends Pick<Verdict, "check" | "of" | "stands">>(verdicts: T[]): T[] {
+  return [...new Map(verdicts.map((each) => [JSON.stringify([each.check, each.of, each.stands]), each])).values()];
+}
+
 /** The sentence of each key, and its value in words. */
 const SENTENCES: Record<string, [Word, (value: Value) => string]> = {
   "workspace.width_m": ["wider", length],

@@ -1,7 +1,7 @@
 /** Verdicts as tables, with source, cure in words, and buttons that change the document. */
 import { button, tableWithHeads, paragraph } from "../../elements";
 import type { Grade, Verdict } from "../../server/messages";
-import { restOf, sentenceOf } from "./cures";
+import { distinct, restOf, sentenceOf } from "./cures";
 import { t } from "./words";
 
 const SHAPES: Record<Grade, string> = { ok: "✓", warn: "▲", unsafe: "✕", illegible: "✕" };
@@ -13,7 +13,8 @@ type Setting = Verdict["changes"][number]["value"];
 export type More = (said: Verdict) => HTMLElement | null;
 
 /** Return tables of verdicts: failed ones first, passed ones folded. */
-export function verdictTables(all: Verdict[], cure: Cure, more: More = () => null): HTMLElement[] {
+export function verdictTables(verdicts: Verdict[], cure: Cure, more: More = () => null): HTMLElement[] {
+  const all = distinct(verdicts);
   const wrong = all.filter(({ verdict }) => verdict !== "ok");
   const fine = all.filter(({ verdict }) => verdict === "ok");
   const element = wrong.length ? [table(t("wrong"), wrong, cure, more)] : [];
@@ -48,8 +49,8 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: Mor
   what.scope = "row";
   what.textContent = `${said.check}: ${said.of}`;
   element.append(what);
-  element.insertCell().append(said.stands);
-  const texts = [said.note, said.source, said.verdict === "ok" ? "" : restOf(said)].filter((text) => text && fresh(`${said.check} ${text}`));
+  element.insertCell().append(withUnits(said.stands));
+  const texts = [said.note, said.source, said.verdict === "ok" ? "" : restOf(said)].filter((text) => text && fresh(`${said.check} ${text}`)).map(withUnits);
   const changes = said.changes.filter((each) => fresh(JSON.stringify(each)));
   const also = more(said);
   if (!texts.length && !changes.length && !also) return;
@@ -60,6 +61,9 @@ function row(body: HTMLTableSectionElement, said: Verdict, cure: Cure, more: Mor
   if (also) below.append(also);
   for (const { key, value } of changes) below.append(button(sentenceOf(key, value), () => cure(key, value)));
 }
+
+/** Return a text of the program, which writes micrometres as a terminal can. */
+const withUnits = (text: string): string => text.replace(/(\d) um\b/g, "$1 µm");
 
 function foldable(title: string, inside: HTMLElement): HTMLElement {
   const box = document.createElement("details");

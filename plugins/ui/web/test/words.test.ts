@@ -43,6 +43,15 @@ test("people are told Sie, never Du, and quotation marks are theirs", () => {
   }
 });
 
+test("German has the terms of the glossary", () => {
+  const wrong = /Vorhang|Vorhänge|Elevation|Haptikgerät|Kraftgerät|Stiftdisplay|Pin-Display|Keine Irrtümer|„Export“/;
+  for (const [key, [, german]] of texts()) assert.doesNotMatch(german, wrong, key);
+  const said = (english: string): string => texts().find(([, row]) => row[0] === english)![1][1];
+  assert.deepEqual(["No errors.", "elevation", "Steep walls at depth edges", "Export", "a force device", "Pin display"].map(said), [
+    "Keine Fehler.", "Höhenwinkel", "Steilwände an Tiefenkanten", "Exportieren", "einem haptischen Gerät", "Taktiles Display",
+  ]);
+});
+
 test("a text ends as its twin does", () => {
   const end = (text: string): string => /[.:!?…]$/.exec(text.trim())?.[0] ?? "";
   for (const [key, [english, german]] of texts()) assert.equal(end(english), end(german), key);

@@ -4,7 +4,7 @@ import { firstRoot, Grid } from "../../src/surface/grid";
 import type { Material, Meta } from "../../src/server/messages";
 import { describePlace } from "../../src/speech/names";
 import { place } from "../../src/contact/reading";
-import { asJson, rows } from "../../src/contact/values";
+import { asJson, shortRows, rows } from "../../src/contact/values";
 import type { Vec } from "../../src/server/protocol";
 import { Scene, type Part } from "../../src/surface/scene";
 
@@ -194,5 +194,9 @@ test("a part is called by its name, with its material; one without a name by mat
   assert.equal(made.part(1, 1), "");
   const rowOf = (x: number): string => rows(null, place(made, x, 0)).find(([name]) => name === "Material")![1]!;
   assert.deepEqual([-0.03, 0].map(rowOf), ["door, wood", "ice, part 2"]);
+  (made.meta.materials[0] as { name: string }).name = "plain";
+  const short = shortRows(null, place(made, -0.03, 0));
+  assert.deepEqual(short.map(([name]) => name), ["Force", "Material", "Height"]);
+  assert.equal(short[1]![1], "plain material", "in words, as everywhere");
   assert.equal(JSON.parse(asJson(null, place(made, -0.03, 0))).pointer.part_name, "door");
 });

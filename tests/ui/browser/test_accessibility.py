@@ -583,7 +583,10 @@ def enter(page: "Page", region: str, what: str) -> None:
 
 
 def drag(page: "Page", enough: Callable[[], bool]) -> None:
-    """Press the hand onto the surface and move it over the parts until it is enough, then let go."""
+    """Press the hand onto the surface and move it over the parts until it is enough, then let go.
+
+    It moves two dozen times a second: the page tells once a second, and more moves only take the processor.
+    """
     box = page.locator("#terrain").bounding_box()
     assert box
     x, y, width = box["x"] + box["width"] / 2, box["y"] + box["height"] * 0.6, box["width"]
@@ -592,7 +595,8 @@ def drag(page: "Page", enough: Callable[[], bool]) -> None:
     steps = count()
 
     def move() -> bool:
-        page.mouse.move(x + 0.25 * width * (next(steps) % 60 / 30 - 1), y)
+        page.mouse.move(x + 0.25 * width * (next(steps) % 20 / 10 - 1), y)
+        page.wait_for_timeout(30)
         return enough()
 
     until(move, "the stroke has no end")

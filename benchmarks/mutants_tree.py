@@ -22,6 +22,10 @@ sys.exit({function}())
 """
 
 
+BUILT = "plugins/ui/tangible_ui/static"
+"""The built page, which git does not know: tests of what is made of it need it."""
+
+
 class Ended(NamedTuple):
     """How a program ended, None when it was not done in time, and what it said."""
 
@@ -30,13 +34,15 @@ class Ended(NamedTuple):
 
 
 def copy_of(root: Path, tree: Path) -> None:
-    """All that git knows or would add, as it stands in a checkout; times are kept."""
+    """Copy all that git knows or would add, as it stands in a checkout, and the built page; times are kept."""
     command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     listed = subprocess.run(command, cwd=root, check=True, capture_output=True).stdout
     for name in os.fsdecode(listed).split("\0"):
         if (root / name).is_file():
             (tree / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(root / name, tree / name)
+    if (root / BUILT).is_dir():
+        shutil.copytree(root / BUILT, tree / BUILT)
 
 
 @final

@@ -8,7 +8,6 @@ import "./style/wide.css";
 import "./style/panels.css";
 import "./style/controls.css";
 import "./style/preferences.css";
-import { Announcer, liveRegions } from "./speech/announcer";
 import { buildRegions } from "./frame/regions";
 import { buildTasks } from "./frame/tasks";
 import { Frames } from "./view/frames";
@@ -38,7 +37,7 @@ import { listen } from "./shortcuts";
 import { showHint } from "./start/hint";
 import { stroke } from "./sound/sonification";
 import { Sound } from "./sound/sound";
-import { Speech } from "./speech/speech";
+import { voiceOf } from "./speech/voice";
 import { buildSplitters } from "./frame/splitters";
 import { Status } from "./frame/status";
 import { loadScene } from "./surface/loading";
@@ -52,12 +51,7 @@ const element = <T extends HTMLElement>(id: string): T => document.getElementByI
 
 const canvas = element<HTMLCanvasElement>("terrain");
 const hub = new Hub();
-const speech = new Speech(hub);
-const shown = liveRegions(element("said"), element("alerted"));
-const announcer = new Announcer((message) => {
-  shown(message);
-  speech.speak(message);
-});
+const { speech, announcer } = voiceOf(hub, element("said"), element("alerted"));
 const net = new Connection(hub);
 const view = new View(canvas);
 const page: Page = {

@@ -16,9 +16,8 @@ import { Overlay } from "../overlay/overlay";
 import type { Page } from "../page";
 import { listen, on } from "../shortcuts";
 import { Sound } from "../sound/sound";
-import { Announcer, liveRegions } from "../speech/announcer";
 import { Narrator } from "../speech/narrator";
-import { Speech } from "../speech/speech";
+import { voiceOf } from "../speech/voice";
 import { Frames } from "../view/frames";
 import { DEFAULTS } from "../view/settings";
 import { View } from "../view/view";
@@ -42,12 +41,7 @@ async function open(data: Packed): Promise<void> {
   view.prepare(DEFAULTS); // shaders are compiled while the data are unpacked
   const { scene, spline, row } = await unpack(data);
   const hub = new Hub();
-  const speech = new Speech(hub);
-  const shown = liveRegions(element("said"), element("alerted"));
-  const announcer = new Announcer((message) => {
-    shown(message);
-    speech.speak(message);
-  });
+  const { speech, announcer } = voiceOf(hub, element("said"), element("alerted"));
   const law = new ProxyLaw(spline, row);
   const sound = new Sound(hub, () => page.scene);
   const page: Page = {

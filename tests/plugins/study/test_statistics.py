@@ -2,12 +2,20 @@
 
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import optimize, stats
 
 from tangible_study.statistics import sensitivity
 from tangible_study.statistics.bradley_terry import fit_scale
 from tangible_study.statistics.intervals import Estimate, difference, mean, p_of_count, proportion, wider
-from tangible_study.statistics.psychometric import JND, Blocks, fit_choice, fit_difference
+from tangible_study.statistics.psychometric import (
+    GAUSSIAN,
+    JND,
+    MOST_LAPSES,
+    Blocks,
+    fit_choice,
+    fit_difference,
+    width_interval,
+)
 
 BASEBALL = np.array(
     [
@@ -181,6 +189,35 @@ def test_fit_of_a_difference_is_that_of_psignifit_on_its_own_example():
     assert curve.threshold.low < 0.00465 < curve.threshold.high
     assert curve.at(np.array([1e-9, 1.0])) == pytest.approx([0.5, 1 - curve.lapses], abs=1e-3)
     assert curve.at(np.array([curve.threshold.value])) == pytest.approx([0.75], abs=0.01)
+
+
+def test_bounds_of_a_width_are_where_the_likelihood_ratio_has_its_quantile():
+    """By another way to the best threshold and lapses of each width: the simplex of Nelder & Mead."""
+    levels, trials = np.linspace(1.4, 2.6, 7), 40.0
+    counts = np.array([1, 4, 11, 22, 30, 36, 38], float)
+    blocks = Blocks(levels, counts, np.full(7, trials))
+
+    def lack(width: float) -> float:
+        def negative(free: np.ndarray) -> float:
+            lapses = MOST_LAPSES / (1 + np.exp(-free[1]))
+            share = lapses + (1 - 2 * lapses) * stats.norm.cdf((levels - free[0]) / (width / GAUSSIAN))
+            return -float((counts * np.log(share) + (trials - counts) * np.log1p(-share)).sum())
+
+        return min(float(optimize.minimize(negative, [2.0, at], method="Nelder-Mead").fun) for at in (-4.0, -1.0))
+
+    best = optimize.minimize_scalar(lack, bounds=(0.3, 3.0), method="bounded")
+    found = width_interval(blocks, Estimate(1.97, 1.9, 2.04), float(best.x))
+    assert found.value == best.x
+    for bound in (found.low, found.high):
+        assert 2 * (lack(bound) - best.fun) == pytest.approx(stats.chi2.ppf(0.95, 1), abs=0.08)
+
+
+def test_width_without_a_rise_has_no_upper_bound_and_a_step_no_lower():
+    levels, near = np.linspace(1.4, 2.6, 7), Estimate(2.0, 1.9, 2.1)
+    flat = width_interval(Blocks(levels, np.full(7, 20.0), np.full(7, 40.0)), near, 2.0)
+    assert flat.high == np.inf and flat.low > 0.5
+    step = width_interval(Blocks(levels, np.array([0.0, 0, 0, 20, 40, 40, 40]), np.full(7, 40.0)), near, 0.1)
+    assert step.low == 0.0 and step.high < 0.4
 
 
 def test_fit_of_choices_finds_the_function_that_made_them():

@@ -66,7 +66,8 @@ def section() -> str:
             "",
             *depth_accuracy.comparison_rows(),
             "",
-            "How often a value of `semi-global` is over 2 px off, by its confidence; each scene counts alike.",
+            "How often a value of `semi-global` is within 2 px, by the probability of it that its confidence states; "
+            "each scene counts alike.",
             "",
             *part("confidence", depth_confidence.rows),
             "",

@@ -5,6 +5,7 @@ import numpy as np
 from tangible_bench.tasks.depth import measure
 from tangible_core.metrics import sparsification_errors
 from tangible_core.metrics.sparsification import WRONG_PX
+from tangible_depth.dense.confidence import probability
 from tangible_depth.opencv_sgbm import OpenCVSGBM
 from tangible_depth.semi_global import SemiGlobal
 
@@ -12,8 +13,10 @@ from .depth_pairs import KnownScene, real, synthetic
 from .figures import Figure, table
 
 LARGEST_RATIO = 1.25
-EDGES = (0.0, 0.02, 0.04, 0.06, 0.1, 0.3, 0.4, 0.5, 0.6)
-"""Lower ends of ranges of confidence: a filled value has at most 0.1, a matched one mostly 0.2 or more."""
+MOST_OFF = 0.05
+"""Largest difference of a probability and what happens."""
+EDGES = (0.0, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98)
+"""Lower ends of ranges of probability; hardly any value is below the second."""
 
 
 def figures() -> list[Figure]:
@@ -26,32 +29,51 @@ def figures() -> list[Figure]:
         _figure("the oracle's", by_oracle, LARGEST_RATIO),
         _figure("that of OpenCV's map (3WAY, filled) by its second pass", by_peer, 1),
         _figure("that of the same map by OpenCV's second pass", by_same, 1),
+        _reliability(),
     ]
 
 
+def _reliability() -> Figure:
+    """Judge the probability by scene, and over all photographs by ranges of it."""
+    shares = {name: _by_probability(scene) for name, scene in {**real(), **synthetic()}.items()}
+    off = {name: abs(float(stated.sum() - right.sum())) for name, (_, stated, right) in shares.items()}
+    worst = max(off, key=off.__getitem__)
+    pixels, stated, right = np.sum([shares[name] for name in real()], axis=0)
+    by_range = float(np.abs(stated - right).sum() / pixels.sum())
+    return Figure(
+        "confidence as a probability of being within 2 px, against the share that is",
+        f"within {MOST_OFF:g} on every scene, and in the mean of its ranges",
+        f"{off[worst]:.3f} at most ({worst}); {by_range:.3f} in the mean of the ranges, photographs",
+        max(off[worst], by_range) <= MOST_OFF,
+    )
+
+
 def rows() -> list[str]:
-    """How often a value is over 2 px off, by its confidence: what a number between 0 and 1 means."""
-    kinds = [np.array([_by_confidence(each) for each in scenes().values()]) for scenes in (real, synthetic)]
-    columns = "pixels %, photographs", "of these wrong %", "pixels %, synthetic", "of these wrong %"
+    """How often a value is over 2 px off, by the probability that its confidence states."""
+    kinds = [np.array([_by_probability(each) for each in scenes().values()]) for scenes in (real, synthetic)]
+    columns = [f"{what} %, {kind}" for kind in ("photographs", "synthetic") for what in ("pixels", "stated", "right")]
     figures = []
     for i, (low, high) in enumerate(zip(EDGES, (*EDGES[1:], 1.0), strict=True)):
-        shares = [each[:, :, i].sum(axis=0) for each in kinds]
-        cells = [
-            f"{100 * value:.1f}"
-            for (pixels, wrong), each in zip(shares, kinds, strict=True)
-            for value in (pixels / len(each), wrong / max(pixels, 1e-9))
-        ]
+        cells = []
+        for each in kinds:
+            pixels, stated, right = each[:, :, i].sum(axis=0)
+            shares = (pixels / len(each), *(value / max(pixels, 1e-9) for value in (stated, right)))
+            cells += [f"{100 * value:.1f}" for value in shares]
         figures.append((f"{low:g} to {high:g}", *cells))
-    return table(("confidence", *columns), figures)
+    return table(("probability", *columns), figures)
 
 
-def _by_confidence(scene: KnownScene) -> np.ndarray:
-    """Return the shares of pixels with truth by range of confidence, and the shares of those that are wrong too."""
+def _by_probability(scene: KnownScene) -> np.ndarray:
+    """Return by range of probability the share of pixels with truth, their mean probability, and those that are right.
+
+    The second and third are in shares of all pixels as well.
+    """
     found, truth_px = SemiGlobal().estimate(scene.pair.views), scene.pair.truth_px
     measured = np.isfinite(truth_px)
-    at = np.searchsorted(EDGES, found.confidence[measured], side="right") - 1
-    wrong = ~(np.abs(found.disparity_px - truth_px)[measured] <= WRONG_PX)
-    return np.stack([np.bincount(at, weights, minlength=len(EDGES)) for weights in (None, wrong)]) / at.size
+    stated = probability(found.confidence[measured])
+    at = np.searchsorted(EDGES, stated, side="right") - 1
+    right = np.abs(found.disparity_px - truth_px)[measured] <= WRONG_PX
+    return np.stack([np.bincount(at, weights, minlength=len(EDGES)) for weights in (None, stated, right)]) / at.size
 
 
 def _areas(scene: KnownScene) -> tuple[dict[str, float], ...]:

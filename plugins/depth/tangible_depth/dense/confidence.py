@@ -25,6 +25,32 @@ GAP_REACH = 5
 SHARE_LOST = 0.6
 """Share of the confidence lost where no pixel of the window was matched."""
 
+Table = tuple[tuple[float, ...], tuple[float, ...]]
+OF_FILLED: Table = (
+    (0.01, 0.018, 0.033, 0.042, 0.056, 0.07, 0.079, 0.092),
+    (0.563, 0.681, 0.823, 0.901, 0.944, 0.952, 0.952, 0.971),
+)
+"""Confidences of `semi-global` in the range of filled values, and the probability of being within 2 px at each.
+
+Made by `python -m benchmarks.depth_probability` from synthetic scenes of odd seeds.
+"""
+OF_MATCHED: Table = (
+    (0.203, 0.244, 0.281, 0.319, 0.359, 0.401, 0.441, 0.481, 0.526, 0.577, 0.655, 0.75, 0.887),
+    (0.754, 0.834, 0.938, 0.968, 0.968, 0.97, 0.98, 0.986, 0.991, 0.995, 0.998, 0.999, 0.999),
+)
+"""The same for the range of matches."""
+
+
+def probability(sure: Float32[np.ndarray, "*shape"]) -> Float32[np.ndarray, "*shape"]:
+    """Return how likely a value of `semi-global` is within 2 px of the truth, 0..1, by its confidence.
+
+    A confidence orders the values and tells what was matched (above FILLED) from what was filled in; most filled values
+    are right. On four photographs and twelve scenes to which nothing was fitted, the mean is within 0.03 of the share
+    of right values (0.05 with `resolution: half`); with noise of 15 grey levels it is up to 0.13 too high.
+    """
+    filled, matched = (np.interp(sure, *table).astype(np.float32) for table in (OF_FILLED, OF_MATCHED))
+    return np.where(sure > np.float32(FILLED), matched, filled)
+
 
 def confidence(
     matched: Int16[np.ndarray, "h w"],

@@ -36,12 +36,11 @@ const element = <T extends HTMLElement>(id: string): T => document.getElementByI
 const now_s = (): number => Date.now() / 1000;
 
 async function open(data: Packed): Promise<void> {
-  const canvas = element<HTMLCanvasElement>("terrain");
-  const view = new View(canvas);
-  view.prepare(DEFAULTS); // shaders are compiled while the data are unpacked
   const { scene, spline, row } = await unpack(data);
+  const canvas = element<HTMLCanvasElement>("terrain");
   const hub = new Hub();
   const { speech, announcer } = voiceOf(hub, element("said"), element("alerted"));
+  const view = new View(canvas);
   const law = new ProxyLaw(spline, row);
   const sound = new Sound(hub, () => page.scene);
   const page: Page = {

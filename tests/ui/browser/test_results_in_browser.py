@@ -79,7 +79,8 @@ class TestExport:
         shown = panel.locator(".previews img")
         drawn = "(all) => all.map((each) => each.naturalWidth)"
         until(lambda: shown.count() == 2 and all(shown.evaluate_all(drawn)), "pictures before anything is made")
-        assert "3D print (STL): the picture is 5.0 cm wide" in panel.locator("figcaption").first.inner_text()
+        caption = panel.locator("figcaption").first
+        until(lambda: "3D print (STL): the picture is 5.0 cm wide" in caption.inner_text(), "of the last choice")
         panel.get_by_role("button", name="Export", exact=True).press("Enter")
         until(lambda: "2 files are ready." in panel.inner_text(), "files")
         until(lambda: page.evaluate("document.activeElement.id") == "export-status", "the focus is at the result")

@@ -61,7 +61,7 @@ export class Previews {
       this.root.replaceChildren(...drawn);
     }
     this.root.replaceChildren(...drawn);
-    this.root.classList.remove("stale");
+    this.root.classList.toggle("stale", this.stale); // of a choice that was made meanwhile, they still are
   }
 }
 

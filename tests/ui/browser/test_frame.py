@@ -161,6 +161,8 @@ def test_surface_keeps_half_of_a_small_screen_and_the_stop_button_covers_nothing
 def test_surface_is_shown_whole_beside_what_lies_on_the_canvas(page: "Page"):
     """The line that says how to feel, which goes once somebody has felt; the scale; and all values."""
     page.set_viewport_size({"width": 1100, "height": 700})  # the canvas is 640 pixels wide where it is measured
+    names = page.locator("#strip .short th").all_inner_texts()
+    assert names == ["Force", "Material", "Height"] and page.locator("#data-cursor > .all").is_hidden()
     page.locator("#data-cursor > summary").press("Enter")
     hint = page.locator("#how-to-feel")
     assert "hold its button down" in hint.inner_text()

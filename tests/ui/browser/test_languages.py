@@ -7,28 +7,32 @@ from browser_tabs import OpenPage
 from english import english_of
 from page_panels import show_everything
 from sessions import striped_scene
+from tangible_core.parts.words.languages import TABLES
 from tangible_core.translation.catalogue import catalogue
 from waiting import until
 
-TEXTS = """() => {
+GERMAN_MATERIALS = set(TABLES["de"].materials.values())
+TEXTS = """(roots) => {
   const hidden = "script, style, textarea, code, kbd, [lang]:not(html), .path, option";
-  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   const texts = new Set();
-  while (walker.nextNode()) {
-    const { data, parentElement } = walker.currentNode;
-    if (!parentElement.closest(hidden)) texts.add(data.trim());
-  }
   const attributes = ["aria-label", "title", "placeholder", "alt", "aria-description"];
-  for (const each of document.querySelectorAll(attributes.map((name) => `[${name}]`).join())) {
-    if (!each.closest(hidden)) for (const name of attributes) texts.add(each.getAttribute(name) ?? "");
+  for (const root of document.querySelectorAll(roots)) {
+    const walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
+    while (walker.nextNode()) {
+      const { data, parentElement } = walker.currentNode;
+      if (!parentElement.closest(hidden)) texts.add(data.trim());
+    }
+    for (const each of root.querySelectorAll(attributes.map((name) => `[${name}]`).join())) {
+      if (!each.closest(hidden)) for (const name of attributes) texts.add(each.getAttribute(name) ?? "");
+    }
   }
   return [...texts].filter(Boolean);
 }"""
 
 
-def untranslated(text: str) -> bool:
-    """Whether a text is one of the catalogue's, or a number, and not in German."""
-    own = catalogue("de").find(text)
+def untranslated(text: str, language: str) -> bool:
+    """Whether a text is one of the catalogue's, or a number, and not in the language."""
+    own = catalogue(language).find(text)
     return own is not None and own != text and " " in text and ": " not in text
 
 
@@ -38,6 +42,8 @@ def test_the_page_in_german_has_no_english(opened: Callable[..., str], open_page
     page.goto(opened(striped_scene(tmp_path)) + "&measure")
     until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
     show_everything(page)
+    library = page.locator("#materials .wide tbody th")
+    until(lambda: set(library.all_inner_texts()) == GERMAN_MATERIALS, "the library of materials")
     for each in ("3D-Druck (STL)", "Schwellpapier (SVG, PDF)", "Beschreibung (Text, HTML)"):
         page.get_by_label(each).first.check()
     page.locator("#export-run").click()
@@ -47,6 +53,27 @@ def test_the_page_in_german_has_no_english(opened: Callable[..., str], open_page
     page.locator("#preflight-check").evaluate("(each) => each.click()")
     page.wait_for_selector("#preflight .sentence", state="attached")
     show_everything(page)
-    texts = page.evaluate(TEXTS)
+    texts = page.evaluate(TEXTS, "body")
     assert len(texts) > 500
-    assert [each for each in texts if english_of(each) or untranslated(each)] == []
+    assert [each for each in texts if english_of(each) or untranslated(each, "de")] == []
+
+
+def test_the_main_tasks_in_french_have_no_english(
+    opened: Callable[..., str], open_page: OpenPage, tmp_path: Path
+) -> None:
+    """The head, the four tasks with verdicts and cures, help and log; not options, and not what drivers lack."""
+    page = open_page("about:blank", locale="fr-FR")
+    page.goto(opened(striped_scene(tmp_path)) + "&measure")
+    until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
+    assert page.locator("#status").inner_text().startswith("Au toucher")
+    show_everything(page)
+    page.locator("#legible-check").click()
+    page.wait_for_selector("#legible .sentence")
+    page.locator("#preflight-check").evaluate("(each) => each.click()")
+    page.wait_for_selector("#preflight .sentence", state="attached")
+    page.evaluate("document.querySelectorAll('.exporters .more, ul.devices').forEach((each) => each.remove())")
+    texts = page.evaluate(TEXTS, "#head, #left, #strip, #bottom, #preflight, #stages, #view, #overlay-panel")
+    assert len(texts) > 300
+    english = [each for each in texts if english_of(each) or untranslated(each, "fr")]
+    assert not english, "\n".join(english)
+    assert "partie 1" in page.locator("#description").inner_text()

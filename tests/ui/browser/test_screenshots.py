@@ -4,6 +4,7 @@ TANGIBLE_UI_PICTURES=1 pytest tests/ui/browser/test_screenshots.py -m "nightly o
 """
 
 import io
+import itertools
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +18,7 @@ from browser_tabs import SETTLED
 from drawn_parts import drawn
 from page_files import ROOT
 from page_panels import bring
+from waiting import until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -53,8 +55,7 @@ def test_screenshot_of_the_page(open_page: Callable[..., Any], url: str, tmp_pat
     page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
     if name == "ui-dark":
         page.locator("#look").select_option("materials")
-    touch(page)
-    picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    picture = touched(page)
     page.mouse.up()
     keep(picture, tmp_path, name)
 
@@ -86,10 +87,9 @@ def test_screenshots_of_start_and_tasks(
                 page.wait_for_selector("#export .exporters")
                 page.evaluate(HERE)
             page.evaluate(SETTLED)
-            if task == "feel":
-                touch(page)
-            keep(shot(page), tmp_path, f"ui/{name}{variant}")
+            picture = touched(page) if task == "feel" else shot(page)
             page.mouse.up()
+            keep(picture, tmp_path, f"ui/{name}{variant}")
         page.close()  # the next one gets the hand
 
 
@@ -110,6 +110,7 @@ def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_p
         panel = bring(page, name)
         panel.evaluate("(each) => (each.open = true)")
         prepare(page, name)
+        panel.evaluate("(each) => each.scrollIntoView({ block: 'start' })")
         box = panel.bounding_box()
         cut = {"x": box["x"], "y": box["y"], "width": box["width"], "height": min(box["height"], 640)}
         picture = Image.open(io.BytesIO(page.screenshot(clip=cut))).convert("RGB")
@@ -169,7 +170,8 @@ def prepare(page: "Page", name: str) -> None:
     elif name == "preflight":
         page.locator("#preflight-check").click()
         page.wait_for_function("() => document.querySelector('#preflight').textContent.includes('Judged for')")
-    elif name == "legible":
+    elif name == "legible":  # on a print, fingers cannot read all of it
+        page.get_by_label("Read on").select_option("print")
         page.locator("#legible-check").click()
         page.wait_for_selector("#legible .sentence")
     elif name == "export":
@@ -195,12 +197,28 @@ def keep(picture: Image.Image, folder: Path, name: str) -> None:
     assert path.stat().st_size < MOST_BYTES
 
 
-def touch(page: "Page") -> None:
-    """Press the hand onto the surface, so that there is a force to be seen."""
+def touched(page: "Page") -> Image.Image:
+    """Stroke the surface with the hand pressed, until there is a force; return a picture of it."""
     box = page.locator("#terrain").bounding_box()
     assert box
     page.mouse.move(box["x"] + 0.45 * box["width"], box["y"] + 0.5 * box["height"])
     page.mouse.down()
-    for step in range(20):
-        page.mouse.move(box["x"] + (0.45 + 0.001 * step) * box["width"], box["y"] + 0.5 * box["height"])
+    force, steps = page.locator("#strip .short td").first, itertools.count()
+
+    def is_felt() -> bool:
+        return any(each in "123456789" for each in force.inner_text())
+
+    def felt() -> Image.Image | None:
+        x, y = box["x"] + (0.45 + 0.001 * (next(steps) % 20)) * box["width"], box["y"] + 0.5 * box["height"]
+        page.mouse.move(x, y)
         page.wait_for_timeout(50)
+        picture = shot(page) if is_felt() else None
+        return picture if picture and shows_hand(picture, x, y) else None  # a busy machine lets it go meanwhile
+
+    return until(felt, "a force")
+
+
+def shows_hand(picture: Image.Image, x: float, y: float) -> bool:
+    """Whether the pink ball of the hand is drawn near a place."""
+    red, green, blue = np.asarray(picture.crop((int(x) - 40, int(y) - 40, int(x) + 40, int(y) + 40)), int).T
+    return bool(((red > 150) & (blue > 80) & (red - green > 90) & (blue - green > 20)).sum() > 20)

@@ -70,6 +70,7 @@ def test_titles_and_names_stay_text(tmp_path: Path):
     meta = json.loads(data)["meta"]
     assert meta["name"] == shown
     assert [each["name"] for each in meta["materials"]] == [each.name for each in MATERIALS]
+    assert meta["parts"] == [one_line(each) for each in HOSTILE]
     assert meta["parts"][2] == HOSTILE[2] and HOSTILE[2] in page.texts("bdi")
     assert script == built_page().joinpath("send.js").read_text("utf-8")
 

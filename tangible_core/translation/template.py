@@ -36,7 +36,7 @@ class Template:
             return None
         begin, end, values = len(first), len(text) - len(last), list[str]()
         for literal in middle:
-            place = text.find(literal, begin, end)
+            place = _place(text, literal, begin, end)
             if place < 0:
                 return None
             values.append(text[begin:place])
@@ -61,3 +61,11 @@ class Template:
 
             parts[number] = PLACEHOLDER.sub(value, part)
         return "`".join(parts)
+
+
+def _place(text: str, literal: str, begin: int, end: int) -> int:
+    """Return where a literal stands first, or -1; a full stop alone is not the point in a number."""
+    place = text.find(literal, begin, end)
+    while literal == "." and place > 0 and text[place - 1].isdigit() and text[place + 1 : place + 2].isdigit():
+        place = text.find(literal, place + 1, end)
+    return place

@@ -178,3 +178,11 @@ def test_results_are_told_in_german_and_data_in_english(tmp_path: Path) -> None:
     data = tangible("--lang", "de", "plan", pipeline, "--json", cwd=tmp_path)
     assert data.stdout == tangible("plan", pipeline, "--json", cwd=tmp_path).stdout
     assert '"why"' in data.stdout
+
+
+def test_a_point_in_a_number_ends_no_sentence() -> None:
+    size = ", as a surface of 80 x 53 mm, 5.68 mm high"
+    hand = "A simulated hand felt it for 8.0 s, with forces of up to 3.2 N."
+    told = translate(f"a.jpg can now be felt{size}. {hand}", "de")
+    assert "als Oberfläche von 80 x 53 mm, 5,68 mm hoch." in told
+    assert "surface" not in told

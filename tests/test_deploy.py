@@ -3,10 +3,16 @@
 import json
 import re
 import shlex
+import subprocess
 import tomllib
 from configparser import ConfigParser
 from pathlib import Path
 from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from tangible_core.runtime.child_process import python
 
 ROOT = Path(__file__).parents[1]
 DEPLOY = ROOT / "deploy"
@@ -70,3 +76,30 @@ def test_desktop_entry_starts_the_page_for_types_that_are_declared():
     declared = {each.get("type") for each in ElementTree.parse(DEPLOY / "tangible-images.xml").iter(f"{MIME}mime-type")}
     assert entry["Exec"].split()[0] in SCRIPTS
     assert {each for each in entry["MimeType"].split(";") if "x-tangible" in each} == declared
+
+
+class TestSlim:
+    ENTRY = re.compile(r"^([\w.-]+)==[^\n]+\\\n(?: +--hash=\S+(?: \\)?\n?)+", re.MULTILINE)
+    WITHOUT = "cv2", "scipy", "skimage", "matplotlib", "PIL", "starlette", "uvicorn", "websockets"
+    """The packages that are not in the list, by the names of their modules."""
+    HIDE = "import sys; sys.modules.update(dict.fromkeys({names!r})); "
+
+    def test_packages_have_the_digests_of_the_lock(self):
+        locked, slim = ((ROOT / name).read_text("utf-8") for name in ("requirements-dev.txt", "deploy/slim.txt"))
+        entries = [each[0].strip() for each in self.ENTRY.finditer(slim)]
+        assert len(entries) == slim.count("==")
+        assert set(entries) <= {each[0].strip() for each in self.ENTRY.finditer(locked)}
+
+    @pytest.mark.slow
+    def test_surface_of_heights_is_felt_with_the_listed_packages_alone(self, tmp_path: Path):
+        y, x = np.mgrid[:48, :64]
+        heights_m = np.float32(1e-3 * np.sin(x / 7) * np.cos(y / 9)) + np.float32(1e-3) * (x > 40)
+        np.save(tmp_path / "heights.npy", heights_m)
+        words = "scene: {height: heights.npy}\nwant: touch\nrender: {use: proxy}\ndevice: {use: mock}\n"
+        (tmp_path / "board.yaml").write_text(words, "utf-8")
+        code = self.HIDE.format(names=self.WITHOUT) + "from tangible_core.cli import main; main()"
+        command = [*python(code), "feel", "board.yaml", "--seconds", "1", "--record", "hand.nc", "--json"]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        assert (tmp_path / "hand.nc").stat().st_size > 10_000
+        assert json.loads(done.stdout)["figures"]["contact_share"] > 0.5

@@ -22,8 +22,6 @@ def jumps(height_m: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
 
     Waves of 8 cells and longer have none. Only the heights count, not their extension beyond the border.
     """
-    import cv2
-
     mask = np.zeros(height_m.shape, bool)
     with np.errstate(over="ignore", invalid="ignore"):
         rounding = ROUNDING * np.abs(height_m).max()
@@ -32,7 +30,20 @@ def jumps(height_m: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
                 at[2:-2, lines] |= _exceed_nearby(np.diff(heights[:, lines], 2, axis=0), rounding)
     if not mask.any():
         return mask
-    return cv2.dilate(mask.view(np.uint8), np.ones((2 * REACH + 1, 2 * REACH + 1), np.uint8)).view(bool)
+    return _widened(mask)
+
+
+def _widened(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+    """Return True within REACH rows and columns of a cell. (OpenCV would be half of a small installation.)"""
+    rows = mask.copy()
+    for reach in range(1, REACH + 1):
+        rows[reach:] |= mask[:-reach]
+        rows[:-reach] |= mask[reach:]
+    wide = rows.copy()
+    for reach in range(1, REACH + 1):
+        wide[:, reach:] |= rows[:, :-reach]
+        wide[:, :-reach] |= rows[:, reach:]
+    return wide
 
 
 def ease(values: Float64[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -> None:

@@ -24,6 +24,8 @@ TESTS = os.environ.get("TRIED_TESTS", "")
 """A folder with pyproject.toml and tests/, and without the program: it is the installed one that is tested."""
 ROOMS = ("compiled", "data", "mapping", "materials", "metrics", "relief")
 """The rooms of the core that calculate."""
+CLEANING_S = 20
+"""Time for what the workers of killed programs remove, s."""
 COMMAND = [sys.executable, "-c", "from tangible_core.cli import main; main()"]
 
 
@@ -145,6 +147,12 @@ def digests() -> dict[str, str]:
     return found
 
 
+def left(before: set[str]) -> list[str]:
+    """Return what lies in the temporary folder now, and did not before."""
+    now = {each.name for each in Path(tempfile.gettempdir()).iterdir()}
+    return sorted(each for each in now - before if each.startswith("tangible"))
+
+
 def main() -> None:
     """Try every step, or those that are named."""
     wanted = sys.argv[2:] or [each.__name__ for each in STEPS if each is not rooms or TESTS]
@@ -167,8 +175,11 @@ def main() -> None:
         sys.stdout.write(f"{step.__name__}: {result['steps'][step.__name__]}\n")
         sys.stdout.flush()
         Path("tried.json").write_text(json.dumps(result, indent=1), "utf-8")
-    left = {each.name for each in Path(tempfile.gettempdir()).iterdir()} - before
-    result["left"] = sorted(each for each in left if each.startswith("tangible"))
+    result["left"] = left(before)
+    for _ in range(CLEANING_S):
+        if result["left"]:
+            time.sleep(1)
+            result["left"] = left(before)
     if Path("demo/surface.npz").exists():
         result["digests"] = digests()
     Path("tried.json").write_text(json.dumps(result, indent=1), "utf-8")

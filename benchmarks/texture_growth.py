@@ -15,7 +15,7 @@ SIDES_PX = (256, 512, 1024, 2048, 4096)
 """A mosaic, cut or mirrored over and over: 0.07 to 17 megapixels."""
 SEGMENTS = 4
 ROUNDS = 3
-MEMORY_BYTES_PX, MEMORY_BYTES = 60, 16 << 20
+MEMORY_BYTES_PX, MEMORY_BYTES = 64, 16 << 20
 """What `gabor` states."""
 
 

@@ -219,6 +219,7 @@ def test_photograph_without_depth_has_a_notice_that_leads_on(
     assert "edges" in bring(page, "found").inner_text()
     notice.get_by_role("button", name="Draw its parts").press("Enter")
     page.wait_for_selector("#parts-list [role=option]")
+    assert not notice.is_visible(), "it would cover the editor's small surface"
     page.locator("#parts-editor").get_by_role("button", name="Close").click()
     until(lambda: page.locator("#parts-editor").count() == 0 or page.locator("dialog").count() > 0)
     if page.locator("dialog").count():

@@ -31,7 +31,7 @@ from tangible_texture import Hierarchy
 from .figures import Figure, judged, part, table
 from .tests_path import drawn_parts
 
-PICTURES = ("astronaut", "coffee", "motorcycle")
+PICTURES = ("astronaut", "coffee", "motorcycle", "chelsea", "rocket", "camera")
 WIDTH_M, TALL_M = 0.16, 0.006
 GIVEN, GUESS = HeightChoice(by="given"), HeightChoice(by="guess")
 TOP_M = TALL_M - GIVEN.bulge_m - GIVEN.detail_m

@@ -24,6 +24,7 @@ from tangible_core.scene.geometry import make_relief, smooth
 from tangible_core.scene.workspace import FeltSize, Workspace
 from tangible_depth import Luminance, SemiGlobal
 from tangible_render import Proxy
+from tangible_texture import Hierarchy
 
 from . import depth_pairs, relief_photographs
 from .figures import Figure, judged, mean_and_error, part, table
@@ -235,7 +236,7 @@ def _draw() -> None:
     photo = Scene.photo(data.astronaut())
     reliefs |= {
         "astronaut_brightness": Pipeline(photo, depth=Luminance(), cached=False).relief,
-        "astronaut_edges": Pipeline(photo, relief="edges", cached=False).relief,
+        "astronaut_edges": Pipeline(photo, relief="edges", texture=Hierarchy(), cached=False).relief,
     }
     grey = cv2.cvtColor(data.astronaut(), cv2.COLOR_RGB2GRAY)
     cv2.imwrite(str(DOCS / "astronaut.png"), cv2.resize(grey, (SMALL, SMALL), interpolation=cv2.INTER_AREA))

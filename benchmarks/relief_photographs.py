@@ -1,4 +1,4 @@
-"""Photographs without depth: felt steps against the borders that people drew, by brightness and by edges."""
+"""Photographs without depth: felt steps against the borders that people drew, by brightness, by edges and by lines."""
 # scipy has no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
@@ -15,12 +15,13 @@ from tangible_core.data.views import border_pixels
 from tangible_core.metrics.borders import WITHIN_M, felt_steps
 from tangible_core.scene.workspace import Workspace
 from tangible_depth import Luminance
+from tangible_texture import Hierarchy
 
 from .figures import mean_and_error, table
 from .regions_drawn import Photograph, photographs
 from .tests_path import drawn_parts
 
-DRAWN = "astronaut", "coffee", "motorcycle"
+DRAWN = "astronaut", "coffee", "motorcycle", "chelsea", "rocket", "camera"
 
 
 def lines() -> list[str]:
@@ -28,6 +29,9 @@ def lines() -> list[str]:
     made = {
         "brightness": lambda picture, width_m: _photograph(picture, width_m, depth=Luminance()),
         "edges": lambda picture, width_m: _photograph(picture, width_m, relief="edges"),
+        "lines of `hierarchy`": lambda picture, width_m: _photograph(
+            picture, width_m, relief="edges", texture=Hierarchy()
+        ),
     }
     pictures = {
         name: Photograph(drawn.picture, [drawn.parts.labels]) for name in DRAWN for drawn in [drawn_parts.drawn(name)]
@@ -51,8 +55,9 @@ def lines() -> list[str]:
                     )
                 )
     said = (
-        "One photograph, by brightness and by edges: the share of the felt steps within 2 mm of a border that somebody "
-        "drew, and the share of the drawn borders with a felt step."
+        "One photograph, by brightness, by edges, and by lines where `hierarchy` expects people to draw a border: the "
+        "share of the felt steps within 2 mm of a border that somebody drew, and the share of the drawn borders with a "
+        "felt step. The weights of `hierarchy` were fitted to these photographs, not to the named pictures."
     )
     return [said, "", *table(("picture", "wide", "relief", "at a drawn border", "found"), rows)]
 

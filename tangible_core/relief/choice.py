@@ -19,8 +19,9 @@ class ReliefChoice(Section):
 
     by: Literal["disparity", "depth", "edges"] = "disparity"
     """The source of heights. `disparity`: near things get more of the height, as in a bas-relief. `depth`: heights to
-    scale, where the calibration of the cameras is known. `edges`: the edges of the picture, as raised lines on low
-    steps from dark to light, for one photograph without depth."""
+    scale, where the calibration of the cameras is known. `edges`: for one photograph without depth, raised lines on low
+    steps from dark to light: at the borders that people would draw, if the texture method knows these, as `hierarchy`
+    does, and at the edges of the picture otherwise."""
     slope: Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)] = 1.1
     """The greatest slope, rise over run; steeper places become ramps. A hand that presses down climbs it with at most
     this many times its press sideways. 0 keeps cliffs."""

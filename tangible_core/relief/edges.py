@@ -3,9 +3,10 @@
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 
 import numpy as np
-from jaxtyping import Bool, Float32
+from jaxtyping import Bool, Float32, Int32
 
 from ..data import Relief, Views
+from ..data.views import border_pixels
 from ..runtime.opencv import plain_opencv
 from ..scene import geometry, scaling
 from ..scene.workspace import FeltSize
@@ -29,30 +30,43 @@ LINE_M = 0.0004
 """The standard deviation of the profile of a line, m: a line of 1 mm, as tactile graphics have."""
 LINES = 0.6
 """The share of the height that lines have; the rest is that of light over dark."""
+HALF = 0.5
+"""The distance of the cells on both sides of a border from the border, cells."""
 CALM_M, CALM = 0.0015, 0.1
 """The radius, m, within which light and dark are made even, and their standard deviation up to which they are."""
 
 
-def edge_relief(views: Views, size: FeltSize, choice: ReliefChoice) -> Relief:
+def edge_relief(
+    views: Views, size: FeltSize, choice: ReliefChoice, regions: Int32[np.ndarray, "r c"] | None = None
+) -> Relief:
     """Make the relief of the left view's edges: raised lines on low steps from dark to light, pixels square.
 
-    An edge is a difference of colour at the scale of the blur that is among the strongest of the picture, or continues
-    one of these (Canny 1986, on the channel of Lab with the greatest difference), and is at least LONG times as long.
+    regions: labels whose borders are the edges, on the cells of `reduce_to_cells`. Without them, an edge is a
+    difference of colour at the scale of the blur that is among the strongest of the picture, or continues one of these
+    (Canny 1986, on the channel of Lab with the greatest difference), and is at least LONG times as long.
     """
     import cv2
 
     extent_m = geometry.extent_of(views.shape, size.width_m)
-    factor = scaling.felt_factor(views.shape[1], size.width_m, CELL_M)
-    small = scaling.reduce_views(Views(views.left), factor).left
+    small = reduce_to_cells(views, size.width_m)
     pitch_m = size.width_m / small.shape[1]
     with plain_opencv():
         lab = np.asarray(cv2.cvtColor(_colours(small), cv2.COLOR_RGB2LAB), np.float32)
-        lines = _lines(lab, pitch_m, (BLUR_M * BLUR_SHARE * size.width_m) ** 0.5)
+        if regions is None:
+            lines = _lines(_edges(lab, (BLUR_M * BLUR_SHARE * size.width_m) ** 0.5 / pitch_m), 0, pitch_m)
+        else:
+            lines = _lines(border_pixels(regions), HALF, pitch_m)
         height_m = (1 - LINES) * size.relief_m * _calm_light(np.ascontiguousarray(lab[..., 0]) / 100, pitch_m)
         height_m = np.maximum(height_m + LINES * size.relief_m * lines, 0).astype(np.float32)
         shown = np.asarray(cv2.resize(height_m, views.shape[::-1], interpolation=cv2.INTER_LINEAR))
     relief = Relief(limit_slopes(shown, size.width_m / views.shape[1], choice.slope), extent_m)
     return geometry.smooth(relief, size.smooth_m)
+
+
+def reduce_to_cells(views: Views, width_m: float) -> np.ndarray:
+    """Return the left view on the cells on which edges are found."""
+    factor = scaling.felt_factor(views.shape[1], width_m, CELL_M)
+    return scaling.reduce_views(Views(views.left), factor).left
 
 
 def _colours(picture: np.ndarray) -> Float32[np.ndarray, "h w 3"]:
@@ -62,14 +76,13 @@ def _colours(picture: np.ndarray) -> Float32[np.ndarray, "h w 3"]:
     return colours.astype(np.float32) / np.float32(scale)
 
 
-def _lines(lab: Float32[np.ndarray, "h w 3"], pitch_m: float, blur_m: float) -> Float32[np.ndarray, "h w"]:
-    """Return the profile of the lines, 0 to 1."""
+def _lines(at_edge: Bool[np.ndarray, "h w"], off: float, pitch_m: float) -> Float32[np.ndarray, "h w"]:
+    """Return the profile of the lines, 0 to 1. off: the distance of an edge's cells from the edge itself, cells."""
     from scipy.ndimage import distance_transform_edt
 
-    at_edge = _edges(lab, blur_m / pitch_m)
     if not at_edge.any():
         return np.zeros(at_edge.shape, np.float32)
-    distance_m = np.asarray(distance_transform_edt(~at_edge)) * pitch_m
+    distance_m = (np.asarray(distance_transform_edt(~at_edge)) + off) * pitch_m
     return np.exp(-((distance_m / LINE_M) ** 2) / 2).astype(np.float32)
 
 

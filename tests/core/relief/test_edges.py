@@ -9,6 +9,7 @@ from tangible_core.errors import ConfigError
 from tangible_core.relief import ReliefChoice, edge_relief
 from tangible_core.scene.workspace import FeltSize
 from tangible_depth import Luminance
+from tangible_texture import Gradient, Hierarchy
 
 SIZE = FeltSize(0.08, 0.002, 0.00025, 3e-5, "fill")
 PITCH_M = 0.08 / 320
@@ -147,6 +148,48 @@ def test_pipeline_by_edges_needs_no_depth():
     assert np.array_equal(found, lines_of(block()))
     assert pipeline.config.relief_kind == "edges" and pipeline.config.size[1:3] == (0.002, 0.00025)
     assert {each.product: each.outcome for each in pipeline.outcomes}["disparity"] == "skipped"
+
+
+def test_borders_of_regions_are_lines_and_edges_are_not():
+    """The regions' border is at column 200; the picture's edges are elsewhere."""
+    regions = (np.arange(320) >= 200).astype(np.int32) * np.ones((240, 1), np.int32)
+    found = edge_relief(Views(block()), SIZE, ReliefChoice(slope=0), regions).height_m[20]
+    assert found[199] == found[200] == found.max() > 0.9 * 0.6 * SIZE.relief_m
+    assert np.allclose(found[190:200], found[209:199:-1]), "the line is symmetric"
+    assert not found[:180].any()
+
+
+def test_no_regions_are_no_lines():
+    found = edge_relief(Views(block()), SIZE, ReliefChoice(), np.zeros((240, 320), np.int32)).height_m
+    assert found.max() <= 0.4 * SIZE.relief_m * (1 + 1e-6)
+
+
+def woven():
+    """Two weaves of equal brightness, upright on the left and lying on the right."""
+    rows, columns = np.indices((240, 320))
+    phase = np.where(columns < 160, columns, rows)
+    return np.repeat((120 + 60 * np.sin(2 * np.pi * phase / 6))[..., None], 3, axis=2).astype(np.uint8)
+
+
+def test_pipeline_draws_the_border_that_people_would_draw():
+    pipeline = Pipeline(Scene.photo(woven()), relief="edges", texture=Hierarchy(), cached=False)
+    found = pipeline.relief.height_m
+    lines = found[40:200].mean(axis=0)
+    assert abs(int(np.argmax(lines)) - 160) <= 4
+    assert lines[155:165].max() > lines[40:140].max() + 0.0005
+    assert lines[155:165].max() > lines[180:280].max() + 0.0005
+    said = {each.product: each.why for each in pipeline.outcomes}["relief"]
+    assert "borders that people would draw are raised lines" in said
+
+
+def test_method_without_a_tree_leaves_edges_as_they_are():
+    pipeline = Pipeline(Scene.photo(block()), relief="edges", texture=Gradient(), cached=False)
+    assert np.array_equal(pipeline.relief.height_m, lines_of(block()))
+
+
+def test_flat_picture_has_no_borders():
+    picture = np.full((60, 80, 3), 90, np.uint8)
+    assert not Pipeline(Scene.photo(picture), relief="edges", texture=Hierarchy(), cached=False).relief.height_m.any()
 
 
 def test_photograph_by_brightness_is_scaled_and_smoothed_only():

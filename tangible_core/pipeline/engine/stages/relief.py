@@ -3,13 +3,18 @@
 import logging
 from functools import cached_property
 
+import numpy as np
+from jaxtyping import Int32
+
 from ....data import Calibration, DisparityMap, PartMap, Relief
 from ....parts import Layering, PartHeights
+from ....plugins.interfaces import Hierarchical
 from ....plugins.notes import note
 from ....relief import ReliefChoice, ReliefScale, edge_relief, edges, relief_scale, shape_relief, shaping
 from ....scene import geometry, scaling
 from ....scene.workspace import FeltSize
 from .. import part_heights
+from ..keys import method_identity
 from ..part_heights import warn_missing_heights
 from ..stage import Inputs, Stage
 from ..working_grid import flatten_transparent, relief_of_layers
@@ -17,6 +22,9 @@ from ..working_grid import flatten_transparent, relief_of_layers
 log: logging.Logger = logging.getLogger(__name__)
 SPREAD = "heights are spread so that borders can be felt; `relief: depth` keeps true proportions"
 """The note on a relief whose heights are not proportional to depth."""
+LEVEL, MOST_REGIONS = 0.6, 64
+"""The least share of people who would draw a border that is a raised line, and the most regions between such lines. On
+20 photographs, lines at this level are at drawn borders as often as lines at edges, and find more of these."""
 LINEAR = ReliefChoice(by="depth", slope=0, grain_m=0)
 """The shape of a relief that is neither spread nor limited."""
 
@@ -43,8 +51,10 @@ class ReliefStage(Stage):
     def key(self) -> str:
         config, size = self.config, self.size
         if config.heights is None:
-            code = self.code(edges.__name__ if config.relief_kind == "edges" else shaping.__name__)
-            return f"{code} {size!r} {self.choice!r}{self.reduction}"
+            if config.relief_kind != "edges":
+                return f"{self.code(shaping.__name__)} {size!r} {self.choice!r}{self.reduction}"
+            regions = method_identity(config.texture)[1] if self._divider else ""
+            return f"{self.code(edges.__name__)} {size!r} {self.choice!r}{self.reduction} {regions}"
         code = self.code(part_heights.__name__, Layering.__module__, geometry.__name__)
         return f"{code} {size!r} {config.heights!r} {sorted(config.given_heights_m.items())}{self.reduction}"
 
@@ -57,6 +67,8 @@ class ReliefStage(Stage):
     def note(self) -> str:
         heights = self.config.heights
         if heights is None and self.config.relief_kind == "edges":
+            if self._divider is not None:
+                return "no depth is needed: borders that people would draw are raised lines"
             return "no depth is needed: edges are raised lines"
         if heights is None or heights.by == "depth":
             return ""
@@ -66,7 +78,8 @@ class ReliefStage(Stage):
         if self.config.heights is not None:
             return self._from_parts(inputs[self.config.felt_parts], inputs.get("disparity"))
         if self.config.relief_kind == "edges":
-            return flatten_transparent(edge_relief(self.views, self.size, self.choice), self.grid.opaque_mask)
+            relief = edge_relief(self.views, self.size, self.choice, self._regions())
+            return flatten_transparent(relief, self.grid.opaque_mask)
         disparity: DisparityMap | None = inputs["disparity"]
         if disparity is None:
             return geometry.flat_relief(self.views.shape, self.size.width_m)
@@ -82,6 +95,19 @@ class ReliefStage(Stage):
     def scale(self, disparity: DisparityMap) -> ReliefScale:
         """Return the scale of the relief of this disparity map alone."""
         return relief_scale(disparity, self._calibration, self.size.width_m, self.choice)
+
+    @property
+    def _divider(self) -> Hierarchical | None:
+        """The texture method, if it knows how likely people are to draw a border."""
+        method = self.config.texture.method if self.config.texture else None
+        return method if isinstance(method, Hierarchical) else None
+
+    def _regions(self) -> Int32[np.ndarray, "r c"] | None:
+        """Return the regions whose borders are raised lines; None without a method that finds them."""
+        if self._divider is None:
+            return None
+        cells = edges.reduce_to_cells(self.views, self.size.width_m)
+        return self._divider.tree(cells).cut(MOST_REGIONS, LEVEL).labels
 
     @property
     def _calibration(self) -> Calibration | None:

@@ -30,10 +30,10 @@ def jumps(height_m: Float32[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
                 at[2:-2, lines] |= _exceed_nearby(np.diff(heights[:, lines], 2, axis=0), rounding)
     if not mask.any():
         return mask
-    return _widened(mask)
+    return _dilate(mask)
 
 
-def _widened(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+def _dilate(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
     """Return True within REACH rows and columns of a cell. (OpenCV would be half of a small installation.)"""
     rows = mask.copy()
     for reach in range(1, REACH + 1):

@@ -59,12 +59,10 @@ def directions(
 ) -> tuple[Float64[np.ndarray, " n"], Float64[np.ndarray, " n"]]:
     """Return cosines and sines, correctly rounded: those of C libraries differ from system to system in last bits."""
     angles = angles_rad.tolist()
-    return np.array([_cosine_or_sine(each, 0) for each in angles]), np.array(
-        [_cosine_or_sine(each, 1) for each in angles]
-    )
+    return np.array([_circular(each, 0) for each in angles]), np.array([_circular(each, 1) for each in angles])
 
 
-def _cosine_or_sine(angle_rad: float, first: int) -> float:
+def _circular(angle_rad: float, first: int) -> float:
     """Return the cosine (first: 0) or sine (1) of an angle, by its series in whole numbers of 2^-BITS."""
     numerator, denominator = abs(angle_rad).as_integer_ratio()
     x = (numerator << BITS) // denominator

@@ -12,10 +12,10 @@ import numpy as np
 
 from tangible_core import load_method
 from tangible_core.data import PartMap, SegmentMap
-from tangible_core.legibility import SimplifyChoice, legibility, simplify
+from tangible_core.legibility import legibility, simplify
 from tangible_core.legibility.grid import on_grid
 from tangible_core.legibility.widths import measure
-from tangible_core.parts import find_parts
+from tangible_core.parts import SimplifyChoice, find_parts
 
 from .figures import Figure, MissedError, judged, part, table
 from .tests_path import colour_parts, drawn_parts

@@ -11,7 +11,8 @@ from PIL import Image
 from colour_parts import by_colour
 from drawn_parts import drawn
 from tangible_core.data import PartMap
-from tangible_core.legibility import SimplifyChoice, legibility, simplify
+from tangible_core.legibility import legibility, simplify
+from tangible_core.parts import SimplifyChoice
 from tangible_core.parts.label_picture import distinct_colours
 from tangible_core.plugins.notes import collected
 

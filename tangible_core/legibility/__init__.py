@@ -1,11 +1,9 @@
 """Legibility for fingers: the rules of tactile graphics, and parts that are simplified until they meet them."""
 
-from .legible import Legibility as Legibility
 from .legible import legibility as legibility
 from .legible import sizes as sizes
 from .neighbours import apart as apart
 from .rules import PROFILES as PROFILES
 from .rules import Profile as Profile
 from .rules import Rule as Rule
-from .simplifying.choice import SimplifyChoice as SimplifyChoice
 from .simplifying.simplify import simplify as simplify

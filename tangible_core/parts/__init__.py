@@ -10,3 +10,4 @@ from .heights import HeightChoice as HeightChoice
 from .heights import PartChoice as PartChoice
 from .heights import PartHeights as PartHeights
 from .layering import Layering as Layering
+from .simplify_choice import SimplifyChoice as SimplifyChoice

@@ -14,11 +14,10 @@ from ..data import TICK_COLUMNS, ServoReport
 from ..data.arguments import named_options
 from ..errors import ConfigError
 from ..files.paths import as_path
-from ..legibility import Legibility
 from ..plugins import hooks
 from ..plugins.failures import naming_plugins
 from ..plugins.interfaces import Film, HapticDevice, Medium, Reshaping, Touch
-from ..preflight import Flight, Hand, Loop, Preflight, judge, survey
+from ..preflight import Flight, Hand, Legibility, Loop, Preflight, judge, survey
 from ..runtime.threads import limited_threads
 from ..servo import OVER, Beacon, Servo, beacon_to
 from ..session import About, PartFelt, Recording, Slot, TrackingError

@@ -11,9 +11,8 @@ from ..data.products import Product
 from ..errors import wrong_argument
 from ..files.paths import as_path
 from ..files.writing import write_text
-from ..legibility import SimplifyChoice
 from ..mapping import WorkspaceMapping
-from ..parts import HeightChoice, PartChoice
+from ..parts import HeightChoice, PartChoice, SimplifyChoice
 from ..plugins import hooks
 from ..plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter, Touch
 from ..plugins.registry import Registry, default_registry

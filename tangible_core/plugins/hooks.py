@@ -81,6 +81,11 @@ class Specs:
         """Return what `tangible plugins` lists besides methods, a `registry.Listing` each; nothing is imported."""
 
     @hookspec
+    def tangible_legibility(self) -> Mapping[str, str]:  # pyright: ignore[reportReturnType]
+        """Return the functions that `judge` and `simplify` parts for fingers, as 'package.module:function'; nothing is
+        imported, and the first answer counts."""
+
+    @hookspec
     def tangible_commands(self, app: Typer) -> None:
         """Add commands to `tangible`."""
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from drawn_parts import drawn
 from tangible_core.data import PartMap, Relief, Work
-from tangible_core.legibility import SimplifyChoice, simplify
+from tangible_core.legibility import simplify
+from tangible_core.parts import SimplifyChoice
 from tangible_core.plugins.interfaces import Exporter
 
 PICTURES = ("astronaut", "coffee", "motorcycle")

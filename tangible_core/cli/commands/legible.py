@@ -11,8 +11,8 @@ from ..options import FAILED, Config, Json, NoCache, Sets, Verbose
 from .run import open_pipeline
 
 if TYPE_CHECKING:
-    from ...legibility import Legibility
     from ...plugins.interfaces import Medium
+    from ...preflight import Legibility
 
 COLOURS = {"ok": "green", "warn": "yellow", "illegible": "bold red"}
 WIDTHS = 9, 15

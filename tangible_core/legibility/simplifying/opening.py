@@ -7,10 +7,10 @@ import numpy as np
 from jaxtyping import Bool, Int32
 
 from ...data import SegmentMap
+from ...parts import SimplifyChoice
 from ...parts.large import large_parts
 from ..cells import Box, boxes, fill, vote
 from ..widths import ROUND_OFF, Rims, Widths, connected_pieces, measure, surroundings
-from .choice import SimplifyChoice
 
 ROUNDS = 24
 """Number of rounds; parts that fail after these are reported."""

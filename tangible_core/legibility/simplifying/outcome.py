@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ...data import PartMap
+from ...parts import SimplifyChoice
 from ...plugins.notes import note
 from ..grid import Grid
 from ..widths import ROUND_OFF, Widths, measure
 from ..words import describe_part, join_texts, millimetres
-from .choice import SimplifyChoice
 from .opening import too_small
 from .textures import count_textures
 

@@ -6,10 +6,9 @@ import numpy as np
 from jaxtyping import Int32
 
 from ...data import PartMap, SegmentMap
-from ...parts import find_parts
+from ...parts import SimplifyChoice, find_parts
 from ..grid import Grid, on_grid
 from ..widths import Widths, measure
-from .choice import SimplifyChoice
 from .opening import NOISY, Opening
 from .outcome import find_failures, note_outcome
 from .textures import count_textures, texture_kinds

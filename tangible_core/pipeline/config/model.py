@@ -18,9 +18,8 @@ from ...data.products import Product
 from ...errors import ConfigError, quoted
 from ...files.paths import without_folders
 from ...files.yaml.source import Source
-from ...legibility import SimplifyChoice
 from ...mapping import WorkspaceMapping, map_device
-from ...parts import HeightChoice, PartChoice
+from ...parts import HeightChoice, PartChoice, SimplifyChoice
 from ...plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter
 from ...relief import ReliefChoice
 from ...scene.formats.height_maps import MeasuredSize

@@ -142,7 +142,7 @@ class Engine:
         """
         other = copy(self)
         other.scene_products = {**self.scene_products, **products}
-        context = Context(self.config, self.scene, other.scene_products)
+        context = Context(self.config, self.scene, other.scene_products, self.registry)
         dependent = {name for name in self.stages if self._depends_on(name, products)}
         other.stages = {
             name: stage_class(name)(context) if name in dependent else stage
@@ -286,7 +286,7 @@ class Engine:
     @cached_property
     def stages(self) -> dict[str, Stage]:
         """The stages of all products that the scene does not provide. Raises: ConfigError, MaterialError."""
-        context = Context(self.config, self.scene, self.scene_products)
+        context = Context(self.config, self.scene, self.scene_products, self.registry)
         return {name: stage_class(name)(context) for name in PRODUCTS if name not in self.scene_products}
 
     def _product(self, want: str | None) -> str:

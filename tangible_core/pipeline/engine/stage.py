@@ -14,6 +14,7 @@ from typing import Any, ClassVar, NamedTuple, final
 from ...data import Outcome, Record, Views
 from ...errors import BrokenMethod, ConfigError, TangibleError
 from ...plugins.interfaces import Skippable
+from ...plugins.registry import Registry, default_registry
 from ...provenance.closure import closure
 from ...scene import scaling
 from ...scene.scene import Scene
@@ -54,6 +55,8 @@ class Context:
     scene: Scene
     scene_products: Mapping[str, Record] = field(default_factory=dict[str, Record])
     """Products that need no stage, as the scene provides them."""
+    registry: Registry = field(default_factory=default_registry)
+    """The installed methods and hooks."""
 
     @cached_property
     def grid(self) -> WorkingGrid:

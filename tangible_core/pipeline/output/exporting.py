@@ -16,12 +16,12 @@ from ...data.outcome import HEADINGS, OutcomeKind, html_table, text_table
 from ...data.products import EXPORTABLE
 from ...errors import BrokenMethod, ConfigError, Stopped, TangibleError, exit_error, quoted, wrong_argument
 from ...files.writing import temporary_folder
-from ...legibility import Legibility
 from ...plugins import failures, hooks
 from ...plugins.interfaces import Exporter
 from ...plugins.naming import plugin_name
 from ...plugins.notes import collect_notes
 from ...plugins.registry import Registry
+from ...preflight import Legibility
 from ...runtime.stopping import check_stopped, stoppable
 from ...scene.scene import Scene
 from ...scene.scene_files import SceneFiles

@@ -7,14 +7,15 @@ from typing import Any, Literal, cast, get_args
 
 from ...data import PartMap, Record
 from ...errors import ConfigError, TangibleError, did_you_mean, quoted
-from ...legibility import Legibility, legibility
 from ...plugins.interfaces import Exporter, Medium
+from ...preflight import Legibility
 from ...preflight.verdict import Change, Verdict
 from ...scene.workspace import Workspace
 from ..config.methods import NamedMethod
 from ..config.model import PipelineConfig
 from ..config.part_names import names_of
 from ..engine.engine import Engine
+from ..engine.legibility import judge_function
 from ..engine.working_grid import WorkingGrid
 
 WIDTH = "workspace.width_m"
@@ -95,7 +96,8 @@ def judge_products(engine: Engine, medium: Medium, parts: str, judged: Collectio
     others = {name: products[name] for name in JUDGED.get(medium, ()) if name in products}
     part_map: PartMap | None = products.get(parts)
     width_m = engine.config.size.width_m
-    return legibility(medium, part_map, width_m, names=names_of_parts(engine.config, products), **others)
+    judge = judge_function(engine.registry)
+    return judge(medium, part_map, width_m, names=names_of_parts(engine.config, products), **others)
 
 
 def with_width(engine: Engine, width_m: float | None) -> Engine:

@@ -12,8 +12,8 @@ from tangible_core import load_method
 from tangible_core.data import PartMap, SegmentMap
 from tangible_core.data.part_words import name_part
 from tangible_core.errors import GeometryError
-from tangible_core.legibility import SimplifyChoice, legibility, simplify
-from tangible_core.parts import find_parts
+from tangible_core.legibility import legibility, simplify
+from tangible_core.parts import SimplifyChoice, find_parts
 from tangible_core.plugins.notes import collected
 
 WIDTH_M = 0.16

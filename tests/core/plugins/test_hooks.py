@@ -16,6 +16,7 @@ FACTS = {
     "tangible_servo_report": {"report": ServoReport(1, 0.001, HapticState((0, 0, 0)), NO_FORCE, 1.0, 0.0)},
     "tangible_panels": {},
     "tangible_listings": {},
+    "tangible_legibility": {},
     "tangible_commands": {"app": object()},
 }
 
@@ -60,6 +61,10 @@ class Witness:
     @hookimpl
     def tangible_listings(self):
         self.calls.append(("tangible_listings", {}))
+
+    @hookimpl
+    def tangible_legibility(self):
+        self.calls.append(("tangible_legibility", {}))
 
     @hookimpl
     def tangible_commands(self, app):

@@ -7,7 +7,18 @@ from typing import TYPE_CHECKING
 from tangible_core.plugins import hookimpl
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from typer import Typer
+
+
+@hookimpl
+def tangible_legibility() -> Mapping[str, str]:
+    """Name the rules of tactile graphics, and parts simplified by them."""
+    return {
+        "judge": "tangible_core.legibility.legible:legibility",
+        "simplify": "tangible_core.legibility.simplifying.simplify:simplify",
+    }
 
 
 @hookimpl

@@ -3,8 +3,9 @@
 from functools import cached_property
 
 from ....data import PartMap
-from ....legibility import SimplifyChoice, simplify
+from ....parts import SimplifyChoice
 from ...config.part_names import names_of
+from ..legibility import legibility_point, simplify_function
 from ..part_validation import check_parts
 from ..stage import Inputs, Stage
 from .parts import missing_segments
@@ -26,12 +27,14 @@ class SimplifiedStage(Stage):
     @cached_property
     def key(self) -> str:
         names = sorted(self.config.part_names.items())
-        return f"{self.code(simplify.__module__)} {self.config.size.width_m} {self._choice!r} {names} {self.grid.key}"
+        code = self.code(legibility_point(self.context.registry, "simplify").module)
+        return f"{code} {self.config.size.width_m} {self._choice!r} {names} {self.grid.key}"
 
     def make(self, inputs: Inputs) -> PartMap:
         parts: PartMap = inputs["parts"]
         names = names_of(self.config.parts or {}, parts.count)
         picture = self.grid.views.left if self.grid.views else None
+        simplify = simplify_function(self.context.registry)
         return simplify(parts, self.config.size.width_m, self._choice, names, picture)
 
     def finish(self, value: PartMap) -> PartMap:

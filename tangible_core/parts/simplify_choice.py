@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from ...scene.workspace import Section
+from ..scene.workspace import Section
 
 
 class SimplifyChoice(Section):

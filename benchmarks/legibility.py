@@ -12,10 +12,10 @@ import numpy as np
 
 from tangible_core import load_method
 from tangible_core.data import PartMap, SegmentMap
-from tangible_core.legibility import legibility, simplify
-from tangible_core.legibility.grid import on_grid
-from tangible_core.legibility.widths import measure
 from tangible_core.parts import SimplifyChoice, find_parts
+from tangible_legibility import legibility, simplify
+from tangible_legibility.grid import on_grid
+from tangible_legibility.widths import measure
 
 from .figures import Figure, MissedError, judged, part, table
 from .tests_path import colour_parts, drawn_parts

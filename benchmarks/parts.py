@@ -13,7 +13,6 @@ import numpy as np
 from tangible_authoring.first_parts import SEGMENTS_PER_PART
 from tangible_core import DisparityMap, Views, load_method
 from tangible_core.data import PartMap, Relief, SegmentMap
-from tangible_core.metrics import border_steps
 from tangible_core.parts import (
     HeightChoice,
     Layering,
@@ -22,10 +21,11 @@ from tangible_core.parts import (
     guess_heights,
     shared_borders,
 )
-from tangible_core.parts.large import large_parts
 from tangible_core.scene.geometry import smooth
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.workspace import SUITS, Workspace
+from tangible_legibility.border_steps import border_steps
+from tangible_legibility.simplifying.large import large_parts
 from tangible_texture import Hierarchy
 
 from .figures import Figure, judged, part, table

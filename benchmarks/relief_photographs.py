@@ -12,7 +12,6 @@ from scipy.ndimage import distance_transform_edt
 from tangible_core import Pipeline, Scene
 from tangible_core.data import Relief
 from tangible_core.data.views import border_pixels
-from tangible_core.metrics.borders import WITHIN_M, felt_steps
 from tangible_core.scene.workspace import Workspace
 from tangible_depth import Luminance
 from tangible_texture import Hierarchy

@@ -15,8 +15,8 @@ from drawn_parts import drawn
 from exported_pictures import pixels
 from pictures import write_png
 from solids import is_closed, read, seen_from_above
+from tangible_authoring.label_picture import label_picture
 from tangible_core import Scene
-from tangible_core.parts.label_picture import label_picture
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT.joinpath("docs", "export.md").read_text(encoding="utf-8")

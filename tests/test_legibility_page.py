@@ -10,11 +10,11 @@ from PIL import Image
 
 from colour_parts import by_colour
 from drawn_parts import drawn
+from tangible_authoring.label_picture import distinct_colours
 from tangible_core.data import PartMap
-from tangible_core.legibility import legibility, simplify
 from tangible_core.parts import SimplifyChoice
-from tangible_core.parts.label_picture import distinct_colours
 from tangible_core.plugins.notes import collected
+from tangible_legibility import legibility, simplify
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT.joinpath("docs", "legibility.md").read_text(encoding="utf-8")

@@ -12,8 +12,8 @@ from PIL import Image
 from command_line import tangible
 from drawn_parts import drawn
 from pictures import write_png
+from tangible_authoring.label_picture import label_picture
 from tangible_core import Pipeline, Scene, Workspace
-from tangible_core.parts.label_picture import label_picture
 from tangible_depth import Luminance
 
 ROOT = Path(__file__).parents[1]

@@ -35,9 +35,6 @@ COMMANDS = {
     "plan": Command(f"{ROOM}.run:plan", "Show what `run` would do, and why; run nothing."),
     "export": Command(f"{ROOM}.export:export", "Write files for others: a printer, swell paper, pins, a reader."),
     "preflight": Command(f"{ROOM}.preflight:preflight", "Check, before a motor moves, what is safe."),
-    "legible": Command(
-        f"{ROOM}.legible:legible", "Check whether fingers can read a picture on paper, print, pins or a device."
-    ),
     "feel": Command(f"{ROOM}.feel:feel", "Feel the surface on the configured device, in real time."),
     "replay": Command(f"{ROOM}.replay:replay", "Re-run a recorded hand path with another force law."),
     "plugins": Command(f"{ROOM}.plugins:app", "List the installed methods and devices; show one of them."),

@@ -1,7 +1,5 @@
-"""Errors of disparity maps, segments and forces against the truth; borders of parts as steps; the stable stiffness."""
+"""Errors of disparity maps, segments and forces against the truth; the stable stiffness."""
 
-from .borders import border_steps as border_steps
-from .borders import felt_steps as felt_steps
 from .disparity import absolute_error as absolute_error
 from .disparity import benchmark_errors as benchmark_errors
 from .disparity import disparity_errors as disparity_errors

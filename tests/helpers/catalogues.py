@@ -26,7 +26,7 @@ msgstr ""
 "Language: {language}\\n"
 "Content-Type: text/plain; charset=UTF-8\\n"
 """
-OTHERS = (ROOT / "tangible_core/parts/words/en.py",)
+OTHERS = (ROOT / "plugins/legibility/tangible_legibility/words/en.py",)
 """Modules with words of their own, which other texts may contain."""
 OWN = frozenset(["Source: {0}", "and", "or", "integer", "number", "boolean", "string", "warning", "error"])
 """Texts that stand in no literal: sources of methods, joints of lists, types of JSON Schema, levels of logging."""

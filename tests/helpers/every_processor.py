@@ -42,7 +42,6 @@ from tangible_core.parts import (
     reduced_parts,
     shared_borders,
 )
-from tangible_core.parts.large import large_parts
 from tangible_core.plugins.interfaces import Filming
 from tangible_core.plugins.registry import default_registry
 from tangible_core.preflight.bumps import feature_m
@@ -54,6 +53,7 @@ from tangible_depth.rectify.rectification import rectify
 from tangible_depth.rectify.rectified_pair import warp_pair
 from tangible_depth.sparse.harris import harris_response
 from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_matches
+from tangible_legibility.simplifying.large import large_parts
 from tangible_render.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke
 
 Found = Iterator[tuple[str, Any]]

@@ -9,9 +9,9 @@ import numpy as np
 
 from drawn_parts import drawn
 from tangible_core.data import PartMap, Relief, Work
-from tangible_core.legibility import simplify
 from tangible_core.parts import SimplifyChoice
 from tangible_core.plugins.interfaces import Exporter
+from tangible_legibility import simplify
 
 PICTURES = ("astronaut", "coffee", "motorcycle")
 

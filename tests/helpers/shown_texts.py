@@ -7,7 +7,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from tangible_core.parts.words.en import WORDS
+from tangible_legibility.words.en import WORDS
 
 ROOT = Path(__file__).parents[2]
 FOR_PROGRAMMERS = {
@@ -39,7 +39,7 @@ def python_files() -> list[Path]:
 
 NOT_SHOWN = (
     "tangible_core/translation",  # is in the language itself
-    "tangible_core/parts/words",  # has its own words in each language
+    "plugins/legibility/tangible_legibility/words",  # has its own words in each language
     "plugins/send/tangible_send/words.py",  # likewise
 )
 

@@ -9,12 +9,11 @@ from time import perf_counter
 
 import numpy as np
 
+from tangible_authoring.label_picture import label_picture
 from tangible_core.data import Outcome, PartMap, SegmentMap
 from tangible_core.errors import ConfigError, OutputError, check_positive
 from tangible_core.files.writing import atomic_write
 from tangible_core.parts import HeightChoice, PartHeights
-from tangible_core.parts.label_picture import label_picture
-from tangible_core.parts.large import large_parts
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.part_heights import heights_of
@@ -23,6 +22,7 @@ from tangible_core.pipeline.starter import MAPS, SIDE_MM, in_yaml, starter
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import Registry, default_registry
 from tangible_core.scene.scene import Scene
+from tangible_legibility.simplifying.large import large_parts
 from tangible_report.numbered_parts import numbered_parts
 
 from .listed_parts import ListedPart, list_rows

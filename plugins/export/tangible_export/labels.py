@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from tangible_core.data import Work
-from tangible_core.parts.words.languages import part_label
+from tangible_legibility.words.languages import part_label
 
 MOST_LISTED = 6
 """Largest number of labels in a note."""

@@ -11,10 +11,10 @@ from pydantic import Field
 
 from tangible_core.data import Work
 from tangible_core.files.writing import write_text
-from tangible_core.parts.words.languages import Language, spoken_language
 from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import note
 from tangible_export.braille import Cells, as_ascii, width_m, wrapped, written_by
+from tangible_legibility.words.languages import Language, spoken_language
 
 from .description import PartFacts, describe_at_length, facts, page_of
 

@@ -6,7 +6,7 @@ from hashlib import sha256
 from html import escape
 from typing import Any
 
-from tangible_core.parts.words.languages import Language, one_line
+from tangible_legibility.words.languages import Language, one_line
 
 from .packing import as_json
 from .words import NO_SCRIPT, UNTITLED

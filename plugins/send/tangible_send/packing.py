@@ -15,7 +15,7 @@ from PIL import Image
 from tangible_core.data import HapticSurface, Material, Relief, Work
 from tangible_core.data.pictures import to_rgb8
 from tangible_core.data.records import digest_of
-from tangible_core.parts.words.languages import LANGUAGES, Language, one_line
+from tangible_legibility.words.languages import LANGUAGES, Language, one_line
 from tangible_report.description import describe, facts
 from tangible_report.description.at_length import tell
 from tangible_ui.worker.view.files import material_of

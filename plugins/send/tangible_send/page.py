@@ -10,7 +10,6 @@ from pydantic import Field
 from tangible_core.data import Work
 from tangible_core.errors import OutputError
 from tangible_core.files.writing import write_text
-from tangible_core.parts.words.languages import spoken_language
 from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import note
 from tangible_ui.address import page_file

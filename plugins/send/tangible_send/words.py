@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from tangible_core.parts.words.languages import Language
+from tangible_legibility.words.languages import Language
 
 UNTITLED: Mapping[Language, str] = {
     "en": "A picture to explore",

@@ -3,8 +3,8 @@
 import pytest
 
 import catalogues
-from tangible_core.parts.words.languages import TABLES
 from tangible_core.translation.catalogue import catalogue
+from tangible_legibility.words.languages import TABLES
 
 HOW = (
     "run `python tests/helpers/catalogues.py`, and fill in the empty `msgstr` of "

@@ -12,7 +12,7 @@ from command_line import tangible
 from drawn_parts import drawn
 from pictures import write_png
 from solids import FORMATS, is_closed, read, seen_from_above
-from tangible_core.parts.label_picture import label_picture
+from tangible_authoring.label_picture import label_picture
 
 ROOT = Path(__file__).parents[3]
 PAGES = {name: ROOT.joinpath("docs", f"{name}.md").read_text(encoding="utf-8") for name in ("parts", "export")}

@@ -17,7 +17,6 @@ from sent_pages import HOSTILE, MATERIALS, finer, picture_to_send
 from tangible_core import Pipeline, Scene
 from tangible_core.data import Relief
 from tangible_core.errors import OutputError
-from tangible_core.parts.words.languages import one_line
 from tangible_core.plugins.notes import collect_notes
 from tangible_depth import Luminance
 from tangible_render.surface.coefficients import spline_coefficients

@@ -11,7 +11,7 @@ from browser_tabs import SETTLED, OpenPage
 from firefox import firefox
 from page_files import WEB, built_page
 from sent_pages import HOSTILE, MATERIALS, picture_to_send, touches
-from tangible_core.parts.words.languages import one_line
+from tangible_legibility.words.languages import one_line
 from tangible_send.page import Page
 from tangible_send.surface import surface_to_send
 

@@ -3,8 +3,9 @@
 import json
 import re
 
-from page_files import WEB
 from tangible_core.parts.words.languages import LANGUAGES, TABLES
+
+from page_files import WEB
 
 ROW = re.compile(r"^  (\w+): (\[.*\]),$", re.MULTILINE)
 

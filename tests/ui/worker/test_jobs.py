@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from sessions import TEXT, small_scene
-from tangible_core.parts.words.languages import LANGUAGES
+from tangible_legibility.words.languages import LANGUAGES
 from tangible_ui.worker import handle
 from tangible_ui.worker.handle import MOST_DEATHS, Worker, WorkerAbsent, WorkerKilled
 from tangible_ui.worker.jobs import JOBS

@@ -16,15 +16,19 @@ if TYPE_CHECKING:
 def tangible_legibility() -> Mapping[str, str]:
     """Name the rules of tactile graphics, and parts simplified by them."""
     return {
-        "judge": "tangible_core.legibility.legible:legibility",
-        "simplify": "tangible_core.legibility.simplifying.simplify:simplify",
+        "judge": "tangible_legibility.legible:legibility",
+        "simplify": "tangible_legibility.simplifying.simplify:simplify",
     }
 
 
 @hookimpl
 def tangible_commands(app: Typer) -> None:
-    """Add `tangible new` and `tangible parts`."""
+    """Add `tangible new`, `tangible parts` and `tangible legible`."""
     from tangible_core.cli.command_table import add
 
     add("new", "tangible_authoring.commands.new:new", "Write a pipeline file for your pictures.")
     add("parts", "tangible_authoring.commands.parts:parts", "Divide a picture into parts, which get names and heights.")
+    add(
+        "legible", "tangible_legibility.commands.legible:legible",
+        "Check whether fingers can read a picture on paper, print, pins or a device.",
+    )  # fmt: skip

@@ -1,10 +1,10 @@
 """Braille: text as cells of six dots, and where the dots lie in metres."""
 
-from tangible_core.legibility.rules import CELL_PITCH_M as CELL_PITCH_M
-from tangible_core.legibility.rules import DOT_DIAMETER_M as DOT_DIAMETER_M
-from tangible_core.legibility.rules import DOT_HEIGHT_M as DOT_HEIGHT_M
-from tangible_core.legibility.rules import DOT_PITCH_M as DOT_PITCH_M
-from tangible_core.legibility.rules import LINE_PITCH_M as LINE_PITCH_M
+from tangible_legibility.rules import CELL_PITCH_M as CELL_PITCH_M
+from tangible_legibility.rules import DOT_DIAMETER_M as DOT_DIAMETER_M
+from tangible_legibility.rules import DOT_HEIGHT_M as DOT_HEIGHT_M
+from tangible_legibility.rules import DOT_PITCH_M as DOT_PITCH_M
+from tangible_legibility.rules import LINE_PITCH_M as LINE_PITCH_M
 
 from .cells import Cells as Cells
 from .cells import as_ascii as as_ascii

@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from jaxtyping import Float64
 
-from tangible_core.legibility.rules import CELL_PITCH_M, DOT_DIAMETER_M, DOT_PITCH_M, LINE_PITCH_M
+from tangible_legibility.rules import CELL_PITCH_M, DOT_DIAMETER_M, DOT_PITCH_M, LINE_PITCH_M
 
 Cells: TypeAlias = tuple[int, ...]
 

@@ -8,9 +8,9 @@ from jaxtyping import Bool, Float64, Int32, Integer
 from scipy.ndimage import distance_transform_edt, find_objects
 
 from tangible_core.data import PartMap, SegmentMap, Work
-from tangible_core.legibility.widths import measure
 from tangible_core.parts import find_parts, reduced_parts
 from tangible_core.plugins.notes import note
+from tangible_legibility.widths import measure
 
 from ..labels import first_labels, label_of
 from .sheet import GAP_MM, LINE_MM

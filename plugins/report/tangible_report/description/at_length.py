@@ -7,9 +7,9 @@ import numpy as np
 
 from tangible_core.data import HapticSurface
 from tangible_core.data.part_words import shown_number
-from tangible_core.parts.words.languages import Language, Words, one_line
-from tangible_core.parts.words.places import NOWHERE
 from tangible_core.scene.workspace import SceneKind
+from tangible_legibility.words.languages import Language, Words, one_line
+from tangible_legibility.words.places import NOWHERE
 
 from .describing import FLAT_M, heights_in_words, materials_in_words
 from .facts import PartFacts

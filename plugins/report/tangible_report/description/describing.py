@@ -5,9 +5,9 @@ from jaxtyping import Bool
 
 from tangible_core.data import HapticSurface
 from tangible_core.errors import shown, wrong_argument
-from tangible_core.parts.words.languages import LANGUAGES, Language, Words
-from tangible_core.parts.words.places import NOWHERE, place_of
 from tangible_core.scene.workspace import SceneKind
+from tangible_legibility.words.languages import LANGUAGES, Language, Words
+from tangible_legibility.words.places import NOWHERE, place_of
 
 from .facts import median_heights_m, step_of
 

@@ -8,7 +8,7 @@ from jaxtyping import Float32, Float64, Int32, Int64
 
 from tangible_core.data import HapticSurface, MaterialMap, PartMap
 from tangible_core.parts.neighbours import neighbours
-from tangible_core.parts.words.places import place_of_counts
+from tangible_legibility.words.places import place_of_counts
 
 MOST_CELLS = 512
 """The most cells along a side: surfaces are described on a grid of at most this size."""

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from html import escape
 
 from tangible_core.data import HapticSurface
-from tangible_core.parts.words.languages import Language, one_line
 from tangible_core.scene.workspace import SceneKind
+from tangible_legibility.words.languages import Language, one_line
 
 from .at_length import end_sentence, tell
 from .facts import PartFacts

@@ -18,12 +18,12 @@ from tangible_core.data import DisparityMap, HapticSurface, MaterialMap, PartMap
 from tangible_core.data.products import PRODUCTS
 from tangible_core.errors import OutputError, shown
 from tangible_core.files.writing import atomic_write
-from tangible_core.parts.words.languages import language_of, spoken_language
 from tangible_core.plugins import hooks
 from tangible_core.plugins.hooks import Panel
 from tangible_core.plugins.registry import default_registry
 from tangible_core.session import Recording
 from tangible_core.translation import LANGUAGES, translate
+from tangible_legibility.words.languages import language_of, spoken_language
 
 from ..description import describe
 from .files import describe_sheet, writer

@@ -10,7 +10,7 @@ import pytest
 from tangible_core.data import HapticSurface, MaterialMap, PartMap
 from tangible_core.data.part_words import name_part
 from tangible_core.materials.assignment import library
-from tangible_core.parts.words.languages import LANGUAGES
+from tangible_legibility.words.languages import LANGUAGES
 from tangible_report.description import PartFacts, describe_at_length, facts, page_of
 from tangible_report.description.at_length import MOST_PARTS
 from tangible_report.description.facts import step_of

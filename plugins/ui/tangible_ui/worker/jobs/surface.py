@@ -11,10 +11,10 @@ from jaxtyping import Float32, Float64, Shaped
 from tangible_core.data import Material
 from tangible_core.data.records import digest_of
 from tangible_core.errors import GeometryError
-from tangible_core.parts.words.languages import LANGUAGES, Language
 from tangible_core.pipeline.output.exporting import title_of
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.scene.workspace import kind_of
+from tangible_legibility.words.languages import LANGUAGES, Language
 from tangible_render.haptic_textures.waves import waves
 from tangible_report.description import describe, describe_at_length, facts, page_of
 from tangible_report.description.at_length import tell

@@ -1,0 +1,88 @@
+"""Operations on the cells of a label map: the nearest cell of a mask, boxes, filling and voting."""
+# scipy has no types.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownMemberType=false
+# pyright: reportUnknownArgumentType=false
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float32, Int32, Int64
+
+from tangible_core.runtime.opencv import plain_opencv
+
+Box = tuple[slice, slice]
+
+
+class Nearest(NamedTuple):
+    """The nearest cell of a mask, for each cell."""
+
+    far: Float32[np.ndarray, "h w"]
+    """Distance in cells, to 2 %."""
+    at: Int64[np.ndarray, "h w"]
+    """Flat index of the nearest cell."""
+
+
+def nearest(mask: Bool[np.ndarray, "h w"]) -> Nearest:
+    """Find the nearest cell of a mask, which must not be empty, for each cell."""
+    import cv2
+
+    with plain_opencv():
+        far, label = cv2.distanceTransformWithLabels(
+            (~mask).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
+        )
+    labels = np.asarray(label, np.int32)
+    at = np.zeros(int(labels.max()) + 1, np.int64)
+    at[labels[mask]] = np.flatnonzero(mask)
+    return Nearest(np.asarray(far, np.float32), at[labels])
+
+
+def boxes(labels: Int32[np.ndarray, "h w"]) -> list[Box | None]:
+    """Return the box around the cells of each number from 1 on; None for a number without a cell."""
+    from scipy.ndimage import find_objects
+
+    return [None if box is None else (box[0], box[1]) for box in find_objects(labels)]
+
+
+FEW = 1e-3
+"""Share of the votes on a cell below which the nearest cell decides."""
+REACH = 4
+"""Radius of the Gaussian of votes, in standard deviations."""
+
+Labels = Int32[np.ndarray, "h w"]
+Cells = Bool[np.ndarray, "h w"]
+
+
+def vote(labels: Labels, removed: Cells, voters: Cells, sigma: float) -> Labels:
+    """Give removed cells the label that most of the voters around have, or the nearest label if no voter is near.
+
+    Voters are weighted by a Gaussian of standard deviation sigma, in cells.
+    """
+    import cv2
+
+    elected, best = fill(labels, removed), np.full(labels.shape, np.float32(FEW))
+    margin = int(np.ceil(REACH * sigma))
+    rows, columns = labels.shape
+    with plain_opencv():
+        for label, box in enumerate(boxes(np.where(voters, labels + 1, 0).astype(np.int32))):
+            if box is None:
+                continue
+            down, right = box
+            there = np.s_[
+                max(0, down.start - margin) : min(rows, down.stop + margin),
+                max(0, right.start - margin) : min(columns, right.stop + margin),
+            ]
+            if not removed[there].any():
+                continue
+            own = ((labels[there] == label) & voters[there]).astype(np.float32)
+            votes = np.asarray(cv2.GaussianBlur(own, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE), np.float32)
+            more = removed[there] & (votes > best[there])
+            best[there][more] = votes[more]
+            elected[there][more] = label
+    return elected
+
+
+def fill(labels: Labels, removed: Cells) -> Labels:
+    """Give removed cells the label of the nearest remaining cell; change nothing if none remains."""
+    if removed.all() or not removed.any():
+        return labels.copy()
+    return labels.reshape(-1)[nearest(~removed).at]

@@ -1,0 +1,221 @@
+"""The checks of legibility, one a topic: each yields verdicts by the rules of a medium."""
+
+from collections.abc import Callable, Iterator
+from math import ceil
+
+import numpy as np
+
+from tangible_core.data import Material
+from tangible_core.preflight.verdict import Change, Cure, Verdict, over
+
+from .border_steps import border_steps
+from .cells import boxes
+from .legibility_input import LegibilityInput, Measurement, deepest_cells
+from .neighbours import apart, sample_relief
+from .pins import PIN_PITCH_M, show_on_pins
+from .words.texts import millimetres
+
+WIDEST_M = 2.0
+"""Width above which a larger picture is not proposed as a cure."""
+FELT_STEP_M = 0.0005
+"""Step between neighbours from which on their materials need not differ: that of the rule `step`."""
+FEWER_PARTS = "or have fewer and larger parts"
+HEIGHTEN: Cure = "make the relief of parts (`heights: {by: given}`), and give neighbours different heights"
+
+
+def _widen(data: LegibilityInput, times: float) -> list[str | Change]:
+    """Return the cure that everything is enlarged by a factor; empty if it would exceed WIDEST_M."""
+    if times * data.width_m > WIDEST_M:
+        return []
+    return [Change("workspace.width_m", over(times * data.width_m), "at least"), ", "]
+
+
+def parts(data: LegibilityInput) -> Iterator[Verdict]:
+    """Check that there is more than one part."""
+    count = int(np.count_nonzero(np.bincount(data.parts.labels.reshape(-1))))
+    measured = [Measurement("the picture", float(count))]
+    cure = "divide the picture: paint its parts (`tangible parts`), or choose another method for `texture:`"
+    yield from data.judge("parts", measured, lambda _: cure, none=0, of="the picture", worse="is one part")
+
+
+def gap(data: LegibilityInput) -> Iterator[Verdict]:
+    """Check that no part is too narrow anywhere."""
+    rule = data.profile.rules["gap"]
+    measured = [
+        Measurement(
+            data.describe_part(int(data.widths.part[place.piece])), place.width_m, data.share_of_picture(*place.at)
+        )
+        for place in data.widths.places
+    ]
+
+    def cure(width_m: float) -> Cure:
+        simplified = Change("simplify.gap_m", over(rule.bound), "at least")
+        return [simplified, ", ", *_widen(data, rule.bound / max(width_m, 1e-9)), FEWER_PARTS]
+
+    yield from data.judge("gap", measured, cure, none=rule.bound, of="places", worse="is too narrow for a finger")
+
+
+def part(data: LegibilityInput) -> Iterator[Verdict]:
+    """Check that each piece holds a disc of the size of a fingertip."""
+    wide, rule = data.widths, data.profile.rules["part"]
+    small = np.flatnonzero(wide.disc_m < rule.bound)
+    smallest = int(wide.disc_m.argmin())
+    measured = _measure_pieces(data, small, wide.disc_m) or [
+        Measurement(data.describe_part(int(wide.part[smallest])), float(wide.disc_m[smallest]))
+    ]
+
+    def cure(disc_m: float) -> Cure:
+        simplified = Change("simplify.part_m", over(rule.bound), "at least")
+        return [simplified, ", ", *_widen(data, rule.bound / max(disc_m, 1e-9)), FEWER_PARTS]
+
+    yield from data.judge("part", measured, cure, none=rule.bound, of="parts", worse="is smaller than a fingertip")
+
+
+def shape(data: LegibilityInput) -> Iterator[Verdict]:
+    """Check that pieces large enough to be felt are long enough for their shape to be recognised."""
+    wide, rule = data.widths, data.profile.rules["shape"]
+    large = np.flatnonzero(wide.disc_m >= data.profile.rules["part"].bound * (1 - 1e-6))
+    sides_m = data.pitch_m * _longer_sides(wide.pieces, wide.part.size)
+    measured = _measure_pieces(data, large[sides_m[large] < rule.bound], sides_m)
+    least = float(sides_m[large].min(initial=np.inf))
+
+    def cure(side_m: float) -> Cure:
+        return [*_widen(data, rule.bound / max(side_m, 1e-9)), FEWER_PARTS]
+
+    none = least if np.isfinite(least) else rule.bound
+    worse = "is so small that its shape is hard to recognise"
+    yield from data.judge("shape", measured, cure, none=none, of="parts", worse=worse)
+
+
+def _measure_pieces(data: LegibilityInput, pieces: np.ndarray, values: np.ndarray) -> list[Measurement]:
+    """Return a measurement for each of these pieces; values: of all pieces."""
+    places = deepest_cells(data.widths, pieces)
+    return [
+        Measurement(
+            data.describe_part(int(data.widths.part[each])),
+            float(values[each]),
+            data.share_of_picture(*places[each]),
+        )
+        for each in pieces.tolist()
+    ]
+
+
+def _longer_sides(pieces: np.ndarray, count: int) -> np.ndarray:
+    """Return the longer side of the box of each piece, in cells."""
+    sides = np.zeros(count)
+    for piece, box in enumerate(boxes(pieces + 1)):
+        sides[piece] = max(each.stop - each.start for each in box) if box else 0
+    return sides
+
+
+def textures(data: LegibilityInput) -> Iterator[Verdict]:
+    """Check that there are no more textures than fingers tell apart."""
+    rule = data.profile.rules["textures"]
+    measured = [Measurement("the picture", float(data.textures))]
+    cure = [Change("simplify.textures", f"{rule.bound:g}", "at most"), ", or name the parts that are to stay apart"]
+    worse = "has more textures than fingers tell apart"
+    yield from data.judge("textures", measured, lambda _: cure, none=0, of="the picture", worse=worse)
+
+
+def steps(data: LegibilityInput) -> Iterator[Verdict]:
+    """Check the steps between parts with a long border, and the share of all borders without a noticeable step."""
+    if data.relief is None:
+        return
+    steps, rules = data.steps, data.profile.rules
+    long = np.flatnonzero((steps.length_m > rules["gap"].bound) & np.isfinite(steps.step_m))
+    if "step" in rules:
+        yield from _judge_steps(data, "step", long, "is hardly higher or lower than it")
+        named = [
+            each
+            for each in long.tolist()
+            if data.has_name(int(steps.low[each])) and data.has_name(int(steps.high[each]))
+        ]
+        passed = [each for each in named if steps.step_m[each] >= rules["step"].bound]
+        if named:
+            pairs = np.array(passed, np.int64)
+            yield from _judge_steps(data, "named step", pairs, "is not much higher or lower than it")
+    felt = border_steps(sample_relief(data.relief, data.parts.labels.shape), data.parts.labels)["borders_found"]
+    if np.isfinite(felt):
+        measured = [Measurement("the borders of parts", 1 - felt)]
+        worse = "are for the most part not felt as steps" if felt < 1 / 2 else "are partly not felt as steps"
+        yield from data.judge(
+            "unfelt borders", measured, lambda _: HEIGHTEN, none=0, of="the borders of parts", worse=worse
+        )
+
+
+def _judge_steps(data: LegibilityInput, check: str, pairs: np.ndarray, worse: str) -> Iterator[Verdict]:
+    steps, rule = data.steps, data.profile.rules[check]
+    measured = [_measure_pair(data, each, float(steps.step_m[each])) for each in pairs.tolist()]
+
+    def cure(step_m: float) -> Cure:
+        more_m = 1e-4 * max(1, ceil(1e4 * (rule.bound - step_m)))
+        return f"make one of them {millimetres(more_m)} higher (`height_m` under `parts:`, with `heights:`)"
+
+    yield from data.judge(check, measured, cure, none=rule.bound, of="pairs of neighbours", worse=worse)
+
+
+def _measure_pair(data: LegibilityInput, pair: int, value: float) -> Measurement:
+    steps = data.steps
+    high, low = (data.describe_part(int(each[pair])) for each in (steps.high, steps.low))
+    return Measurement(f"{high} next to {low}", value, data.share_of_picture(*map(int, steps.at[pair])))
+
+
+def height(data: LegibilityInput) -> Iterator[Verdict]:
+    """Check that the relief is high enough to be felt."""
+    if data.relief is None:
+        return
+    measured = [Measurement("the relief", float(np.ptp(data.relief.height_m)))]
+    cure = [Change("workspace.relief_m", over(0.004), "at least"), ", if it comes from a picture; else higher parts"]
+    yield from data.judge("height", measured, lambda _: cure, none=0, of="the relief", worse="is too low to be felt")
+
+
+def materials(data: LegibilityInput) -> Iterator[Verdict]:
+    """Check that neighbours without a noticeable step are of different materials."""
+    if data.material_map is None:
+        return
+    steps, rule = data.steps, data.profile.rules["materials"]
+    distance: dict[tuple[Material, Material], float] = {}
+    measured: list[Measurement] = []
+    for each in np.flatnonzero(steps.length_m > data.profile.rules["gap"].bound).tolist():
+        one, other = data.material(int(steps.low[each])), data.material(int(steps.high[each]))
+        if one is None or other is None or steps.step_m[each] >= FELT_STEP_M:
+            continue
+        if (one, other) not in distance:
+            distance[one, other] = apart(one, other)
+        measured.append(_measure_pair(data, each, distance[one, other]))
+    cure = "give one of them another material (`material` under `parts:`), or another height"
+    worse = "is of nearly the same material and height"
+    yield from data.judge(
+        "materials", measured, lambda _: cure, none=max(rule.bound, 1.0), of="pairs of neighbours", worse=worse
+    )
+
+
+def pins(data: LegibilityInput) -> Iterator[Verdict]:
+    """Check that each part has enough pins, and that pins show its borders."""
+    display = show_on_pins(data.parts, data.pitch_m)
+    measured = [
+        Measurement(data.describe_part(number), float(count), data.share_of_picture(row, column))
+        for number, count, (row, column) in display.parts
+    ]
+
+    def cure(pins: float) -> Cure:
+        return [Change("simplify.part_m", over(2 * PIN_PITCH_M * 1.5), "at least"), ", ", FEWER_PARTS]
+
+    yield from data.judge("pins", measured, cure, none=0, of="parts", worse="has hardly a pin or two")
+    borders = [Measurement("the borders of parts", display.kept)]
+
+    def finer(share: float) -> Cure:
+        return [Change("simplify.gap_m", over(2 * PIN_PITCH_M), "at least"), ", a larger display, " + FEWER_PARTS]
+
+    worse = "are partly not shown by any pin"
+    yield from data.judge("kept borders", borders, finer, none=1, of="the borders of parts", worse=worse)
+
+
+Check = Callable[[LegibilityInput], Iterator[Verdict]]
+CHECKS: dict[str, tuple[Check, ...]] = {
+    "swell": (parts, gap, part, shape, textures),
+    "print": (parts, height, gap, part, shape, textures, steps),
+    "pins": (parts, pins),
+    "force": (parts, gap, part, shape, materials, steps),
+}
+"""The checks of each medium, in order."""

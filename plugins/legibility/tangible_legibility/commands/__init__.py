@@ -1,0 +1,1 @@
+"""The command that the rules add to `tangible`."""

@@ -1,0 +1,108 @@
+"""The command `legible`: tests whether fingers can read a picture."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+
+import typer
+
+from tangible_core.cli.commands.run import open_pipeline
+from tangible_core.cli.options import FAILED, Config, Json, NoCache, Sets, Verbose
+
+if TYPE_CHECKING:
+    from tangible_core.plugins.interfaces import Medium
+    from tangible_core.preflight import Legibility
+
+COLOURS = {"ok": "green", "warn": "yellow", "illegible": "bold red"}
+WIDTHS = 9, 15
+"""The columns of grades and of checks, characters."""
+
+
+class ReadOn(StrEnum):
+    """The media that fingers read."""
+
+    swell = "swell"
+    print = "print"
+    pins = "pins"
+    force = "force"
+
+
+def legible(
+    config: Config,
+    medium: Annotated[
+        ReadOn | None,
+        typer.Option(
+            "--for",
+            help="Medium: swell paper, a printed solid, pins or a force device [default: each].",
+            show_default=False,
+        ),
+    ] = None,
+    sets: Sets = None,
+    width_m: Annotated[float | None, typer.Option("--width-m", help="Width of the picture on the medium, m.")] = None,
+    verbose: Verbose = False,
+    as_json: Json = False,
+    no_cache: NoCache = False,
+) -> None:
+    """Check whether fingers can read a picture on paper, print, pins or a device.
+
+    Prints by the rules of tactile graphics what is not legible and where, and its cure; with --verbose also what is ok.
+    Writes nothing. Exit 1 if something is illegible.
+    """
+    from tangible_core.cli import show
+    from tangible_core.files.paths import without_folders
+    from tangible_core.pipeline.feeling import Feeling
+
+    pipeline = open_pipeline(config, sets or [], not no_cache)
+    feeling, scene = Feeling(pipeline), pipeline.scene.name
+    found = list[Found]()
+    media: list[Medium] = [medium.value] if medium else ["swell", "print", "pins", "force"]
+    for name in media:
+        wide_m = feeling.width_on(name) if width_m is None else width_m
+        found.append(Found(name, wide_m, feeling.is_simplified_on(name), feeling.legible(name, wide_m)))
+    if as_json:
+        documents = [each.as_data() for each in found]
+        show.print_json({"scene": scene, **(documents[0] if medium else {"media": documents})})
+    elif medium or verbose:
+        for each in found:
+            show.verdicts(_heading(without_folders(scene), each), each.verdicts, COLOURS, WIDTHS, verbose)
+    else:
+        for each in found:
+            show.say(_heading(without_folders(scene), each))
+        show.plain(f"\n`tangible legible {config} --for swell` (or print, pins, force) says where, and the cures")
+    if not all(each.verdicts.readable for each in found):
+        raise typer.Exit(FAILED)
+
+
+class Found(NamedTuple):
+    """The verdicts on a picture of a width on a medium."""
+
+    medium: str
+    width_m: float
+    simplified: bool
+    """True if the parts that are drawn there, and judged, are simplified ones."""
+    verdicts: Legibility
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the verdicts as JSON data."""
+        return {
+            "medium": self.medium,
+            "width_m": self.width_m,
+            "simplified": self.simplified,
+            **self.verdicts.as_data(),
+        }
+
+
+def _heading(scene: str, found: Found) -> str:
+    from rich.markup import escape
+
+    from tangible_core.preflight.wording import quantity
+
+    from ..rules import PROFILES
+
+    where = next(profile.text for name, profile in PROFILES.items() if name == found.medium)
+    sentence = f"[{COLOURS[found.verdicts.grade]}]{escape(found.verdicts.sentence)}[/]"
+    width = quantity(found.width_m, "m")
+    if found.simplified:
+        return f"{escape(scene)}, its parts simplified, {width} wide, on {where}: {sentence}"
+    return f"{escape(scene)}, {width} wide, on {where}: {sentence}"

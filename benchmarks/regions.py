@@ -12,8 +12,8 @@ from time import process_time
 import cv2
 import numpy as np
 
+from tangible_bench.metrics.segments import adjusted_rand_index, contingency, covering, rand_index
 from tangible_core.data import SegmentTree
-from tangible_core.metrics.segments import adjusted_rand_index, contingency, covering, rand_index
 from tangible_core.runtime.threads import limited_threads
 from tangible_texture import Gradient, Hierarchy
 

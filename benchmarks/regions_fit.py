@@ -15,9 +15,9 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 from scipy.optimize import minimize
 
+from tangible_bench.metrics.segments import contingency
 from tangible_core.data import SegmentTree
 from tangible_core.data.views import border_pixels
-from tangible_core.metrics.segments import contingency
 from tangible_texture.features.channels import channels
 from tangible_texture.tree.cells import opponent_colours, reduce_to_cells, shares
 from tangible_texture.tree.cues import Tensors, tensors, weighted_strength

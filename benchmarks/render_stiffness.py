@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
+from tangible_bench.metrics.stability import HANDLE
 from tangible_bench.tasks.render import DELAYS, limits
-from tangible_core.metrics import HANDLE
 from tangible_core.plugins.interfaces import ForceRenderer
 from tangible_core.servo.guard.safety import stiffness_limit_n_per_m
 from tangible_core.testing.synthetic.scenes import plane

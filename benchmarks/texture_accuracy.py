@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from tangible_bench.metrics.segments import segment_errors
 from tangible_core.data import SegmentMap
-from tangible_core.metrics import segment_errors
 from tangible_core.plugins.notes import collected
 from tangible_core.plugins.registry import load_method
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 from jaxtyping import Float64, Int32, UInt8
 
+from tangible_bench.metrics.segments import segment_errors
 from tangible_core.data.pictures import BLUE, RED
-from tangible_core.metrics import segment_errors
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 
 from .figures import Figure

@@ -11,7 +11,7 @@ from skimage.measure import label
 from skimage.morphology import remove_small_objects
 from skimage.segmentation import watershed
 
-from tangible_core.metrics import segment_errors
+from tangible_bench.metrics.segments import segment_errors
 from tangible_core.plugins.interfaces import Segmenter
 from tangible_core.plugins.registry import load_method
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments

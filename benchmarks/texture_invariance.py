@@ -5,8 +5,8 @@ from functools import cache
 
 import numpy as np
 
+from tangible_bench.metrics.segments import segment_errors
 from tangible_bench.tasks.damage import noise
-from tangible_core.metrics import segment_errors
 from tangible_core.plugins.registry import default_registry, load_method
 
 from .figures import Figure

@@ -4,8 +4,8 @@ from functools import partial
 
 import numpy as np
 
+from tangible_bench.metrics.segments import segment_errors
 from tangible_core.data.pictures import to_grey
-from tangible_core.metrics import segment_errors
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 from tangible_texture.energies.gabor_bank import bank, octaves
 from tangible_texture.energies.local_energy import energy_planes, padding, spectrum_of

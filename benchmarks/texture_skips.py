@@ -7,8 +7,8 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
+from tangible_bench.metrics.segments import segment_errors
 from tangible_core.data import Views
-from tangible_core.metrics import segment_errors
 from tangible_core.scene.scaling import enlarged_segments, felt_factor, reduce_views
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 

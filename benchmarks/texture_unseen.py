@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tangible_core.metrics import segment_errors
+from tangible_bench.metrics.segments import segment_errors
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 
 from .figures import Figure, mean_and_error, table

@@ -18,21 +18,14 @@ import numpy as np
 from shapely import get_coordinates
 
 from compiled_once import compile_once
+from tangible_bench.metrics.segments import segment_errors
 from tangible_core import load_method
 from tangible_core.compiled import threads
 from tangible_core.data import DisparityMap, HapticSurface, Relief, SegmentMap, Views, digest_of
 from tangible_core.data.pictures import to_grey, to_rgb8
 from tangible_core.materials.assignment import library, relative_roughness
 from tangible_core.materials.colours import segment_colours
-from tangible_core.metrics import (
-    border_steps,
-    disparity_errors,
-    force_errors,
-    force_steps,
-    loop_works,
-    proxy_lag,
-    segment_errors,
-)
+from tangible_core.metrics import disparity_errors, force_errors, force_steps, loop_works, proxy_lag
 from tangible_core.parts import (
     HeightChoice,
     Layering,
@@ -53,6 +46,7 @@ from tangible_depth.rectify.rectification import rectify
 from tangible_depth.rectify.rectified_pair import warp_pair
 from tangible_depth.sparse.harris import harris_response
 from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_matches
+from tangible_legibility.border_steps import border_steps
 from tangible_legibility.simplifying.large import large_parts
 from tangible_render.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tangible_core.metrics.segments import adjusted_rand_index, contingency
+from tangible_bench.metrics.segments import adjusted_rand_index, contingency
 
 
 def rand_index(one: np.ndarray, other: np.ndarray) -> float:

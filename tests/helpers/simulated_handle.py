@@ -1,4 +1,4 @@
-"""The handle of `tangible_core.metrics.stability` under a compiled force law, with a guard, in three axes.
+"""The handle of `tangible_bench.metrics.stability` under a compiled force law, with a guard, in three axes.
 
 A hand pushes the handle with a constant force. The handle moves exactly as under a force that is held from tick to
 tick, so that only the force law and its sampling can make it unstable.
@@ -12,8 +12,8 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from jaxtyping import Float64
 
+from tangible_bench.metrics.stability import Handle
 from tangible_core.compiled.touch import CompiledTouch
-from tangible_core.metrics import Handle
 
 Guard = tuple[np.ndarray, np.ndarray]
 """Settings and memory, as `Safety.arrays` returns them."""

@@ -8,9 +8,9 @@ from inspect import unwrap
 import numpy as np
 from numba import float64, njit, types
 
+from tangible_bench.metrics.stability import advance
 from tangible_core.compiled import compiling as compiling
 from tangible_core.compiled.touch import RISE_M
-from tangible_core.metrics.stability import advance
 from tangible_core.servo.guard import layout
 from tangible_core.servo.guard.guard import couple, guard
 

@@ -11,6 +11,7 @@ from measuring_here import measure_here
 from tangible_bench.config.reading import Comparison, parse_comparison
 from tangible_bench.measuring.plan import measurements
 from tangible_bench.measuring.run import look, run
+from tangible_bench.metrics.stability import HANDLE
 from tangible_bench.results.plot import draw_plot
 from tangible_bench.results.summary import cells
 from tangible_bench.results.table import Results, tables
@@ -18,7 +19,6 @@ from tangible_bench.strokes.strokes import SURFACES, KnownStroke, analytic_strok
 from tangible_bench.tasks.render import PERTURBATIONS, TASK, feel, limits, measure, prepare
 from tangible_bench.tasks.render_scenes import RenderScene
 from tangible_core.errors import ConfigError, OutputError
-from tangible_core.metrics import HANDLE
 from tangible_core.plugins.registry import Registry, load_method
 from tangible_core.servo.guard.safety import stiffness_limit_n_per_m
 from tangible_core.session import Recording

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from tangible_core.data import SegmentMap
-from tangible_core.metrics import segment_errors
 from tangible_core.plugins.interfaces import Segmenter
 from tangible_core.testing.synthetic.texture_scenes import KnownSegments
 
+from ..metrics.segments import segment_errors
 from . import damage, transforms
 from .task import Measure, Perturbation, Task
 from .texture_scenes import TextureScene

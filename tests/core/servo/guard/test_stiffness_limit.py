@@ -11,8 +11,8 @@ from simulated_handle import (
     stiffest_stable_n_per_m,
     wall,
 )
+from tangible_bench.metrics.stability import Handle
 from tangible_core.data import DeviceSpec, HapticSurface
-from tangible_core.metrics import Handle
 from tangible_core.plugins.registry import load_method
 from tangible_core.servo.guard.safety import Safety, stiffness_limit_n_per_m
 

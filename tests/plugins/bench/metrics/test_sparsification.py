@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from tangible_bench.metrics.sparsification import LEFT, sparsification_curve, sparsification_errors
 from tangible_core.errors import PictureError
-from tangible_core.metrics import disparity_errors, sparsification_curve, sparsification_errors
-from tangible_core.metrics.sparsification import LEFT
+from tangible_core.metrics import disparity_errors
 
 NAN = np.nan
 

@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from tangible_core.errors import PictureError
-from tangible_core.metrics.segments import (
+from tangible_bench.metrics.segments import (
     adjusted_rand_index,
     border_points,
     boundary_distance,
@@ -19,6 +18,7 @@ from tangible_core.metrics.segments import (
     rand_index,
     segment_errors,
 )
+from tangible_core.errors import PictureError
 
 SMALL = arrays.arrays(np.int32, st.just((3, 4)), elements=st.integers(0, 3))
 

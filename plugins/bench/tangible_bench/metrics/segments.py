@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Integer
 
-from ..errors import PictureError
+from tangible_core.errors import PictureError
 
 Labels = Integer[np.ndarray, "h w"]
 Counts = Integer[np.ndarray, "n m"]

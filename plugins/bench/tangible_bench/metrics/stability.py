@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
-from ..data import Force, HapticState
+from tangible_core.data import Force, HapticState
 
 Law = Callable[[HapticState], Force]
 RANGE_N_PER_M = (1.0, 1e6)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Bool, Float
 
-from .disparity import absolute_error
+from tangible_core.metrics import absolute_error
 
 WRONG_PX = 2.0
 """The error above which a pixel is wrong, as for `bad2`."""

@@ -5,9 +5,8 @@ import math
 import pytest
 
 from simulated_handle import exact_stiffness_limit
+from tangible_bench.metrics.stability import HANDLE, Handle, Law, stiffness_limit
 from tangible_core.data import NO_FORCE, Force, HapticState
-from tangible_core.metrics import HANDLE, Handle, stiffness_limit
-from tangible_core.metrics.stability import Law
 from tangible_core.servo.guard.safety import stiffness_limit_n_per_m
 
 GROUND_M = 0.01

@@ -19,11 +19,11 @@ from tangible_core.parts import (
     depth_heights,
     find_parts,
     guess_heights,
-    shared_borders,
 )
 from tangible_core.scene.geometry import smooth
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.workspace import SUITS, Workspace
+from tangible_export.paper.borders import shared_borders
 from tangible_legibility.border_steps import border_steps
 from tangible_legibility.simplifying.large import large_parts
 from tangible_texture import Hierarchy

@@ -40,7 +40,6 @@ COMMANDS = {
     "plugins": Command(f"{ROOM}.plugins:app", "List the installed methods and devices; show one of them."),
     "check": Command(f"{ROOM}.plugins:check", "Test an installed method with the conformance kit."),
     "cache": Command(f"{ROOM}.cache:app", "Print the size of the cache of results; clear it."),
-    "schema": Command(f"{ROOM}.schema:schema", "Print the JSON Schema of pipeline files."),
 }
 
 

@@ -11,7 +11,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
 from ..errors import OptionError
-from ..files.yaml.validation import sentences_about
+from .option_errors import sentences_about
 
 _LENGTHS = {"m": 1, "cm": "1e-2", "mm": "1e-3", "um": "1e-6"}
 UNITS: Mapping[str, Mapping[str, Decimal]] = {

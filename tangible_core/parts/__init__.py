@@ -1,6 +1,5 @@
 """The parts of a picture: connected regions of its segments, their heights, and the relief made of them."""
 
-from .borders import shared_borders as shared_borders
 from .depth import depth_heights as depth_heights
 from .find import find_parts as find_parts
 from .find import part_sizes as part_sizes

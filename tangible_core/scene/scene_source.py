@@ -13,10 +13,10 @@ from pydantic import ValidationError
 
 from ..data import Calibration, DisparityMap, SegmentMap, Views
 from ..data.arguments import as_picture
+from ..data.option_errors import sentences_about
 from ..data.pictures import fill_non_finite
 from ..errors import ConfigError, PictureError, wrong_argument
 from ..files.paths import as_path
-from ..files.yaml.validation import sentences_about
 from .formats.height_maps import find_picture, in_metres, read_heights_metadata
 from .formats.multi_picture import Notify
 from .formats.pairs import Layout, halves, read_pair

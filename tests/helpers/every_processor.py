@@ -33,7 +33,6 @@ from tangible_core.parts import (
     find_parts,
     guess_heights,
     reduced_parts,
-    shared_borders,
 )
 from tangible_core.plugins.interfaces import Filming
 from tangible_core.plugins.registry import default_registry
@@ -46,6 +45,7 @@ from tangible_depth.rectify.rectification import rectify
 from tangible_depth.rectify.rectified_pair import warp_pair
 from tangible_depth.sparse.harris import harris_response
 from tangible_depth.sparse.matches import flow_matches, inverse_lengths, sift_matches
+from tangible_export.paper.borders import shared_borders
 from tangible_legibility.border_steps import border_steps
 from tangible_legibility.simplifying.large import large_parts
 from tangible_render.haptic_textures import compile_textures, radial_spectrum, sample_tile, stroke

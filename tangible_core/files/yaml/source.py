@@ -11,12 +11,12 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.error import YAMLError
 
+from ...data.option_errors import Location as Location
+from ...data.option_errors import has, sentences_about
 from ...errors import Complaint, ConfigError, did_you_mean, quoted, shown
 from ..paths import as_path
 from ..reading import MOST_TEXT_BYTES, in_words, read_bytes
 from .bounds import MOST_DEPTH, MOST_DIGITS, BoundedConstructor, BoundedScanner, check_events
-from .validation import Location as Location
-from .validation import has, sentences_about
 
 Tree = dict[Any, Any]
 """The parser's own mapping: a dict with the line and column of its parts."""

@@ -5,11 +5,11 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+from tangible_authoring.schema_page import schema_page
 from tangible_core import Workspace, load_method
 from tangible_core.errors import ConfigError, OptionError
 from tangible_core.mapping import WorkspaceMapping
 from tangible_core.materials.files import parse_materials
-from tangible_core.pipeline.config.markdown import markdown
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.config.schema import json_schema
 from tangible_core.plugins.registry import default_registry
@@ -72,4 +72,4 @@ def test_schema_accepts_text_with_a_unit():
     assert validator.is_valid(right)
     for wrong in ({"width_m": "8 kg"}, {"width_m": "wide"}, {"width_m": -1}):
         assert not validator.is_valid({**right, "workspace": wrong})
-    assert "| `width_m` | number ≥ 1e-06 ≤ 10 or `6 mm` | `0.08` |" in markdown(schema)
+    assert "| `width_m` | number ≥ 1e-06 ≤ 10 or `6 mm` | `0.08` |" in schema_page(schema)

@@ -11,11 +11,11 @@ import typer
 
 from command_line import tangible
 from tangible_core.errors import ConfigError, DeviceError
-from tangible_core.plugins.devices import examine_device, installed_devices
 from tangible_core.plugins.registry import Registry
 from tangible_devices.commands import devices as command
 from tangible_devices.commands.stress import stress_device
 from tangible_devices.device_calibrations import calibration_path
+from tangible_devices.installed import examine_device, installed_devices
 from tangible_devices.mock import Mock
 
 ALONE = SimpleNamespace(invoked_subcommand=None)

@@ -23,7 +23,7 @@ def tangible_legibility() -> Mapping[str, str]:
 
 @hookimpl
 def tangible_commands(app: Typer) -> None:
-    """Add `tangible new`, `tangible parts` and `tangible legible`."""
+    """Add `tangible new`, `tangible parts`, `tangible legible` and `tangible schema`."""
     from tangible_core.cli.command_table import add
 
     add("new", "tangible_authoring.commands.new:new", "Write a pipeline file for your pictures.")
@@ -32,3 +32,4 @@ def tangible_commands(app: Typer) -> None:
         "legible", "tangible_legibility.commands.legible:legible",
         "Check whether fingers can read a picture on paper, print, pins or a device.",
     )  # fmt: skip
+    add("schema", "tangible_authoring.commands.schema:schema", "Print the JSON Schema of pipeline files.")

@@ -38,8 +38,9 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
     from rich.markup import escape
 
     from tangible_core.cli import sentences, show
-    from tangible_core.plugins.devices import installed_devices
     from tangible_core.plugins.registry import default_registry
+
+    from ..installed import installed_devices
 
     rows = [asdict(each) for each in installed_devices(default_registry())]
     if as_json:
@@ -119,9 +120,9 @@ def stress(
     No force is given. Rate, and percentiles of the time of one cycle.
     """
     from tangible_core.cli import sentences, show
-    from tangible_core.plugins.devices import make_device
     from tangible_core.plugins.registry import default_registry
 
+    from ..installed import make_device
     from .stress import stress_device
 
     if not 0 < seconds <= 3600:
@@ -137,9 +138,10 @@ def stress(
 
 def _adjustable(name: str, sets: Sequence[str]) -> Adjustable:
     from tangible_core.errors import DeviceError
-    from tangible_core.plugins.devices import make_device
     from tangible_core.plugins.interfaces import Adjustable
     from tangible_core.plugins.registry import default_registry
+
+    from ..installed import make_device
 
     device = make_device(default_registry(), name, sets)
     if not isinstance(device, Adjustable):
@@ -160,8 +162,9 @@ def _cells(row: dict[str, Any]) -> list[tuple[str, str, str, str]]:
 def _findings(name: str, sets: Sequence[str], named: bool) -> Sequence[Finding]:
     from tangible_core.data import Finding
     from tangible_core.errors import TangibleError
-    from tangible_core.plugins.devices import examine_device
     from tangible_core.plugins.registry import default_registry
+
+    from ..installed import examine_device
 
     try:
         return examine_device(default_registry(), name, sets)

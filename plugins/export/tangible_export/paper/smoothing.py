@@ -10,7 +10,8 @@ from jaxtyping import Float64
 from scipy.ndimage import gaussian_filter1d
 
 from tangible_core.data import PartMap
-from tangible_core.parts import shared_borders
+
+from .borders import shared_borders
 
 SMOOTH_MM = 1.0
 """Standard deviation of the Gaussian along an outline: a finger feels corners of this size, and no stairs below it."""

@@ -40,7 +40,7 @@ from tangible_core import Pipeline, Scene
 from tangible_core.cli.completing import keys
 from tangible_core.errors import ConfigError
 from tangible_core.pipeline.config.editing import edit_text
-from tangible_core.pipeline.config.markdown import markdown
+from tangible_authoring.schema_page import schema_page
 from tangible_core.pipeline.config.model import KEYS
 from tangible_core.pipeline.config.keys.key import Forms
 from tangible_core.pipeline.config.parsing import parse_config
@@ -74,7 +74,7 @@ print(json.dumps({
     "in_python": Pipeline(scene, grain="sharp", cached=False).config.grain.size_m,
     "offered": keys(type("Context", (), {"params": {}}), "grain"),
     "schema": properties["grain"],
-    "page": markdown({"properties": properties, "$defs": forms.definitions}),
+    "page": schema_page({"properties": properties, "$defs": forms.definitions}),
 }))
 """
 

@@ -8,8 +8,8 @@ import pytest
 from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
+from tangible_authoring.schema_page import schema_page
 from tangible_core.errors import UnknownMethod
-from tangible_core.pipeline.config.markdown import markdown
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.config.schema import json_schema, materials_schema, method_schema, stage_schema
 from tangible_core.plugins.registry import Registry, default_registry
@@ -75,13 +75,13 @@ def test_schema_accepts_parts_in_every_form(validator: Draft202012Validator, rig
 
 
 def test_page_has_parts_and_heights():
-    page = markdown(json_schema())
+    page = schema_page(json_schema())
     for key in ("| `name` | string |", "| `height_m` |", "| `bulge_m` |", "| `title` | string |", "| `rules.part` |"):
         assert f"\n{key}" in page
 
 
 def test_schema_and_page_have_every_shipped_method():
-    schema, page = json_schema(), markdown(json_schema())
+    schema, page = json_schema(), schema_page(json_schema())
     for kind in ("depth", "texture", "render", "device"):
         names = schema["properties"][kind]["anyOf"][0]["enum"]
         shipped = metadata.distribution("tangible-images").entry_points.select(group=f"tangible.{kind}")
@@ -163,7 +163,7 @@ def test_default_of_every_option_is_json(kind: str):
 
 def test_page_in_docs_is_current():
     page = (ROOT / "docs" / "yaml.md").read_text(encoding="utf-8")
-    assert page == markdown(json_schema()), "run: tangible schema --markdown > docs/yaml.md"
+    assert page == schema_page(json_schema()), "run: tangible schema --markdown > docs/yaml.md"
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from tangible_core.pipeline.config.parsing import parse_config
-from tangible_core.plugins.devices import examine_device, installed_devices
+from tangible_devices.installed import examine_device, installed_devices
 
 from ..state import WorkerState
 from .table import job

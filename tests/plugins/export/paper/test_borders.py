@@ -12,7 +12,8 @@ from hypothesis.extra import numpy as arrays
 from drawn_parts import drawn
 from tangible_core.data import PartMap, SegmentMap
 from tangible_core.errors import BrokenMethod, GeometryError
-from tangible_core.parts import find_parts, reduced_parts, shared_borders
+from tangible_core.parts import find_parts, reduced_parts
+from tangible_export.paper.borders import shared_borders
 
 SMALL = arrays.arrays(np.int32, arrays.array_shapes(min_dims=2, max_dims=2, max_side=8), elements=st.integers(0, 2))
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float64, Int32, Int64
 
-from ..data import PartMap, SegmentMap
-from ..errors import BrokenMethod, GeometryError
-from .find import find_parts
+from tangible_core.data import PartMap, SegmentMap
+from tangible_core.errors import BrokenMethod, GeometryError
+from tangible_core.parts import find_parts
 
 Sides = Int64[np.ndarray, "n"]
 """A number for each side of a pixel between two parts."""

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
-from ..data import Finding, Unit
-from ..errors import TangibleError
-from ..files.yaml.source import parse_source
-from .failures import sentence
-from .interfaces import HapticDevice, Serviceable
-from .registry import Listing, Registry
+from tangible_core.data import Finding, Unit
+from tangible_core.errors import TangibleError
+from tangible_core.files.yaml.source import parse_source
+from tangible_core.plugins.failures import sentence
+from tangible_core.plugins.interfaces import HapticDevice, Serviceable
+from tangible_core.plugins.registry import Listing, Registry
 
 
 @dataclass(frozen=True)

@@ -14,16 +14,17 @@ def schema(
 
     Editors complete and check files by it.
     """
-    from ...pipeline.config.markdown import markdown as as_markdown
-    from ...pipeline.config.schema import json_schema, materials_schema
-    from ...runtime.standard_output import stream
-    from ..show import print_json
+    from tangible_core.cli.show import print_json
+    from tangible_core.pipeline.config.schema import json_schema, materials_schema
+    from tangible_core.runtime.standard_output import stream
+
+    from ..schema_page import schema_page
 
     if materials:
         print_json(materials_schema())
         return
     schema = json_schema(distribution=None if installed else "tangible-images")
     if markdown:
-        print(as_markdown(schema), end="", file=stream())
+        print(schema_page(schema), end="", file=stream())
     else:
         print_json(schema)

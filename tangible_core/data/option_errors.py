@@ -6,7 +6,7 @@ from typing import Any, cast, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from ...errors import did_you_mean, quoted, shown
+from ..errors import did_you_mean, quoted, shown
 
 Location = tuple[Any, ...]
 """Keys and indices from the top of the file."""

@@ -1,0 +1,85 @@
+"""The options of a method in words, from its JSON Schema: values, bounds, defaults."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple, cast
+
+from pydantic import BaseModel
+
+from ...data.quantities import unit_of
+from ...plugins.registry import default_registry
+from .keys.key import Forms
+
+BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
+
+
+class Option(NamedTuple):
+    """An option of a method, in words."""
+
+    name: str
+    unit: str
+    values: str
+    """The values that may be written, with bounds."""
+    default: str
+    meaning: str
+
+
+def options_of(model: type[BaseModel]) -> list[Option]:
+    """Describe all options of a method, those of a block below it as `block.option`."""
+    forms = Forms(default_registry(), None)
+    form = forms.of(model)
+    return [
+        Option(
+            name, unit_of(name), values_in_code(option).replace("`", ""), default_in_code(option).strip("`"),
+            " ".join(option.get("description", "").split()),
+        )
+        for name, option in options_in(form, forms.definitions)
+    ]  # fmt: skip
+
+
+def options_in(
+    form: Mapping[str, Any], blocks: Mapping[str, Any], prefix: str = ""
+) -> Iterable[tuple[str, dict[str, Any]]]:
+    """Find options by name, those of a block below it as `block.option`."""
+    for name, option in form.get("properties", {}).items():
+        if name == "use":
+            continue
+        inner = _inner(option)
+        yield f"{prefix}{name}", {**option, "default": None} if inner else option
+        for block in inner:
+            yield from options_in(blocks[block], blocks, f"{prefix}{name}.")
+
+
+def _inner(option: Mapping[str, Any]) -> list[str]:
+    """Return the names of the blocks that an option is, may be, or is a list of."""
+    forms = (option, *option.get("anyOf", ()), option.get("items", {}))
+    return [name_of_block(each) for each in forms if "$ref" in each]
+
+
+def name_of_block(form: Mapping[str, Any]) -> str:
+    """Return the name of the block to which a form refers."""
+    return form["$ref"].rpartition("/")[2]
+
+
+def default_in_code(option: Mapping[str, Any]) -> str:
+    """Return the default as code; nothing for null and an empty text."""
+    default = option.get("default")
+    return "" if default in (None, "") else f"`{default}`"
+
+
+def values_in_code(option: Mapping[str, Any]) -> str:
+    """Return the values that may be written, with bounds."""
+    if forms := option.get("anyOf", option.get("oneOf")):
+        return " or ".join(values_in_code(each) for each in cast("list[dict[str, Any]]", forms))
+    if "enum" in option:
+        return names_in_code(option["enum"])
+    if "const" in option:
+        return f"`{option['const']}`"
+    if "examples" in option:
+        return f"`{option['examples'][0]}`"
+    bounds = [f"{sign} {option[word]}" for word, sign in BOUNDS.items() if word in option]
+    return " ".join([option.get("type", "block"), *bounds])
+
+
+def names_in_code(values: Iterable[Any]) -> str:
+    """List values as code."""
+    return ", ".join(f"`{value}`" for value in values)

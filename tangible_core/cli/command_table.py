@@ -34,7 +34,6 @@ COMMANDS = {
     "run": Command(f"{ROOM}.run:run", "Run a pipeline file, or a picture, and write a report."),
     "plan": Command(f"{ROOM}.run:plan", "Show what `run` would do, and why; run nothing."),
     "export": Command(f"{ROOM}.export:export", "Write files for others: a printer, swell paper, pins, a reader."),
-    "preflight": Command(f"{ROOM}.preflight:preflight", "Check, before a motor moves, what is safe."),
     "feel": Command(f"{ROOM}.feel:feel", "Feel the surface on the configured device, in real time."),
     "replay": Command(f"{ROOM}.replay:replay", "Re-run a recorded hand path with another force law."),
     "plugins": Command(f"{ROOM}.plugins:app", "List the installed methods and devices; show one of them."),

@@ -19,13 +19,14 @@ from shapely import get_coordinates
 
 from compiled_once import compile_once
 from tangible_bench.metrics.segments import segment_errors
+from tangible_bench.metrics.strokes import force_steps, loop_works, proxy_lag
 from tangible_core import load_method
 from tangible_core.compiled import threads
 from tangible_core.data import DisparityMap, HapticSurface, Relief, SegmentMap, Views, digest_of
 from tangible_core.data.pictures import to_grey, to_rgb8
 from tangible_core.materials.assignment import library, relative_roughness
 from tangible_core.materials.colours import segment_colours
-from tangible_core.metrics import disparity_errors, force_errors, force_steps, loop_works, proxy_lag
+from tangible_core.metrics import disparity_errors, force_errors
 from tangible_core.parts import (
     HeightChoice,
     Layering,

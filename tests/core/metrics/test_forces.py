@@ -1,4 +1,4 @@
-"""Measures of forces, against laws whose errors, steps and work are known by formula."""
+"""Errors of forces, against laws whose errors are known by formula."""
 
 import math
 
@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.errors import GeometryError
-from tangible_core.metrics import force_errors, force_steps, loop_works, proxy_lag
+from tangible_core.metrics import force_errors
 from tangible_core.metrics.forces import angles_deg
 
 UP = np.array((0.0, 0.0, 1.0))
@@ -66,9 +66,6 @@ def test_paths_without_force_give_nan(count: int):
     nothing = np.zeros((count, 3))
     for truth in (nothing, np.full((count, 3), np.nan)):
         assert all(math.isnan(value) for value in force_errors(nothing, truth).values())
-    assert math.isnan(proxy_lag(nothing, nothing, nothing))
-    assert math.isnan(force_steps(nothing[:1])["step_n"])
-    assert loop_works(nothing, nothing, np.zeros(count, np.bool_)).size == 0
 
 
 @pytest.mark.usefixtures("unchecked_shapes")
@@ -81,78 +78,6 @@ def test_paths_of_different_length_are_refused():
 def test_angles_are_exact_for_small_and_large_ones(angle: float, size: float):
     turned = size * rows((math.cos(angle), math.sin(angle), 0))
     assert angles_deg(rows((1, 0, 0)), turned)[0] == pytest.approx(math.degrees(angle), abs=1e-12)
-
-
-def test_force_steps_are_the_largest_and_the_99th_percentile():
-    force = np.zeros((1001, 3))
-    force[:20, 0] = np.arange(20) / 1000  # 19 steps of a thousandth, one of 5, and 980 of none
-    force[20:] = (0.019, 3, 4)
-    assert force_steps(force)["step_n"] == pytest.approx(5)
-    assert force_steps(force)["step_p99_n"] == pytest.approx(0.001, rel=1e-9)
-    assert force_steps(np.repeat(rows((1, 2, 3)), 4, axis=0)) == {"step_n": 0, "step_p99_n": 0}
-
-
-def test_delay_of_some_ticks_is_a_lag():
-    """A proxy that is 4 ticks late at 50 mm/s is 0.2 mm behind in every direction of the hand."""
-    turn = np.linspace(0, 2 * np.pi, 4001)
-    hand = 0.05 * 4 / (2 * np.pi) * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(4001)])
-    nearest = hand + 0.001 * UP
-    late = np.roll(nearest, 4, axis=0)
-    assert proxy_lag(hand, late, nearest) == pytest.approx(0.0002, rel=0.01)
-    assert proxy_lag(hand, nearest, nearest) == 0
-
-
-def test_sideways_offset_there_and_back_is_not_a_lag():
-    there = np.column_stack([np.linspace(0, 0.02, 500), np.zeros(500), np.zeros(500)])
-    hand = np.vstack([there, there[::-1]])
-    nearest, aside = hand + 0.001 * UP, np.array((0.0003, 0.0, 0.0))
-    assert proxy_lag(hand, nearest + aside, nearest) == pytest.approx(0, abs=1e-12)
-
-
-def test_lag_is_along_the_central_difference():
-    """A hand that turns a corner moves along its diagonal there."""
-    hand = rows((0, 0, 0), (1, 0, 0), (1, 1, 0))
-    nearest = hand + rows((0, 0, 0), (0, 0, 1), (0, 0, 0))
-    assert proxy_lag(hand, nearest - (0.5, 0, 0), nearest) == pytest.approx(0.5 / math.sqrt(2))
-
-
-def test_lag_ignores_ticks_in_free_air_and_at_rest():
-    hand = rows((0, 0, 1), (1, 0, 1), (2, 0, 1), (2, 0, 1), (2, 0, 1))
-    nearest = hand + rows((0, 0, 0), (0, 0, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1))
-    proxy = nearest - rows((9, 0, 0), (0.5, 0, 0), (0.5, 0, 0), (0.5, 0, 0), (9, 0, 0))
-    assert proxy_lag(hand, proxy, nearest) == pytest.approx(0.5)
-
-
-def loops(count: int = 3, ticks: int = 500) -> tuple[np.ndarray, np.ndarray]:
-    """Make paths in and out at different places, with masks of the ticks over the level z = 0."""
-    t = np.arange(count * ticks + 1) / ticks
-    z = 0.001 * np.cos(2 * np.pi * t)
-    return np.column_stack([0.02 * np.sin(t), 0.01 * t, z]), z > 0.0009
-
-
-def test_work_of_springs_is_not_above_zero():
-    hand, free = loops()
-    works = loop_works(-800 * hand, hand, np.ones(len(hand), np.bool_))
-    assert works.size == 0  # free everywhere: there is no loop
-    force = 800 * np.maximum(-hand[:, 2:], 0) * UP
-    works = loop_works(force, hand, free)
-    assert works.size == 3
-    assert np.abs(works).max() < 1e-9 * 3 + 800 * 0.0000126**2  # the tick that crosses the surface
-
-
-def test_work_of_a_known_law_is_exact():
-    """Pushed along x by 2 N: 2 N times the way of each loop; friction is the negative of that."""
-    hand, free = loops()
-    push = np.tile((2.0, 0.0, 0.0), (len(hand), 1))
-    ways = loop_works(push, hand, free) / 2
-    ends = [np.flatnonzero(~free & (np.floor(np.arange(len(hand)) / 500) == loop))[[0, -1]] for loop in range(3)]
-    np.testing.assert_allclose(ways, [hand[last + 1, 0] - hand[first - 1, 0] for first, last in ends], atol=1e-12)
-    np.testing.assert_allclose(loop_works(-push, hand, free), -2 * ways)
-
-
-def test_work_of_a_path_always_in_contact_has_no_loops():
-    hand, _ = loops()
-    assert loop_works(hand, hand, np.zeros(len(hand), np.bool_)).size == 0
 
 
 @given(st.integers(0, 2**32 - 1))

@@ -7,12 +7,12 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 
+from tangible_authoring.fixing import fix
 from tangible_core import Pipeline, Scene
 from tangible_core.data import DisparityMap, Force, HapticState, HapticSurface, Note, SegmentMap, Views
 from tangible_core.errors import ConfigError, MaterialError, PictureError
 from tangible_core.parts import HeightChoice, PartChoice
 from tangible_core.pipeline.engine.cache import Cache
-from tangible_core.pipeline.fixing import fix
 from tangible_core.pipeline.pipeline import load_pipeline
 from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, PlainTouch, Segmenter, Skippable, Touch
 from tangible_core.preflight import Hand, Loop

@@ -1,4 +1,4 @@
-"""The commands that prepare a pipeline file. Imported whenever `tangible` starts, so it imports next to nothing."""
+"""The commands that prepare and check a pipeline file. `tangible` imports them whenever it starts, so this is light."""
 
 from __future__ import annotations
 
@@ -23,13 +23,15 @@ def tangible_legibility() -> Mapping[str, str]:
 
 @hookimpl
 def tangible_commands(app: Typer) -> None:
-    """Add `tangible new`, `tangible parts`, `tangible legible` and `tangible schema`."""
+    """Add the commands that write, check and describe a pipeline file."""
     from tangible_core.cli.command_table import add
 
-    add("new", "tangible_authoring.commands.new:new", "Write a pipeline file for your pictures.")
-    add("parts", "tangible_authoring.commands.parts:parts", "Divide a picture into parts, which get names and heights.")
+    room = __package__
+    add("new", f"{room}.new:new", "Write a pipeline file for your pictures.")
+    add("parts", f"{room}.parts:parts", "Divide a picture into parts, which get names and heights.")
+    add("preflight", f"{room}.preflight:preflight", "Check, before a motor moves, what is safe.")
     add(
         "legible", "tangible_legibility.commands.legible:legible",
         "Check whether fingers can read a picture on paper, print, pins or a device.",
     )  # fmt: skip
-    add("schema", "tangible_authoring.commands.schema:schema", "Print the JSON Schema of pipeline files.")
+    add("schema", f"{room}.schema:schema", "Print the JSON Schema of pipeline files.")

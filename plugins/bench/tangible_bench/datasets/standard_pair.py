@@ -10,11 +10,11 @@ from jaxtyping import Bool, Float32
 from tangible_core.data import Record, Views
 from tangible_core.data.pictures import size_in_words
 from tangible_core.errors import ConfigError, PictureError
-from tangible_core.metrics import visible_pixels
 from tangible_core.scene.formats.pictures import TruthScale, read_map
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import SceneFiles
 
+from ..metrics.standard_sets import visible_pixels
 from .cameras import Cameras, ReadCameras
 from .shrinking import shrink_mask, shrink_truth, shrink_views
 

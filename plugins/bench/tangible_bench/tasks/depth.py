@@ -8,13 +8,14 @@ import numpy as np
 
 from tangible_core.data import DisparityMap, Views
 from tangible_core.errors import PictureError
-from tangible_core.metrics import benchmark_errors, disparity_errors
+from tangible_core.metrics import disparity_errors
 from tangible_core.plugins.interfaces import DepthEstimator
 from tangible_core.scene.geometry import fill_rows
 from tangible_core.testing.synthetic.stereo_scenes import KnownPair
 
 from ..datasets import MarkedPair
 from ..metrics.sparsification import LEFT, LEFT_BY_ORACLE, sparsification_errors
+from ..metrics.standard_sets import benchmark_errors
 from . import damage
 from .depth_scenes import DepthScene, size_of
 from .task import Curve, Measure, Perturbation, Task

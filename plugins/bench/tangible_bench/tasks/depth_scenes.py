@@ -8,7 +8,6 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tangible_core.errors import PictureError, quoted
-from tangible_core.metrics import visible_pixels
 from tangible_core.scene.formats.pictures import TruthScale
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import SceneFiles
@@ -18,6 +17,7 @@ from tangible_core.testing.synthetic.stereo_scenes import KnownPair, synthetic_p
 from ..datasets import SETS, MarkedPair, StandardPair, matched, pairs
 from ..datasets.choosing import SetName, Split, with_folder_of_set
 from ..datasets.standard_pair import Mask, Resolution
+from ..metrics.standard_sets import visible_pixels
 from .task import SceneSpec, check_one_kind, expand_folder, pick_pairs, with_folder_of_file
 
 TRUTHS = ("disparity.npz", "disparity.npy", "disparity.pfm", "disparity.png")

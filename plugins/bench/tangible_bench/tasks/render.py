@@ -8,11 +8,12 @@ from jaxtyping import Float64
 from pydantic import ValidationError
 
 from tangible_core.data import HapticSurface
-from tangible_core.metrics import force_errors, force_steps, loop_works, proxy_lag
+from tangible_core.metrics import force_errors
 from tangible_core.plugins.interfaces import ForceRenderer, Touch
 
 from ..memory import held_bytes
 from ..metrics.stability import Law, stiffness_limit
+from ..metrics.strokes import force_steps, loop_works, proxy_lag
 from ..strokes.strokes import KnownStroke
 from .render_scenes import RenderScene
 from .task import Clock, Measure, Perturbation, Task

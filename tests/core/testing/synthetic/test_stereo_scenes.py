@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tangible_core.metrics import visible_pixels
+from tangible_bench.metrics.standard_sets import visible_pixels
 from tangible_core.testing.synthetic.stereo_scenes import SCENES, synthetic_pair
 from tangible_core.testing.synthetic.surfaces import (
     Surface,

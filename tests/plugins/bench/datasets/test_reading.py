@@ -12,9 +12,9 @@ from standard_sets import LAYOUTS, Known, Layout, known, put, put_views
 from tangible_bench.datasets import SETS, folders, pairs
 from tangible_bench.datasets.choosing import SetName
 from tangible_bench.datasets.standard_pair import StandardPair
+from tangible_bench.metrics.standard_sets import visible_pixels
 from tangible_core.data import Calibration
 from tangible_core.errors import ConfigError, PictureError
-from tangible_core.metrics import visible_pixels
 
 EACH = pytest.mark.parametrize("name", LAYOUTS)
 

@@ -5,8 +5,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from tangible_authoring.fixing import AT_ONCE, cure
 from tangible_core.pipeline.feeling import Feeling
-from tangible_core.pipeline.fixing import AT_ONCE, cure
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.plugins.interfaces import Medium
 from tangible_core.preflight import Hand, Loop, Preflight, judge

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from tangible_core.metrics import benchmark_errors, disparity_errors
+from tangible_bench.metrics.standard_sets import benchmark_errors
+from tangible_core.metrics import disparity_errors
 
 NAN = np.nan
 

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from ..data.quantities import unit_of
-from ..preflight.verdict import Change
-from ..preflight.wording import quantity
-from .config.model import PipelineConfig
+from tangible_core.data.quantities import unit_of
+from tangible_core.pipeline.config.model import PipelineConfig
+from tangible_core.preflight.verdict import Change
+from tangible_core.preflight.wording import quantity
 
 
 class _Loss(NamedTuple):

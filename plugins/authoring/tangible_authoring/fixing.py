@@ -5,15 +5,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from ..files.yaml.source import read_text
-from ..preflight import Flight, Hand, Loop, Preflight, judge
-from ..preflight.timing import Lateness
-from ..preflight.verdict import Change
-from .config.editing import edit_text, relocate_text, with_overrides
-from .config.parsing import parse_config
-from .feeling import Feeling
+from tangible_core.files.yaml.source import read_text
+from tangible_core.pipeline.config.editing import edit_text, relocate_text, with_overrides
+from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.pipeline.feeling import Feeling
+from tangible_core.pipeline.pipeline import Pipeline
+from tangible_core.preflight import Flight, Hand, Loop, Preflight, judge
+from tangible_core.preflight.timing import Lateness
+from tangible_core.preflight.verdict import Change
+
 from .losses import losses
-from .pipeline import Pipeline
 
 ROUNDS = 24
 """The most changes: most files need one to three, and each is tried on the surface that it makes."""

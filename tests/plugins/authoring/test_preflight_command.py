@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from command_line import tangible
+from tangible_authoring.commands.preflight import COLOURS, WIDTHS, preflight
 from tangible_core import load_pipeline
-from tangible_core.cli.commands.preflight import COLOURS, WIDTHS, preflight
 from tangible_core.cli.show import verdict_line
 from tangible_core.data import HapticState
 from tangible_core.errors import BrokenMethod, ConfigError

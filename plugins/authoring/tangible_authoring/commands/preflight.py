@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import FAILED, Config, Json, NoCache, Sets, Verbose
-from .run import device_of, open_pipeline
+from tangible_core.cli.commands.run import device_of, open_pipeline
+from tangible_core.cli.options import FAILED, Config, Json, NoCache, Sets, Verbose
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ...pipeline.fixing import Fixed
-    from ...preflight import Flight, Hand, Loop, Preflight
+    from tangible_core.preflight import Flight, Hand, Loop, Preflight
+
+    from ..fixing import Fixed
 
 COLOURS = {"ok": "green", "warn": "yellow", "unsafe": "bold red"}
 WIDTHS = 6, 12
@@ -42,10 +43,10 @@ def preflight(
     With --fix, the cures are tried, and a file with the necessary ones is written; if they are not enough, no file is,
     and the exit is 1.
     """
-    from ...errors import OutputError
-    from ...files.paths import without_folders
-    from ...pipeline.feeling import Feeling
-    from ...preflight import Hand, Loop, judge
+    from tangible_core.errors import OutputError
+    from tangible_core.files.paths import without_folders
+    from tangible_core.pipeline.feeling import Feeling
+    from tangible_core.preflight import Hand, Loop, judge
 
     hand, loop = Hand(speed, press), Loop(rate, seconds)
     if fix is not None and fix.exists() and not force:
@@ -69,9 +70,10 @@ def _fix(
     config: Path, sets: Sequence[str], hand: Hand, loop: Loop, out: Path, cached: bool, as_json: bool
 ) -> tuple[Flight, Preflight, dict[str, Any]]:
     """Try the cures and write the file if they are enough; return the state after them, and the file and changes."""
-    from ...files.writing import write_text
-    from ...pipeline.fixing import fix
-    from .. import show
+    from tangible_core.cli import show
+    from tangible_core.files.writing import write_text
+
+    from ..fixing import fix
 
     found = fix(config, sets, hand, loop, out, cached)
     if found.verdicts.safe:
@@ -94,7 +96,7 @@ def _heading_of_fix(out: Path, found: Fixed) -> str:
 def _print(scene: str, device: str, verdicts: Preflight, verbose: bool) -> None:
     from rich.markup import escape
 
-    from .. import show
+    from tangible_core.cli import show
 
     sentence = f"[{COLOURS[verdicts.grade]}]{escape(verdicts.sentence)}[/]"
     show.verdicts(f"{escape(scene)} on {escape(device)}: {sentence}", verdicts, COLOURS, WIDTHS, verbose)
@@ -103,7 +105,7 @@ def _print(scene: str, device: str, verdicts: Preflight, verbose: bool) -> None:
 def _print_json(scene: str, device: str, flight: Flight, verdicts: Preflight, fixed: Mapping[str, Any]) -> None:
     from dataclasses import asdict
 
-    from .. import show
+    from tangible_core.cli import show
 
     head = {"scene": scene, "device": device, "sentence": verdicts.sentence, "grade": verdicts.grade}
     rows = [{**asdict(each), "changes": {change.key: change.value for change in each.changes}} for each in verdicts]
@@ -113,7 +115,7 @@ def _print_json(scene: str, device: str, flight: Flight, verdicts: Preflight, fi
 def _figures(flight: Flight) -> dict[str, Any]:
     from dataclasses import asdict
 
-    from ...preflight import PERCENTILES
+    from tangible_core.preflight import PERCENTILES
 
     late, cost = flight.lateness, flight.cost
     return {

@@ -1,24 +1,20 @@
-"""JSON Lines files that one process appends to: each line is whole or absent."""
+"""JSON Lines files that one process appends to: each row is whole or absent."""
 
-import errno
 import json
-import os
 from collections.abc import Iterator, Mapping
-from io import FileIO
 from pathlib import Path
-from time import monotonic
 from typing import Any, Self, cast
 
-from ..errors import OutputError, ResultsError
-from ..runtime.system.files import BINARY, lock
-from .reading import check_file
+from ..errors import ResultsError
+from .line_file import LineFile, read_lines
 
 SYNC_EVERY_S = 1.0
 """The longest time, s, until a row is on the disk."""
+IN_USE = "another program is writing to it; wait for that one or choose another folder"
 
 
 class JsonLines:
-    """A JSON Lines file, open for appending. Opening it removes a last line that a kill left incomplete."""
+    """A JSON Lines file, open for appending; see `LineFile`."""
 
     def __init__(self, path: Path, sync_every_s: float = SYNC_EVERY_S, alone: bool = False) -> None:
         """Open the file; missing parent folders are created.
@@ -26,24 +22,7 @@ class JsonLines:
         sync_every_s: the longest time until a row is on the disk. alone: lock the file against other processes.
         Raises: OutputError if the file cannot be written, or another process holds it.
         """
-        self.path = path
-        self._sync_every_s, self._synced_s = sync_every_s, monotonic()
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | BINARY, 0o666), "a+")
-        except OSError as error:
-            raise self._wrong(error) from error
-        try:
-            if alone:
-                lock(self._file)
-            self._cut_torn_end()
-        except OSError as error:
-            self._file.close()
-            if isinstance(error, BlockingIOError | PermissionError):
-                raise OutputError(
-                    f"{path}: another program is writing to it; wait for that one or choose another folder"
-                ) from error
-            raise self._wrong(error) from error
+        self._file = LineFile(path, sync_every_s=sync_every_s, in_use=IN_USE if alone else "")
 
     def __enter__(self) -> Self:
         return self
@@ -53,55 +32,11 @@ class JsonLines:
 
     def add(self, row: Mapping[str, Any]) -> None:
         """Add a row in one write. Raises: OutputError if it cannot be written; the file is then as before."""
-        line = json.dumps(row, ensure_ascii=False, allow_nan=False) + "\n"
-        text = line.encode(errors="backslashreplace")  # names of files may hold half a character
-        before = os.fstat(self._file.fileno()).st_size
-        try:
-            if self._file.write(text) < len(text):
-                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-            if monotonic() - self._synced_s >= self._sync_every_s:
-                self._sync()
-        except OSError as error:
-            self._file.truncate(before)
-            raise self._wrong(error) from error
+        self._file.add(json.dumps(row, ensure_ascii=False, allow_nan=False))
 
     def close(self) -> None:
         """Close the file, with all rows on the disk. Raises: OutputError if the disk does not take them."""
-        try:
-            self._sync()
-        except OSError as error:
-            raise self._wrong(error) from error
-        finally:
-            self._file.close()
-
-    def _cut_torn_end(self) -> None:
-        """Remove an incomplete last line; a file is opened anew for each row, so only its last byte is read first."""
-        if not self._file.seek(0, os.SEEK_END):
-            return
-        self._file.seek(-1, os.SEEK_END)
-        if self._file.read(1) != b"\n":
-            self._file.truncate(self.path.read_bytes().rfind(b"\n") + 1)
-
-    def _sync(self) -> None:
-        os.fsync(self._file.fileno())
-        self._synced_s = monotonic()
-
-    def _wrong(self, error: OSError) -> OutputError:
-        return OutputError(
-            f"{self.path}: cannot be written: {error.strerror}; free some space or choose another folder"
-        )
-
-
-def read_lines(path: Path) -> Iterator[tuple[int, str]]:
-    """Yield the number of each line, from 1, and the line, without empty lines and an incomplete last line.
-
-    Raises: OSError, UnicodeDecodeError.
-    """
-    check_file(path)
-    with path.open("rb") as file:
-        for number, line in enumerate(file, 1):
-            if line.endswith(b"\n") and line != b"\n":
-                yield number, line[:-1].decode()
+        self._file.close()
 
 
 def read_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:

@@ -1,16 +1,12 @@
 """The table of a participant's answers: a line of a TSV file for each answered trial, as BIDS has behavioural data."""
 
-import errno
-import os
 from collections.abc import Iterable, Mapping
 from dataclasses import astuple, dataclass, fields
-from io import FileIO
 from pathlib import Path
 from typing import Any, Self, final, get_args
 
-from tangible_core.errors import OutputError, ResultsError
-from tangible_core.files.json_lines import read_lines
-from tangible_core.runtime.system.files import BINARY, lock
+from tangible_core.errors import ResultsError
+from tangible_core.files.line_file import LineFile, read_lines
 
 MISSING = "n/a"
 """The text of a missing value, as BIDS has it."""
@@ -99,6 +95,9 @@ def _answers(path: Path, lines: list[tuple[int, str]]) -> Iterable[Answer]:
             raise ResultsError(f"{path}:{number}: is not an answer: {error}; correct the line") from error
 
 
+IN_USE = "another program runs this participant; end that one first"
+
+
 @final
 class AnswerFile:
     """A table of answers that one process appends to: an answer is on the disk before `add` returns."""
@@ -108,24 +107,7 @@ class AnswerFile:
 
         Raises: OutputError if it cannot be written, or another process is writing to it.
         """
-        self.path = path
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | BINARY, 0o666), "a+")
-        except OSError as error:
-            raise self._error(error) from error
-        try:
-            lock(self._file)
-            whole = path.read_bytes().rfind(b"\n") + 1
-            self._file.truncate(whole)
-            if not whole:
-                self._append("\t".join(COLUMNS))
-        except (BlockingIOError, PermissionError) as error:
-            self._file.close()
-            raise OutputError(f"{path}: another program runs this participant; end that one first") from error
-        except OSError as error:
-            self._file.close()
-            raise self._error(error) from error
+        self._file = LineFile(path, in_use=IN_USE, header="\t".join(COLUMNS))
 
     def __enter__(self) -> Self:
         return self
@@ -138,21 +120,7 @@ class AnswerFile:
 
         Raises: OutputError if it cannot be written; the file is then as before, and the call can be repeated.
         """
-        before = os.fstat(self._file.fileno()).st_size
-        try:
-            self._append(answer.line())
-        except OSError as error:
-            self._file.truncate(before)
-            raise self._error(error) from error
-
-    def _append(self, line: str) -> None:
-        data = f"{line}\n".encode(errors="backslashreplace")
-        if self._file.write(data) < len(data):
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        os.fsync(self._file.fileno())
-
-    def _error(self, error: OSError) -> OutputError:
-        return OutputError(f"{self.path}: cannot be written: {error.strerror}; free some space")
+        self._file.add(answer.line())
 
 
 def _text(value: Any) -> str:

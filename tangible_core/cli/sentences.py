@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..data import Outcome
-    from ..pipeline.output.exporting import Export
+    from ..pipeline.output.export_result import Export
     from ..pipeline.output.runs import Run
     from ..testing import CheckResult
 

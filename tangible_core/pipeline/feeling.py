@@ -3,9 +3,10 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from os import PathLike
 from threading import Event
-from typing import Any, Protocol, TypedDict, TypeVar, final, runtime_checkable
+from typing import TypeVar, final
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from ..data import TICK_COLUMNS, ServoReport
 from ..data.arguments import named_options
 from ..errors import ConfigError
 from ..files.paths import as_path
-from ..plugins import hooks
 from ..plugins.failures import naming_plugins
 from ..plugins.interfaces import Film, HapticDevice, Medium, Reshaping, Touch
 from ..preflight import Flight, Hand, Legibility, Loop, Preflight, judge, survey
@@ -26,51 +26,13 @@ from .config.methods import check_kind, named_method
 from .engine.engine import Engine
 from .engine.film import film_of, reliefs_of
 from .engine.stages.touch import fit_to_device
+from .feel_options import Felt
 from .output.legible import drawn_parts, drawn_width_m, exporter_for, legible
-from .output.runs import about, device_in_workspace, join_descriptions, path_tracking
+from .output.runs import about, device_in_workspace, join_descriptions, path_tracking, tell_report
 
 T = TypeVar("T")
 NO_ROWS = np.empty((0, len(TICK_COLUMNS)))
 """The rows of a recording without ticks."""
-
-
-@runtime_checkable
-class Felt(Protocol):
-    """The members of a pipeline that a session needs."""
-
-    engine: Engine
-
-    def make(self, want: str | None = None) -> Any:
-        """Make a product."""
-        ...
-
-
-class FeelOptions(TypedDict, total=False):
-    """Options of `Feeling.run` next to its seconds."""
-
-    in_real_time: bool
-    """True by default, for a loop in a process of its own; False runs a simulated device by its own clock."""
-    record: str | PathLike[str] | None
-    """A file (.nc, .npz, .csv) for every tick, written during the session."""
-    keep: Callable[[np.ndarray], None] | None
-    """A function called with all ticks, as rows of `TICK_COLUMNS`; the returned recording is then empty, and the length
-    of a session is limited by the disk alone."""
-    on_report: Callable[[ServoReport], None] | None
-    """A function called ten times a second, and at the end."""
-    on_start: Callable[[Servo], None] | None
-    """A function called once a loop in real time runs."""
-    stop: Event | None
-    """An event that ends the session when another thread sets it."""
-    then: Sequence[Felt]
-    """The pipelines that follow this one, each for `each_s`, before this one comes again; in real time only."""
-    each_s: float
-    """Seconds for each pipeline of `then`; 60 by default."""
-    on_wait: Callable[[str], None] | None
-    """A function called with a sentence while a missing or disconnected device is awaited (`session.run_kiosk`); in
-    real time only."""
-    beacon: str | int | None
-    """The name or the number of a part to which the hand is pulled gently, with 1 N at most, until a button of the
-    device releases it; for every scene of `then`, too."""
 
 
 @final
@@ -149,7 +111,7 @@ class Feeling:
         if file is not None:
             session.check_record_path(file, seconds is None)
         device, about_session = self.device, self._about()
-        listener = _both(self._report, on_report)
+        listener = _both(partial(tell_report, self.engine), on_report)
         if not in_real_time:
             if then or on_wait:
                 raise ConfigError(
@@ -296,9 +258,6 @@ class Feeling:
         if self.given is None:
             return about_pipeline
         return replace(about_pipeline, device=named_method("device", self.given, self.engine.registry).name)
-
-    def _report(self, report: ServoReport) -> None:
-        hooks.tell(self.engine.registry.plugins, "tangible_servo_report", report=report)
 
 
 def _both(one: Callable[[T], None], other: Callable[[T], None] | None) -> Callable[[T], None]:

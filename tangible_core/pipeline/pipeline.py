@@ -5,7 +5,7 @@ from os import PathLike
 from threading import Event
 from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, cast, final
 
-from ..data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Plan, Relief, SegmentMap, ServoReport
+from ..data import DisparityMap, HapticSurface, MaterialMap, Outcomes, Plan, Relief, SegmentMap
 from ..data.arguments import named_options
 from ..data.products import Product
 from ..errors import wrong_argument
@@ -13,7 +13,6 @@ from ..files.paths import as_path
 from ..files.writing import write_text
 from ..mapping import WorkspaceMapping
 from ..parts import HeightChoice, PartChoice, SimplifyChoice
-from ..plugins import hooks
 from ..plugins.interfaces import DepthEstimator, Exporter, ForceRenderer, HapticDevice, Segmenter, Touch
 from ..plugins.registry import Registry, default_registry
 from ..preflight import Hand, Loop, Preflight
@@ -28,8 +27,10 @@ from .engine.cache import Cache
 from .engine.engine import Engine
 from .engine.stage import Progress
 from .engine.warm_up import warm_up
-from .feeling import Feeling, FeelOptions
-from .output.exporting import Export, chosen_exporters, export
+from .feel_options import FeelOptions
+from .feeling import Feeling
+from .output.export_result import Export
+from .output.exporting import chosen_exporters, export
 from .output.runs import Run, Sheet, make_run
 
 Materials = MaterialChoice | Mapping[Any, Any] | str
@@ -228,7 +229,7 @@ class Pipeline:
         Raises: OutputError if the folder cannot be written; TangibleError as `make`.
         """
         with self.engine.watching(progress, stop):
-            return make_run(self.engine, as_path(out, "out"), want or self.config.want, seconds, self._report, sheet)
+            return make_run(self.engine, as_path(out, "out"), want or self.config.want, seconds, sheet)
 
     @named_options
     def export(
@@ -271,9 +272,6 @@ class Pipeline:
         Raises: ConfigError without a device or force law; TangibleError as `make`.
         """
         return Feeling(self, device).preflight(hand, loop)
-
-    def _report(self, report: ServoReport) -> None:
-        hooks.tell(self.engine.registry.plugins, "tangible_servo_report", report=report)
 
     if not TYPE_CHECKING:
 

@@ -15,7 +15,7 @@ from .run import default_place, open_pipeline
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...pipeline.output.exporting import Export, Exported
+    from ...pipeline.output.export_result import Export, Exported
 
 
 CSV = "csv"

@@ -273,9 +273,8 @@ class Engine:
         """Take over the notes on a cached product and on the products that it was made from; log warnings again."""
         for product in kept.keys() - self._notes.keys():
             self._notes[product] = kept[product]
-            for each in kept[product]:
-                if each.kind != "decision":
-                    log.warning("%s", each.text)
+            for each in (note for note in kept[product] if note.kind != "decision"):
+                log.warning("%s", each.text)
 
     def source_of(self, product: str) -> tuple[str, tuple[Note, ...]]:
         """Return why a product is given, and for the pictures or the heights the notes on their files."""
@@ -290,8 +289,7 @@ class Engine:
         return {name: stage_class(name)(context) for name in PRODUCTS if name not in self.scene_products}
 
     def _product(self, want: str | None) -> str:
-        product = want or self.config.want
-        if product not in PRODUCTS:
+        if (product := want or self.config.want) not in PRODUCTS:
             raise UnknownName("product", product, PRODUCTS)
         return product
 

@@ -5,14 +5,13 @@ import logging
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from threading import Event
 from time import perf_counter
 from typing import Any, cast, final
 
 from ...data import Note, Outcome, Outcomes, Record, Work
-from ...data.outcome import HEADINGS, OutcomeKind, html_table, text_table
+from ...data.outcome import OutcomeKind
 from ...data.products import EXPORTABLE
 from ...errors import BrokenMethod, ConfigError, Stopped, TangibleError, exit_error, quoted, wrong_argument
 from ...files.writing import temporary_folder
@@ -31,6 +30,7 @@ from ..engine.engine import Engine
 from ..engine.planning import REQUESTED, with_notes
 from ..engine.stage import Progress, StageEvent, ignore_event
 from .export_folder import check_writable, check_written, move
+from .export_result import Export, Exported
 from .legible import drawn_parts, drawn_width_m, judge_products, names_of_parts, with_cures_of, with_width
 from .run_folder import default_name, relative_source
 
@@ -42,64 +42,6 @@ MOST_STEM_BYTES = 120
 """The most bytes of a file's name before its ending: systems take 255, and endings are added."""
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
 """The errors of a disk, for which the exporter is not to blame."""
-
-
-@dataclass(frozen=True, eq=False)
-class Exported:
-    """The files of one exporter, or the reason why there are none."""
-
-    name: str
-    """The exporter's name, with a number where it is listed twice."""
-    outcome: Outcome
-    """`ran`; `refused` for a work that cannot be written, with the cure in the message; `failed` for a fault of the
-    exporter."""
-    files: tuple[Path, ...] = ()
-    made: Outcomes = field(default_factory=Outcomes)
-    """The outcomes of the products that it needs."""
-    legible: Legibility | None = None
-    """The legibility for fingers; None for files that are not touched."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Export:
-    """The files of all exporters and their folder, shown as a table in a terminal and in a notebook."""
-
-    folder: Path
-    exports: tuple[Exported, ...]
-    """The exporters in the order of the request."""
-
-    @property
-    def files(self) -> dict[str, tuple[Path, ...]]:
-        """The files of each exporter by its name; empty for an exporter that wrote none."""
-        return {each.name: each.files for each in self.exports}
-
-    @property
-    def outcomes(self) -> Outcomes:
-        """The outcome of each exporter."""
-        return Outcomes(each.outcome for each in self.exports)
-
-    def document(self) -> dict[str, Any]:
-        """Return everything as plain values."""
-        return {"folder": str(self.folder), "exports": [_as_data(each) for each in self.exports]}
-
-    def __repr__(self) -> str:
-        return text_table((*HEADINGS, "files"), self._rows())
-
-    def _repr_html_(self) -> str:
-        return html_table((*HEADINGS, "files"), self._rows())
-
-    def _rows(self) -> list[tuple[str, ...]]:
-        return [(*each.outcome.row(), ", ".join(path.name for path in each.files)) for each in self.exports]
-
-
-def _as_data(each: Exported) -> dict[str, Any]:
-    return {
-        "name": each.name,
-        "outcome": asdict(each.outcome),
-        "files": [str(path) for path in each.files],
-        "made": [asdict(outcome) for outcome in each.made],
-        "legible": each.legible and each.legible.as_data(),
-    }
 
 
 def chosen_exporters(

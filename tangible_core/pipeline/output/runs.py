@@ -1,8 +1,9 @@
 """Runs: the wanted product of a pipeline, kept in a folder with its figures and its sheet."""
 
 import platform
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from html import escape
 from importlib.metadata import version
 from pathlib import Path
@@ -18,6 +19,7 @@ from ...files.paths import without_folders
 from ...files.writing import write_text
 from ...mapping import intended_path, map_device, over
 from ...metrics import disparity_errors
+from ...plugins import hooks
 from ...plugins.interfaces import HapticDevice, Touch
 from ...session import (
     EVERY,
@@ -95,7 +97,6 @@ def make_run(
     out: Path,
     want: str,
     seconds: float,
-    on_report: Callable[[ServoReport], None] | None = None,
     sheet: Sheet = "png",
 ) -> Run:
     """Make the wanted product, and write the results and their report into a folder in place of an earlier run's.
@@ -112,7 +113,7 @@ def make_run(
         value = engine.make_on_grid(want)
         products = {name: engine.make_on_grid(name) for name in IN_REPORT if name in engine.inputs_of(want)}
         products[want] = value
-        recording = _run_touch(engine, value, seconds, on_report) if want == "touch" else None
+        recording = _run_touch(engine, value, seconds) if want == "touch" else None
     figures, config_file = _figures(engine, products, recording), _config_file(engine)
     records = {f"{name}.npz": record for name, record in products.items() if isinstance(record, Record)}
     recordings = [RECORDING] if recording is not None else []
@@ -181,9 +182,12 @@ def path_tracking(engine: Engine, device: HapticDevice | None, ticks: Recording)
     return tracking_error(ticks, path_m, engine.make("surface"))
 
 
-def _run_touch(
-    engine: Engine, touch: Touch, seconds: float, on_report: Callable[[ServoReport], None] | None
-) -> Recording | None:
+def tell_report(engine: Engine, report: ServoReport) -> None:
+    """Tell a report of the force loop to the installed hooks."""
+    hooks.tell(engine.registry.plugins, "tangible_servo_report", report=report)
+
+
+def _run_touch(engine: Engine, touch: Touch, seconds: float) -> Recording | None:
     """Run a touch on the configured device; None without a simulated one."""
     device = device_in_workspace(engine)
     if device is None or not device.spec().simulated:
@@ -191,7 +195,7 @@ def _run_touch(
     description = about(engine).with_versions()
     if engine.compiler is not None:
         engine.compiler.wait(FELT)
-    listener = with_parts(engine.make_on_grid("surface"), on_report) if on_report else None
+    listener = with_parts(engine.make_on_grid("surface"), partial(tell_report, engine))
     recording = run_simulated(touch, device, seconds, listener, engine.config.safety)
     return replace(recording, about=description)
 

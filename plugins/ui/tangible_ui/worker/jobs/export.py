@@ -14,7 +14,8 @@ from zipfile import ZIP_DEFLATED, ZipFile
 from tangible_core.data.records import digest_of as digest_of_records
 from tangible_core.errors import ConfigError
 from tangible_core.pipeline.output.export_folder import read_list
-from tangible_core.pipeline.output.exporting import Exported, work_for
+from tangible_core.pipeline.output.export_result import Exported
+from tangible_core.pipeline.output.exporting import work_for
 from tangible_core.pipeline.output.legible import drawn_width_m, with_width
 from tangible_core.plugins.interfaces import Previewing
 from tangible_core.plugins.notes import silently

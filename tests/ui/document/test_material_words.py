@@ -3,9 +3,8 @@
 import json
 import re
 
-from tangible_core.parts.words.languages import LANGUAGES, TABLES
-
 from page_files import WEB
+from tangible_legibility.words.languages import LANGUAGES, TABLES
 
 ROW = re.compile(r"^  (\w+): (\[.*\]),$", re.MULTILINE)
 

@@ -7,8 +7,8 @@ from browser_tabs import OpenPage
 from english import english_of
 from page_panels import show_everything
 from sessions import striped_scene
-from tangible_core.parts.words.languages import TABLES
 from tangible_core.translation.catalogue import catalogue
+from tangible_legibility.words.languages import TABLES
 from waiting import until
 
 GERMAN_MATERIALS = set(TABLES["de"].materials.values())

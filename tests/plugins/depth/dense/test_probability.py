@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tangible_core.metrics.sparsification import WRONG_PX
+from tangible_bench.metrics.sparsification import WRONG_PX
 from tangible_core.testing.synthetic.stereo_scenes import synthetic_pair
 from tangible_depth.dense.confidence import FILLED, OF_FILLED, OF_MATCHED, probability
 from tangible_depth.semi_global import SemiGlobal

@@ -9,7 +9,6 @@ import queue
 import shutil
 import signal
 import threading
-import time
 from pathlib import Path
 from typing import IO, Any, final
 
@@ -24,7 +23,7 @@ FULL = {getattr(errno, name, -1) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EROF
 NICENESS = 10
 """Niceness after the first long job: pictures can then wait, loop and page cannot. Before it, no loop has input."""
 CLEANING_S = 2.0
-"""Time for the main thread to find that the server is gone, s, before a thread that cannot reply ends the process."""
+"""Time for the main thread to find that the server is gone, s, before a reply that nobody reads ends the process."""
 _keep_precedence: set[int] = set()
 
 
@@ -41,8 +40,7 @@ class Sender:
             with self._lock:
                 send(self._replies, message)
         except OSError:
-            time.sleep(CLEANING_S)  # if the server is gone, `main` ends the process before
-            os._exit(0)
+            threading.Timer(CLEANING_S, os._exit, (0,)).start()  # if the server is gone, `main` ends it before
 
 
 def main() -> None:

@@ -14,6 +14,7 @@ from tangible_core.data import Relief
 from tangible_core.data.views import border_pixels
 from tangible_core.scene.workspace import Workspace
 from tangible_depth import Luminance
+from tangible_legibility.border_steps import WITHIN_M, felt_steps
 from tangible_texture import Hierarchy
 
 from .figures import mean_and_error, table

@@ -19,6 +19,7 @@ from tangible_core.data import Relief
 from tangible_core.errors import OutputError
 from tangible_core.plugins.notes import collect_notes
 from tangible_depth import Luminance
+from tangible_legibility.words.languages import one_line
 from tangible_render.surface.coefficients import spline_coefficients
 from tangible_send.html import page_of
 from tangible_send.packing import deflate

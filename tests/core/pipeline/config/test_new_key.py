@@ -89,7 +89,7 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
         assert model.count(before) == 1
         model = model.replace(before, after)
     (copy / MODEL).write_text(model, encoding="utf-8")
-    environment = {**os.environ, "PYTHONPATH": str(copy)}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(copy), os.environ.get("PYTHONPATH", "")])}
     command = [sys.executable, "-c", PROGRAM]
     done = subprocess.run(command, capture_output=True, text=True, cwd=copy, env=environment, check=False)
     assert done.returncode == 0, done.stderr

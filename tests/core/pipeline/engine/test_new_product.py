@@ -46,7 +46,9 @@ def test_product_of_the_contributing_page_is_known_everywhere_with_two_files(tmp
     (tmp_path / STAGE).write_text(stage)
     ran = subprocess.run(
         [sys.executable, "-c", PROGRAM],
-        cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(tmp_path)}, capture_output=True, text=True, check=False,
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])},
+        capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert ran.returncode == 0, ran.stderr
     assert json.loads(ran.stdout) == {

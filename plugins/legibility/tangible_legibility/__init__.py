@@ -1,9 +1,24 @@
 """Legibility for fingers: the rules of tactile graphics, and parts that are simplified until they meet them."""
 
-from .legible import legibility as legibility
-from .legible import sizes as sizes
-from .neighbours import apart as apart
-from .rules import PROFILES as PROFILES
-from .rules import Profile as Profile
-from .rules import Rule as Rule
-from .simplifying.simplify import simplify as simplify
+from typing import TYPE_CHECKING
+
+from tangible_core.lazily import lazily
+
+if TYPE_CHECKING:
+    from .legible import legibility as legibility
+    from .legible import sizes as sizes
+    from .neighbours import apart as apart
+    from .rules import PROFILES as PROFILES
+    from .rules import Profile as Profile
+    from .rules import Rule as Rule
+    from .simplifying.simplify import simplify as simplify
+
+ROOMS = {
+    "legible": ["legibility", "sizes"],
+    "neighbours": ["apart"],
+    "rules": ["PROFILES", "Profile", "Rule"],
+    "simplifying.simplify": ["simplify"],
+}
+"""The modules of the package's names, each imported on the first use of one."""
+
+__all__, __getattr__ = lazily(__name__, ROOMS)  # pyright: ignore[reportUnsupportedDunderAll]

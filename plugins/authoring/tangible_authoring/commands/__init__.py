@@ -7,18 +7,7 @@ from typing import TYPE_CHECKING
 from tangible_core.plugins import hookimpl
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from typer import Typer
-
-
-@hookimpl
-def tangible_legibility() -> Mapping[str, str]:
-    """Name the rules of tactile graphics, and parts simplified by them."""
-    return {
-        "judge": "tangible_legibility.legible:legibility",
-        "simplify": "tangible_legibility.simplifying.simplify:simplify",
-    }
 
 
 @hookimpl
@@ -30,8 +19,4 @@ def tangible_commands(app: Typer) -> None:
     add("new", f"{room}.new:new", "Write a pipeline file for your pictures.")
     add("parts", f"{room}.parts:parts", "Divide a picture into parts, which get names and heights.")
     add("preflight", f"{room}.preflight:preflight", "Check, before a motor moves, what is safe.")
-    add(
-        "legible", "tangible_legibility.commands.legible:legible",
-        "Check whether fingers can read a picture on paper, print, pins or a device.",
-    )  # fmt: skip
     add("schema", f"{room}.schema:schema", "Print the JSON Schema of pipeline files.")

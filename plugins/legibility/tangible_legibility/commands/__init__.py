@@ -1,1 +1,32 @@
-"""The command that the rules add to `tangible`."""
+"""What the rules add to the program. `tangible` imports this whenever it starts, so this is light."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tangible_core.plugins import hookimpl
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from typer import Typer
+
+
+@hookimpl
+def tangible_legibility() -> Mapping[str, str]:
+    """Name the rules of tactile graphics, and parts simplified by them."""
+    return {
+        "judge": "tangible_legibility.legible:legibility",
+        "simplify": "tangible_legibility.simplifying.simplify:simplify",
+    }
+
+
+@hookimpl
+def tangible_commands(app: Typer) -> None:
+    """Add `tangible legible`."""
+    from tangible_core.cli.command_table import add
+
+    add(
+        "legible", f"{__package__}.legible:legible",
+        "Check whether fingers can read a picture on paper, print, pins or a device.",
+    )  # fmt: skip

@@ -129,6 +129,16 @@ class TestKeys:
         assert self.differ(product, whole, torn)
         assert torn.make(product).confidence[3, 5] == 0
 
+    def test_relief_of_edges_depends_on_a_texture_method_that_makes_a_tree_alone(self, folder: Path):
+        """Its borders are raised lines; a method without a tree has no part in it."""
+        parts = {"want": "relief", "relief": ReliefChoice(by="edges"), "scene": SceneFiles(photo=Path("left.npy"))}
+        found = [
+            keys(folder, **parts, texture=NamedMethod(name, version, load_method("texture", name)()))["relief"]
+            for name, version in (("hierarchy", "1"), ("hierarchy", "2"), ("gradient", "1"), ("gradient", "2"))
+        ]
+        assert len({*found}) == 3
+        assert found[2] == found[3]
+
     @pytest.mark.parametrize(("product", "method"), [("disparity", Ramp), ("segments", Halves)])
     def test_keys_differ_for_the_version_of_a_method(
         self, folder: Path, monkeypatch: pytest.MonkeyPatch, product: str, method: type

@@ -57,7 +57,8 @@ class Catalogue:
         )  # fmt: skip
         found = next(filter(None, (way(bare) for way in ways)), None)
         if found is None and after:  # a template whose last placeholder is empty
-            return (found := self._strongly(f"{bare} ")) and before + found + after[1:]
+            found = self._strongly(f"{bare} ") or self._weakly(f"{bare} ")
+            return found and before + found + after[1:]
         return None if found is None else before + found + after
 
     def _exactly(self, text: str) -> str | None:
@@ -78,7 +79,7 @@ class Catalogue:
     ) -> str | None:
         """Return a text that was made of one of these templates, and whose values fit."""
         for each in templates:
-            values = each.match(text) if each.longest in text else None
+            values = each.match(text) if each.is_once_in(text) else None
             if values is not None and all(map(fits, values.values())):
                 return each.fill(values, self)
         return None

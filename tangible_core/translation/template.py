@@ -5,6 +5,8 @@ from collections.abc import Callable, Mapping
 from functools import cached_property
 
 PLACEHOLDER = re.compile(r"\{(\w+)(!s)?\}")
+LONG = 9
+"""The fewest characters of a literal that is not in a text twice by chance."""
 
 
 class Template:
@@ -25,6 +27,11 @@ class Template:
     def names(self) -> tuple[str, ...]:
         """The names of the placeholders, in the order of the English text."""
         return tuple(found[1] for found in PLACEHOLDER.finditer(self.english))
+
+    def is_once_in(self, text: str) -> bool:
+        """Return True if a text may be made of this template; two texts of it in one, joined as a list, are not."""
+        times = text.count(self.longest)
+        return times == 1 or (times > 1 and len(self.longest) < LONG)
 
     def match(self, text: str) -> Mapping[str, str] | None:
         """Return what stands in place of each placeholder if a text was made of this template.

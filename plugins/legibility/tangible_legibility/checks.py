@@ -21,6 +21,9 @@ FELT_STEP_M = 0.0005
 """Step between neighbours from which on their materials need not differ: that of the rule `step`."""
 FEWER_PARTS = "or have fewer and larger parts"
 HEIGHTEN: Cure = "make the relief of parts (`heights: {by: given}`), and give neighbours different heights"
+LEVEL = "more pairs of neighbours are of hardly another height"
+NEARLY_LEVEL = "more pairs of named neighbours are of nearly the same height"
+"""The faults of steps of pairs that are not listed one by one, after their number."""
 
 
 def _widen(data: LegibilityInput, times: float) -> list[str | Change]:
@@ -52,7 +55,8 @@ def gap(data: LegibilityInput) -> Iterator[Verdict]:
         simplified = Change("simplify.gap_m", over(rule.bound), "at least")
         return [simplified, ", ", *_widen(data, rule.bound / max(width_m, 1e-9)), FEWER_PARTS]
 
-    yield from data.judge("gap", measured, cure, none=rule.bound, of="places", worse="is too narrow for a finger")
+    worse, others = "is too narrow for a finger", "more places are too narrow for a finger"
+    yield from data.judge("gap", measured, cure, none=rule.bound, of="places", worse=worse, others=others)
 
 
 def part(data: LegibilityInput) -> Iterator[Verdict]:
@@ -68,7 +72,8 @@ def part(data: LegibilityInput) -> Iterator[Verdict]:
         simplified = Change("simplify.part_m", over(rule.bound), "at least")
         return [simplified, ", ", *_widen(data, rule.bound / max(disc_m, 1e-9)), FEWER_PARTS]
 
-    yield from data.judge("part", measured, cure, none=rule.bound, of="parts", worse="is smaller than a fingertip")
+    worse, others = "is smaller than a fingertip", "more parts are smaller than a fingertip"
+    yield from data.judge("part", measured, cure, none=rule.bound, of="parts", worse=worse, others=others)
 
 
 def shape(data: LegibilityInput) -> Iterator[Verdict]:
@@ -84,7 +89,8 @@ def shape(data: LegibilityInput) -> Iterator[Verdict]:
 
     none = least if np.isfinite(least) else rule.bound
     worse = "is so small that its shape is hard to recognise"
-    yield from data.judge("shape", measured, cure, none=none, of="parts", worse=worse)
+    others = "more parts are so small that their shape is hard to recognise"
+    yield from data.judge("shape", measured, cure, none=none, of="parts", worse=worse, others=others)
 
 
 def _measure_pieces(data: LegibilityInput, pieces: np.ndarray, values: np.ndarray) -> list[Measurement]:
@@ -124,7 +130,7 @@ def steps(data: LegibilityInput) -> Iterator[Verdict]:
     steps, rules = data.steps, data.profile.rules
     long = np.flatnonzero((steps.length_m > rules["gap"].bound) & np.isfinite(steps.step_m))
     if "step" in rules:
-        yield from _judge_steps(data, "step", long, "is hardly higher or lower than it")
+        yield from _judge_steps(data, "step", long, "is hardly higher or lower than it", LEVEL)
         named = [
             each
             for each in long.tolist()
@@ -133,7 +139,8 @@ def steps(data: LegibilityInput) -> Iterator[Verdict]:
         passed = [each for each in named if steps.step_m[each] >= rules["step"].bound]
         if named:
             pairs = np.array(passed, np.int64)
-            yield from _judge_steps(data, "named step", pairs, "is not much higher or lower than it")
+            worse = "is not much higher or lower than it"
+            yield from _judge_steps(data, "named step", pairs, worse, NEARLY_LEVEL)
     felt = border_steps(sample_relief(data.relief, data.parts.labels.shape), data.parts.labels)["borders_found"]
     if np.isfinite(felt):
         measured = [Measurement("the borders of parts", 1 - felt)]
@@ -143,7 +150,7 @@ def steps(data: LegibilityInput) -> Iterator[Verdict]:
         )
 
 
-def _judge_steps(data: LegibilityInput, check: str, pairs: np.ndarray, worse: str) -> Iterator[Verdict]:
+def _judge_steps(data: LegibilityInput, check: str, pairs: np.ndarray, worse: str, others: str) -> Iterator[Verdict]:
     steps, rule = data.steps, data.profile.rules[check]
     measured = [_measure_pair(data, each, float(steps.step_m[each])) for each in pairs.tolist()]
 
@@ -151,7 +158,8 @@ def _judge_steps(data: LegibilityInput, check: str, pairs: np.ndarray, worse: st
         more_m = 1e-4 * max(1, ceil(1e4 * (rule.bound - step_m)))
         return f"make one of them {millimetres(more_m)} higher (`height_m` under `parts:`, with `heights:`)"
 
-    yield from data.judge(check, measured, cure, none=rule.bound, of="pairs of neighbours", worse=worse)
+    of = "pairs of neighbours"
+    yield from data.judge(check, measured, cure, none=rule.bound, of=of, worse=worse, others=others)
 
 
 def _measure_pair(data: LegibilityInput, pair: int, value: float) -> Measurement:
@@ -184,10 +192,9 @@ def materials(data: LegibilityInput) -> Iterator[Verdict]:
             distance[one, other] = apart(one, other)
         measured.append(_measure_pair(data, each, distance[one, other]))
     cure = "give one of them another material (`material` under `parts:`), or another height"
-    worse = "is of nearly the same material and height"
-    yield from data.judge(
-        "materials", measured, lambda _: cure, none=max(rule.bound, 1.0), of="pairs of neighbours", worse=worse
-    )
+    worse, none = "is of nearly the same material and height", max(rule.bound, 1.0)
+    of, others = "pairs of neighbours", "more pairs of neighbours are of nearly the same material and height"
+    yield from data.judge("materials", measured, lambda _: cure, none=none, of=of, worse=worse, others=others)
 
 
 def pins(data: LegibilityInput) -> Iterator[Verdict]:
@@ -201,7 +208,8 @@ def pins(data: LegibilityInput) -> Iterator[Verdict]:
     def cure(pins: float) -> Cure:
         return [Change("simplify.part_m", over(2 * PIN_PITCH_M * 1.5), "at least"), ", ", FEWER_PARTS]
 
-    yield from data.judge("pins", measured, cure, none=0, of="parts", worse="has hardly a pin or two")
+    worse, others = "has hardly a pin or two", "more parts have hardly a pin or two"
+    yield from data.judge("pins", measured, cure, none=0, of="parts", worse=worse, others=others)
     borders = [Measurement("the borders of parts", display.kept)]
 
     def finer(share: float) -> Cure:

@@ -80,12 +80,13 @@ class LegibilityInput:
         *,
         none: float,
         worse: str = "",
+        others: str = "",
         of: str,
     ) -> list[Verdict]:
         """Return one verdict if all meet the rule; else one for each of the worst that fail, and one for all others.
 
         none: the value without a measurement. of: noun for all of them. cure: value -> cure. worse: the fault, after
-        the name of a part.
+        the name of a part. others: the same of several more, after their number.
         """
         rule = self.profile.rules[check]
         wrong = [each for each in measurements if not _meets(each.value, rule.relation, rule.bound)]
@@ -105,9 +106,9 @@ class LegibilityInput:
         ]
         if rest := wrong[len(single) :]:
             places = tuple(dict.fromkeys(each.at for each in rest if each.at))[:MOST_PLACES]
-            others = f"{len(rest)} more {of}"
+            number = len(rest)
             verdicts.append(
-                self._verdict(check, others, rest[0].value, cure, f"{others} {worse.replace('is', 'are', 1)}", places)
+                self._verdict(check, f"{number} more {of}", rest[0].value, cure, f"{number} {others}", places)
             )
         return verdicts
 

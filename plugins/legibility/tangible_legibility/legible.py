@@ -71,10 +71,11 @@ def sizes(medium: Medium, **sizes_m: float) -> Legibility:
 
 
 def _size(rule: Rule, size_m: float) -> Verdict:
-    most = "at most" if rule.relation == "<=" else "at least"
+    bound = millimetres(rule.bound)
+    wanted = f"at most {bound}" if rule.relation == "<=" else f"at least {bound}"
     return check_bound(
         *(rule.check, rule.says, size_m, rule.relation, rule.bound, rule.unit, rule.citation),
-        says=f"the {rule.check} is {millimetres(size_m)}, and {most} {millimetres(rule.bound)} are needed",
-        cure=f"{most} {millimetres(rule.bound)}",
+        says=f"the {rule.check} is {millimetres(size_m)}, and {wanted} are needed",
+        cure=wanted,
         worse=rule.worse,
     )

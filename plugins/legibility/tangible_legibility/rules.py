@@ -60,7 +60,7 @@ class Profile(NamedTuple):
 
     medium: Medium
     text: str
-    """The medium in words."""
+    """The medium in words, as the place where a picture is read."""
     rules: Mapping[str, Rule]
 
 
@@ -112,7 +112,7 @@ def _profile(medium: Medium, text: str, *rules: Rule) -> Profile:
 PROFILES: dict[Medium, Profile] = {
     "swell": _profile(
         "swell",
-        "swell paper",
+        "on swell paper",
         _PARTS,
         _gap(f"{GRAPHICS}, which advises 6.4 mm on capsule paper"),
         _part(GRAPHICS),
@@ -123,7 +123,7 @@ PROFILES: dict[Medium, Profile] = {
     ),
     "print": _profile(
         "print",
-        "a 3-D print",
+        "on a 3-D print",
         _PARTS,
         _HEIGHT,
         _gap(f"as on swell paper; {ROUND_TABLE}: 2 mm in a double line, 5 mm between lines", ours=True),
@@ -139,7 +139,7 @@ PROFILES: dict[Medium, Profile] = {
     ),
     "pins": _profile(
         "pins",
-        "a pin display",
+        "on a pin display",
         _PARTS,
         Rule("pins", "pins of a part", 4, "pins", ">=", "two by two are the fewest that are not a line", True),
         Rule("kept borders", "share of the borders' length within a pin of a border shown", 0.99, "share", ">=",
@@ -147,7 +147,7 @@ PROFILES: dict[Medium, Profile] = {
     ),
     "force": _profile(
         "force",
-        "a force device",
+        "on a force device",
         _PARTS,
         _gap("as on swell paper, though a tip is finer than a finger", ours=True, worse="warn"),
         _part("as on swell paper, though a tip is finer than a finger", ours=True, worse="warn"),

@@ -11,7 +11,10 @@ from tangible_core.errors import UnknownMethod, did_you_mean
 from tangible_core.testing.kit import CheckResult, checks, demand
 from tangible_core.translation import language_of_environment, translate
 from tangible_core.translation.catalogue import Catalogue, parse
+from tangible_core.translation.chosen import set_language
 from tangible_core.translation.numerals import Numerals
+from tangible_core.translation.translate import localise_marked
+from tangible_legibility import sizes
 
 PO = """
 msgid ""
@@ -172,7 +175,7 @@ def test_results_are_told_in_german_and_data_in_english(tmp_path: Path) -> None:
         "device: {use: mock}\nexport: [swell]\n"
     )
     for words in (("plan",), ("run", "--verbose", "--seconds", "0.2"), ("preflight", "--seconds", "0.1"),
-                  ("legible", "--for", "swell"), ("export",), ("parts",)):  # fmt: skip
+                  ("legible", "--for", "swell"), ("legible",), ("export",), ("parts",)):  # fmt: skip
         done = tangible("--lang", "de", words[0], pipeline, *words[1:], cwd=tmp_path)
         assert not english_of(done.stdout + done.stderr), words
     data = tangible("--lang", "de", "plan", pipeline, "--json", cwd=tmp_path)
@@ -186,3 +189,32 @@ def test_a_point_in_a_number_ends_no_sentence() -> None:
     told = translate(f"a.jpg can now be felt{size}. {hand}", "de")
     assert "als Oberfläche von 80 x 53 mm, 5,68 mm hoch." in told
     assert "surface" not in told
+
+
+def test_heading_with_marks_and_a_list_of_reasons_is_german() -> None:
+    reasons = "part 5 is too narrow for a finger at the lower left, 4 more places are too narrow for a finger"
+    said = f"a.jpg, 160 mm wide, on a 3-D print: [red]Illegible, because {reasons} and 6 more things.[/]"
+    try:
+        set_language("de")
+        found = localise_marked(said)
+    finally:
+        set_language("en")
+    assert found == (
+        "a.jpg, 160 mm breit, auf einem 3-D-Druck: [red]Nicht lesbar, denn Teil 5 ist zu schmal für einen Finger unten "
+        "links, 4 weitere Stellen sind zu schmal für einen Finger und 6 weitere Punkte.[/]"
+    )
+
+
+def test_sizes_that_an_exporter_chooses_are_judged_in_german() -> None:
+    assert translate(sizes("print", base=0.0005).sentence, "de") == (
+        "Nicht lesbar, denn Grundplatte: 0,5 mm, nötig sind mindestens 0,8 mm."
+    )
+
+
+def test_two_texts_of_one_template_are_two() -> None:
+    wide, long = (f"the surface has more {each} than the device reaches" for each in ("width", "length"))
+    said = f"Safe, but {wide} and {long}."
+    assert translate(said, "de") == (
+        "Sicher, aber die Oberfläche hat mehr Breite, als das Gerät reicht und die Oberfläche hat mehr Länge, als das "
+        "Gerät reicht."
+    )

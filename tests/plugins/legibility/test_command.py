@@ -113,11 +113,11 @@ def test_legible_without_a_medium_judges_each(folder):
     found = tangible("legible", "house.yaml", cwd=folder)
     assert found.returncode == 1
     headings = [line for line in found.stdout.splitlines() if line.startswith("photo.png, its parts simplified, ")]
-    assert [each.partition(" wide, on ")[2].partition(":")[0] for each in headings] == [
-        "swell paper",
-        "a 3-D print",
-        "a pin display",
-        "a force device",
+    assert [each.partition(" wide, ")[2].partition(":")[0] for each in headings] == [
+        "on swell paper",
+        "on a 3-D print",
+        "on a pin display",
+        "on a force device",
     ]
     assert len(found.stdout.splitlines()) == 6, "where and how to cure it is for one medium"
     assert "cure:" in tangible("legible", "house.yaml", "-v", cwd=folder).stdout

@@ -104,5 +104,5 @@ def _heading(scene: str, found: Found) -> str:
     sentence = f"[{COLOURS[found.verdicts.grade]}]{escape(found.verdicts.sentence)}[/]"
     width = quantity(found.width_m, "m")
     if found.simplified:
-        return f"{escape(scene)}, its parts simplified, {width} wide, on {where}: {sentence}"
-    return f"{escape(scene)}, {width} wide, on {where}: {sentence}"
+        return f"{escape(scene)}, its parts simplified, {width} wide, {where}: {sentence}"
+    return f"{escape(scene)}, {width} wide, {where}: {sentence}"

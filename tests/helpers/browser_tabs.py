@@ -27,10 +27,7 @@ FEWER_FRAMES = """(() => {
   window.requestAnimationFrame = (act) => setTimeout(() => next(act), 80);
   window.cancelAnimationFrame = clearTimeout;
 })()"""
-"""A dozen frames a second: without a graphics card, sixty take a whole processor, and no test looks at them.
-
-Where nothing is drawn, each still takes a state from the server and its receipt back.
-"""
+"""A dozen frames a second: without a graphics card, sixty take a whole processor, and no test looks at them."""
 NO_WEBGL = """(() => {
   const { prototype } = HTMLCanvasElement;
   const real = prototype.getContext;
@@ -78,7 +75,7 @@ def tabs(browser: "Browser", complaints: list[str]) -> Iterator[OpenPage]:
     def open_page(url: str, draws: bool = False, **options: Any) -> "Page":
         context = browser.new_context(**{**OPTIONS, **options})
         contexts.append(context)
-        context.add_init_script(FEWER_FRAMES if draws else FEWER_FRAMES + ";" + NO_WEBGL)
+        context.add_init_script(FEWER_FRAMES if draws else NO_WEBGL)
         context.set_default_timeout(LONGEST_MS)
         context.on("page", lambda page: watch(page, complaints))  # those that a page opens too
         page = context.new_page()

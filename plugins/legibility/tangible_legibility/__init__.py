@@ -1,6 +1,7 @@
 """Legibility for fingers: the rules of tactile graphics, and parts that are simplified until they meet them."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from tangible_core.lazily import lazily
 
@@ -13,12 +14,12 @@ if TYPE_CHECKING:
     from .rules import Rule as Rule
     from .simplifying.simplify import simplify as simplify
 
-ROOMS = {
+ROOMS: dict[str, list[str]] = {
     "legible": ["legibility", "sizes"],
     "neighbours": ["apart"],
     "rules": ["PROFILES", "Profile", "Rule"],
     "simplifying.simplify": ["simplify"],
 }
 """The modules of the package's names, each imported on the first use of one."""
-
+__getattr__: Callable[[str], Any]
 __all__, __getattr__ = lazily(__name__, ROOMS)  # pyright: ignore[reportUnsupportedDunderAll]

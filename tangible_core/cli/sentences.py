@@ -33,7 +33,7 @@ def run_summary(run: Run) -> str:
     if "touch" in products:
         return f"{scene} can now be felt{size}.{touch}"
     if products:
-        return f"{scene} is done: its {_and(products)} {'is' if len(products) == 1 else 'are'} made{size}.{touch}"
+        return f"{scene} is done: its {listing(products)} {'is' if len(products) == 1 else 'are'} made{size}.{touch}"
     return f"{scene} is done: nothing of it had to be made{size}.{touch}"
 
 
@@ -47,9 +47,9 @@ def export_summary(scene: str, done: Export) -> str:
     """Return what a scene was exported as, and which exports failed; a warning tells what fingers cannot read."""
     written = [f"{each.name}{' (parts simplified)' * made_simpler(each.made)}" for each in done.exports if each.files]
     failed = [each.name for each in done.exports if not each.files]
-    text = f"{scene} is written as {_and(written)}." if written else f"Nothing of {scene} was written."
+    text = f"{scene} is written as {listing(written)}." if written else f"Nothing of {scene} was written."
     if written and failed:
-        text += f" {_and(failed)} could not be written."
+        text += f" {listing(failed)} could not be written."
     return text
 
 
@@ -58,18 +58,13 @@ def made_simpler(outcomes: Sequence[Outcome]) -> bool:
     return any(each.product == "simplified" and each.outcome in ("ran", "cached") for each in outcomes)
 
 
-def parts_summary(name: str, parts: int) -> str:
-    """Return the number of parts of a picture."""
-    return f"{name} is one part." if parts == 1 else f"{name} is divided into {parts} parts."
-
-
 def plan_summary(steps: Sequence[Outcome]) -> str:
     """Return which products of a plan have yet to be made."""
     to_run = [each.product for each in steps if each.outcome == "ran"]
     cached = sum(each.outcome == "cached" for each in steps)
     if not to_run:
         return "Nothing is left to run: all products are cached from earlier runs, or come with the scene."
-    text = f"`run` would make {_and(to_run)}"
+    text = f"`run` would make {listing(to_run)}"
     if cached:
         text += f", and take {cached} {'result' if cached == 1 else 'results'} of earlier runs from the cache"
     return f"{text}. Nothing is run now."
@@ -92,25 +87,6 @@ def check_summary(name: str, results: Sequence[CheckResult]) -> str:
     if not broken:
         return f"{name} passes all {len(results)} conformance checks."
     return f"{name} fails {broken} of {len(results)} conformance checks."
-
-
-def doctor_summary(name: str | None, verdicts: Sequence[str]) -> str:
-    """Return the number of problems that keep a device, or any device, from working."""
-    failed, unasked = verdicts.count("failed"), verdicts.count("not asked")
-    if failed:
-        return f"{_number(failed, 'check')} failed; each has its cure below."
-    text = f"Nothing was found that keeps {name or 'a device'} from working"
-    return f"{text}, but {_number(unasked, 'check')} could not be made." if unasked else f"{text}."
-
-
-def stress_summary(figures: Mapping[str, Any]) -> str:
-    """Return the rate at which a device can be read and written, next to that of a force loop."""
-    rate = f"{figures['device']} can be read and written {figures['rate_hz']:.0f} times a second"
-    return f"{rate}; a force loop does so 1000 times."
-
-
-def _number(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 def replay_summary(law: str, figures: Mapping[str, float]) -> str:
@@ -137,14 +113,7 @@ def approximately(seconds: float) -> str:
     return f"about {minutes} min" if minutes < 90 else f"about {minutes // 60} h {10 * round(minutes % 60 / 10)} min"
 
 
-def devices_summary(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return which devices can be felt now."""
-    real = [row["name"] for row in rows if row["units"]]
-    simulated = [row["name"] for row in rows if row["simulated"]]
-    text = f"{_and(real)} {'is' if len(real) == 1 else 'are'} connected" if real else "No real device is connected"
-    return f"{text}; {_and(simulated)} need none." if simulated else f"{text}."
-
-
-def _and(words: Sequence[str]) -> str:
+def listing(words: Sequence[str]) -> str:
+    """Return the words with commas, and 'and' before the last."""
     *most, last = words
     return f"{', '.join(most)} and {last}" if most else last

@@ -68,7 +68,7 @@ def _divide(
     as_json: bool,
     no_cache: bool,
 ) -> None:
-    from tangible_core.cli import sentences, show
+    from tangible_core.cli import show
     from tangible_core.pipeline.engine.cache import Cache
 
     from ..first_parts import check_free, files_beside, first_parts
@@ -91,7 +91,7 @@ def _divide(
         return
     if is_quiet():
         return
-    show.sentence(sentences.parts_summary(" and ".join(each.name for each in pictures), len(found.listed)))
+    show.sentence(_summary(" and ".join(each.name for each in pictures), len(found.listed)))
     _print(found.listed)
     for path in files:
         show.plain(f"written: {path}")
@@ -115,7 +115,7 @@ def _list(
     as_json: bool,
     no_cache: bool,
 ) -> None:
-    from tangible_core.cli import sentences, show
+    from tangible_core.cli import show
     from tangible_core.errors import ConfigError
 
     from ..first_parts import NUMBERED
@@ -131,7 +131,7 @@ def _list(
         rows = [{**each._asdict(), "was": was and was.number} for each, was in _with_earlier(found, done.before)]
         show.print_json({"title": done.title, "parts": rows, "files": [str(each) for each in done.written]})
     elif not is_quiet():
-        show.sentence(sentences.parts_summary(done.title, len(found)))
+        show.sentence(_summary(done.title, len(found)))
         _print(found, done.before if done.moved else None)
         for each in done.written:
             show.plain(f"written: {each}")
@@ -144,6 +144,10 @@ def _with_earlier(
     found: Sequence[ListedPart], before: Sequence[Before] | None
 ) -> Iterable[tuple[ListedPart, Before | None]]:
     return zip(found, before or [None] * len(found), strict=True)
+
+
+def _summary(name: str, parts: int) -> str:
+    return f"{name} is one part." if parts == 1 else f"{name} is divided into {parts} parts."
 
 
 def _print(found: Sequence[ListedPart], before: Sequence[Before] | None = None) -> None:

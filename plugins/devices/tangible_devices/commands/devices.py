@@ -37,10 +37,11 @@ def devices(context: typer.Context, as_json: Json = False) -> None:
 
     from rich.markup import escape
 
-    from tangible_core.cli import sentences, show
+    from tangible_core.cli import show
     from tangible_core.plugins.registry import default_registry
 
     from ..installed import installed_devices
+    from . import sentences
 
     rows = [asdict(each) for each in installed_devices(default_registry())]
     if as_json:
@@ -66,8 +67,10 @@ def doctor(
     """
     from dataclasses import asdict
 
-    from tangible_core.cli import sentences, show
+    from tangible_core.cli import show
     from tangible_core.plugins.registry import default_registry
+
+    from . import sentences
 
     if name is None and sets:
         raise ConfigError("--set: name the device that has this option")
@@ -119,10 +122,11 @@ def stress(
 
     No force is given. Rate, and percentiles of the time of one cycle.
     """
-    from tangible_core.cli import sentences, show
+    from tangible_core.cli import show
     from tangible_core.plugins.registry import default_registry
 
     from ..installed import make_device
+    from . import sentences
     from .stress import stress_device
 
     if not 0 < seconds <= 3600:

@@ -69,10 +69,10 @@ def leave_after(trials: int) -> Answering:
     return answer
 
 
-def write_study(folder: Path, text: str = STUDY) -> Path:
+def write_study(folder: Path, text: str = STUDY, pipeline: str = PIPELINE) -> Path:
     """Write a study with its pipeline."""
     np.save(folder / "heights.npy", np.outer(np.hanning(24), np.hanning(24)).astype(np.float32) * 0.004)
-    (folder / "feel.yaml").write_text(PIPELINE)
+    (folder / "feel.yaml").write_text(pipeline)
     (folder / "study.yaml").write_text(text)
     return folder / "study.yaml"
 

@@ -29,6 +29,10 @@ if "PYTEST_XDIST_WORKER" in os.environ:
 
 check()
 
+# Before Python 3.12, dask imports it, and it replaces the standard library's finder: entry points are then of a class
+# that no hint names, and whatever test comes next in this worker fails.
+sys.modules.setdefault("importlib_metadata", metadata)
+
 settings.register_profile("default", deadline=None, max_examples=25)
 settings.register_profile("ci", settings.get_profile("default"), derandomize=True, print_blob=True)
 settings.register_profile("nightly", settings.get_profile("default"), max_examples=200)

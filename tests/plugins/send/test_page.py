@@ -22,7 +22,7 @@ from tangible_depth import Luminance
 from tangible_legibility.words.languages import one_line
 from tangible_render.surface.coefficients import spline_coefficients
 from tangible_send.html import page_of
-from tangible_send.packing import deflate
+from tangible_send.packing import LEAST_PHOTO, deflate
 from tangible_send.page import Page
 from tangible_send.surface import surface_to_send
 from videos import write_video
@@ -99,6 +99,7 @@ def test_file_is_as_small_as_is_asked(tmp_path: Path):
     assert "of 960 x 720" in said and "steps of" in said
     photo = json.loads(Elements(path.read_text("utf-8")).texts("script")[0])["photo"]
     assert Image.open(BytesIO(b64decode(photo))).size[0] > 300
+    assert len(photo) > 0.6 * LEAST_PHOTO, "the surface leaves room for it"
     with pytest.raises(OutputError, match="make `most_bytes` larger"):
         Page.model_construct(most_bytes=700_000).write(work, tmp_path / "it")
 

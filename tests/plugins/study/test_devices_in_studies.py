@@ -116,6 +116,13 @@ def test_procedure_of_another_package_runs_a_study(tmp_path: Path, monkeypatch: 
     sys.modules.pop("acme_staircase", None)
 
 
+def test_procedure_of_another_package_does_not_replace_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    points = {"tangible.procedure": {"oddity": "acme_oddity:Oddity"}}
+    distribution(tmp_path, "acme-oddity", points)
+    monkeypatch.syspath_prepend(tmp_path)
+    assert load_procedure("oddity").__module__ == "tangible_study.procedures.oddity"
+
+
 def test_command_checks_and_names_a_level_that_the_device_cannot_render(tmp_path: Path):
     study = write_study(tmp_path, RATING.replace("200", "90000"))
     done = tangible("study", "check", "study.yaml", cwd=tmp_path)

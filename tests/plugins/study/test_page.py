@@ -138,6 +138,7 @@ class TestHand:
         begun(page)
         press_until_felt(page)
         state = exchange(page, RELEASE_FRAME.pack(RELEASE))
+        assert not page.hand._hand.holding, "released by the message, not by the silence after it"
         until(lambda: not newest_n(rows), "the force falls to zero")
         assert len(state) == STATE_FRAME.size
 

@@ -54,6 +54,30 @@ def test_all_answers_and_the_force_of_each_trial_are_kept(study: Path):
     assert consent.startswith("You may stop at any time.\n\nagreed: ")
 
 
+def test_training_tells_the_right_answer(study: Path):
+    """One of three keys is right in the first trial, which is the only one of training."""
+    said = {}
+    for key in ("1", "2", "3"):
+        session = sit_down(
+            study, f"P{key}", lambda text, choices, key=key: key if key in choices else first_key(text, choices)
+        )
+        session.number = 0
+        session.run()
+        said[key] = [each for each in session.desk.said if "right" in each or each.startswith("Not right")]
+    (right,) = (key for key, texts in said.items() if texts == ["That is right."])
+    assert all(texts == [f"Not right. The answer is {right}."] for key, texts in said.items() if key != right)
+
+
+def test_stimulus_that_the_device_cannot_render_is_refused_before_consent(tmp_path: Path):
+    desk = Scripted(first_key)
+    study = write_study(tmp_path, STUDY.replace("200", "90000"))
+    file = parse_study(study.read_text(), study)
+    with pytest.raises(ConfigError, match="mock cannot render this"):
+        begin(file, Stimuli(file), "P1", tmp_path / "out", desk, in_real_time=False)
+    assert desk.said == []
+    assert not (tmp_path / "out").exists()
+
+
 def test_nothing_said_names_a_condition(study: Path):
     session = sit_down(study)
     session.run()

@@ -81,6 +81,8 @@ def test_same_seed_gives_the_same_answers_and_another_does_not(tmp_path: Path):
     observer = observer_of("detection", [], file)
     assert simulate(file, observer, 1, 3) == simulate(file, observer, 1, 3)
     assert simulate(file, observer, 1, 3) != simulate(file, observer, 1, 4)
+    times = [[each.response_time for each in simulate(file, observer, number, 3)] for number in (1, 2)]
+    assert times[0] != times[1], "each participant has chances of their own, not only trials of their own"
 
 
 @pytest.mark.parametrize(

@@ -56,6 +56,8 @@ def test_scale_with_one_that_always_wins_is_finite_and_is_marked():
     assert scale.was_completed
     assert np.isfinite(scale.values).all()
     assert scale.values.argmax() == 0
+    completed = fit_scale([np.array([[0, 9.5, 9.5], [0.5, 0, 5.5], [0.5, 4.5, 0]])])
+    assert scale.values == pytest.approx(completed.values, abs=1e-9)
     assert not fit_scale([BASEBALL]).was_completed
 
 

@@ -29,6 +29,19 @@ def complaint(text: str, folder: Path) -> str:
         ("study: s\n", "1:1", "asks nothing"),
         ("study: s\npipelne: feel.yaml\n", "2:1", "unknown option (did you mean 'pipeline'?)"),
         (f"{CONDITIONS}comparisons:\n- {{name: a, question: same, conditions: [one]}}\n", "7:3", "one condition only"),
+        (
+            f"{CONDITIONS}comparisons:\n- {{name: a, question: rating, conditions: [one]}}\n",
+            "7:3",
+            "one condition only",
+        ),
+        (
+            f"{CONDITIONS}comparisons:\n- {{name: a, question: higher, {LEVELS}}}\n".replace(
+                "0.001, 0.002", "0.002, 0.001"
+            ),
+            "7:57",
+            "levels: must rise, each once",
+        ),
+        (f"{CONDITIONS}comparisons:\n- {{name: a, question: same, {LEVELS}}}\n", "7:3", "the standard from itself"),
         (f"{CONDITIONS}comparisons:\n- {{name: a, question: same, conditions: [on, two]}}\n", "7:42", "mean 'one'?"),
         (f"{CONDITIONS}comparisons:\n- {{name: a, question: smae}}\n", "7:13", "did you mean 'same'?"),
         (f"{CONDITIONS}comparisons:\n- {{name: a, question: same, procedure: odity}}\n", "7:29", "mean 'oddity'?"),

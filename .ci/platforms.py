@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-STEPS = ("demo", "run", "feel", "export", "ui", "compare", "batch", "video", "rooms")
+STEPS = ("demo", "run", "feel", "export", "ui", "compare", "batch", "video", "interrupted", "held", "console", "rooms")
 HOW = {
     "linux": "this machine, the pinned versions",
     "windows": "Windows Python under wine",
@@ -30,7 +30,7 @@ def row(name: str, result: dict[str, Any], reference: dict[str, str]) -> str:
     digests = result.get("digests", {})
     other = sorted(each for each, digest in digests.items() if each in reference and reference[each] != digest)
     same = f"other bits in {', '.join(other)}" if other else "to the bit" if digests and reference else "not compared"
-    notes = [f"{each}: {steps[each]}" for each in ("feel", "rooms") if each in ran]
+    notes = [f"{each}: {steps[each]}" for each in ("feel", "interrupted", "rooms") if each in ran]
     notes += [f"left in the temporary folder: {', '.join(result['left'])}"] if result.get("left") else []
     cells = HOW[name], result["system"], f"{result['python']}, {result['date']}", ", ".join(ran) or "nothing"
     return "| " + " | ".join([*cells, "; ".join([*failed, *notes]).replace("|", "/") or "nothing", same]) + " |"

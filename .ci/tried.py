@@ -8,6 +8,7 @@ import hashlib
 import json
 import os
 import platform
+import signal
 import subprocess
 import sys
 import tempfile
@@ -119,6 +120,69 @@ def video() -> str:
     return "to the end"
 
 
+def interrupted() -> str:
+    """Feel, and press Ctrl-C, or Ctrl-Break on Windows, in the stroke: what was felt is kept."""
+    words = "feel", "demo/config.yaml", "--seconds", "60", "--record", "broken_off.nc"
+    windows = sys.platform == "win32"
+    group = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP} if windows else {}
+    with subprocess.Popen([*COMMAND, *words], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, **group) as program:
+        ended = threading.Timer(LIMIT_S, program.kill)
+        ended.start()
+        while program.poll() is None and not Path("broken_off.nc").exists():
+            time.sleep(0.1)
+        time.sleep(3)
+        program.send_signal(signal.CTRL_BREAK_EVENT if windows else signal.SIGINT)
+        said = program.communicate()[1].decode("utf-8", "replace").strip().splitlines()
+        ended.cancel()
+    assert program.returncode == 130, f"exit code {program.returncode}: {said[-1:]}"
+    from tangible_core.session import Recording
+
+    recording = Recording.load(Path("broken_off.nc"))
+    assert recording.peak_force_n > 0, "nothing was felt"
+    assert recording.stopped.startswith("interrupted"), f"it was stopped by: {recording.stopped}"
+    return f"the stroke of {recording.time_s[-1]:.1f} s is kept"
+
+
+def held() -> str:
+    """Write over a file that another program holds open without sharing it, which Windows alone refuses."""
+    if sys.platform != "win32":
+        return "does not apply"
+    import ctypes
+
+    from tangible_core.files import writing
+
+    path = Path("held.txt").absolute()
+    path.write_text("before", "utf-8")
+    kernel = ctypes.windll.kernel32
+    kernel.CreateFileW.restype = ctypes.c_void_p
+    handle = kernel.CreateFileW(str(path), 0x80000000, 0, None, 3, 0, None)
+    try:
+        writing.write_text(path, "after")
+    except Exception as error:  # noqa: BLE001 - its words are what is looked at
+        said = str(error)
+    else:
+        said = ""
+    finally:
+        kernel.CloseHandle(ctypes.c_void_p(handle))
+    assert "held.txt" in said and "open" in said, f"it said {said!r}"
+    assert path.read_text("utf-8") == "before", "the file was changed"
+    writing.write_text(path, "after")
+    return "refused with a sentence, and written once it was closed"
+
+
+def console() -> str:
+    """Print every text of methods, and a mistake, to a console of 1981, which has no Greek but a few letters."""
+    for words in (["plugins", "show", "depth", "semi-global"], ["plugins"], ["run", "nothere.yaml"]):
+        done = subprocess.run(
+            [*COMMAND, *words], env={**os.environ, "PYTHONIOENCODING": "cp437"}, capture_output=True,
+            timeout=LIMIT_S, stdin=subprocess.DEVNULL, check=False,
+        )  # fmt: skip
+        said = (done.stdout + done.stderr).decode("cp437")
+        assert done.returncode == (2 if "run" in words else 0), said[-200:]
+        assert "Traceback" not in said and "UnicodeEncodeError" not in said, said[-200:]
+    return "to the end"
+
+
 def rooms() -> str:
     """Run the fast tests of the rooms that calculate, where tests were given."""
     words = "-m", "pytest", "-q", "-n", "0", "-m", "fast", "-o", "timeout=3600", "-p", "no:cacheprovider"
@@ -131,7 +195,7 @@ def rooms() -> str:
     return last
 
 
-STEPS: list[Callable[[], str]] = [demo, run, feel, export, ui, compare, batch, video, rooms]
+STEPS: list[Callable[[], str]] = [demo, run, feel, export, ui, compare, batch, video, interrupted, held, console, rooms]
 
 
 def digests() -> dict[str, str]:

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from tangible_core.compiled.touch import CompiledTouch, Tick
 from tangible_core.data import HapticSurface
-from tangible_core.errors import check_positive
+from tangible_core.errors import ConfigError, check_positive
 from tangible_core.plugins.interfaces import Film, Filming, ForceRenderer, Touch
 from tangible_render.haptic_textures.table import bristle_stiffness
 
@@ -17,6 +17,9 @@ from .effects.material_table import Row, material_table
 from .surface.coefficients import spline_surface
 from .surface.dequantise import Filter
 from .surface.tiles import tile_bounds
+
+MOST_RADIUS_M = 0.002
+"""The largest ball, m: nothing narrower than twice this, a fingertip's width, would be left in a groove."""
 
 
 class _Law(NamedTuple):
@@ -62,6 +65,9 @@ class Proxy(ForceRenderer, Filming):
     """Render friction; if false, there is none at all, that of materials included."""
     texture: bool = True
     """Render the fine textures of materials; if false, their drag and their own friction are left out too."""
+    radius_m: Annotated[float, Field(ge=0, le=MOST_RADIUS_M)] = 0.0
+    """Radius of a ball in place of a point at the hand's tip, which rounds edges and bridges grooves narrower than
+    itself, as a fingertip does; a tick takes no longer. Not for films."""
     dequantise: Filter = "auto"
     """Smoothing of heights with 17 to 256 distinct values, such as 8-bit pictures have, by at most half a step: auto,
     never, or a standard deviation in cells."""
@@ -81,7 +87,7 @@ class Proxy(ForceRenderer, Filming):
         The kernel is compiled on the first use on a machine, then loaded: each kernel has its own module, so that only
         the required one is compiled.
         """
-        shape = spline_surface(surface, self.dequantise)
+        shape = spline_surface(surface, self.dequantise, self.radius_m)
         law = self._law(surface)
         fixed = (*shape, tile_bounds(shape[0]), *law.arguments)
         return CompiledTouch(_still_tick(law.kind), fixed, law.memory, law.stiffness_n_per_m)
@@ -96,6 +102,8 @@ class Proxy(ForceRenderer, Filming):
         """
         from .film.film import create_film
 
+        if self.radius_m:
+            raise ConfigError(f"radius_m {self.radius_m:g}: a film is felt with a point; leave out `radius_m`")
         check_positive("period_s", period_s)
         check_positive("frame_s", frame_s)
         law = self._law(surface)

@@ -6,6 +6,7 @@ from jaxtyping import Bool, Float32, Float64
 from tangible_core.data import HapticSurface
 
 from .b_spline import spline_filter
+from .ball import roll_ball
 from .dequantise import Filter, dequantise
 from .jumps import ease, jumps
 
@@ -48,12 +49,12 @@ def _extend(height_m: Float32[np.ndarray, "h w"], at: Bool[np.ndarray, "h w"]) -
 
 
 def spline_surface(
-    surface: HapticSurface, cells: Filter
+    surface: HapticSurface, cells: Filter, radius_m: float = 0.0
 ) -> tuple[Float32[np.ndarray, "h4 w4"], float, float, float, float]:
     """Return a kernel's arguments: the coefficients, width and length in m, and cells per metre along x and y.
 
-    Quantised heights are smoothed first, see `dequantise`.
+    Quantised heights are smoothed first, see `dequantise`. radius_m: of a ball that rolls over them, see `roll_ball`.
     """
     (rows, columns), (width_m, length_m) = surface.height_m.shape, surface.extent_m
-    coefficients = spline_coefficients(dequantise(surface.height_m, cells))
-    return coefficients, float(width_m), float(length_m), columns / width_m, rows / length_m
+    height_m = roll_ball(dequantise(surface.height_m, cells), surface.extent_m, radius_m)
+    return spline_coefficients(height_m), float(width_m), float(length_m), columns / width_m, rows / length_m

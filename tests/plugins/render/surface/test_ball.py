@@ -1,0 +1,114 @@
+"""A ball on a surface, against formulas of where it lies."""
+
+import numpy as np
+import pytest
+
+from tangible_core.data import HapticState, HapticSurface, Relief
+from tangible_core.errors import ConfigError
+from tangible_render.proxy import Proxy
+from tangible_render.surface.ball import roll_ball
+
+WIDE_M = 0.04
+CELLS = 300
+"""Cells of 0.13 mm, as a picture 80 mm wide has."""
+CELL_M = WIDE_M / CELLS
+AT_M = (np.arange(CELLS) + 0.5) * CELL_M - WIDE_M / 2
+EXTENT_M = (WIDE_M, WIDE_M)
+RADII_M = (0.0005, 0.001)
+
+
+def sheet(height_m: np.ndarray) -> np.ndarray:
+    """Heights that depend on x alone, or on x and y."""
+    return np.broadcast_to(height_m, (CELLS, CELLS)).astype(np.float32)
+
+
+def test_ball_without_a_radius_is_a_point():
+    heights = np.random.default_rng(1).random((7, 9)).astype(np.float32)
+    assert roll_ball(heights, (0.07, 0.09), 0.0).tolist() == heights.tolist()
+
+
+@pytest.mark.parametrize("length_m", [WIDE_M, 0.5 * WIDE_M])
+@pytest.mark.parametrize("radius_m", RADII_M)
+def test_ball_on_waves_lies_where_the_formula_says(radius_m: float, length_m: float):
+    """Within the bound of the docstring, for the steepest slope, .63."""
+    height_m, waves = 0.0004, 2 * np.pi / 0.004
+    rolled = roll_ball(sheet(height_m * np.cos(waves * AT_M)), (WIDE_M, length_m), radius_m)
+    way = np.linspace(-radius_m, radius_m, 20_001)
+    inside = slice(40, 80)
+    arc = np.sqrt(np.maximum(radius_m**2 - way**2, 0)) - radius_m
+    exact = [(height_m * np.cos(waves * (x + way)) + arc).max() for x in AT_M[inside]]
+    error = np.abs(rolled[150, inside] - exact).max()
+    assert error < CELL_M**2 * (1.64 / radius_m + 5 * height_m * waves**2) / 32 + 1e-7
+    assert np.abs(rolled - rolled[0]).max() < 1e-7
+
+
+@pytest.mark.parametrize("radius_m", RADII_M)
+def test_ball_on_a_slope_lies_higher_by_its_bulge(radius_m: float):
+    """Touching beside its lowest point, by r (sqrt(1 + s^2) - 1)."""
+    rolled = roll_ball(sheet(0.75 * AT_M), EXTENT_M, radius_m)
+    inside = slice(20, -20)
+    raised_m = (rolled - sheet(0.75 * AT_M))[inside, inside]
+    assert raised_m == pytest.approx(0.25 * radius_m, abs=CELL_M**2 * 1.96 / radius_m / 32 + 1e-7)
+
+
+def test_groove_narrower_than_the_ball_is_bridged():
+    """A ball of 1 mm between walls 4 cells from the middle, 0.53 mm, sinks by r - sqrt(r^2 - 0.53^2), however deep."""
+    groove = np.full(CELLS, 0.005)
+    groove[146:153] = 0.0
+    rolled = roll_ball(sheet(groove), EXTENT_M, 0.001)
+    assert rolled[150, 149] == pytest.approx(0.005 - 0.001 + (0.001**2 - (4 * CELL_M) ** 2) ** 0.5, abs=1e-7)
+    assert rolled[150, 149] == rolled[150].min()
+    assert rolled[150, :146] == pytest.approx(0.005, abs=1e-7)
+
+
+@pytest.mark.parametrize("turned", [np.fliplr, np.flipud, np.transpose])
+def test_turned_surface_gives_the_turned_one(turned):
+    heights = (0.002 * np.random.default_rng(2).random((40, 40))).astype(np.float32)
+    there = roll_ball(np.ascontiguousarray(turned(heights)), EXTENT_M, 0.004)
+    assert there == pytest.approx(turned(roll_ball(heights, EXTENT_M, 0.004)), abs=2e-6)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1), (2, 3)])
+def test_surface_smaller_than_the_ball_is_level_at_its_top(shape: tuple[int, int]):
+    heights = np.zeros(shape, np.float32)
+    heights[-1, -1] = 1e-4
+    rolled = roll_ball(heights, (1e-4 * shape[1], 1e-4 * shape[0]), 0.1)
+    assert rolled.shape == shape and rolled.max() >= np.float32(1e-4)
+    assert np.ptp(rolled) < 2e-5
+
+
+@pytest.mark.parametrize("radius_m", RADII_M)
+def test_force_of_a_ball_on_a_sphere_is_that_of_the_larger_sphere(radius_m: float):
+    """Two balls touch where their centres are R + r apart; the hand's place is the lowest point of the upper one."""
+    large_m, down_m, k = 0.03, 0.01, 800.0
+    y, x = np.meshgrid(-AT_M, AT_M, indexing="ij")
+    cap = np.sqrt(large_m**2 - x**2 - y**2) - down_m
+    touch = Proxy(stiffness_n_per_m=k, radius_m=radius_m).touch(HapticSurface(Relief(cap.astype(np.float32), EXTENT_M)))
+    for place in ((0.0, 0.0), (0.004, -0.003), (-0.006, 0.001)):
+        axis = np.array([*place, 0.0])
+        axis[2] = np.sqrt((large_m + radius_m) ** 2 - axis @ axis)
+        axis /= np.linalg.norm(axis)
+        lowest = (large_m + radius_m - 0.001) * axis - [0, 0, down_m + radius_m]
+        state = HapticState(tuple(map(float, lowest)), (0.0, 0.0, 0.0))
+        touch.force(HapticState((float(lowest[0]), float(lowest[1]), 0.02), (0.0, 0.0, 0.0)))
+        for _ in range(3):
+            force = touch.force(state)
+        assert np.array(force) == pytest.approx(k * 0.001 * axis, abs=0.01)
+
+
+def test_coarse_heights_are_smoothed_before_the_ball_rolls():
+    """30 heights in place of all of them: what a ball feels is the same within a tenth of a step."""
+    smooth = sheet(0.002 + 0.002 * np.cos(800 * AT_M))
+    coarse = (np.rint(smooth / 0.004 * 29) / 29 * 0.004).astype(np.float32)
+    places = [(x, 0.001, 0.0015 + 0.002 * np.cos(800 * x)) for x in np.linspace(-0.004, 0.004, 81)]
+    felt = []
+    for heights in (smooth, coarse):
+        touch = Proxy(radius_m=0.001).touch(HapticSurface(Relief(heights, EXTENT_M)))
+        touch.force(HapticState((places[0][0], 0.001, 0.02), (0.0, 0.0, 0.0)))
+        felt.append(np.array([touch.force(HapticState(place, (0.0, 0.0, 0.0))) for place in places]))
+    assert np.abs(felt[0] - felt[1]).max() < 0.1 * 800 * 0.004 / 29
+
+
+def test_film_is_felt_with_a_point():
+    with pytest.raises(ConfigError, match="leave out `radius_m`"):
+        Proxy(radius_m=0.001).film(HapticSurface(Relief(np.zeros((8, 8), np.float32), EXTENT_M)))

@@ -215,9 +215,9 @@ class TestByRoughness:
         assert [each.name for each in assigned.materials] == ["brick", "ice", "wood"]
         spread = picture.std()
         assert assigned.reasons == (
-            f"segment 1: roughness rank 3 of 3 ({0.3 / spread * np.sqrt(80 / 81):.3f}) -> brick",
-            "segment 2: roughness rank 1 of 3 (0.000) -> ice",
-            f"segment 3: roughness rank 2 of 3 ({0.1 / spread * np.sqrt(80 / 81):.3f}) -> wood",
+            f"segment 1: number 3 of 3 from smooth to rough ({0.3 / spread * np.sqrt(80 / 81):.3f}) -> brick",
+            "segment 2: number 1 of 3 from smooth to rough (0.000) -> ice",
+            f"segment 3: number 2 of 3 from smooth to rough ({0.1 / spread * np.sqrt(80 / 81):.3f}) -> wood",
         )
 
     def test_shadow_does_not_change_the_roughness(self):
@@ -231,7 +231,7 @@ class TestByRoughness:
     def test_equally_rough_segments_share_a_rank(self):
         assigned = assign(stripes(3), checkers(0.2, 0.0, 0.2), "roughness", library())
         assert [each.name for each in assigned.materials] == ["brick", "ice", "brick"]
-        assert "rank 2 of 2" in assigned.reasons[0]
+        assert "number 2 of 2" in assigned.reasons[0]
 
     @pytest.mark.parametrize("picture", [checkers(0.2, 0.2), np.zeros((40, 80)), np.full((40, 80, 3), 0.3)])
     def test_single_rank_gives_the_neutral_material(self, picture: np.ndarray):
@@ -271,7 +271,7 @@ class TestByRoughness:
 
     def test_roughness_of_a_single_pixel_is_zero(self):
         assigned = assign(SegmentMap(np.zeros((1, 1), np.int32)), np.ones((1, 1)), "roughness", library())
-        assert assigned.reasons == ("segment 1: roughness rank 1 of 1 (0.000) -> plain",)
+        assert assigned.reasons == ("segment 1: number 1 of 1 from smooth to rough (0.000) -> plain",)
 
     def test_roughness_without_a_picture_is_refused(self):
         for picture in (None, np.zeros((3, 4))):

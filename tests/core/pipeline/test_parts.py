@@ -319,7 +319,7 @@ class TestMaterials:
         assert made.materials is not None
         names = [each.name for each in made.materials.materials]
         assert names[1] == "brick" and names[2] != "brick"  # both are of one segment
-        assert made.materials.reasons[0].startswith("part 1 (wall): roughness rank ")
+        assert made.materials.reasons[0].startswith("part 1 (wall): number ")
 
     def test_rule_for_an_unknown_segment_is_refused(self):
         made = pipeline(parts={}, materials={"by": "rules", "rules": [{"segment": 7, "material": "ice"}]}, depth=Ramp())

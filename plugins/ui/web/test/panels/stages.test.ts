@@ -59,7 +59,7 @@ test("why is told without the notes behind it", () => {
 });
 
 test("a segment becomes another material by the smallest change", () => {
-  const why = "segment 2: roughness rank 1 of 3";
+  const why = "segment 2: number 1 of 3 from smooth to rough";
   const rule = { changes: { "materials.rules": [{ segment: 2, material: "ice" }] } };
   assert.deepEqual(materialEdit({ materials: { by: "roughness" } }, 2, "ice", why), rule);
   assert.deepEqual(materialEdit({}, 2, "ice", why), rule);

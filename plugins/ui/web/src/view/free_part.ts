@@ -8,12 +8,15 @@ export type Covered = Record<Edge, number>;
 const GAP_PX = 4;
 /** Share from which something is not kept free of: too little would be left. */
 const MOST = 0.45;
+/** Shares are multiples of this: the surface is drawn anew for a step, and numbers that are read change their width often. */
+const STEP = 1 / 16;
 
 export class FreePart {
   private boxes = new Map<Element, Edge>();
-  private observer = new ResizeObserver(() => this.changed(this.covered()));
+  private shares: Covered = { top: 0, right: 0, bottom: 0 };
+  private observer = new ResizeObserver(() => this.measure());
 
-  /** changed: called with the shares whenever the canvas or what covers it changes its size. */
+  /** changed: called with the shares whenever one of them is another, by `settle`. */
   constructor(
     private canvas: HTMLElement,
     private changed: (covered: Covered) => void,
@@ -27,6 +30,13 @@ export class FreePart {
     this.observer.observe(element);
   }
 
+  private measure(): void {
+    const shares = settle(this.shares, this.covered());
+    if (shares === this.shares) return;
+    this.shares = shares;
+    this.changed(shares);
+  }
+
   private covered(): Covered {
     const covered: Covered = { top: 0, right: 0, bottom: 0 };
     const canvas = this.canvas.getBoundingClientRect();
@@ -36,6 +46,17 @@ export class FreePart {
     }
     return covered;
   }
+}
+
+/** Return shares of whole steps that hold all that is covered; those of before if these hold it and are little larger. */
+export function settle(before: Covered, covered: Covered): Covered {
+  const edges = Object.keys(covered) as Edge[];
+  const fits = (edge: Edge): boolean =>
+    covered[edge] <= before[edge] && (covered[edge] > 0) === before[edge] > 0 && covered[edge] > before[edge] - 2 * STEP;
+  if (edges.every(fits)) return before;
+  const next = { ...before };
+  for (const edge of edges) if (!fits(edge)) next[edge] = Math.ceil(covered[edge] / STEP) * STEP;
+  return next;
 }
 
 /** Return the share of the canvas up to the far side of a box at this edge; 0 for a box without a size. */

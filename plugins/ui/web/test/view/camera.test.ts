@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { Vector3 } from "three";
 import { Eye } from "../../src/view/camera";
 import { handleKey } from "../../src/view/camera_input";
-import { shareOf } from "../../src/view/free_part";
+import { settle, shareOf } from "../../src/view/free_part";
 
 const still = { matches: true } as MediaQueryList;
 globalThis.matchMedia ??= () => still;
@@ -91,4 +91,15 @@ test("however near, one looks at the ground and not from under it", () => {
   eye.orbit(0, 3);
   assert.ok(Math.abs(eye.pose.target[2] - 0.02) <= 0.3 * eye.pose.distance + 1e-12);
   assert.ok(eye.pose.distance > 1e-3);
+});
+
+test("free part follows what covers the canvas in whole steps, and not each pixel of a number that changes", () => {
+  const none = { top: 0, right: 0, bottom: 0 };
+  const first = settle(none, { ...none, right: 0.2 });
+  assert.deepEqual(first, { ...none, right: 0.25 });
+  for (const right of [0.2, 0.25, 0.21, 0.13]) assert.equal(settle(first, { ...none, right }), first);
+  assert.equal(settle(first, { ...none, right: 0.26 }).right, 0.3125, "nothing is covered");
+  assert.equal(settle(first, { ...none, right: 0.12 }).right, 0.125, "and nothing much is given away");
+  assert.deepEqual(settle(first, none), none, "all of it is free once nothing covers it");
+  assert.equal(settle(first, { top: 0.1, right: 0.2, bottom: 0 }).right, 0.25, "each edge for itself");
 });

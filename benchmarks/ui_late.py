@@ -3,6 +3,7 @@
 import subprocess
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from statistics import median
 from typing import NamedTuple
@@ -10,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tangible_core.data import TickFlag
+from tangible_core.errors import DeviceError
 from tangible_core.servo.ring import Ring, shared_folder
 from tangible_core.session.recording.tick_arrays import ARRAYS
 
@@ -57,9 +59,9 @@ def ring_of(process: int) -> Ring:
     end_s = time.monotonic() + 60
     while time.monotonic() < end_s:
         for path in shared_folder().glob(f"tangible-{process}-*.ring"):
-            ring = Ring.attach(path)
-            if ring.count > 500:
-                return ring
+            with suppress(DeviceError):  # it is being made, or its loop has ended
+                if (ring := Ring.attach(path)).count > 500:
+                    return ring
         time.sleep(0.05)
     raise TimeoutError("no force loop began")
 

@@ -5,8 +5,10 @@ import logging
 import signal
 import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import onnx
@@ -488,12 +490,19 @@ class TestHostileFiles:
             onnx_file._varint(memoryview(b"\xff" * 20 + b"\0"), 0)
 
     @pytest.mark.timeout(60)
-    def test_network_without_end_hears_ctrl_c(self, tmp_path: Path):
+    def test_network_without_end_hears_ctrl_c(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+        """Pressed while it computes, not while its library is imported."""
         model = onnx_models.endless(tmp_path / "m.onnx")
         (tmp_path / "m.yaml").write_text("output: {means: inverse-depth}")
         main = threading.main_thread().ident
         assert main is not None
-        threading.Timer(0.5, signal.pthread_kill, [main, signal.SIGINT]).start()
+        submit = ThreadPoolExecutor.submit
+
+        def submit_and_interrupt(pool: ThreadPoolExecutor, *work: Any):
+            threading.Timer(0.3, signal.pthread_kill, [main, signal.SIGINT]).start()
+            return submit(pool, *work)
+
+        monkeypatch.setattr(ThreadPoolExecutor, "submit", submit_and_interrupt)
         with hearing(), pytest.raises(KeyboardInterrupt):
             Onnx(model=model, runtime="onnxruntime").estimate(Views(picture()))
 

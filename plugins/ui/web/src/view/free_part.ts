@@ -9,7 +9,7 @@ const GAP_PX = 4;
 /** Share from which something is not kept free of: too little would be left. */
 const MOST = 0.45;
 /** Shares are multiples of this: the surface is drawn anew for a step, and numbers that are read change their width often. */
-const STEP = 1 / 16;
+const STEP = 1 / 32;
 
 export class FreePart {
   private boxes = new Map<Element, Edge>();

@@ -96,10 +96,10 @@ test("however near, one looks at the ground and not from under it", () => {
 test("free part follows what covers the canvas in whole steps, and not each pixel of a number that changes", () => {
   const none = { top: 0, right: 0, bottom: 0 };
   const first = settle(none, { ...none, right: 0.2 });
-  assert.deepEqual(first, { ...none, right: 0.25 });
-  for (const right of [0.2, 0.25, 0.21, 0.13]) assert.equal(settle(first, { ...none, right }), first);
-  assert.equal(settle(first, { ...none, right: 0.26 }).right, 0.3125, "nothing is covered");
-  assert.equal(settle(first, { ...none, right: 0.12 }).right, 0.125, "and nothing much is given away");
+  assert.deepEqual(first, { ...none, right: 0.21875 });
+  for (const right of [0.2, 0.21875, 0.21, 0.16]) assert.equal(settle(first, { ...none, right }), first);
+  assert.equal(settle(first, { ...none, right: 0.22 }).right, 0.25, "nothing is covered");
+  assert.equal(settle(first, { ...none, right: 0.15 }).right, 0.15625, "and nothing much is given away");
   assert.deepEqual(settle(first, none), none, "all of it is free once nothing covers it");
-  assert.equal(settle(first, { top: 0.1, right: 0.2, bottom: 0 }).right, 0.25, "each edge for itself");
+  assert.equal(settle(first, { top: 0.1, right: 0.2, bottom: 0 }).right, 0.21875, "each edge for itself");
 });

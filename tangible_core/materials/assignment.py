@@ -161,6 +161,7 @@ def _by_roughness(roughness: Mapping[int, float], default: str, noun: str) -> di
         name = LADDER[round(int(rank) * (len(LADDER) - 1) / last)] if last else default
         chosen[label] = (
             name,
-            f"{name_part(label, noun=noun)}: number {rank + 1} of {last + 1} from smooth to rough ({value:.3f}) -> {name}",
+            f"{name_part(label, noun=noun)}: number {rank + 1} of {last + 1} from smooth to rough "
+            f"({value:.3f}) -> {name}",
         )
     return chosen

@@ -12,7 +12,7 @@ from distributions import distribution
 from loop_devices import Failing, FailingLink
 from studies import Scripted, first_key, write_study
 from tangible_core.data import HapticState
-from tangible_core.errors import DeviceError
+from tangible_core.errors import ConfigError, DeviceError
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.session import Recording
 from tangible_study.desks.desk import Left
@@ -132,3 +132,13 @@ def test_command_checks_and_names_a_level_that_the_device_cannot_render(tmp_path
     done = tangible("study", "check", "study.yaml", cwd=tmp_path)
     assert (done.returncode, done.stdout.split(".")[0]) == (0, "study")
     assert "A participant has 2 trials, with 2 surfaces on the device mock." in " ".join(done.stdout.split())
+
+
+def test_surfaces_that_cannot_be_made_are_not_counted_as_ready(tmp_path: Path):
+    study = write_study(tmp_path, RATING)
+    np.save(tmp_path / "hollow.npy", np.full((20, 20), np.nan))
+    text = RATING.replace("{plain: {}, mellow:", "{hollow: {set: {scene.height: hollow.npy}}, mellow:")
+    ready = list[int]()
+    with pytest.raises(ConfigError, match=r"study.yaml:4:14: .*holds only NaN"):
+        Stimuli(parse_study(text, study)).make(ready.append)
+    assert ready == [1]

@@ -76,15 +76,18 @@ class Stimuli:
 
         Raises: ConfigError that names the condition or level of what cannot be made.
         """
-        made = set[Recipe]()
+        tried, made = set[Recipe](), 0
         for key, recipe in self.recipes.items():
-            if recipe not in made:
-                try:
-                    self._pipelines[recipe].make("touch")
-                except TangibleError as error:
-                    self.file.source.complain(self.file.place(*key), str(error))
-                made.add(recipe)
-                progress(len(made))
+            if recipe in tried:
+                continue
+            tried.add(recipe)
+            try:
+                self._pipelines[recipe].make("touch")
+            except TangibleError as error:
+                self.file.source.complain(self.file.place(*key), str(error))
+            else:
+                made += 1
+                progress(made)
         self._check_names()
         self.file.source.settle()
 

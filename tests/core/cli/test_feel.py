@@ -140,10 +140,13 @@ def test_feel_of_a_video_plays_it_and_reports_its_frames(tmp_path: Path):
         "depth: {use: semi-global, resolution: half}\ndevice: {use: mock, path: circle}\n"
         "texture: {use: histogram, segments: 2}\n"
     )
-    done = tangible("feel", "walk.yaml", "--seconds", 1.5, "--record", "hand.csv", "--json", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "parts and materials stay where they are in the first frame" in done.stderr
-    figures = json.loads(done.stdout)["figures"]
+    for seconds in (1.5, 30):  # a busy machine begins to play later
+        done = tangible("feel", "walk.yaml", "--seconds", seconds, "--record", "hand.csv", "--json", cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        assert "parts and materials stay where they are in the first frame" in done.stderr
+        figures = json.loads(done.stdout)["figures"]
+        if figures["frames_shown"] > 1:
+            break
     assert figures["frames_shown"] > 1 and figures["frames_damaged"] == 0
     assert {"frames_dropped", "frames_skipped", "frames_per_s", "frames_age_ms"} <= figures.keys()
     assert np.nanmax(Recording.load(tmp_path / "hand.csv").frame) > 0

@@ -66,15 +66,19 @@ class Shown(NamedTuple):
         )
 
     def click(self, *at: float) -> None:
-        """The mouse, on the surface there, once the view rests: it gives way to a box that grows over the canvas."""
+        """The mouse, on the surface there."""
+        self.wait_until_at_rest()
+        self.page.mouse.click(*self.on_page(*at))
+
+    def wait_until_at_rest(self) -> None:
+        """Wait until the view rests: it gives way to a box that grows over the canvas."""
 
         def rests() -> bool:
-            before = self.on_page(*at)
+            before = self.on_page(RIGHT, 0.01, HIGH_M)
             self.wait_until_drawn()
-            return before == self.on_page(*at)
+            return before == self.on_page(RIGHT, 0.01, HIGH_M)
 
         until(rests)
-        self.page.mouse.click(*self.on_page(*at))
 
     def on_page(self, *at: float) -> tuple[float, float]:
         """Return the pixel of a place of the workspace on the page."""
@@ -232,6 +236,7 @@ def test_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
 
     state = until(press)
     mouse.up()
+    shown.wait_until_at_rest()
     hand, force = np.array(state["hand"]), np.array(state["force"])
     assert hand[:2] == pytest.approx([RIGHT, 0.01], abs=5e-4)
     assert force[2] == pytest.approx(STIFFNESS_N_PER_M * (HIGH_M - hand[2]), rel=0.05)
@@ -242,6 +247,34 @@ def test_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
     shown.page.evaluate("() => { document.getElementById('data-cursor').open = true; }")
     until(lambda: f"{force[2]:.3f} N" in shown.page.inner_text("#data-cursor"))
     shown.page.evaluate("() => { document.getElementById('data-cursor').open = false; }")
+
+
+def test_view_rests_under_a_pressed_hand(shown: Shown):
+    """What covers the canvas meanwhile moves the surface when the hand is let go, not under it."""
+
+    def show_all_values(shows: bool) -> None:
+        """Values that cover less than half of the canvas: wider ones are not given way to."""
+        shown.page.evaluate(
+            "shows => { const box = document.getElementById('data-cursor'); box.open = shows;"
+            "box.querySelector('.all').style.maxInlineSize = shows ? '30%' : ''; }",
+            shows,
+        )
+
+    def place() -> list[float]:
+        shown.wait_until_drawn()
+        return shown.spot(RIGHT, 0.01, HIGH_M).tolist()
+
+    shown.wait_until_at_rest()
+    shown.page.mouse.move(*shown.on_page(RIGHT, 0.01, HIGH_M))
+    shown.page.mouse.down()
+    before = place()
+    show_all_values(True)
+    until(lambda: shown.page.locator("#data-cursor > .all").bounding_box())
+    assert [place() for _ in range(3)] == [before] * 3
+    shown.page.mouse.up()
+    until(lambda: place()[0] < before[0] - 10)
+    show_all_values(False)
+    until(lambda: place() == before)
 
 
 def test_values_are_copied_as_they_are(shown: Shown):
@@ -276,7 +309,7 @@ def test_ruler_measures_the_step(shown: Shown):
     along = across - cell + np.hypot(cell, rise)
     wanted = [np.hypot(across, rise), across, along, rise, np.degrees(np.arctan2(rise, across))]
     assert figures() == pytest.approx(wanted, abs=0.15)
-    shown.pixels()
+    shown.wait_until_at_rest()
     for name, at in (("Start of the ruler", (LEFT, 0.01, 0.0)), ("End of the ruler", (RIGHT, 0.01, HIGH_M))):
         assert np.hypot(*(shown.handle(name) - shown.spot(*at))) < 2
     before = figures()[1]

@@ -15,13 +15,17 @@ export class FreePart {
   private boxes = new Map<Element, Edge>();
   private shares: Covered = { top: 0, right: 0, bottom: 0 };
   private observer = new ResizeObserver(() => this.measure());
+  private pressed = new Set<number>();
 
-  /** changed: called with the shares whenever one of them is another, by `settle`. */
+  /** changed: called with the shares whenever one of them is another, by `settle`, and no pointer is pressed on the canvas. */
   constructor(
     private canvas: HTMLElement,
     private changed: (covered: Covered) => void,
   ) {
     this.observer.observe(canvas);
+    for (const type of ["pointerdown", "pointerup", "pointercancel"] as const)
+      addEventListener(type, (event) => this.follow(event), { capture: true });
+    addEventListener("toggle", () => this.measureSoon(), { capture: true }); // what is folded away is not observed
   }
 
   /** Keep the surface clear of an element at this edge, while it is shown. */
@@ -30,7 +34,21 @@ export class FreePart {
     this.observer.observe(element);
   }
 
+  /** Leave the surface where it is under a hand that is pressed; what covers it is measured when the hand is let go. */
+  private follow({ type, target, pointerId, isTrusted }: PointerEvent): void {
+    if (!isTrusted) return;
+    if (type !== "pointerdown") this.pressed.delete(pointerId);
+    else if (target === this.canvas) this.pressed.add(pointerId);
+    this.measureSoon();
+  }
+
+  /** Measure after the others who hear the same event: they look up what lies under the pointer, or hide what is folded. */
+  private measureSoon(): void {
+    setTimeout(() => this.measure());
+  }
+
   private measure(): void {
+    if (this.pressed.size) return;
     const shares = settle(this.shares, this.covered());
     if (shares === this.shares) return;
     this.shares = shares;

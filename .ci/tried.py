@@ -122,15 +122,28 @@ def video() -> str:
 
 def interrupted() -> str:
     """Feel, and press Ctrl-C, or Ctrl-Break on Windows, in the stroke: what was felt is kept."""
-    words = "feel", "demo/config.yaml", "--seconds", "60", "--record", "broken_off.nc"
+    for seconds in (3, 30):  # a busy machine begins to feel later
+        recording = _broken_off(seconds)
+        if recording.peak_force_n > 0:
+            break
+    assert recording.peak_force_n > 0, "nothing was felt"
+    assert recording.stopped.startswith("interrupted"), f"it was stopped by: {recording.stopped}"
+    return f"the stroke of {recording.time_s[-1]:.1f} s is kept"
+
+
+def _broken_off(after_s: float) -> Any:
+    """Return the recording of a stroke that a key breaks off so long after its file is there."""
+    path = Path("broken_off.nc")
+    path.unlink(missing_ok=True)
+    words = "feel", "demo/config.yaml", "--seconds", "60", "--record", path.name
     windows = sys.platform == "win32"
     group = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP} if windows else {}
     with subprocess.Popen([*COMMAND, *words], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, **group) as program:
         ended = threading.Timer(LIMIT_S, program.kill)
         ended.start()
-        while program.poll() is None and not Path("broken_off.nc").exists():
+        while program.poll() is None and not path.exists():
             time.sleep(0.1)
-        time.sleep(3)
+        time.sleep(after_s)
         try:
             program.send_signal(signal.CTRL_BREAK_EVENT if windows else signal.SIGINT)
         except SystemError as error:  # what Python makes of a console that takes no keys, as wine's without a window
@@ -141,10 +154,7 @@ def interrupted() -> str:
     assert program.returncode == 130, f"exit code {program.returncode}: {said[-1:]}"
     from tangible_core.session import Recording
 
-    recording = Recording.load(Path("broken_off.nc"))
-    assert recording.peak_force_n > 0, "nothing was felt"
-    assert recording.stopped.startswith("interrupted"), f"it was stopped by: {recording.stopped}"
-    return f"the stroke of {recording.time_s[-1]:.1f} s is kept"
+    return Recording.load(path)
 
 
 def held() -> str:

@@ -18,6 +18,7 @@ import pytest
 import tangible_core
 from benchmarks.house_words import count_words, share, shipped, turns_of_phrase
 from checked_calls import OURS, UNCHECKED, CheckingLoader
+from tangible_core.data.part_words import name_part
 from tangible_core.plugins import hooks
 from tangible_core.plugins.interfaces import (
     KINDS,
@@ -37,6 +38,10 @@ from tangible_core.plugins.registry import KIND_NAMES, default_registry
 from tangible_core.testing.every_method import HEAVY
 
 ROOT = Path(__file__).parents[1]
+BARE_LABEL = re.compile(r"\b(?:part|segment|Teil|Segment) \$?\{(?!name_part|shown_number|shownNumber)(\w+)")
+"""A label that stands behind the noun in a text."""
+LABEL_SLOTS = {"number", "part"}
+"""Slots of tables of words, which are filled with a shown number."""
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 PACKAGES = {
     "depth": ROOT / "plugins/depth/tangible_depth",
@@ -277,3 +282,23 @@ def test_texts_use_the_plainer_words():
     pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *ROOT.glob("docs/*.md"), *ROOT.glob("docs/reference/*.md")]
     assert len(texts) > 700
     assert not [place for path in (*texts, *pages) for place in turns_of_phrase(path)]
+
+
+def test_no_text_names_a_part_by_its_label():
+    """People read its number, which counts from one."""
+    rooms = [ROOT / "tangible_core", *(ROOT / "plugins").glob("*/tangible_*"), ROOT / "plugins/ui/web/src"]
+    files = [each for room in rooms for each in [*room.rglob("*.py"), *room.rglob("*.ts")]]
+    files = [each for each in files if each.stem != "part_words"]
+    assert len(files) > 500
+    found = [
+        f"{path.relative_to(ROOT)}: {match[0]}"
+        for path in files
+        for match in BARE_LABEL.finditer(path.read_text(encoding="utf-8"))
+        if not (match[1] in LABEL_SLOTS and ("words" in path.name or "words" in path.parts))
+    ]
+    assert found == []
+
+
+def test_label_in_a_text_would_be_found():
+    assert BARE_LABEL.search('f"part {number} is gone"') and BARE_LABEL.search("`segment ${label}`")
+    assert not BARE_LABEL.search(f"{name_part(3)} is gone")

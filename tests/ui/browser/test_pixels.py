@@ -223,7 +223,7 @@ def test_pressed_mouse_gives_the_force_that_is_shown(shown: Shown):
     mouse.down()
 
     def press() -> Any:
-        mouse.move(*shown.on_page(RIGHT, 0.01, HIGH_M))  # where it is now: the view gives way to a box that grows
+        mouse.move(*shown.on_page(RIGHT, 0.01, HIGH_M))
         state = shown.page.evaluate(
             "alone => { const s = page.net.latest; if (!s || (s.flags & 255) !== alone) return null;"
             "page.replayed = s; return { hand: s.hand, force: s.force }; }",

@@ -8,7 +8,7 @@ Like OpenCV's `filterSpeckles`, but over runs of a row instead of pixels, and on
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Int16, Int32
+from jaxtyping import Int16, Int32, UInt8
 from numba import int64
 
 from tangible_core.compiled.compiling import KERNEL, inner, njit
@@ -50,11 +50,7 @@ def remove_specks(disparity: Int16[np.ndarray, "h w"], specks: Specks, factor: i
 
     factor: the one by which the picture was downsampled.
     """
-    import cv2
-
-    across = 2 * (REACH // factor) + 1
-    share = cv2.blur(np.uint8(255) * (disparity != UNKNOWN), (across, across))
-    _remove(disparity, specks.downsample(factor).by_share(), share, 16)
+    _remove(disparity, specks.downsample(factor).by_share(), 16, REACH // factor)
 
 
 def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int, step: int = 16) -> int:
@@ -63,12 +59,16 @@ def remove_speckles(disparity: Int16[np.ndarray, "h w"], largest_px: int, step: 
     An island is a region of at most `largest_px` pixels in which 4-neighbours differ by at most `step` sixteenths of a
     pixel, and which no such step joins to another region.
     """
-    return _remove(disparity, np.full(1, largest_px, np.int32), np.zeros(disparity.shape, np.uint8), step)
+    return _remove(disparity, np.full(1, largest_px, np.int32), step)
 
 
-def _remove(disparity: np.ndarray, largest_px: np.ndarray, share: np.ndarray, step: int) -> int:
-    """Make islands UNKNOWN; largest_px[share] is the largest that is removed at a pixel of this `share`."""
+def _remove(disparity: np.ndarray, largest_px: np.ndarray, step: int, reach: int | None = None) -> int:
+    """Make islands UNKNOWN; largest_px[share] is the largest that is removed at a pixel.
+
+    reach: radius of the window in which the share of matched pixels is counted, in 255ths; None: the share is 0.
+    """
     h, w = disparity.shape
+    share = np.zeros(disparity.shape, np.uint8)
     start, stop, parent, size = (np.empty(h * w, np.int32) for _ in range(4))
     begin, end = np.empty(h, np.int64), np.empty(h, np.int64)
     first_rows: list[int] = []
@@ -77,6 +77,8 @@ def _remove(disparity: np.ndarray, largest_px: np.ndarray, share: np.ndarray, st
 
     def label(y0: int, y1: int) -> None:
         first_rows.append(y0)
+        if reach is not None:
+            share[y0:y1] = _matched_share(disparity, y0, y1, reach)
         _label(disparity, step, y0, y1, start, stop, parent, size, begin, end)
 
     in_blocks(h, label)
@@ -88,6 +90,15 @@ def _remove(disparity: np.ndarray, largest_px: np.ndarray, share: np.ndarray, st
 
     in_blocks(h, erase)
     return sum(erased)
+
+
+def _matched_share(disparity: np.ndarray, y0: int, y1: int, reach: int) -> UInt8[np.ndarray, "rows w"]:
+    """Return the share of matched pixels near each pixel of rows y0..y1-1, in 255ths."""
+    import cv2
+
+    first, across = max(0, y0 - reach), 2 * reach + 1
+    matched = np.uint8(255) * (disparity[first : y1 + reach] != UNKNOWN)
+    return cv2.blur(matched, (across, across))[y0 - first : y1 - first]  # pyright: ignore[reportReturnType]
 
 
 @njit(**KERNEL)

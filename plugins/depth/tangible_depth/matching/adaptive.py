@@ -31,7 +31,7 @@ LEVELS_LOSS, LEVELS_DIFFERING = 0.06, 0.265
 """Loss, and share of differing bits and levels, from which levels mislead: other exposure, or noise."""
 LEVELS_APART = 0.6
 """Share of matches whose levels differ by the most that counts from which the views were exposed differently."""
-EVERY_ROW = 4
+EVERY_ROW = 16
 """Distance of the trial's rows in which levels are compared."""
 MOST_ROW_OFFSET_PX = 1.0
 """Largest row offset, in pixels, that the trial measures and corrects."""
@@ -54,7 +54,7 @@ class _Spending(NamedTuple):
 
 SPENDING: dict[Effort, _Spending] = {
     "balanced": _Spending(0.06, 0.28, WARM_ROWS),
-    "best": _Spending(0.11, 0.315, 48),
+    "best": _Spending(0.11, 0.315, 24),
 }
 
 

@@ -62,7 +62,7 @@ def _factor(span: Span, options: Scaling) -> int:
 def _has_texture(grey: UInt8[np.ndarray, "h w"], y0: int, y1: int) -> bool:
     """Test whether any pixel of rows y0..y1-1 is not flat (`flat_pixels`)."""
     rows = grey[max(0, y0 - FLAT_REACH) : y1 + FLAT_REACH]
-    return not np.array_equal(rows[:, 1:], rows[:, :-1])
+    return any(not np.array_equal(each[:, 1:], each[:, :-1]) for each in (rows[:1], rows))
 
 
 def _match(pair: Pair, span: Span, options: Scaling, factor: int) -> DenseMatches:

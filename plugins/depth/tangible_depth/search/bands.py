@@ -91,9 +91,6 @@ def _encode_bands(left, right, factor, offsets, stride, total, band, rows, codes
 def _encode_band(view, row, factor, offsets, columns, total, band, codes):
     for j in range(TALL):
         _average_rows(view, row + (j - RADIUS) * HIGH_PX, factor, columns, total, band[j])
-    for plane in range(PLANES):
-        for x in range(codes.shape[2]):
-            codes[0, plane, x] = 0
     code_rows(band, offsets, 0, 0, 1, codes)
 
 

@@ -44,20 +44,25 @@ def two_scale_census(
 
 def census_with_levels(grey: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h 4 whole"]:
     """Compute the census, and one more plane of halved grey values."""
-    codes = _encode([grey], spare_planes=1)
-    np.right_shift(grey, 1, out=codes[:, PLANES, : grey.shape[1]])
-    return codes
+    return _encode([grey], levels=True)
 
 
-def _encode(greys: Sequence[np.ndarray], spare_planes: int = 0) -> UInt8[np.ndarray, "h planes whole"]:
-    """Encode several pictures of one size into consecutive planes; spare planes are 0."""
+def _encode(greys: Sequence[np.ndarray], levels: bool = False) -> UInt8[np.ndarray, "h planes whole"]:
+    """Encode several pictures of one size into consecutive planes; levels: one more plane of the first one's levels."""
     import cv2
 
     h, w = greys[0].shape
-    codes = np.zeros((h, PLANES * len(greys) + spare_planes, w + -w % BLOCK), np.uint8)
-    for i, grey in enumerate(greys):
-        padded = cv2.copyMakeBorder(grey, RADIUS, RADIUS, RADIUS, RADIUS + -w % BLOCK, cv2.BORDER_REPLICATE)
-        in_blocks(h, lambda a, b, padded=padded, i=i: code_rows(padded, OFFSETS, PLANES * i, a, b, codes))
+    codes = np.empty((h, PLANES * len(greys) + levels, w + -w % BLOCK), np.uint8)
+    around = RADIUS, RADIUS, RADIUS, RADIUS + -w % BLOCK
+    padded = [cv2.copyMakeBorder(grey, *around, cv2.BORDER_REPLICATE) for grey in greys]
+
+    def block(y0: int, y1: int) -> None:
+        for i, each in enumerate(padded):
+            code_rows(each, OFFSETS, PLANES * i, y0, y1, codes)
+        if levels:
+            np.right_shift(greys[0][y0:y1], 1, out=codes[y0:y1, -1, :w])
+
+    in_blocks(h, block)
     return codes
 
 
@@ -72,5 +77,8 @@ def code_rows(padded, offsets, first_plane, y0, y1, codes):
             dy, dx = offsets[i]
             neighbour = padded[y + dy, dx : dx + w]
             bit = np.uint8(1 << (i & 7))
+            if bit == 1:
+                for x in range(w):
+                    plane[x] = 0
             for x in range(w):
                 plane[x] |= bit if neighbour[x] < centre[x] else np.uint8(0)

@@ -16,7 +16,7 @@ from .paths import row_limits
 
 ROWS = 128
 """Rows of a strip."""
-WARM_ROWS = 32
+WARM_ROWS = 16
 """Rows before a strip at which its paths start: rows farther away hardly affect it."""
 VOLUME_BYTES = 256 << 20
 """Largest memory for the cost volumes of all threads together, bytes."""

@@ -60,18 +60,18 @@ def trial(pair: Pair, cost=LEVELS):
 
 
 def test_levels_are_compared_where_the_views_match():
-    """Halved levels that differ by four are far apart: one of four in the first row, and the only one of the fifth."""
-    left = np.full((5, 12), 100, np.uint8)
-    right = np.full((5, 12), 150, np.uint8)
+    """Halved levels that differ by four are far apart: one of four in the first row, and the only one of the 17th."""
+    left = np.full((17, 12), 100, np.uint8)
+    right = np.full((17, 12), 150, np.uint8)
     looked = trial(Pair.of(left, right))
     looked.out.disparity[0, 4:8] = [32, 39, 40, -16]
     right[0, [2, 3, 3, 8]] = [100, 107, 107, 108]
-    looked.out.disparity[4, 11] = 16 * 9
-    right[4, 2] = 93
+    looked.out.disparity[16, 11] = 16 * 9
+    right[16, 2] = 93
     looked.pair = Pair.of(left, right)
-    assert looked.levels_apart([(0, 5)]) == pytest.approx(2 / 5)
-    looked.out.disparity[1:4] = 0  # of every fourth row alone
-    assert looked.levels_apart([(0, 5)]) == pytest.approx(2 / 5)
+    assert looked.levels_apart([(0, 17)]) == pytest.approx(2 / 5)
+    looked.out.disparity[1:16] = 0  # of every 16th row alone
+    assert looked.levels_apart([(0, 17)]) == pytest.approx(2 / 5)
     assert looked.levels_apart([(1, 2)]) == 1
 
 

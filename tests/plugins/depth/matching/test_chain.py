@@ -118,6 +118,20 @@ def test_preview_counts_matches_near_an_island_in_fewer_pixels():
         assert np.count_nonzero(cleaned == 300) == left
 
 
+def test_matches_near_an_island_are_counted_across_blocks_of_rows(monkeypatch: pytest.MonkeyPatch):
+    """Four threads, of a block of rows each, remove what one removes."""
+    disparity = np.full((120, 80), UNKNOWN)
+    disparity[::4, ::8] = disparity[::4, 1::8] = 160
+    disparity[16:30] = disparity[60:70] = 0
+    found = []
+    for count in (1, 4):
+        monkeypatch.setattr(threads, "thread_count", lambda count=count: count)
+        found.append(disparity.copy())
+        remove_specks(found[-1], Specks(0, 0, 30), 2)
+    assert 0 < np.count_nonzero(found[0] == 160) < np.count_nonzero(disparity == 160)
+    assert np.array_equal(*found)
+
+
 def test_preview_is_cleaned_of_smaller_islands():
     matched, grey = np.full((50, 50), np.int16(100)), np.zeros((50, 50), np.uint8)
     matched[20:22, 20:25] = 300

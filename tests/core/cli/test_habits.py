@@ -53,6 +53,7 @@ def test_misspelt_command_is_refused_with_a_suggestion(tmp_path: Path):
     [
         (("preflight", "p.yaml", "--fix"), "preflight --fix OUT.yaml"),
         (("legible", "--width-m"), "legible --width-m VALUE"),
+        (("--lang", "en", "legible", "--width-m"), "legible --width-m VALUE"),
     ],
 )
 def test_option_with_nothing_after_it_gets_a_sentence_with_what_it_takes(
@@ -61,6 +62,22 @@ def test_option_with_nothing_after_it_gets_a_sentence_with_what_it_takes(
     done = tangible(*words, cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr == f"{words[-1]}: has nothing after it; write what it takes, as `tangible {takes}`\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("feel p.yaml --device falcon", "`tangible feel --set device=VALUE`"),
+        ("--lang en run p.yaml --device=falcon", "`tangible run --set device=VALUE`"),
+        ("feel p.yaml --devise falcon", "No such option: --devise"),
+        ("plugins --device falcon", "No such option: --device"),
+    ],
+)
+def test_key_of_the_file_as_an_option_is_refused_with_how_to_set_it(words: str, said: str, tmp_path: Path):
+    done = tangible(*words.split(), cwd=tmp_path)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert ("--device: no such option, but a key of the pipeline file" in done.stderr) == ("--set" in said)
 
 
 def complete(words: str) -> list[str]:

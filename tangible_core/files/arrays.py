@@ -17,7 +17,7 @@ _CHUNK = 1 << 20
 _ZIP = b"PK"
 _SAMPLES, _SAMPLE = 8, 1 << 14
 """The number of samples that decide whether an array is worth compressing, and the bytes of each."""
-_MOST_SHARE = 0.6
+_MOST_SHARE = 0.4
 """The largest share of its size that the samples may have after compression for an array to be compressed."""
 
 

@@ -148,7 +148,7 @@ def _exit_code(work: Callable[[], int]) -> int:
 
 def _report_unexpected(error: BaseException) -> int:
     """Report typer's error about the words of the call, or a fault of the program or a plugin."""
-    if better := _option_without_value(error) or _key_as_option(error):
+    if better := _about_option(error):
         return _report(better, MISTAKE)
     if (show := getattr(error, "show", None)) is not None:
         show(text := StringIO())
@@ -159,28 +159,21 @@ def _report_unexpected(error: BaseException) -> int:
     return _report(failures.sentence(error), MISTAKE if explained else FAILED)
 
 
-def _option_without_value(error: BaseException) -> str:
-    """Return a sentence about an option after which nothing stands, with what it takes; "" for another error."""
-    option = str(getattr(error, "option_name", ""))
-    if "requires an argument" not in str(getattr(error, "message", "")):
-        return ""
+def _about_option(error: BaseException) -> str:
+    """Return a sentence about an option without its value, or a key of the file as an option; "" for another error."""
+    option, message = (str(getattr(error, name, "")) for name in ("option_name", "message"))
     command = next((word for word in sys.argv[1:] if word in COMMANDS), "")
     known: list[Any] = load(command).params if command else []
-    takes = next((f" {each.metavar or 'VALUE'}" for each in known if option in each.opts), " VALUE")
-    return f"{option}: has nothing after it; write what it takes, as `tangible {command} {option}{takes}`"
-
-
-def _key_as_option(error: BaseException) -> str:
-    """Return a sentence about a key of the pipeline file that was written as an option; "" for another error."""
-    option, context = str(getattr(error, "option_name", "")), getattr(error, "ctx", None)
-    if context is None or not str(getattr(error, "message", "")).startswith("No such option"):
+    if "requires an argument" in message:
+        takes = next((f" {each.metavar or 'VALUE'}" for each in known if option in each.opts), " VALUE")
+        return f"{option}: has nothing after it; write what it takes, as `tangible {command} {option}{takes}`"
+    if not message.startswith("No such option") or not any("--set" in each.opts for each in known):
         return ""
     from ..pipeline.config.model import PipelineConfig
 
-    key = option.lstrip("-").replace("-", "_")
-    if key not in PipelineConfig.model_fields or not any("--set" in each.opts for each in context.command.params):
+    if (key := option.lstrip("-").replace("-", "_")) not in PipelineConfig.model_fields:
         return ""
-    return f"{option}: no such option, but a key of the pipeline file; write `{context.command_path} --set {key}=VALUE`"
+    return f"{option}: no such option, but a key of the pipeline file; write `tangible {command} --set {key}=VALUE`"
 
 
 def _report(message: str, code: int) -> int:

@@ -27,6 +27,9 @@ from ..sgm.strips import WARM_ROWS, StripMatches, sweep, unknown_matches
 log: logging.Logger = logging.getLogger(__name__)
 NOISE = 0.20
 """Loss from which the heavy cost is used."""
+FAR_TOO_NOISY = 0.40
+"""Loss of matches by order and levels from which the order alone loses more than NOISE too, so that its trial is left
+out: with less noise, either loses a few per cent more or less than the other."""
 LEVELS_LOSS, LEVELS_DIFFERING = 0.06, 0.265
 """Loss, and share of differing bits and levels, from which levels mislead: other exposure, or noise."""
 LEVELS_APART = 0.6
@@ -82,17 +85,18 @@ def match(
     if cost:
         trial.sweep(rest)
         return trial.out, cost
-    if trial.cost.most_level and (why := _why_levels_mislead(health, trial.levels_apart(probes))):
+    chosen = trial.cost
+    if chosen.most_level and (why := _why_levels_mislead(health, trial.levels_apart(probes))):
         note(log, f"skipped: comparing grey levels, as {why}")
-        trial = trial.with_cost(SHARP)
-        health = trial.health(probes)
-    if trial.cost is SHARP and (cost_for_noise := _cost_for_noise(health, effort)) is not SHARP:
-        note(
-            log,
-            f"cost {cost_for_noise.name}: {health.loss:.0%} of the matches are speckles, "
-            f"{health.differing:.0%} of census bits differ",
-        )
-        trial, rest = trial.with_cost(cost_for_noise), rows
+        chosen = SHARP
+        if health.loss < FAR_TOO_NOISY:
+            trial = trial.with_cost(SHARP)
+            health = trial.health(probes)
+    if chosen is SHARP and (chosen := _cost_for_noise(health, effort)) is not SHARP:
+        bits = f", {health.differing:.0%} of census bits differ" if trial.cost is SHARP else ""
+        note(log, f"cost {chosen.name}: {health.loss:.0%} of the matches are speckles{bits}")
+    if chosen is not trial.cost:
+        trial, rest = trial.with_cost(chosen), rows
     trial.sweep(rest)
     return trial.out, trial.cost
 

@@ -54,6 +54,37 @@ def test_probes_are_the_first_rows_of_strips_in_the_middles_of_equal_parts():
     assert module._probes([(0, 90), (90, 130)]) == ([(0, 64), (90, 130)], [(64, 90)])
 
 
+@pytest.mark.parametrize(
+    ("loss", "tried", "chosen"),
+    [
+        (0.05, ["levels"], "levels"),
+        (0.06, ["levels", "sharp"], "sharp"),
+        (0.39, ["levels", "sharp"], "sharp"),
+        (0.4, ["levels"], "heavy"),
+    ],
+)
+def test_order_alone_is_not_tried_where_noise_is_far_too_strong(
+    loss: float, tried: list[str], chosen: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+):
+    """Levels lose this share of their matches, and the order alone none."""
+    costs: list[str] = []
+
+    def health(one: module._Trial, rows: module.Rows) -> module._Health:
+        costs.append(one.cost.name)
+        one.sweep(rows)
+        return module._Health(loss if one.cost is LEVELS else 0.0, 0.1)
+
+    monkeypatch.setattr(module._Trial, "health", health)
+    left = np.random.default_rng(0).integers(0, 256, (130, 60), np.uint8)
+    pair = Pair.of(left, np.roll(left, -3, axis=1))
+    with caplog.at_level("INFO"):
+        found, cost = module.match(pair, Span(-4, 11), None, 1.08, False, [(0, 100), (100, 130)], "balanced")
+    assert (costs, cost.name) == (tried, chosen)
+    assert np.mean(np.abs(found.disparity[:, 8:-8] - 48) <= 8) > 0.8
+    why = "cost heavy: 40% of the matches are speckles"
+    assert [each for each in caplog.messages if each.startswith("cost")] == [why] * (chosen == "heavy")
+
+
 def trial(pair: Pair, cost=LEVELS):
     """Return a trial of this pair."""
     return module._Trial(pair, Span(-4, 11), cost, 1.08, "best")

@@ -53,6 +53,27 @@ def test_read_position_is_in_the_workspace_frame(place: tuple[float, float, floa
     assert falcon.state[3:6] == pytest.approx((0, 0, 0))
 
 
+@pytest.mark.parametrize("axes", [("y", "-z", "x"), ("-z", "x", "-y"), ("-y", "-x", "z"), ("x", "y", "z")])
+def test_axes_turn_position_velocity_and_force_alike(axes: tuple[str, str, str]):
+    """Two Falcons get the same answers, and forces that are one in the frame of the device."""
+    plain, turned = Falcon(), Falcon(Calibration(axes=axes))
+    turn = turned.buffers.frame[:, :3] @ plain.buffers.frame[:, :3].T
+    for tick_number in range(60):
+        counts = counts_at(0.0002 * tick_number, 0.01 - 0.0001 * tick_number, 0.02 - 0.0003 * tick_number)
+        for falcon in (plain, turned):
+            falcon.tell(counts)
+    device_m = plain.buffers.frame[:, :3].T @ (plain.state[:3] - plain.buffers.frame[:, 3])
+    assert turned.state[:3] == pytest.approx(turned.buffers.frame @ [*device_m, 1])
+    assert plain.state[3:6] == pytest.approx([0.2, -0.1, -0.3], rel=0.2)
+    assert turned.state[3:6] == pytest.approx(turn @ plain.state[3:6])
+    for falcon in (plain, turned):
+        falcon.settle(counts_at(0.0, 0.0, 0.0))
+    force_n = np.array([0.5, -1.0, 1.5])
+    packets = [falcon.push(*force)[0] for falcon, force in ((plain, force_n), (turned, turn @ force_n))]
+    assert packets[0] == packets[1]
+    assert len(set(packets[0][:3])) == 3
+
+
 def test_read_first_position_waits_for_a_second():
     falcon, counts = Falcon(), counts_at(0, 0, 0)
     assert [falcon.tell(counts) for _ in range(3)] == [0, 1, 1]

@@ -106,14 +106,17 @@ class TestCoupling:
 
     @pytest.mark.parametrize("axis", [0, 1, 2])
     @pytest.mark.parametrize(("way_m", "follows"), [(0.016, True), (0.021, False), (-1.0, False)])
-    def test_tool_follows_a_device_that_jumps(self, axis: int, way_m: float, follows: bool):
+    @pytest.mark.parametrize("begin_m", [(0.0, 0.0, 0.0), (0.03, -0.05, 0.04)])
+    def test_tool_follows_a_device_that_jumps(
+        self, axis: int, way_m: float, begin_m: tuple[float, float, float], follows: bool
+    ):
         """Such as a released pointer: 8 N at 1000 N/m is a leash of 8 mm, and no hand moves 10 mm in a tick."""
         safety = Safety(coupling=Coupling(stiffness_n_per_m=1000, damping_n_s_per_m=0.4), **BARE)
         settings, memory = safety.arrays(SPEC, 500.0)
-        couple(settings, memory, 0.001, *[0.0] * 6)
-        place = way_m * np.eye(3)[axis]
+        couple(settings, memory, 0.001, *begin_m, 0.0, 0.0, 0.0)
+        place = begin_m + way_m * np.eye(3)[axis]
         tool = couple(settings, memory, 0.001, *place, 0.0, 0.0, 0.0)
-        assert (tool[axis] != way_m) == follows
+        assert (tool[axis] != place[axis]) == follows
         left = guard(settings, memory, 0.001, *place, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         assert (left[axis] != 0.0) == follows
 

@@ -14,6 +14,8 @@ from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.session import run_simulated
 from tangible_devices.falcon.falcon_simulated import FalconSimulated
+from tangible_devices.falcon.simulator.body import HOMED, PERIOD_S, STEPS, Body
+from tangible_devices.falcon.simulator.plant import CENTRE_M, REACH_M, move
 from tangible_devices.falcon.usb.errors import UDEV_FILE, UDEV_RULE
 
 FLAT = HapticSurface.from_heights(np.full((8, 8), 0.002))
@@ -60,3 +62,35 @@ def test_page_shows_valid_configuration_and_udev_rule(tmp_path: Path):
     assert len(blocks) == 2
     for text in blocks:
         parse_config(f"scene: builtin/brick\n{text}", tmp_path / "p.yaml", default_registry())
+
+
+@pytest.mark.parametrize("way", [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1), (2, -1, 1)])
+def test_tip_ends_where_the_arms_do_whichever_way_it_is_pulled(way: tuple[int, int, int]):
+    """A hand that pulls to a place a metre away, from the centre on, and no motor."""
+    centre = np.array([0.0, 0.0, CENTRE_M])
+    tip, target = np.array([*centre, 0.0, 0.0, 0.0]), centre + np.array(way) / np.linalg.norm(way)
+    for _ in range(2000):
+        move(tip, np.zeros(3), target, np.array([0.2, 1.0, 0.1, 100.0, 2.0]), STEPS, PERIOD_S)
+    assert tip[:3] == pytest.approx(centre + REACH_M * (target - centre), abs=1e-4)
+    assert np.linalg.norm(tip[3:]) < 1e-3
+
+
+class Holding:
+    """A hand that holds the grip out or in."""
+
+    buttons, out = 0, False
+
+    def wants(self, tip: np.ndarray, seeking: bool, homed: bool) -> np.ndarray:
+        return np.array([0.0, 0.0, CENTRE_M + (REACH_M if self.out else -REACH_M)])
+
+
+def test_arms_are_homed_by_going_out_and_in_where_the_host_asks_for_it():
+    hand = Holding()
+    body = Body(hand, np.array([0.2, 1.0, 0.1, 1000.0, 20.0]))
+    steps = [(0, True, 0), (0, False, 0), (1, False, 0), (1, True, 0), (1, False, sum(HOMED)), (0, False, 0)]
+    for number, (info, hand.out, homed) in enumerate([*steps, *steps[3:5]]):
+        body.obey((0, 0, 0), info, number)
+        body.move_until(number + 1)
+        assert body.report()[1] == homed, number
+    body.let_go()
+    assert body.report()[1] == 0

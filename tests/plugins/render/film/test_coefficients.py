@@ -42,6 +42,15 @@ def test_coefficients_of_a_frame_match_a_still_surface(name: str):
         assert np.array_equal(scratch.near[RING:-RING, RING:-RING].astype(bool), jumps(heights))
 
 
+@pytest.mark.parametrize("name", ["steps", "a step at the border", "two by the border", "noise"])
+def test_jumps_reach_as_far_beyond_each_border(name: str):
+    """Beyond the rows as beyond the columns, and one cell farther there is none."""
+    found, turned = (coefficients_of(each)[1].near for each in (HEIGHTS[name], HEIGHTS[name].T))
+    assert np.array_equal(found, turned.T)
+    assert found[1].any() and found[-2].any()
+    assert not found[0].any() and not found[-1].any()
+
+
 def test_level_ground_has_level_coefficients_to_the_last_bit():
     found, _ = coefficients_of(np.full((40, 50), 0.00731))
     assert np.unique(found).size == 1

@@ -60,10 +60,13 @@ class TestFriction:
         assert np.allclose(along, -0.5 * push, rtol=1e-3)
         assert np.allclose(force[:, 0], 0, atol=1e-6)
 
+    @pytest.mark.parametrize("slopes", [(0.0, 0.75), (0.5, -0.75), (-0.6, -0.3)])
     @pytest.mark.parametrize("way", [(0.0, 0.8, 0.6), (0.6, 0.0, 0.0), (0.0, 0.0, -1.0)], ids=["up", "across", "down"])
-    def test_bristle_is_stretched_by_the_way_along_the_surface(self, way: tuple[float, float, float]):
-        """A way straight down on a slope of 3 in 4 stretches it by its part along the slope."""
-        known = ramp((0.0, 0.75), 0.05)
+    def test_bristle_is_stretched_by_the_way_along_the_surface(
+        self, way: tuple[float, float, float], slopes: tuple[float, float]
+    ):
+        """A way straight down on a slope stretches it by its part along the slope."""
+        known = ramp(slopes, 0.05)
         touch = WithMaterials(law="penalty-gradient").touch(cover(known.surface, STICKY))
         alone = load_method("render", "penalty-gradient")().touch(cover(known.surface, STICKY))
         start, normal = np.array(known.at(0.0, 0.0, 0.001)), known.normal(0, 0)
@@ -71,6 +74,19 @@ class TestFriction:
         end = HapticState(tuple((start + 2e-4 * np.array(way)).tolist()))
         stretched = 2e-4 * (np.array(way) - (way @ normal) * normal)
         assert np.subtract(touch.force(end), alone.force(end)) == pytest.approx(-K * stretched, abs=1e-6)
+
+    @pytest.mark.parametrize("slopes", [(0.0, 0.0), (0.5, -0.75), (-0.6, -0.3)])
+    @pytest.mark.parametrize("velocity", [(0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.02, -0.05, 0.08)])
+    def test_drag_is_against_the_velocity_along_the_surface(
+        self, slopes: tuple[float, float], velocity: tuple[float, float, float]
+    ):
+        known, honey = ramp(slopes, 0.05), replace(PLAIN, name="honey", drag_n_s_per_m=2.0)
+        state = HapticState(known.at(0.0, 0.0, 0.001), velocity)
+        touch = WithMaterials(law="penalty-gradient").touch(cover(known.surface, honey))
+        alone = load_method("render", "penalty-gradient")().touch(cover(known.surface, honey))
+        normal = known.normal(0, 0)
+        along = np.array(velocity) - (velocity @ normal) * normal
+        assert np.subtract(touch.force(state), alone.force(state)) == pytest.approx(-2.0 * along, abs=1e-6)
 
     @pytest.mark.parametrize("material", [STICKY, RUBBER], ids=lambda each: each.name)
     @pytest.mark.parametrize("law", PUSHING + LATERAL)

@@ -30,13 +30,14 @@ from solids import (
     write_and_read,
 )
 from tangible_core import Pipeline, Scene
-from tangible_core.data import Work
+from tangible_core.data import Relief, Work
 from tangible_core.errors import BrailleError, GeometryError, OutputError
 from tangible_core.plugins.interfaces import Exporter
 from tangible_core.plugins.notes import collected
 from tangible_depth import Luminance
 from tangible_export import Glb, Stl, ThreeMF, three_mf
 from tangible_export.solid import making
+from tangible_export.solid.triangles import sample_nodes
 
 EVERY = pytest.mark.parametrize("cls", FORMATS.values(), ids=FORMATS)
 RIM_MM, BAND_MM = 6.0, 5 + 1.44 + 2 * 2.34
@@ -324,6 +325,18 @@ class TestNotes:
         assert any("heights are averaged over squares of 2 mm" in each and "pip install" in each for each in notes)
         assert is_closed(mesh) and len(mesh.triangles) < 1500
         assert mesh.vertices.max(axis=0)[:2] == pytest.approx([50, 50 * 40 / 56], abs=1e-3)
+
+    @pytest.mark.parametrize("turned", [False, True])
+    @pytest.mark.parametrize("rows", [2, 40])
+    def test_nodes_of_fewer_columns_or_rows_are_means(self, rows: int, turned: bool):
+        """One of four columns stands out, and all become level, on a strip of two rows too, which stay two."""
+        heights = np.tile(np.float32([0.0, 0.0, 0.0, 0.004]), (rows, 100))
+        relief = Relief(heights.T if turned else heights, (0.02, 0.08) if turned else (0.08, 0.02))
+        found = sample_nodes(relief, rows * 25, "")
+        assert found.extent_m == relief.extent_m
+        nodes = {2: (2, 25), 40: (10, 100)}[rows]
+        assert found.height_m.shape == (nodes[::-1] if turned else nodes)
+        assert found.height_m == pytest.approx(0.001, abs=2e-4)
 
 
 class TestThreeMF:

@@ -45,6 +45,9 @@ def sample_nodes(relief: Relief, most_nodes: int, cure: str) -> Relief:
     if (nodes := rows * columns) > most_nodes:
         scale = sqrt(most_nodes / nodes)
         rows, columns = (max(LEAST_NODES, int(scale * side)) for side in (rows, columns))
+        rows, columns = (  # of a strip, one side is as short as it may be, and the other pays for it
+            min(side, max(LEAST_NODES, most_nodes // other)) for side, other in ((rows, columns), (columns, rows))
+        )
         side_mm = 1000 * max(relief.extent_m[0] / columns, relief.extent_m[1] / rows)
         fault = f"heights are averaged over squares of {side_mm:.2g} mm, as {nodes / 1e6:.3g} million nodes"
         note(log, f"{fault} would take too much memory and too large a file; {cure}", logging.WARNING)
@@ -54,7 +57,7 @@ def sample_nodes(relief: Relief, most_nodes: int, cure: str) -> Relief:
 def _resize(heights: Float32[np.ndarray, "h w"], shape: tuple[int, int]) -> Float32[np.ndarray, "h2 w2"]:
     if shape == heights.shape:
         return heights
-    smaller = shape[0] < heights.shape[0] and shape[1] < heights.shape[1]
+    smaller = shape[0] <= heights.shape[0] and shape[1] <= heights.shape[1]
     with plain_opencv():
         sized = cv2.resize(heights, shape[::-1], interpolation=cv2.INTER_AREA if smaller else cv2.INTER_LINEAR)
     return np.maximum(sized, 0).astype(np.float32)

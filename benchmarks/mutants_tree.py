@@ -104,15 +104,18 @@ class Tree:
         os.utime(path, ns=(later_ns, later_ns))
 
     def owns(self, programs: "Programs", files: Iterable[str]) -> bool:
-        """Whether the packages of these files are imported from here."""
-        packages = {self._package(Path(each)) for each in files}
+        """Whether the packages of these files are imported from here; a file in no package, as of docs, is read."""
+        packages = {found for each in files if (found := self._package(Path(each)))}
         code = "import importlib, sys\nfor name in sys.argv[1:]: print(importlib.import_module(name).__file__)"
         ended = programs.run([str(self.python), "-c", code, *packages], self.sources, self.environ(), 60)
         return ended.code == 0 and all(Path(each).is_relative_to(self.sources) for each in ended.said.splitlines())
 
     def _package(self, file: Path) -> str:
+        """Return the package or module of a file; "" for none."""
         home = max((each for each in map(Path, self._own()) if file.is_relative_to(each)), key=lambda at: len(at.parts))
-        return file.relative_to(home).parts[0].removesuffix(".py")
+        first = file.relative_to(home).parts[0]
+        is_package = first.endswith(".py") or (self.sources / home / first / "__init__.py").exists()
+        return first.removesuffix(".py") if is_package else ""
 
 
 @final

@@ -116,6 +116,16 @@ def test_run_of_a_list_reports_the_fate_of_each_mutant(tree: Path):
     assert {path: path.read_bytes() for path in tree.rglob("*") if path.is_file()} == before
 
 
+def test_fault_in_a_file_of_no_package_is_noticed(tree: Path):
+    """Such as in a page of the docs, or in what builds them."""
+    (tree / "pages").mkdir()
+    (tree / "pages" / "first.md").write_text("Toys are larger than none.\n")
+    test = "from pathlib import Path\n\ndef test_page():\n    assert 'larger' in Path('pages/first.md').read_text()\n"
+    (tree / "tests" / "test_page.py").write_text(test)
+    listed(tree, entry("a page", "larger", "smaller", "tests/test_page.py").replace("toy.py", "pages/first.md"))
+    assert [each.outcome for each in run(tree, mutants(tree), jobs=1)] == [Outcome.KILLED]
+
+
 def test_tests_that_fail_without_a_fault_are_reported(tree: Path):
     listed(tree, entry("the smaller one", "a > b", "a < b", "tests/test_toy.py::test_wrong"))
     with pytest.raises(UnreadyError, match=r"toys: its tests fail without any fault:(.|\n)*test_wrong"):

@@ -80,8 +80,8 @@ def test_mask_of_a_gaussian_derivative_is_the_lateral_gradient(sigma_cells: floa
 
 
 class TestForceShading:
-    def test_force_on_a_plane_is_a_spring_along_the_normal(self):
-        known = KNOWN["ramp"]
+    @pytest.mark.parametrize("known", [ramp(), ramp((0.5, -0.75), 0.06), ramp((0.0, 0.6), 0.06)])
+    def test_force_on_a_plane_is_a_spring_along_the_normal(self, known: KnownSurface):
         normal = known.normal(0, 0)
         for x, y in RNG.uniform(-0.037, 0.037, (12, 2)):
             force = press(ForceShading(stiffness_n_per_m=700.0), known, x, y)

@@ -163,7 +163,7 @@ def _about_option(error: BaseException) -> str:
     """Return a sentence about an option without its value, or a key of the file as an option; "" for another error."""
     option, message = (str(getattr(error, name, "")) for name in ("option_name", "message"))
     command = next((word for word in sys.argv[1:] if word in COMMANDS), "")
-    known: list[Any] = load(command).params if command else []
+    known: list[Any] = load(command).params if option and command else []  # its import may be what failed
     if "requires an argument" in message:
         takes = next((f" {each.metavar or 'VALUE'}" for each in known if option in each.opts), " VALUE")
         return f"{option}: has nothing after it; write what it takes, as `tangible {command} {option}{takes}`"

@@ -80,6 +80,17 @@ def test_key_of_the_file_as_an_option_is_refused_with_how_to_set_it(words: str, 
     assert ("--device: no such option, but a key of the pipeline file" in done.stderr) == ("--set" in said)
 
 
+def test_command_that_cannot_be_imported_is_told_in_one_line(tmp_path: Path):
+    code = (
+        "import sys; from tangible_core.cli import app, command_table; "
+        "command_table.add('broken', 'lacking_module:run', 'Run.'); sys.argv[1:] = ['broken']; app.main()"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode in (1, 2)
+    assert "lacking_module" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
 def complete(words: str) -> list[str]:
     """Return what bash offers after these words."""
     variables = {

@@ -19,6 +19,7 @@ from tangible_core.data import DisparityMap
 from .confidence import FILLED, FLAT_REACH, GAP_REACH, STEP_REACH, confidence, flat_pixels
 from .edges import MEDIAN_REACH, VOTERS, median, sharpen_edges
 from .filling.gaps import Effort, fill_gaps
+from .margins import slices_with_margin
 from .span import UNKNOWN
 from .speckles import Specks, remove_specks
 
@@ -68,7 +69,7 @@ def complete(
     out = _empty(grey.shape)
 
     def block(y0: int, y1: int) -> None:
-        cut, own = _slices_with_margin(y0, y1, 2 * MEDIAN_REACH + VOTERS + max(STEP_REACH, GAP_REACH))
+        cut, own = slices_with_margin(y0, y1, 2 * MEDIAN_REACH + VOTERS + max(STEP_REACH, GAP_REACH))
         final = median(filled[cut])
         if cleaning.sharpen:
             final = median(sharpen_edges(final, grey[cut]))
@@ -85,7 +86,7 @@ def enlarge(small: DenseMatches, grey: UInt8[np.ndarray, "h w"]) -> DenseMatches
     padded = np.pad(small.disparity, 1, mode="edge")
 
     def block(y0: int, y1: int) -> None:
-        cut, own = _slices_with_margin(y0, y1, VOTERS)
+        cut, own = slices_with_margin(y0, y1, VOTERS)
         part = _empty(grey[cut].shape)
         _enlarge(padded, small.confidence, cut.start, *part)
         out.disparity[y0:y1] = sharpen_edges(part.disparity, grey[cut])[own]
@@ -100,18 +101,12 @@ def to_disparity_map(dense: DenseMatches, grey: UInt8[np.ndarray, "h w"], fill: 
     disparity_px, trust = np.empty(grey.shape, np.float32), np.empty(grey.shape, np.float32)
 
     def block(y0: int, y1: int) -> None:
-        cut, own = _slices_with_margin(y0, y1, FLAT_REACH)
+        cut, own = slices_with_margin(y0, y1, FLAT_REACH)
         rows = (each[y0:y1] for each in (*dense, disparity_px, trust))
         _to_pixels(flat_pixels(grey[cut])[own], fill, *rows)
 
     in_blocks(grey.shape[0], block)
     return DisparityMap(disparity_px, trust)
-
-
-def _slices_with_margin(y0: int, y1: int, rows: int) -> tuple[slice, slice]:
-    """Slice rows y0..y1-1 with a margin of `rows` on either side, where there are; and y0..y1-1 within that slice."""
-    first = max(0, y0 - rows)
-    return slice(first, y1 + rows), slice(y0 - first, y1 - first)
 
 
 @njit(**KERNEL)

@@ -14,6 +14,7 @@ from numba import int64
 from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.compiled.threads import in_blocks
 
+from .margins import slices_with_margin
 from .span import UNKNOWN
 
 ISLAND_PX = 60
@@ -96,9 +97,9 @@ def _matched_share(disparity: np.ndarray, y0: int, y1: int, reach: int) -> UInt8
     """Return the share of matched pixels near each pixel of rows y0..y1-1, in 255ths."""
     import cv2
 
-    first, across = max(0, y0 - reach), 2 * reach + 1
-    matched = np.uint8(255) * (disparity[first : y1 + reach] != UNKNOWN)
-    return cv2.blur(matched, (across, across))[y0 - first : y1 - first]  # pyright: ignore[reportReturnType]
+    cut, own = slices_with_margin(y0, y1, reach)
+    window = 2 * reach + 1, 2 * reach + 1
+    return cv2.blur(np.uint8(255) * (disparity[cut] != UNKNOWN), window)[own]  # pyright: ignore[reportReturnType]
 
 
 @njit(**KERNEL)

@@ -45,9 +45,8 @@ def sample_nodes(relief: Relief, most_nodes: int, cure: str) -> Relief:
     if (nodes := rows * columns) > most_nodes:
         scale = sqrt(most_nodes / nodes)
         rows, columns = (max(LEAST_NODES, int(scale * side)) for side in (rows, columns))
-        rows, columns = (  # of a strip, one side is as short as it may be, and the other pays for it
-            min(side, max(LEAST_NODES, most_nodes // other)) for side, other in ((rows, columns), (columns, rows))
-        )
+        rows = min(rows, max(LEAST_NODES, most_nodes // columns))  # of a strip that is as narrow as it may be,
+        columns = min(columns, max(LEAST_NODES, most_nodes // rows))  # the length is cut further
         side_mm = 1000 * max(relief.extent_m[0] / columns, relief.extent_m[1] / rows)
         fault = f"heights are averaged over squares of {side_mm:.2g} mm, as {nodes / 1e6:.3g} million nodes"
         note(log, f"{fault} would take too much memory and too large a file; {cure}", logging.WARNING)

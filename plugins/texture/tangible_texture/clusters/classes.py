@@ -40,7 +40,7 @@ def classes(
     from .discriminants import principal_axes
     from .dividing import divide
     from .joining import FEW_POWER, MANY, MANY_POWER, axes_between, join_clusters
-    from .neighbourhood import refit_labels
+    from .neighbourhood import interior_shares, refit_labels
     from .planes import combine_planes
 
     spent, (planes, shape) = EFFORTS[effort], features.middle
@@ -54,7 +54,7 @@ def classes(
         if segments == "auto"
         else next(each.labels for each in steps if each.clusters <= segments)
     )
-    axes = axes_between(planes, labels, shape)
+    axes = axes_between(planes, labels, interior_shares(labels, shape))
     return (
         refit_labels(combine_planes(axes, planes), labels, shape, FINAL_ROUNDS, 1) if len(axes) else labels * 0
     ), axes

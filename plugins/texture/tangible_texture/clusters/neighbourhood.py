@@ -59,6 +59,12 @@ def interior_scatters(
     return scatters(planes, memberships * smooth_memberships(memberships, shape, INSIDE_CELLS) ** 2)
 
 
+def interior_shares(labels: Int32[np.ndarray, "n"], shape: tuple[int, int]) -> Float32[np.ndarray, "n"]:
+    """Return the share of a cell's own class in the window around it: 1 well inside, about 1/2 on borders."""
+    shares = smooth_memberships(one_hot(labels, int(labels.max()) + 1), shape, INSIDE_CELLS)
+    return shares[labels, np.arange(labels.size)]
+
+
 def refit_labels(
     planes: Float32[np.ndarray, "d n"], labels: Int32[np.ndarray, "n"], shape: tuple[int, int], rounds: int, votes: int
 ) -> Int32[np.ndarray, "n"]:

@@ -11,8 +11,15 @@ from tangible_texture.clusters.classes import _resample_labels, classes
 from tangible_texture.clusters.discriminants import discriminant_axes, evidence, principal_axes, scatters
 from tangible_texture.clusters.dividing import divide, one_hot
 from tangible_texture.clusters.full_size import pixel_labels
-from tangible_texture.clusters.joining import join_clusters, joining_costs
-from tangible_texture.clusters.neighbourhood import INSIDE_CELLS, mean_field, refit_labels, smooth_memberships
+from tangible_texture.clusters.joining import join_clusters
+from tangible_texture.clusters.neighbourhood import (
+    INSIDE_CELLS,
+    interior_shares,
+    mean_field,
+    refit_labels,
+    smooth_memberships,
+)
+from tangible_texture.clusters.pairs import measure_pairs
 from tangible_texture.clusters.planes import (
     combine_planes,
     inner_products,
@@ -128,7 +135,7 @@ def test_halves_of_one_group_cost_the_least_to_join(random: np.random.Generator,
     shape = (20, 20)
     thirds = labels * 2 + (np.arange(400) // 20 % 10 >= 5) * (labels == 0)
     thirds = thirds.astype(np.int32)
-    costs = joining_costs(planes, thirds, shape)
+    costs = measure_pairs(planes, thirds, interior_shares(thirds, shape)).joining_costs(0.4)
     assert np.unravel_index(costs.argmin(), costs.shape) == (1, 0)
     steps = list(join_clusters(planes, thirds, shape, renewed))
     assert [each.clusters for each in steps] == [3, 2, 1]
@@ -145,30 +152,63 @@ def test_clusters_without_differences_are_joined_into_one():
     assert not steps[0].labels.any()
 
 
-@pytest.mark.parametrize(("given", "power"), [({}, 0.4), ({"power": 0.8}, 0.8)])
-def test_joining_costs_match_their_formula(random: np.random.Generator, given: dict[str, float], power: float):
-    """The formula is D (m k / n)^power, D the squared Mahalanobis distance, in scatters with a ridge of a twentieth."""
-    shape, count = (12, 30), 4
+def four_clusters(random: np.random.Generator) -> tuple[np.ndarray, np.ndarray, tuple[int, int]]:
+    """Features of five planes, labels of four overlapping clusters, one of them in one piece, and the grid's shape."""
+    shape = (12, 30)
     labels = random.integers(0, 3, shape).astype(np.int32)
     labels[:, 20:] = 3
     planes = random.standard_normal((5, labels.size)).astype(np.float32) + labels.ravel() * 0.3
-    planes = planes.astype(np.float32)
-    own = one_hot(labels.ravel(), count)
+    return planes.astype(np.float32), labels.ravel(), shape
+
+
+def moments_by_formula(
+    planes: np.ndarray, labels: np.ndarray, shape: tuple[int, int]
+) -> tuple[np.ndarray, list[np.ndarray], list[np.ndarray]]:
+    """Sizes, means and scatters of clusters, each cell weighed by the squared share of its own around it."""
+    count = int(labels.max()) + 1
+    own = one_hot(labels, count)
     weights = (own * (smooth_memberships(own, shape, INSIDE_CELLS) ** 2 + 1e-3)).max(axis=0).astype(np.float64)
-    sizes = np.bincount(labels.ravel())
-    parts = [(planes[:, labels.ravel() == k].astype(np.float64), weights[labels.ravel() == k]) for k in range(count)]
+    parts = [(planes[:, labels == k].astype(np.float64), weights[labels == k]) for k in range(count)]
     means = [np.average(part, axis=1, weights=heavy) for part, heavy in parts]
-    scatter_of = [np.cov(part, aweights=heavy, ddof=0) for part, heavy in parts]
+    return np.bincount(labels), means, [np.cov(part, aweights=heavy, ddof=0) for part, heavy in parts]
+
+
+@pytest.mark.parametrize("power", [0.4, 0.8])
+def test_joining_costs_match_their_formula(random: np.random.Generator, power: float):
+    """The formula is D (m k / n)^power, D the squared Mahalanobis distance, in scatters with a ridge of a twentieth."""
+    planes, labels, shape = four_clusters(random)
+    sizes, means, scatter_of = moments_by_formula(planes, labels, shape)
     ridge = 0.05 * sum(size * np.trace(each) for size, each in zip(sizes, scatter_of, strict=True)) / sizes.sum() / 5
-    costs = joining_costs(planes, labels.ravel(), shape, **given)
-    assert np.isinf(costs[np.triu_indices(count)]).all()
-    for one in range(count):
+    costs = measure_pairs(planes, labels, interior_shares(labels, shape)).joining_costs(power)
+    assert np.isinf(costs[np.triu_indices(4)]).all()
+    for one in range(4):
         for other in range(one):
             step = means[one] - means[other]
             within = (scatter_of[one] + scatter_of[other]) / 2 + ridge * np.eye(5)
-            size = sizes[one] * sizes[other] / (sizes[one] + sizes[other]) * count / sizes.sum()
+            size = sizes[one] * sizes[other] / (sizes[one] + sizes[other]) * 4 / sizes.sum()
             expected = step @ np.linalg.solve(within, step) * size**power
             assert costs[one, other] == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.parametrize(("lower", "higher"), [(0, 1), (0, 3), (1, 3), (2, 3)])
+def test_pairs_left_by_a_joining_have_the_moments_and_distances_of_the_joined_cells(
+    random: np.random.Generator, lower: int, higher: int
+):
+    planes, labels, shape = four_clusters(random)
+    pairs = measure_pairs(planes, labels, interior_shares(labels, shape))
+    before = pairs.distances.copy()
+    joined = np.where(labels == higher, lower, labels - (labels > higher)).astype(np.int32)
+    found = pairs.join(lower, higher, planes, joined, shape)
+    sizes, means, scatter_of = moments_by_formula(planes, joined, shape)
+    np.testing.assert_array_equal(found.sizes, sizes)
+    np.testing.assert_allclose(found.means, means, rtol=1e-4, atol=1e-5)
+    np.testing.assert_allclose(found.scatters, scatter_of, rtol=1e-4, atol=1e-4)
+    assert found.ridge == pairs.ridge
+    for one, other in [(0, 1), (0, 2), (1, 2), (2, 1)]:
+        step = means[one] - means[other]
+        within = (scatter_of[one] + scatter_of[other]) / 2 + pairs.ridge * np.eye(5)
+        assert found.distances[one, other] == pytest.approx(step @ np.linalg.solve(within, step), rel=1e-3)
+    np.testing.assert_array_equal(pairs.distances, before)
 
 
 def test_patterns_of_a_flat_picture_are_all_bright():
@@ -333,7 +373,7 @@ def test_sizes_count_more_of_eight_segments_and_more(
 ):
     used: list[float] = []
     monkeypatch.setattr(
-        "tangible_texture.clusters.joining._powers", lambda sizes, power: used.append(power) or np.ones_like(sizes)
+        "tangible_texture.clusters.pairs._powers", lambda sizes, power: used.append(power) or np.ones_like(sizes)
     )
     planes = random.standard_normal((6, 400)).astype(np.float32) + (np.arange(400) // 25 % 20).astype(np.float32)
     window = Window(planes.astype(np.float32), (20, 20))

@@ -1,0 +1,133 @@
+"""The sentences of a result, from rows whose figures are given: which condition, which side, which unit."""
+
+from math import nan
+
+import pytest
+
+from tangible_study.analysis.analysing import analyse_comparison
+from tangible_study.analysis.rows import Result, Row, What
+from tangible_study.analysis.sentences import sentences
+from tangible_study.design.study import Comparison
+from tangible_study.statistics.intervals import Estimate
+from tangible_study.trials import Answer
+
+FEW = "The result is about 1 participant, and says little about other people."
+
+
+def row(measure: str, one: str, estimate: tuple[float, ...], other: str = "", unit: str = "m", **more: float) -> Row:
+    return Row(What(measure, one, other), "S01", Estimate(*estimate), unit, 20, None, **{"chance": 0.002, **more})
+
+
+def text_of(question: str, main: str, *rows: Row) -> list[str]:
+    *found, few = sentences(Result("c", question, ["S01"], rows, main))
+    assert few == FEW
+    return found
+
+
+def test_equal_level_and_noticed_difference_are_those_of_one_condition():
+    found = text_of(
+        "higher",
+        "point of equality",
+        row("point of equality", "one", (0.0024, 0.0021, 0.0027)),
+        row("point of equality", "two", (0.0016, 0.0013, 0.0019)),
+        row("just noticeable difference", "one", (0.0003,)),
+        row("just noticeable difference", "two", (0.0005,)),
+    )
+    equal = "feels equal to the standard, 0.002 m"
+    noticed = "is noticed in three of four trials."
+    assert found == [
+        f"With one, 0.0024 m {equal} (95 % interval 0.0021 to 0.0027).",
+        f"A difference of 0.0003 m {noticed}",
+        f"With two, 0.0016 m {equal} (95 % interval 0.0013 to 0.0019).",
+        f"A difference of 0.0005 m {noticed}",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("error_m", "sentence"),
+    [
+        (0.0004, "With one, 1 participant went 0.0004 m above the standard on average (no interval from one value)."),
+        (-0.0004, "With one, 1 participant went 0.0004 m below the standard on average (no interval from one value)."),
+    ],
+)
+def test_constant_error_lies_on_its_side_of_the_standard(error_m: float, sentence: str):
+    assert text_of("equal", "constant error", row("constant error", "one", (error_m,))) == [sentence]
+
+
+@pytest.mark.parametrize(
+    ("share", "more", "less", "sure"),
+    [
+        ((0.9, 0.7, 0.99), "one", "two", True),
+        ((0.2, 0.1, 0.4), "two", "one", True),
+        ((0.6, 0.4, 0.8), "one", "two", False),
+    ],
+)  # fmt: skip
+def test_condition_that_was_chosen_more_often_is_more(share: tuple[float, ...], more: str, less: str, sure: bool):
+    (found,) = text_of("rougher", "proportion chosen", row("proportion chosen", "one", share, "two", chance=0.5))
+    claim = f"{more} is rougher than {less}"
+    value, low, high = (f"{100 * each:.0f}" for each in share)
+    chose = f"1 participant chose one in {value} % of 20 trials (95 % interval {low} to {high} %)"
+    if sure:
+        assert found == f"{claim}: {chose}; no difference gives 50 %."
+    else:
+        assert found == f"It is open whether {claim}: {chose}, and no difference gives 50 %."
+
+
+@pytest.mark.parametrize(
+    ("estimate", "p", "sentence"),
+    [
+        ((3.0, 1.0, 5.0), nan, "With two, the rating is 3 greater than with one (95 % interval 1 to 5)."),
+        ((-3.0, -5.0, -1.0), nan, "With two, the rating is 3 smaller than with one (95 % interval 1 to 5)."),
+        ((-1.0, -3.0, 1.0), nan, "It is open whether the rating differs: with two, it is 1 smaller than with one "
+         "(95 % interval -1 to 3, which holds 0)."),
+        ((3.0, 1.0, 5.0), 0.2, "It is open whether the rating differs: with two, it is 3 greater than with one "
+         "(95 % interval 1 to 5, which holds 0)."),
+        ((2.0,), nan, "With two, the rating is 2 greater than with one; one value each does not tell how sure that "
+         "is."),
+    ],
+)  # fmt: skip
+def test_difference_has_its_direction_and_a_rising_interval(estimate: tuple[float, ...], p: float, sentence: str):
+    difference = row("difference of mean rating", "two", estimate, "one", "", chance=0.0, p=p)
+    assert text_of("rating", "mean rating", difference) == [sentence]
+
+
+@pytest.mark.parametrize(("p", "studies"), [(0.04, "about 1 of 20"), (0.003, "about 1 of 300"), (0.05, None)])
+def test_probability_below_5_percent_is_a_count_of_studies(p: float, studies: str | None):
+    sure = row("difference of mean rating", "two", (3.0, 1.0, 5.0), "one", chance=0.0, p=p)
+    found = text_of("rating", "mean rating", sure)[1:]
+    expected = f"If there were no difference, a result as clear as this would come about in {studies} studies."
+    assert found == ([] if studies is None else [expected])
+
+
+@pytest.mark.parametrize(("count", "warned"), [(2, False), (3, True)])
+def test_three_differences_are_said_to_show_one_by_chance(count: int, warned: bool):
+    rows = [row("difference of mean rating", f"{each}", (2.0,), "one") for each in range(count)]
+    found = text_of("rating", "mean rating", *rows)[count:]
+    expected = "3 differences were looked for: if there were none, about one in 20 would seem to be there."
+    assert found == ([expected] if warned else [])
+
+
+def answers(question: str, *given: tuple[str, float | None, str, int | None]) -> dict[str, list[Answer]]:
+    """Return answers of one participant: condition, level, response, and 1 if right."""
+    return {
+        "S01": [
+            Answer(number, "test", "c", question, "any", condition, level=level, response=response, correct=correct)
+            for number, (condition, level, response, correct) in enumerate(given, start=1)
+        ]
+    }
+
+
+def values(result: Result, measure: str) -> dict[str, float]:
+    return {each.what.condition: each.estimate.value for each in result.of_all(measure)}
+
+
+def test_ratings_are_averaged_for_each_level():
+    given = answers("rating", ("one", 0.1, "2", None), ("one", 0.1, "3", None), ("one", 0.2, "6", None))
+    found = analyse_comparison(Comparison(name="c", question="rating"), given)
+    assert values(found, "mean rating") == {"one at 0.1": 2.5, "one at 0.2": 6.0}
+
+
+def test_names_are_right_for_each_level():
+    given = answers("name", ("one", 0.1, "ear", 1), ("one", 0.1, "eye", 0), ("one", 0.2, "eye", 1))
+    found = analyse_comparison(Comparison(name="c", question="name", names=("ear", "eye")), given)
+    assert values(found, "proportion correct") == {"one at 0.1": 0.5, "one at 0.2": 1.0}

@@ -18,7 +18,7 @@ from tangible_core import (
     SegmentMap,
     Views,
 )
-from tangible_core.data.arguments import as_array, as_force, as_picture, as_state
+from tangible_core.data.arguments import as_array, as_force, as_picture, as_state, named_options
 from tangible_core.data.device import Force, HapticState
 from tangible_core.data.ticks import TICK_COLUMNS
 from tangible_core.errors import ArgumentError, TangibleError
@@ -59,6 +59,21 @@ def test_wrong_argument_gives_one_sentence_with_its_name(make: Callable[[], Any]
         make()
     assert isinstance(raised.value, TypeError)
     assert "\n" not in str(raised.value)
+
+
+class Pen:
+    @named_options
+    def draw(self, at: int, /, wide: int = 1, *points: int, tall: int = 1, **more: int) -> int:
+        return at + wide + sum(points) + tall + sum(more.values())
+
+
+def test_unknown_option_lists_only_the_names_that_may_be_written():
+    assert Pen().draw(1, 2, 3, tall=4) == 10
+    for name in ("tal", "self", "at", "points", "more"):
+        with pytest.raises(ArgumentError) as raised:
+            Pen().draw(1, **{name: 2})
+        meant = " (did you mean 'tall'?)" if name == "tal" else ""
+        assert str(raised.value) == f"Pen.draw: {name}: unknown option{meant}; known: wide, tall"
 
 
 def test_convertible_arguments_are_converted():

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
+import numpy as np
 import pytest
 
 from faulty_touch import FaultyTouch
@@ -20,7 +21,7 @@ from loop_scenes import held_force, proxy
 from tangible_core.errors import BrokenMethod, DeviceError
 from tangible_core.plugins.interfaces import Touch
 from tangible_core.servo import Safety, Servo, host, supervisor
-from tangible_core.servo.ring import COUNT, Ring, shared_folder
+from tangible_core.servo.ring import COUNT, LAST, STOP, Ring, shared_folder
 from waiting import until
 
 pytestmark = pytest.mark.usefixtures("own_memory")
@@ -187,6 +188,38 @@ class TestStandstill:
             until(lambda: not servo.running)
             assert servo.report().ticks == 8
             assert servo.report().stopped == "the time is over"
+
+    @pytest.mark.parametrize(
+        ("counts", "word", "looks"),
+        [
+            ([5] * 99, -1, 5),  # four looks after the first one that sees the count
+            ([5, 5, 5, 5, 6, 6, 6, 6, 6, 6], -1, 9),
+            ([5] * 99, STOP, 61),
+            ([5] * 99, LAST, 61),
+        ],
+    )
+    def test_loop_is_killed_at_the_look_after_its_bound(
+        self, monkeypatch: pytest.MonkeyPatch, counts: list[int], word: int, looks: int
+    ) -> None:
+        """A bound of 0.2 s is four looks without a tick; one of 3 s, for a loop that is to end, is sixty."""
+        monkeypatch.setattr(supervisor, "STANDSTILL_S", 0.2)
+        header, seen, killed = np.zeros(max(COUNT, LAST, STOP) + 1, np.int64), 0, list[str]()
+        header[LAST] = 1000
+        if word >= 0:
+            header[word] = 1
+
+        class Looks:
+            def wait(self, seconds: float) -> bool:
+                nonlocal seen
+                assert seconds == 0.05
+                header[COUNT], seen = counts[seen], seen + 1
+                return False
+
+        process = supervisor.LoopProcess(Failing(fault="none"), 0.001)
+        monkeypatch.setattr(process, "_over", Looks())
+        monkeypatch.setattr(process, "_kill", killed.append)
+        process._watch(header)
+        assert (seen, killed) == (looks, [supervisor.STOOD_STILL])
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_law_that_compiles_on_first_use_is_not_a_standstill(self) -> None:

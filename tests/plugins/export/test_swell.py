@@ -190,6 +190,10 @@ def test_ink_copy_has_names_and_letters_where_the_parts_are_and_a_scale(tmp_path
     assert {"Coast", "5 cm"} < texts.keys() and any("nicht schwellen" in each for each in texts)
     (scale,) = re.findall(r"M([\d.]+) [\d.]+L([\d.]+) ", ink.find(".//*[@data-mark='scale']").get("d"))
     assert float(scale[1]) - float(scale[0]) == 50
+    (note,) = (at for each, at in texts.items() if "nicht schwellen" in each)
+    word = texts["5 cm"]
+    assert float(scale[1]) < word[0] and word[0] + 9 < note[0] < 150, "side by side: the bar, its length, the note"
+    assert word[1] == note[1] and 200 < note[1] < 210, "in the lower margin of A4 on its side"
     marks = [len(list(root.iterfind(".//{*}circle"))) for root in (page_root, ink)]
     assert marks[0] == marks[1] > 0
     words = ["pdftotext", "-layout", str(named(files, "-swell-ink.pdf")), "-"]

@@ -106,6 +106,13 @@ def test_constant_row_offset_is_corrected_in_each_frame():
     assert share_wrong(estimate(lower), true, hidden) < 0.1
 
 
+def test_row_offset_of_a_film_is_corrected_within_a_given_range():
+    views, true, hidden = step((120, 200))
+    lower = Views(views.left, np.roll(views.right, 1, axis=0))
+    estimate = SemiGlobal(resolution="half", min_disparity_px=0, max_disparity_px=24).follow(lower)
+    assert share_wrong(estimate(lower), true, hidden) < 0.1
+
+
 def test_calibrated_film_is_not_rectified(monkeypatch):
     monkeypatch.setattr(film, "align_rows", None)
     views, true, hidden = step()

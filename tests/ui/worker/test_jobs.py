@@ -1,6 +1,7 @@
 """The worker's state and its quick jobs: what is read again, what devices can do, and who waits for a worker."""
 
 import asyncio
+import re
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import tangible_ui
 from sessions import TEXT, small_scene
 from tangible_legibility.words.languages import LANGUAGES
 from tangible_ui.worker import handle
@@ -16,6 +18,16 @@ from tangible_ui.worker.handle import MOST_DEATHS, Worker, WorkerAbsent, WorkerK
 from tangible_ui.worker.jobs import JOBS
 from tangible_ui.worker.messages import Event
 from tangible_ui.worker.state import WorkerState
+
+LONG = {"export", "fix", "laws", "legible", "make", "preflight", "try_law"}
+"""Jobs that compute for seconds, one after the other; any other job goes on next to them."""
+
+
+def test_jobs_that_a_request_waits_for_are_not_behind_a_long_one() -> None:
+    assert {name for name, each in JOBS.items() if not each.quick} == LONG
+    sources = "".join(each.read_text() for each in Path(str(tangible_ui.__file__)).parent.rglob("*.py"))
+    repeated = re.findall(r"\.quick\(\s*\"(\w+)\"", sources)
+    assert len(repeated) >= 30 and all(JOBS[each].quick for each in repeated)
 
 
 def test_picture_that_was_changed_is_read_again_and_others_are_not(worker_state: WorkerState, tmp_path: Path) -> None:

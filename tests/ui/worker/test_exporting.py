@@ -4,6 +4,7 @@ import asyncio
 import threading
 from collections.abc import Callable, Coroutine
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 from zipfile import ZipFile
 
@@ -55,7 +56,9 @@ class TestExport:
 
         async def check(small: SmallSession, ask: Ask) -> None:
             await ask("edit", text=TEXT.replace("relief_m: 0.004", "relief_m: 0.001"))  # and it is not saved
+            begun_s = perf_counter()
             found = await ask("export", exports=[STL])
+            assert 0 <= small.tab.last("made")["seconds"] <= perf_counter() - begun_s
             told = small.tab.last("exported")
             assert {key: told[key] for key in found} == found
             assert (told["digest"], small.tab.last("made")["want"]) == (small.session.digest, "export")
@@ -191,7 +194,9 @@ class TestPreviews:
 class TestLegible:
     def test_legibility_verdicts_pass_after_their_cure(self, small: Any) -> None:
         async def check(small: SmallSession, ask: Ask) -> None:
+            begun_s = perf_counter()
             drawn = await ask("legible", medium="swell", width_m=0.08)
+            assert 0 <= small.tab.last("made")["seconds"] <= perf_counter() - begun_s
             assert (drawn["grade"], drawn["simplified"]) == ("ok", True), "paper gets simplified parts in any case"
             await ask("set", changes={"simplify": {"gap_m": 0.0, "part_m": 0.0}})
             before = small.session.text

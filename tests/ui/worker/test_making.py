@@ -4,6 +4,7 @@ import asyncio
 import threading
 from collections.abc import Callable, Coroutine
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -60,7 +61,9 @@ def make(worker_state: WorkerState, text: str, path: Path, want: str = "touch", 
 
 
 def test_make_sends_plan_stages_and_outcome(worker_state: WorkerState, scene: Path):
+    begun_s = perf_counter()
     assert make(worker_state, TEXT, scene)["law"] == "penalty"
+    passed_s = perf_counter() - begun_s
     (plan,) = events(worker_state, "plan")
     assert [(each["product"], each["outcome"]) for each in plan["steps"]][:2] == [
         ("views", "given"), ("disparity", "ran"),
@@ -73,6 +76,7 @@ def test_make_sends_plan_stages_and_outcome(worker_state: WorkerState, scene: Pa
     )
     (made,) = events(worker_state, "made")
     assert made["outcome"] == "made"
+    assert 0 <= made["seconds"] <= passed_s
     assert made["digest"] == plan["digest"]
     assert len(events(worker_state, "materials")[0]["segments"]) == 3
 
@@ -303,7 +307,10 @@ def test_preflight_cures_change_the_document(small: Any):
 def test_preflight_judges_the_lateness_of_the_running_loop(worker_state: WorkerState, scene: Path):
     late = Late(np.full(2000, 0.004), 0.001, True)
     told = {"text": TEXT, "path": scene, "sets": [], "own": DEVICE[0]}
+    begun_s = perf_counter()
     found = JOBS["preflight"].do(worker_state, number=1, late=late, **told)
+    (made,) = events(worker_state, "made")
+    assert 0 <= made["seconds"] <= perf_counter() - begun_s
     assert found["of_loop"]
     late = next(each for each in found["verdicts"] if each["check"] == "jitter")
     assert late["verdict"] != "ok"

@@ -1,7 +1,9 @@
 """The engine, on methods of its own that count how often they run."""
 
+import contextlib
 import logging
 from pathlib import Path
+from time import perf_counter
 from typing import ClassVar
 
 import numpy as np
@@ -253,6 +255,19 @@ def test_second_run_takes_the_surface_from_the_cache(folder: Path):
     assert outcome_kinds(again)["disparity"] == "skipped"
     assert again.make("disparity") is not None
     assert outcome_kinds(again)["disparity"] == "cached"
+
+
+def test_outcomes_tell_no_more_time_than_passed(folder: Path):
+    told = set[str]()
+    for parts in ({}, {}, {"texture": name_method(Fails()), "want": "segments"}):
+        pipe, begun_s = pipeline(folder, **parts), perf_counter()
+        with contextlib.suppress(ZeroDivisionError):
+            pipe.make()
+        passed_s = perf_counter() - begun_s
+        timed = [each for each in pipe.outcomes if each.outcome != "skipped"]
+        told.update(each.outcome for each in timed)
+        assert all(0 <= each.seconds <= passed_s for each in timed)
+    assert told == {"given", "ran", "cached", "failed"}
 
 
 @pytest.mark.parametrize(

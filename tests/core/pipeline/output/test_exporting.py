@@ -6,6 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Event
+from time import perf_counter
 from typing import Any, ClassVar
 
 import numpy as np
@@ -553,6 +554,11 @@ class TestDocument:
     def test_wrong_override_is_named_in_the_complaint(self, tmp_path: Path, override: str, says: str):
         with pytest.raises(ConfigError, match=says):
             parse_config("scene: builtin/coins", tmp_path / "p.yaml", default_registry(), [override])
+
+    def test_outcome_tells_no_more_time_than_passed(self, tmp_path: Path):
+        begun_s = perf_counter()
+        (one,) = pipeline(**SAID).export(tmp_path, [Report()]).exports
+        assert 0 <= one.outcome.seconds <= perf_counter() - begun_s
 
     def test_exporter_by_name_has_the_options_of_the_list(self, tmp_path: Path):
         np.save(tmp_path / "map.npy", np.eye(8))

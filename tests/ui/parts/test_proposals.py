@@ -175,6 +175,22 @@ class TestProposals:
             rim = proposals._rim(window, none, SHAPE)
             assert [bool(each) for each in (rim[0, 5], rim[-1, 5], rim[5, 0], rim[5, -1])] == sides
 
+    @pytest.mark.parametrize(
+        ("point", "size", "row", "column"),
+        [
+            ((12.4, 23.4), (8, 6), 3, 2),  # pixels have their middles at whole numbers
+            ((12.6, 22.6), (8, 6), 3, 3),
+            ((13.4, 23.4), (4, 3), 1, 1),  # a pixel of the small grid has two by two of the picture
+            ((13.6, 23.6), (4, 3), 2, 2),
+        ],
+    )
+    def test_thin_stroke_is_drawn_on_the_pixel_below_it(
+        self, point: tuple[float, float], size: tuple[int, int], row: int, column: int
+    ) -> None:
+        window = proposals.Window(10, 20, 8, 6)
+        drawn = proposals._draw_stroke(np.array([point]), 1.0, window, size)
+        assert np.argwhere(drawn).tolist() == [[row, column]]
+
     def test_proposal_ignores_a_box_that_the_stroke_leaves(self) -> None:
         picture, inside = two_things()
         assert overlap(place(*propose(picture, STROKE, 12, "grabcut", [0, 0, 20, 20])), inside) > 0.95

@@ -33,6 +33,12 @@ def _widen(data: LegibilityInput, times: float) -> list[str | Change]:
     return [Change("workspace.width_m", over(times * data.width_m), "at least"), ", "]
 
 
+def _widen_or_leave_out(data: LegibilityInput, bound: float, simplified: str = "") -> Callable[[float], Cure]:
+    """Return what makes a length at least as large as the bound. simplified: the key of a simplification that does."""
+    first = [Change(simplified, over(bound), "at least"), ", "] if simplified else []
+    return lambda length_m: [*first, *_widen(data, bound / max(length_m, 1e-9)), FEWER_PARTS]
+
+
 def parts(data: LegibilityInput) -> Iterator[Verdict]:
     """Check that there is more than one part."""
     count = int(np.count_nonzero(np.bincount(data.parts.labels.reshape(-1))))
@@ -50,11 +56,7 @@ def gap(data: LegibilityInput) -> Iterator[Verdict]:
         )
         for place in data.widths.places
     ]
-
-    def cure(width_m: float) -> Cure:
-        simplified = Change("simplify.gap_m", over(rule.bound), "at least")
-        return [simplified, ", ", *_widen(data, rule.bound / max(width_m, 1e-9)), FEWER_PARTS]
-
+    cure = _widen_or_leave_out(data, rule.bound, "simplify.gap_m")
     worse, others = "is too narrow for a finger", "more places are too narrow for a finger"
     yield from data.judge("gap", measured, cure, none=rule.bound, of="places", worse=worse, others=others)
 
@@ -67,11 +69,7 @@ def part(data: LegibilityInput) -> Iterator[Verdict]:
     measured = _measure_pieces(data, small, wide.disc_m) or [
         Measurement(data.describe_part(int(wide.part[smallest])), float(wide.disc_m[smallest]))
     ]
-
-    def cure(disc_m: float) -> Cure:
-        simplified = Change("simplify.part_m", over(rule.bound), "at least")
-        return [simplified, ", ", *_widen(data, rule.bound / max(disc_m, 1e-9)), FEWER_PARTS]
-
+    cure = _widen_or_leave_out(data, rule.bound, "simplify.part_m")
     worse, others = "is smaller than a fingertip", "more parts are smaller than a fingertip"
     yield from data.judge("part", measured, cure, none=rule.bound, of="parts", worse=worse, others=others)
 
@@ -83,10 +81,7 @@ def shape(data: LegibilityInput) -> Iterator[Verdict]:
     sides_m = data.pitch_m * _longer_sides(wide.pieces, wide.part.size)
     measured = _measure_pieces(data, large[sides_m[large] < rule.bound], sides_m)
     least = float(sides_m[large].min(initial=np.inf))
-
-    def cure(side_m: float) -> Cure:
-        return [*_widen(data, rule.bound / max(side_m, 1e-9)), FEWER_PARTS]
-
+    cure = _widen_or_leave_out(data, rule.bound)
     none = least if np.isfinite(least) else rule.bound
     worse = "is so small that its shape is hard to recognise"
     others = "more parts are so small that their shape is hard to recognise"

@@ -2,6 +2,8 @@
 
 # ruff: noqa: ANN001, ANN202 -- numba takes the types from the call
 
+from functools import cache
+
 import numpy as np
 from jaxtyping import Float32, Int32
 
@@ -26,13 +28,19 @@ def smooth_memberships(memberships: Float32[np.ndarray, "k n"], shape: tuple[int
     """Compute Gaussian means of each class's memberships over the grid of cells."""
     import cv2
 
-    result = np.empty(memberships.shape, np.float32)
-    # computed once: grids are small, and classes many
-    taps = cv2.getGaussianKernel(2 * round(4 * sigma) + 1, sigma, cv2.CV_32F)
+    result, taps = np.empty(memberships.shape, np.float32), _gaussian(sigma)
     with plain_opencv():
         for each, out in zip(memberships, result, strict=True):
             cv2.sepFilter2D(each.reshape(shape), -1, taps, taps, dst=out.reshape(shape), borderType=cv2.BORDER_REFLECT)
     return result
+
+
+@cache
+def _gaussian(sigma: float) -> Float32[np.ndarray, "t 1"]:
+    """Return the taps of a Gaussian, up to four standard deviations: computed once, as grids are small and many."""
+    import cv2
+
+    return np.asarray(cv2.getGaussianKernel(2 * round(4 * sigma) + 1, sigma, cv2.CV_32F), np.float32)
 
 
 def mean_field(

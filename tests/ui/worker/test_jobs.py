@@ -12,6 +12,7 @@ from PIL import Image
 
 import tangible_ui
 from sessions import TEXT, small_scene
+from tangible_core.errors import ConfigError
 from tangible_legibility.words.languages import LANGUAGES
 from tangible_ui.worker import handle
 from tangible_ui.worker.handle import MOST_DEATHS, Worker, WorkerAbsent, WorkerKilled
@@ -28,6 +29,18 @@ def test_jobs_that_a_request_waits_for_are_not_behind_a_long_one() -> None:
     sources = "".join(each.read_text() for each in Path(str(tangible_ui.__file__)).parent.rglob("*.py"))
     repeated = re.findall(r"\.quick\(\s*\"(\w+)\"", sources)
     assert len(repeated) >= 30 and all(JOBS[each].quick for each in repeated)
+
+
+def test_pipeline_file_counts_alone_and_two_are_refused(worker_state: WorkerState, tmp_path: Path) -> None:
+    path = small_scene(tmp_path)
+    path.write_text(TEXT)
+    other = path.with_name("other.YML")
+    begin = JOBS["begin"].do
+    assert begin(worker_state, files=[tmp_path / "mine.png", path]) == {"text": TEXT, "path": path}
+    with pytest.raises(ConfigError, match=r"^mine\.yaml, other\.YML: open one pipeline file at a time$"):
+        begin(worker_state, files=[path, tmp_path / "mine.png", other])
+    with pytest.raises(ConfigError, match=r"^mine\.txt: is not a picture, video"):
+        begin(worker_state, files=[tmp_path / "mine.png", tmp_path / "mine.txt"])
 
 
 def test_picture_that_was_changed_is_read_again_and_others_are_not(worker_state: WorkerState, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tangible_core.cli import sentences
+from tangible_core.cli.commands.run import LINES
 from tangible_core.data import HapticSurface, Outcome
 from tangible_core.data.outcome import OutcomeKind
 
@@ -116,3 +117,23 @@ def test_replay_summary_tells_both_shares():
 )
 def test_estimated_time_is_rounded_to_what_a_person_needs(seconds: float, words: str):
     assert sentences.approximately(seconds) == words
+
+
+@pytest.mark.parametrize(
+    ("what", "figures", "lines"),
+    [
+        ("disparity", {"bad1": 12.5, "bad2": 6.25, "average_px": 0.75, "rms_px": 1.5, "density": 90.0},
+         ["12.50 % of the pixels are off by more than 1 px (bad1), 6.25 % by more than 2 px (bad2); unknown ones count "
+          "as bad", "average 0.750 px, rms 1.500 px over the 90.0 % that are known"]),
+        ("force", {"peak_force_n": 2.5, "median_contact_force_n": 1.25, "contact_share": 0.75, "seconds": 4.0,
+                   "ticks": 4000},
+         ["peak 2.50 N, median in contact 1.25 N, in contact 75 % of 4.0 s (4000 ticks)"]),
+        ("parts", {"0": {"name": "sea", "height_m": 0.0, "material": "ice", "why": ""},
+                   "1": {"name": "", "height_m": 0.0125, "material": "", "why": "it is near"},
+                   "2": {"name": "land", "height_m": None, "material": "sand", "why": "it is far"}},
+         ["1: sea, 0 mm high, ice", "2: 12.5 mm high (it is near)", "3: land, sand (it is far)"]),
+        ("materials", {"0": {"name": "ice", "why": "segment 1: it is smooth -> ice"}}, ["1: ice (it is smooth)"]),
+    ],
+)  # fmt: skip
+def test_lines_of_a_run_have_each_figure_in_its_place(what: str, figures: dict[str, Any], lines: list[str]):
+    assert LINES[what][1](figures) == lines

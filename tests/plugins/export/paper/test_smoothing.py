@@ -52,6 +52,13 @@ def test_smooth_border_of_an_enclosed_part_is_round():
     assert len(ground.interiors) == 1 and ground.area + disc.area == pytest.approx(WIDTH_MM**2)
 
 
+def test_smooth_border_of_a_small_disc_keeps_its_area():
+    """A Gaussian shrinks a circle by s^2 / 2 r, the second pass takes it back."""
+    labels = (disc_and_halves(720, 6).labels == 2).astype(np.int32)
+    _, disc = smooth_borders(PartMap(labels, (0, 1)), WIDTH_MM)
+    assert disc.area == pytest.approx(labels.sum() * (WIDTH_MM / 720) ** 2, rel=5e-3)
+
+
 def test_smooth_borders_keep_every_part_and_its_pieces():
     labels = np.zeros((90, 90), np.int32)
     labels[10:30, 10:30] = labels[60:80, 50:80] = 2

@@ -34,7 +34,7 @@ def _widen(data: LegibilityInput, times: float) -> list[str | Change]:
 
 
 def _widen_or_leave_out(data: LegibilityInput, bound: float, simplified: str = "") -> Callable[[float], Cure]:
-    """Return what makes a length at least as large as the bound. simplified: the key of a simplification that does."""
+    """Return the cure of a length below the bound. simplified: the key of a simplification that cures it as well."""
     first = [Change(simplified, over(bound), "at least"), ", "] if simplified else []
     return lambda length_m: [*first, *_widen(data, bound / max(length_m, 1e-9)), FEWER_PARTS]
 

@@ -16,7 +16,7 @@ from .planes import inner_products, scatter_matrix_in_kernel
 RIDGE = 0.05
 """The ridge added to each pair's scatter, as a share of the mean variance within clusters."""
 LEAST_WEIGHT = 1e-3
-"""The weight of a cell that has no neighbour of its own cluster."""
+"""What is added to the weight of every cell, so that no cluster weighs nothing."""
 
 
 class Pairs(NamedTuple):
@@ -39,10 +39,9 @@ class Pairs(NamedTuple):
         count = len(self.sizes)
         higher, lower = np.tril_indices(count, -1)
         a, b = self.sizes[higher], self.sizes[lower]
+        powers = _powers(a * b / (a + b) * count / self.sizes.sum(), power)
         costs = np.full((count, count), np.inf)
-        costs[higher, lower] = self.distances[higher, lower] * _powers(
-            a * b / (a + b) * count / self.sizes.sum(), power
-        )
+        costs[higher, lower] = self.distances[higher, lower] * powers
         return costs
 
     def join(

@@ -203,6 +203,31 @@ def test_start_without_a_file_offers_three_tiles_until_a_file_is_opened(page: "P
     assert page.evaluate("document.activeElement.id") == "terrain"
 
 
+def test_newest_folder_that_was_asked_for_stays_listed_when_an_older_answer_comes_last(page: "Page", tmp_path: Path):
+    (tmp_path / "newest.npy").touch()
+    page.evaluate(
+        """() => {
+          const { net } = page;
+          const ask = net.ask.bind(net);
+          window.late = new Promise((done) => (window.let_go = done));
+          net.ask = async (name, args) => {
+            const answer = await ask(name, args);
+            if (name === "folder" && !args.path) await late;
+            return answer;
+          };
+        }"""
+    )
+    folder = open_panel(page, "open").locator("details", has_text="Folder of this computer")
+    folder.locator("summary").press("Enter")
+    page.locator("#open-folder").fill(str(tmp_path))
+    page.locator("#open-folder").press("Enter")
+    entry = page.locator("#open-entries option[value='newest.npy']")
+    until(lambda: entry.count() == 1)
+    page.evaluate("let_go(), new Promise((done) => setTimeout(done))")
+    assert entry.count() == 1
+    assert page.locator("#open-folder").input_value() == str(tmp_path)
+
+
 def test_photograph_without_depth_has_a_notice_that_leads_on(
     opened: Callable[..., str], open_page: OpenPage, tmp_path: Path
 ):

@@ -25,11 +25,15 @@ export function folder(net: Server, open: (paths: string[]) => void, say: (text:
   list.size = 8;
   const status = document.createElement("p");
   let shown: Listed | null = null;
+  let round = 0;
 
   async function show(place: string): Promise<void> {
     const before = path.value;
+    const now = ++round;
     try {
-      shown = await net.ask<Listed>("folder", { path: place });
+      const listed = await net.ask<Listed>("folder", { path: place });
+      if (now !== round) return; // a newer place is asked for
+      shown = listed;
     } catch (error) {
       return say((error as Error).message);
     }

@@ -349,7 +349,7 @@ class TestSaid:
         wait_for_force(page)
         page.evaluate("heard.length = 0")
         touching = (
-            "new Set(heard.map((each) => each.text).filter((each) => /^(Touching|Up|Down|Level)\\b/.test(each))).size"
+            "new Set(heard.map((each) => each.text).filter((each) => /\\b(Touching|Up|Down|Level)\\b/.test(each))).size"
         )
         drag(page, lambda: page.evaluate(touching) > 1)
         until(

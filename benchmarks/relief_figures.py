@@ -83,6 +83,7 @@ def felt(relief: Relief, truth: Truth) -> dict[str, float]:
     return {
         "found": float(np.mean(close >= STEP_M)),
         "true": float(np.mean(within[steps & truth.known])) if steps.any() else np.nan,
+        "order": float(np.mean(close > LEVEL_M)),
         "wrong": float(np.mean(close < -LEVEL_M)),
         "crisp": float(np.median(np.clip(close[clear] / wide[clear], -1, 2))) if clear.any() else np.nan,
         "rank": float(spearmanr(relief.height_m[truth.known][::every], truth.nearness[truth.known][::every])[0]),

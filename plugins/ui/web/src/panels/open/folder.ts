@@ -32,7 +32,7 @@ export function folder(net: Server, open: (paths: string[]) => void, say: (text:
     const now = ++round;
     try {
       const listed = await net.ask<Listed>("folder", { path: place });
-      if (now !== round) return; // a newer place is asked for
+      if (now !== round) return; // a newer place was requested
       shown = listed;
     } catch (error) {
       return say((error as Error).message);

@@ -12,7 +12,7 @@ from numba import float64, int64, njit, void
 from tangible_core.compiled.kernels import Address
 from tangible_core.compiled.touch import CompiledLink, LinkKernels
 from tangible_core.data import NO_FORCE, DeviceSpec, Force, HapticState
-from tangible_core.mapping import MappedDevice, Placement, WorkspaceMapping, map_device, placement_of
+from tangible_core.mapping import MappedDevice, Placement, WorkspaceMapping, intended_path, map_device, placement_of
 from tangible_core.mapping.placement import turn
 from tangible_core.plugins.interfaces import HapticDevice, Link
 from tangible_core.testing.kinds.device import CHECKS as DEVICE_CHECKS
@@ -145,6 +145,17 @@ class TestInPlainPython:
         seen = hold(buffer, device.open(), *placement_of(device).under_hand(picture_m)).position_m
         assert seen == pytest.approx(picture_m, abs=1e-15)
         assert placement_of(Mock()) == Placement()
+
+    def test_intended_path_is_where_the_link_puts_the_hand(self):
+        mapping = WorkspaceMapping(
+            region_m=(0.01, -0.005, 0.02, 0.01), rotation_deg=30, offset_m=(0.001, 0.01, 0.02), scale=1.5
+        )
+        device, ticks = map_device(Mock(), mapping), np.arange(0, 900, 300)
+        hand_m = Mock().wanted(ticks)
+        assert hand_m.all() and np.ptp(hand_m[:, 0]) > 0.01  # no axis is left out
+        there = [to_picture(placement_of(device), tuple(each)) for each in hand_m.tolist()]
+        assert intended_path(device, ticks) == pytest.approx(np.array(there), abs=1e-15)
+        assert intended_path(BufferDevice(), ticks) is None
 
 
 class TestGeometry:

@@ -38,6 +38,12 @@ def test_scale_follows_slowly():
     assert np.abs(np.diff(box)).max() < 0.001
 
 
+def test_scale_is_looked_at_in_each_eighth_frame_after_the_first():
+    film = heights(BOX, *[NEARER] * 17)
+    box = np.array([each[2, 3] for each in film])
+    assert np.flatnonzero(np.diff(box)).tolist() == [7, 15], "between frames 7 and 8, and 15 and 16"
+
+
 def test_scale_follows_with_its_time_constant_at_any_rate():
     for step_s in (0.1, 1.0):
         scale, seen = Scale(ReliefScale(ValueRange(0, 10), STRAIGHT)), ReliefScale(ValueRange(-5, 20), STRAIGHT**2)

@@ -298,9 +298,12 @@ def test_recording_is_replayed_through_any_force_law(folder: Path):
     assert same.returncode == 0, same.stderr
     assert "noticed_percent" in same.stdout
     other = ("p.yaml", "--set", "render={use: proxy}")
+    begun_s = time.perf_counter()
     document = json.loads(tangible("replay", "hand.nc", *other, "--record", "b.nc", "--json", cwd=folder).stdout)
+    passed_s = time.perf_counter() - begun_s
     assert (document["recorded"]["device"], document["recorded"]["renderer"]) == ("mock", "penalty-gradient")
     figures = document["figures"]
+    assert 0 < 1e-9 * figures["ns_per_tick"] * figures["ticks"] < passed_s
     assert figures["ticks"] == 1000 >= figures["compared"] > 500  # others are over what the device can give
     assert figures["error_n"] > 1e-3
     again = json.loads(tangible("replay", "b.nc", *other, "--json", cwd=folder).stdout)

@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from time import perf_counter
 
 import numpy as np
 import pytest
@@ -12,6 +13,9 @@ from tangible_authoring.first_parts import first_parts
 from tangible_authoring.listed_parts import ListedPart
 from tangible_authoring.parts_starter import title_of
 from tangible_authoring.renumbering import MOST_NAMED, Moved, in_words
+from tangible_core.data import Outcome
+from tangible_core.plugins import hooks
+from tangible_core.plugins.registry import Registry
 
 
 @pytest.fixture
@@ -30,6 +34,30 @@ def parts_of(folder: Path, **more: object):
 def test_part_narrower_than_the_smallest_of_the_longer_side_is_joined(stripes: Path, smallest_mm: float, count: int):
     found = parts_of(stripes, overrides=["texture.segments=5"], smallest_mm=smallest_mm)
     assert found.parts.count == count
+
+
+def test_observers_hear_that_parts_are_made_and_no_more_time_than_passed(stripes: Path):
+    heard: list[tuple[str, str]] = []
+    ended: list[Outcome] = []
+
+    class Observer:
+        @hooks.hookimpl
+        def tangible_stage_started(self, product: str, method: str) -> None:
+            heard.append((product, method))
+
+        @hooks.hookimpl
+        def tangible_stage_finished(self, outcome: Outcome) -> None:
+            ended.append(outcome)
+
+    registry = Registry()
+    registry.plugins.register(Observer())
+    begun_s = perf_counter()
+    parts_of(stripes, registry=registry)
+    passed_s = perf_counter() - begun_s
+    assert heard[-1] == ("parts", "core")
+    last = ended[-1]
+    assert (last.product, last.outcome, last.why, last.method) == ("parts", "ran", "requested", "core")
+    assert 0 < last.seconds <= passed_s
 
 
 def test_heights_are_whole_tenths_of_a_millimetre_below_the_top(stripes: Path):

@@ -12,6 +12,7 @@ from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.plugins.registry import load_method
 from tangible_core.servo import Beacon, Safety, beacon_to
 from tangible_core.servo.beacon import (
+    BRAKED_FROM,
     MOST_N,
     PULL_N,
     RAMP_S,
@@ -39,6 +40,12 @@ class TestPull:
         assert np.hypot(*still_n.T).max() <= 1.01 * PULL_N
         fast_n = pulls(faded_in(part), np.hstack([places, random.uniform(-3, 3, places.shape)]))
         assert np.hypot(*fast_n.T).max() <= MOST_N
+
+        steep = np.hypot(*still_n.T)
+        full = steep > BRAKED_FROM * PULL_N
+        away_n = pulls(faded_in(part), np.hstack([places, -3 * still_n / np.maximum(steep, 1e-9)[:, None]]))
+        assert np.hypot(*away_n[full].T) == pytest.approx(np.minimum(steep[full] + MOST_N - PULL_N, MOST_N), rel=1e-9)
+        assert full.any()
 
     @pytest.mark.parametrize("part", PARTS)
     def test_pull_within_the_part_is_zero(self, part: int):

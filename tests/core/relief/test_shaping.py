@@ -71,6 +71,40 @@ def test_finer_cells_are_kept_where_less_is_rounded():
     assert shaped(values, PLAIN).std() < 0.2 * relief.height_m.std()
 
 
+@pytest.mark.parametrize(("columns", "kept"), [(1333, True), (1600, False)])
+def test_cells_are_two_fifths_of_the_rounding_wide(columns, kept):
+    """Under a rounding of 0.2 mm cells are 0.08 mm wide: one pixel of 0.06 mm, one and a half of 0.05 mm."""
+    values = np.random.default_rng(6).uniform(1, 9, (20, columns)).astype(np.float32)
+    relief = geometry.make_relief(DisparityMap(values), None, WIDTH_M, HIGH_M)
+    every_pixel = geometry.smooth(relief, 0.0002).height_m
+    assert np.allclose(shaped(values, PLAIN, smooth_m=0.0002), every_pixel, atol=1e-6) == kept
+
+
+def rough(deviation_m, columns=800):
+    """Return squares of 2 x 2 pixels, alternately higher and lower than the middle by this, between both ends."""
+    y, x = np.indices((40, columns)) // 2
+    values = (15 + (20 - 10) / HIGH_M * deviation_m * (-1.0) ** (x + y)).astype(np.float32)
+    values[:, :100], values[:, -100:] = 10, 20
+    return values
+
+
+@pytest.mark.parametrize("times", [0.5, 1, 3])
+def test_grain_is_flattened_by_its_height(times):
+    """Of variance v, v / (v + g^2) is kept (He et al. 2013, formula 5), where g is the height of grain."""
+    deviation_m = times * GRAIN_HIGH_M
+    found = shaped(rough(deviation_m), {**PLAIN, "grain_m": 0.0003}, smooth_m=0)[10:30, 300:500]
+    assert GRAIN_HIGH_M == 1e-4
+    assert found.std() / deviation_m == pytest.approx(times**2 / (times**2 + 1), rel=0.02)
+
+
+@pytest.mark.parametrize(("grain_m", "radius"), [(0.0002, 1), (0.0004, 2), (0.0012, 6)])
+def test_grain_is_kept_within_two_windows_of_a_cliff(grain_m, radius):
+    """In windows of this radius, in cells of 0.2 mm, noise beside the cliff is none, and such windows are averaged."""
+    found = shaped(rough(0.5 * GRAIN_HIGH_M), {**PLAIN, "grain_m": grain_m}, smooth_m=0)[10:30]
+    left = found[:, 100:500].std(axis=0)
+    assert np.flatnonzero(left > 1.02 * left[-1])[-1] // 2 == 2 * radius
+
+
 def test_word_depth_keeps_true_proportions():
     """Half as near is twice as far: heights are linear in depth, and level ground stays as high as it is."""
     values = np.repeat(np.float32([10, 12.5, 100 / 6, 25]), 200)[None].repeat(100, axis=0)

@@ -50,6 +50,14 @@ def test_first_frame_equals_the_relief_of_the_still(film_pipeline):
     assert np.array_equal(first.relief.height_m, pipeline.relief.height_m)
 
 
+def test_first_frame_of_one_camera_equals_the_relief_of_its_photograph(walk):
+    pipeline = Pipeline(Scene.video(walk, fps=20, repeat=False), depth=Luminance(), cached=False)
+    with pipeline.reliefs as reliefs:
+        first = next(iter(reliefs))
+    assert np.ptp(first.relief.height_m) > 0.0005
+    assert np.array_equal(first.relief.height_m, pipeline.relief.height_m)
+
+
 def test_each_frame_equals_the_still_of_its_disparity_and_scale(film_pipeline, walk):
     """A later frame is a still with the scale of the first frame, as nothing is averaged."""
     pipeline = film_pipeline()

@@ -84,6 +84,18 @@ class TestProposals:
         assert mask[:, 0].any()
         assert mask[:, -1].any()
 
+    @pytest.mark.parametrize("kind", ["grabcut", "watershed"])
+    @pytest.mark.parametrize("factor", [1, 5])
+    def test_proposal_of_half_a_picture_reaches_its_edges(self, kind: proposals.Kind, factor: int) -> None:
+        rows, columns, half = 96 * factor, 120 * factor, 63 * factor + 2
+        picture = np.full((rows, columns, 3), [80, 110, 140], np.uint8)
+        picture[:, :half] = [190, 120, 60]
+        stroke = np.array([[30.0, 10.0], [30.0, 86.0]]) * factor
+        box, mask = propose(picture, stroke, 8 * factor, kind)
+        assert (box.x, box.y, box.rows) == (0, 0, rows)
+        assert box.columns == pytest.approx(half, abs=1)
+        assert mask.sum(axis=1) == pytest.approx(np.full(rows, half), abs=1)
+
     def test_proposal_border_is_as_fine_as_the_picture(self, monkeypatch: pytest.MonkeyPatch) -> None:
         picture, inside = two_things()
         monkeypatch.setattr(proposals, "MOST_CELLS", 2000)

@@ -176,7 +176,8 @@ def _watershed(picture: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> 
 
     markers = np.zeros(inside.shape, np.int32)
     markers[outside], markers[inside] = OUTSIDE, PART
-    return np.asarray(cv2.watershed(np.ascontiguousarray(picture), markers)) == PART
+    wider = (cv2.copyMakeBorder(each, 1, 1, 1, 1, cv2.BORDER_REPLICATE) for each in (picture, markers))
+    return np.asarray(cv2.watershed(*wider))[1:-1, 1:-1] == PART  # OpenCV takes the outermost pixels for a border
 
 
 def _keep_connected(mask: Bool[np.ndarray, "r c"], stroke: Bool[np.ndarray, "r c"]) -> Bool[np.ndarray, "r c"]:

@@ -12,7 +12,7 @@ from tangible_core.data import SegmentTree
 from tangible_core.errors import ConfigError
 from tangible_texture import Hierarchy
 from tangible_ui.worker.jobs import JOBS
-from tangible_ui.worker.parts import proposals
+from tangible_ui.worker.parts import outlines, proposals
 from tangible_ui.worker.parts.outlines import snap
 from tangible_ui.worker.parts.proposals import as_points, propose, propose_region, runs
 from tangible_ui.worker.state import WorkerState
@@ -105,6 +105,34 @@ class TestProposals:
         coarse = place(*propose(picture, STROKE, 12, "grabcut"))
         assert overlap(fine, inside) > max(0.96, overlap(coarse, inside) + 0.02)
 
+    @pytest.mark.parametrize("turns", range(4))
+    @pytest.mark.parametrize(("edge", "inside", "outside"), [(48, 52, 60), (56, 52, 60), (64, 52, 60)])
+    def test_refined_border_moves_by_a_cell_at_most(self, turns: int, edge: int, inside: int, outside: int) -> None:
+        """The picture's edge is two cells beside the coarse border, of 14 of 24 cells, or on it; a cell has 4 x 4."""
+        coarse = np.zeros((24, 24), bool)
+        coarse[:, :14] = True
+        picture = np.full((96, 96, 3), [80, 110, 140], np.uint8)
+        picture[:, :edge] = [190, 120, 60]
+        fine = np.rot90(proposals._refine_border(np.rot90(picture, turns).copy(), np.rot90(coarse, turns)), -turns)
+        assert fine[:, :inside].all()
+        assert not fine[:, outside:].any()
+        if edge == 56:
+            assert fine.sum(axis=1) == pytest.approx(np.full(96, edge), abs=1)
+
+    def test_part_is_what_hangs_together_with_the_stroke_without_specks_and_small_holes(self) -> None:
+        mask = np.zeros((60, 90), bool)
+        mask[10:50, 10:50] = True
+        mask[20:24, 20:24] = mask[30:35, 30:35] = False  # holes of 0.8 % and, without their corners, of 1.3 %
+        mask[10:20, 60:70] = mask[50:56, 50:56] = True  # apart, and connected by a corner
+        mask[30, 50] = mask[5, 5] = True  # specks
+        stroke = np.zeros_like(mask)
+        stroke[12, 12:20] = True
+        wanted = np.zeros_like(mask)
+        wanted[10:50, 10:50] = True
+        wanted[31:34, 30:35] = wanted[30:35, 31:34] = False
+        wanted[[10, 10, 49], [10, 49, 10]] = False  # its own corners, but where the other one touches it
+        np.testing.assert_array_equal(proposals._keep_connected(mask, stroke), wanted)
+
     def test_proposal_finds_objects_in_photographs(self) -> None:
         """Overlap with parts drawn by hand, of one stroke along the middle of each."""
         found = {
@@ -141,6 +169,8 @@ class TestProposals:
         tree = SegmentTree(labels, np.array([[0, 1], [2, 3]], np.int32), np.float32([0.4, 0.8]))
         both = np.array([[14.0, 10.0], [25.0, 10.0]])
         assert propose_region(tree, both, 1, 0.3)[0] == (10, 0, 20, 20)
+        share = np.array([[10.0, 10.0], [22.0, 10.0]])  # ten pixels and three
+        assert propose_region(tree, share, 1, 0.3)[0] == (10, 0, 20, 20)
         most = np.array([[11.0, 10.0], [21.0, 10.0]])
         assert propose_region(tree, most, 1, 0.3)[0] == (10, 0, 12, 20), "the stroke itself and one region"
         assert propose_region(tree, most, 1, 0.3, [12, 5, 18, 9])[0][1] >= 5
@@ -176,6 +206,33 @@ class TestProposals:
         found[y0 - over_px : y1 + over_px, x0 - over_px : x1 + over_px] = False
         assert not found.any()
 
+    @pytest.mark.parametrize(
+        ("within", "window"),
+        [
+            (None, (55, 55, 130, 110)),
+            ([90, 80, 150, 170], (90, 80, 60, 85)),
+            ([0, 0, 150, 130], (55, 55, 95, 75)),
+            ([100, 100, 141, 121], (100, 100, 41, 21)),  # just around the stroke's points
+            ([100, 100, 140, 121], (55, 55, 130, 110)),  # which the stroke leaves
+            ([101, 100, 141, 121], (55, 55, 130, 110)),
+            ([90, 80, 150], (55, 55, 130, 110)),
+            ([90, 80, 150, np.inf], (55, 55, 130, 110)),
+        ],
+    )
+    def test_window_reaches_beyond_the_stroke_by_its_length_and_width(
+        self, within: list[float] | None, window: tuple[int, ...]
+    ) -> None:
+        """The stroke covers 50 x 30 pixels: 0.4 of 50, and two widths of 10, to each side."""
+        points = np.array([[100.0, 100.0], [140.0, 120.0]])
+        assert proposals._window((*SHAPE, 3), points, 10, within) == window
+
+    def test_window_ends_with_the_picture_and_has_a_pixel_at_least(self) -> None:
+        """A click of 10 pixels: 5, 0.4 of 10 and 20 to each side."""
+        assert proposals._window((*SHAPE, 3), np.array([[5.0, 230.0]]), 10, None) == (0, 201, 34, 39)
+        assert proposals._window((*SHAPE, 3), np.array([[315.0, 4.0]]), 10, None) == (286, 0, 34, 33)
+        inside = [10.2, 20.2, 10.8, 20.8]
+        assert proposals._window((*SHAPE, 3), np.array([[10.5, 20.5]]), 1, inside) == (10, 20, 1, 1)
+
     def test_rim_is_where_the_picture_goes_on(self) -> None:
         none = np.zeros((9, 12), bool)
         for window, sides in (
@@ -183,9 +240,17 @@ class TestProposals:
             (proposals.Window(0, 100, 320, 140), [True, False, False, False]),
             (proposals.Window(100, 0, 220, 200), [False, True, True, False]),
             (proposals.Window(0, 0, 300, 240), [False, False, False, True]),
+            (proposals.Window(1, 1, 318, 238), [True, True, True, True]),
         ):
             rim = proposals._rim(window, none, SHAPE)
-            assert [bool(each) for each in (rim[0, 5], rim[-1, 5], rim[5, 0], rim[5, -1])] == sides
+            for deep in (0, 1):
+                assert [
+                    bool(each) for each in (rim[deep, 5], rim[-1 - deep, 5], rim[4, deep], rim[4, -1 - deep])
+                ] == sides
+            assert not rim[2:-2, 2:-2].any()
+        crossing = none.copy()
+        crossing[:, 6] = True
+        assert not proposals._rim(proposals.Window(0, 100, 320, 140), crossing, SHAPE)[:, 6].any()
 
     @pytest.mark.parametrize(
         ("point", "size", "row", "column"),
@@ -230,6 +295,13 @@ class TestProposals:
             inside = np.repeat(np.arange(len(runs(mask))) % 2, runs(mask))
             np.testing.assert_array_equal(inside.reshape(mask.shape), mask)
 
+    def test_stroke_of_too_many_points_is_thinned_between_its_ends(self) -> None:
+        most = [[float(each % 300), each / 100] for each in range(proposals.MOST_POINTS)]
+        np.testing.assert_array_equal(as_points(most, (*SHAPE, 3)), most)
+        many = [[each / 100, 0.0] for each in range(2 * proposals.MOST_POINTS - 1)]
+        np.testing.assert_array_equal(as_points(many, (*SHAPE, 3)), many[::2])
+        assert as_points([[400.0, 300.0], [-1.0, -1.0]], (*SHAPE, 3)).tolist() == [[319, 239], [0, 0]]
+
     @pytest.mark.parametrize("points", [[], [[1.0]], [[1.0, 2.0, 3.0]], [[float("nan"), 1.0]], [[1.0, 2.0], []]])
     def test_invalid_stroke_is_refused(self, points: list[list[float]]) -> None:
         with pytest.raises(ConfigError, match="at least one"):
@@ -238,8 +310,8 @@ class TestProposals:
 
 class TestSnapping:
     def wobbling(self, around: np.ndarray, by: float) -> np.ndarray:
-        outlines, _ = cv2.findContours(around.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-        points = outlines[0][:, 0].astype(float)
+        found, _ = cv2.findContours(around.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+        points = found[0][:, 0].astype(float)
         angle = np.linspace(0, 2 * np.pi, len(points))[:, None]
         middle = points.mean(0)
         return middle + (points - middle) * (1 + by * (np.sin(5 * angle) + 0.5 * np.sin(9 * angle)))
@@ -273,6 +345,78 @@ class TestSnapping:
         found = snap(np.full((*SHAPE, 3), 90, np.uint8), corner, 3.0)
         assert np.ptp(found, axis=0) == pytest.approx([29, 39], abs=3)
         assert found.max(axis=0).tolist() == [319, 239]
+
+    @pytest.mark.parametrize("reach_px", [0.0, -1.0, np.inf, np.nan])
+    def test_outline_with_nothing_in_reach_or_of_few_pixels_stays(self, reach_px: float) -> None:
+        picture, inside = two_things()
+        outline = self.wobbling(inside, 0.07)
+        np.testing.assert_array_equal(snap(picture, outline, reach_px), outline)
+        tiny = np.array([[160.0, 75.0], [161.0, 75.0], [160.0, 76.0]])  # 3.4 pixels round
+        np.testing.assert_array_equal(snap(picture, tiny, 12.0), tiny)
+        assert len(snap(picture, np.array([[160.0, 75.0], [161.0, 75.0], [161.0, 76.0], [160.0, 76.0]]), 12.0)) == 4
+
+    @pytest.mark.parametrize(("edge", "moves"), [(150 + 380, True), (150 + 420, False)])
+    def test_outline_reaches_400_pixels_at_most(self, edge: int, moves: bool) -> None:
+        picture = np.zeros((300, 800, 3), np.uint8)
+        picture[:, edge:] = 255
+        outline = np.array([[50.0, 20.0], [150.0, 20.0], [150.0, 280.0], [50.0, 280.0]])
+        assert (snap(picture, outline, 1000.0)[:, 0].max() > 500) == moves
+
+    def test_places_are_a_pixel_apart_and_farther_on_a_long_outline(self) -> None:
+        square = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
+        side, zero, ten = np.arange(10.0), np.zeros(10), np.full(10, 10.0)
+        round_it = np.concatenate([np.c_[side, zero], np.c_[ten, side], np.c_[10 - side, ten], np.c_[zero, 10 - side]])
+        assert outlines._resample(square) == pytest.approx(round_it)
+        assert outlines._resample(75 * square) == pytest.approx(  # 3000 pixels, of which 1500 places
+            2 * outlines._resample(37.5 * square)
+        )
+
+    def test_normals_of_a_circle_point_to_its_middle(self) -> None:
+        angle = 0.1 + np.arange(24) * np.pi / 12
+        circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        assert outlines._normals([40.0, 30.0] + 9 * circle) == pytest.approx(-circle)
+        lopsided = np.array([[0.0, 0.0], [5.0, 0.0], [9.0, 1.0], [9.0, 7.0], [4.0, 8.0], [0.0, 3.0], [-1.0, 1.0]])
+        assert np.hypot(*outlines._normals(lopsided).T) == pytest.approx(np.ones(7))
+
+    def test_edge_of_a_picture_is_steepest_where_it_is(self) -> None:
+        """It lies between columns 29 and 30, 9.5 pixels from the places, from row 20 on; smoothed by known sigmas."""
+        picture = np.zeros((60, 60, 3), np.uint8)
+        picture[20:, 30:] = 255
+        places = np.stack([np.full(50, 20.0), np.arange(5.0, 55.0)], axis=1)
+        away = np.linspace(-1, 1, 25) * 12
+        found = outlines._edges(picture, places, np.tile([1.0, 0.0], (50, 1)), away)
+        across = np.exp(-np.square(np.arange(4)) / (2 * 0.8**2))
+        steep = (across[:-1] + across[1:]) / (across[0] + across[1])
+        at = np.flatnonzero(away == 9)[0]
+        assert found[40, at - 2 : at + 4] == pytest.approx([*steep[::-1], *steep], abs=0.01)
+        assert found[40, : at - 4].max() == pytest.approx(0, abs=0.01)
+        along = np.exp(-np.square(np.arange(-6, 7)) / (2 * 1.5**2))
+        shares = np.cumsum(along / along.sum())
+        assert found[9:22, at] == pytest.approx(shares, abs=0.01)
+
+    def test_cheapest_path_weighs_its_bends_against_its_costs(self) -> None:
+        """A step aside and one back cost 0.12 each, and neighbours differ by two steps at most."""
+
+        def beside(row: int, column: int, straight: float) -> list[int]:
+            cost = np.ones((9, 9), np.float32)
+            cost[:, 1] = 0
+            cost[row, 1], cost[row, column] = straight, 0
+            return outlines._cheapest(cost).tolist()
+
+        for row in (0, 4, 8):
+            straight = [1] * 9
+            aside = {column: [*straight[:row], column, *straight[row + 1 :]] for column in (2, 3)}
+            assert beside(row, 2, 0.22) == straight
+            assert beside(row, 2, 0.26) == aside[2]
+            assert beside(row, 3, 0.46) == straight
+            assert beside(row, 3, 0.50) == aside[3]
+            assert beside(row, 4, 0.99) == straight
+
+    def test_cheapest_path_follows_what_costs_nothing(self) -> None:
+        for columns in ([1, 2, 3, 4, 4, 3, 2, 1], [0, 2, 4, 6, 8, 6, 4, 2], [5] * 8):
+            cost = np.full((8, 9), 2.0, np.float32)
+            cost[np.arange(8), columns] = 0
+            assert outlines._cheapest(cost).tolist() == columns
 
     @pytest.mark.parametrize(
         "points", [[[5, 5]], [[5, 5], [5, 5], [5, 5]], [[0, 0], [319, 0]], [[1, 1], [2, 1], [2, 2]]]

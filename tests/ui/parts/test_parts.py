@@ -22,10 +22,12 @@ from tangible_core.parts import find_parts
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.formats.pictures import read_labels
+from tangible_core.scene.scene import Scene
 from tangible_ui.requests import REQUESTS
 from tangible_ui.state.scheduling import LatestWins
 from tangible_ui.state.session import Session
 from tangible_ui.worker.jobs import JOBS, making
+from tangible_ui.worker.parts import opening
 from tangible_ui.worker.parts.heights import coarse
 from tangible_ui.worker.parts.label_files import as_png, is_ours, unpack
 from tangible_ui.worker.parts.opening import _places
@@ -348,6 +350,42 @@ class TestOpening:
             assert found.labels[y, x] == number
             if number > 200_000:
                 break
+
+    def test_heights_are_shown_as_grey_from_the_lowest_to_the_highest(self) -> None:
+        nan = np.nan
+        for heights, grey in (
+            ([[1.0, 2.0, 3.0], [5.0, nan, 5.0]], [[0, 64, 128], [255, 0, 255]]),
+            ([[7.0, nan]], [[0, 0]]),
+            ([[nan, nan]], [[0, 0]]),
+        ):
+            assert opening._picture(Scene.heights(np.array(heights))).tolist() == grey
+
+    def test_place_of_a_part_is_its_middle(self) -> None:
+        labels = np.zeros((11, 22), np.int32)
+        labels[:, 11:] = 1
+        assert _places(find_parts(SegmentMap(labels))) == [(5, 5), (16, 5)]
+
+    def test_place_of_a_part_between_the_sampled_pixels_is_its_first_pixel(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """Four squares, of which every second pixel is looked at, and two parts in odd rows."""
+        monkeypatch.setattr(opening, "MOST_LOOKED_AT", 100)
+        labels = np.zeros((20, 20), np.int32)
+        labels[:, 10:], labels[10:, :10], labels[10:, 10:] = 1, 2, 3
+        labels[3, 7], labels[15, 3:7] = 4, 5
+        found = find_parts(SegmentMap(labels))
+        places = dict(zip(found.segments, _places(found), strict=True))
+        assert places == {0: (4, 4), 1: (14, 4), 2: (4, 14), 3: (14, 14), 4: (7, 3), 5: (3, 15)}
+
+    def test_files_of_the_newest_pictures_are_kept(self, tmp_path: Path) -> None:
+        worker_state, path = WorkerState(tmp_path, lambda event, **told: None), small_scene(tmp_path)
+        made = []
+        for grey in range(opening.KEPT + 2):
+            Image.fromarray(np.full((24, 32), 40 * grey, np.uint8)).save(tmp_path / f"{grey}.png")
+            text = TEXT.replace("mine.png", f"{grey}.png")
+            found = JOBS["parts_open"].do(worker_state, text=text, path=path, sets=[])
+            made.append(Path(found["labels"]).parent.name)
+        assert {each.name for each in tmp_path.glob("parts-*")} == set(made[-opening.KEPT :])
 
     def test_opening_on_a_full_disk_leaves_nothing(self, tmp_path: Path) -> None:
         Image.fromarray(np.random.default_rng(0).integers(0, 255, (90, 90, 3)).astype(np.uint8)).save(

@@ -116,6 +116,9 @@ class TestShown:
         Recording(rows, "", long.about).save(tmp_path / "a.nc")
         shown = records.show_record(worker_state, tmp_path / "a.nc")
         assert (shown["rows"], shown["every"]) == (17, 3)
+        for ticks, every in ((20, 1), (21, 2), (40, 2), (41, 3)):
+            some(ticks).save(tmp_path / f"{ticks}.nc")
+            assert records.show_record(worker_state, tmp_path / f"{ticks}.nc")["every"] == every
         rows = np.fromfile(tmp_path / shown["digest"] / "ticks.f32", "<f4").reshape(17, shown["columns"])
         np.testing.assert_array_equal(rows[:, records.AT_FLAGS], flags[::3] & FLAG_BITS)
 
@@ -134,6 +137,17 @@ class TestShown:
         assert found[0]["trouble"]
         assert found[1]["figures"]["ticks"] == 5
         assert records.records(worker_state, tmp_path / "missing") == []
+
+    def test_list_of_recordings_ends_with_the_500th_newest(
+        self, worker_state: WorkerState, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        assert records.MOST_LISTED == 500
+        monkeypatch.setattr(records, "MOST_LISTED", 2)
+        for age_s, name in enumerate(("b.nc", "c.nc", "a.nc")):
+            some(1).save(tmp_path / name)
+            os.utime(tmp_path / name, (1000 - age_s, 1000 - age_s))
+        (tmp_path / "notes.txt").touch()
+        assert [each["name"] for each in records.records(worker_state, tmp_path)] == ["b.nc", "c.nc"]
 
 
 def test_recording_of_the_page_has_the_names_of_parts_and_materials(

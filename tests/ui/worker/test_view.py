@@ -21,7 +21,7 @@ from tangible_ui.serving.routes import read_window
 from tangible_ui.worker.jobs import making
 from tangible_ui.worker.jobs import surface as textures
 from tangible_ui.worker.state import WorkerState
-from tangible_ui.worker.view import levels
+from tangible_ui.worker.view import files, levels
 from tangible_ui.worker.view.files import ABOUT, KEPT, _put, show
 from tangible_ui.worker.view.surface_view import Layer, SurfaceView, is_there, view_of
 
@@ -155,11 +155,34 @@ class TestShow:
         np.testing.assert_allclose(pixels[4, [3, 12, 20]], [0, 128, 255], atol=4)
 
     def test_large_picture_is_written_twice(self, tmp_path: Path):
+        """The preview has a million pixels: 1225 x 816 or 817, and 0.4 % more or less by rounding."""
         about = show(seen(np.zeros((2, 3)), picture=np.zeros((1000, 1500), np.uint8)), tmp_path)
         folder = tmp_path / about["digest"]
         assert about["fine_photo"] == (1500, 1000)
         assert (folder / "photo-fine.jpg").is_file()
-        assert (folder / "photo.jpg").stat().st_size < (folder / "photo-fine.jpg").stat().st_size
+        sizes = []
+        for name in ("photo.jpg", "photo-fine.jpg"):
+            with Image.open(folder / name) as picture:
+                sizes.append(picture.size)
+        assert sizes == [(1225, 816), (1500, 1000)]
+
+    @pytest.mark.parametrize(
+        ("size", "fine", "preview"),
+        [
+            ((1000, 1000), None, (1000, 1000)),
+            ((4096, 200), None, (4096, 200)),
+            ((1001, 1000), (1001, 1000), (1000, 1000)),
+            ((4097, 8), (4097, 8), (4096, 8)),
+            ((20_000, 10), (16_384, 8), (4096, 2)),
+            ((1, 70_000), (1, 16_384), (1, 4096)),
+        ],
+    )
+    def test_picture_is_as_large_as_is_drawn_first_and_as_browsers_decode(
+        self, size: tuple[int, int], fine: tuple[int, int] | None, preview: tuple[int, int]
+    ):
+        width, height = size
+        assert files._fine_size(np.zeros((height, width), np.bool_)) == fine
+        assert files._size(size, files.MOST_PREVIEW, levels.MOST_SIDE) == preview
 
     def test_same_view_written_by_two_threads_is_there(self, tmp_path: Path):
         for name in ("sooner", "later", "torn", "another"):
@@ -291,12 +314,22 @@ class TestTexture:
         found = textures.texture_patch(worker_state, bare, 0.0, 0.0, 0.01, 8)
         assert not np.fromfile(worker_state.folder / bare / found["file"], "<f4").any()
 
+    def test_texture_patch_has_192_pixels_and_512_at_most(self, worker_state: WorkerState, digest: str):
+        for asked, pixels, side_m in (({}, 192, 0.01), ({"pixels": 512}, 512, 0.1), ({"pixels": 1}, 1, 1e-9)):
+            found = textures.texture_patch(worker_state, digest, 0.001, 0.002, side_m, **asked)
+            assert (found["x_m"], found["y_m"], found["side_m"], found["pixels"]) == (0.001, 0.002, side_m, pixels)
+            assert (worker_state.folder / digest / found["file"]).stat().st_size == 4 * pixels**2
+
     def test_texture_patches_beyond_the_limit_are_removed(self, worker_state: WorkerState, digest: str):
         made = [textures.texture_patch(worker_state, digest, 1e-3 * each, 0.0, 0.01, 4)["file"] for each in range(20)]
         left = {each.name for each in (worker_state.folder / digest).glob("texture-*")}
         assert left == set(made[-textures.KEPT :])
 
-    @pytest.mark.parametrize("wrong", [{"digest": "../x"}, {"digest": "0" * 32}, {"side_m": 0.0}, {"pixels": 10**6}])
+    @pytest.mark.parametrize(
+        "wrong",
+        [{"digest": "../x"}, {"digest": "0" * 32}, {"side_m": 0.0}, {"side_m": 0.11}, {"pixels": 513}, {"pixels": 0},
+         {"x_m": np.nan}, {"y_m": np.inf}],
+    )  # fmt: skip
     def test_texture_patch_that_is_invalid_is_refused(self, worker_state: WorkerState, digest: str, wrong: dict):
         told = {"digest": digest, "x_m": 0.0, "y_m": 0.0, "side_m": 0.01, "pixels": 4, **wrong}
         with pytest.raises(GeometryError):

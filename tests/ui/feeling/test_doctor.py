@@ -43,11 +43,11 @@ def test_figures_are_those_of_the_last_second_and_of_the_whole_loop() -> None:
     assert found["whole_late_us"] == {"p50": 1.0, "p99": 2.0, "most": 3.0}
     assert (found["most_force_n"], found["position_m"]) == (2.0, [1.0, 2.0, 3.0])
     assert (found["flagged"], found["how"]) == ({"force": 2}, "in turn")
-    for ticks in (1, 0):  # one, which has no rate, and none yet
+    for ticks, rate_hz in ((2, 500.0), (1, 0.0), (0, 0.0)):  # two, one, which has no rate, and none yet
         rows, late = rows[:ticks], 0 * late
         ring.late, report.late_us = late, None
         found = figures(Mock(Servo, report=lambda: report, ring=ring, how=""))
-        assert (found["rate_hz"], found["whole_late_us"], found["whole_late_share"]) == (0.0, None, 0.0)
+        assert (found["rate_hz"], found["whole_late_us"], found["whole_late_share"]) == (rate_hz, None, 0.0)
         assert (found["late_us"] is None, found["late_share"], found["buttons"]) == (ticks == 0, 0.0, 0)
 
 

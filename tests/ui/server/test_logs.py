@@ -93,6 +93,23 @@ def test_log_handler_never_raises(
     assert "Event loop is closed" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(("asked", "level"), [({}, logging.NOTSET), ({"information": True}, logging.INFO)])
+def test_our_own_information_is_let_through_only_where_it_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch, asked: dict[str, bool], level: int
+):
+    monkeypatch.setattr(logging.getLogger(), "handlers", [])
+    loggers = [logging.getLogger(name) for name in logs.OWN]
+    before = [each.level for each in loggers]
+    try:
+        for each in loggers:
+            each.setLevel(logging.NOTSET)
+        silence(tell_pages(lambda **_: None, **asked))
+        assert {each.level for each in loggers} == {level}
+    finally:
+        for each, was in zip(loggers, before, strict=True):
+            each.setLevel(was)
+
+
 def test_standard_error_gets_the_log_as_before(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(logging.getLogger(), "handlers", [])
     monkeypatch.setattr("sys.stderr", stderr := io.StringIO())

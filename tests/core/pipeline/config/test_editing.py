@@ -187,6 +187,7 @@ def test_alias_changed_in_one_place_leaves_the_other():
         ("scene: [\n", {"want": "touch"}, "p.yaml:2:1"),
         ("- a\n", {"want": "touch"}, "p.yaml:1:1"),
         ("materials: {rules: []}\n", {"materials.rules.0": "x"}, "rules is a list; set it as a whole"),
+        ("export: [heights]\n", {"export.heights": {"width_m": 0.1}}, "export is a list; set it as a whole"),
         ("scene: a\n", {"": 1}, "is not a key"),
         ("scene: a\n", {"depth..use": 1}, "is not a key"),
         ("scene: a\n", {"x." * 30 + "x": 1}, "is not a key"),

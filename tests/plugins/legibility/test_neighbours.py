@@ -98,3 +98,15 @@ def test_vote_changes_removed_cells_alone():
     removed[0, 0] = True
     after = vote(labels, removed, ~removed, 1.0)
     assert (after[4, 4], after[0, 0], after.sum()) == (1, 0, 1)
+
+
+@pytest.mark.parametrize("turns", range(4))
+def test_vote_counts_in_the_corners_of_the_map_too(turns: int):
+    """The nearest cell of the corner is of the one label, and the many around it of the other."""
+    labels, removed = np.zeros((6, 6), np.int32), np.zeros((6, 6), np.bool_)
+    labels[0, 1] = 1
+    removed[:2, 0] = True
+    wanted = np.rot90(labels.copy(), turns)
+    labels[:2, 0] = 1
+    removed = np.ascontiguousarray(np.rot90(removed, turns))
+    np.testing.assert_array_equal(vote(np.ascontiguousarray(np.rot90(labels, turns)), removed, ~removed, 2.0), wanted)

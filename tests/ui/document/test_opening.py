@@ -14,7 +14,7 @@ from tangible_core.errors import ConfigError
 from tangible_core.pipeline.config.editing import read_values
 from tangible_core.session import Recording
 from tangible_core.session.recording.tick_file import About
-from tangible_ui.state.uploads import MOST_FILES, UploadStore
+from tangible_ui.state.uploads import UploadStore
 from tangible_ui.worker.jobs import document as opening
 from tangible_ui.worker.state import WorkerState
 from videos import greys
@@ -111,10 +111,13 @@ class TestUploadStore:
 
     def test_upload_bounds_are_kept(self, store: UploadStore, monkeypatch: pytest.MonkeyPatch) -> None:
         batch = store.batch()
-        for number in range(MOST_FILES):
+        for number in range(15):
             put(store, batch, f"{number}.png", b"x")
+        put(store, batch, "x" * 116 + ".png", b"x")
+        with pytest.raises(ConfigError, match="cannot be kept"):
+            put(store, batch, "x" * 117 + ".png", b"x")
         put(store, batch, "0.png", b"again")
-        with pytest.raises(ConfigError, match="at once"):
+        with pytest.raises(ConfigError, match="more than 16 files at once"):
             put(store, batch, "more.png", b"x")
         monkeypatch.setattr("tangible_ui.state.uploads.MOST_BYTES", 10)
         with pytest.raises(ConfigError, match="holds more than"):

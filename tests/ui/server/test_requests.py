@@ -15,7 +15,7 @@ from tangible_core.data import TICK_COLUMNS
 from tangible_core.errors import ConfigError, DeviceError, Stopped, TangibleError
 from tangible_core.servo.ring import PERIOD_NS, SPINS
 from tangible_ui.feeling.feeling import Feeling, LoopInput
-from tangible_ui.requests import REQUESTS, devices, feeling, making, preflight
+from tangible_ui.requests import REQUESTS, devices, making, preflight
 from tangible_ui.requests import document as asks_document
 from tangible_ui.state.session import Session
 from tangible_ui.state.texts import Text
@@ -206,6 +206,7 @@ class TestDocument:
             await ask("restore")
             assert (session.text, session.path) == ("mine", tmp_path / "b.yaml")
             assert (tab.last("restored")["path"], session.drafts.left, file.exists()) == ("", None, False)
+            assert tab.last("restored")["edited_s"] == 0.0
 
         with_session(check)
 
@@ -305,7 +306,7 @@ class TestLaws:
             await ask("compare_laws", use="proxy")
             done.clear()
             await ask("begin_blind", question="?" * 300)
-            assert session.laws.message()["question"] == "?" * feeling.MOST_QUESTION
+            assert session.laws.message()["question"] == "?" * 200
             await ask("choose_blind", choice=1)
             await ask("choose_blind", choice=0)
             found = await ask("end_blind")
@@ -393,7 +394,8 @@ class TestMaking:
                     await ask("make")
             else:
                 assert await ask("make") is None
-            assert tab.last("made")["outcome"] == outcome
+            told = tab.last("made")
+            assert (told["outcome"], told["want"], told["why"], told["seconds"]) == (outcome, "touch", str(error), 0.0)
 
         with_session(check)
 
@@ -411,6 +413,23 @@ class TestMaking:
             assert (worker(session).kills, session.long_jobs.killed) == (int(not ends), not ends)
 
         with_session(check)
+
+
+def test_request_that_says_only_what_it_must_has_the_defaults(with_session: Callable[[Check], None]) -> None:
+    async def check(session: Session, tab: Heard, ask: Ask) -> None:
+        worker(session).answers |= dict.fromkeys(("parts_propose", "legible", "texture_patch"))
+        for name, said, rest in (
+            ("parts_propose", {"points": [[1.0, 2.0]], "width_px": 3.0},
+             {"kind": "grabcut", "within": None, "level": 0.5}),
+            ("legible", {"medium": "swell"}, {"width_m": None}),
+            ("texture_patch", {"digest": "x", "x_m": 0.1, "y_m": 0.2, "side_m": 0.01}, {"pixels": 192}),
+        ):  # fmt: skip
+            await ask(name, **said)
+            job, told = worker(session).asked[-1]
+            assert job == name
+            assert told.items() >= {**said, **rest}.items()
+
+    with_session(check)
 
 
 def test_panel_has_an_address_and_the_folder_of_its_module(
@@ -483,7 +502,8 @@ def test_recordings_are_made_one_after_the_other(
         felt = SimpleNamespace(law="penalty", device_name="mouse", materials="")
         session.feeling = Mock(Feeling, servo=SimpleNamespace(running=True), felt=felt)
         path = await ask("record")
-        assert (tab.last("recorder")["recording"], tab.last("recorder")["path"]) == (True, path)
+        told = tab.last("recorder")
+        assert (told["recording"], told["path"], told["ticks"], told["why"]) == (True, path, 0, "")
         with pytest.raises(ConfigError, match="is being recorded already"):
             await ask("record")
         ended[0](Path(path), 700, "stopped by hand")

@@ -102,6 +102,17 @@ def test_chosen_device_overrides_that_of_the_command_line(with_session: Callable
     with_session(check)
 
 
+def test_event_has_its_time_to_the_millisecond(
+    with_session: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def check(session: Session, tab: Heard) -> None:
+        monkeypatch.setattr("tangible_ui.state.session.time.time", lambda: 12.34567)
+        session.tell("plan", slow=[])
+        assert tab.last("plan") == {"event": "plan", "at_s": 12.346, "slow": []}
+
+    with_session(check)
+
+
 def test_history_is_in_the_order_of_its_events(
     with_session: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -176,7 +176,8 @@ class TestPreviews:
 
     def test_preview_of_files_without_a_picture_and_of_what_cannot_be_written(self, small: Any) -> None:
         async def check(small: SmallSession, ask: Ask) -> None:
-            assert (await ask("export_preview", block="text"))["file"] == ""
+            none = {"file": "", "waits": False, "columns": 0, "rows": 0, "width_m": 0.0}
+            assert await ask("export_preview", block="text") == none
             with pytest.raises(TangibleError, match="no room on a4"):
                 await ask("export_preview", block={"use": "swell", "width_m": 0.5})
 

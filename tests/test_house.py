@@ -240,6 +240,27 @@ def test_methods_are_exported_by_their_family(kind):
     assert all(getattr(import_module(each.split(".")[0]), each.split(":")[1]) for each in targets)
 
 
+def test_blocks_of_files_and_options_cannot_be_changed():
+    """Keys of the cache are made of them, and threads share them."""
+    files = [*(ROOT / "tangible_core").rglob("*.py"), *(ROOT / "plugins").glob("*/tangible_*/**/*.py")]
+    models = [
+        (path, node.value)
+        for path in files
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Assign | ast.AnnAssign) and isinstance(node.value, ast.Call)
+        for target in (node.targets if isinstance(node, ast.Assign) else [node.target])
+        if isinstance(target, ast.Name) and target.id == "model_config"
+    ]
+    assert len(models) > 12
+    frozen = ast.dump(ast.Constant(True))
+    loose = [
+        path
+        for path, call in models
+        if {each.arg: ast.dump(each.value) for each in call.keywords}.get("frozen") != frozen
+    ]
+    assert not loose
+
+
 def test_schema_in_configs_is_current():
     from tangible_core.pipeline.config.schema import json_schema
 

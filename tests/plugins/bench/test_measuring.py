@@ -207,6 +207,19 @@ def test_damaged_line_is_refused_with_its_number(tmp_path: Path):
         read_rows(tmp_path / "missing.jsonl")
 
 
+def test_results_that_cannot_be_read_say_why(tmp_path: Path):
+    (tmp_path / "grey.jsonl").write_bytes(b"\xff\n")
+    for name, why in (
+        ("missing.jsonl", "No such file or directory"),
+        ("", "it is not a file but a folder or a device"),
+        ("grey.jsonl", "'utf-8' codec can't decode byte 0xff in position 0: invalid start byte"),
+    ):
+        with pytest.raises(ResultsError) as error:
+            read_rows(tmp_path / name)
+        says = f"{tmp_path / name}: cannot be read as results: {why}; name a .jsonl file of `tangible compare`"
+        assert str(error.value) == says
+
+
 ROW = Row("k", "depth", "m", "m", {}, "d 1", "s", "digest", "none", (), 0, {}, {"processor": "p"}, seconds=1.0)
 LINES = {
     "lists in lists": "[" * 100_000 + "]" * 100_000,

@@ -723,6 +723,9 @@ class TestSegments:
         found = colours(count)
         assert found.shape == (count, 3) and (found >= 0).all() and (found <= 1).all()
         assert len(np.unique(found.round(6), axis=0)) == count
+        if count > 24:  # the first of Roberts' sequence for three dimensions, from the middle on
+            step = np.array([0.8191725133961645, 0.6710436067037893, 0.5497004779019703])
+            assert found[24] == pytest.approx(0.1 + 0.8 * ((0.5 + step) % 1))
         if 8 < count < 30:
             apart = np.linalg.norm(found[:, None] - found, axis=2) + np.eye(count)
             assert apart.min() > 0.1

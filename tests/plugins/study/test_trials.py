@@ -63,6 +63,19 @@ def test_two_programs_do_not_write_one_table(tmp_path: Path):
         AnswerFile(tmp_path / "a.tsv")
 
 
+def test_table_that_cannot_be_read_says_why(tmp_path: Path):
+    (tmp_path / "grey.tsv").write_bytes(b"\xff\n")
+    assert read_answers(tmp_path / "missing.tsv") == []
+    for name, why in (
+        ("", "it is not a file but a folder or a device"),
+        ("grey.tsv", "'utf-8' codec can't decode byte 0xff in position 0: invalid start byte"),
+    ):
+        with pytest.raises(ResultsError) as error:
+            read_answers(tmp_path / name)
+        says = f"{tmp_path / name}: cannot be read as a table of answers: {why}; name another folder"
+        assert str(error.value) == says
+
+
 def test_damaged_line_is_named(tmp_path: Path):
     with AnswerFile(tmp_path / "a.tsv") as table:
         table.add(FIRST)

@@ -142,6 +142,19 @@ def test_text_with_too_many_bytes_is_refused(tmp_path: Path):
     assert complaint("#" * (MOST_TEXT_BYTES + 1)) == "here/p.yaml: it holds more than 0.25 MB"
 
 
+def test_text_that_cannot_be_read_says_why(tmp_path: Path):
+    from tangible_core.files.yaml.source import read_text
+
+    (tmp_path / "grey.yaml").write_bytes(b"\xff\n")
+    for name, why in (
+        ("", "it is not a file but a folder or a device"),
+        ("grey.yaml", "'utf-8' codec can't decode byte 0xff in position 0: invalid start byte"),
+    ):
+        with pytest.raises(ConfigError) as error:
+            read_text(tmp_path / name)
+        assert str(error.value) == f"{tmp_path / name}: cannot be read as text: {why}"
+
+
 def test_billion_laughs_has_nine_lines():
     assert len(LAUGHS.splitlines()) == 9
 

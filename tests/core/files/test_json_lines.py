@@ -1,0 +1,35 @@
+"""Rows of JSON, one a line: damaged ones are named, and a file that cannot be read says why."""
+
+from pathlib import Path
+
+import pytest
+
+from tangible_core.errors import ResultsError
+from tangible_core.files.json_lines import JsonLines, read_rows
+
+
+def test_rows_are_read_as_they_were_added_and_a_missing_file_has_none(tmp_path: Path):
+    rows = [{"a": 1, "b": [None, "ö"]}, {}]
+    with JsonLines(tmp_path / "a.jsonl") as file:
+        for row in rows:
+            file.add(row)
+    assert list(read_rows(tmp_path / "a.jsonl")) == [(1, rows[0]), (2, rows[1])]
+    assert list(read_rows(tmp_path / "missing.jsonl")) == []
+
+
+def test_rows_that_cannot_be_read_say_why(tmp_path: Path):
+    (tmp_path / "grey.jsonl").write_bytes(b"\xff\n")
+    for name, why in (
+        ("", "it is not a file but a folder or a device"),
+        ("grey.jsonl", "'utf-8' codec can't decode byte 0xff in position 0: invalid start byte"),
+    ):
+        with pytest.raises(ResultsError) as error:
+            list(read_rows(tmp_path / name))
+        assert str(error.value) == f"{tmp_path / name}: cannot be read as rows: {why}; name another folder"
+
+
+@pytest.mark.parametrize("line", ["[1]", "1", "{", "[" * 100_000])
+def test_line_that_is_no_row_is_named(tmp_path: Path, line: str):
+    (tmp_path / "a.jsonl").write_text('{"a": 1}\n\n' + line + "\n")
+    with pytest.raises(ResultsError, match=r"a\.jsonl:3: "):
+        list(read_rows(tmp_path / "a.jsonl"))

@@ -7,7 +7,7 @@ from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_study.design.study import Limits
 from tangible_study.presenting.rendering import Rendering
 
-TIME, FLAGS = TICK_COLUMNS.index("time_s"), TICK_COLUMNS.index("flags")
+TIME, LATE, FLAGS = (TICK_COLUMNS.index(each) for each in ("time_s", "late_s", "flags"))
 
 
 def ticks(count: int, flag: int, share: float) -> Rendering:
@@ -22,7 +22,10 @@ def ticks(count: int, flag: int, share: float) -> Rendering:
     return rendering
 
 
-@pytest.mark.parametrize(("share", "said"), [(0.009, None), (0.03, "3 % of the ticks came too late")])
+@pytest.mark.parametrize(
+    ("share", "said"),
+    [(0.01, None), (0.011, "1 % of the ticks came too late"), (0.03, "3 % of the ticks came too late")],
+)
 def test_share_of_late_ticks_marks_a_trial(share: float, said: str | None):
     assert ticks(1000, TickFlag.OVERRUN, share).why_not(Limits()) == said
 
@@ -32,5 +35,17 @@ def test_share_of_limited_ticks_is_one_of_the_time_in_contact():
     assert rendering.why_not(Limits()) == (
         "the force was delayed, as it changed too quickly, in 2 % of the time in contact"
     )
-    assert rendering.why_not(Limits(limited=0.05)) is None
+    for most, marked in ((0.05, False), (0.02, False), (0.019, True)):
+        assert (rendering.why_not(Limits(limited=most)) is not None) == marked
     assert (rendering.ticks, rendering.last_s) == (1000, 0.999)
+
+
+def test_lateness_of_each_part_of_the_ticks_is_kept():
+    rendering = Rendering()
+    for longer in (1, 2):
+        rows = np.zeros((101, len(TICK_COLUMNS)))
+        rows[:, LATE] = longer * np.arange(101) * 1e-6
+        rendering.add(rows)
+    rendering.add(rows[:0])
+    assert rendering.late_s == pytest.approx([99e-6, 100e-6, 198e-6, 200e-6])
+    assert rendering.ticks == 202

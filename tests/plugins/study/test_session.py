@@ -54,6 +54,18 @@ def test_all_answers_and_the_force_of_each_trial_are_kept(study: Path):
     assert consent.startswith("You may stop at any time.\n\nagreed: ")
 
 
+def test_sidecar_has_the_worst_lateness_of_all_intervals(study: Path):
+    """Each interval adds two figures: what one tick of a hundred exceeds, and the greatest."""
+    session = sit_down(study)
+    for late_s, p99_s, max_s in (
+        ([], None, None),
+        ([0.001, 0.004, 0.003, 0.006, 0.002, 0.005], 0.003, 0.006),
+    ):
+        session.lateness_s = late_s
+        session._save_facts()
+        assert json.loads(session.place.sidecar.read_text())["Lateness"] == {"p99_s": p99_s, "max_s": max_s}
+
+
 def test_training_tells_the_right_answer(study: Path):
     """One of three keys is right in the first trial, which is the only one of training."""
     said = {}

@@ -262,6 +262,26 @@ class TestSee:
         assert found.relief.height_m.max() == pytest.approx(0.005, rel=0.2)
         assert not is_there(pipeline, "touch")
 
+    def test_certainty_of_segments_spans_all_shares_and_is_left_out_where_all_are_certain(self):
+        picture = np.random.default_rng(1).integers(0, 255, (40, 60)).astype(np.uint8)
+        pipeline = of_photo(picture)
+        pipeline.make("segments")
+        layer = view_of(pipeline, "segments").layers["certainty"]
+        assert (layer.unit, layer.low, layer.high) == ("", 0.0, 1.0)
+        np.testing.assert_array_equal(layer.values, pipeline.segments.confidence)
+        given = Pipeline(Scene.photo(picture, segments=np.zeros((40, 60), np.int32)), cached=False)
+        assert view_of(given, "segments").layers == {}
+
+    @pytest.mark.parametrize(
+        ("truth", "span"),
+        [(np.full((48, 64), np.nan, np.float32), (0.0, 0.0)), (np.ones((24, 32), np.float32), None), (None, None)],
+    )
+    def test_error_is_shown_only_against_a_truth_of_the_same_size(
+        self, pair: Scene, truth: np.ndarray | None, span: tuple[float, float] | None
+    ):
+        found = view_of(Pipeline(replace(pair, truth=truth), cached=False), "disparity").layers.get("error")
+        assert (None if found is None else (found.low, found.high)) == span
+
     def test_relative_depth_has_no_unit(self):
         pipeline = of_photo(np.random.default_rng(1).integers(0, 255, (40, 60)).astype(np.uint8))
         pipeline.make("disparity")

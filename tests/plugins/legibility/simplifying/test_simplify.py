@@ -15,6 +15,7 @@ from tangible_core.errors import GeometryError
 from tangible_core.parts import SimplifyChoice, find_parts
 from tangible_core.plugins.notes import collected
 from tangible_legibility import legibility, simplify
+from tangible_legibility.simplifying import opening
 
 WIDTH_M = 0.16
 CHOICE = SimplifyChoice()
@@ -187,6 +188,18 @@ def test_simplify_ten_thousand_parts_pass():
     colour = np.random.default_rng(0).integers(0, 255, (25, 25, 3), np.uint8).repeat(16, 0).repeat(16, 1)
     found = simplify(parts, WIDTH_M, CHOICE, (), colour)
     assert failing(found, WIDTH_M) == []
+
+
+@pytest.mark.parametrize(
+    ("box", "window"),
+    [
+        (np.s_[4:6, 5:7], np.s_[2:8, 3:9]),
+        (np.s_[0:1, 1:3], np.s_[0:3, 0:5]),
+        (np.s_[8:10, 10:11], np.s_[6:10, 8:12]),
+    ],
+)
+def test_window_around_a_change_ends_with_the_map(box, window):
+    assert opening._grow(box, 2, (10, 12)) == window
 
 
 @pytest.mark.parametrize("width_m", [0.0, -1.0, float("nan"), float("inf")])

@@ -236,6 +236,12 @@ class Motor(HapticDevice):
         (Placement(scale=50.0), False),
         (Placement(offset_z_m=0.9), False),
         (Placement(scale=0.1), True),
+        (Placement(scale=2.0), True),
+        (Placement(scale=2.01), False),
+        (Placement(offset_z_m=0.5), True),
+        (Placement(offset_z_m=0.51), False),
+        (Placement(scale=0.5, offset_z_m=0.7), True),
+        (Placement(scale=0.5, offset_z_m=0.8), False),
     ],
 )
 def test_released_pointer_is_above_the_surface_unless_mapped_into_it(to: Placement, high: bool) -> None:

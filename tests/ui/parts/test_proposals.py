@@ -106,9 +106,9 @@ class TestProposals:
         assert overlap(fine, inside) > max(0.96, overlap(coarse, inside) + 0.02)
 
     @pytest.mark.parametrize("turns", range(4))
-    @pytest.mark.parametrize(("edge", "inside", "outside"), [(48, 52, 60), (56, 52, 60), (64, 52, 60)])
+    @pytest.mark.parametrize(("edge", "inside", "outside"), [(48, 52, 60), (56, 52, 60), (59, 52, 60), (64, 52, 60)])
     def test_refined_border_moves_by_a_cell_at_most(self, turns: int, edge: int, inside: int, outside: int) -> None:
-        """The picture's edge is two cells beside the coarse border, of 14 of 24 cells, or on it; a cell has 4 x 4."""
+        """The picture's edge is two cells beside the coarse border, of 14 of 24 cells, or near it; a cell has 4 x 4."""
         coarse = np.zeros((24, 24), bool)
         coarse[:, :14] = True
         picture = np.full((96, 96, 3), [80, 110, 140], np.uint8)
@@ -116,8 +116,32 @@ class TestProposals:
         fine = np.rot90(proposals._refine_border(np.rot90(picture, turns).copy(), np.rot90(coarse, turns)), -turns)
         assert fine[:, :inside].all()
         assert not fine[:, outside:].any()
-        if edge == 56:
+        if inside < edge < outside:
             assert fine.sum(axis=1) == pytest.approx(np.full(96, edge), abs=1)
+
+    @pytest.mark.parametrize(
+        ("side", "cells", "refined"), [(126, 126, False), (127, 126, True), (253, 126, True), (800, 126, True)]
+    )
+    def test_window_of_more_than_16000_cells_is_reduced_and_its_border_refined(
+        self, monkeypatch: pytest.MonkeyPatch, side: int, cells: int, refined: bool
+    ) -> None:
+        """The stroke is as long as the picture, so that its window is all of it; 126 squared is 15 876."""
+        shapes, fine = list[tuple[int, ...]](), list[bool]()
+
+        def segment(small: np.ndarray, stroke: np.ndarray, *_: object) -> np.ndarray:
+            shapes.append(small.shape)
+            return stroke
+
+        def refine(whole: np.ndarray, mask: np.ndarray) -> np.ndarray:
+            fine.append(True)
+            return np.zeros(whole.shape[:2], bool)
+
+        monkeypatch.setattr(proposals, "_segment", segment)
+        monkeypatch.setattr(proposals, "_refine_border", refine)
+        stroke = np.array([[0.0, 0.0], [side - 1.0, side - 1.0]])
+        propose(np.zeros((side, side, 3), np.uint8), stroke, 3, "grabcut")
+        assert shapes == [(cells, cells, 3)]
+        assert bool(fine) == refined
 
     def test_part_is_what_hangs_together_with_the_stroke_without_specks_and_small_holes(self) -> None:
         mask = np.zeros((60, 90), bool)
@@ -390,6 +414,12 @@ class TestSnapping:
         at = np.flatnonzero(away == 9)[0]
         assert found[40, at - 2 : at + 4] == pytest.approx([*steep[::-1], *steep], abs=0.01)
         assert found[40, : at - 4].max() == pytest.approx(0, abs=0.01)
+        faint = np.full((60, 60, 3), 100, np.uint8)
+        faint[:, 30:] = 102
+        lightness = cv2.cvtColor(faint, cv2.COLOR_RGB2Lab)[0, [0, -1], 0].astype(float)
+        share = (across[0] + across[1]) / (across[0] + 2 * across[1:].sum())
+        weak = outlines._edges(faint, places, np.tile([1.0, 0.0], (50, 1)), away)
+        assert weak.max() == pytest.approx(share * np.ptp(lightness) / 4, abs=0.002)
         along = np.exp(-np.square(np.arange(-6, 7)) / (2 * 1.5**2))
         shares = np.cumsum(along / along.sum())
         assert found[9:22, at] == pytest.approx(shares, abs=0.01)

@@ -166,6 +166,7 @@ class TestPreviews:
             for block, wide_m in (("swell", 0.237), ({"use": "stl", "longer_side_m": 0.1}, 0.1), ("pins", 0.133)):
                 found = await ask("export_preview", block=block)
                 assert found["width_m"] == pytest.approx(wide_m, abs=2e-3), block
+                assert found["waits"] is False
                 with Image.open(small.session.folder / found["file"]) as picture:
                     assert picture.size == (found["columns"], found["rows"])
                     assert np.asarray(picture).std() > 5

@@ -360,9 +360,9 @@ class TestSnapping:
         found = snap(picture, outline, 3.0)
         far = np.min(np.hypot(*(found[:, None] - outline[None]).transpose(2, 0, 1)), axis=1)
         assert far.max() < 4.0
-        still = snap(np.full((*SHAPE, 3), 90, np.uint8), outline, 12.0)
-        far = np.min(np.hypot(*(still[:, None] - outline[None]).transpose(2, 0, 1)), axis=1)
-        assert far.max() < 1.0
+        for reach_px in (1.0, 5.0, 12.0, 100.0):
+            still = snap(np.full((*SHAPE, 3), 90, np.uint8), outline, reach_px)
+            assert still == pytest.approx(outlines._resample(outline))
 
     def test_outline_in_the_corner_of_a_wide_picture_stays_there(self) -> None:
         corner = np.array([[290.0, 200.0], [325.0, 200.0], [325.0, 245.0], [290.0, 245.0]])

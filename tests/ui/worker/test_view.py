@@ -287,6 +287,13 @@ class TestSee:
         pipeline.make("disparity")
         assert view_of(pipeline, "disparity").layers["disparity"].unit == ""
 
+    @pytest.mark.parametrize("said", [{"materials": (WOOD, ICE)}, {"names": ("wall", "hat")}, {}])
+    def test_surface_to_describe_has_labels_if_anything_is_said_of_them(self, said: dict):
+        labels = np.array([[0, 0, 1], [0, 1, 1]], np.int32)
+        found = seen(np.zeros((2, 3)), labels=labels, **said).surface
+        assert (found.labels is not None) == bool(said)
+        assert (found.materials, found.names) == (said.get("materials"), said.get("names"))
+
     def test_materials_of_a_view_are_limited_to_the_device(self):
         segments = np.repeat([[0, 1]], 8, 0).repeat(8, 1).astype(np.int32)
         scene = Scene.heights(np.zeros((8, 16)), segments=segments)

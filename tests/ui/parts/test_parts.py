@@ -304,6 +304,7 @@ class TestOpening:
             assert wanted.parts.count >= 3
             heights = [each.height_m or 0.0 for each in wanted.listed]
             assert np.argsort(found["heights_m"]).tolist() == np.argsort(heights).tolist()
+            assert 0 < max(found["heights_m"]) <= (await ask("parts_open"))["top_m"] + 1e-9
             assert not (await ask("parts_open"))["divided"], "nothing is saved by that"
 
         small(check)

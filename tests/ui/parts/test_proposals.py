@@ -459,6 +459,24 @@ class TestSnapping:
         assert (found <= [319, 239]).all()
 
 
+def test_regions_of_a_picture_are_found_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tree, found = Hierarchy.tree, list[tuple[int, ...]]()
+
+    def counted(self: Hierarchy, picture: np.ndarray) -> SegmentTree:
+        found.append(picture.shape)
+        return tree(self, picture)
+
+    monkeypatch.setattr(Hierarchy, "tree", counted)
+    worker_state = WorkerState(tmp_path, lambda event, **told: None)
+    click = {"points": [[16, 12]], "width_px": 3, "kind": "regions", "within": None}
+    for columns, name in ((32, "a"), (40, "b")):
+        Image.fromarray(two_things()[0][:24, :columns]).save(tmp_path / f"{name}.png")
+        told = {"text": f"scene: {{photo: {name}.png}}\n", "path": tmp_path / f"{name}.yaml", "sets": []}
+        for level in (0.2, 0.6):
+            JOBS["parts_propose"].do(worker_state, **told, **click, level=level)
+    assert found == [(24, 32, 3), (24, 40, 3)]
+
+
 def test_jobs_return_json_data(tmp_path: Path) -> None:
     picture, inside = two_things()
     Image.fromarray(picture).save(tmp_path / "a.png")

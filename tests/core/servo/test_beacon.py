@@ -8,9 +8,10 @@ import pytest
 from beacon_ground import LENGTH_M, NAMES, PARTS, SURFACE, WIDTH_M, T, faded_in, kernels, pulls
 from loop_devices import SPEC
 from tangible_core.data import Force, HapticState, HapticSurface, Relief, TickFlag, beacon_part
+from tangible_core.errors import quoted
 from tangible_core.plugins.interfaces import PlainTouch
 from tangible_core.plugins.registry import load_method
-from tangible_core.servo import Beacon, Safety, beacon_to
+from tangible_core.servo import Beacon, Safety, beacon, beacon_to
 from tangible_core.servo.beacon import (
     BRAKED_FROM,
     MOST_N,
@@ -26,6 +27,15 @@ from tangible_core.servo.ticks.python_tick import GuardedForce, guard_touch
 
 def potential(memory: BeaconMemory, places_m: np.ndarray) -> np.ndarray:
     return np.array([kernels.potential(*memory.arrays, x, y) for x, y in places_m.tolist()])
+
+
+def test_parts_are_listed_up_to_twenty_and_the_others_counted():
+    names = tuple("abcdefghijklmnopqrst")
+    listed = ", ".join(f"{number}: {quoted(name)}" for number, name in enumerate(names, 1))
+    assert beacon._list_parts(names) == listed
+    assert beacon._list_parts((*names, "u", "v")) == f"{listed} and 2 others"
+    assert beacon._list_parts(("", "b")) == f"2: {quoted('b')}"
+    assert beacon._list_parts(("", "")) == "1 to 2, none of which has a name"
 
 
 class TestPull:

@@ -100,10 +100,13 @@ def test_weak_edge_is_a_line_where_it_continues_a_strong_one():
     assert found[195:235, 245:305].max() < steps + 0.0002, "it is alone"
 
 
-def test_short_edges_are_no_lines():
+@pytest.mark.parametrize(("side", "is_line"), [(4, False), (10, False), (12, True)])
+def test_edges_shorter_than_ten_times_the_blur_are_no_lines(side, is_line):
+    """The blur is 1 mm, so that an edge is a line from 40 pixels of 0.25 mm on: those round a square."""
     picture = np.full((240, 320, 3), 60, np.uint8)
-    picture[118:122, 158:162] = 255
-    assert lines_of(picture).max() <= 0.4 * SIZE.relief_m + 1e-5
+    half = side // 2
+    picture[120 - half : 120 + half, 160 - half : 160 + half] = 255
+    assert (lines_of(picture).max() > 0.4 * SIZE.relief_m + 1e-4) == is_line
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32])

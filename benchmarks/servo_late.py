@@ -66,7 +66,7 @@ def _recorder() -> tuple[Rounds, list[Figure]]:
             lost.append(int(found.late.sum()) - len(Recording.load(path).rows))
         return found
 
-    found = _in_turn({RECORDED: with_it, UNRECORDED: lambda: _watched(live.ignored, used_s[UNRECORDED])})
+    found = _in_turn({RECORDED: with_it, UNRECORDED: lambda: _watched(live.ignore, used_s[UNRECORDED])})
     return found, list(_of_recorder(found, lost, used_s))
 
 

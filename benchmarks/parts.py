@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import cache
 from math import ceil
-from statistics import median
+from statistics import fmean, median
 from time import process_time
 from typing import Any
 
@@ -28,7 +28,7 @@ from tangible_legibility.border_steps import border_steps
 from tangible_legibility.simplifying.large import large_parts
 from tangible_texture import Hierarchy
 
-from .figures import Figure, judged, part, table
+from .figures import Figure, judged, mean_and_error, part, table
 from .tests_path import drawn_parts
 
 PICTURES = ("astronaut", "coffee", "motorcycle", "chelsea", "rocket", "camera")
@@ -36,6 +36,8 @@ WIDTH_M, TALL_M = 0.16, 0.006
 GIVEN, GUESS = HeightChoice(by="given"), HeightChoice(by="guess")
 TOP_M = TALL_M - GIVEN.bulge_m - GIVEN.detail_m
 LEAST_SHARE, MOST_PARTS, LEAST_WIDTH = 0.89, 12, 1 / 16
+LEAST_FOUND, LEAST_TRUE = 0.75, 0.60
+"""Of automatic parts: share of drawn borders that are felt, and share of what is felt that is a drawn border."""
 SIZES = {0.4: (500, 741), 5: (2000, 2667), 12: (3000, 4000)}
 """Rows and columns, by megapixels."""
 RELIEF_MS, RUNS = 15, 7
@@ -59,6 +61,7 @@ def _borders() -> tuple[list[str], list[Figure]]:
     """Each relief against the borders of the parts that it has, and against those drawn."""
     rows: list[tuple[str, ...]] = []
     figures: list[Figure] = []
+    of_automatic: list[tuple[float, float]] = []
     for name in PICTURES:
         drawn, automatic = drawn_parts.drawn(name), _automatic(name)
         flat = Relief(_luminance(name) * np.float32(TALL_M), _extent_m(drawn.parts))
@@ -84,6 +87,16 @@ def _borders() -> tuple[list[str], list[Figure]]:
         share = shares[5]["steps_at_borders"]
         what = f"{name}: the same, drawn, as a pipeline makes them by default"
         figures.append(Figure(what, f">= {LEAST_SHARE}", f"{share:.2f}", share >= LEAST_SHARE))
+        of_automatic.append((shares[4]["borders_found"], shares[4]["steps_at_borders"]))
+    found, true = zip(*of_automatic, strict=True)
+    figures.append(
+        Figure(
+            f"drawn borders that automatic parts find, and felt steps that are drawn borders, mean of {len(PICTURES)}",
+            f">= {LEAST_FOUND:.2f}, >= {LEAST_TRUE:.2f}",
+            f"{mean_and_error(found)}, {mean_and_error(true)}",
+            fmean(found) >= LEAST_FOUND and fmean(true) >= LEAST_TRUE,
+        )
+    )
     return table(("picture", "relief", "borders of", "found", "of felt steps", "area stepped"), rows), figures
 
 

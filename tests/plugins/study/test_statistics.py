@@ -211,7 +211,7 @@ def test_bounds_of_a_width_are_where_the_likelihood_ratio_has_its_quantile():
     found = width_interval(blocks, Estimate(1.97, 1.9, 2.04), float(best.x))
     assert found.value == best.x
     for bound in (found.low, found.high):
-        assert 2 * (lack(bound) - best.fun) == pytest.approx(stats.chi2.ppf(0.95, 1), abs=0.08)
+        assert 2 * (lack(bound) - best.fun) == pytest.approx(stats.chi2.ppf(0.95, 1), abs=0.02)
 
 
 def test_width_without_a_rise_has_no_upper_bound_and_a_step_no_lower():

@@ -414,6 +414,12 @@ class TestSheet:
         run = {name: value for name, value in whole_run().items() if name in names.split()}
         assert list(headlines(run).values()) == expected
 
+    def test_title_stands_a_tenth_of_an_inch_below_the_upper_edge(self) -> None:
+        figure = draw_figure(whole_run(), "title", PANELS)
+        width_in, height_in = figure.get_size_inches()
+        x, y = figure.texts[0].get_position()
+        assert (width_in * x, height_in * y) == pytest.approx((0.15, height_in - 0.1))
+
     @pytest.mark.parametrize("turned", [False, True])
     def test_sheet_texts_are_inside_and_apart(self, turned: bool) -> None:
         run = whole_run()

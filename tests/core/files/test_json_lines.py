@@ -6,6 +6,7 @@ import pytest
 
 from tangible_core.errors import ResultsError
 from tangible_core.files.json_lines import JsonLines, read_rows
+from unreadable import unreadable
 
 
 def test_rows_are_read_as_they_were_added_and_a_missing_file_has_none(tmp_path: Path):
@@ -18,14 +19,10 @@ def test_rows_are_read_as_they_were_added_and_a_missing_file_has_none(tmp_path: 
 
 
 def test_rows_that_cannot_be_read_say_why(tmp_path: Path):
-    (tmp_path / "grey.jsonl").write_bytes(b"\xff\n")
-    for name, why in (
-        ("", "it is not a file but a folder or a device"),
-        ("grey.jsonl", "'utf-8' codec can't decode byte 0xff in position 0: invalid start byte"),
-    ):
+    for path, why in unreadable(tmp_path, ".jsonl"):
         with pytest.raises(ResultsError) as error:
-            list(read_rows(tmp_path / name))
-        assert str(error.value) == f"{tmp_path / name}: cannot be read as rows: {why}; name another folder"
+            list(read_rows(path))
+        assert str(error.value) == f"{path}: cannot be read as rows: {why}; name another folder"
 
 
 @pytest.mark.parametrize("line", ["[1]", "1", "{", "[" * 100_000])

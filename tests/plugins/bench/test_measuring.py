@@ -17,6 +17,7 @@ from tangible_bench.measuring.rows import Row, append, mend, read_rows
 from tangible_bench.measuring.run import look, run
 from tangible_core.errors import ConfigError, OutputError, ResultsError
 from tangible_core.plugins.registry import Registry
+from unreadable import unreadable
 
 SCENE = "{synthetic: steps, width_px: 64, height_px: 32}"
 QUICK = "repeats: 1\nwarmups: 0\ncalls: 1\n"
@@ -208,15 +209,11 @@ def test_damaged_line_is_refused_with_its_number(tmp_path: Path):
 
 
 def test_results_that_cannot_be_read_say_why(tmp_path: Path):
-    (tmp_path / "grey.jsonl").write_bytes(b"\xff\n")
-    for name, why in (
-        ("missing.jsonl", "No such file or directory"),
-        ("", "it is not a file but a folder or a device"),
-        ("grey.jsonl", "'utf-8' codec can't decode byte 0xff in position 0: invalid start byte"),
-    ):
+    missing = tmp_path / "missing.jsonl", "No such file or directory"
+    for path, why in (missing, *unreadable(tmp_path, ".jsonl")):
         with pytest.raises(ResultsError) as error:
-            read_rows(tmp_path / name)
-        says = f"{tmp_path / name}: cannot be read as results: {why}; name a .jsonl file of `tangible compare`"
+            read_rows(path)
+        says = f"{path}: cannot be read as results: {why}; name a .jsonl file of `tangible compare`"
         assert str(error.value) == says
 
 

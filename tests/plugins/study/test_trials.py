@@ -7,6 +7,7 @@ import pytest
 
 from tangible_core.errors import OutputError, ResultsError
 from tangible_study.trials import COLUMNS, Answer, AnswerFile, read_answers
+from unreadable import unreadable
 
 FIRST = Answer(
     1, "test", "a", "same", "oddity", "one", "two", None, None, 3, "2", None, 0, 1.25, 1, False, "why", "r.nc"
@@ -64,16 +65,11 @@ def test_two_programs_do_not_write_one_table(tmp_path: Path):
 
 
 def test_table_that_cannot_be_read_says_why(tmp_path: Path):
-    (tmp_path / "grey.tsv").write_bytes(b"\xff\n")
     assert read_answers(tmp_path / "missing.tsv") == []
-    for name, why in (
-        ("", "it is not a file but a folder or a device"),
-        ("grey.tsv", "'utf-8' codec can't decode byte 0xff in position 0: invalid start byte"),
-    ):
+    for path, why in unreadable(tmp_path, ".tsv"):
         with pytest.raises(ResultsError) as error:
-            read_answers(tmp_path / name)
-        says = f"{tmp_path / name}: cannot be read as a table of answers: {why}; name another folder"
-        assert str(error.value) == says
+            read_answers(path)
+        assert str(error.value) == f"{path}: cannot be read as a table of answers: {why}; name another folder"
 
 
 def test_damaged_line_is_named(tmp_path: Path):

@@ -14,6 +14,7 @@ from tangible_core.materials.files import parse_materials
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.formats.pictures import MAX_LABELS
+from unreadable import unreadable
 
 PATH = Path("here/p.yaml")
 
@@ -145,14 +146,10 @@ def test_text_with_too_many_bytes_is_refused(tmp_path: Path):
 def test_text_that_cannot_be_read_says_why(tmp_path: Path):
     from tangible_core.files.yaml.source import read_text
 
-    (tmp_path / "grey.yaml").write_bytes(b"\xff\n")
-    for name, why in (
-        ("", "it is not a file but a folder or a device"),
-        ("grey.yaml", "'utf-8' codec can't decode byte 0xff in position 0: invalid start byte"),
-    ):
+    for path, why in unreadable(tmp_path, ".yaml"):
         with pytest.raises(ConfigError) as error:
-            read_text(tmp_path / name)
-        assert str(error.value) == f"{tmp_path / name}: cannot be read as text: {why}"
+            read_text(path)
+        assert str(error.value) == f"{path}: cannot be read as text: {why}"
 
 
 def test_billion_laughs_has_nine_lines():

@@ -1,5 +1,6 @@
 """Panels of the page, brought to the screen from the task or the settings in which they stand."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from browser_tabs import SETTLED
@@ -35,6 +36,17 @@ def open_panel(page: "Page", panel: str) -> "Locator":
         box.locator("> summary").press("Enter")
     until(lambda: box.locator("> .inside > *").count() > 0, panel)
     return box
+
+
+def list_folder(page: "Page", folder: Path, name: str) -> "Locator":
+    """List a folder of this computer by the keyboard; return its entries, one of which has this name."""
+    box = open_panel(page, "open").locator("details", has_text="Folder of this computer")
+    box.locator("summary").press("Enter")
+    page.locator("#open-folder").fill(str(folder))
+    page.locator("#open-folder").press("Enter")
+    entries = page.locator("#open-entries")
+    until(lambda: entries.locator(f"option[value='{name}']").count() == 1)
+    return entries
 
 
 def show_everything(page: "Page") -> None:

@@ -11,7 +11,7 @@ from PIL import Image
 from browser_tabs import SETTLED, OpenPage
 from needed import lacking
 from page_files import WEB
-from page_panels import bring, open_panel
+from page_panels import bring, list_folder, open_panel
 from sessions import small_scene
 from waiting import until
 
@@ -217,14 +217,9 @@ def test_newest_folder_that_was_asked_for_stays_listed_when_an_older_answer_come
           };
         }"""
     )
-    folder = open_panel(page, "open").locator("details", has_text="Folder of this computer")
-    folder.locator("summary").press("Enter")
-    page.locator("#open-folder").fill(str(tmp_path))
-    page.locator("#open-folder").press("Enter")
-    entry = page.locator("#open-entries option[value='newest.npy']")
-    until(lambda: entry.count() == 1)
+    entries = list_folder(page, tmp_path, "newest.npy")
     page.evaluate("let_go(), new Promise((done) => setTimeout(done))")
-    assert entry.count() == 1
+    assert entries.locator("option[value='newest.npy']").count() == 1
     assert page.locator("#open-folder").input_value() == str(tmp_path)
 
 

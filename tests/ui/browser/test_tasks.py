@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from browser_tabs import OpenPage
-from page_panels import open_panel
+from page_panels import list_folder, open_panel
 from sessions import small_scene
 from waiting import until
 
@@ -123,12 +123,7 @@ def test_enlarged_region_is_saved_and_opens_the_same(page: "Page", tmp_path: Pat
     page.locator("#terrain").focus()
     page.keyboard.press("Shift+Z")
     until(lambda: "region_m" not in text.input_value())
-    folder = open_panel(page, "open").locator("details", has_text="Folder of this computer")
-    folder.locator("summary").press("Enter")
-    page.locator("#open-folder").fill(str(tmp_path))
-    page.locator("#open-folder").press("Enter")
-    entry = page.locator("#open-entries option[value='zoomed.yaml']")
-    until(lambda: entry.count() == 1)
-    page.locator("#open-entries").select_option("zoomed.yaml")
-    page.locator("#open-entries").press("Enter")
+    entries = list_folder(page, tmp_path, "zoomed.yaml")
+    entries.select_option("zoomed.yaml")
+    entries.press("Enter")
     until(lambda: text.input_value() == zoomed)

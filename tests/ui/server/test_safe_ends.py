@@ -20,7 +20,7 @@ from websockets.sync.client import connect
 
 from page_server import TestTab
 from tangible_core.data import TICK_COLUMNS
-from tangible_core.servo.ring import Ring
+from tangible_core.servo.ring import STOP, Ring
 from tangible_ui.framing import POINTER, POINTER_FRAME
 from ui_server import START, UiServer
 from waiting import LONGEST_S, until
@@ -39,16 +39,18 @@ HEARING = (
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
 AT_ONCE_S = 20.0
 """Bound on the last force, s, for a machine that may stand still; docs/safety.md has what was measured."""
-DIRS = ("CACHE", "RUNTIME", "CONFIG", "LOG", "DATA", "SHARED")
+DIRS = ("RUNTIME", "CONFIG", "LOG", "DATA", "SHARED")
 FORBIDDEN = ("numba", "cv2", "torch", "scipy")
 
 
 class Home:
     """Folders of a user's own, and servers that have them."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, compiled: Path) -> None:
+        """compiled: the folder of compiled laws, which may be others' too."""
         self.folder = folder
         self.temporary = folder / "tmp"
+        self._compiled = compiled
         self._open = ExitStack()
         for each in (*(folder / name.lower() for name in DIRS), self.temporary):
             each.mkdir()
@@ -58,7 +60,7 @@ class Home:
     @property
     def env(self) -> dict[str, str]:
         own = {f"TANGIBLE_{name}_DIR": str(self.folder / name.lower()) for name in DIRS}
-        return {**own, "TMPDIR": str(self.temporary)}
+        return {**own, "TANGIBLE_CACHE_DIR": str(self._compiled), "TMPDIR": str(self.temporary)}
 
     def server(self, *words: object, start: str = HEARING + START) -> UiServer:
         return self._open.enter_context(UiServer(*words, cwd=self.folder, env=self.env, start=start))
@@ -75,8 +77,13 @@ class Home:
 
 
 @pytest.fixture(scope="module")
-def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    home = Home(tmp_path_factory.mktemp("home"))
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("compiled")
+
+
+@pytest.fixture
+def home(tmp_path: Path, compiled: Path) -> Iterator[Home]:
+    home = Home(tmp_path, compiled)
     yield home
     home.close()
 
@@ -88,7 +95,8 @@ class Press:
         host = server.url.split("/")[2]
         url = server.url.replace("http", "ws").replace("/?", "/live?")
         self.tab = TestTab(connect(url, origin=f"http://{host}", max_size=None, proxy=None))  # type: ignore[arg-type]
-        self._home, self._on, self._quiet = home, True, False
+        self._home, self._server, self._read = home, server, len(server.lines)
+        self._on, self._quiet = True, False
         hello = self.tab.until(event="hello")
         if "touch" not in [each["event"] for each in hello["history"]]:
             self.tab.until(event="touch")
@@ -108,9 +116,26 @@ class Press:
                     self.tab.socket.send(POINTER_FRAME.pack(POINTER, 1, 7, 0.0, 0.0, 0.0, -0.001))
             time.sleep(0.01)
 
+    def feel(self) -> None:
+        """Start a loop again after one has ended."""
+        self.tab.until(event="answer", number=self.tab.ask("feel"))
+        self.attach()
+
     def press(self) -> None:
+        """Press until that is felt, in a new loop if a machine that stood still has ended the last one."""
         self._quiet = False
-        until(lambda: (row := self.ring.latest()) is not None and row[FORCE][2] > 0.3, "nothing is felt")
+        try:
+            until(self._is_felt)
+        except AssertionError:
+            lines, state = self._server.lines[1:], self.tab.socket.protocol.state
+            raise AssertionError(f"nothing is felt; {self.ring.count} ticks, socket {state!r}, {lines}") from None
+
+    def _is_felt(self) -> bool:
+        if self.ring.header[STOP] and any("stood still" in line for line in self._server.lines[self._read :]):
+            self._read = len(self._server.lines)
+            self.feel()
+        row = self.ring.latest()
+        return row is not None and row[FORCE][2] > 0.3 and not self.ring.header[STOP]
 
     def fall_silent(self) -> None:
         self._quiet = True
@@ -186,21 +211,17 @@ def test_force_ends_with_the_tab_the_loop_and_a_frozen_server(home: Home) -> Non
 
     found["stop"] = press.let_go_s(lambda: press.tab.ask("stop"))
     assert press.tab.until(event="loop", running=False)["stopped"]
-    number = press.tab.ask("feel")
-    press.tab.until(event="answer", number=number)
-    press.attach()
+    press.feel()
     host, port = server.url.split("/")[2].split(":")
     unfinished = [socket.create_connection((host, int(port))) for _ in range(300)]
     for each in unfinished:
         each.sendall(b"GET / HT")
     found["stop beside unfinished connections"] = press.let_go_s(lambda: press.tab.ask("stop"))
-    press.tab.until(event="answer", number=press.tab.ask("feel"))
-    press.attach()
+    press.feel()
     found["stop by a request beside them"] = press.let_go_s(lambda: post_stop(server.url))
     for each in unfinished:
         each.close()
-    press.tab.until(event="answer", number=press.tab.ask("feel"))
-    press.attach()
+    press.feel()
     [loop] = children(server, "servo.child")
     found["loop killed"] = press.let_go_s(lambda: os.kill(loop, signal.SIGKILL))
     assert press.tab.until(event="loop", running=False)["why"]

@@ -355,3 +355,28 @@ def test_frame_is_the_device_s_reach_and_can_be_dragged(shown: Shown):
     shown.page.keyboard.press("Shift+Z")
     until(lambda: "region_m" not in shown.mapping())
     assert shown.page.evaluate("() => page.document.text") == PIPELINE + "mapping: {rotation_deg: -1}\n"
+
+
+def test_reach_of_the_newest_document_stays_when_an_older_answer_comes_last(shown: Shown):
+    shown.page.get_by_label("Show what the device reaches").check()
+    shown.page.evaluate(
+        """() => {
+          const { net } = page;
+          const ask = net.ask;
+          const late = new Promise((done) => (window.let_go = done));
+          net.ask = async function (name, args) {
+            if (name !== "reach") return ask.call(net, name, args);
+            net.ask = ask;
+            await late;
+            return { device: "older", workspace_m: [0.02, 0.02, 0.02] };
+          };
+        }"""
+    )
+    for scale in (2, 4):
+        shown.page.evaluate("(to) => page.net.ask('set', { changes: { 'mapping.scale': to } })", scale)
+        until(lambda scale=scale: shown.mapping().get("scale") == scale)
+    panel = shown.page.locator("#mapping-panel")
+    until(lambda: "20.0 \N{MULTIPLICATION SIGN} 20.0" in panel.inner_text())
+    shown.page.evaluate("let_go(), new Promise((done) => setTimeout(done))")
+    assert "20.0 \N{MULTIPLICATION SIGN} 20.0" in panel.inner_text()
+    shown.page.evaluate("() => page.net.ask('set', { changes: {}, removed: ['mapping.scale'] })")

@@ -32,6 +32,8 @@ export class MappingFrame implements PointerTool {
   /** The mapping while it is dragged or written. */
   private draft: Mapping | null = null;
   private writing = false;
+  /** Number of requests of the reach so far; only the answer to the last one counts. */
+  private round = 0;
   private line: DrapedLine;
   private drawn: DrapedLine;
   private from: Vec | null = null;
@@ -219,12 +221,15 @@ export class MappingFrame implements PointerTool {
 
   /** Request the reach of the document's device. */
   private async ask(): Promise<void> {
+    const now = ++this.round;
+    let found: Reached = { device: "", workspace_m: null };
     try {
-      const { device, workspace_m } = await this.page.net.ask<Reached>("reach");
-      [this.device, this.workspace] = [device, workspace_m];
+      found = await this.page.net.ask<Reached>("reach");
     } catch {
-      [this.device, this.workspace] = ["", null];
+      // the document has no device that can be loaded
     }
+    if (now !== this.round) return; // another document was opened
+    [this.device, this.workspace] = [found.device, found.workspace_m];
     this.draw();
   }
 

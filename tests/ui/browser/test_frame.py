@@ -223,6 +223,21 @@ def test_newest_folder_that_was_asked_for_stays_listed_when_an_older_answer_come
     assert page.locator("#open-folder").input_value() == str(tmp_path)
 
 
+def test_folder_that_was_typed_is_listed_if_its_box_only_then_says_that_it_is_open(page: "Page", tmp_path: Path):
+    """A browser queues the event: on a slow machine it comes after the keys."""
+    (tmp_path / "typed.npy").touch()
+    folder = open_panel(page, "open").locator("details", has_text="Folder of this computer")
+    folder.evaluate(
+        "(box) => box.addEventListener('toggle', (event) => event.isTrusted && event.stopImmediatePropagation(), true)"
+    )
+    folder.locator("summary").press("Enter")
+    page.locator("#open-folder").fill(str(tmp_path))
+    folder.evaluate("(box) => box.dispatchEvent(new Event('toggle'))")
+    until(lambda: page.locator("#open-entries option").count())
+    assert page.locator("#open-entries option[value='typed.npy']").count() == 1
+    assert page.locator("#open-folder").input_value() == str(tmp_path)
+
+
 def test_photograph_without_depth_has_a_notice_that_leads_on(
     opened: Callable[..., str], open_page: OpenPage, tmp_path: Path
 ):

@@ -57,7 +57,8 @@ export function folder(net: Server, open: (paths: string[]) => void, say: (text:
   list.onkeydown = (event) => {
     if (event.key === "Enter") chosen();
   };
-  box.addEventListener("toggle", () => box.open && !shown && void show(""));
+  // A path may have been typed by then.
+  box.addEventListener("toggle", () => box.open && !shown && void show(path.value));
   box.append(
     heading,
     field(t("folder"), path),

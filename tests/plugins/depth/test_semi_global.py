@@ -12,6 +12,7 @@ from stereo_scenes import known_pair, slanted, step
 from tangible_core.data import Views
 from tangible_core.errors import PictureError
 from tangible_core.plugins.notes import collected
+from tangible_depth.dense import refinement
 from tangible_depth.dense.filling import gaps
 from tangible_depth.dense.filling.four_directions import fill_from_four_directions
 from tangible_depth.dense.speckles import Specks
@@ -208,6 +209,24 @@ def test_best_effort_has_fewer_wrong_pixels():
             disparity_px = SemiGlobal.model_validate({"effort": effort}).estimate(pair.views).disparity_px
             found.append(1 - share_within(disparity_px, pair.truth_px, 2.0))
     assert np.mean(wrong["best"]) < 0.95 * np.mean(wrong["balanced"])
+
+
+@pytest.mark.parametrize("resolution", ["full", "half"])
+def test_best_effort_closes_gaps_that_the_right_view_sees(resolution, monkeypatch):
+    """Without the right view's own matches there are more errors where both views show a pixel."""
+    wrong = []
+    for alone in (True, False):
+        if alone:
+            monkeypatch.setattr(refinement, "reconcile", lambda matched, _: matched)
+        else:
+            monkeypatch.undo()
+        pairs = [known_pair(kind, 240, 180, seed=seed) for kind in ("steps", "spheres") for seed in (3, 5)]
+        found = [SemiGlobal(effort="best", resolution=resolution).estimate(each.views) for each in pairs]
+        seen = [
+            np.abs(map_.disparity_px - pair.truth_px)[pair.visible] for map_, pair in zip(found, pairs, strict=True)
+        ]
+        wrong.append(np.mean(np.concatenate(seen) > 2))
+    assert wrong[1] < 0.95 * wrong[0]
 
 
 @pytest.mark.parametrize(("effort", "times"), [("balanced", 0), ("best", 1)])

@@ -16,6 +16,7 @@ from tangible_core.compiled.compiling import KERNEL, inner, njit
 from tangible_core.compiled.threads import in_blocks
 from tangible_core.data import DisparityMap
 
+from .both_views import reconcile
 from .confidence import FILLED, FLAT_REACH, GAP_REACH, STEP_REACH, confidence, flat_pixels
 from .edges import MEDIAN_REACH, VOTERS, median, sharpen_edges
 from .filling.gaps import Effort, fill_gaps
@@ -57,15 +58,20 @@ def complete(
     by_quality: Float[np.ndarray, "256"],
     grey: UInt8[np.ndarray, "h w"],
     cleaning: Cleaning | None = None,
+    from_right: Int16[np.ndarray, "h w"] | None = None,
 ) -> DenseMatches:
     """Remove speckles (in `matched` itself), fill gaps, sharpen edges, and rate the result (see `confidence`).
 
+    from_right: matches of the right view at its own pixels, if it was matched too (see `reconcile`).
     matched: disparity in sixteenths of a pixel, UNKNOWN without a match; a map without any match stays UNKNOWN.
     quality, by_quality: see `confidence`. grey: the left view.
     """
     cleaning = cleaning or Cleaning()
     remove_specks(matched, cleaning.specks, cleaning.factor)
-    filled = fill_gaps(matched, grey, cleaning.effort)
+    known = matched
+    if from_right is not None:
+        known = reconcile(matched, from_right)
+    filled = fill_gaps(known, grey, cleaning.effort)
     out = _empty(grey.shape)
 
     def block(y0: int, y1: int) -> None:

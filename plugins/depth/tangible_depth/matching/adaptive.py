@@ -61,6 +61,15 @@ SPENDING: dict[Effort, _Spending] = {
 }
 
 
+class Matched(NamedTuple):
+    """The matches of a pair."""
+
+    matches: StripMatches
+    exchanged: StripMatches | None
+    """With `effort: best`, those of the exchanged pair."""
+    cost: Cost
+
+
 def match(
     pair: Pair,
     span: Span,
@@ -69,12 +78,23 @@ def match(
     realign_rows: bool,
     rows: Rows,
     effort: Effort,
-) -> tuple[StripMatches, Cost]:
-    """Match the strips `rows` with the given cost or, if None, with the one chosen by a trial; return the cost too."""
+) -> Matched:
+    """Match the strips `rows` with the given cost or, if None, with the one chosen by a trial."""
+    trial = _match(pair, span, cost, check_tolerance, realign_rows, rows, effort)
+    if effort != "best":
+        return Matched(trial.out, None, trial.cost)
+    exchanged = trial.with_pair(trial.pair.exchange())
+    exchanged.sweep(rows)
+    return Matched(trial.out, exchanged.out, trial.cost)
+
+
+def _match(
+    pair: Pair, span: Span, cost: Cost | None, check_tolerance: float, realign_rows: bool, rows: Rows, effort: Effort
+) -> "_Trial":
     trial = _Trial(pair, span, cost or LEVELS, check_tolerance, effort)
     if cost and not realign_rows:
         trial.sweep(rows)
-        return trial.out, cost
+        return trial
     probes, rest = _probes(rows)
     health = trial.health(probes)
     row_offset_px = _row_offset(trial, probes, span, health) if realign_rows else 0.0
@@ -84,7 +104,7 @@ def match(
         health = trial.health(probes)
     if cost:
         trial.sweep(rest)
-        return trial.out, cost
+        return trial
     chosen = trial.cost
     if chosen.most_level and (why := _why_levels_mislead(health, trial.levels_apart(probes))):
         note(log, f"skipped: comparing grey levels, as {why}")
@@ -98,7 +118,7 @@ def match(
     if chosen is not trial.cost:
         trial, rest = trial.with_cost(chosen), rows
     trial.sweep(rest)
-    return trial.out, trial.cost
+    return trial
 
 
 class _Health(NamedTuple):

@@ -8,10 +8,10 @@ from jaxtyping import UInt8
 
 from tangible_core.plugins.notes import note
 
-from ..dense.confidence import FLAT_REACH, LEAST_MATCHED
+from ..dense.confidence import FILLED, FLAT_REACH, LEAST_MATCHED
 from ..dense.filling.gaps import Effort
 from ..dense.refinement import Cleaning, DenseMatches, complete, enlarge
-from ..dense.span import Span
+from ..dense.span import UNKNOWN, Span
 from ..search.pairs import Pair
 from ..sgm.costs import COSTS, SHARP, Penalties, p2_by_grey_step
 from ..sgm.strips import MOST_LANES, strips
@@ -75,7 +75,11 @@ def _match(pair: Pair, span: Span, options: Scaling, factor: int) -> DenseMatche
     preview = options.resolution == "half"
     cost = HALVED if preview and options.cost == "auto" else COSTS.get(options.cost)
     realign_rows = options.realign_rows and not preview
-    swept, cost = match(pair, span, cost, CHECK_TOLERANCE[options.check], realign_rows, rows, options.effort)
+    swept, exchanged, cost = match(pair, span, cost, CHECK_TOLERANCE[options.check], realign_rows, rows, options.effort)
     by_sum = np.maximum(1 - np.arange(256) / (4 * cost.bits), LEAST_MATCHED)
     cleaning = Cleaning(not preview, cost.specks, factor, options.effort)
-    return complete(swept.disparity, swept.sums, by_sum, pair.left, cleaning)
+    from_right = None
+    if exchanged is not None:
+        mirrored = complete(*exchanged, by_sum, pair.exchange().left, cleaning._replace(effort="balanced"))
+        from_right = np.where(mirrored.confidence > FILLED, mirrored.disparity, UNKNOWN)[:, ::-1].copy()
+    return complete(*swept, by_sum, pair.left, cleaning, from_right)

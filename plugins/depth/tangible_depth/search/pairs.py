@@ -38,6 +38,10 @@ class Pair(NamedTuple):
         """Mirror each picture sideways; a disparity d becomes -d."""
         return Pair.of(*(np.ascontiguousarray(each[:, ::-1]) for each in self))
 
+    def exchange(self) -> "Pair":
+        """Exchange the views and mirror both; a disparity d stays d."""
+        return Pair(*reversed(self.mirror()))
+
 
 def grey_pair(views: Views, method: str) -> Pair:
     """Convert both views to 8 bits of grey.

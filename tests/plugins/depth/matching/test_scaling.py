@@ -6,6 +6,7 @@ import pytest
 from tangible_core.plugins.notes import collected
 from tangible_depth.dense.span import UNKNOWN, Span
 from tangible_depth.matching import scaling as module
+from tangible_depth.matching.adaptive import Matched
 from tangible_depth.matching.scaling import CHECK_TOLERANCE, Scaling
 from tangible_depth.search.pairs import Pair
 from tangible_depth.sgm.costs import SHARP
@@ -41,6 +42,6 @@ def test_confidence_of_a_match_falls_from_one_to_that_of_the_worst_with_its_cost
     sums = np.tile(np.repeat([0, 24, 48, 96, 255], 12), (20, 1)).astype(np.uint8)
     disparity = np.full(grey.shape, np.int16(64))
     assert (disparity != UNKNOWN).all()
-    monkeypatch.setattr(module, "match", lambda *_: (StripMatches(disparity.copy(), sums), SHARP))
+    monkeypatch.setattr(module, "match", lambda *_: Matched(StripMatches(disparity.copy(), sums), None, SHARP))
     found = module.match_scaled(Pair.of(grey, grey), Span(0, 15), OPTIONS)
     np.testing.assert_allclose(found.confidence[0], np.repeat([1, 0.75, 0.5, 0.2, 0.2], 12), atol=1e-6)

@@ -18,6 +18,15 @@ def test_smaller_pair_has_means_with_the_edge_repeated(factor: int, shape: tuple
         assert np.abs(one - means).max() <= 0.5
 
 
+def test_exchanged_pair_has_the_same_disparity():
+    """A place is at 3 in the left view and at 1 in the right one; mirrored in five columns, at 3 in the first."""
+    left, right = np.zeros((2, 1, 5), np.uint8)
+    left[0, 3] = right[0, 1] = 9
+    found = Pair.of(left, right).exchange()
+    assert (found.left.tolist(), found.right.tolist()) == ([[0, 0, 0, 9, 0]], [[0, 9, 0, 0, 0]])
+    assert found.left.flags.c_contiguous
+
+
 def test_both_views_are_brightened_alike_by_a_power_of_two():
     """The left one reaches a third of white, the right one a ninth: both are doubled."""
     left, right = np.array([[0.0, 1 / 3]]), np.array([[1 / 9, 0.0]])

@@ -7,6 +7,9 @@ import numpy as np
 from tangible_core import HapticSurface, load_method
 from tangible_core.plugins.interfaces import Touch
 
+SOFT_N_PER_M = 2.0
+"""Stiffness that `Circling` and `Failing` hold even at a period of a second, so that no late tick scales it down."""
+
 
 def proxy(height_m: float = 0.002) -> Touch:
     level = HapticSurface.from_heights(np.full((16, 16), height_m, np.float32))

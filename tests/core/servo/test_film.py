@@ -13,7 +13,7 @@ import pytest
 
 from faulty_touch import Fault, FaultyFilm
 from loop_devices import Circling, Failing
-from loop_scenes import held_force
+from loop_scenes import SOFT_N_PER_M, held_force
 from moving_plane import MovingPlane, level
 from tangible_core import HapticSurface, load_method
 from tangible_core.compiled.touch import CompiledTouch
@@ -46,18 +46,19 @@ class TestShow:
     @pytest.mark.parametrize("device", DEVICES)
     def test_shown_frames_move_the_surface_of_the_loop(self, device) -> None:
         """For each kind of loop; ticks have the frame, and the guard counts the surface's work."""
-        film, depth_m = MovingPlane(0.01, stiffness_n_per_m=100.0), 0.002 if isinstance(device, Circling) else 0.011
+        film = MovingPlane(0.01, stiffness_n_per_m=SOFT_N_PER_M)
+        depth_m = 0.002 if isinstance(device, Circling) else 0.011
         with Servo(film, device, AT_ONCE) as servo:
-            until(lambda: servo.report().force.z == pytest.approx(100 * depth_m))  # not one that still grows
+            until(lambda: servo.report().force.z == pytest.approx(SOFT_N_PER_M * depth_m))  # not one that still grows
             before = servo.report()
             servo.show(level(0.012), 7)
             until(lambda: servo.report().frame == 7 and servo.film is not None and servo.film.arrived)
-            until(lambda: servo.report().force.z - before.force.z == pytest.approx(0.2, abs=1e-6))
+            until(lambda: servo.report().force.z - before.force.z == pytest.approx(SOFT_N_PER_M * 0.002))
             given_j = servo.ring.guard[GIVEN_J]
             servo.stop()
             rows, _ = servo.ring.since(0)
         # The force before a step does the work of it: half the steps' work less, which late ticks make large.
-        assert 100 * 0.002 * depth_m <= given_j <= 100 * 0.002 * (depth_m + 0.001) * 1.001
+        assert 0.002 * depth_m <= given_j / SOFT_N_PER_M <= 0.002 * (depth_m + 0.001) * 1.001
         assert before.frame == 0 and set(rows[:, FRAME]) == {0.0, 7.0}
         assert film.plane[0] == 0.01, "what was handed over is not what is felt"
 

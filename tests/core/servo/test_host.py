@@ -12,7 +12,7 @@ import pytest
 from ctrl_c import HEARING
 from faulty_touch import FaultyTouch
 from loop_devices import Circling, Failing
-from loop_scenes import held_force
+from loop_scenes import SOFT_N_PER_M, held_force
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import TICK_COLUMNS, TickFlag
 from tangible_core.errors import ConfigError, DeviceError
@@ -25,8 +25,9 @@ FLAGS = TICK_COLUMNS.index("flags")
 FORCE = slice(TICK_COLUMNS.index("fx_n"), TICK_COLUMNS.index("fx_n") + 3)
 LEVEL = HapticSurface.from_heights(np.full((32, 32), 0.002, np.float32))
 AT_ONCE = Safety(ramp_s=0, stale_s=1.0)  # a late tick takes no force away
-SOFT_N_PER_M = 50.0
-"""Stiffness that is stable even if the clock stands still for half a second, so that no force is scaled down."""
+DEEP_M = 0.05
+DEEP = HapticSurface.from_heights(np.full((32, 32), DEEP_M, np.float32))
+"""A surface with a force to speak of even with a stiffness of SOFT_N_PER_M."""
 
 pytestmark = pytest.mark.usefixtures("patient")
 
@@ -50,15 +51,15 @@ class TestTicks:
         ],
     )
     def test_each_kind_of_loop_renders_the_surface(self, device, how: str) -> None:
-        with Servo(proxy(stiffness_n_per_m=SOFT_N_PER_M), device, AT_ONCE, seconds=0.3) as servo:
+        with Servo(proxy(DEEP, stiffness_n_per_m=SOFT_N_PER_M), device, AT_ONCE, seconds=0.3) as servo:
             assert how in servo.how
             assert servo.start_s > 0
             until(lambda: not servo.running)
             report, rows = servo.report(), ticks(servo)
-        depth = 0.002 - (0.001 if isinstance(device, Circling) else -0.001)
+        depth = DEEP_M - (0.001 if isinstance(device, Circling) else -0.001)
         assert (report.ticks, len(rows), report.stopped) == (300, 300, OVER)
         np.testing.assert_allclose(rows[-1, FORCE], (0, 0, SOFT_N_PER_M * depth), atol=1e-6)
-        np.testing.assert_allclose(rows[-1, 8:11], (*rows[-1, 2:4], 0.002), atol=1e-6)
+        np.testing.assert_allclose(rows[-1, 8:11], (*rows[-1, 2:4], DEEP_M), atol=1e-6)
         assert int(rows[-1, FLAGS]) & TickFlag.TOUCHING
         assert (np.diff(rows[:, 0]) > 0).all()
         due_s, late_s = rows[-1, 0] - rows[-1, 1], rows[-1, 1]
@@ -97,18 +98,19 @@ class TestTicks:
 class TestSwap:
     @pytest.mark.parametrize("device", [Circling(z_m=0.0), Circling(z_m=0.0, exchanges=True), Failing(fault="none")])
     def test_swap_takes_effect_from_one_tick_to_the_next(self, device) -> None:
-        high = HapticSurface.from_heights(np.full((48, 64), 0.003, np.float32))
-        with Servo(proxy(stiffness_n_per_m=100.0), device, AT_ONCE) as servo:
+        higher = HapticSurface.from_heights(np.full((48, 64), DEEP_M + 0.001, np.float32))
+        with Servo(proxy(DEEP, stiffness_n_per_m=SOFT_N_PER_M), device, AT_ONCE) as servo:
             until(lambda: servo.report().ticks > 100)
-            servo.swap(proxy(high, stiffness_n_per_m=100.0), AT_ONCE.model_copy(update={"max_force_n": 0.05}))
+            limited = AT_ONCE.model_copy(update={"max_force_n": 0.05})
+            servo.swap(proxy(higher, stiffness_n_per_m=SOFT_N_PER_M), limited)
             there = servo.report().ticks
             until(lambda: servo.report().ticks > there + 100)
             servo.stop()
             rows = ticks(servo)
         (swapped,) = np.flatnonzero(rows[:, FLAGS].astype(int) & TickFlag.SWAPPED)
-        assert np.nanmax(rows[:swapped, 10]) == pytest.approx(0.002, abs=1e-6)
-        assert np.nanmin(rows[swapped + 5 :, 10]) == pytest.approx(0.003, abs=1e-6)
-        assert rows[swapped - 1, 13] > 0.1
+        assert np.nanmax(rows[:swapped, 10]) == pytest.approx(DEEP_M, abs=1e-6)
+        assert np.nanmin(rows[swapped + 5 :, 10]) == pytest.approx(DEEP_M + 0.001, abs=1e-6)
+        assert rows[swapped - 1, 13] > 0.09
         # The guard's step is a share of the time since the last tick: this long the force may be on its way.
         on_its_way_s = 1.01e-3 * (rows[swapped - 1, 13] - 0.05) / AT_ONCE.max_step_n
         moved = rows[swapped:, 0] > rows[swapped - 1, 0] + on_its_way_s
@@ -118,9 +120,9 @@ class TestSwap:
     def test_swapped_scene_fades_in(self, device) -> None:
         """By the clock of the ticks: late ones have a greater share."""
         fading = Safety(ramp_s=0.1, stale_s=1.0, max_step_n=10, passivity="off")
-        with Servo(proxy(stiffness_n_per_m=100.0), device, fading) as servo:
+        with Servo(proxy(DEEP, stiffness_n_per_m=SOFT_N_PER_M), device, fading) as servo:
             until(lambda: len(ticks(servo)) > 50 and not int(ticks(servo)[-1, FLAGS]) & TickFlag.RAMPING)
-            servo.swap(proxy(stiffness_n_per_m=100.0))
+            servo.swap(proxy(DEEP, stiffness_n_per_m=SOFT_N_PER_M))
             until(lambda: bool((ticks(servo)[:-1, FLAGS].astype(int) & TickFlag.SWAPPED).any()))
             until(lambda: not int(ticks(servo)[-1, FLAGS]) & TickFlag.RAMPING)
             servo.stop()

@@ -37,6 +37,7 @@ def from_above(page) -> None:
 def wait_for_rest(page) -> None:
     page.wait_for_function("() => !window.page.view.dirty")
     page.evaluate("new Promise((done) => setTimeout(done, 400))")  # ends after the view's own, which draws it finely
+    page.wait_for_function("() => !window.page.view.terrain?.moving")  # the first surface takes longer to come to rest
     page.wait_for_function("() => !window.page.view.dirty")
 
 

@@ -61,36 +61,39 @@ SPENDING: dict[Effort, _Spending] = {
 }
 
 
+class Fixed(NamedTuple):
+    """What the options fix; a trial finds the rest."""
+
+    cost: Cost | None
+    """Cost of the matching; None for the one that a trial chooses."""
+    check_tolerance: float
+    realign_rows: bool
+    effort: Effort
+
+
 class Matched(NamedTuple):
     """The matches of a pair."""
 
+    pair: Pair
+    """The pair that was matched: the given one, unless its rows were realigned."""
     matches: StripMatches
     exchanged: StripMatches | None
     """With `effort: best`, those of the exchanged pair."""
     cost: Cost
 
 
-def match(
-    pair: Pair,
-    span: Span,
-    cost: Cost | None,
-    check_tolerance: float,
-    realign_rows: bool,
-    rows: Rows,
-    effort: Effort,
-) -> Matched:
-    """Match the strips `rows` with the given cost or, if None, with the one chosen by a trial."""
-    trial = _match(pair, span, cost, check_tolerance, realign_rows, rows, effort)
-    if effort != "best":
-        return Matched(trial.out, None, trial.cost)
+def match(pair: Pair, span: Span, rows: Rows, fixed: Fixed) -> Matched:
+    """Match the strips `rows`, and with `effort: best` those of the exchanged pair too."""
+    trial = _match(pair, span, rows, fixed)
+    if fixed.effort != "best":
+        return Matched(trial.pair, trial.out, None, trial.cost)
     exchanged = trial.with_pair(trial.pair.exchange())
     exchanged.sweep(rows)
-    return Matched(trial.out, exchanged.out, trial.cost)
+    return Matched(trial.pair, trial.out, exchanged.out, trial.cost)
 
 
-def _match(
-    pair: Pair, span: Span, cost: Cost | None, check_tolerance: float, realign_rows: bool, rows: Rows, effort: Effort
-) -> "_Trial":
+def _match(pair: Pair, span: Span, rows: Rows, fixed: Fixed) -> "_Trial":
+    cost, check_tolerance, realign_rows, effort = fixed
     trial = _Trial(pair, span, cost or LEVELS, check_tolerance, effort)
     if cost and not realign_rows:
         trial.sweep(rows)

@@ -15,7 +15,7 @@ from ..dense.span import UNKNOWN, Span
 from ..search.pairs import Pair
 from ..sgm.costs import COSTS, SHARP, Penalties, p2_by_grey_step
 from ..sgm.strips import MOST_LANES, strips
-from .adaptive import match
+from .adaptive import Fixed, match
 
 log: logging.Logger = logging.getLogger(__name__)
 CHECK_TOLERANCE = {"soft": 1.08, "strict": 1.0}
@@ -75,11 +75,12 @@ def _match(pair: Pair, span: Span, options: Scaling, factor: int) -> DenseMatche
     preview = options.resolution == "half"
     cost = HALVED if preview and options.cost == "auto" else COSTS.get(options.cost)
     realign_rows = options.realign_rows and not preview
-    swept, exchanged, cost = match(pair, span, cost, CHECK_TOLERANCE[options.check], realign_rows, rows, options.effort)
-    by_sum = np.maximum(1 - np.arange(256) / (4 * cost.bits), LEAST_MATCHED)
-    cleaning = Cleaning(not preview, cost.specks, factor, options.effort)
+    found = match(pair, span, rows, Fixed(cost, CHECK_TOLERANCE[options.check], realign_rows, options.effort))
+    by_sum = np.maximum(1 - np.arange(256) / (4 * found.cost.bits), LEAST_MATCHED)
+    cleaning = Cleaning(not preview, found.cost.specks, factor, options.effort)
     from_right = None
-    if exchanged is not None:
-        mirrored = complete(*exchanged, by_sum, pair.exchange().left, cleaning._replace(effort="balanced"))
+    if found.exchanged is not None:
+        right = found.pair.exchange().left
+        mirrored = complete(*found.exchanged, by_sum, right, cleaning._replace(effort="balanced"))
         from_right = np.where(mirrored.confidence > FILLED, mirrored.disparity, UNKNOWN)[:, ::-1].copy()
-    return complete(*swept, by_sum, pair.left, cleaning, from_right)
+    return complete(*found.matches, by_sum, pair.left, cleaning, from_right)

@@ -6,6 +6,7 @@ import pytest
 from tangible_depth.dense.span import UNKNOWN, Span
 from tangible_depth.dense.speckles import ISLAND_PX, remove_speckles
 from tangible_depth.matching import adaptive as module
+from tangible_depth.matching.adaptive import Fixed
 from tangible_depth.row_alignment.row_offset import shift_rows
 from tangible_depth.search.pairs import Pair
 from tangible_depth.sgm.costs import LEVELS, SHARP
@@ -79,10 +80,10 @@ def test_order_alone_is_not_tried_where_noise_is_far_too_strong(
     left = np.random.default_rng(0).integers(0, 256, (130, 60), np.uint8)
     pair = Pair.of(left, np.roll(left, -3, axis=1))
     with caplog.at_level("INFO"):
-        found, exchanged, cost = module.match(pair, Span(-4, 11), None, 1.08, False, [(0, 100), (100, 130)], "balanced")
-    assert exchanged is None
-    assert (costs, cost.name) == (tried, chosen)
-    assert np.mean(np.abs(found.disparity[:, 8:-8] - 48) <= 8) > 0.8
+        found = module.match(pair, Span(-4, 11), [(0, 100), (100, 130)], Fixed(None, 1.08, False, "balanced"))
+    assert found.exchanged is None
+    assert (costs, found.cost.name) == (tried, chosen)
+    assert np.mean(np.abs(found.matches.disparity[:, 8:-8] - 48) <= 8) > 0.8
     why = "cost heavy: 40% of the matches are speckles"
     assert [each for each in caplog.messages if each.startswith("cost")] == [why] * (chosen == "heavy")
 
@@ -132,10 +133,11 @@ def test_best_effort_matches_the_exchanged_pair_at_the_same_cost_and_rows(row_of
     left, right = np.random.default_rng(0).integers(0, 256, (2, 40, 60), np.uint8)
     right[:, :-5] = left[:, 5:]
     pair, span = Pair.of(left, right), Span(-4, 11)
-    found = module.match(pair, span, None, 1.08, True, [(0, 40)], "best")
+    found = module.match(pair, span, [(0, 40)], Fixed(None, 1.08, True, "best"))
     assert found.exchanged is not None
     aligned = shift_rows(pair, row_offset_px) if row_offset_px else pair
-    again = module.match(aligned.exchange(), span, found.cost, 1.08, False, [(0, 40)], "best").matches
+    assert np.array_equal(found.pair, aligned)
+    again = module.match(aligned.exchange(), span, [(0, 40)], Fixed(found.cost, 1.08, False, "best")).matches
     assert np.array_equal(found.exchanged.disparity, again.disparity)
     if not row_offset_px:
         assert np.mean(np.abs(found.exchanged.disparity[:, 8:-8] - 80) <= 8) > 0.9

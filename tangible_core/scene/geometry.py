@@ -139,14 +139,14 @@ def extent_of(shape: tuple[int, ...], width_m: float) -> tuple[float, float]:
 def _range_of(values: Float[np.ndarray, "h w"], percent: tuple[float, float]) -> ValueRange:
     """Return percentiles of the known values, or their extremes if these are equal; one value for a constant map."""
     known = values[np.isfinite(values)]
-    size = np.max(np.abs(known)) or 1.0  # divided out first: the largest floats have no difference
-    parts = known.astype(np.float64) / size
+    exponent = np.frexp(np.max(np.abs(known)))[1]  # divided out first: the largest floats have no difference
+    parts = np.ldexp(known.astype(np.float64), -exponent)
     low, high = np.percentile(parts, percent)
     if not low < high:
         low, high = parts.min(), parts.max()
     if high - low <= 4 * np.finfo(values.dtype).eps * max(abs(low), abs(high)):
         high = low
-    return ValueRange(float(low * size), float(high * size))
+    return ValueRange(*(float(np.ldexp(each, exponent)) for each in (low, high)))
 
 
 def _unit_range(values: Float[np.ndarray, "h w"], spans: ValueRange) -> Float[np.ndarray, "h w"]:

@@ -53,8 +53,8 @@ class CameraFrames(VideoFrames):
         """The current fault of the camera; None once it was raised."""
         self._taken, self._read_number, self._first_s = 0, -1, 0.0
         self._thread = Thread(target=self._watch, name=f"camera {number}", daemon=True)
-        self._thread.start()
         try:
+            self._thread.start()
             self._wait(FIRST_S)
         except BaseException:
             self.close()
@@ -83,7 +83,8 @@ class CameraFrames(VideoFrames):
         self._closed.set()
         with self._changed:
             self._changed.notify_all()
-        self._thread.join(ENDED_S)
+        if self._thread.is_alive():
+            self._thread.join(ENDED_S)
 
     def _wait(self, most_s: float) -> None:
         """Wait until there is a newer picture. Raises: PictureError if none comes, or the camera is lost."""

@@ -9,6 +9,7 @@ import pytest
 
 from ctrl_c import hearing
 from loop_devices import Circling, Failing
+from loop_scenes import SOFT_N_PER_M
 from tangible_core import HapticSurface, load_method
 from tangible_core.data import NO_FORCE, TICK_COLUMNS, Force, HapticState, ServoReport, TickFlag
 from tangible_core.errors import DeviceError
@@ -23,7 +24,7 @@ TIME_S, PROXY_Z_M, FORCE_Z_N, FLAGS = (TICK_COLUMNS.index(name) for name in ("ti
 
 def proxy(height_m: float = 0.002) -> Touch:
     surface = HapticSurface.from_heights(np.full((16, 16), height_m, np.float32))
-    return load_method("render", "proxy")(stiffness_n_per_m=200.0).touch(surface)
+    return load_method("render", "proxy")(stiffness_n_per_m=SOFT_N_PER_M).touch(surface)
 
 
 @pytest.fixture
@@ -43,7 +44,7 @@ def test_kiosk_rotates_scenes_with_their_own_limits() -> None:
         if sum(int((each[:, FLAGS].astype(int) & TickFlag.SWAPPED != 0).sum()) for each in kept) == 2:
             stop.set()
 
-    turns = [Slot(proxy(0.002), AT_ONCE), Slot(proxy(0.003), AT_ONCE.model_copy(update={"max_force_n": 0.3}))]
+    turns = [Slot(proxy(0.05), AT_ONCE), Slot(proxy(0.06), AT_ONCE.model_copy(update={"max_force_n": 0.08}))]
     last = run_kiosk(turns, Circling(), 60.0, each_s=0.2, keep=keep, stop=stop)
     rows = np.concatenate(kept)
     assert (last.stopped, last.ticks) == (STOPPED, len(rows))
@@ -51,7 +52,7 @@ def test_kiosk_rotates_scenes_with_their_own_limits() -> None:
     assert rows[first, TIME_S] >= 0.2 and rows[second, TIME_S] - rows[first, TIME_S] >= 0.2
     scenes = rows[:first], rows[first:second], rows[second:]
     found = [(np.median(each[:, PROXY_Z_M]), each[:, FORCE_Z_N].max()) for each in scenes]
-    np.testing.assert_allclose(found, [(0.002, 0.4), (0.003, 0.3), (0.002, 0.4)], atol=1e-6)
+    np.testing.assert_allclose(found, [(0.05, 0.1), (0.06, 0.08), (0.05, 0.1)], atol=1e-6)
 
 
 @pytest.mark.slow

@@ -171,6 +171,21 @@ def test_ctrl_c_interrupts_a_blocked_camera():
     assert monotonic() - began_s < LONG_S
 
 
+@pytest.mark.parametrize("starts", [True, False])
+def test_ctrl_c_at_the_start_of_the_thread_leaves_no_open_camera(starts: bool, monkeypatch: pytest.MonkeyPatch):
+    class Interrupted(threading.Thread):
+        def start(self) -> None:
+            if starts:
+                super().start()
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(video_camera, "Thread", Interrupted)
+    camera = Played([grey(0)] * 99)
+    with pytest.raises(KeyboardInterrupt):
+        frames_of(camera)
+    until(lambda: camera.released.is_set() or not starts)
+
+
 def test_camera_numbers_are_those_of_the_system(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
     for name in ("video10", "video2", "video", "videofast", "null"):
         (tmp_path / name).touch()

@@ -124,9 +124,11 @@ class TestPipeline:
     def test_given_device_replaces_the_configured_one(self):
         strong = load_method("device", "force-dimension")(model="sigma")
         pipeline = self.pipeline(device=strong)
-        pipeline.feel(Mock(), 0.01, in_real_time=False)
+        felt = pipeline.feel(Mock(), 0.3, in_real_time=False)
         [touch] = [each for each in pipeline.outcomes if each.product == "touch"]
         assert "brick and stone are felt more gently than they are" in touch.why
+        configured = self.pipeline(device=Mock()).feel(seconds=0.3, in_real_time=False)
+        assert np.array_equal(felt.force_n, configured.force_n)
         assert pipeline.preflight(Mock()).safe
 
     def test_replay_uses_the_materials_of_the_session(self):

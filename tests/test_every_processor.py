@@ -55,6 +55,32 @@ MAY = {
 """Files with a matrix product, and why."""
 
 
+@pytest.mark.parametrize("folder", ["tangible_core", "plugins"])
+def test_sums_are_not_left_to_a_compiler_or_a_blas(folder: str):
+    complaints = [
+        f"{path.relative_to(ROOT)}:{node.lineno}: {what}"
+        for path in sorted(ROOT.joinpath(folder).rglob("*.py"))
+        if "testing" not in path.parts and path.name not in MAY
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if (what := left_to_others(node))
+    ]
+    assert not complaints, "\n".join(complaints)
+
+
+def left_to_others(node: ast.AST) -> str:
+    """What this piece of source leaves to whoever adds it up; empty for nothing."""
+    match node:
+        case ast.BinOp(op=ast.MatMult()):
+            return "@ is a BLAS product; use np.einsum"
+        case ast.keyword(arg=str(name)) if name in FREE:
+            return f"{name} lets the compiler reorder sums"
+        case ast.Attribute(value=ast.Name(id="np"), attr=name) if name in SUMMED_BY_A_BLAS:
+            return f"np.{name} is a BLAS's; use np.einsum"
+        case ast.Attribute(value=ast.Name(id="np"), attr=name) if name in ORDERED_BY_THE_PROCESSOR:
+            return f"np.{name} adds up in an order that differs; use np.bincount"
+    return ""
+
+
 class Running:
     """The program at work under a dispatch."""
 
@@ -115,32 +141,6 @@ def complaints(expected: Found, found: Found) -> list[str]:
         for name in sorted(one.keys() | other.keys())
         if name not in one or name not in other or not equal(one[name], other[name])
     ]
-
-
-@pytest.mark.parametrize("folder", ["tangible_core", "plugins"])
-def test_sums_are_not_left_to_a_compiler_or_a_blas(folder: str):
-    complaints = [
-        f"{path.relative_to(ROOT)}:{node.lineno}: {what}"
-        for path in sorted(ROOT.joinpath(folder).rglob("*.py"))
-        if "testing" not in path.parts and path.name not in MAY
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if (what := left_to_others(node))
-    ]
-    assert not complaints, "\n".join(complaints)
-
-
-def left_to_others(node: ast.AST) -> str:
-    """What this piece of source leaves to whoever adds it up; empty for nothing."""
-    match node:
-        case ast.BinOp(op=ast.MatMult()):
-            return "@ is a BLAS product; use np.einsum"
-        case ast.keyword(arg=str(name)) if name in FREE:
-            return f"{name} lets the compiler reorder sums"
-        case ast.Attribute(value=ast.Name(id="np"), attr=name) if name in SUMMED_BY_A_BLAS:
-            return f"np.{name} is a BLAS's; use np.einsum"
-        case ast.Attribute(value=ast.Name(id="np"), attr=name) if name in ORDERED_BY_THE_PROCESSOR:
-            return f"np.{name} adds up in an order that differs; use np.bincount"
-    return ""
 
 
 def nearly_equal(first: np.ndarray, second: np.ndarray) -> bool:

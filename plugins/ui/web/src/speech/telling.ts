@@ -15,7 +15,7 @@ export type Told =
 
 /** Step at an edge below which both sides are level, metres. */
 export const LEVEL_M = 0.0002;
-/** Sentences of an announcement; of more, the last ones, after the number of those left out. */
+/** Sentences of an announcement; of more, the last ones, after the number of edges left out. */
 const MOST = 4;
 
 export class Telling {
@@ -51,8 +51,9 @@ export class Telling {
     this.waiting = [];
     const left = Math.max(0, all.length - MOST);
     const told = all.slice(left);
+    const over = all.slice(0, left).filter(({ kind }) => kind === "edge").length;
     for (const each of all) if (each.kind === "contact") this.contact = each.contact;
-    return [...(left ? [t(left === 1 ? "oneLeftOut" : "leftOut", { count: left })] : []), ...told.map(sentence)].join(" ");
+    return [...(over ? [t(over === 1 ? "oneLeftOut" : "leftOut", { count: over })] : []), ...told.map(sentence)].join(" ");
   }
 }
 

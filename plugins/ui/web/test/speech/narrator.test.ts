@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { FLAGS } from "../../src/server/protocol";
 import { Stroke } from "../../src/speech/stroke";
+import { Telling } from "../../src/speech/telling";
 import { STAY_MS } from "../../src/speech/tour";
 import { Explorer, explore, type Picture, sceneOf } from "./exploration";
 
@@ -68,6 +69,19 @@ describe("a stroke", () => {
     const said = explore({ ...picture }, 2);
     assert.ok(said.some((each) => /^Over \d+ other edges; /.test(each)), said.join("\n"));
     assert.ok(said.every((each) => (each.match(/mm: /g) ?? []).length <= 4));
+  });
+
+  test("counts edges alone among what is left out", () => {
+    const edges = (count: number): string => {
+      const telling = new Telling();
+      telling.add({ kind: "contact", contact: "touching", what: "wall" });
+      for (let i = 0; i < count; i++) telling.add({ kind: "edge", what: `part ${i}`, riseM: 0.001 });
+      return telling.take();
+    };
+    assert.match(edges(3), /^Touching wall\. Up 1\.0 mm: part 0\./);
+    assert.match(edges(4), /^Up 1\.0 mm: part 0\./);
+    assert.match(edges(5), /^Over another edge; Up 1\.0 mm: part 1\./);
+    assert.match(edges(6), /^Over 2 other edges; Up 1\.0 mm: part 2\./);
   });
 });
 

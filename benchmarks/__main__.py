@@ -50,6 +50,7 @@ def main(names: list[str]) -> None:
     """Measure the named sections, or all."""
     if unknown := set(names) - set(SECTIONS):
         sys.exit(f"no section {', '.join(sorted(unknown))}; there are {', '.join(SECTIONS)}")
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # what is installed has its bytecode, and need not be compiled anew
     missed = False
     for name in names or SECTIONS:
         print(f"measuring {name} ...", file=sys.stderr)

@@ -102,10 +102,8 @@ def room(test: str) -> str:
 
 
 def _environment(folder: str) -> dict[str, str]:
-    """Bytecode is written: hundreds of processes would compile all sources anew."""
-    found = {name: text for name, text in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     helpers = [str(ROOT / "tests/helpers"), *filter(None, [os.environ.get("PYTHONPATH")])]
-    return found | {"PYTHONPATH": os.pathsep.join(helpers), "TANGIBLE_TEST_TIMES": str(Path(folder) / "times")}
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(helpers), "TANGIBLE_TEST_TIMES": str(Path(folder) / "times")}
 
 
 def _processor_s() -> float:

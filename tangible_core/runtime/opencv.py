@@ -24,9 +24,9 @@ def plain_opencv() -> Generator[None]:
 
     With that code the last bits of floating-point filters, of interpolation and of SIFT differ between processors with
     and without fused multiplication and addition, between vector widths, and between runs by the address of an array.
-    OpenCV's own code is switched for the whole process, until the last thread has left its block. IPP is switched for
-    one thread only: so the block must be inside the thread that calls OpenCV, and OpenCV has no threads of its own
-    meanwhile, some of which would use IPP. A Gaussian takes 15 % longer.
+    OpenCV's own code is switched for the whole process, until the last thread has left its block. IPP, which OpenCV
+    switches with it, is switched for one thread only: so the block must be inside the thread that calls OpenCV, and
+    OpenCV has no threads of its own meanwhile, some of which would use IPP. A Gaussian takes 15 % longer.
     """
     global _users
     import cv2
@@ -36,7 +36,6 @@ def plain_opencv() -> Generator[None]:
         _remember(cv2)
         _users += 1
         _switch(cv2)
-    cv2.ipp.setUseIPP(False)
     try:
         yield
     finally:

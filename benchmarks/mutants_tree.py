@@ -86,10 +86,14 @@ class Tree:
         return self._venv / "bin" / "python"
 
     def environ(self) -> dict[str, str]:
-        """Chance is the same each time, a test that hangs is ended, and what is left behind goes with the tree."""
+        """Chance is the same each time, a test that hangs is ended, and what is left behind goes with the tree.
+
+        Bytecode is written: each tree begins with that of the tree without a fault.
+        """
         places = {"TMPDIR": str(self._temporary), "TANGIBLE_SHARED_DIR": str(self._shared)}
         ours = {**places, "CI": "1", "PYTEST_TIMEOUT": "120"}
-        return {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "NUMBA_CACHE_DIR")} | ours
+        unset = ("PYTHONPATH", "NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE")
+        return {k: v for k, v in os.environ.items() if k not in unset} | ours
 
     def pytest(self, programs: "Programs", tests: Sequence[str], limit_s: float) -> Ended:
         """Run the tests until the first failure."""

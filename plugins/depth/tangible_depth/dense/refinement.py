@@ -68,9 +68,7 @@ def complete(
     """
     cleaning = cleaning or Cleaning()
     remove_specks(matched, cleaning.specks, cleaning.factor)
-    known = matched
-    if from_right is not None:
-        known = reconcile(matched, from_right)
+    known = matched if from_right is None else reconcile(matched, from_right)
     filled = fill_gaps(known, grey, cleaning.effort)
     out = _empty(grey.shape)
 

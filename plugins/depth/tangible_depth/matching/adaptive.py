@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import UInt8
 
 from tangible_core.plugins.notes import note
 
@@ -71,14 +72,20 @@ class Fixed(NamedTuple):
     effort: Effort
 
 
+class MatchedView(NamedTuple):
+    """A view as it was matched, and its matches."""
+
+    matches: StripMatches
+    grey: UInt8[np.ndarray, "h w"]
+
+
 class Matched(NamedTuple):
     """The matches of a pair."""
 
-    pair: Pair
-    """The pair that was matched: the given one, unless its rows were realigned."""
-    matches: StripMatches
-    exchanged: StripMatches | None
-    """With `effort: best`, those of the exchanged pair."""
+    left: MatchedView
+    mirrored_right: MatchedView | None
+    """With `effort: best`, the right view, mirrored, its rows realigned where they were: the left one of the exchanged
+    pair."""
     cost: Cost
 
 
@@ -86,10 +93,10 @@ def match(pair: Pair, span: Span, rows: Rows, fixed: Fixed) -> Matched:
     """Match the strips `rows`, and with `effort: best` those of the exchanged pair too."""
     trial = _match(pair, span, rows, fixed)
     if fixed.effort != "best":
-        return Matched(trial.pair, trial.out, None, trial.cost)
+        return Matched(trial.left, None, trial.cost)
     exchanged = trial.with_pair(trial.pair.exchange())
     exchanged.sweep(rows)
-    return Matched(trial.pair, trial.out, exchanged.out, trial.cost)
+    return Matched(trial.left, exchanged.left, trial.cost)
 
 
 def _match(pair: Pair, span: Span, rows: Rows, fixed: Fixed) -> "_Trial":
@@ -158,6 +165,11 @@ class _Trial:
         self._span, self._check_tolerance = span, check_tolerance
         self._effort: Effort = effort
         self._codes = cost.codes(pair.left), cost.codes(pair.right)
+
+    @property
+    def left(self) -> MatchedView:
+        """The left view with the matches so far."""
+        return MatchedView(self.out, self.pair.left)
 
     def with_pair(self, pair: Pair) -> "_Trial":
         """Return a new trial of another pair at this cost."""

@@ -81,9 +81,9 @@ def test_order_alone_is_not_tried_where_noise_is_far_too_strong(
     pair = Pair.of(left, np.roll(left, -3, axis=1))
     with caplog.at_level("INFO"):
         found = module.match(pair, Span(-4, 11), [(0, 100), (100, 130)], Fixed(None, 1.08, False, "balanced"))
-    assert found.exchanged is None
+    assert found.mirrored_right is None
     assert (costs, found.cost.name) == (tried, chosen)
-    assert np.mean(np.abs(found.matches.disparity[:, 8:-8] - 48) <= 8) > 0.8
+    assert np.mean(np.abs(found.left.matches.disparity[:, 8:-8] - 48) <= 8) > 0.8
     why = "cost heavy: 40% of the matches are speckles"
     assert [each for each in caplog.messages if each.startswith("cost")] == [why] * (chosen == "heavy")
 
@@ -134,10 +134,11 @@ def test_best_effort_matches_the_exchanged_pair_at_the_same_cost_and_rows(row_of
     right[:, :-5] = left[:, 5:]
     pair, span = Pair.of(left, right), Span(-4, 11)
     found = module.match(pair, span, [(0, 40)], Fixed(None, 1.08, True, "best"))
-    assert found.exchanged is not None
+    assert found.mirrored_right is not None
     aligned = shift_rows(pair, row_offset_px) if row_offset_px else pair
-    assert np.array_equal(found.pair, aligned)
-    again = module.match(aligned.exchange(), span, [(0, 40)], Fixed(found.cost, 1.08, False, "best")).matches
-    assert np.array_equal(found.exchanged.disparity, again.disparity)
+    assert np.array_equal(found.left.grey, aligned.left)
+    assert np.array_equal(found.mirrored_right.grey, aligned.right[:, ::-1])
+    again = module.match(aligned.exchange(), span, [(0, 40)], Fixed(found.cost, 1.08, False, "best")).left.matches
+    assert np.array_equal(found.mirrored_right.matches.disparity, again.disparity)
     if not row_offset_px:
-        assert np.mean(np.abs(found.exchanged.disparity[:, 8:-8] - 80) <= 8) > 0.9
+        assert np.mean(np.abs(found.mirrored_right.matches.disparity[:, 8:-8] - 80) <= 8) > 0.9

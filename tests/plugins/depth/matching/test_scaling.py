@@ -6,7 +6,7 @@ import pytest
 from tangible_core.plugins.notes import collected
 from tangible_depth.dense.span import UNKNOWN, Span
 from tangible_depth.matching import scaling as module
-from tangible_depth.matching.adaptive import Matched
+from tangible_depth.matching.adaptive import Matched, MatchedView
 from tangible_depth.matching.scaling import CHECK_TOLERANCE, Scaling
 from tangible_depth.search.pairs import Pair
 from tangible_depth.sgm.costs import SHARP
@@ -42,9 +42,9 @@ def test_confidence_of_a_match_falls_from_one_to_that_of_the_worst_with_its_cost
     sums = np.tile(np.repeat([0, 24, 48, 96, 255], 12), (20, 1)).astype(np.uint8)
     disparity = np.full(grey.shape, np.int16(64))
     assert (disparity != UNKNOWN).all()
-    pair, matches = Pair.of(grey, grey), StripMatches(disparity.copy(), sums)
-    monkeypatch.setattr(module, "match", lambda *_: Matched(pair, matches, None, SHARP))
-    found = module.match_scaled(pair, Span(0, 15), OPTIONS)
+    view = MatchedView(StripMatches(disparity.copy(), sums), grey)
+    monkeypatch.setattr(module, "match", lambda *_: Matched(view, None, SHARP))
+    found = module.match_scaled(Pair.of(grey, grey), Span(0, 15), OPTIONS)
     np.testing.assert_allclose(found.confidence[0], np.repeat([1, 0.75, 0.5, 0.2, 0.2], 12), atol=1e-6)
 
 
@@ -52,7 +52,8 @@ def test_right_view_is_completed_by_the_picture_that_was_matched(monkeypatch):
     """The given one before its rows were realigned would put its edges on other rows than the matches have."""
     left, right, moved = np.random.default_rng(0).integers(0, 256, (3, 20, 60), np.uint8)
     known, other = (StripMatches(np.full((20, 60), np.int16(each)), np.zeros((20, 60), np.uint8)) for each in (64, 80))
-    monkeypatch.setattr(module, "match", lambda *_: Matched(Pair.of(left, moved), known, other, SHARP))
+    views = MatchedView(known, left), MatchedView(other, np.ascontiguousarray(moved[:, ::-1]))
+    monkeypatch.setattr(module, "match", lambda *_: Matched(*views, SHARP))
     seen = {}
 
     def complete(disparity, sums, by_sum, grey, *more):

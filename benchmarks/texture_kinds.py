@@ -64,21 +64,26 @@ def _draw(textures: Mapping[str, Family], seed: int) -> Iterator[tuple[str, Know
     kinds = list(KINDS)
     for turn in range(ROUNDS):
         for index, segments in enumerate(each for each in SEGMENTS if each <= len(textures)):
-            kind = kinds[(turn + index) % len(kinds)]
-            kind = "straight" if (kind == "rings" and segments > 7) or (kind == "letters" and segments > 10) else kind
+            kind = _possible(kinds[(turn + index) % len(kinds)], segments)
             random = np.random.default_rng([seed, turn, segments])
-            yield f"{kind} {segments} turn {turn}", _mosaic(KINDS[kind], segments, textures, random)
+            yield f"{kind} {segments} turn {turn}", _mosaic(kind, segments, textures, random)
 
 
-def _mosaic(
-    regions: Regions, segments: int, textures: Mapping[str, Family], random: np.random.Generator
-) -> KnownSegments:
-    side = SMALL_PX if segments <= FEW else LARGE_PX
-    labels = in_order(_large_enough(regions, segments, side, random))
+def _mosaic(kind: str, segments: int, textures: Mapping[str, Family], random: np.random.Generator) -> KnownSegments:
+    labels = regions_of(kind, segments, SMALL_PX if segments <= FEW else LARGE_PX, random)
     picture = np.zeros(labels.shape)
     for label, name in enumerate(random.permutation(sorted(textures))[: labels.max() + 1]):
         np.copyto(picture, without_grey(textures[name](labels.shape, random)), where=labels == label)
     return KnownSegments(np.rint(picture.clip(0, 255)).astype(np.uint8), labels)
+
+
+def regions_of(kind: str, segments: int, side: int, random: np.random.Generator) -> Labels:
+    """Draw the labels of a square mosaic of a kind, 0..segments-1; straight ones of too many for rings or letters."""
+    return in_order(_large_enough(KINDS[_possible(kind, segments)], segments, side, random))
+
+
+def _possible(kind: str, segments: int) -> str:
+    return "straight" if (kind == "rings" and segments > 7) or (kind == "letters" and segments > 10) else kind
 
 
 def _large_enough(regions: Regions, segments: int, side: int, random: np.random.Generator) -> np.ndarray:

@@ -17,22 +17,23 @@ class Gabor(Segmenter, Skippable):
 
     The features are local energies in a bank of Gabor filters and frequencies of local binary patterns, in cells of
     4 x 4 pixels. Cells are first divided into many clusters, which are then joined pair by pair: the pair with the
-    smallest difference in features goes first, weighed by size, more so of eight segments or more. In the last joinings
-    the discriminating features are computed again at each step, and neighbouring cells are drawn to the same class. If
-    `auto`, joining ends where the next two clusters are likely to be two textures, by their distance and size. The
-    result is deterministic and does not depend on the picture's origin. Labels are in the order of their first pixels,
-    row by row. Confidence is 1 - q / p, where p and q are the memberships of a pixel's class and of the second best
-    class: 0 on borders.
+    smallest difference goes first, weighed by size, more so of eight segments or more. In pictures of 256 pixels a side
+    or more, a small network, fitted to many other textures, makes further values of the features, and the difference in
+    these counts as much. In the last joinings the discriminating features are computed again at each step, and
+    neighbouring cells are drawn to the same class. If `auto`, joining ends where the next two clusters are likely to be
+    two textures, by their distance and size. The result is deterministic and does not depend on the picture's origin.
+    Labels are in the order of their first pixels, row by row. Confidence is 1 - q / p, where p and q are the
+    memberships of a pixel's class and of the second best class: 0 on borders.
     Sources: Jain & Farrokhnia, Pattern Recognition 24, 1991 (the energies); Ojala et al., IEEE TPAMI 24, 2002
     (patterns); Su & Dy, ICTAI 2004 (division); Ward, J. Am. Stat. Ass. 58, 1963 (joining).
     """
 
-    version: ClassVar[int] = 6
+    version: ClassVar[int] = 7
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Largest number of textures; `auto`: an estimate, at most 16, told with its confidence and the next best."""
     effort: Literal["fast", "balanced"] = "balanced"
-    """`fast` starts from fewer clusters, and recomputes the discriminating features in the last joinings only."""
+    """`fast` starts from fewer clusters, recomputes the discriminating features less often, and uses no network."""
     colour: bool | Literal["auto"] = "auto"
     """Add two colour channels to the texture features; `auto`: where windows of the picture differ in colour."""
     lambda_max_px: Annotated[float, Field(ge=2.8, le=512)] = 24.0
@@ -56,6 +57,7 @@ class Gabor(Segmenter, Skippable):
         from .clusters.planes import combine_planes
         from .features.cells import CELL_PX
         from .features.features import Window, features
+        from .learned.network import learned_values
         from .regions.merging import number_in_reading_order
 
         if self.segments == 1:
@@ -63,7 +65,8 @@ class Gabor(Segmenter, Skippable):
         windows = features(picture, self.lambda_max_px, self.least_energy, self.colour)
         if windows is None:
             return one_segment(picture.shape[:2])
-        labels, axes = classes(windows, self.segments, self.effort)
+        learned = learned_values(windows) if self.effort == "balanced" else None
+        labels, axes = classes(windows, learned, self.segments, self.effort)
         if not labels.any():
             return one_segment(picture.shape[:2])
         narrow, middle = (

@@ -5,7 +5,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from jaxtyping import Float64, Int32
 
-from ..features.features import Features
+from ..features.features import Features, Window
 
 PRINCIPAL_AXES = 14
 """The number of principal axes along which cells are divided."""
@@ -30,9 +30,14 @@ EFFORTS = {"fast": Effort(2, 2, 2), "balanced": Effort(3, 4, 8)}
 
 
 def classes(
-    features: Features, segments: int | Literal["auto"], effort: Literal["fast", "balanced"]
+    features: Features,
+    learned: Window | None,
+    segments: int | Literal["auto"],
+    effort: Literal["fast", "balanced"],
 ) -> tuple[Int32[np.ndarray, "m"], Float64[np.ndarray, "a d"]]:
     """Classify the cells of the middle windows.
+
+    learned: the values of these cells that `learned_values` makes, which count as much as the features in joining.
 
     Returns: the class of each cell, and the axes along which classes differ, none for a single class.
     """
@@ -48,16 +53,19 @@ def classes(
     rotated = combine_planes(principal_axes(features.wide.planes, PRINCIPAL_AXES, HALF_WHITE), features.wide.planes)
     labels = _resample_labels(divide(rotated, spent.each * most + spent.besides), features.wide.shape, shape)
     power = MANY_POWER if segments == "auto" or segments >= MANY else FEW_POWER
-    steps = join_clusters(planes, labels, shape, most + spent.last, power)
+    sets = [planes] if learned is None else [planes, learned.planes]
+    steps = join_clusters(sets, labels, shape, most + spent.last, power)
     labels = (
         likeliest_division(each for each in steps if each.clusters <= most + spent.last)
         if segments == "auto"
         else next(each.labels for each in steps if each.clusters <= segments)
     )
-    axes = axes_between(planes, labels, interior_shares(labels, shape))
-    return (
-        refit_labels(combine_planes(axes, planes), labels, shape, FINAL_ROUNDS, 1) if len(axes) else labels * 0
-    ), axes
+    shares = interior_shares(labels, shape)
+    axes = [axes_between(each, labels, shares) for each in sets]
+    if not len(axes[0]):
+        return labels * 0, axes[0]
+    projected = np.vstack([combine_planes(each, planes) for each, planes in zip(axes, sets, strict=True)])
+    return refit_labels(projected, labels, shape, FINAL_ROUNDS, 1), axes[0]
 
 
 def _resample_labels(

@@ -1,6 +1,6 @@
 """Joining of clusters of one texture: the least different pair first, refitting in between."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +35,7 @@ class Step(NamedTuple):
 
 
 def join_clusters(
-    planes: Float32[np.ndarray, "d n"],
+    sets: Sequence[Float32[np.ndarray, "_ n"]],
     labels: Int32[np.ndarray, "n"],
     shape: tuple[int, int],
     renewed: int,
@@ -43,22 +43,23 @@ def join_clusters(
 ) -> Iterator[Step]:
     """Yield divisions into ever fewer clusters, down to one: one less at least in each, one at once if none differ.
 
-    renewed: from this number of clusters down, discriminants are recomputed before each joining, and cells settle with
-    their neighbours after it. Before that, the discriminants of the first division are used. power: the exponent of
-    sizes.
+    sets: sets of features of the same cells, of which each has its own discriminants; what a joining costs is the
+    geometric mean of its costs in each set. renewed: from this number of clusters down, discriminants are recomputed
+    before each joining, and cells settle with their neighbours after it. Before that, the discriminants of the first
+    division are used. power: the exponent of sizes.
     """
-    projected = combine_planes(axes_between(planes, labels, interior_shares(labels, shape)), planes)
-    labels = refit_labels(projected, labels, shape, 2, 1) if len(projected) else labels
-    pairs: Pairs | None = None
+    projected = _discriminants(sets, labels, interior_shares(labels, shape))
+    labels = refit_labels(np.vstack(projected), labels, shape, 2, 1) if projected else labels
+    pairs: list[Pairs] = []
     while (count := int(labels.max()) + 1) > 1:
-        if pairs is None or count <= renewed:
+        if not pairs or count <= renewed:
             shares = interior_shares(labels, shape)
             if count <= renewed:
-                projected = combine_planes(axes_between(planes, labels, shares), planes)
-            if not len(projected):
+                projected = _discriminants(sets, labels, shares)
+            if not projected:
                 break
-            pairs = measure_pairs(projected, labels, shares)
-        costs = pairs.joining_costs(power)
+            pairs = [measure_pairs(each, labels, shares) for each in projected]
+        costs = _mean_costs(pairs, power)
         other, one = np.unravel_index(costs.argmin(), costs.shape)
         yield _step(labels, count, costs[other, one], labels == one, labels == other, power)
         names = np.arange(count, dtype=np.int32)
@@ -66,10 +67,25 @@ def join_clusters(
         names[other] = one
         labels = names[labels]
         if count <= renewed:
-            labels = refit_labels(projected, labels, shape, 1, 1)
+            labels = refit_labels(np.vstack(projected), labels, shape, 1, 1)
         else:
-            pairs = pairs.join(int(one), int(other), projected, labels, shape)
+            joined = zip(pairs, projected, strict=True)
+            pairs = [each.join(int(one), int(other), planes, labels, shape) for each, planes in joined]
     yield Step(np.zeros_like(labels), 1, np.inf)
+
+
+def _discriminants(
+    sets: Sequence[Float32[np.ndarray, "_ n"]], labels: Int32[np.ndarray, "n"], shares: Float32[np.ndarray, "n"]
+) -> list[Float32[np.ndarray, "_ n"]]:
+    """Return the discriminating features of each set in which clusters differ."""
+    projected = (combine_planes(axes_between(each, labels, shares), each) for each in sets)
+    return [each for each in projected if len(each)]
+
+
+def _mean_costs(pairs: Sequence[Pairs], power: float) -> Float64[np.ndarray, "k k"]:
+    """Return the geometric means of the costs in one set, or in two."""
+    costs = pairs[0].joining_costs(power)
+    return costs if len(pairs) == 1 else np.sqrt(costs * pairs[1].joining_costs(power))
 
 
 def _step(

@@ -26,8 +26,15 @@ LANES = 64
 @njit(cache=True, nogil=True)
 def combine_planes(weights, planes):
     """Multiply weights (k, d) by planes (d, n): k planes, float32."""
+    result = np.zeros((weights.shape[0], planes.shape[1]), np.float32)
+    add_planes(weights, planes, result)
+    return result
+
+
+@njit(cache=True, nogil=True)
+def add_planes(weights, planes, result):
+    """Add weights (k, d) times planes (d, n) to k planes, in place."""
     (count, size), columns = weights.shape, planes.shape[1]
-    result = np.zeros((count, columns), np.float32)
     for start in range(0, columns, BLOCK):
         stop = min(start + BLOCK, columns)
         for k in range(count):
@@ -44,7 +51,6 @@ def combine_planes(weights, planes):
                 weight, plane = np.float32(weights[k, d]), planes[d, start:stop]
                 for i in range(out.size):
                     out[i] += weight * plane[i]
-    return result
 
 
 @njit(cache=True, nogil=True)

@@ -33,11 +33,13 @@ class Window(NamedTuple):
 
 
 class Features(NamedTuple):
-    """The same features in windows of three widths."""
+    """The same features in windows of three widths: energies, frequencies of patterns, colours."""
 
     wide: Window
     middle: Window
     narrow: Window
+    filters: tuple[int, ...] = ()
+    """The numbers of the filters whose energies are the first planes, in the order of `bank`."""
 
 
 def features(
@@ -55,7 +57,7 @@ def features(
     if is_flat(grey):
         note(log, "one segment: the picture is flat")
         return None
-    planes, colour_count = _planes(picture, grey, lambda_max_px, least_energy, colour)
+    planes, filters, colour_count = _planes(picture, grey, lambda_max_px, least_energy, colour)
     step = 2 if min(planes.shape[1:]) >= 32 else 1
     narrow_px, middle_px, wide_px = _widths(grey.size)
     narrow = window_means(planes, (narrow_px**2 - ENERGY_SIGMA_PX**2) ** 0.5 / CELL_PX, out=planes)
@@ -64,7 +66,7 @@ def features(
         note(log, "one segment: the picture has the same texture everywhere")
         return None
     wide = window_means(middle, (wide_px**2 - middle_px**2) ** 0.5 / CELL_PX / step, step)
-    return Features(_window(wide, colour_count), _window(middle, colour_count), _window(narrow, colour_count))
+    return Features(_window(wide, colour_count), _window(middle, colour_count), _window(narrow, colour_count), filters)
 
 
 def _widths(pixels: int) -> tuple[float, float, float]:
@@ -89,8 +91,8 @@ def _planes(
     lambda_max_px: float,
     least_energy: float,
     colour: bool | Literal["auto"],
-) -> tuple[Float32[np.ndarray, "d rows columns"], int]:
-    """Return energies, pattern frequencies and colours, cell by cell, and the number of planes of colour.
+) -> tuple[Float32[np.ndarray, "d rows columns"], tuple[int, ...], int]:
+    """Return energies, pattern frequencies and colours, cell by cell; the filters' numbers; and how many colours.
 
     All are written to one array: for a large picture it has hundreds of megabytes, and so would each copy.
     """
@@ -102,7 +104,8 @@ def _planes(
     filters = bank(octaves(lambda_max_px))
     spectrum = spectrum_of(grey, padding(filters, ENERGY_SIGMA_PX))
     means = mean_energies(spectrum, filters)
-    filters_used = [each for each, mean in zip(filters, means, strict=True) if mean >= least_energy * means.sum()]
+    numbers = tuple(np.flatnonzero(means >= least_energy * means.sum()).tolist())
+    filters_used = [filters[each] for each in numbers]
     if len(filters_used) < len(filters):
         note(
             log,
@@ -115,7 +118,7 @@ def _planes(
     cap_rare_values(energy_planes(spectrum, filters_used, grey.shape, CELL_PX, ENERGY_SIGMA_PX, energies))
     pattern_frequencies(standardise(grey), patterns)
     planes[len(filters_used) + PATTERNS :] = colours
-    return planes, len(colours)
+    return planes, numbers, len(colours)
 
 
 def _colour_planes(picture: np.ndarray, colour: bool | Literal["auto"]) -> Float32[np.ndarray, "colours rows columns"]:

@@ -11,7 +11,7 @@ from tangible_texture.clusters.classes import _resample_labels, classes
 from tangible_texture.clusters.discriminants import discriminant_axes, evidence, principal_axes, scatters
 from tangible_texture.clusters.dividing import divide, one_hot
 from tangible_texture.clusters.full_size import pixel_labels
-from tangible_texture.clusters.joining import join_clusters
+from tangible_texture.clusters.joining import axes_between, join_clusters
 from tangible_texture.clusters.neighbourhood import (
     INSIDE_CELLS,
     interior_shares,
@@ -137,7 +137,7 @@ def test_halves_of_one_group_cost_the_least_to_join(random: np.random.Generator,
     thirds = thirds.astype(np.int32)
     costs = measure_pairs(planes, thirds, interior_shares(thirds, shape)).joining_costs(0.4)
     assert np.unravel_index(costs.argmin(), costs.shape) == (1, 0)
-    steps = list(join_clusters(planes, thirds, shape, renewed))
+    steps = list(join_clusters([planes], thirds, shape, renewed))
     assert [each.clusters for each in steps] == [3, 2, 1]
     np.testing.assert_array_equal(steps[1].labels, labels)
     assert steps[-1].cost == np.inf
@@ -147,9 +147,46 @@ def test_halves_of_one_group_cost_the_least_to_join(random: np.random.Generator,
 
 
 def test_clusters_without_differences_are_joined_into_one():
-    steps = list(join_clusters(np.zeros((3, 64), np.float32), (np.arange(64) % 4).astype(np.int32), (8, 8), 9))
+    steps = list(join_clusters([np.zeros((3, 64), np.float32)], (np.arange(64) % 4).astype(np.int32), (8, 8), 9))
     assert [each.clusters for each in steps] == [1]
     assert not steps[0].labels.any()
+
+
+def quarters(random: np.random.Generator) -> tuple[list[np.ndarray], np.ndarray, tuple[int, int]]:
+    """Two sets of features of a grid in four quarters: the first tells the left from the right, the second all four."""
+    shape = (20, 24)
+    row, column = np.indices(shape)
+    labels = (2 * (row >= 10) + (column >= 12)).astype(np.int32).ravel()
+    noise = random.standard_normal((2, 3, labels.size)).astype(np.float32)
+    places = np.array([[0, 8, 0.1, 8.1], [0, 3, 5, 9]], np.float32)
+    return [each + place[labels] for each, place in zip(noise, places, strict=True)], labels, shape
+
+
+@pytest.mark.parametrize("renewed", [0, 9])
+def test_joining_costs_the_geometric_mean_of_its_costs_in_two_sets(random: np.random.Generator, renewed: int):
+    sets, labels, shape = quarters(random)
+    alone = [list(join_clusters([each], labels, shape, renewed)) for each in sets]
+    assert [each.clusters for steps in alone for each in steps] == [4, 3, 2, 1] * 2
+    for one, twice in zip(alone[0], join_clusters([sets[0], sets[0]], labels, shape, renewed), strict=True):
+        np.testing.assert_array_equal(one.labels, twice.labels)
+        assert one.clusters == 1 or twice.cost == pytest.approx(one.cost, rel=1e-3)
+    both = list(join_clusters(sets, labels, shape, 0))
+    for step, tolerance in zip(both, (1e-3, 0.1), strict=False):
+        costs = [
+            measure_pairs(each, step.labels, interior_shares(step.labels, shape)).joining_costs(0.4)
+            for each in (
+                combine_planes(axes_between(each, labels, interior_shares(labels, shape)), each) for each in sets
+            )
+        ]
+        assert step.cost == pytest.approx(np.sqrt(costs[0] * costs[1]).min(), rel=tolerance)
+
+
+def test_set_without_differences_does_not_count(random: np.random.Generator):
+    sets, labels, shape = quarters(random)
+    alone = list(join_clusters(sets[1:], labels, shape, 9))
+    for one, other in zip(alone, join_clusters([sets[1], 0 * sets[0]], labels, shape, 9), strict=True):
+        np.testing.assert_array_equal(one.labels, other.labels)
+        assert one.cost == other.cost
 
 
 def four_clusters(random: np.random.Generator) -> tuple[np.ndarray, np.ndarray, tuple[int, int]]:
@@ -377,5 +414,5 @@ def test_sizes_count_more_of_eight_segments_and_more(
     )
     planes = random.standard_normal((6, 400)).astype(np.float32) + (np.arange(400) // 25 % 20).astype(np.float32)
     window = Window(planes.astype(np.float32), (20, 20))
-    classes(Features(window, window, window), segments, "fast")
+    classes(Features(window, window, window), None, segments, "fast")
     assert set(used) == {power}

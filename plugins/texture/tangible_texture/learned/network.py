@@ -1,0 +1,104 @@
+"""Values that tell textures apart, made of the other features by a small network that was fitted to many textures.
+
+The features of narrow windows, in cells of 8 pixels, give values that are averaged in windows of three widths, as the
+features are; these give values again, and those the result. Its weights are fitted by `benchmarks.texture_fit`: cells
+of one texture shall lie near each other, those of two apart, whatever the textures. Weights are tied so that a flip or
+a quarter turn of the picture exchanges values, and no distance changes.
+Source: prototypes of classes, as in Snell, Swersky & Zemel, NIPS 2017, one class a texture.
+"""
+
+from collections.abc import Iterable
+from functools import cache
+from importlib.resources import as_file, files
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float32, Float64
+
+from tangible_core.compiled.threads import in_turns
+from tangible_core.runtime.opencv import plain_opencv
+
+from ..clusters.planes import add_planes, combine_planes
+from ..features.cells import window_means
+from ..features.features import Features, Window
+from ..features.patterns import PATTERNS
+
+FILTERS = 24
+"""The number of filters that the weights were fitted with: six directions of four octaves."""
+LEAST_CELLS = 64
+"""The least side of the narrow grid, in cells: the weights were fitted to pictures of 256 pixels or more."""
+GROUP = 16
+"""The number of planes that are reduced, or averaged in windows, at once: all of them would take too much memory."""
+WINDOWS = 0.0, 1.09, 2.16
+"""The standard deviations of the further windows, in cells of 8 pixels: with 5 px before, some 5, 10 and 18 px."""
+
+
+class Weights(NamedTuple):
+    """The weights of each layer: one row a value that it gives."""
+
+    first: Float64[np.ndarray, "h d"]
+    first_bias: Float32[np.ndarray, "h"]
+    second: Float64[np.ndarray, "g 3h"]
+    """Of the values in each of WINDOWS, in turn."""
+    second_bias: Float32[np.ndarray, "g"]
+    last: Float64[np.ndarray, "e g"]
+
+
+@cache
+def _weights() -> Weights:
+    with as_file(files("tangible_texture.learned") / "weights.npz") as path, np.load(path) as stored:
+        first, first_bias, second, second_bias, last = (stored[name] for name in Weights._fields)
+    return Weights(
+        first.astype(np.float64),
+        first_bias.astype(np.float32),
+        second.astype(np.float64),
+        second_bias.astype(np.float32),
+        last.astype(np.float64),
+    )
+
+
+def learned_values(features: Features) -> Window | None:
+    """Compute the values of each cell of 8 pixels, centred; None for a picture smaller than LEAST_CELLS.
+
+    A filter that was left out counts as one without differences; filters from FILTERS on are left out.
+    """
+    if min(features.narrow.shape) < LEAST_CELLS:
+        return None
+    filters, shape = features.filters, features.middle.shape
+    known = [at for at, each in enumerate(filters) if each < FILTERS]
+    chosen = [*known, *range(len(filters), len(filters) + PATTERNS)]
+    weights, columns = _weights(), [*(filters[at] for at in known), *range(FILTERS, FILTERS + PATTERNS)]
+    hidden = np.zeros((len(weights.first), shape[0] * shape[1]), np.float32)
+    for start in range(0, len(chosen), GROUP):
+        own = columns[start : start + GROUP]
+        add_planes(weights.first[:, own].copy(), _reduce(features.narrow, chosen[start : start + GROUP], shape), hidden)
+    _rectify(hidden, weights.first_bias)
+    rest = np.zeros((len(weights.second), hidden.shape[1]), np.float32)
+    for index, sigma in enumerate(WINDOWS):
+        own = weights.second[:, index * len(hidden) :]
+        for start in range(0, len(hidden), GROUP):
+            values = hidden[start : start + GROUP]
+            around = window_means(values.reshape(-1, *shape), sigma).reshape(values.shape) if sigma else values
+            add_planes(own[:, start : start + len(values)].copy(), around, rest)
+    result = combine_planes(weights.last, _rectify(rest, weights.second_bias))
+    return Window(result - result.mean(axis=1, keepdims=True), shape)
+
+
+def _reduce(narrow: Window, chosen: list[int], shape: tuple[int, int]) -> Float32[np.ndarray, "k n"]:
+    """Return means of 2 x 2 cells of the chosen planes."""
+    import cv2
+
+    planes, reduced = narrow.planes.reshape(-1, *narrow.shape), np.empty((len(chosen), *shape), np.float32)
+
+    @plain_opencv()
+    def work(share: Iterable[int]) -> None:
+        for i in share:
+            cv2.resize(planes[chosen[i]], shape[::-1], dst=reduced[i], interpolation=cv2.INTER_AREA)
+
+    in_turns(list(range(len(chosen))), work)
+    return reduced.reshape(len(chosen), -1)
+
+
+def _rectify(values: Float32[np.ndarray, "k n"], bias: Float32[np.ndarray, "k"]) -> Float32[np.ndarray, "k n"]:
+    values += bias[:, None]
+    return np.maximum(values, 0, out=values)

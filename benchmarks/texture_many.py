@@ -6,6 +6,7 @@ Free games have thousands. Names that tell of something else are passed over, an
 import io
 import re
 from collections.abc import Iterator
+from functools import cache
 from multiprocessing import Pool
 from pathlib import Path
 from typing import NamedTuple
@@ -66,10 +67,16 @@ def _names(folders: list[Path]) -> Iterator[tuple[Path, str]]:
             )
 
 
+@cache
+def _archive(path: Path) -> ZipFile:
+    """Return an archive, whose list of members is read once in each process of the pool."""
+    return ZipFile(path)
+
+
 def _open(place: tuple[Path, str]) -> Texture | None:
     path, member = place
     try:
-        data = ZipFile(path).read(member) if member else path.read_bytes()
+        data = _archive(path).read(member) if member else path.read_bytes()
         with Image.open(io.BytesIO(data)) as opened:
             if min(opened.size) < LEAST_PX or ("A" in opened.mode and _is_cut_out(opened)):
                 return None
@@ -100,10 +107,10 @@ def _is_even(grey: np.ndarray) -> bool:
     contrast = np.sqrt(cv2.GaussianBlur(detail**2, (0, 0), 24))
     if np.percentile(contrast, 5) < FLATTEST:
         return False
-    finer = detail / (contrast + 1e-3)
+    even = finer = detail / (contrast + 1e-3)
     energies: list[np.ndarray] = []
     for sigma in (1.5, 3, 6, 12):
-        coarser = cv2.GaussianBlur(detail / (contrast + 1e-3), (0, 0), sigma)
+        coarser = cv2.GaussianBlur(even, (0, 0), sigma)
         across, down = (cv2.Sobel(finer - coarser, -1, *order) for order in ((1, 0), (0, 1)))
         energies += [
             cv2.resize(each, (4, 4), interpolation=cv2.INTER_AREA).ravel()

@@ -21,7 +21,7 @@ def examples() -> list[Example]:
     return [made for seed in range(12) if (made := example(variants, seed))]
 
 
-def test_layers_are_those_that_are_applied(monkeypatch: pytest.MonkeyPatch, examples: list[Example]):
+def test_layers_are_those_that_are_applied(monkeypatch: pytest.MonkeyPatch):
     torch.manual_seed(3)
     network = Network()
     weights = {name: each.detach().numpy() for name, each in network.weights().items()}

@@ -1,5 +1,7 @@
 """The values of the network: what they are made of, what leaves their distances, and what they are worth."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -10,8 +12,8 @@ from tangible_texture.learned import network
 from tangible_texture.learned.network import FILTERS, LEAST_CELLS, learned_values
 
 
-def found(picture: np.ndarray, longest_px: float = 24.0) -> Features:
-    windows = features(picture, longest_px, 0.0, colour=False)
+def found(picture: np.ndarray) -> Features:
+    windows = features(picture, 24.0, 0.0, colour=False)
     assert windows is not None
     return windows
 
@@ -37,7 +39,7 @@ def test_values_are_centred_and_of_the_grid_of_middle_windows(scene: KnownSegmen
 
 
 @pytest.mark.parametrize("turn", [np.fliplr, np.flipud, np.rot90, np.transpose])
-def test_flips_and_quarter_turns_leave_distances(turn: "np.ufunc", scene: KnownSegments):
+def test_flips_and_quarter_turns_leave_distances(turn: Callable[[np.ndarray], np.ndarray], scene: KnownSegments):
     plain, turned = values(scene.picture[:256, :256]), values(np.ascontiguousarray(turn(scene.picture[:256, :256])))
     places = np.moveaxis(np.stack([turn(each) for each in np.indices((32, 32))]), 0, 2).reshape(-1, 2)
     there = plain[tuple(places.T)]

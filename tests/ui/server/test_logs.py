@@ -31,10 +31,12 @@ def telling(told: list[dict[str, str]], monkeypatch: pytest.MonkeyPatch) -> Iter
 
 @pytest.mark.usefixtures("telling")
 class TestPageHandler:
-    def test_log_forwards_all_warnings_and_our_own_information(self, told: list[dict[str, str]]):
+    def test_log_forwards_all_warnings_and_our_own_information(
+        self, told: list[dict[str, str]], caplog: pytest.LogCaptureFixture
+    ):
         own, other = logging.getLogger("tangible_core.cache"), logging.getLogger("somebody")
         for each in (own, other):
-            each.setLevel(logging.INFO)
+            caplog.set_level(logging.INFO, each.name)
             each.info("quiet")
             each.warning("%s is full", "the disk")
             each.error("lost")
@@ -46,8 +48,8 @@ class TestPageHandler:
             ("somebody", "error", "lost"),
         ]
 
-    def test_log_leaves_out_events_of_stages(self, told: list[dict[str, str]]):
-        logging.getLogger(logs.KNOWN).setLevel(logging.INFO)
+    def test_log_leaves_out_events_of_stages(self, told: list[dict[str, str]], caplog: pytest.LogCaptureFixture):
+        caplog.set_level(logging.INFO, logs.KNOWN)
         logging.getLogger(logs.KNOWN).info("relief: ran")
         assert told == []
 

@@ -94,8 +94,13 @@ def focus(page: "Page") -> str:
 
 
 def wait_for_force(page: "Page") -> None:
-    """Wait until forces are given."""
-    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
+    """Wait until forces are given; if they never are, tell what the page says."""
+    from playwright.sync_api import TimeoutError as Late
+
+    try:
+        page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
+    except Late:
+        raise AssertionError(page.locator("body").inner_text()) from None
 
 
 class TestSeen:

@@ -8,12 +8,14 @@ from websockets.sync.client import connect
 
 from page_server import TestTab
 from ui_server import START, UiServer
+from waiting import LONGEST_S
 
 FORGETS = f"""
 import sys
 sys.path.insert(0, {str(Path(__file__).parent)!r})
-from lasting_server import forget, let_go, sleep_until_ticks
+from lasting_server import be_patient, forget, let_go, sleep_until_ticks
 from tangible_ui.requests.table import REQUESTS
+be_patient()
 sleep_until_ticks()
 REQUESTS["forget"] = forget
 REQUESTS["let_go"] = let_go
@@ -61,6 +63,13 @@ async def forget(session: Any, tab: Any) -> None:
 async def let_go(session: Any, tab: Any) -> None:
     """Take the hand from all tabs: those of earlier tests may close late, and the next tab gets it as it comes."""
     session.hold(None)
+
+
+def be_patient() -> None:
+    """Let no loop be ended because a busy machine does not let it tick for a fifth of a second: as `patient`."""
+    from tangible_core.servo import supervisor
+
+    supervisor.STANDSTILL_S = LONGEST_S
 
 
 def sleep_until_ticks() -> None:

@@ -125,9 +125,10 @@ def complaints() -> list[str]:
 
 
 @pytest.fixture
-def open_page(browser: "Browser", complaints: list[str]) -> Iterator[OpenPage]:
+def open_page(browser: "Browser", complaints: list[str], serve: Serve) -> Iterator[OpenPage]:
     """`open_page(server.url, color_scheme="dark")`: a tab of its own, watched; options as of `new_context`.
 
+    Tabs are closed before the test's servers end: a tab complains of a server that is gone.
     The page's policy lets nothing evaluate text: `wait_for_function` is given a function, `"() => window.ready"`.
     """
     with tabs(browser, complaints) as opened:

@@ -215,6 +215,7 @@ def test_first_surface_compiles_no_program_and_is_drawn_coarsely_first(
         page.wait_for_function("whole => window.drawn.some(([count]) => count === whole)", arg=whole)
         assert page.evaluate("() => [linked, page.view.prepared]") == [linked, None]
         drawn, put_ms = page.evaluate("() => [drawn, putMs]")
+        page.close()  # it would look for its server
     coarse_ms, fine_ms = (
         next(at_ms for count, at_ms in drawn if fewest <= count < most)
         for fewest, most in ((whole // 20, whole), (whole, whole + 1))

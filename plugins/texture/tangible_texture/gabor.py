@@ -28,7 +28,7 @@ class Gabor(Segmenter, Skippable):
     (patterns); Su & Dy, ICTAI 2004 (division); Ward, J. Am. Stat. Ass. 58, 1963 (joining).
     """
 
-    version: ClassVar[int] = 7
+    version: ClassVar[int] = 8
 
     segments: Annotated[int, Field(ge=1, le=64)] | Literal["auto"] = "auto"
     """Largest number of textures; `auto`: an estimate, at most 16, told with its confidence and the next best."""

@@ -20,6 +20,9 @@ EVIDENCE = 0.5
 """The weight of evidence, under 1: windows overlap, so that cells are not independent."""
 BLOCK = 1024
 """The number of cells processed while they are in the cache."""
+LEAST = 1e-7
+"""The least membership besides 0, as a share of the largest one of the cell: what is made of smaller ones has
+denormal numbers, with which a processor takes many times as long."""
 INSIDE_CELLS = 2.0
 """The standard deviation, in cells, of the window in which a cell's class must prevail for its full weight."""
 
@@ -118,5 +121,6 @@ def _towards(evidence, around, pull, result, highest):
 @njit(cache=True, nogil=True)
 def _raise(result, highest, total):
     for i in range(result.size):
-        result[i] = exponential(result[i] - highest[i])
+        share = exponential(result[i] - highest[i])
+        result[i] = share if share > np.float32(LEAST) else np.float32(0)
         total[i] += result[i]

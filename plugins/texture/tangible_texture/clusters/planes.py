@@ -33,31 +33,56 @@ def combine_planes(weights, planes):
 
 @njit(cache=True, nogil=True)
 def add_planes(weights, planes, result):
-    """Add weights (k, d) times planes (d, n) to k planes, in place."""
+    """Add weights (k, d) times planes (d, n) to k planes, in place: four planes to two at a time.
+
+    A value of the result is the same however many are added at a time.
+    """
     (count, size), columns = weights.shape, planes.shape[1]
     for start in range(0, columns, BLOCK):
         stop = min(start + BLOCK, columns)
-        for k in range(count):
-            out = result[k, start:stop]
-            for d in range(0, size - 3, 4):  # four at a time: a quarter of the writes
-                one, two, three, four = (
-                    planes[d, start:stop],  # row by row: numba does not know a block of a matrix to be contiguous
-                    planes[d + 1, start:stop],
-                    planes[d + 2, start:stop],
-                    planes[d + 3, start:stop],
-                )
-                _add_four(weights[k, d : d + 4], one, two, three, four, out)
-            for d in range(size // 4 * 4, size):
-                weight, plane = np.float32(weights[k, d]), planes[d, start:stop]
-                for i in range(out.size):
-                    out[i] += weight * plane[i]
+        for d in range(0, size - 3, 4):
+            one, two, three, four = (
+                planes[d, start:stop],  # row by row: numba does not know a block of a matrix to be contiguous
+                planes[d + 1, start:stop],
+                planes[d + 2, start:stop],
+                planes[d + 3, start:stop],
+            )
+            for k in range(0, count - 1, 2):
+                out, other = result[k, start:stop], result[k + 1, start:stop]
+                _add_four_to_two(weights[k : k + 2, d : d + 4], one, two, three, four, out, other)
+            if count % 2:
+                _add_four(weights[count - 1, d : d + 4], one, two, three, four, result[count - 1, start:stop])
+        for d in range(size // 4 * 4, size):
+            for k in range(count):
+                _add_one(weights[k, d], planes[d, start:stop], result[k, start:stop])
+
+
+@njit(cache=True, nogil=True)
+def _add_four_to_two(weights, one, two, three, four, out, other):
+    (a, b, c, d), (e, f, g, h) = _single(weights[0]), _single(weights[1])
+    for i in range(out.size):
+        p, q, r, s = one[i], two[i], three[i], four[i]
+        out[i] += a * p + b * q + c * r + d * s
+        other[i] += e * p + f * q + g * r + h * s
 
 
 @njit(cache=True, nogil=True)
 def _add_four(weights, one, two, three, four, out):
-    a, b, c, d = np.float32(weights[0]), np.float32(weights[1]), np.float32(weights[2]), np.float32(weights[3])
+    a, b, c, d = _single(weights)
     for i in range(out.size):
         out[i] += a * one[i] + b * two[i] + c * three[i] + d * four[i]
+
+
+@njit(cache=True, nogil=True)
+def _single(weights):
+    return np.float32(weights[0]), np.float32(weights[1]), np.float32(weights[2]), np.float32(weights[3])
+
+
+@njit(cache=True, nogil=True)
+def _add_one(weight, plane, out):
+    single = np.float32(weight)
+    for i in range(out.size):
+        out[i] += single * plane[i]
 
 
 @njit(cache=True, nogil=True)

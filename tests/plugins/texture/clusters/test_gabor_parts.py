@@ -67,6 +67,14 @@ def test_products_of_planes_match_matrix_products(random: np.random.Generator):
     np.testing.assert_allclose(scatter_matrix(planes, weights), (planes * weights) @ planes.T.astype(float), atol=1e-2)
 
 
+@pytest.mark.parametrize("count", [2, 5])
+def test_product_of_many_rows_has_the_bits_of_each_alone(count: int, random: np.random.Generator):
+    planes = random.standard_normal((9, 2500)).astype(np.float32)
+    mix = random.standard_normal((count, 9))
+    alone = np.vstack([combine_planes(row[None].copy(), planes) for row in mix])
+    assert np.array_equal(combine_planes(mix, planes), alone)
+
+
 @pytest.mark.parametrize("threads", [1, 2, 3, 8])
 def test_scatter_with_any_number_of_threads_has_the_same_bits(
     threads: int, random: np.random.Generator, monkeypatch: pytest.MonkeyPatch
@@ -368,6 +376,15 @@ def test_memberships_are_those_of_evidence_and_four_times_the_neighbours(offset:
         expected = (expected / expected.sum(axis=0)).astype(np.float32)
     found = mean_field(towards + np.float32(offset), own, shape, 1.5, 2)
     np.testing.assert_allclose(found, expected, atol=1e-3)
+
+
+def test_memberships_and_what_is_made_of_them_are_no_denormal_numbers(random: np.random.Generator):
+    """A processor takes many times as long for these, and they change no label."""
+    evidence = (60 * random.standard_normal((5, 2500))).astype(np.float32)
+    found = mean_field(evidence, np.full(evidence.shape, np.float32(0.2)), (50, 50), 1.5, 1)
+    weights = found * smooth_memberships(found, (50, 50), INSIDE_CELLS) ** 2
+    for values in found, weights:
+        assert values[values > 0].min() >= np.finfo(np.float32).tiny
 
 
 def test_labels_stay_without_gaps_where_a_class_vanishes(random: np.random.Generator):

@@ -34,7 +34,7 @@ BUDGET_S = {
 """Processor seconds of a room's tests, of 600 in all; "tests" holds the modules that lie in no room."""
 OTHERS_S = 8
 """Of every other room."""
-SLOW_S = 0.1
+SLOW_S = 0.05
 """Tests of more processor seconds are none of the fast ones: ROOT/tests/slow.txt has their names."""
 
 

@@ -44,7 +44,7 @@ def classes(
     from .counting import largest_number, likeliest_division
     from .discriminants import principal_axes
     from .dividing import divide
-    from .joining import FEW_POWER, MANY, MANY_POWER, axes_between, join_clusters
+    from .joining import FEW_POWER, MANY, MANY_POWER, axes_between, join_clusters, project
     from .neighbourhood import interior_shares, refit_labels
     from .planes import combine_planes
 
@@ -64,8 +64,7 @@ def classes(
     axes = [axes_between(each, labels, shares) for each in sets]
     if not len(axes[0]):
         return labels * 0, axes[0]
-    projected = np.vstack([combine_planes(each, planes) for each, planes in zip(axes, sets, strict=True)])
-    return refit_labels(projected, labels, shape, FINAL_ROUNDS, 1), axes[0]
+    return refit_labels(project(axes, sets)[0], labels, shape, FINAL_ROUNDS, 1), axes[0]
 
 
 def _resample_labels(

@@ -10,7 +10,7 @@ from .discriminants import discriminant_axes, scatters
 from .dividing import one_hot
 from .neighbourhood import interior_shares, refit_labels
 from .pairs import Pairs, measure_pairs
-from .planes import combine_planes
+from .planes import add_planes
 
 AXES = 20
 """The largest number of discriminants."""
@@ -48,14 +48,14 @@ def join_clusters(
     before each joining, and cells settle with their neighbours after it. Before that, the discriminants of the first
     division are used. power: the exponent of sizes.
     """
-    projected = _discriminants(sets, labels, interior_shares(labels, shape))
-    labels = refit_labels(np.vstack(projected), labels, shape, 2, 1) if projected else labels
+    together, projected = _discriminants(sets, labels, interior_shares(labels, shape))
+    labels = refit_labels(together, labels, shape, 2, 1) if projected else labels
     pairs: list[Pairs] = []
     while (count := int(labels.max()) + 1) > 1:
         if not pairs or count <= renewed:
             shares = interior_shares(labels, shape)
             if count <= renewed:
-                projected = _discriminants(sets, labels, shares)
+                together, projected = _discriminants(sets, labels, shares)
             if not projected:
                 break
             pairs = [measure_pairs(each, labels, shares) for each in projected]
@@ -67,7 +67,7 @@ def join_clusters(
         names[other] = one
         labels = names[labels]
         if count <= renewed:
-            labels = refit_labels(np.vstack(projected), labels, shape, 1, 1)
+            labels = refit_labels(together, labels, shape, 1, 1)
         else:
             joined = zip(pairs, projected, strict=True)
             pairs = [each.join(int(one), int(other), planes, labels, shape) for each, planes in joined]
@@ -76,10 +76,21 @@ def join_clusters(
 
 def _discriminants(
     sets: Sequence[Float32[np.ndarray, "_ n"]], labels: Int32[np.ndarray, "n"], shares: Float32[np.ndarray, "n"]
-) -> list[Float32[np.ndarray, "_ n"]]:
-    """Return the discriminating features of each set in which clusters differ."""
-    projected = (combine_planes(axes_between(each, labels, shares), each) for each in sets)
-    return [each for each in projected if len(each)]
+) -> tuple[Float32[np.ndarray, "_ n"], list[Float32[np.ndarray, "_ n"]]]:
+    """Return the discriminating features of all sets, and of each set in which clusters differ: views of the former."""
+    together, each = project([axes_between(each, labels, shares) for each in sets], sets)
+    return together, [one for one in each if len(one)]
+
+
+def project(
+    axes: Sequence[Float64[np.ndarray, "_ _"]], sets: Sequence[Float32[np.ndarray, "_ n"]]
+) -> tuple[Float32[np.ndarray, "_ n"], list[Float32[np.ndarray, "_ n"]]]:
+    """Return the coordinates of cells along the axes of all sets, and those of each set: views, as copies are large."""
+    together = np.zeros((sum(map(len, axes)), sets[0].shape[1]), np.float32)
+    each = np.split(together, np.cumsum([len(one) for one in axes])[:-1])
+    for one, planes, out in zip(axes, sets, each, strict=True):
+        add_planes(one, planes, out)
+    return together, each
 
 
 def _mean_costs(pairs: Sequence[Pairs], power: float) -> Float64[np.ndarray, "k k"]:

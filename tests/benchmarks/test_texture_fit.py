@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import torch
+from torch import nn
 
 from benchmarks import texture_fit
 from benchmarks.texture_fit import Example, Network, example, fit, loss, orders, variant
@@ -24,6 +25,8 @@ def examples() -> list[Example]:
 def test_layers_are_those_that_are_applied(monkeypatch: pytest.MonkeyPatch):
     torch.manual_seed(3)
     network = Network()
+    for bias in (network.first_bias, network.second_bias):
+        nn.init.normal_(bias)  # it begins at 0
     weights = {name: each.detach().numpy() for name, each in network.weights().items()}
     monkeypatch.setattr(applied, "_weights", lambda: Weights(**weights))
     picture = np.random.default_rng(2).integers(0, 256, (256, 320)).astype(np.uint8)

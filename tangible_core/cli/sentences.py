@@ -33,7 +33,8 @@ def run_summary(run: Run) -> str:
     if "touch" in products:
         return f"{scene} can now be felt{size}.{touch}"
     if products:
-        return f"{scene} is done: its {listing(products)} {'is' if len(products) == 1 else 'are'} made{size}.{touch}"
+        several = len(products) > 1 or products[0].endswith("s")  # materials, segments, views
+        return f"{scene} is done: its {listing(products)} {'are' if several else 'is'} made{size}.{touch}"
     return f"{scene} is done: nothing of it had to be made{size}.{touch}"
 
 

@@ -33,6 +33,7 @@ def surface() -> HapticSurface:
     ("products", "figures", "sentence"),
     [
         ({"relief": 1, "parts": None}, {}, "dot.png is done: its relief is made."),
+        ({"segments": 1}, {}, "dot.png is done: its segments are made."),
         ({"disparity": 1, "parts": 1, "relief": 1}, {}, "dot.png is done: its disparity, parts and relief are made."),
         ({"parts": None}, {}, "dot.png is done: nothing of it had to be made."),
         ({"surface": "it", "touch": 1}, FORCE, "dot.png can now be felt, as a surface of 80 x 40 mm, 12.5 mm high. "

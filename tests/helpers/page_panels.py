@@ -1,4 +1,4 @@
-"""Panels of the page, brought to the screen from the task or the settings in which they stand."""
+"""The page until a force is felt; and its panels, brought to the screen from the task or the settings."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +16,16 @@ EVERYTHING = """() => {
   for (const each of document.querySelectorAll("[role=tabpanel]")) each.hidden = false;
   for (const each of document.querySelectorAll("details")) each.open = true;
 }"""
+
+
+def wait_for_force(page: "Page") -> None:
+    """Wait until forces are given; if they never are, tell what the page says."""
+    from playwright.sync_api import TimeoutError as Late
+
+    try:
+        page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
+    except Late:
+        raise AssertionError(page.locator("body").inner_text()) from None
 
 
 def bring(page: "Page", panel: str) -> "Locator":

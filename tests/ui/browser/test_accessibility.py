@@ -11,7 +11,7 @@ from accessible_names import controls_of, faults_of
 from browser_tabs import SETTLED
 from needed import lacking
 from page_files import WEB
-from page_panels import bring, open_panel, show_everything
+from page_panels import bring, open_panel, show_everything, wait_for_force
 from waiting import until
 
 if TYPE_CHECKING:
@@ -91,16 +91,6 @@ def show(open_page: Callable[..., Any], opened: Callable[..., str]) -> Show:
 
 def focus(page: "Page") -> str:
     return page.evaluate("document.activeElement.id || document.activeElement.closest('[id]')?.id || ''")
-
-
-def wait_for_force(page: "Page") -> None:
-    """Wait until forces are given; if they never are, tell what the page says."""
-    from playwright.sync_api import TimeoutError as Late
-
-    try:
-        page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
-    except Late:
-        raise AssertionError(page.locator("body").inner_text()) from None
 
 
 class TestSeen:

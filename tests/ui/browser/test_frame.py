@@ -11,7 +11,7 @@ from PIL import Image
 from browser_tabs import SETTLED, OpenPage
 from needed import lacking
 from page_files import WEB
-from page_panels import bring, list_folder, open_panel
+from page_panels import bring, list_folder, open_panel, wait_for_force
 from sessions import small_scene
 from waiting import until
 
@@ -54,7 +54,7 @@ def page(opened: Callable[..., str], open_page: OpenPage, tmp_path: Path) -> "Pa
     page = open_page("about:blank")
     page.add_init_script(HEAD)
     page.goto(opened(small_scene(tmp_path)) + "&measure")
-    until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
+    wait_for_force(page)
     until(lambda: page.evaluate("page.scene !== null"))
     return page
 

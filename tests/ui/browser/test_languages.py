@@ -5,7 +5,7 @@ from pathlib import Path
 
 from browser_tabs import OpenPage
 from english import english_of
-from page_panels import show_everything
+from page_panels import show_everything, wait_for_force
 from sessions import striped_scene
 from tangible_core.translation.catalogue import catalogue
 from tangible_legibility.words.languages import TABLES
@@ -40,7 +40,7 @@ def test_the_page_in_german_has_no_english(opened: Callable[..., str], open_page
     """All panels are open; verdicts, places, cures, files with decisions, warnings and a mistake are on the page."""
     page = open_page("about:blank", locale="de-DE")
     page.goto(opened(striped_scene(tmp_path)) + "&measure")
-    until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
+    wait_for_force(page)
     show_everything(page)
     library = page.locator("#materials .wide tbody th")
     until(lambda: set(library.all_inner_texts()) == GERMAN_MATERIALS, "the library of materials")
@@ -64,7 +64,7 @@ def test_the_main_tasks_in_french_have_no_english(
     """The head, the four tasks with verdicts and cures, help and log; not options, and not what drivers lack."""
     page = open_page("about:blank", locale="fr-FR")
     page.goto(opened(striped_scene(tmp_path)) + "&measure")
-    until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
+    wait_for_force(page)
     assert page.locator("#status").inner_text().startswith("Au toucher")
     show_everything(page)
     page.locator("#legible-check").click()

@@ -13,7 +13,7 @@ import pytest
 
 from browser_tabs import OpenPage
 from lasting_server import LastingServer
-from page_panels import bring, open_panel
+from page_panels import bring, open_panel, wait_for_force
 from sessions import small_scene, striped_scene
 from tangible_core.errors import DeviceError
 from tangible_devices.pointer import PointerClient
@@ -49,7 +49,7 @@ def show(opened: Callable[..., str], open_page: OpenPage, tmp_path: Path) -> Cal
         page = open_page("about:blank", **options)
         page.add_init_script(SPY + before)
         page.goto(opened(file) + "&measure")
-        until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
+        wait_for_force(page)
         return page
 
     return show

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from page_files import built_page
+from page_panels import wait_for_force
 from tangible_core.data import TICK_COLUMNS
 from tangible_core.servo.ring import Ring
 from waiting import until
@@ -29,7 +30,7 @@ def test_tab_that_is_frozen_or_closed_gives_no_force(serve, open_page, browser, 
     assert "measure" in page.url
     page.reload()
     page.wait_for_function("() => window.figures?.firstMs > 0")
-    until(lambda: page.evaluate("() => document.getElementById('status').dataset.state") == "felt", "nothing is felt")
+    wait_for_force(page)
     ring = Ring.attach(next(shared.glob("*.ring")))
 
     def has_force() -> bool:

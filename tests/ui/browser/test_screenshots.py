@@ -17,7 +17,7 @@ from PIL import Image
 from browser_tabs import SETTLED
 from drawn_parts import drawn
 from page_files import ROOT
-from page_panels import bring
+from page_panels import bring, wait_for_force
 from waiting import until
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def url(opened: Callable[..., str]) -> str:
 )
 def test_screenshot_of_the_page(open_page: Callable[..., Any], url: str, tmp_path: Path, name: str):
     page = open_page(url, draws=True, **PICTURES[name])
-    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
+    wait_for_force(page)
     if name == "ui-dark":
         page.locator("#look").select_option("materials")
     picture = touched(page)
@@ -80,7 +80,7 @@ def test_screenshots_of_start_and_tasks(
         keep(shot(page), tmp_path, f"ui/start{variant}")
         page.close()
         page = open_page(url, draws=True, **options)
-        page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
+        wait_for_force(page)
         for task, name in TASKS.items():
             page.locator(f"#tab-{task}").click()
             if task == "hand-on":
@@ -102,7 +102,7 @@ def test_screenshot_of_each_panel(open_page: Callable[..., Any], url: str, tmp_p
     """Each panel has its contents once a surface is felt; a long panel is cut."""
     size = {"width": 1440, "height": 1100}
     page = open_page(url, draws=KEPT, viewport=size, color_scheme="light", reduced_motion="reduce")
-    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
+    wait_for_force(page)
     page.evaluate("document.querySelectorAll('details.panel').forEach((each) => (each.open = false))")
     names = page.evaluate("[...document.querySelectorAll('#left .panel, #right > .panel')].map(({ id }) => id)")
     assert len(names) > 15
@@ -127,7 +127,7 @@ def test_screenshots_of_the_parts_editor(opened: Callable[..., str], open_page: 
     page = open_page(
         opened(astronaut_file(tmp_path)), draws=True, viewport={"width": 1180, "height": 720}, color_scheme="light"
     )
-    page.wait_for_function("() => document.querySelector('#status').dataset.state === 'felt'")
+    wait_for_force(page)
     bring(page, "parts").locator("#parts-edit").click()
     page.locator("#parts-list [role=option]", has_text="helmet").first.click()
     page.wait_for_timeout(500)

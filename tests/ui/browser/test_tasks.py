@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from browser_tabs import OpenPage
-from page_panels import list_folder, open_panel
+from page_panels import list_folder, open_panel, wait_for_force
 from sessions import small_scene
 from waiting import until
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 @pytest.fixture
 def page(opened, open_page: OpenPage, tmp_path: Path) -> "Page":
     page = open_page(opened(small_scene(tmp_path)))
-    until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
+    wait_for_force(page)
     until(lambda: "mine" in (page.locator("#terrain").get_attribute("aria-label") or ""))  # keys find the surface
     return page
 
@@ -41,7 +41,7 @@ def test_depth_and_texture_are_run_separately(page: "Page") -> None:
         until(lambda: page.locator("#status").get_attribute("data-state") in ("idle", "felt"))
     until(lambda: page.locator("#look option[value=segments]").count() == 1)
     press(page, "methods", "Make and feel")
-    until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
+    wait_for_force(page)
 
 
 def test_preflight_cure_corrects_the_document(page: "Page") -> None:

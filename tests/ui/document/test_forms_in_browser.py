@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from browser_tabs import OpenPage
 from page_files import built_page
-from page_panels import bring, open_panel
+from page_panels import bring, open_panel, wait_for_force
 from sessions import TEXT, small_scene
 from waiting import until
 
@@ -19,7 +19,7 @@ def test_option_typed_in_the_form_is_saved_to_the_file(serve, open_page: OpenPag
     built_page()
     server = serve(small_scene(tmp_path), cwd=tmp_path)
     page, other = open_page(server.url), open_page(server.url)
-    until(lambda: page.locator("#status").get_attribute("data-state") == "felt")  # the loop too has started
+    wait_for_force(page)  # the loop too has started
     until(lambda: state(page, "touch") == "ran" and page.locator("#section-render").count() == 1)
 
     for each in (page, other):

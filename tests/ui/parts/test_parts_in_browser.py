@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from browser_tabs import OpenPage
-from page_panels import bring
+from page_panels import bring, wait_for_force
 from tangible_core.parts import PartChoice, find_parts
 from tangible_core.pipeline.config.parsing import load_config
 from tangible_core.plugins.registry import default_registry
@@ -40,10 +40,6 @@ def photo(tmp_path: Path) -> Path:
     picture += np.random.default_rng(3).normal(scale=4, size=picture.shape)
     Image.fromarray(np.uint8(np.clip(picture, 0, 255))).save(tmp_path / "ball.png")
     return tmp_path / "ball.png"
-
-
-def wait_for_force(page: "Page") -> None:
-    until(lambda: page.locator("#status").get_attribute("data-state") == "felt", "felt")
 
 
 class Mouse:

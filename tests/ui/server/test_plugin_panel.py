@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from page_files import ROOT, built_page
-from page_panels import bring
+from page_panels import bring, wait_for_force
 from page_server import KEY, PageServer
 from sessions import SmallSession, small_scene
 from tangible_core.errors import ConfigError
@@ -41,7 +41,7 @@ def test_panel_of_a_plugin_is_opened_and_answered(installed: Path, serve, open_p
     built_page()
     path = f"{installed}{os.pathsep}{os.environ.get('PYTHONPATH', '')}"
     page = open_page(serve(small_scene(tmp_path), cwd=tmp_path, PYTHONPATH=path).url)
-    until(lambda: page.locator("#status").get_attribute("data-state") == "felt")
+    wait_for_force(page)
     panel = bring(page, "plugin-acme")
     assert panel.locator("summary").inner_text() == "Highest point"
     panel.locator("summary").press("Enter")

@@ -24,6 +24,12 @@ export function onChange(act: () => void): void {
   changed.push(act);
 }
 
+/** Call a function whenever this panel may have come into view or left it: it is opened or closed, or others are to be seen. */
+export function onComingOrGoing(panel: HTMLElement, act: () => void): void {
+  panel.addEventListener("toggle", act);
+  onChange(act);
+}
+
 export function buildTasks(): void {
   const tabs = element("tasks");
   tabs.setAttribute("aria-label", t("tasks"));

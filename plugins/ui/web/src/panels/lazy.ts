@@ -1,5 +1,5 @@
 /** A panel whose module is loaded when it is first seen open, so that the page starts sooner. */
-import { onChange } from "../frame/tasks";
+import { onComingOrGoing } from "../frame/tasks";
 import type { Page } from "../page";
 import type { Panel } from "./panel";
 import { t } from "./words";
@@ -32,8 +32,7 @@ export function lazy(about: Omit<Panel, "build">, load: () => Promise<Pick<Panel
       }
     };
     fillers.push(fill);
-    box.addEventListener("toggle", seen);
-    onChange(seen);
+    onComingOrGoing(box, seen);
     seen();
   }
 }

@@ -1,7 +1,7 @@
 /** Verdicts of tactile legibility by medium, with places and cures. */
 import { button, field, hint, paragraph } from "../../elements";
 import { DocumentEditor } from "../../forms/editor";
-import { onChange } from "../../frame/tasks";
+import { onComingOrGoing } from "../../frame/tasks";
 import type { Legible, Medium } from "../../server/messages";
 import type { Page } from "../../page";
 import { t } from "./words";
@@ -18,9 +18,7 @@ const WIDTH_MM = { least: 10, most: 2000 };
 export function build(page: Page, root: HTMLElement): void {
   const editor = new DocumentEditor(page);
   const marks = new FaultMarks(page, () => root.checkVisibility());
-  const redraw = (): void => void (page.overlay.changed = true);
-  root.closest("details")!.addEventListener("toggle", redraw);
-  onChange(redraw);
+  onComingOrGoing(root.closest("details")!, () => (page.overlay.changed = true));
   const medium = choice();
   const width = widthField();
   const status = document.createElement("p");

@@ -1,7 +1,9 @@
 """The files of a batch: its rows, and a table and a gallery of all rows."""
 
+import json
 from collections.abc import Iterable, Iterator, Mapping
 from html import escape
+from io import BytesIO
 from itertools import islice
 from pathlib import Path
 from typing import Any, cast
@@ -46,11 +48,16 @@ def write_index(out: Path, names: Iterable[str]) -> Path:
     rows = (dict(_flatten("", row)) for row in rows_of_scenes(out, names))
     with atomic_write(out / INDEX) as file, parquet.ParquetWriter(file, schema, compression="zstd") as writer:
         while part := list(islice(rows, PER_PART)):
-            columns = {
-                name: [_cell(row.get(name), kind == arrow.string()) for row in part] for name, kind in types.items()
-            }
-            writer.write_table(arrow.table(columns, schema=schema))
+            lines = ({name: _cell(row.get(name), types[name] == arrow.string()) for name in types} for row in part)
+            writer.write_table(_table("\n".join(map(json.dumps, lines)).encode(), schema))
     return out / INDEX
+
+
+def _table(lines: bytes, schema: Any) -> Any:
+    """Read lines of JSON as a table: made of Python's values, Arrow would import pandas, at 57 MB."""
+    reader = need("pyarrow.json")
+    whole = reader.ReadOptions(block_size=len(lines) + 1)
+    return reader.read_json(BytesIO(lines), whole, reader.ParseOptions(explicit_schema=schema))
 
 
 def write_gallery(out: Path, names: Iterable[str]) -> tuple[Path, ...]:

@@ -4,6 +4,8 @@ import csv
 import json
 import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 from threading import Event
 
@@ -526,6 +528,16 @@ def test_table_column_with_a_text_is_text(tmp_path: Path):
     (tmp_path / "rows.jsonl").write_text("".join(f"{json.dumps(each)}\n" for each in lines))
     table = pq.read_table(results.write_index(tmp_path, "abc"))
     assert table["figures.of"].to_pylist() == ["n/a", "2.5", None]
+
+
+def test_table_is_written_without_pandas(tmp_path: Path):
+    (tmp_path / "rows.jsonl").write_text('{"id": "a", "seconds": 1}\n')
+    code = (
+        "import sys; from pathlib import Path; from tangible_batch.results import write_index; "
+        f"write_index(Path({str(tmp_path)!r}), ['a']); assert 'pandas' not in sys.modules"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 def test_figures_that_are_not_finite_are_none_in_a_row():

@@ -56,7 +56,7 @@ def write_index(out: Path, names: Iterable[str]) -> Path:
 def _table(lines: bytes, schema: Any) -> Any:
     """Read lines of JSON as a table: made of Python's values, Arrow would import pandas, at 57 MB."""
     reader = need("pyarrow.json")
-    whole = reader.ReadOptions(block_size=len(lines) + 1)
+    whole = reader.ReadOptions(use_threads=False, block_size=len(lines) + 1)
     return reader.read_json(BytesIO(lines), whole, reader.ParseOptions(explicit_schema=schema))
 
 

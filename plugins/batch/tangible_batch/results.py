@@ -48,7 +48,7 @@ def write_index(out: Path, names: Iterable[str]) -> Path:
     rows = (dict(_flatten("", row)) for row in rows_of_scenes(out, names))
     with atomic_write(out / INDEX) as file, parquet.ParquetWriter(file, schema, compression="zstd") as writer:
         while part := list(islice(rows, PER_PART)):
-            lines = ({name: _cell(row.get(name), types[name] == arrow.string()) for name in types} for row in part)
+            lines = ({name: _cell(value, types[name] == arrow.string()) for name, value in row.items()} for row in part)
             writer.write_table(_table("\n".join(map(json.dumps, lines)).encode(), schema))
     return out / INDEX
 

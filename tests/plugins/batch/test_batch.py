@@ -530,6 +530,14 @@ def test_table_column_with_a_text_is_text(tmp_path: Path):
     assert table["figures.of"].to_pylist() == ["n/a", "2.5", None]
 
 
+def test_text_of_any_length_stands_in_the_table(tmp_path: Path):
+    import pyarrow.parquet as pq
+
+    error = "no\n" * 1_000_000
+    (tmp_path / "rows.jsonl").write_text("".join(f"{json.dumps({'id': each, 'error': error})}\n" for each in "ab"))
+    assert pq.read_table(results.write_index(tmp_path, "ab"))["error"].to_pylist() == [error, error]
+
+
 def test_table_is_written_without_pandas(tmp_path: Path):
     (tmp_path / "rows.jsonl").write_text('{"id": "a", "seconds": 1}\n')
     code = (

@@ -3,6 +3,8 @@
 python -m benchmarks mutants                     # all; its score goes to RESULTS.md
 python -m benchmarks.mutants guard --jobs 2      # those of a list, or whose name has this in it; RESULTS.md stays
 python -m benchmarks.mutants guard ring --keep   # these lists; their lines of RESULTS.md are written anew
+python -m benchmarks.mutants --sample 400 --seed 1  # faults drawn at random; needs the dependency group `nightly`
+python -m benchmarks.mutants study export --sample 40 --seed 1  # in these rooms
 """
 
 import argparse
@@ -27,6 +29,7 @@ from tangible_core.servo.ring import shared_folder
 from .__main__ import SECTIONS, keep, kept
 from .figures import MissedError, table
 from .mutants_lists import Mutant, StaleError, mutants
+from .mutants_sample import sample
 from .mutants_tree import Programs, Tree, copy_of
 
 ROOT = Path(__file__).parents[1]
@@ -206,15 +209,47 @@ def complete(root: Path, words: Sequence[str], jobs: int) -> list[Result]:
         ]
         if not chosen:
             sys.exit(f"no mutant is of {', '.join(words)}; lists are {', '.join(rooms)}")
-        results: list[Result] = []
-        with closing(run(root, chosen, jobs)) as done:
-            for each in done:
-                results.append(each)
-                place = f"{each.mutant.room}: {each.mutant.name}"
-                _say(f"[{len(results)}/{len(chosen)}] {place}: {each.outcome} ({each.seconds:.0f} s) {each.why}")
-        return results
-    except (StaleError, UnreadyError) as error:
+        return _all(root, chosen, jobs)
+    except StaleError as error:
         sys.exit(str(error))
+
+
+def _all(root: Path, chosen: Sequence[Mutant], jobs: int) -> list[Result]:
+    """Return what becomes of the mutants, each printed as it is done."""
+    results: list[Result] = []
+    try:
+        with closing(run(root, chosen, jobs)) as done:
+            for result in done:
+                results.append(result)
+                place = f"{result.mutant.place}: {result.mutant.name}"
+                _say(f"[{len(results)}/{len(chosen)}] {place}: {result.outcome} ({result.seconds:.0f} s) {result.why}")
+    except UnreadyError as error:
+        sys.exit(str(error))
+    return results
+
+
+def sampled(root: Path, rooms: Sequence[str], count: int, seed: int, jobs: int) -> list[Result]:
+    """Return what becomes of faults that are drawn at random, each printed as it is done."""
+    try:
+        return _all(root, sample(root, count, seed, rooms), jobs)
+    except (ImportError, ValueError) as error:
+        sys.exit(
+            f"{error}; mutmut comes by `pip install --group nightly`" if isinstance(error, ImportError) else str(error)
+        )
+
+
+def shares(results: Iterable[Result]) -> list[str]:
+    """Return the share of faults that were noticed, in all and by room, as a table."""
+    found = sorted(results, key=lambda result: result.mutant.room)
+    by_room = {room: list(group) for room, group in groupby(found, lambda result: result.mutant.room)}
+    cells = [
+        (name, str(len(group)), f"{_count(group, Outcome.KILLED, Outcome.HUNG) / len(group):.2f}")
+        for name, group in [*by_room.items(), *([("all", found)] if found else [])]
+    ]
+    unnoticed = [
+        f"- {result.mutant.place}: {result.mutant.name}: {result.outcome}" for result in found if result.outcome in BAD
+    ]
+    return [*table(("room", "faults", "noticed"), cells), "", *unnoticed]
 
 
 def _say(text: str) -> None:
@@ -232,12 +267,17 @@ def main() -> None:
     parser.add_argument("words", nargs="*", help="names of lists, or parts of names of mutants; all")
     parser.add_argument("--keep", action="store_true", help="write the lines of whole lists to RESULTS.md")
     parser.add_argument("--jobs", type=int, default=_jobs(), help="so many at a time (%(default)s)")
+    parser.add_argument("--sample", type=int, metavar="N", help="draw so many faults at random; the words are rooms")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the sample (%(default)s)")
     asked = parser.parse_args()
     if asked.keep and (parts := set(asked.words) - {each.room for each in mutants(ROOT)}):
         parser.error(f"--keep is for whole lists, and {', '.join(sorted(parts))} is none")
     for each in (signal.SIGINT, signal.SIGTERM):
         signal.signal(each, signal.default_int_handler)
     try:
+        if asked.sample:
+            print("\n".join(shares(sampled(ROOT, asked.words, asked.sample, asked.seed, asked.jobs))))
+            sys.exit()
         results = complete(ROOT, asked.words, asked.jobs)
     except KeyboardInterrupt:
         sys.exit(130)

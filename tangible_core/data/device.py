@@ -8,6 +8,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+from ..errors import check_positive
+
 Vector = tuple[float, float, float]
 """Components along x, y and z."""
 
@@ -51,7 +53,11 @@ class HapticState(NamedTuple):
 
 @dataclass(frozen=True)
 class DeviceSpec:
-    """The abilities of a device, known before it is opened; in the workspace frame."""
+    """The abilities of a device, known before it is opened; in the workspace frame.
+
+    Raises: ConfigError unless force, stiffness, resolution and workspace are positive and finite, and damping is finite
+    and at least 0: the force loop relies on them.
+    """
 
     max_force_n: float
     max_stiffness_n_per_m: float
@@ -65,6 +71,14 @@ class DeviceSpec:
     buttons: int = 0
     simulated: bool = False
     """True if no motor moves."""
+
+    def __post_init__(self) -> None:
+        for name in ("max_force_n", "max_stiffness_n_per_m", "resolution_m"):
+            check_positive(f"the device's {name}", getattr(self, name))
+        for size_m in self.workspace_m:
+            check_positive("the device's workspace_m", size_m)
+        if self.damping_n_s_per_m != 0:
+            check_positive("the device's damping_n_s_per_m", self.damping_n_s_per_m)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from decimal import Decimal
 from math import isfinite
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Annotated, Any, cast, get_args, get_origin
 
 from pydantic import BaseModel, GetJsonSchemaHandler, ValidationError, ValidationInfo, field_validator
 from pydantic.json_schema import JsonSchemaValue
@@ -71,8 +71,16 @@ class Quantities(BaseModel, metaclass=_Blocks):
     @field_validator("*", mode="before")
     @classmethod
     def _number_of(cls, value: Any, info: ValidationInfo) -> Any:
-        """Convert text with a unit to a number. Raises: ValueError for text that is not such a quantity."""
-        units = units_of(info.field_name or "")
+        """Convert text with a unit to a number. Raises: ValueError for text that is not such a quantity, and for true.
+
+        True is 1 to pydantic, but `max_force_n: true` is a mistake.
+        """
+        name = info.field_name or ""
+        if isinstance(value, bool):
+            kinds = _kinds(cls.model_fields[name].annotation)
+            if {float, int} & kinds and bool not in kinds:
+                raise ValueError("write a number, not true or false")
+        units = units_of(name)
         if units and isinstance(value, list | tuple):
             return [_as_number(each, units) for each in cast("list[Any]", value)]
         return _as_number(value, units)
@@ -89,6 +97,16 @@ class Quantities(BaseModel, metaclass=_Blocks):
             if units := units_of(name):
                 _allow_text(option, units)
         return schema
+
+
+def _kinds(hint: Any) -> set[Any]:
+    """Return the types that an annotation is made of.
+
+    >>> _kinds(tuple[Annotated[float, "finite"], bool | None]) == {float, bool, type(None)}
+    True
+    """
+    parts = get_args(hint)[: 1 if get_origin(hint) is Annotated else None]
+    return {kind for part in parts for kind in _kinds(part)} if parts else {hint}
 
 
 def units_of(name: str) -> Mapping[str, Decimal]:

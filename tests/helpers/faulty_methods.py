@@ -231,7 +231,8 @@ class Gadget(HapticDevice):
     fault: str = ""
 
     def spec(self) -> DeviceSpec:
-        return DeviceSpec(0.0 if self.fault == "spec_makes_sense" else 8.0, 3000.0, 20.0, (0.08, 0.08, 0.08), 1e-4)
+        axes = 7 if self.fault == "spec_makes_sense" else 3
+        return DeviceSpec(8.0, 3000.0, 20.0, (0.08, 0.08, 0.08), 1e-4, axes)
 
     def open(self) -> Link:
         if self.fault == "device_can_be_opened_again" and next(ticket) % 2:

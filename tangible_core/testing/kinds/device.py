@@ -15,17 +15,8 @@ class _Mishap(Exception):
 
 
 def spec_makes_sense(method: HapticDevice) -> None:
-    """Check that force, stiffness, workspace and resolution are above 0, damping is 0 or more, and axes are 1 to 6."""
+    """Check that there is a specification, whose numbers `DeviceSpec` checks, with 1 to 6 axes."""
     spec = method.spec()
-    positive = {
-        "max_force_n": spec.max_force_n,
-        "max_stiffness_n_per_m": spec.max_stiffness_n_per_m,
-        "resolution_m": spec.resolution_m,
-        **{f"workspace_m along {axis}": size for axis, size in zip("xyz", spec.workspace_m, strict=True)},
-    }
-    for name, value in positive.items():
-        demand(0 < value < np.inf, f"{name} is {value}; it must be above 0 and finite")
-    demand(0 <= spec.damping_n_s_per_m < np.inf, f"damping_n_s_per_m is {spec.damping_n_s_per_m}")
     demand(1 <= spec.axes <= 6 and spec.buttons >= 0, f"{spec.axes} axes and {spec.buttons} buttons")
 
 

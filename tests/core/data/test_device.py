@@ -1,13 +1,17 @@
-"""Forces that pass between a force law and a device."""
+"""Forces that pass between a force law and a device, and a device's limits, on which the force loop relies."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tangible_core.data import NO_FORCE, Force, limited
+from tangible_core.data import NO_FORCE, DeviceSpec, Force, limited
+from tangible_core.errors import ArgumentError, ConfigError
+
+SPEC = DeviceSpec(8.0, 3000.0, 20.0, (0.1, 0.1, 0.1), 1e-5)
 
 
 @given(st.tuples(*[st.floats()] * 3), st.floats(1e-3, 1e3))
@@ -27,3 +31,25 @@ def test_limited_force_is_finite_within_the_limit_and_keeps_its_direction(parts,
 def test_force_one_percent_over_the_limit_is_scaled_down():
     assert limited(Force(0.0, 3.0, 4.0), 5.0) == (0.0, 3.0, 4.0)
     assert limited(Force(0.0, 3.03, 4.04), 5.0) == pytest.approx((0.0, 3.0, 4.0))
+
+
+@pytest.mark.parametrize("wrong", [math.inf, -1.0, math.nan, 0.0])
+@pytest.mark.parametrize("name", ["max_force_n", "max_stiffness_n_per_m", "resolution_m", "damping_n_s_per_m"])
+def test_spec_with_a_number_that_no_device_has_is_refused_by_name(name: str, wrong: float):
+    if name == "damping_n_s_per_m" and wrong == 0:
+        assert replace(SPEC, damping_n_s_per_m=0.0).damping_n_s_per_m == 0
+        return
+    with pytest.raises(ConfigError, match=rf"^the device's {name}: is {wrong}; it must be positive and finite$"):
+        replace(SPEC, **{name: wrong})
+
+
+@pytest.mark.parametrize("wrong", [(0.1, -0.1, 0.1), (0.1, 0.1, math.inf), (math.nan, 0.1, 0.1)])
+def test_spec_with_a_workspace_without_size_is_refused(wrong: tuple[float, float, float]):
+    with pytest.raises(ConfigError, match="the device's workspace_m: is"):
+        replace(SPEC, workspace_m=wrong)
+
+
+@pytest.mark.usefixtures("unchecked_shapes")
+def test_spec_with_text_for_a_number_is_refused():
+    with pytest.raises(ArgumentError, match="the device's max_force_n: is the str '8'; it must be a number"):
+        replace(SPEC, max_force_n="8")  # pyright: ignore[reportArgumentType]

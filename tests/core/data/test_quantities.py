@@ -58,6 +58,15 @@ def test_quantity_out_of_bounds_or_of_another_unit_is_refused():
     assert WorkspaceMapping(region_m=("1 cm", 0, "2 cm", "30 mm")).region_m == (0.01, 0.0, 0.02, 0.03)
 
 
+def test_true_for_a_number_is_refused_with_its_place():
+    with pytest.raises(OptionError, match="max_force_n: write a number, not true or false"):
+        Safety(max_force_n=True)
+    with pytest.raises(OptionError, match="delay_ticks"):
+        Safety(delay_ticks=False)
+    with pytest.raises(ConfigError, match=r"^p.yaml:2:10: safety.max_force_n: write a number, not true or false"):
+        parse_config("scene: builtin/coins\nsafety: {max_force_n: true}\n", Path("p.yaml"), default_registry())
+
+
 def test_material_accepts_units_and_refuses_quoted_numbers():
     text = "felt: {stiffness_n_per_m: 0.4 N/mm, damping_n_s_per_m: 1 N s/m, static_friction: 1, dynamic_friction: 1}"
     assert parse_materials(text, Path("m.yaml"), {})["felt"].stiffness_n_per_m == 400.0

@@ -27,10 +27,11 @@ class Link(ABC):
         """Keep the name for messages, such as "the mock device", and the greatest force to send, in newtons."""
         self.__name, self.__max_force_n = name, max_force_n
         self.__closed = ""
+        self.__newest_s, self.__fresh = -math.inf, False
 
     @abstractmethod
     def _read(self) -> HapticState:
-        """Read the state of the tip. Raises: DeviceError if the device stopped answering."""
+        """Read the state of the tip; its time goes forward. Raises: DeviceError if the device stopped answering."""
 
     @abstractmethod
     def _send(self, force: Force) -> None:
@@ -51,7 +52,21 @@ class Link(ABC):
         if self.__closed:
             raise self.__refusal()
         state = self._read()
-        return state if type(state) is HapticState else self.__as_state(state)
+        if type(state) is not HapticState:
+            state = self.__as_state(state)
+        self.__fresh = self.__newest_s < state.time_s < math.inf
+        if self.__fresh:
+            self.__newest_s = state.time_s
+        return state
+
+    @final
+    @property
+    def fresh(self) -> bool:
+        """Whether the last state read is newer than all before it; False if its time stood, went back or is NaN.
+
+        A driver that hangs may return its last state again and again, and the hand may be elsewhere by then.
+        """
+        return self.__fresh
 
     @final
     def write(self, force: Force) -> None:

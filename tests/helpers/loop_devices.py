@@ -88,8 +88,12 @@ class Failing(HapticDevice):
 
     at: int = 100
     """Number of the read with the fault."""
-    fault: Literal["unplugged", "bug", "nan", "hangs", "blocks", "exits", "none"] = "unplugged"
-    """Fault: no answer any more; an exception of the driver; NaN once; 50 ms; no answer ever; an exit of the driver."""
+    fault: Literal[
+        "unplugged", "bug", "nan", "hangs", "blocks", "exits", "none", "repeats", "alternates", "time goes back",
+        "time is NaN", "time is infinite",
+    ] = "unplugged"  # fmt: skip
+    """Fault: no answer any more; an exception of the driver; NaN once; 50 ms; no answer ever; an exit of the driver;
+    and, from that read on: the last state again, the last two in turn, older and older times, no times."""
     opens: Literal["always", "once", "second", "never", "late"] = "always"
     """Times it can be opened: `once` without a record, and then it does not answer; `second` only with a record, which
     the first attempt writes; `late` never answers."""
@@ -119,7 +123,7 @@ class FailingLink(Link):
     def __init__(self, options: Failing) -> None:
         super().__init__("the failing device", SPEC.max_force_n)
         self._options = options
-        self._reads = 0
+        self._reads, self._good_s = 0, time.monotonic()
         self._applied = NO_FORCE
         self._write_record()
 
@@ -129,7 +133,26 @@ class FailingLink(Link):
         z = -0.001
         if self._reads == self._options.at:
             z = self._fail()
-        return HapticState((0.0, 0.0, z), time_s=time.monotonic())
+        return HapticState((0.0, 0.0, z), time_s=self._time_s())
+
+    def _time_s(self) -> float:
+        after = self._reads - self._options.at
+        if after < 0:
+            self._good_s = time.monotonic()
+            return self._good_s
+        match self._options.fault:
+            case "repeats":
+                return self._good_s
+            case "alternates":
+                return self._good_s - 0.001 * (after % 2)
+            case "time goes back":
+                return self._good_s - 0.001 * after
+            case "time is NaN":
+                return float("nan")
+            case "time is infinite":
+                return float("inf")
+            case _:
+                return time.monotonic()
 
     def _fail(self) -> float:
         match self._options.fault:
@@ -145,7 +168,7 @@ class FailingLink(Link):
                 sys.exit(3)
             case "nan":
                 return float("nan")
-            case "none":
+            case _:
                 pass
         return -0.001
 

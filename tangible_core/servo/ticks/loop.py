@@ -23,7 +23,7 @@ from ..ring import (
     SWAP,
     Ring,
 )
-from .python_tick import guard_touch
+from .python_tick import guard_touch, hold_force
 from .schedule import begin_tick, going
 
 SECOND_NS = 1_000_000_000
@@ -150,13 +150,14 @@ def _plain_tick(
     proxy, moving = touch.memory[:3] if isinstance(touch, CompiledTouch) else np.full(3, np.nan), moving_of(touch)
     settings, memory, beacon = limits
     header, allowed_force = shared[0], guard_touch(touch, settings, memory, beacon)
+    held_force = hold_force(settings, memory)
     touch.force(FAR)
     kernel = _start_generator(cast(Any, cycle).finish_ticks, shared, row)
 
     def tick(at_ns: int, late_ns: int) -> None:
         period_s = (at_ns - header[PREVIOUS_NS] if header[COUNT] else header[PERIOD_NS]) / SECOND_NS
         state = link.read()
-        force, flags = allowed_force(state, period_s)
+        force, flags = allowed_force(state, period_s) if link.fresh else held_force(period_s)
         link.write(force)
         began = (at_ns - header[START_NS]) / SECOND_NS, late_ns / SECOND_NS
         motion = *state.position_m, *state.velocity_m_per_s, *proxy, *link.applied

@@ -12,6 +12,8 @@ from ..guard import layout
 
 GuardedForce = Callable[[HapticState, float], tuple[Force, int]]
 """(state, seconds since the state before) -> the allowed force, and the sum of its `TickFlag`s."""
+HeldForce = Callable[[float], tuple[Force, int]]
+"""(seconds since the tick before) -> the force of a tick without a fresh state, and its flags."""
 
 
 def guard_touch(
@@ -41,3 +43,16 @@ def guard_touch(
         return Force(fx, fy, fz), flags | guard_flags
 
     return allowed_force
+
+
+def hold_force(settings: np.ndarray, memory: np.ndarray) -> HeldForce:
+    """Return a function that passes on the last force of the same guard, and zero from `stale_s` on."""
+    from ..guard import guard
+
+    wait = cast(Any, guard).wait
+
+    def held_force(period_s: float) -> tuple[Force, int]:
+        fx, fy, fz, flags = wait(settings, memory, period_s)
+        return Force(fx, fy, fz), flags
+
+    return held_force

@@ -91,8 +91,8 @@ class PointerLink(CompiledLink):
 
         Waits until half a millisecond after the last read, so that a loop without its own clock does not spin.
         """
-        time.sleep(max(0.0, self._read_s + PACE_S - time.monotonic()))
-        now = time.monotonic()
+        time.sleep(max(0.0, self._read_s + PACE_S - time.perf_counter()))
+        now = time.perf_counter()
         passed_s, self._read_s = now - self._read_s, now
         found = self._code.fetch(self._words, self._kept)
         if found == self._code.WHOLE and self._kept[0] != self._last:

@@ -52,16 +52,17 @@ class Sinking(CompiledLink):
     def __init__(self, exchanges: bool, first_waiting: int = 0, fresh_again: int = 0) -> None:
         super().__init__("the sinking device", 8.0)
         self.fixed = np.array([0, first_waiting, fresh_again]), np.zeros(3)
-        self._exchanges = exchanges
+        self._exchanges, self._newest_s = exchanges, 0.0
 
     def kernels(self) -> LinkKernels:
         return LinkKernels(read, write, self.fixed)
 
     def _read(self) -> HapticState:
         state = np.zeros(7)
-        read(*self.fixed, state)
+        if read(*self.fixed, state):
+            self._newest_s = float(self.fixed[0][0])
         x, y, z, vx, vy, vz, buttons = state.tolist()
-        return HapticState((x, y, z), (vx, vy, vz), 0.0, int(buttons))
+        return HapticState((x, y, z), (vx, vy, vz), self._newest_s, int(buttons))
 
     def _send(self, force: Force) -> None:
         write(*self.fixed, *force)

@@ -215,9 +215,9 @@ def _entry_points(site: Path, **of: str) -> metadata.EntryPoints:
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
     """A force loop that a busy machine does not let tick for a while is not ended for that."""
-    from tangible_core.servo import supervisor
+    from tangible_core.servo import watchdog
 
-    monkeypatch.setattr(supervisor, "STANDSTILL_S", STANDSTILL_S)
+    monkeypatch.setattr(watchdog, "TIMEOUT_S", STANDSTILL_S)
 
 
 @pytest.fixture

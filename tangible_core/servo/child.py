@@ -18,18 +18,17 @@ from ..plugins.interfaces import Link, Touch, touch_of
 from ..runtime.system import priority
 from ..runtime.system.console import ENDING, PAUSING, end_before_console
 from ..runtime.system.streams import take_input
-from . import parcel
+from . import parcel, watchdog
 from .framing import End, Refusal, Start, StartReply, Swap, SwapReply, receive, send, sendable
-from .ring import STOP, SWAP, Ring
+from .ring import COUNT, STOP, SWAP, Ring
 from .ticks import loop
 
 TERMINATED = "the process received a signal to end"
 PAUSED = "the program was paused from the keyboard"
 SWITCH_S = 1e-4
 """Time after which a thread passes Python's lock to a waiting one, such as a loop that needs Python."""
-LOOK_EVERY_S, LOOKS = 0.05, 10
-"""Interval and number of checks for the end of a loop; if it still runs then, it is stuck in its force law or its
-device, and is abandoned."""
+STOPPING_S = 0.5
+"""Time after which a loop that was stopped and still runs is abandoned: it is stuck in its force law or its device."""
 
 
 @final
@@ -75,14 +74,13 @@ class Child:
         thread = threading.Thread(target=self._tick, args=(ring, failures), daemon=True)
         thread.start()
         threading.Thread(target=self._listen, args=(ring, link), daemon=True).start()
-        looks = LOOKS
-        while thread.is_alive() and looks:  # a signal's handler runs between two joins
-            thread.join(LOOK_EVERY_S)
-            looks -= int(ring.header[STOP])
+        dog = watchdog.Watchdog(ring.header, start.timeout_s, STOPPING_S)
+        while thread.is_alive() and not (_has_begun(ring) and dog.expired()):
+            thread.join(watchdog.POLL_S)  # a signal's handler runs between two joins
         if failures:
             raise failures[0]
-        if thread.is_alive():
-            raise DeviceError("the force loop is stuck in its law or its device and was abandoned")
+        if thread.is_alive():  # the link is closed now, and a thread that wakes cannot write to it
+            raise DeviceError(watchdog.STOOD_STILL)
 
     def _tick(self, ring: Ring, failures: list[BaseException]) -> None:
         try:
@@ -130,6 +128,11 @@ class Child:
     def _reply(self, message: object) -> None:
         with self._lock, suppress(OSError):  # the host may be gone
             send(self._replies, message)
+
+
+def _has_begun(ring: Ring) -> bool:
+    """Return whether the first tick is over, before which rights are granted and clocks started, or none may come."""
+    return bool(ring.header[COUNT] or ring.header[STOP])
 
 
 def main() -> None:

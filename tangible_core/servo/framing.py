@@ -26,6 +26,8 @@ class Start(NamedTuple):
     device: HapticDevice
     settings: np.ndarray
     """Settings of the guard."""
+    timeout_s: float
+    """Time without a tick after which the process gives up."""
 
 
 class Swap(NamedTuple):

@@ -17,7 +17,8 @@ from .guard.stiffness import stiffness_of
 from .packed_touch import Packed
 from .reports import report
 from .ring import LAST, PERIOD_NS, STOP, Ring
-from .supervisor import NOT_STARTED, OVER, STOOD_STILL, STOPPING_S, LoopProcess
+from .supervisor import NOT_STARTED, OVER, STOPPING_S, LoopProcess
+from .watchdog import OWN_SHARE, STOOD_STILL, timeout_s
 
 FOREVER = 2**62
 """Number of ticks of a loop without end."""
@@ -67,7 +68,8 @@ class Servo:
             self.ring.guard[: memory.size] = memory
             self.ring.header[[PERIOD_NS, LAST]] = round(self._period_s * 1e9), self._ticks
             scene, film = self._pack(self._touch)
-            self._loop.start(self.ring, Start(str(self.ring.path), scene, self._device, settings))
+            own_s = OWN_SHARE * timeout_s(self._period_s)
+            self._loop.start(self.ring, Start(str(self.ring.path), scene, self._device, settings, own_s))
             self._note_scene(self._loop.reply(StartReply), film)
             self._loop.watch(self.ring)
             self.start_s = time.monotonic() - start_s

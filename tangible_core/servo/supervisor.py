@@ -13,17 +13,15 @@ from ..errors import DeviceError
 from ..plugins.interfaces import HapticDevice
 from ..runtime.child_process import command, pipe_of
 from ..runtime.system.processes import start_without_ctrl_c
+from . import watchdog
 from .framing import End, Refusal, Start, receive, send, sendable
-from .ring import COUNT, LAST, STOP, Ring
+from .ring import STOP, Ring
 
 log: logging.Logger = logging.getLogger(__name__)
 COMPILING_S = 300.0
 """Longest time until the first tick; compiling everything takes a tenth of it."""
 STOPPING_S = 3.0
 """Time after which a loop that was stopped and has not ended is killed."""
-LOOK_EVERY_S, STANDSTILL_S, STANDSTILL_PERIODS = 0.05, 0.2, 4
-"""Interval of checking for new ticks; a loop without one for this time, and for this number of periods, is killed."""
-STOOD_STILL = "the force loop stood still: its force law or its device did not answer, or its process was stopped"
 OVER = "the time is over"
 NOT_STARTED = "no force loop was started; use it in `with Servo(...) as servo:`"
 Reply = TypeVar("Reply")
@@ -155,14 +153,10 @@ class LoopProcess:
 
     def _watch(self, header: np.ndarray) -> None:
         """Kill a loop that stands still, or does not end when it is stopped."""
-        seen, looks = -1, 0
-        standstill_s = max(STANDSTILL_S, STANDSTILL_PERIODS * self._period_s)
-        while not self._over.wait(LOOK_EVERY_S):  # looks are counted, not seconds, as this process may have stood still
-            ending = header[STOP] or header[COUNT] >= header[LAST]
-            looks = looks + 1 if header[COUNT] == seen else 0
-            seen = int(header[COUNT])
-            if looks * LOOK_EVERY_S >= (STOPPING_S if ending else standstill_s):
-                self.why = self.why or STOOD_STILL
+        dog = watchdog.Watchdog(header, watchdog.timeout_s(self._period_s), STOPPING_S)
+        while not self._over.wait(watchdog.POLL_S):
+            if dog.expired():
+                self.why = self.why or watchdog.STOOD_STILL
                 self._kill(self.why)
                 return
 

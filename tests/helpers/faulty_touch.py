@@ -1,6 +1,7 @@
 """A force law in plain Python for tests of a force loop: it pushes steadily, and has a fault in one of its ticks."""
 
 import os
+import re
 import sys
 import time
 from typing import Any, Literal, NoReturn, final
@@ -10,7 +11,17 @@ import numpy as np
 from tangible_core.data import NO_FORCE, Force, HapticState, Relief
 from tangible_core.plugins.touch import Film, PlainTouch, Touch
 
-Fault = Literal["none", "blocks", "exits", "odd error", "does not arrive", "begins slowly", "knows itself", "no number"]
+Fault = Literal[
+    "none",
+    "blocks",
+    "holds Python",
+    "exits",
+    "odd error",
+    "does not arrive",
+    "begins slowly",
+    "knows itself",
+    "no number",
+]
 
 
 class OddError(Exception):
@@ -57,6 +68,8 @@ class FaultyTouch(PlainTouch):
     def _fail(self) -> None:
         if self._fault == "blocks":
             time.sleep(3600)
+        if self._fault == "holds Python":
+            re.match("(a+)+b", "a" * 60)  # takes for ever, in C
         if self._fault == "exits":
             sys.exit(3)
         if self._fault == "odd error":

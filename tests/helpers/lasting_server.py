@@ -67,9 +67,9 @@ async def let_go(session: Any, tab: Any) -> None:
 
 def be_patient() -> None:
     """Let no loop be ended because a busy machine does not let it tick for a fifth of a second: as `patient`."""
-    from tangible_core.servo import supervisor
+    from tangible_core.servo import watchdog
 
-    supervisor.STANDSTILL_S = LONGEST_S
+    watchdog.TIMEOUT_S = LONGEST_S
 
 
 def sleep_until_ticks() -> None:

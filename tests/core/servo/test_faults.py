@@ -20,8 +20,8 @@ from loop_in_thread import loops_in_threads
 from loop_scenes import held_force, proxy
 from tangible_core.errors import BrokenMethod, DeviceError
 from tangible_core.plugins.interfaces import Touch
-from tangible_core.servo import Safety, Servo, host, supervisor
-from tangible_core.servo.ring import COUNT, LAST, STOP, Ring, shared_folder
+from tangible_core.servo import Safety, Servo, host, supervisor, watchdog
+from tangible_core.servo.ring import COUNT, Ring, shared_folder
 from waiting import until
 
 pytestmark = pytest.mark.usefixtures("own_memory")
@@ -153,7 +153,10 @@ with Servo(FaultyTouch({fault!r}, {at}), device, Safety(ramp_s=0, max_step_n=10)
 
 
 class TestStandstill:
-    """A loop without ticks has 0.2 s; then its process is killed and the device opened once more to release it."""
+    """A loop without ticks has 0.14 s; then its process lets the device go.
+
+    If it cannot, it is killed after 0.2 s, and the device is opened once more to release it.
+    """
 
     def feel(self, record: Path, law: Touch, fault: Any = "none") -> Servo:
         return Servo(law, Failing(fault=fault, record=str(record), simulated=False), AT_ONCE)
@@ -165,11 +168,27 @@ class TestStandstill:
         record = tmp_path / "force"
         with self.feel(record, law, fault) as servo:
             until(lambda: not servo.running)
-            assert servo.report().stopped == supervisor.STOOD_STILL
+            assert servo.report().stopped == watchdog.STOOD_STILL
             assert servo.device_lost
             assert servo.report().peak_force_n > 0
             assert held_force(record) == 0
             assert servo.report().ticks == 99
+
+    def test_law_that_holds_the_interpreter_is_killed_by_the_host(self, tmp_path: Path) -> None:
+        """The loop's own watchdog does not run then."""
+        record = tmp_path / "force"
+        with self.feel(record, FaultyTouch("holds Python")) as servo:
+            until(lambda: not servo.running)
+            assert servo.report().stopped == watchdog.STOOD_STILL
+            assert held_force(record) == 0
+
+    def test_law_that_waits_leaves_the_device_to_its_own_process(self, tmp_path: Path) -> None:
+        """The device is not opened a second time, which takes long with many devices."""
+        record = tmp_path / "force"
+        device = Failing(fault="none", record=str(record), simulated=False, opens="once")
+        with Servo(FaultyTouch("blocks"), device, AT_ONCE) as servo:
+            until(lambda: not servo.running)
+            assert held_force(record) == 0
 
     def test_suspended_process_is_killed(self, tmp_path: Path) -> None:
         record = tmp_path / "force"
@@ -177,49 +196,17 @@ class TestStandstill:
             until(lambda: held_force(record) > 0)
             os.kill(servo.process_id, signal.SIGSTOP)
             until(lambda: not servo.running)
-            assert servo.report().stopped == supervisor.STOOD_STILL
+            assert servo.report().stopped == watchdog.STOOD_STILL
             assert held_force(record) == 0
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_standstill_bound_counts_checks_and_grows_with_the_period(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """Ticks 0.3 s apart are not a standstill, however many there are."""
-        monkeypatch.setattr(supervisor, "STANDSTILL_S", 0.2)  # as ever: a bound of 1.2 s is patient enough
+        monkeypatch.setattr(watchdog, "TIMEOUT_S", 0.2)  # as ever: a bound of 1.2 s is patient enough
         with Servo(FaultyTouch(), Failing(fault="none"), AT_ONCE, seconds=2.4, period_s=0.3) as servo:
             until(lambda: not servo.running)
             assert servo.report().ticks == 8
             assert servo.report().stopped == "the time is over"
-
-    @pytest.mark.parametrize(
-        ("counts", "word", "looks"),
-        [
-            ([5] * 99, -1, 5),  # four looks after the first one that sees the count
-            ([5, 5, 5, 5, 6, 6, 6, 6, 6, 6], -1, 9),
-            ([5] * 99, STOP, 61),
-            ([5] * 99, LAST, 61),
-        ],
-    )
-    def test_loop_is_killed_at_the_look_after_its_bound(
-        self, monkeypatch: pytest.MonkeyPatch, counts: list[int], word: int, looks: int
-    ) -> None:
-        """A bound of 0.2 s is four looks without a tick; one of 3 s, for a loop that is to end, is sixty."""
-        monkeypatch.setattr(supervisor, "STANDSTILL_S", 0.2)
-        header, seen, killed = np.zeros(max(COUNT, LAST, STOP) + 1, np.int64), 0, list[str]()
-        header[LAST] = 1000
-        if word >= 0:
-            header[word] = 1
-
-        class Looks:
-            def wait(self, seconds: float) -> bool:
-                nonlocal seen
-                assert seconds == 0.05
-                header[COUNT], seen = counts[seen], seen + 1
-                return False
-
-        process = supervisor.LoopProcess(Failing(fault="none"), 0.001)
-        monkeypatch.setattr(process, "_over", Looks())
-        monkeypatch.setattr(process, "_kill", killed.append)
-        process._watch(header)
-        assert (seen, killed) == (looks, [supervisor.STOOD_STILL])
 
     @pytest.mark.usefixtures("loop_in_thread")
     def test_law_that_compiles_on_first_use_is_not_a_standstill(self) -> None:
@@ -289,6 +276,33 @@ class TestStandstill:
             until(lambda: not servo.running)
             assert "paused from the keyboard" in servo.report().stopped
             assert held_force(record) == 0
+
+
+@pytest.mark.usefixtures("loop_in_thread")
+class TestStaleDriver:
+    """A driver in Python that hangs and repeats its state pushes a hand that is elsewhere by then."""
+
+    @pytest.mark.parametrize("law", [FaultyTouch(), proxy()])
+    @pytest.mark.parametrize("fault", ["repeats", "alternates", "time goes back", "time is NaN", "time is infinite"])
+    def test_state_that_does_not_become_newer_ends_the_force_after_stale_s(self, law: Touch, fault: Any) -> None:
+        safety = Safety(ramp_s=0, max_step_n=10, stale_s=0.05)
+        with Servo(law, Failing(fault=fault, simulated=False), safety, seconds=0.4) as servo:
+            until(lambda: not servo.running)
+            ticks, flagged = servo.ring.since(0)[0], servo.report().flagged
+        time_s, force_n = ticks[:, 0], np.linalg.norm(ticks[:, 11:14], axis=1)
+        newest_s = time_s[98]  # of the last read before the fault
+        assert (force_n[5:99] > 0).all()
+        late = time_s > newest_s + safety.stale_s
+        assert late.any()
+        assert (force_n[late] == 0).all()
+        assert flagged["STALE"] == np.count_nonzero(late)
+
+    def test_time_that_goes_on_after_a_pause_brings_the_force_back(self) -> None:
+        with Servo(FaultyTouch(), Failing(fault="hangs"), Safety(ramp_s=0, max_step_n=10), seconds=0.4) as servo:
+            until(lambda: not servo.running)
+            force_n = np.linalg.norm(servo.ring.since(0)[0][:, 11:14], axis=1)
+        assert np.count_nonzero(force_n == 0) >= 1
+        assert force_n[-1] == 1.0
 
 
 @contextmanager

@@ -131,7 +131,7 @@ class Session:
         self.child = Child(commands, replies)
         self.thread = threading.Thread(target=self.child.main)
         self.thread.start()
-        send(self.commands, Start(str(self.ring.path), str(pack(proxy())), device, self.settings))
+        send(self.commands, Start(str(self.ring.path), str(pack(proxy())), device, self.settings, 30.0))
 
     def heard(self) -> Any:
         return receive(self.replies)

@@ -34,9 +34,13 @@ from waiting import until
 FORCE = [TICK_COLUMNS.index(each) for each in ("fx_n", "fy_n", "fz_n")]
 
 
+def request(page: Page, path: str, body: bytes | None = None) -> Request:
+    """A request as the page sends it."""
+    return Request(page.address + path, body, {"Origin": page.address.rpartition("/")[0].rpartition("/")[0]})
+
+
 def fetch(page: Page, path: str, body: object = None):
-    data = None if body is None else json.dumps(body).encode()
-    with urlopen(Request(page.address + path, data)) as answer:
+    with urlopen(request(page, path, None if body is None else json.dumps(body).encode())) as answer:
         return json.loads(answer.read())
 
 
@@ -191,7 +195,7 @@ def pointer() -> bytes:
 
 
 def exchange(page: Page, message: bytes) -> bytes:
-    with urlopen(Request(page.address + "hand", message)) as answer:
+    with urlopen(request(page, "hand", message)) as answer:
         return answer.read()
 
 

@@ -1,29 +1,33 @@
 """A page in the browser as the desk of a participant: it speaks, shows no picture, and may be the device as well."""
 
 import json
+import re
 import secrets
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
+from socket import SHUT_RDWR
 from threading import Condition, Event, Thread
 from types import TracebackType
 from typing import Any, Self, final
-from urllib.parse import parse_qs, urlsplit
+
+from pydantic import BaseModel
 
 from tangible_core.errors import DeviceError
 from tangible_core.pipeline.feeling import Feeling
 from tangible_core.servo import Servo
 from tangible_core.servo.beacon import part_number
-from tangible_ui.address import page_file
+from tangible_ui.address import HOST, Address, page_file
+from tangible_ui.serving.access import refusal_text
+from tangible_ui.serving.connection import HEAD_S, MOST_STRANGERS, Strangers
 
 from .desk import LEAVE, Desk, Left
 from .page_hand import PageHand
 from .page_surface import surface_for_page
 
-HOST = "127.0.0.1"
-"""The address of this computer alone: no other one reaches the page."""
 POLL_S = 20.0
 """The longest time for which a request of the page waits for something to say, s."""
 LAST_S = 2.0
@@ -33,6 +37,8 @@ SURFACE_S = 5.0
 MOST_BYTES = 1000
 """The most bytes of an answer."""
 POLICY = "default-src 'none'; script-src 'nonce-{nonce}'; style-src 'nonce-{nonce}'; connect-src 'self'"
+NUMBER = re.compile("[0-9]{1,9}")
+"""A number in a request; one of more digits is of nothing that there is."""
 NO_SURFACE: Mapping[str, Any] = {"surface": 0}
 
 
@@ -58,7 +64,6 @@ class Page(Desk):
         self._events: list[dict[str, Any]] = []
         self._answer: str | None = None
         self._fetched = 0
-        self._token = secrets.token_urlsafe(16)
         self.hand = hand
         self._sounds = list(sounds)
         self._surfaces = self._seen = 0
@@ -66,14 +71,13 @@ class Page(Desk):
         html = files("tangible_study.desks").joinpath("page.html").read_text(encoding="utf-8")
         html = html.replace("LANGUAGE", language).replace("STYLE", page_file("study.css"), 1)
         self.html: str = html.replace("SCRIPT", page_file("study.js"), 1)
-        self._server = ThreadingHTTPServer((HOST, 0), _handler(self, self._token))
-        self._server.daemon_threads = True
+        self._server = _Server(self)
         self._thread = Thread(target=self._server.serve_forever, daemon=True)
 
     @property
     def address(self) -> str:
         """Address of the page; nobody can guess it."""
-        return f"http://{HOST}:{self._server.server_port}/{self._token}/"
+        return f"http://{HOST}:{self._server.server_port}{self._server.root}"
 
     @property
     def stop(self) -> Event:
@@ -167,58 +171,122 @@ class Page(Desk):
             return True
 
 
-def _handler(page: Page, token: str) -> type[BaseHTTPRequestHandler]:
-    """Return the class that answers requests for a page."""
+class _Answer(BaseModel, strict=True):
+    """An answer to a question: the question's number, and a key."""
 
-    class Handler(BaseHTTPRequestHandler):
-        protocol_version = "HTTP/1.1"
-
-        def do_GET(self) -> None:
-            url = urlsplit(self.path)
-            after = parse_qs(url.query).get("after", ["0"])[0]
-            if url.path == f"/{token}/":
-                nonce = secrets.token_urlsafe(16)
-                policy = {"Content-Security-Policy": POLICY.format(nonce=nonce)}
-                self._send("text/html;charset=utf-8", page.html.replace("NONCE", nonce).encode(), policy)
-            elif url.path == f"/{token}/events" and after.isdecimal():
-                self._send("application/json", json.dumps(page.events_after(int(after))).encode())
-            elif url.path == f"/{token}/surface" and url.query.isdecimal() and (found := page.surface(int(url.query))):
-                self._send("application/json", found)
-            else:
-                self.send_error(HTTPStatus.NOT_FOUND)
-
-        def do_POST(self) -> None:
-            size = self.headers.get("Content-Length", "")
-            body = self.rfile.read(int(size)) if size.isdecimal() and int(size) <= MOST_BYTES else b""
-            if self.path == f"/{token}/stop":
-                page.stop.set()
-                self._send("application/json", b"true")
-            elif self.path == f"/{token}/answer":
-                self._send("application/json", json.dumps(_take(page, body)).encode())
-            elif self.path == f"/{token}/hand" and page.hand is not None:
-                self._send("application/octet-stream", page.hand.take(body))
-            else:
-                self.send_error(HTTPStatus.NOT_FOUND)
-
-        def _send(self, kind: str, body: bytes, headers: Mapping[str, str] | None = None) -> None:
-            self.send_response(HTTPStatus.OK)
-            common = {"Content-Type": kind, "Content-Length": str(len(body)), "Cache-Control": "no-store"}
-            safe = {"X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer"}
-            for name, value in {**common, **safe, **(headers or {})}.items():
-                self.send_header(name, value)
-            with suppress(ConnectionError):  # the page was closed or loaded again meanwhile
-                self.end_headers()
-                self.wfile.write(body)
-
-        def log_message(self, format: str, *args: object) -> None:
-            """Print nothing: the terminal is the experimenter's."""
-
-    return Handler
+    number: int
+    key: str
 
 
-def _take(page: Page, body: bytes) -> bool:
-    try:
-        answer = json.loads(body)
-        return page.take(int(answer["number"]), str(answer["key"]))
-    except (ValueError, KeyError, TypeError):
+@final
+class _Server(ThreadingHTTPServer):
+    """A server that strangers cannot keep busy, nor print anything with: the terminal is the experimenter's."""
+
+    daemon_threads = True
+    request_queue_size = MOST_STRANGERS
+
+    def __init__(self, page: Page) -> None:
+        super().__init__((HOST, 0), _Handler)
+        self.page = page
+        self.own = Address(self.socket, secrets.token_urlsafe(16))
+        self.root: str = f"/{self.own.key}/"
+        self.strangers = Strangers()
+
+    def service_actions(self) -> None:
+        self.strangers.cut_late()
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Report a fault of this program; that a connection broke is none."""
+        if not isinstance(sys.exception(), OSError):
+            super().handle_error(request, client_address)
+
+
+@final
+class _Handler(BaseHTTPRequestHandler):
+    """A connection of a browser; it is a stranger's until a request shows the key."""
+
+    protocol_version = "HTTP/1.1"
+    timeout = HEAD_S  # of a read, so of the body too
+    server: _Server  # pyright: ignore[reportIncompatibleVariableOverride] - no other one uses it
+
+    def setup(self) -> None:
+        super().setup()
+        self.server.strangers.add(self)
+
+    def finish(self) -> None:
+        self.server.strangers.remove(self)
+        super().finish()
+
+    def abort(self) -> None:
+        with suppress(OSError):
+            self.connection.shutdown(SHUT_RDWR)
+
+    def parse_request(self) -> bool:
+        """Parse the head; refuse what is not this page's."""
+        if not super().parse_request():
+            return False
+        said = self.headers
+        if why := refusal_text(self.server.own.hosts, self.command, said.get("Host"), said.get("Origin")):
+            self.send_error(HTTPStatus.FORBIDDEN, why)
+        elif not self.path.startswith(self.server.root):
+            self.send_error(HTTPStatus.NOT_FOUND)
+        else:
+            self.server.strangers.remove(self)
+            return True
         return False
+
+    def do_GET(self) -> None:
+        name, _, query = self.path.removeprefix(self.server.root).partition("?")
+        number = int(found[0]) if (found := NUMBER.fullmatch(query.removeprefix("after="))) else None
+        page = self.server.page
+        if not name:
+            nonce = secrets.token_urlsafe(16)
+            policy = {"Content-Security-Policy": POLICY.format(nonce=nonce)}
+            self._send("text/html;charset=utf-8", page.html.replace("NONCE", nonce).encode(), policy)
+        elif name == "events" and number is not None:
+            self._send("application/json", json.dumps(page.events_after(number)).encode())
+        elif name == "surface" and number is not None and (surface := page.surface(number)):
+            self._send("application/json", surface)
+        else:
+            self.send_error(HTTPStatus.NOT_FOUND)
+
+    def do_POST(self) -> None:
+        page, name = self.server.page, self.path.removeprefix(self.server.root)
+        if name == "stop":
+            page.stop.set()  # whatever the body is
+        try:
+            body = self._read_body()
+            answer = _Answer.model_validate_json(body) if name == "answer" else None
+        except ValueError:
+            self.send_error(HTTPStatus.BAD_REQUEST)
+            return
+        if answer:
+            self._send("application/json", json.dumps(page.take(answer.number, answer.key)).encode())
+        elif name == "stop":
+            self._send("application/json", b"true")
+        elif name == "hand" and page.hand is not None:
+            self._send("application/octet-stream", page.hand.take(body))
+        else:
+            self.send_error(HTTPStatus.NOT_FOUND)
+
+    def _read_body(self) -> bytes:
+        """Return a body of at most MOST_BYTES. Raises: ValueError for one of another size, or of an unknown one."""
+        size, *more = self.headers.get_all("Content-Length", [""])
+        if more or not NUMBER.fullmatch(size) or int(size) > MOST_BYTES or "Transfer-Encoding" in self.headers:
+            raise ValueError(size)
+        body = self.rfile.read(int(size))
+        if len(body) < int(size):
+            raise ValueError("the body broke off")
+        return body
+
+    def _send(self, kind: str, body: bytes, headers: Mapping[str, str] | None = None) -> None:
+        self.send_response(HTTPStatus.OK)
+        common = {"Content-Type": kind, "Content-Length": str(len(body)), "Cache-Control": "no-store"}
+        safe = {"X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer"}
+        for name, value in {**common, **safe, **(headers or {})}.items():
+            self.send_header(name, value)
+        self.end_headers()
+        self.wfile.write(body)
+
+    def log_message(self, format: str, *args: object) -> None:
+        """Print nothing: the terminal is the experimenter's."""

@@ -25,7 +25,6 @@ class Guarded:
     def __init__(self, app: ASGIApp, hosts: frozenset[str]) -> None:
         """hosts: all names of this server, with the port, in small letters."""
         self._app, self._hosts = app, hosts
-        self._origins = frozenset(f"http://{host}" for host in hosts)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request; errors have the headers too."""
@@ -38,7 +37,8 @@ class Guarded:
                 message = {**message, "headers": _strict(message["headers"])}
             await send(message)
 
-        why = self._wrong(HTTPConnection(scope))
+        said = HTTPConnection(scope).headers
+        why = refusal_text(self._hosts, scope.get("method", ""), said.get("host"), said.get("origin"))
         if not why:
             await self._app(scope, receive, with_headers)
         elif scope["type"] == "websocket":
@@ -46,18 +46,19 @@ class Guarded:
         else:
             await PlainTextResponse(why, 403)(scope, receive, with_headers)
 
-    def _wrong(self, connection: HTTPConnection) -> str:
-        """Return why a request is refused; "" if it is not.
 
-        A foreign name that was made to lead here (DNS rebinding) shows in the host; a foreign page that sends requests
-        here shows in the origin, which browsers send with every change and every websocket.
-        """
-        if connection.headers.get("host", "").lower() not in self._hosts:
-            return "this address is not served"
-        reads = connection.scope["type"] == "http" and connection.scope["method"] in READING
-        if not reads and connection.headers.get("origin", "").lower() not in self._origins:
-            return "another page may not do that"
-        return ""
+def refusal_text(hosts: frozenset[str], method: str, host: str | None, origin: str | None) -> str:
+    """Return why a request is refused; "" if it is not.
+
+    A foreign name that was made to lead here (DNS rebinding) shows in the host; a foreign page that sends requests
+    here shows in the origin, which browsers send with every change and every websocket.
+    hosts: all names of the server. method: "" for a websocket. host, origin: headers of the request.
+    """
+    if (host or "").lower() not in hosts:
+        return "this address is not served"
+    if method not in READING and (origin or "").lower() not in {f"http://{each}" for each in hosts}:
+        return "another page may not do that"
+    return ""
 
 
 def _strict(headers: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:

@@ -1,9 +1,11 @@
 """Bounded connections: strangers cannot keep the holder of the key out, and a tab that reads nothing is cut off."""
 
+import time
 from asyncio import BaseTransport, TimerHandle
 from collections.abc import Callable
 from functools import partial
-from typing import Any, final
+from threading import Lock
+from typing import Any, Protocol, final
 
 import h11
 from starlette.requests import HTTPConnection
@@ -21,27 +23,47 @@ PING_S = 5.0
 """Interval of pings, s; a tab whose browser does not answer for twice as long is gone."""
 
 
+class Abortable(Protocol):
+    """A connection that can be cut off."""
+
+    def abort(self) -> None:
+        """End it at once, without waiting."""
+
+
 @final
 class Strangers:
     """The connections that have not shown the key; of too many, the one that has been open longest is cut off.
 
     So the holder of the key gets through whatever others open: the newest connection is never the one that is cut.
+    Any thread may call.
     """
 
     def __init__(self) -> None:
-        self._open: dict[BaseTransport, None] = {}
+        self._open: dict[Abortable, float] = {}
+        self._lock = Lock()
 
-    def add(self, transport: BaseTransport) -> None:
+    def add(self, connection: Abortable) -> None:
         """Add a new connection."""
-        self._open[transport] = None
-        if len(self._open) > MOST_STRANGERS:
-            longest: Any = next(iter(self._open))
-            self.remove(longest)
-            longest.abort()
+        with self._lock:
+            self._open[connection] = time.monotonic()
+            if len(self._open) > MOST_STRANGERS:
+                self._cut(1)
 
-    def remove(self, transport: BaseTransport) -> None:
+    def remove(self, connection: Abortable) -> None:
         """Remove a connection that has shown the key, or is closed."""
-        self._open.pop(transport, None)
+        with self._lock:
+            self._open.pop(connection, None)
+
+    def cut_late(self) -> None:
+        """Cut off those that have been open for HEAD_S; meant to be polled where nothing else limits the head."""
+        until_s = time.monotonic() - HEAD_S
+        with self._lock:
+            self._cut(sum(since_s < until_s for since_s in self._open.values()))
+
+    def _cut(self, count: int) -> None:
+        for longest in list(self._open)[:count]:
+            del self._open[longest]
+            longest.abort()
 
 
 @final

@@ -5,10 +5,12 @@ import struct
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, suppress
+from random import Random
 from urllib.parse import urlsplit
 
 import pytest
 
+from broken_messages import broken_request, send_broken
 from tangible_study.desks.page import MOST_BYTES, Page
 from tangible_study.desks.page_hand import PageHand
 from tangible_ui.serving import connection
@@ -234,3 +236,16 @@ def test_body_that_breaks_off_is_no_answer(page: Page):
         browser.send("POST", f"{browser.path}answer", WHOLE, Content_Length="500")
         browser.socket.shutdown(socket.SHUT_WR)
         assert browser.status() == 400
+
+
+@pytest.mark.parametrize("count", [100, pytest.param(4000, marks=pytest.mark.nightly)])
+def test_page_survives_broken_requests(page: Page, count: int):
+    random = Random(53)
+    page.say("There is an event, so that no request waits for one.")
+    with Browser(page) as known:
+        for _ in range(count):
+            name = random.choice(["", "stop", "answer", "hand", "surface?1", "events?after=0"])
+            path = random.choice([known.path, "/"]) + name
+            send_broken(random, broken_request(random, path, known.host), *known.socket.getpeername())
+    with Browser(page) as browser:
+        assert browser.ask("GET", browser.path) == 200

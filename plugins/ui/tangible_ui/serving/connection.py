@@ -87,6 +87,15 @@ class Exchange(H11Protocol):
         super().data_received(data)
         self._limit_head()
 
+    def send_400_response(self, msg: str) -> None:
+        """Refuse a broken request, in place of any answer to it: after a broken body, one may be under way."""
+        if self.cycle is not None:
+            self.cycle.disconnected = True
+        try:
+            super().send_400_response(msg)
+        except h11.LocalProtocolError:  # an answer is sent already
+            self.transport.close()
+
     def connection_lost(self, exc: Exception | None) -> None:
         """Forget the connection."""
         self._end_limit()
@@ -123,6 +132,17 @@ class Connection(WebSocketsSansIOProtocol):
         """Forget the connection."""
         self._strangers.remove(self.transport)
         super().connection_lost(exc)
+
+    def send_receive_event_to_app(self) -> None:
+        """Hand a message on; close the connection for a text that is not UTF-8, of which uvicorn logs a traceback."""
+        if self.curr_msg_data_type == "text" and not self.close_sent:
+            self.frames = [b"".join(self.frames)]
+            try:
+                self.frames[0].decode()
+            except UnicodeDecodeError:
+                self.conn.fail(1007)
+                self.handle_parser_exception()
+        super().send_receive_event_to_app()  # which drops what comes after a close
 
     async def run_asgi(self) -> None:
         """Run the app, with a function that cuts the connection off: a regular close first reads all that waits."""

@@ -37,7 +37,7 @@ def page_of(
 </head>
 <body>
 <a id="skip" href="#terrain"></a>
-<header><h1 lang="{escape(named_in)}" dir="auto">{name or UNTITLED[language]}</h1></header>
+<header><h1 lang="{escape(named_in) if name else language}" dir="auto">{name or UNTITLED[language]}</h1></header>
 <main>
 <p id="how"></p>
 <div id="scenery"><canvas id="terrain" tabindex="0" role="application" aria-describedby="how described"></canvas></div>

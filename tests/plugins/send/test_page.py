@@ -7,15 +7,16 @@ from hashlib import sha256
 from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from page_files import built_page
-from sent_pages import HOSTILE, MATERIALS, finer, picture_to_send
+from sent_pages import HOSTILE, MATERIALS, WIDE_M, finer, picture_to_send
 from tangible_core import Pipeline, Scene
-from tangible_core.data import Relief
+from tangible_core.data import MaterialMap, Relief, Work
 from tangible_core.errors import OutputError
 from tangible_core.plugins.notes import collect_notes
 from tangible_depth import Luminance
@@ -24,7 +25,8 @@ from tangible_render.surface.coefficients import spline_coefficients
 from tangible_send.html import page_of
 from tangible_send.packing import LEAST_PHOTO, deflate
 from tangible_send.page import Page
-from tangible_send.surface import surface_to_send
+from tangible_send.surface import MOST_CELLS, surface_to_send
+from tangible_send.words import NO_SCRIPT, UNTITLED
 from videos import write_video
 
 pytestmark = pytest.mark.usefixtures("built")
@@ -129,6 +131,59 @@ def test_data_have_the_materials_of_each_part(tmp_path: Path):
     (path,) = Page().write(picture_to_send(), tmp_path / "it")
     data = json.loads(Elements(path.read_text("utf-8")).texts("script")[0])
     assert data["rows"] == [[300.0, 1.5, 0.5, 0.4], [900.0, 0.5, 0.2, 0.1], [1200.0, 0.0, 0.0, 0.0]]
+
+
+def data_of(work: Work, folder: Path) -> dict[str, Any]:
+    """The data of the page of a picture."""
+    (path,) = Page().write(work, folder / "it")
+    return json.loads(Elements(path.read_text("utf-8")).texts("script")[0])
+
+
+def test_data_describe_the_surface_that_is_sent(tmp_path: Path):
+    work = picture_to_send()
+    meta = data_of(work, tmp_path)["meta"]
+    assert (meta["rows"], meta["columns"], meta["labels"]) == (*work.surface.height_m.shape, 3)
+    assert meta["extent_m"] == [WIDE_M, WIDE_M * 0.75]
+    height_m = next(surface_to_send(work)).height_m
+    assert meta["height_m"] == [height_m.min(), height_m.max()]
+    assert meta["digest"] != data_of(replace(work, title="other"), tmp_path)["meta"]["digest"]
+    assert meta["digest"] != data_of(replace(work, names=("a", "b", "c")), tmp_path)["meta"]["digest"]
+
+
+def test_surface_without_parts_is_sent_plainly(tmp_path: Path):
+    """It is large enough to be made coarser."""
+    whole = finer(picture_to_send(""), 8)
+    bare = replace(whole.surface, labels=None, materials=None, names=None)
+    data = data_of(replace(whole, products={"surface": bare, "materials": None}, names=()), tmp_path)
+    assert data["labels"] == "" and data["kinds"] == data["meta"]["materials"] == []
+    assert (data["meta"]["labels"], data["meta"]["parts"]) == (0, None)
+    assert data["rows"] == [[800.0, 0.0, 0.0, 0.0]]
+    assert data["meta"]["rows"] * data["meta"]["columns"] == pytest.approx(MOST_CELLS, rel=0.01)
+
+
+def test_materials_that_the_force_law_has_not_are_named_and_not_felt(tmp_path: Path):
+    """They are named only where there is one for each part."""
+    work = picture_to_send()
+    surface = replace(work.surface, materials=None)
+    for materials, named in ((MATERIALS, 3), (MATERIALS[:2], 0)):
+        given = {"surface": surface, "materials": MaterialMap(materials, ("made up",) * len(materials))}
+        data = data_of(replace(work, products=given), tmp_path)
+        assert data["kinds"] == list(range(named))
+        assert data["rows"] == [[800.0, 0.0, 0.0, 0.0]]
+
+
+@pytest.mark.parametrize(
+    ("named_in", "language"), [("de", "de"), ("de-AT", "de"), ("fr", "fr"), ("en-GB", "en"), ("he", "en")]
+)
+def test_words_and_title_are_marked_with_their_languages(tmp_path: Path, named_in: str, language: str):
+    """A screen reader speaks each by its mark; words that there are in no language of the names are English."""
+    for title, shown in (("Ein Haus", "Ein Haus"), ("", UNTITLED[language])):
+        (path,) = Page().write(replace(picture_to_send(title), language=named_in), tmp_path / "it")
+        page = Elements(path.read_text("utf-8"))
+        marks = [(tag, attrs["lang"]) for tag, attrs, _ in page.found if "lang" in attrs]
+        assert marks == [("html", language), ("h1", named_in if title else language), ("section", language)]
+        assert page.texts("title") == page.texts("h1") == [shown]
+        assert NO_SCRIPT[language] in page.texts("p")
 
 
 def test_high_surface_has_larger_steps():

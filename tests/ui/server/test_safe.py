@@ -165,7 +165,7 @@ class TestWhoIsLetIn:
             (page.folder / name).symlink_to(tmp_path)
         assert page.ask(with_key(path)).status == 404
 
-    @pytest.mark.parametrize("name", ["a.stl", "a.html", "ä b.svg"])
+    @pytest.mark.parametrize("name", ["a.stl", "a.html", "ä b.svg", "50 % #1?.stl", "a%23b.stl", "100%25.stl"])
     def test_exported_file_is_downloaded_and_never_shown(self, page: PageServer, name: str) -> None:
         """A page that an exporter wrote would otherwise be one of this address, with its key."""
         (page.folder / "export-1").mkdir()
@@ -397,6 +397,24 @@ class TestFloods:
         with page.tab() as tab:
             time.sleep(0.6)  # longer than the limit, which ends with the head
             tab.until(event="answer", number=tab.ask("examples"))
+
+    def test_head_that_drips_has_the_same_time_limit(self, page: PageServer, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Each byte comes within the limit, and does not begin it anew."""
+        monkeypatch.setattr(connection, "HEAD_S", 0.5)
+        with socket.create_connection(("127.0.0.1", page.port), timeout=LONGEST_S) as raw:
+            raw.sendall(b"GET / HTTP/1.1\r\nx: ")
+            raw.settimeout(0.02)
+
+            def is_cut_off() -> bool:
+                try:
+                    raw.sendall(b"x")
+                    return raw.recv(1) == b""
+                except TimeoutError:
+                    return False
+                except ConnectionError:
+                    return True
+
+            until(is_cut_off, "the end of a head that never ends")
 
 
 def is_closed(raw: socket.socket) -> bool:

@@ -102,8 +102,15 @@ class TestShow:
             replace(plain, layers={"disparity": layer}),
             replace(plain, layers={"error": layer}),
             replace(plain, shows="relief"),
+            replace(plain, name="another"),
+            replace(plain, names=("roof",)),
+            replace(plain, names=("wall",)),
+            replace(plain, materials=(WOOD,)),
+            replace(plain, relief=Relief(plain.relief.height_m, (0.1, 0.2))),
+            replace(plain, layers={"disparity": layer._replace(unit="mm")}),
+            replace(plain, layers={"disparity": layer._replace(high=9.0)}),
         ]
-        assert len({each.digest for each in [plain, *others]}) == 7
+        assert len({each.digest for each in [plain, *others]}) == 14
         first = show(plain, tmp_path)
         before = (tmp_path / plain.digest / "height-0.f32").stat().st_mtime_ns
         assert show(seen(np.zeros((3, 4))), tmp_path) == first

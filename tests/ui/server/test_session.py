@@ -113,6 +113,19 @@ def test_event_has_its_time_to_the_millisecond(
     with_session(check)
 
 
+def test_failure_in_the_background_is_told_by_its_sentence(with_session: Callable[[Check], None]) -> None:
+    async def check(session: Session, tab: Heard) -> None:
+        async def fail() -> None:
+            raise DeviceError("the device is gone")
+
+        session.begin(fail())
+        while "error" not in tab.names():
+            await asyncio.sleep(0.001)
+        assert tab.last("error")["text"] == "the device is gone"
+
+    with_session(check)
+
+
 def test_history_is_in_the_order_of_its_events(
     with_session: Callable[[Check], None], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -79,12 +79,17 @@ def test_beacon_ends_by_a_button_a_scene_and_a_stop() -> None:
     tag = [0]
 
     def pulls(button: int = 0) -> bool:
-        """Move the hand, as a page does all the time, and return True if it is pulled: tags are not buttons."""
+        """Move the hand, as a page does all the time, and return True if it is pulled with this button held.
+
+        Tags are not buttons.
+        """
         tag[0] += 1
         feeling.hand.point((-0.03, -0.03, 0.02), button, tag[0])
         assert feeling.servo is not None
         row = feeling.servo.ring.latest()
-        return row is not None and abs(row[2] + 0.03) < 1e-3 and float(np.hypot(row[11], row[12])) > 0.5
+        if row is None or int(row[15]) & 0xFF != button or abs(row[2] + 0.03) > 1e-3:
+            return False
+        return float(np.hypot(row[11], row[12])) > 0.5
 
     try:
         with pytest.raises(DeviceError, match="nothing is felt"):

@@ -29,7 +29,7 @@ from tangible_study.session.start import begin
 from tangible_study.study_file import parse_study
 from tangible_study.trials import read_answers
 from tangible_ui.framing import ACK, POINTER, POINTER_FRAME, RELEASE, RELEASE_FRAME, STATE_FRAME
-from waiting import until
+from waiting import LONGEST_S, until
 
 FORCE = [TICK_COLUMNS.index(each) for each in ("fx_n", "fy_n", "fz_n")]
 
@@ -110,7 +110,12 @@ class TestHand:
     """The page as the device: a surface is felt for as long as a test needs, at the address that the page asks."""
 
     @pytest.fixture
-    def feel(self, tmp_path: Path) -> Iterator[Callable[[], tuple[Page, list[np.ndarray], Future[None]]]]:
+    def feel(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> Iterator[Callable[[], tuple[Page, list[np.ndarray], Future[None]]]]:
+        monkeypatch.setattr(
+            "tangible_study.desks.page.SURFACE_S", LONGEST_S
+        )  # the tests are a slow page on a busy machine
         study, hand = write_study(tmp_path), PageHand()
         stimuli = Stimuli(parse_study(study.read_text(), study), hand.device)
         comparison, stimulus = next(iter(stimuli.recipes))
@@ -184,9 +189,9 @@ def test_surface_of_the_page_has_no_name():
 
 def begun(page: Page) -> dict[str, Any]:
     """Fetch the surface as the page does, and return the event that told of it."""
-    told = next(each for each in page.events_after(0) if each.get("surface"))
-    fetch(page, f"surface?{told['surface']}")
-    return told
+    event = until(lambda: next(filter(lambda event: event.get("surface"), page.events_after(0)), None), "the surface")
+    fetch(page, f"surface?{event['surface']}")
+    return event
 
 
 def pointer() -> bytes:

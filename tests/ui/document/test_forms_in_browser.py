@@ -28,25 +28,25 @@ def test_option_typed_in_the_form_is_saved_to_the_file(serve, open_page: OpenPag
     page.keyboard.press("Enter")
     page.keyboard.press("Tab")  # the method
     page.keyboard.press("Tab")
-    assert focus_id(page) == STIFFNESS
+    until(lambda: focus_id(page) == STIFFNESS, "the focus is in the field")
     assert "Over 0 N/m. Default: 800 N/m." in description_of(page, STIFFNESS)
     retype(page, "-5")
     until(lambda: field(page).get_attribute("aria-invalid") == "true")
     assert field(page).input_value() == "-5"
-    assert "greater than 0" in description_of(page, STIFFNESS)
+    until(lambda: "greater than 0" in description_of(page, STIFFNESS), "the reason is read next to the field")
     complaint = page.locator("#methods .complaints button")
     assert complaint.inner_text().startswith("render.stiffness_n_per_m: ")
     complaint.focus()
     page.keyboard.press("Enter")
-    assert focus_id(page) == STIFFNESS
+    until(lambda: focus_id(page) == STIFFNESS, "the complaint leads to its field")
 
     felt = page.locator("#log li", has_text="Feeling penalty")
     until(lambda: felt.count() > 0)
     runs = felt.count()
     retype(page, "0.5 N/mm")  # made and felt at once: nothing slow has to run
     until(lambda: field(page).get_attribute("aria-invalid") is None)
-    until(lambda: felt.count() == runs + 1)
-    assert page.locator("#methods .complaints").is_hidden()
+    until(lambda: felt.count() > runs, "the new stiffness is felt")  # an earlier line may be shown late
+    until(lambda: page.locator("#methods .complaints").is_hidden(), "no complaint is left")
     until(lambda: other.locator(f'[id="{STIFFNESS}"]').input_value() == "0.5 N/mm")
 
     other.locator("#section-render > summary").click()
@@ -60,7 +60,7 @@ def test_option_typed_in_the_form_is_saved_to_the_file(serve, open_page: OpenPag
     page.locator("#make").focus()
     page.keyboard.press("Enter")
     until(lambda: state(page, "disparity") == state(page, "touch") == "ran")
-    assert "contour" in page.locator('#stages [data-product="disparity"]').inner_text()
+    until(lambda: "contour" in page.locator('#stages [data-product="disparity"]').inner_text(), "the method is shown")
 
     open_panel(page, "yaml")
     save = bring(page, "save")

@@ -208,9 +208,24 @@ class TestFiles:
         (tmp_path / "camchain.yaml").write_text(KALIBR.format(model=model, coefficients=list(FISHEYE)))
         found, size = read_rig(tmp_path / "camchain.yaml")
         assert size == (120, 90)
-        assert found.left.model == ("equidistant" if model == "equidistant" else "radial-tangential")
-        assert found.left.matrix[1].tolist() == [0, 113, 44]
+        for camera, focal in ((found.left, 110), (found.right, 115)):
+            assert camera.model == ("equidistant" if model == "equidistant" else "radial-tangential")
+            assert camera.matrix.tolist() == [[focal, 0, 60], [0, focal + 3, 44], [0, 0, 1]]
+            assert camera.distortion.tolist() == list(FISHEYE)
         assert found.translation_m.tolist() == [-0.1, 0.01, 0.005]
+        in_mm, _ = read_rig(tmp_path / "camchain.yaml", 0.001)
+        assert in_mm.translation_m == pytest.approx([-1e-4, 1e-5, 5e-6], rel=1e-12)
+
+    def test_kalibr_pose_turns_points_of_the_left_camera_into_the_right_one(self, tmp_path: Path):
+        """What lies ahead of the left camera lies to the left of the right one."""
+        pose = [[0.6, 0, -0.8, -0.064], [0, 1.0, 0, -0.01], [0.8, 0, 0.6, -0.077], [0, 0, 0, 1.0]]
+        before = KALIBR[KALIBR.index("  - [1.0") : KALIBR.index("  camera_model: pinhole\n  intrinsics: [115")]
+        text = KALIBR.replace(before, "".join(f"  - {row}\n" for row in pose))
+        (tmp_path / "camchain.yaml").write_text(text.format(model="none", coefficients=[]))
+        found, _ = read_rig(tmp_path / "camchain.yaml")
+        seen_m = np.einsum("ij,j->i", found.rotation, [0.0, 0.0, 1.0]) + found.translation_m
+        assert seen_m == pytest.approx([-0.864, -0.01, 0.523])
+        assert found.centre_m == pytest.approx((0.1, 0.01, -0.005))
 
     @pytest.mark.parametrize(
         ("text", "message"),

@@ -42,13 +42,15 @@ class TestSeveralPictures:
         np.testing.assert_array_equal(scene.views.left, LEFT)
         assert scene.notes == (f"several.{kind.lower()} holds 3 pictures, of which the first is taken",)
 
-    def test_smaller_copies_of_a_page_are_not_counted(self, tmp_path: Path):
-        page, small = (Image.fromarray(each) for each in (LEFT, LEFT[::2, ::2]))
+    @pytest.mark.parametrize(("kind", "pages"), [(1, 1), (4, 1), (5, 1), (2, 2)])
+    def test_smaller_copies_and_masks_of_a_page_are_not_counted(self, tmp_path: Path, kind: int, pages: int):
+        """Bits of TIFF 6.0, NewSubfileType: 1 a smaller copy, 4 a mask; 2 is a page of several."""
+        page, other = (Image.fromarray(each) for each in (LEFT, LEFT[::2, ::2]))
         tags = TiffImagePlugin.ImageFileDirectory_v2()
-        tags[254] = 1
-        small.encoderinfo = {"tiffinfo": tags}
-        page.save(tmp_path / "pyramid.tif", save_all=True, append_images=[small])
-        assert Scene.photo(tmp_path / "pyramid.tif").notes == ()
+        tags[254] = kind
+        other.encoderinfo = {"tiffinfo": tags}
+        page.save(tmp_path / "two.tif", save_all=True, append_images=[other])
+        assert len(Scene.photo(tmp_path / "two.tif").notes) == pages - 1
 
     def test_file_of_one_picture_gives_no_note(self, tmp_path: Path):
         Image.fromarray(LEFT).save(tmp_path / "one.png")
@@ -146,12 +148,12 @@ def gdepth(depth: bytes) -> bytes:
 
 def dynamic(depth: bytes) -> bytes:
     other = b"a video"
-    items = [("Primary", b"", 0), ("MotionPhoto", other, 3), ("Depth", depth, 0), ("Confidence", other, 0)]
+    items = [("Primary", b"", 0), ("MotionPhoto", other, 3), ("Depth", depth, 5), ("Confidence", other, 7)]
     xmp = "".join(
         f'<Container:Item Item:Semantic="{name}" Item:Length="{len(part)}" Item:Padding="{pad}"/>'
         for name, part, pad in items
     )
-    return jpeg(PHOTO, xmp.encode()) + other + b"\0\0\0" + depth + other
+    return jpeg(PHOTO, xmp.encode()) + b"".join(part + bytes(pad) for _, part, pad in items)
 
 
 def iphone(depth: bytes) -> bytes:

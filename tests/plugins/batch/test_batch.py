@@ -331,6 +331,50 @@ class TestScenes:
         [row] = batch(pipeline, [{"scene.photo": "p0.png"}], archive.parent / "out", timeout_s=7.0)
         assert (row["id"], row["scene"], limits) == ("0", str(archive / "p0.png"), [7.0])
 
+    @pytest.mark.parametrize("of_a_file", [True, False])
+    def test_sweep_in_python_is_made_again_where_the_picture_has_changed(
+        self, archive: Path, monkeypatch: pytest.MonkeyPatch, of_a_file: bool
+    ):
+        from tangible_depth import Luminance
+
+        monkeypatch.chdir(archive)  # not the folder of the pipeline file
+        (archive.parent / "mine.yaml").write_text(CONFIG.replace("builtin/brick", "{photo: archive/p0.png}"))
+        of_python = Pipeline(Scene.photo(archive / "p0.png"), depth=Luminance(), workspace={"width_m": 0.04})
+        pipeline = Pipeline.from_yaml(archive.parent / "mine.yaml") if of_a_file else of_python
+        made = []
+        for seed in (None, None, 5):
+            if seed:
+                write_png(archive / "p0.png", picture(seed, (20, 20)))
+            [row] = batch(pipeline, [{"want": "relief", "workspace.smooth_m": 0}], archive.parent / "out")
+            assert (row["outcome"], row["scene"]) == ("ok", str(archive / "p0.png")), row
+            made.append(len(rows_in(archive.parent / "out")))
+        assert made == [1, 1, 2]
+
+    def test_words_of_the_command_reach_the_workers(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+        farms: list[tuple] = []
+
+        class Noted(Here):
+            def __init__(self, *words: object) -> None:
+                super().__init__()
+                farms.append(words)
+
+            def map(self, work, jobs, chunk=1, timeout_s=1.0):
+                farms.append((chunk, timeout_s, {(each.threads, each.sheet, each.cache) for each in jobs}))
+                return super().map(work, jobs, chunk, timeout_s)
+
+        monkeypatch.setattr(running, "Farm", Noted)
+        (archive / "rows.csv").write_text("id\n" + "".join(f"r{number}\n" for number in range(8)))
+        (archive.parent / "mine.yaml").write_text(CONFIG.replace("builtin/brick", "{photo: archive/p0.png}"))
+        words = ("batch", "mine.yaml", "--over", archive / "rows.csv")
+        own = ("--workers", 2, "--threads", 3, "--timeout", 7.5, "--chunk", 3, "--cache", "kept", "--sheets")
+        assert tangible(*words, *own, cwd=archive.parent).returncode == 0
+        assert farms == [(2, 3, ""), (2, 7.5, {(3, True, str(archive.parent / "kept"))})]  # two of eight: four rounds
+        assert list((archive.parent / "kept").glob("*.npz"))
+        monkeypatch.setattr(running, "processors", lambda: 6)
+        assert tangible(*words, "--out", "o", "--scheduler", "tcp://host:1", cwd=archive.parent).returncode == 0
+        assert farms[2:] == [(6, 1, "tcp://host:1"), (2, 3600.0, {(None, False, "")})]
+        assert tangible(*words, "--timeout", 0, cwd=archive.parent).returncode == 2
+
     def test_row_with_another_picture_keeps_the_options_of_the_scene(self, archive: Path):
         (archive.parent / "mine.yaml").write_text(
             CONFIG.replace("builtin/brick", "{left: l.png, right: r.png, rotate: 90}")
@@ -477,6 +521,8 @@ class TestScenes:
         done = self.run(archive.parent)
         assert done.returncode == 2
         assert "pip install distributed pyarrow" in done.stderr
+        with pytest.raises(BatchError, match=r"needs nowhere_at_all \(No module .*\); pip install distributed pyarrow"):
+            extra.need("nowhere_at_all")
 
     def test_folder_names_are_safe_on_any_system(self, archive: Path, tmp_path: Path):
         rows = [

@@ -125,6 +125,11 @@ def test_pin_heights_are_counted_from_the_lowest_and_rounded():
     assert raising.heights(relief, 1, 4, 3).tolist() == [[0, 1, 2, 3]]
 
 
+def test_pin_heights_are_means_of_their_cells_of_which_the_highest_is_the_top():
+    relief = Relief(np.float32([[1, 5, 9, 3], [1, 1, 7, 1]]) / 1000, (0.02, 0.01))
+    assert raising.heights(relief, 1, 2, 8).tolist() == [[2, 8]]  # means of 1 and 4 mm over the lowest
+
+
 def test_pin_has_the_part_of_most_of_its_cell_or_the_lower_number():
     def most(columns: list[int], pins: int) -> list[int]:
         labels = np.tile(np.int32(columns), (len(columns), 1))
@@ -213,13 +218,22 @@ def test_pins_svg_layers_are_named_parts(tmp_path):
     """By the rules of the IMAGE services: layers and their labels, one title, and nothing outside of a layer."""
     labels = np.zeros((40, 60), np.int32)
     labels[:, 30:] = 1
-    files = Pins().write(labels_work(labels, ("sea & <sky>", "")), tmp_path / "map")
+    files = Pins().write(
+        labels_work(labels, ("sea & <sky>", ""), title="Bay & <isle>", language="de"), tmp_path / "map"
+    )
     [svg] = [each for each in files if each.suffix == ".svg"]
     root = ElementTree.parse(svg).getroot()
     assert root.get("viewBox") == "0 0 96 40"
     assert [each.tag.rpartition("}")[2] for each in root] == ["title", "g", "g"]
     assert [each.get("data-image-layer") for each in root[1:]] == ["layer-1", "layer-2"]
-    assert [each.get("aria-label") for each in root[1:]] == ["sea & <sky>", "part 2"]
+    assert [each.get("aria-label") for each in root[1:]] == ["sea & <sky>", "Teil 2"]
+    head = json.loads(next(each for each in files if each.name == "map-monarch.json").read_text())
+    assert head.pop("heights")
+    assert head == {
+        "title": "Bay & <isle>", "language": "de", "display": "monarch", "columns": 96, "rows": 40, "levels": 1,
+        "parts": ["sea & <sky>", "Teil 2"],
+    }  # fmt: skip
+    assert root[0].text == "Bay & <isle>"
     assert all(len(each) for each in root[1:])  # both sides of a border have it
     [content] = [json.loads(each.read_text()) for each in files if each.name.endswith("-graphic.json")]
     assert list(content) == ["graphic"]

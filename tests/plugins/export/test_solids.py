@@ -8,6 +8,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -55,6 +57,13 @@ def without_pydelatin(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pydelatin", None)
 
 
+def oblong(heights_m: np.ndarray) -> Work:
+    """Return a work of cells that are 1 mm wide and 0.25 mm long."""
+    made = work(heights_m)
+    rows, columns = heights_m.shape
+    return replace(made, products={"relief": replace(made.relief, extent_m=(columns / 1000, rows / 4000))})
+
+
 @EVERY
 @pytest.mark.parametrize("title", ["Coffee", ""])
 def test_solid_is_closed_and_has_its_size(tmp_path: Path, cls: type[Exporter], title: str, mesher: str):
@@ -79,12 +88,14 @@ def test_solid_nodes_are_within_the_error(tmp_path: Path, error_mm: float):
     assert off.max() > error_mm / 2 or error_mm < 0.05, "fewer triangles would do"
 
 
-def test_solid_of_steep_cliffs_keeps_the_error_despite_float32(tmp_path: Path):
-    """A coordinate that is rounded by so little as STL does it tells on a cliff of 8 mm."""
-    cliffs = 0.004 * np.random.default_rng(2).integers(0, 3, (6, 700)) + 1e-5 * np.random.default_rng(3).random(
-        (6, 700)
-    )
-    sample = work(cliffs, 0.12)
+@pytest.mark.parametrize("is_oblong", [False, True])
+def test_solid_of_steep_cliffs_keeps_the_error_despite_float32(tmp_path: Path, is_oblong: bool):
+    """A coordinate that is rounded by so little as STL does it tells on a cliff of 8 mm; also of cells 60 mm long."""
+    cliffs = 0.004 * np.random.default_rng(2).integers(0, 3, (6, 700))
+    cliffs[:] = cliffs[0] if is_oblong else cliffs
+    sample = work(cliffs + 1e-5 * np.random.default_rng(3).random((6, 700)), 0.12)
+    if is_oblong:
+        sample = replace(sample, products={"relief": replace(sample.relief, extent_m=(0.12, 0.36))})
     mesh = write_and_read(Stl(error_m=5e-6, rim_m=0.1, corner_mark=False, braille=False), sample, tmp_path)
     off = from_above(mesh, *nodes(sample, 100, 100))[::-1] - 1.5 - 1000 * sample.relief.height_m
     assert np.abs(off).max() <= 0.005
@@ -156,6 +167,15 @@ def test_solid_written_twice_has_the_same_bytes(tmp_path: Path, cls: type[Export
 @pytest.mark.parametrize(("aspect", "width_m"), [(2.0, 0.12), (0.5, 0.06)])
 def test_solid_picture_width_follows_longer_side(cls: type[Exporter], aspect: float, width_m: float):
     assert cls.model_validate({"longer_side_m": "12 cm"}).picture_width_m(aspect) == pytest.approx(width_m)
+
+
+@pytest.mark.parametrize("aspect", [2.0, 1.0, 0.4])
+def test_solid_options_for_a_width_give_that_width_up_to_a_metre(aspect: float):
+    options = Stl().options_for_width(0.123, aspect)
+    assert 0.123 <= Stl.model_validate(options).picture_width_m(aspect) <= 0.131, "the next of two digits"
+    longest = Stl().options_for_width(min(1.0, aspect), aspect)
+    assert longest["longer_side_m"] == pytest.approx(1, rel=1e-3)
+    assert not Stl().options_for_width(1.001 * min(1.0, aspect), aspect)
 
 
 def test_print_keeps_cliffs_that_a_device_has_as_ramps(tmp_path: Path):
@@ -307,6 +327,26 @@ class TestNotes:
         assert ("% of the picture is steeper than 45 degrees: print the plate lying flat" in notes) == is_noted
         assert not is_noted or "24 %" in notes or "23 %" in notes
 
+    @pytest.mark.parametrize(
+        ("across_mm", "down_mm", "is_noted"), [(0.9, 0, False), (1.1, 0, True), (0, 0.22, False), (0, 0.28, True)]
+    )
+    def test_note_names_steep_slopes_of_oblong_cells(
+        self, tmp_path: Path, across_mm: float, down_mm: float, is_noted: bool
+    ):
+        """Cells of 1 x 0.25 mm: rises from one to the next, which are those of 42 and 48 degrees on each axis."""
+        rows, columns = np.indices((40, 12))
+        notes = self.of(Stl(braille=False), oblong((across_mm * columns + down_mm * rows) / 1000), tmp_path)
+        assert ("steeper than 45 degrees" in notes) == is_noted
+
+    @pytest.mark.parametrize(("axis", "cells", "is_noted"), [(0, 1, True), (0, 2, False), (1, 1, False)])
+    def test_note_names_thin_shapes_of_oblong_cells(self, tmp_path: Path, axis: int, cells: int, is_noted: bool):
+        """A ridge of one row is 0.25 mm wide, of two 0.5 mm, of one column 1 mm; the nozzle is 0.4 mm."""
+        heights = np.full((40, 12), 0.001)
+        heights.swapaxes(0, axis)[5 : 5 + cells] = 0.003
+        notes = self.of(Stl(braille=False), oblong(heights), tmp_path)
+        assert ("thinner than a nozzle" in notes) == is_noted
+        assert not is_noted or "3.0 square mm of the picture, up to 2 mm high" in notes
+
     def test_solid_of_noise_has_limited_triangles(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr(making, "MOST_TRIANGLES", 500)
         sample = work(rough(), 0.05)
@@ -315,6 +355,14 @@ class TestNotes:
         off = np.abs(from_above(mesh, *nodes(sample))[::-1] - 1.5 - 1000 * sample.relief.height_m).max()
         assert is_closed(mesh) and len(mesh.triangles) < 1000
         assert any(f"the solid is off by up to {off:.2g} mm, as it would take more than 500" in each for each in notes)
+
+    def test_solid_of_too_many_oblong_nodes_notes_the_longer_side(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ):
+        monkeypatch.setattr(making, "MOST_IN_GRID", 120)
+        without_pydelatin(monkeypatch)
+        notes = self.of(bare(Stl), oblong(np.tile(np.linspace(0, 0.004, 12), (40, 1))), tmp_path)
+        assert "heights are averaged over squares of 2 mm, as 0.00048 million" in notes  # 6 x 20 nodes on 12 x 10 mm
 
     def test_solid_of_too_many_nodes_is_averaged_with_a_note(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setattr(making, "MOST_IN_GRID", 500)
@@ -349,6 +397,14 @@ class TestThreeMF:
         assert body.GetName() == 'Kaffee & <Kuchen> "Ü" 🍰'
         assert body.IsManifoldAndOriented()
         assert model.GetBuildItems().Count() == 1
+
+    @pytest.mark.parametrize(("language", "tag"), [("de-AT", "de-AT"), ("en", "en"), ("de AT", None), ("", None)])
+    def test_3mf_has_the_language_of_its_title_if_it_is_a_tag(self, tmp_path: Path, language: str, tag: str | None):
+        (path,) = bare(ThreeMF).write(work(rough(), 0.05, "Hügel", language=language), tmp_path / "k")
+        with ZipFile(path) as package:
+            model = ElementTree.fromstring(package.read("3D/3dmodel.model"))
+        assert model.get("{http://www.w3.org/XML/1998/namespace}lang") == tag
+        assert [each.text for each in model.iterfind("{*}metadata")] == ["Hügel", "tangible-images"]
 
     def test_3mf_is_the_same_however_many_rows_are_written_at_once(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -402,6 +458,7 @@ class TestGlb:
         data = path.read_bytes()
         head = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
         assert "images" not in head and "textures" not in head and len(head["accessors"]) == 2
+        assert head["nodes"][0]["name"] == head["meshes"][0]["name"] == "Höhen \ud800"
         assert int.from_bytes(data[8:12], "little") == len(data)
         assert read_glb(path).is_volume
 

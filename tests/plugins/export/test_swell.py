@@ -182,6 +182,9 @@ def test_ink_copy_has_names_and_letters_where_the_parts_are_and_a_scale(tmp_path
     work = labels_work(halves(), ("land", "sea <1> & $x$"), title="Coast", language="de")
     files = Swell().write(work, tmp_path / "map")
     page_root, ink = (ElementTree.parse(each).getroot() for each in (files[0], named(files, "-swell-ink.svg")))
+    for svg in (each for each in files if each.suffix == ".svg"):
+        root = ElementTree.parse(svg).getroot()
+        assert {root.get("lang"), root.get("{http://www.w3.org/XML/1998/namespace}lang")} == {"de"}, svg.name
     texts = {each.text: (float(each.get("x")), float(each.get("y"))) for each in ink.iterfind("{*}text")}
     for area in page_root.iterfind("{*}g[@aria-label]/*[@data-mark='outline']/.."):
         name, letter = area.get("aria-label"), area.find("./*[@data-mark='braille']").get("aria-label")

@@ -36,6 +36,7 @@ class Ramp(DepthEstimator):
     """Disparity grows from left to right."""
 
     most_px: float | None = None
+    weights: Path | None = None
 
     def estimate(self, views: Views) -> DisparityMap:
         return DisparityMap(np.tile(np.arange(views.shape[1], dtype=np.float32), (views.shape[0], 1)))
@@ -148,6 +149,14 @@ class TestKeys:
         monkeypatch.setattr(method, "version", method.version + 1)
         other.make(product)
         assert outcome(other, product) == "ran"
+
+    def test_keys_differ_for_the_content_of_a_file_that_a_method_reads(self, folder: Path):
+        def of(content: bytes) -> str:
+            (folder / "weights.bin").write_bytes(content)
+            return keys(folder, depth=NamedMethod("ramp", "t 1", Ramp(weights=folder / "weights.bin")))["disparity"]
+
+        assert of(b"one") != of(b"two")
+        assert of(b"one") == of(b"one")
 
     def test_keys_differ_for_infinity_and_none(self, folder: Path):
         one, other = (pipeline(folder, depth=NamedMethod("ramp", "t 1", Ramp(most_px=each))) for each in (None, np.inf))

@@ -2,6 +2,7 @@
 
 import contextlib
 import logging
+from itertools import count
 from pathlib import Path
 from time import perf_counter
 from typing import ClassVar
@@ -11,7 +12,7 @@ import pluggy
 import pytest
 
 from pictures import write_png
-from tangible_core.data import DisparityMap, Force, HapticState, HapticSurface, Note, SegmentMap, Views
+from tangible_core.data import DeviceSpec, DisparityMap, Force, HapticState, HapticSurface, Note, SegmentMap, Views
 from tangible_core.errors import BrokenMethod, ConfigError, GeometryError, PictureError, UnknownMethod
 from tangible_core.pipeline.config.material_choice import MaterialChoice
 from tangible_core.pipeline.config.methods import NamedMethod
@@ -19,7 +20,16 @@ from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.engine import Engine
 from tangible_core.plugins import hooks
-from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, PlainTouch, Segmenter, Skippable, Touch
+from tangible_core.plugins.interfaces import (
+    DepthEstimator,
+    ForceRenderer,
+    HapticDevice,
+    Link,
+    PlainTouch,
+    Segmenter,
+    Skippable,
+    Touch,
+)
 from tangible_core.plugins.notes import doubt, note
 from tangible_core.plugins.registry import Registry
 from tangible_core.relief import ReliefChoice
@@ -152,6 +162,36 @@ def outcome_kinds(pipe: Engine) -> dict[str, str]:
     return {each.product: each.outcome for each in pipe.outcomes}
 
 
+class Soft(HapticDevice):
+    """A device that holds no more than so many newtons a metre."""
+
+    most_n_per_m: float
+
+    def spec(self) -> DeviceSpec:
+        return DeviceSpec(9.0, self.most_n_per_m, 1.0, (0.2, 0.2, 0.2), 1e-5)
+
+    def open(self) -> Link:
+        raise AssertionError("no touch needs it open")
+
+
+def test_touch_on_another_device_is_limited_by_that_device_and_shares_all_else(folder: Path):
+    pipe = pipeline(folder, device=name_method(Soft(most_n_per_m=50.0)))
+    touches = [pipe.make(), pipe.touch_on(Soft(most_n_per_m=20.0)), pipe.touch_on(Soft(most_n_per_m=90.0)), pipe.make()]
+    assert ran == ["disparity", "segments", "touch", "touch", "touch"], "the own touch is not made again"
+    limits = [{each.stiffness_n_per_m for each in touch.surface.materials} for touch in touches]
+    assert limits == [{40.0}, {16.0}, {72.0}, {40.0}], "the safety margin is 0.8"
+    assert touches[3] is touches[0]
+    assert min(each.stiffness_n_per_m for each in pipe.make("surface").materials) > 90.0, "ice and sand as they are"
+
+
+def test_touch_on_a_device_leaves_its_products_to_the_engine(folder: Path):
+    pipe = pipeline(folder)
+    pipe.touch_on(Soft(most_n_per_m=20.0))
+    stiffest = max(each.stiffness_n_per_m for each in pipe.make().surface.materials)
+    assert stiffest > 20.0
+    assert ran == ["disparity", "segments", "touch", "touch"]
+
+
 def test_make_makes_each_needed_product_once(folder: Path):
     pipe = pipeline(folder)
     surface = pipe.make().surface
@@ -268,6 +308,18 @@ def test_outcomes_tell_no_more_time_than_passed(folder: Path):
         told.update(each.outcome for each in timed)
         assert all(0 <= each.seconds <= passed_s for each in timed)
     assert told == {"given", "ran", "cached", "failed"}
+
+
+def test_outcomes_tell_the_time_of_their_own_making(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    """By a clock that goes on by a second whenever it is read: once before and once after each."""
+    monkeypatch.setattr("tangible_core.pipeline.engine.engine.perf_counter", count().__next__)
+    told = list[tuple[str, float]]()
+    for parts in ({}, {}, {"texture": name_method(Fails()), "want": "segments"}):
+        pipe = pipeline(folder, **parts)
+        with contextlib.suppress(ZeroDivisionError):
+            pipe.make()
+        told += [(each.outcome, each.seconds) for each in pipe.outcomes if each.outcome != "skipped"]
+    assert set(told) == {("given", 1), ("ran", 1), ("cached", 1), ("failed", 1)}
 
 
 @pytest.mark.parametrize(
@@ -395,6 +447,7 @@ def test_plan_ends_with_a_refusal_before_anything_runs(folder: Path, parts: dict
     with pytest.raises(error) as raised:
         pipe.make()
     assert str(raised.value) == plan.refusal
+    assert plan.refusal in [each.why for each in pipe.outcomes]
     assert ran == []
     assert outcome_kinds(pipe)[product] == "refused"
     assert not pipeline(folder).plan().refusal

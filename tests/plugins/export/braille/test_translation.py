@@ -89,6 +89,14 @@ def test_quotation_mark_between_spaces_closes():
     assert as_unicode(translate_by_table('a " b', "de")) == "⠁⠀⠴⠀⠃"
 
 
+@pytest.mark.parametrize("odd", ["\x07", "\ud800", "\ue000", "\U0010fffd", "\u0378"])
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_character_that_nobody_can_read_is_refused_with_its_place(odd: str, language: str):
+    """Control characters, halves of pairs, private ones and unassigned ones: whatever a table might have for them."""
+    with pytest.raises(BrailleError, match=rf"character 3, .*\(U\+{ord(odd):04X}\), is not in any braille"):
+        translate(f"ab{odd}c", language)
+
+
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_letter_with_an_accent_that_the_code_lacks_is_refused(language: str):
     """A circumflex and a dot below."""

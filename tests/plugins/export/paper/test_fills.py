@@ -53,6 +53,18 @@ def test_of_two_near_strokes_the_longer_one_stays():
         assert fills._clear_strokes(strokes, Lines(0.8, 4.3, 0)) == [long]
 
 
+def test_strokes_as_short_as_dots_are_left_out_and_so_is_a_fill_of_few():
+    pieces = [shapely.LineString([(x, 0), (x, length)]) for x, length in ((0, 4.9), (10, 5.1), (20, 10.9), (30, 11.1))]
+    assert fills._clear_strokes(pieces, Lines(0.8, 4.3, 0)) == pieces[:0:-1], "the longest first"
+    assert fills._clear_strokes(pieces, Lines(0.8, 6.2, 90, least_mm=11)) == pieces[3:]
+    assert not KINDS["level lines"](shapely.box(0, 0, 6.1, 10)), "three of 5.3 mm are shorter than 16 mm together"
+    assert [each.length for each in KINDS["level lines"](shapely.box(0, 0, 6.2, 10)).strokes] == pytest.approx(
+        [5.4] * 3
+    )
+    assert {each.length > 11 for each in KINDS["waves"](shapely.box(0, 0, 40, 20)).strokes} == {True}
+    assert not KINDS["waves"](shapely.box(0, 0, 40, 10)), "a wave this short is felt as a line"
+
+
 def test_fill_is_made_without_the_dots_and_strokes_at_a_place():
     strokes = tuple(shapely.LineString([(0, y), (30, y)]) for y in (0, 10))
     made = Fill(FOUR, strokes, 0.8).without(np.array([[7.25, 1.5], [10, 10]]))

@@ -5,6 +5,7 @@ import pytest
 
 from tangible_core import Pipeline, Scene
 from tangible_core.data import DisparityMap
+from tangible_core.scene import pair_checks
 from tangible_core.scene.pair_checks import correct_exchanged, view_order
 from tangible_depth import SemiGlobal
 
@@ -68,3 +69,35 @@ def test_exchanged_views_give_the_same_relief_with_a_warning():
         [outcome] = [each for each in pipeline.outcomes if each.product == "disparity"]
         assert ("left and right seem to be exchanged" in outcome.why) == warned
         assert any(each.kind == "warning" for each in outcome.notes) == warned
+
+
+def strip(step_px: float, width: int, before: float, after: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return a row of disparities with a strip that nothing matched, and grey levels with an edge at both its ends."""
+    values, grey = np.full(60, 20 + step_px, np.float32), np.full(60, before + after, np.float32)
+    values[:20], values[20 : 20 + width] = 20, np.nan
+    grey[:20], grey[20 : 20 + width] = 0, before
+    return values, grey
+
+
+@pytest.mark.parametrize(
+    ("rows", "in_order", "exchanged"),
+    [
+        ([(10, 10, 0.2, 0.33), (10, 10, 0.2, 0.31), (10, 10, 0.33, 0.2), (10, 10, 0.34, 0.2)], 1, 2),
+        ([(10, 10, 0, 0.022), (10, 10, 0, 0.018), (10, 10, 0.022, 0)], 1, 1),
+        ([(10, 14, 0, 1), (10, 15, 0, 1), (10, 6, 0, 1), (10, 5, 0, 1)], 2, 0),
+        ([(4, 6, 0, 1), (4, 7, 0, 1), (4, 2, 0, 1), (4, 1, 0, 1)], 2, 0),
+        ([(3, 3, 0, 1), (2.9, 3, 0, 1), (-10, 10, 0, 1)], 1, 0),
+    ],
+    ids=[
+        "one edge is half as strong again",
+        "by a hundredth of white",
+        "as wide as the step",
+        "or by 2 px",
+        "least step",
+    ],
+)
+def test_strips_vote_by_the_clearer_of_their_edges(rows: list[tuple], in_order: int, exchanged: int):
+    values, grey = (np.stack(each) for each in zip(*(strip(*row) for row in rows), strict=True))
+    for first in (0, 16):
+        assert pair_checks._votes(values[:, first:], grey[:, first:]) == (in_order, exchanged)
+    assert pair_checks._votes(values[:, 17:], grey[:, 17:]) == (0, 0), "too near to the rim"

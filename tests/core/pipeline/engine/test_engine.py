@@ -192,6 +192,37 @@ def test_touch_on_a_device_leaves_its_products_to_the_engine(folder: Path):
     assert ran == ["disparity", "segments", "touch", "touch"]
 
 
+def test_engine_with_other_products_makes_what_depends_on_them_and_neither_keeps_nor_tells_it(folder: Path):
+    told = list[str]()
+
+    class Listening:
+        @hooks.hookimpl
+        def tangible_stage_started(self, product, method):
+            told.append(product)
+
+        @hooks.hookimpl
+        def tangible_stage_finished(self, outcome):
+            told.append(outcome.product)
+
+    plugins = hooks.manager()
+    plugins.register(Listening())
+    pipe = pipeline(folder, plugins=plugins, workspace=Workspace(width_m=0.03, relief_m=0.01, smooth_m=0))
+    first, kept, heard = pipe.make().surface, set((folder / "cache").iterdir()), list(told)
+    down = DisparityMap(np.ascontiguousarray(np.tile(np.arange(20, dtype=np.float32)[:, None], (1, 30))))
+    other = pipe.with_products(disparity=down)
+    second = other.make().surface
+    assert ran == ["disparity", "segments", "touch", "touch"], "segments and materials are shared"
+    assert (first.height_m[0, 0], first.height_m[-1, 0], first.height_m[0, -1]) == pytest.approx((0, 0, 0.01), abs=1e-6)
+    assert (second.height_m[0, 0], second.height_m[-1, 0], second.height_m[0, -1]) == pytest.approx(
+        (0, 0.01, 0), abs=1e-6
+    )
+    assert other.make("disparity") is down
+    assert other.make("segments") is pipe.make("segments")
+    assert (set((folder / "cache").iterdir()), told) == (kept, heard)
+    assert pipe.make().surface is first
+    assert "disparity" not in {each.product for each in other.outcomes if each.outcome == "ran"}
+
+
 def test_make_makes_each_needed_product_once(folder: Path):
     pipe = pipeline(folder)
     surface = pipe.make().surface

@@ -1,5 +1,6 @@
 """Framing of a picture: crop, rotation, inversion, clipping, no data, transparency."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -57,6 +58,19 @@ class TestHeights:
         grey[..., 3] = 255
         grey[0, 3, 3] = 0
         assert np.argwhere(np.isnan(self.of(grey))).tolist() == [[0, 3]]
+
+    @pytest.mark.parametrize("rotate", [0, 90, 180, 270])
+    def test_stated_size_is_that_of_the_part_as_it_lies(self, tmp_path: Path, rotate: int):
+        """A map of 40 x 90 mm; of its 4 columns and 3 rows, 2 and 1 are cut out: 20 x 30 mm."""
+        state = {"format": "tangible heights 1", "file": "h.png", "columns": 4, "rows": 3}
+        size = {"width_mm": 40, "length_mm": 90, "high_mm": 11, "low_mm": 0, "step_mm": 1}
+        (tmp_path / "h.json").write_text(json.dumps({**state, **size}))
+        Image.fromarray(HEIGHTS.astype(np.uint16)).save(tmp_path / "h.png")
+        for crop, sides in ((None, (0.04, 0.09)), ([1, 2, 2, 1], (0.02, 0.03))):
+            scene = Scene.heights(tmp_path / "h.png", crop=crop, rotate=rotate)
+            width_m, length_m = sides if rotate in (0, 180) else sides[::-1]
+            assert scene.measured == pytest.approx((width_m, length_m, 0.011))
+        assert Scene.heights(tmp_path / "h.png", invert=True).measured is None
 
 
 class TestPhotos:

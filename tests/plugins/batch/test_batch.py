@@ -553,18 +553,43 @@ def test_gallery_has_every_scene_once_and_its_error_as_text(tmp_path: Path, monk
     assert [[name for name in names if f"<figcaption>{name} <br>" in page] for page in pages] == [
         ["s0", "s1"], ["s2", "s3"], ["s4"],
     ]  # fmt: skip
-    assert all("&lt;b&gt;no&lt;/b&gt; &amp; never" in page for page in pages)
-
-
-def test_gallery_links_exported_pages(tmp_path: Path):
-    row = {"id": "a", "outcome": "ok", "seconds": 1, "folder": "scenes/a", "card": "card.jpg"}
-    (tmp_path / "rows.jsonl").write_text(
-        json.dumps({**row, "files": ["relief.npz", "a&b-page.html", "card.jpg"]}) + "\n"
-    )
-    [page] = results.write_gallery(tmp_path, ["a"])
-    assert re.findall(r'<a href="([^"]+html)">([^<]+)</a>', page.read_text()) == [
-        ("scenes/a/a%26b-page.html", "a&amp;b-page.html")
+    assert all("<em>&lt;b&gt;no&lt;/b&gt; &amp; never</em>" in page for page in pages)
+    assert [re.findall('href="([^"]+)">(\\d)<|<strong>(\\d)<', page) for page in pages] == [
+        [("", "", "1"), ("gallery1.html", "2", ""), ("gallery2.html", "3", "")],
+        [("gallery.html", "1", ""), ("", "", "2"), ("gallery2.html", "3", "")],
+        [("gallery.html", "1", ""), ("gallery1.html", "2", ""), ("", "", "3")],
     ]
+
+
+def test_gallery_links_files_of_any_name_and_tells_all_that_a_row_knows(tmp_path: Path):
+    figures = {
+        "surface": {"width_mm": 40.4, "length_mm": 29.6, "height_mm": 5.25, "segments": 7},
+        "disparity": {"bad2": 12.6},
+        "force": {"peak_force_n": 1.26},
+    }
+    row = {
+        "id": "a<b", "outcome": "ok", "seconds": 1.234, "folder": "scenes/50 %#1", "card": "card.jpg",
+        "scene": "/home/me/a&b.png", "figures": figures, "notes": ["one <odd> thing"],
+        "files": ["surface.npz", "recording.npz", "sheet.svg", "a&b 5%#-page.html", "card.jpg"],
+    }  # fmt: skip
+    plain = {**row, "id": "b", "figures": {"materials": [1, 2, 3]}, "notes": [], "files": ["relief.npz", "card.jpg"]}
+    (tmp_path / "rows.jsonl").write_text("".join(f"{json.dumps(each)}\n" for each in (row, plain)))
+    [page] = (each.read_text() for each in results.write_gallery(tmp_path, ["a<b", "b"]))
+    first, second = re.findall(r'<figure class="ok">.*?</figure>', page)
+    folder = "scenes/50%20%25%231"
+    assert re.findall('href="([^"]+)"', first) == [
+        f"{folder}/sheet.svg", f"{folder}/", f"{folder}/a%26b%205%25%23-page.html",
+    ]  # fmt: skip
+    assert re.findall('(?:src|title|alt)="([^"]+)"', first) == [
+        f"{folder}/card.jpg", "a&amp;b.png", "a&lt;b: the picture, and the surface made of it",
+    ]  # fmt: skip
+    assert re.findall(">([^<]+)<", first) == [
+        "a&lt;b", " · ", "a&amp;b 5%#-page.html", " ",
+        "surface made in 1.2 s; 40 x 30 mm, 5.25 mm high; 13 % of the pixels are off by more than 2 px; 7 segments; "
+        "felt with up to 1.3 N; warning: one &lt;odd&gt; thing",
+    ]  # fmt: skip
+    assert re.findall('href="([^"]+)"', second) == [f"{folder}/card.jpg", f"{folder}/"]
+    assert second.endswith("<br>relief made in 1.2 s; 3 segments</figcaption></figure>")
 
 
 def test_table_column_with_a_text_is_text(tmp_path: Path):

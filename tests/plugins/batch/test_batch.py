@@ -18,6 +18,7 @@ from farm_here import Here
 from full_disk import files_up_to
 from pictures import write_png
 from tangible_batch import batch, job, results, running
+from tangible_batch.farm import Done
 from tangible_batch.job import Job, make_scene
 from tangible_batch.manifest import rows_of
 from tangible_core import Pipeline, Scene
@@ -278,12 +279,14 @@ class TestScenes:
             ("twice.csv", "two rows are called 'a'"),
             ("broken.parquet", "is not a Parquet file"),
             ("cells.csv", "more cells than there are columns"),
+            ("latin.csv", "latin.csv: is not a table: 'utf-8' codec"),
         ],
     )
     def test_command_with_a_mistake_reports_one_line(self, archive: Path, over: str, said: str):
         folder = archive.parent
         (folder / "twice.csv").write_text("id,scene.photo\na,archive/p0.png\na,archive/p1.png\n")
         (folder / "broken.parquet").write_text("PAR?")
+        (folder / "latin.csv").write_bytes("id,title\na,Krüge\n".encode("latin-1"))
         (folder / "cells.csv").write_text("id,scene.photo\na,archive/p0.png,more\n")
         done = tangible("batch", "mine.yaml", "--over", over, cwd=folder)
         assert done.returncode == 2
@@ -330,6 +333,36 @@ class TestScenes:
         pipeline = Pipeline.from_yaml(archive.parent / "mine.yaml")
         [row] = batch(pipeline, [{"scene.photo": "p0.png"}], archive.parent / "out", timeout_s=7.0)
         assert (row["id"], row["scene"], limits) == ("0", str(archive / "p0.png"), [7.0])
+
+    def test_scene_whose_worker_died_is_a_row_that_failed_and_is_repeated_on_request(
+        self, archive: Path, monkeypatch: pytest.MonkeyPatch
+    ):
+        class Dying(Here):
+            def map(self, work, jobs, chunk=1, timeout_s=1.0):
+                for done in super().map(work, jobs, chunk, timeout_s):
+                    yield Done(done.job, None, "its worker died of it") if done.job.id == "p2" else done
+
+        monkeypatch.setattr(running, "Farm", Dying)
+        pipeline, out = Pipeline.from_yaml(archive.parent / "mine.yaml"), archive.parent / "out"
+        rows = [{"id": f"p{number}", "scene.photo": archive / f"p{number}.png"} for number in (3, 2, 9, 0)]
+        first = list(batch(pipeline, rows, out))
+        assert [row["id"] for row in first] == [row["id"] for row in rows_in(out)] == ["p3", "p2", "p9", "p0"]
+        assert [row["outcome"] for row in first] == ["ok", "failed", "failed", "ok"]
+        assert (first[1]["error"], first[1]["seconds"], first[1]["folder"]) == (
+            "its worker died of it",
+            None,
+            "scenes/p2",
+        )
+        assert "p9.png: there is no such file" in first[2]["error"]
+        monkeypatch.setattr(running, "Farm", Here)
+        assert list(batch(pipeline, rows, out)) == first, "nothing is made again unasked"
+        again = list(batch(pipeline, rows, out, retry=True))
+        assert [(row["id"], row["outcome"]) for row in again] == [
+            ("p3", "ok"), ("p0", "ok"), ("p2", "ok"), ("p9", "failed"),
+        ]  # fmt: skip
+        assert [row["id"] for row in rows_in(out)] == ["p3", "p2", "p9", "p0", "p2", "p9"]
+        write_png(archive / "p9.png", picture(9))
+        assert [row["outcome"] for row in batch(pipeline, rows, out)] == ["ok"] * 4, "the file is there now"
 
     @pytest.mark.parametrize("of_a_file", [True, False])
     def test_sweep_in_python_is_made_again_where_the_picture_has_changed(

@@ -78,6 +78,7 @@ def test_farm_with_dying_workers_loses_no_other_job(monkeypatch: pytest.MonkeyPa
         assert "its worker died of it, twice" in next(each.death for each in done if each.death)
         assert all(each.result == each.job**2 for each in done if not each.death)
 
+        assert [each.result for each in two.map(farm_work.square, [3] * 6)] == [9] * 6, "equal jobs are not one"
         [raised] = two.map(farm_work.square, ["seven"])  # its worker lives: the words are those of the error
         assert raised.death.startswith("TypeError: ")
 

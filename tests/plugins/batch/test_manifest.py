@@ -50,3 +50,22 @@ def test_row_without_a_name_has_its_number_and_a_cell_of_zero_counts(tmp_path: P
         ("own", ()),
         ("2", ("want=relief",)),
     ]
+
+
+def test_pictures_of_a_shell_are_in_order_and_named_from_the_folder_that_holds_all(tmp_path: Path):
+    touch(tmp_path, "a/two.png", "a/one_left.png", "a/one_right.png", "b/c/film.png")
+    given = [str(tmp_path / name) for name in ("b/c/film.png", "a/two.png", "a/one_right.png", "a/one_left.png")]
+    assert [(row.id, len(row.sets)) for row in rows_of(given)] == [("a/one", 2), ("a/two", 1), ("b/c/film", 1)]
+    assert [row.id for row in rows_of(given[1:])] == ["one", "two"]
+
+
+def test_parquet_of_many_rows_gives_all_and_cells_without_a_value_change_nothing(tmp_path: Path):
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    wide = [0.05 if number % 2 else None for number in range(5000)]
+    pq.write_table(pa.table({"workspace.width_m": wide, "title": ["ä"] * 5000}), tmp_path / "rows.parquet")
+    found = [tuple(row) for row in rows_of(str(tmp_path / "rows.parquet"))]
+    assert found == [
+        (str(number), (*(("workspace.width_m=0.05",) if number % 2 else ()), "title=ä")) for number in range(5000)
+    ]

@@ -3,12 +3,14 @@
 import re
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 from xml.etree import ElementTree
 
 import cv2
 import numpy as np
 import pytest
+import shapely
 from scipy import ndimage
 
 from exported_pictures import PICTURES, labels_work, pdf_pixels, pixels, work_of
@@ -16,6 +18,7 @@ from tangible_core.errors import BrailleError, BrokenMethod, GeometryError, Pict
 from tangible_core.plugins.notes import collected
 from tangible_export.braille import DOT_PITCH_M
 from tangible_export.paper import fills, page
+from tangible_export.paper.marks import gaps
 from tangible_export.swell import Swell
 
 PER_MM = 10
@@ -274,11 +277,37 @@ def test_page_marks_drawn_too_near_are_moved_or_left_out(tmp_path, monkeypatch, 
     """The drawing keeps too little from outlines; the page that is measured does not pass until that is corrected."""
     monkeypatch.setattr(fills, "CLEAR_MM", clear_mm)
     monkeypatch.setattr(page, "CLEAR_MM", clear_mm)
-    monkeypatch.setattr(fills.fill_shape, "__defaults__", (None, clear_mm))
+    monkeypatch.setattr(page, "fill_shape", partial(fills.fill_shape, clear_mm=clear_mm))
+    monkeypatch.setattr(page, "around", lambda dots: shapely.MultiPoint(dots).convex_hull.buffer(0.72 + clear_mm))
+    measured: list[int] = []
+
+    def too_near(marks):
+        found = gaps.too_near(marks)
+        measured.append(len(found))
+        return found
+
+    monkeypatch.setattr(page, "too_near", too_near)
     labels = np.zeros((300, 450), np.int32)
     labels[:, 260:], labels[100:200, 100:180] = 1, 2
     svg = Swell().write(labels_work(labels, ("land", "sea", "isle")), tmp_path / "map")[0]
+    assert measured[0] > 0 and 0 in measured[1:], "too near at first"
     assert least_gap_mm(svg) >= GAP_MM - ROUNDING_MM
+    root = ElementTree.parse(svg).getroot()
+    assert len(braille_dots(root)) == 4, "the title and three letters"
+    marks = [len(list(each)) or each.get("d").count("M") for each in root.iterfind(".//*[@data-mark='fill']")]
+    assert marks and min(marks) > 4, "what is left of a fill is one still"
+
+
+@pytest.mark.parametrize("width_m", [0.1, None])
+def test_page_options_for_a_width_are_those_of_the_least_page_that_takes_it(width_m):
+    """On A4, 189 mm upright and 276 mm on its side; on A3, 276 mm and 399 mm; less for the corner."""
+    swell = Swell(width_m=width_m)
+    own = {} if width_m is None else {"width_m": 0.18}
+    assert swell.options_for_width(0.18, 1.0) == own
+    assert swell.options_for_width(0.27, 2.0) == ({} if width_m is None else {"width_m": 0.27})
+    assert swell.options_for_width(0.27, 1.0) == {"page": "a3"} | ({} if width_m is None else {"width_m": 0.27})
+    assert swell.options_for_width(0.28, 1.0) == swell.options_for_width(0.5, 9.0) == {}
+    assert Swell(page="a3").options_for_width(0.27, 1.0) == {}
 
 
 def test_page_long_title_is_complete_on_the_key(tmp_path):

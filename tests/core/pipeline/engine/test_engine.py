@@ -428,6 +428,13 @@ def test_plan_equals_the_outcomes(folder: Path, parts: dict):
     pipe.make()
     happened = {each.product: each.outcome for each in pipe.outcomes if "not needed" not in each.why}
     assert {name: foreseen.get(name, "skipped") for name in happened} == happened
+    for again in (pipeline(folder, cached=False, **parts), pipeline(folder, **parts)):
+        steps, _ = again.plan().steps, again.make()
+        told = {each.product: each for each in again.outcomes}
+        assert [(each.outcome, each.method) for each in steps] == [
+            (told[each.product].outcome, told[each.product].method) for each in steps
+        ]
+        assert all(told[each.product].why.startswith(each.why) for each in steps), "notes are known afterwards"
     assert {each.product: each.outcome for each in pipeline(folder, **parts).plan().steps}["surface"] == "cached"
 
 

@@ -61,6 +61,7 @@ def test_strokes_as_short_as_dots_are_left_out_and_so_is_a_fill_of_few():
     assert [each.length for each in KINDS["level lines"](shapely.box(0, 0, 6.2, 10)).strokes] == pytest.approx(
         [5.4] * 3
     )
+    assert len(fills._lines(shapely.box(0, 0, 8.5, 9.5), Lines(0.5, 4, 0)).strokes) == 2, "of 8 mm are just enough"
     assert {each.length > 11 for each in KINDS["waves"](shapely.box(0, 0, 40, 20)).strokes} == {True}
     assert not KINDS["waves"](shapely.box(0, 0, 40, 10)), "a wave this short is felt as a line"
 

@@ -12,6 +12,7 @@ from tangible_core import Pipeline, Scene
 from tangible_core.data import DisparityMap, Force, HapticState, HapticSurface, Note, SegmentMap, Views
 from tangible_core.errors import ConfigError, MaterialError, PictureError
 from tangible_core.parts import HeightChoice, PartChoice
+from tangible_core.pipeline.engine import part_heights
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.pipeline import load_pipeline
 from tangible_core.plugins.interfaces import DepthEstimator, ForceRenderer, PlainTouch, Segmenter, Skippable, Touch
@@ -616,3 +617,9 @@ class TestWritten:
         for key in ("parts", "heights", "title", "language"):
             assert getattr(again.config, key) == getattr(made.config, key)
         assert again.surface.digest() == made.surface.digest()
+
+
+def test_many_parts_are_named_up_to_eight_and_the_others_counted():
+    eight = "parts 1, 2, 3, 4, 5, 6, 7"
+    said = [part_heights.in_words(list(range(count))) for count in (1, 2, 8, 9, 12)]
+    assert said == ["part 1", "parts 1 and 2", f"{eight} and 8", f"{eight}, 8 and 1 more", f"{eight}, 8 and 4 more"]

@@ -3,13 +3,17 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.errors import Complaint, ConfigError
+from tangible_core.pipeline.config.methods import NamedMethod
+from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.parsing import load_config, parse_config
 from tangible_core.plugins.registry import default_registry
+from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import SceneFiles
 
 ROOT = Path(__file__).parents[4]
@@ -350,3 +354,20 @@ def test_device_without_a_mapping_is_itself():
 def test_mapping_with_a_mistake_gives_complaints():
     [line] = complaints("scene: builtin/brick\nmapping:\n  clutch: 1\n")
     assert line.startswith("here/p.yaml:3:3: mapping.clutch: unknown option (did you mean 'clutch_button'?)")
+
+
+@pytest.mark.parametrize(
+    ("scene", "name"),
+    [
+        ("builtin/brick", "builtin/brick"),
+        (SceneFiles(photo=Path("/home/me/a.png")), "a.png"),
+        (SceneFiles(photo=Path("maps/a.png")), "maps/a.png"),
+        (SceneFiles(video=2), "camera 2"),
+        (Scene.photo(np.zeros((2, 2)), name="mine"), "mine"),
+    ],
+)
+def test_configuration_in_short_has_no_folders_of_a_person(scene: object, name: str):
+    from tangible_depth import Luminance
+
+    config = PipelineConfig(scene=scene, want="relief", depth=NamedMethod("luminance", "1", Luminance()))
+    assert repr(config) == f"PipelineConfig('{name}', want='relief', depth='luminance')"

@@ -587,6 +587,8 @@ class TestWritten:
         made.run(tmp_path / "out")
         text = (tmp_path / "out" / "parts-guessed.yaml").read_text(encoding="utf-8")
         assert text == made.parts_to_correct()
+        made.run(tmp_path / "out", "parts")
+        assert not (tmp_path / "out" / "parts-guessed.yaml").exists(), "no height was guessed for that"
         assert "scene" not in text and "parts:\n  0: {" in text and "heights: {by: given" in text
         with pytest.raises(ConfigError, match="no part has a height"):
             pipeline(depth=Ramp()).parts_to_correct()

@@ -364,6 +364,29 @@ class TestScenes:
         write_png(archive / "p9.png", picture(9))
         assert [row["outcome"] for row in batch(pipeline, rows, out)] == ["ok"] * 4, "the file is there now"
 
+    @pytest.mark.usefixtures("unchecked_shapes")
+    def test_batch_of_something_else_is_refused(self):
+        with pytest.raises(ArgumentError, match=r"pipeline: is .*; it must be a Pipeline"):
+            list(batch("mine.yaml", []))  # pyright: ignore[reportArgumentType]
+
+    def test_progress_counts_scenes_of_before_and_now(self, archive: Path, monkeypatch: pytest.MonkeyPatch):
+        from tangible_core.plugins import hooks
+
+        told: list[tuple[str, str]] = []
+        tell = hooks.tell
+
+        def listen(plugins, hook, **values):
+            if hook == "tangible_stage_started" and values["method"] == "mine":
+                told.append((values["product"].partition(",")[0], values["product"].endswith(" left)")))
+            tell(plugins, hook, **values)
+
+        self.run(archive.parent)
+        for name in ("p1", "p3"):
+            (archive / f"{name}.png").write_bytes(b"no")
+        monkeypatch.setattr(hooks, "tell", listen)
+        assert self.run(archive.parent).returncode == 1
+        assert told == [("3 of 4 scenes (1 failed", True), ("4 of 4 scenes (2 failed", True)]
+
     @pytest.mark.parametrize("of_a_file", [True, False])
     def test_sweep_in_python_is_made_again_where_the_picture_has_changed(
         self, archive: Path, monkeypatch: pytest.MonkeyPatch, of_a_file: bool

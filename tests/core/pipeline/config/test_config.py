@@ -371,3 +371,14 @@ def test_configuration_in_short_has_no_folders_of_a_person(scene: object, name: 
 
     config = PipelineConfig(scene=scene, want="relief", depth=NamedMethod("luminance", "1", Luminance()))
     assert repr(config) == f"PipelineConfig('{name}', want='relief', depth='luminance')"
+
+
+def test_completed_file_has_methods_and_exports_last():
+    text = (
+        "export: [stl]\nrender: penalty-gradient\ndepth: luminance\nscene: builtin/brick\ntitle: Wall\nlanguage: de\n"
+    )
+    names = list(parse(text).as_data())
+    last = [name for name in names if name in ("depth", "texture", "render", "device", "export")]
+    assert names[-len(last) :] == last
+    assert {"depth", "render", "export"} <= set(last)
+    assert names[:2] == ["scene", "title"]

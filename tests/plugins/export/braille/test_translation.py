@@ -84,6 +84,12 @@ def test_groups_of_three_digits_alone_are_of_one_number(text: str, braille: str)
     assert as_unicode(translate_by_table(text, "en")) == braille
 
 
+@pytest.mark.parametrize("language", ["de", "fr"])
+def test_groups_of_digits_are_numbers_of_their_own_where_no_sign_joins_them(language: str):
+    first, second = (translate_by_table(number, language) for number in ("1", "000"))
+    assert translate_by_table("1 000", language) == (*first, 0, *second)
+
+
 def test_quotation_mark_between_spaces_closes():
     """More often a space was left before the closing mark than after the opening one."""
     assert as_unicode(translate_by_table('a " b', "de")) == "⠁⠀⠴⠀⠃"

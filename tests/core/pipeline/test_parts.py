@@ -163,6 +163,19 @@ class TestHeights:
         made.make("relief")
         assert [each.kind for each in notes(made, "relief")] == ["decision"]
 
+    def test_guessed_hole_in_a_ring_is_known_by_the_colour_beyond(self):
+        """A dark ring on blue: its middle is blue too, and lies behind it, or red, as a thing on a plate."""
+        y, x = np.mgrid[:120, :160]
+        far = np.hypot(x - 80, y - 85)
+        labels = np.where(far < 12, 2, np.where(far < 30, 1, 0)).astype(np.uint8)
+        for middle, is_hole in (((70, 95, 150), True), ((200, 40, 40), False)):
+            picture = np.uint8([(70, 95, 150), (50, 40, 30), middle])[labels]
+            made = Pipeline(Scene.photo(picture, segments=labels), heights="guess", cached=False)
+            assert made.part_heights is not None
+            ground, ring, inner = made.part_heights.heights_m
+            assert ground == 0 < ring
+            assert (inner < ring) == is_hole
+
     def test_computed_heights_are_rounded_to_a_hundredth_of_a_millimetre(self):
         found = pipeline(heights="guess").part_heights
         assert found is not None and found.heights_m == tuple(round(each, 5) for each in found.heights_m)

@@ -412,6 +412,18 @@ def test_skipped_depth_makes_a_flat_relief(folder: Path):
     assert why["disparity"] == "nothing to see"
 
 
+def test_relief_of_a_frame_has_the_scale_of_another_where_it_is_given(folder: Path):
+    size = Workspace(width_m=0.03, relief_m=0.01, smooth_m=0)
+    stage = pipeline(folder, workspace=size, relief=ReliefChoice(slope=0, spread=0, accent_m=0, grain_m=0)).stages[
+        "relief"
+    ]
+    far = np.tile(np.linspace(0, 8, 30, dtype=np.float32), (20, 1))
+    near, half = DisparityMap(2 * far), DisparityMap(far)
+    assert stage.from_disparity(half).height_m.max() == pytest.approx(0.01)
+    assert stage.from_disparity(half, stage.scale(near)).height_m.max() == pytest.approx(0.005, rel=0.02)
+    assert stage.from_disparity(near, stage.scale(half)).height_m[:, 15:].min() == pytest.approx(0.01, rel=0.02)
+
+
 def test_law_without_materials_runs_no_texture(folder: Path):
     pipe = pipeline(folder, render=name_method(FeelHeights()))
     assert pipe.make().surface.materials is None

@@ -66,6 +66,15 @@ def test_strokes_as_short_as_dots_are_left_out_and_so_is_a_fill_of_few():
     assert not KINDS["waves"](shapely.box(0, 0, 40, 10)), "a wave this short is felt as a line"
 
 
+def test_waves_swing_by_three_millimetres_every_ten():
+    for stroke in KINDS["waves"](shapely.box(0, 0, 40, 60)).strokes:
+        across, down = shapely.get_coordinates(shapely.segmentize(stroke, 0.05)).T
+        assert np.ptp(across) == pytest.approx(3, abs=0.05)
+        swing = across - (across.max() + across.min()) / 2
+        crossings = np.sort(down[:-1][np.diff(swing > 0)])
+        assert len(crossings) > 8 and np.diff(crossings) == pytest.approx(5, abs=0.2)
+
+
 def test_fill_is_made_without_the_dots_and_strokes_at_a_place():
     strokes = tuple(shapely.LineString([(0, y), (30, y)]) for y in (0, 10))
     made = Fill(FOUR, strokes, 0.8).without(np.array([[7.25, 1.5], [10, 10]]))

@@ -6,12 +6,13 @@ import shutil
 import time
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
+from hashlib import sha256
 from io import FileIO
 from pathlib import Path
 from typing import IO
 
 from ..errors import OutputError
-from ..runtime.system.files import BINARY, folder_lock, is_in_use, is_locked, lock, wait_for_lock
+from ..runtime.system.files import BINARY, folder_lock, is_in_use, left_by_others, lock, wait_for_lock
 
 MOST_OF_NAME = 50
 """Number of characters of a file's name in the name of its temporary file: of four bytes each, they still fit."""
@@ -61,13 +62,53 @@ def temporary_folder(path: Path) -> Generator[Path]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
+@contextmanager
+def sole_writer(path: Path) -> Generator[None]:
+    """Write files that belong together, such as those of a run, in a block that no other process is in.
+
+    path: one of them, or what their names have in common. A missing folder is created. A process that ends is out of
+    its block, and where the file system has no locks, nobody is refused.
+    Raises: OutputError if another process is in such a block for this path, or the folder cannot be written.
+    """
+    claim = _temporary(path, sha256(os.fsencode(path.name)).hexdigest()[:12])
+    with _claim(claim) as file:
+        try:
+            yield
+        finally:
+            try:
+                claim.unlink(missing_ok=True)
+            except PermissionError:  # Windows deletes no open file
+                file.close()
+                claim.unlink(missing_ok=True)
+
+
+def _claim(path: Path) -> FileIO:
+    """Create a file, and lock it. Raises: OutputError if another process holds it, or it cannot be created."""
+    while True:
+        try:
+            file = FileIO(_create(path, os.O_RDWR, False), "r+")
+        except OSError as error:
+            raise OutputError(
+                f"{path.parent}: cannot be written: {error.strerror or error}; choose another folder"
+            ) from error
+        if _is_taken(file):
+            file.close()
+            raise OutputError(
+                f"{path.parent}: another program is writing the same files there; wait for it or choose another folder"
+            )
+        with suppress(FileNotFoundError):
+            if os.path.samestat(os.fstat(file.fileno()), path.stat()):
+                return file
+        file.close()  # between its opening and its lock, who had it before has deleted it
+
+
 def sweep(folder: Path) -> None:
     """Delete temporary files and folders that killed processes left in a folder; on Windows, none, as nobody knows."""
     for path in folder.glob(".*.tangible"):
         with suppress(OSError):
-            state = path.lstat()
-            if TEMPORARY.fullmatch(path.name) and time.time() - state.st_mtime > LEFT_S and not is_locked(path):
-                shutil.rmtree(path) if path.is_dir() else path.unlink()
+            if TEMPORARY.fullmatch(path.name) and time.time() - path.lstat().st_mtime > LEFT_S:
+                with left_by_others(path):
+                    shutil.rmtree(path) if path.is_dir() else path.unlink()
 
 
 def write_text(path: Path, text: str, *, private: bool = False) -> None:
@@ -100,8 +141,17 @@ def open_alone(path: Path, *, private: bool = False) -> FileIO:
     return file
 
 
-def _temporary(path: Path) -> Path:
-    return path.parent / f".{path.name[:MOST_OF_NAME]}.{os.urandom(6).hex()}.tangible"
+def _temporary(path: Path, digits: str = "") -> Path:
+    return path.parent / f".{path.name[:MOST_OF_NAME]}.{digits or os.urandom(6).hex()}.tangible"
+
+
+def _is_taken(file: FileIO) -> bool:
+    """Lock an open file; return True if another process holds it, and False where the file system has no locks."""
+    try:
+        lock(file)
+    except OSError as error:
+        return isinstance(error, BlockingIOError | PermissionError)
+    return False
 
 
 def _create(path: Path, flags: int, private: bool) -> int:

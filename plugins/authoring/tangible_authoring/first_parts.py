@@ -12,7 +12,7 @@ import numpy as np
 from tangible_authoring.label_picture import label_picture
 from tangible_core.data import Outcome, PartMap, SegmentMap
 from tangible_core.errors import ConfigError, OutputError, check_positive
-from tangible_core.files.writing import atomic_write
+from tangible_core.files.writing import atomic_write, sole_writer
 from tangible_core.parts import HeightChoice, PartHeights
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
@@ -57,12 +57,13 @@ class FirstParts:
     def write(self, force: bool = False) -> tuple[Path, ...]:
         """Write the files, each whole or not at all. force: overwrite existing files.
 
-        Raises: OutputError if a file exists, or cannot be written.
+        Raises: OutputError if a file exists, cannot be written, or is being written by another process.
         """
-        check_free(self.contents, force=force)
-        for path, content in self.contents.items():
-            with atomic_write(path) as file:
-                file.write(content)
+        with sole_writer(next(iter(self.contents))):
+            check_free(self.contents, force=force)
+            for path, content in self.contents.items():
+                with atomic_write(path) as file:
+                    file.write(content)
         return tuple(self.contents)
 
 

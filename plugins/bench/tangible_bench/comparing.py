@@ -7,6 +7,7 @@ from threading import Event
 from typing import NamedTuple
 
 from tangible_core.errors import ResultsError
+from tangible_core.runtime.system.files import folder_lock
 
 from .config.reading import Comparison
 from .measuring.plan import measurements
@@ -92,6 +93,7 @@ def _sum_up(by_key: Mapping[str, Row], path: Path, earlier: Sequence[Row] | None
     baseline = rows[-1].baseline
     results = Results(load_task(rows[-1].compare), cells(rows, baseline), baseline)
     plot = path.with_name(PLOT)
-    tables = (*write_tables(path.parent, results), *write_set_tables(path.parent, results))
-    files = (path, *tables, *((plot,) if draw_plot(plot, results) else ()))
+    with folder_lock(path.parent):
+        tables = (*write_tables(path.parent, results), *write_set_tables(path.parent, results))
+        files = (path, *tables, *((plot,) if draw_plot(plot, results) else ()))
     return ComparisonOutcome(results, files, None if earlier is None else find_regressions(earlier, rows))

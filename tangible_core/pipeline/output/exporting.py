@@ -14,7 +14,7 @@ from ...data import Note, Outcome, Outcomes, Record, Work
 from ...data.outcome import OutcomeKind
 from ...data.products import EXPORTABLE
 from ...errors import BrokenMethod, ConfigError, Stopped, TangibleError, exit_error, quoted, wrong_argument
-from ...files.writing import temporary_folder
+from ...files.writing import sole_writer, temporary_folder
 from ...plugins import failures, hooks
 from ...plugins.interfaces import Exporter
 from ...plugins.naming import plugin_name
@@ -90,12 +90,13 @@ def export(
 ) -> Export:
     """Write the files of each exporter into a folder. An exporter that fails does not stop the others.
 
-    Raises: OutputError if the folder cannot be written; TangibleError for a scene that cannot be read; Stopped.
+    Raises: OutputError if the folder cannot be written, or another process exports files of this name into it;
+    TangibleError for a scene that cannot be read; Stopped.
     """
     stem = stem_of(engine.config, engine.scene)
     check_writable(folder)
     run, done, names = _ExportRun(engine, folder, force, progress or ignore_event), list[Exported](), Counter[str]()
-    with stoppable(stop):
+    with sole_writer(folder / stem), stoppable(stop):
         for each in chosen:
             names[each.name] += 1
             number = f"-{names[each.name]}" if names[each.name] > 1 else ""

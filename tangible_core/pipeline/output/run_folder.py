@@ -19,6 +19,7 @@ from ...data.products import PRODUCTS
 from ...errors import OutputError
 from ...files.reading import MOST_TEXT_BYTES, content_digest, read_bytes
 from ...files.writing import sweep, write_text
+from ...runtime.system.files import folder_lock
 
 MANIFEST = "manifest.json"
 CONFIG, NO_CONFIG, OUTCOMES = "config.yaml", "config.txt", "outcomes.json"
@@ -103,6 +104,10 @@ def make_writable(folder: Path) -> None:
 def check_folder(folder: Path, source: Path | None) -> None:
     """Make the folder of a run. Raises: OutputError if it cannot be written, or has a file that is not a run's."""
     make_writable(folder)
+    _check_files(folder, source)
+
+
+def _check_files(folder: Path, source: Path | None) -> None:
     expected = {folder / name for name in _own(folder)}
     if source is not None and source.resolve() == (folder / CONFIG).resolve():  # edited, and run in its place
         expected.add(folder / CONFIG)
@@ -137,9 +142,15 @@ def _is_of_before_manifests(folder: Path) -> bool:
 def rewriting(folder: Path, source: Path | None) -> Generator[Callable[[str], Path]]:
     """Delete the files of earlier runs, and keep a manifest of the files that are written in this block.
 
-    Yields: a function from the name of a file to its path. Raises: OutputError for a file that cannot be written or
-    removed.
+    Exports into the folder wait meanwhile. Yields: a function from the name of a file to its path. Raises: OutputError
+    for a file that is not a run's, or cannot be written or removed.
     """
+    with folder_lock(folder):
+        _check_files(folder, source)
+        yield from _rewrite(folder, source)
+
+
+def _rewrite(folder: Path, source: Path | None) -> Generator[Callable[[str], Path]]:
     relative, own, names = relative_source(source, folder), _own(folder), list[str]()
     Manifest(relative, own, complete=False).write(folder)
     for name in sorted(own, key=lambda each: each not in CLAIMS):

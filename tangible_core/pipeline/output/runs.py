@@ -16,7 +16,7 @@ from ...data.products import IN_REPORT
 from ...errors import ConfigError, OutputError, did_you_mean, wrong_argument
 from ...files.json_text import write_figures
 from ...files.paths import without_folders
-from ...files.writing import write_text
+from ...files.writing import sole_writer, write_text
 from ...mapping import intended_path, map_device, over
 from ...metrics import disparity_errors
 from ...plugins import hooks
@@ -36,7 +36,7 @@ from ..engine.cache import write_record
 from ..engine.engine import Engine
 from ..engine.warm_up import FELT, warm_up
 from .parts_text import part_heights, to_correct
-from .run_folder import CONFIG, GUESSED, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewriting
+from .run_folder import CONFIG, GUESSED, MANIFEST, NO_CONFIG, OUTCOMES, RECORDING, SHEET, check_folder, rewriting
 from .showing import can_draw, drawing, png_html
 
 Sheet = Literal["png", "svg", "pdf"]
@@ -103,12 +103,18 @@ def make_run(
 
     A refused product, or a folder that cannot be written, stops the run before it starts. A touch is run on a simulated
     device for these seconds of its time; a real device is not moved.
-    Raises: OutputError if the folder cannot be written; TangibleError as `Engine.make` and `run_simulated`.
+    Raises: OutputError if the folder cannot be written, or another run is writing into it; TangibleError as
+    `Engine.make` and `run_simulated`.
     """
     if sheet not in (kinds := get_args(Sheet)):
         raise wrong_argument("sheet", sheet, f"one of {', '.join(kinds)}{did_you_mean(str(sheet), kinds)}")
     engine.check(want)
-    check_folder(out, engine.config.path)
+    with sole_writer(out / MANIFEST):
+        check_folder(out, engine.config.path)
+        return _make_run(engine, out, want, seconds, sheet)
+
+
+def _make_run(engine: Engine, out: Path, want: str, seconds: float, sheet: Sheet) -> Run:
     with warm_up(engine, want) as engine.compiler:
         value = engine.make_on_grid(want)
         products = {name: engine.make_on_grid(name) for name in IN_REPORT if name in engine.inputs_of(want)}

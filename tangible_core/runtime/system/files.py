@@ -53,9 +53,11 @@ if sys.platform == "win32":
                     break
             yield
 
-    def is_locked(_path: Path) -> bool:
-        """Return True: nobody knows."""
-        return True
+    @contextmanager
+    def left_by_others(_path: Path) -> Generator[None]:
+        """Raise an OSError: nobody knows."""
+        raise OSError
+        yield
 
     def is_mine(path: Path) -> bool:
         """Return True for a file or folder of this user; folders for temporary files are each user's own here."""
@@ -94,16 +96,17 @@ else:
         finally:
             os.close(number)
 
-    def is_locked(path: Path) -> bool:
-        """Return True if a process holds the lock of a file or folder. Raises: OSError if it cannot be opened."""
+    @contextmanager
+    def left_by_others(path: Path) -> Generator[None]:
+        """Hold the lock of a file or folder in this block, to delete it. Raises: OSError if a process holds it."""
         number = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
         try:
             fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return True
+            if not os.path.samestat(os.fstat(number), path.lstat()):
+                raise FileNotFoundError(path)
+            yield
         finally:
             os.close(number)
-        return False
 
     def is_mine(path: Path) -> bool:
         """Return True for a file or folder of this user, not a link to one. Raises: OSError if it is gone."""

@@ -1,6 +1,9 @@
 import errno
 import os
+import signal
 import stat
+import subprocess
+import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -8,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tangible_core.errors import OutputError
-from tangible_core.files.writing import atomic_write, open_alone, sweep, temporary_folder, write_text
+from tangible_core.files.writing import atomic_write, open_alone, sole_writer, sweep, temporary_folder, write_text
 
 
 class FullDisk:
@@ -177,6 +180,53 @@ def test_concurrent_writers_leave_one_whole_file(tmp_path):
             each.result()
     assert path.read_text() in texts
     assert names_in(tmp_path) == ["c.txt"]
+
+
+class TestSoleWriter:
+    def test_block_excludes_others_of_its_path_alone(self, tmp_path):
+        path = tmp_path / "new" / ("long " * 40 + "one")
+        with sole_writer(path):
+            with pytest.raises(
+                OutputError, match=rf"{path.parent}: another program is writing the same files there; wait"
+            ):
+                sole_writer(path).__enter__()
+            with sole_writer(path.with_name("long " * 40 + "other")):
+                pass
+            os.utime(next(path.parent.iterdir()), (1, 1))
+            sweep(path.parent)
+            with pytest.raises(OutputError, match="another program is writing"):
+                sole_writer(path).__enter__()
+        assert names_in(path.parent) == []
+        with sole_writer(path):
+            pass
+
+    def test_killed_process_excludes_nobody(self, tmp_path):
+        code = (
+            "import sys, time; from pathlib import Path; from tangible_core.files.writing import sole_writer\n"
+            "with sole_writer(Path(sys.argv[1])): print('in', flush=True); time.sleep(1000)"
+        )
+        path = tmp_path / "mine"
+        with subprocess.Popen([sys.executable, "-c", code, path], stdout=subprocess.PIPE, text=True) as writer:
+            assert writer.stdout and writer.stdout.readline() == "in\n"
+            with pytest.raises(OutputError, match="another program is writing"):
+                sole_writer(path).__enter__()
+            writer.send_signal(signal.SIGKILL)
+        assert len(names_in(tmp_path)) == 1
+        with sole_writer(path):
+            pass
+        assert names_in(tmp_path) == []
+
+    def test_folder_that_is_deleted_meanwhile_is_no_error(self, tmp_path):
+        with sole_writer(tmp_path / "a" / "mine"):
+            for each in (tmp_path / "a").iterdir():
+                each.unlink()
+            (tmp_path / "a").rmdir()
+        assert names_in(tmp_path) == []
+
+    def test_folder_that_cannot_be_created_is_an_output_error(self, tmp_path):
+        write_text(tmp_path / "file", "no folder")
+        with pytest.raises(OutputError, match="file: cannot be written: File exists; choose another folder"):
+            sole_writer(tmp_path / "file" / "mine").__enter__()
 
 
 def test_file_opened_alone_cannot_be_opened_again_until_closed(tmp_path):

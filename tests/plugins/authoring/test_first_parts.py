@@ -14,6 +14,8 @@ from tangible_authoring.listed_parts import ListedPart
 from tangible_authoring.parts_starter import title_of
 from tangible_authoring.renumbering import MOST_NAMED, Moved, in_words
 from tangible_core.data import Outcome
+from tangible_core.errors import OutputError
+from tangible_core.files.writing import sole_writer
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import Registry
 
@@ -34,6 +36,14 @@ def parts_of(folder: Path, **more: object):
 def test_part_narrower_than_the_smallest_of_the_longer_side_is_joined(stripes: Path, smallest_mm: float, count: int):
     found = parts_of(stripes, overrides=["texture.segments=5"], smallest_mm=smallest_mm)
     assert found.parts.count == count
+
+
+def test_parts_of_another_picture_are_not_written_meanwhile(stripes: Path):
+    found = parts_of(stripes)
+    with sole_writer(stripes / "parts.png"), pytest.raises(OutputError, match="another program is writing the same"):
+        found.write(force=True)
+    assert [path.name for path in stripes.iterdir()] == ["stripes.png"]
+    assert {path.name for path in found.write()} == {"parts.png", "parts-numbered.png", "stripes.yaml"}
 
 
 def test_observers_hear_that_parts_are_made_and_no_more_time_than_passed(stripes: Path):

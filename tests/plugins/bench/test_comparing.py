@@ -1,6 +1,7 @@
 """A whole comparison as a program calls it: progress, stop, and comparison with an earlier one."""
 
 import threading
+from concurrent.futures import ThreadPoolExecutor, wait
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from tangible_bench.config.reading import parse_comparison
 from tangible_bench.measuring.rows import read_rows
 from tangible_core.errors import ResultsError, Stopped
 from tangible_core.plugins.registry import Registry
+from tangible_core.runtime.system.files import folder_lock
 
 FILE = """
 compare: depth
@@ -68,3 +70,17 @@ def test_results_are_read_as_they_were_measured(registry: Registry, tmp_path: Pa
     (tmp_path / "empty.jsonl").touch()
     with pytest.raises(ResultsError, match="holds no row of a comparison"):
         read_comparison(tmp_path / "empty.jsonl")
+
+
+@pytest.mark.usefixtures("cells_here")
+def test_tables_wait_for_another_process_that_writes_them(registry: Registry, tmp_path: Path):
+    table, rows = tmp_path / "table.csv", tmp_path / "results.jsonl"
+    text = run_comparison(registry, tmp_path).files[1].read_text()
+    with ThreadPoolExecutor(1) as pool:
+        with folder_lock(tmp_path):
+            table.write_text("of another")
+            later = pool.submit(read_comparison, rows)
+            wait([later], timeout=0.5)  # time enough to write, if nothing holds it
+            assert table.read_text() == "of another"
+        later.result()
+    assert table.read_text() == text

@@ -1,19 +1,23 @@
 """The analysis of a folder: what counts, what is found in simulated answers, and the files that are written."""
 
 import json
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 
-from tangible_core.errors import ConfigError, ResultsError
+from tangible_core.errors import ConfigError, OutputError, ResultsError
+from tangible_core.files.writing import sole_writer
 from tangible_study.analysis.analysing import analyse, analyse_kept
 from tangible_study.analysis.files import write_results
 from tangible_study.analysis.rows import ALL, What
 from tangible_study.analysis.sentences import counts
 from tangible_study.commands.results import analyse as analyse_study
 from tangible_study.commands.results import simulate as simulate_study
+from tangible_study.session import folder
 from tangible_study.simulation.observers import observer_of
 from tangible_study.simulation.simulating import kept_of, simulate
 from tangible_study.simulation.writing import write_folder
@@ -175,6 +179,35 @@ def test_files_have_every_figure_and_plots_have_a_description(tmp_path: Path):
     described = drawn.findtext("{http://www.w3.org/2000/svg}desc")
     assert described is not None
     assert "feels equal to the standard" in described
+
+
+def test_results_of_another_analysis_are_not_written_meanwhile(tmp_path: Path):
+    file, out = study_of(tmp_path, "odd"), tmp_path / "analysis"
+    analysis = analyse_kept(kept_of(file, [simulate(file, observer_of("detection", [], file), 0, 1)]))
+    with sole_writer(out / "results.tsv"), pytest.raises(OutputError, match="another program is writing the same"):
+        write_results(out, analysis)
+    assert list(out.iterdir()) == []
+
+
+def test_second_study_is_refused_by_a_folder_that_the_first_is_preparing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    out, first, real = tmp_path / "out", study_of(tmp_path, "odd"), folder.write_figures
+    second, later = study_of(tmp_path, "odd", "pair"), list[Future[None]]()
+
+    def write_slowly(path: Path, data: Any) -> None:
+        if not later:
+            later.append(pool.submit(folder.prepare, out, second))
+            wait(later, timeout=0.5)  # time enough to write, if nothing holds it
+        real(path, data)
+
+    monkeypatch.setattr(folder, "write_figures", write_slowly)
+    with ThreadPoolExecutor(1) as pool:
+        folder.prepare(out, first)
+    with pytest.raises(OutputError, match="has participants of another version of this study"):
+        later[0].result()
+    assert (out / "study.yaml").read_text() == first.text
+    folder.prepare(out, first)
 
 
 def test_command_simulates_and_analyses_again_alike(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

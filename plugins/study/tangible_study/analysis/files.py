@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from tangible_core.files.writing import write_text
+from tangible_core.files.writing import sole_writer, write_text
 
 from ..trials import MISSING
 from .analysing import Analysis
@@ -18,12 +18,13 @@ HEADINGS = ("measure", "condition", "compared with", "value", "95 % interval", "
 def write_results(folder: Path, analysis: Analysis) -> list[Path]:
     """Write results.tsv, results.md and a plot for each comparison, each whole or not at all; return their paths.
 
-    Raises: OutputError.
+    Raises: OutputError if the folder cannot be written, or another analysis is writing into it.
     """
-    plots = [path for result in analysis.results for path in draw(folder, result)]
     table, paper = folder / "results.tsv", folder / "results.md"
-    write_text(table, as_tsv(analysis))
-    write_text(paper, as_markdown(analysis))
+    with sole_writer(table):
+        plots = [path for result in analysis.results for path in draw(folder, result)]
+        write_text(table, as_tsv(analysis))
+        write_text(paper, as_markdown(analysis))
     return [paper, table, *plots]
 
 

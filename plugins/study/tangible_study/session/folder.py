@@ -12,6 +12,7 @@ from tangible_core.errors import ConfigError, OutputError, ResultsError, quoted
 from tangible_core.files.json_text import write_figures
 from tangible_core.files.reading import read_bytes
 from tangible_core.files.writing import folder_lock, write_text
+from tangible_core.pipeline.output.run_folder import make_writable
 from tangible_core.provenance.versions import versions
 
 from ..design.study import Study
@@ -96,7 +97,14 @@ def prepare(root: Path, file: StudyFile) -> None:
 
     Raises: OutputError if the folder has another study, or cannot be written.
     """
-    there, digest = root / "dataset_description.json", design_digest(file)
+    digest = design_digest(file)
+    make_writable(root)
+    with folder_lock(root):
+        _prepare(root, file, digest)
+
+
+def _prepare(root: Path, file: StudyFile, digest: str) -> None:
+    there = root / "dataset_description.json"
     if (root / "study.yaml").exists():
         try:
             before = loads(there.read_text(encoding="utf-8")).get("Design")
@@ -108,7 +116,7 @@ def prepare(root: Path, file: StudyFile) -> None:
                 "pipelines as they were, or name another folder with --out"
             )
         return
-    if root.is_dir() and any(root.iterdir()):
+    if any(not each.name.startswith(".") for each in root.iterdir()):
         raise OutputError(f"{root}: holds other files; name an empty folder with --out")
     program = {"Name": "Tangible Images", "Version": versions()["tangible-images"]}
     description = {

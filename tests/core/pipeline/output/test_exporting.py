@@ -322,6 +322,20 @@ class TestFiles:
             list(both.map(bring, "ab"))
         assert sorted(read_list(tmp_path / "to")) == sorted(names)
 
+    def test_second_export_of_a_name_is_refused_during_the_first(self, tmp_path: Path):
+        def export_another(stem: Path) -> tuple[Path, ...]:
+            with pytest.raises(OutputError, match="another program is writing the same files there; wait for it"):
+                pipeline(**SAID, language="de").export(tmp_path, [Report(), Steepest()])
+            other = Pipeline(Scene.photo(PHOTO, segments=LABELS, name="other"), cached=False, **SAID)
+            assert other.export(tmp_path, [Report()]).files == {"Report": (tmp_path / "other.report",)}
+            return write_file(stem.with_suffix(".first"))
+
+        first = pipeline(**SAID, language="fr").export(tmp_path, [Report(), Does(do=export_another)])
+        assert [each.outcome for each in first.outcomes] == ["ran", "ran"], first
+        assert json.loads((tmp_path / "still life.report").read_text())["language"] == "fr"
+        written = ["other.report", "still life.first", "still life.report"]
+        assert sorted(path.name for path in tmp_path.iterdir()) == [".exports.json", *written]
+
     def test_files_have_the_permissions_of_new_files(self, tmp_path: Path):
         (one,) = pipeline(**SAID).export(tmp_path, [Report()]).exports
         beside = tmp_path / "beside"

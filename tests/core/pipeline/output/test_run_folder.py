@@ -3,7 +3,8 @@
 import json
 import shutil
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -16,7 +17,9 @@ from tangible_core import Pipeline, Scene
 from tangible_core.data.products import Product
 from tangible_core.errors import OutputError
 from tangible_core.pipeline.output import runs
+from tangible_core.pipeline.output.export_folder import move
 from tangible_core.pipeline.output.run_folder import NAMES, default_folder, read_manifest, rewriting
+from tangible_core.pipeline.output.runs import _figures
 from tangible_devices import Mock
 from tangible_render import Penalty
 
@@ -124,6 +127,87 @@ def test_failed_run_keeps_the_earlier_results(tmp_path: Path):
     with pytest.raises(Exception, match="seconds"):
         Pipeline(Scene.heights(HEIGHTS), render=Penalty(), device=Mock(), cached=False).run(tmp_path, seconds=-1)
     assert digests(tmp_path) == before
+
+
+During = Callable[[Callable[[], None]], AbstractContextManager[None]]
+
+
+@contextmanager
+def while_drawing(do: Callable[[], None]) -> Iterator[None]:
+    """Let a run do something when its products are written and its sheet is not."""
+
+    def draw(work: Any, path: Path) -> str:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(runs, "drawing", drawing)
+            do()
+        return str(path.write_bytes(b"a sheet"))
+
+    drawing = runs.drawing
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runs, "drawing", lambda: SimpleNamespace(draw=draw))
+        yield
+
+
+@contextmanager
+def before_writing(do: Callable[[], None]) -> Iterator[None]:
+    """Let a run do something when its products are made and not written."""
+
+    def figures(*words: Any) -> Any:
+        do()
+        return _figures(*words)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runs, "_figures", figures)
+        yield
+
+
+@pytest.mark.parametrize("when", [before_writing, while_drawing])
+def test_second_run_into_a_folder_is_refused_during_the_first(tmp_path: Path, when: During):
+    out, tried = tmp_path / "out", list[str]()
+
+    def run_another() -> None:
+        with pytest.raises(OutputError, match="another program is writing the same files there; wait for it") as told:
+            run(out, "relief", HEIGHTS[::-1])
+        tried.append(str(told.value))
+
+    with when(run_another):
+        first = run(out)
+    assert len(tried) == 1
+    assert names(out) == {each.name for each in first.files} | {"manifest.json"}
+    assert run(out, "relief").files
+
+
+def test_export_during_a_run_waits_and_does_not_replace_its_files(tmp_path: Path):
+    exported, moves = tmp_path / "of another" / "sheet.png", list[Future[tuple[Path, ...]]]()
+    exported.parent.mkdir()
+    exported.write_bytes(b"an export")
+
+    def export() -> None:
+        moves.append(pool.submit(move, [exported], tmp_path / "out", "other.yaml", "sheet", force=False))
+        wait(moves, timeout=0.3)  # time enough to be there before the sheet, if nothing holds it
+
+    with ThreadPoolExecutor(1) as pool, while_drawing(export):
+        run(tmp_path / "out")
+    with pytest.raises(OutputError, match=r"sheet\.png: is there already, and is not an unchanged export"):
+        moves[0].result()
+    assert (tmp_path / "out" / "sheet.png").read_bytes() == b"a sheet"
+    assert not (tmp_path / "out" / ".exports.json").exists()
+
+
+def test_run_replaces_no_file_that_an_export_wrote_meanwhile(tmp_path: Path):
+    exported = tmp_path / "of another" / "surface.npz"
+    exported.parent.mkdir()
+    exported.write_bytes(b"an export")
+
+    def export() -> None:
+        move([exported], tmp_path / "out", "other.yaml", "heights", force=False)
+
+    with (
+        before_writing(export),
+        pytest.raises(OutputError, match=r"surface\.npz: exists, and is not an unchanged file of a run"),
+    ):
+        run(tmp_path / "out")
+    assert (tmp_path / "out" / "surface.npz").read_bytes() == b"an export"
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from jaxtyping import Int32, Shaped, UInt16
 
 from tangible_core.data import PartMap
 from tangible_core.errors import ConfigError, quoted
-from tangible_core.files.writing import atomic_write, write_text
+from tangible_core.files.writing import atomic_write, sole_writer, write_text
 from tangible_core.files.yaml.parts_block import with_parts
 from tangible_core.files.yaml.source import read_text
 from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values
@@ -228,7 +228,7 @@ def keep_replaced(place: Path, picture: bytes, store: Path, texts: Sequence[str]
 
 def write(place: Path, picture: bytes, document: Path, text: str) -> None:
     """Write the labels and the document, both or neither. Raises: OutputError."""
-    with atomic_write(place) as file:
+    with sole_writer(place), atomic_write(place) as file:
         file.write(picture)
         file.flush()  # a full disk shows before the document is touched
         write_text(document, text)

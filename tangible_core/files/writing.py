@@ -103,12 +103,27 @@ def _claim(path: Path) -> FileIO:
 
 
 def sweep(folder: Path) -> None:
-    """Delete temporary files and folders that killed processes left in a folder; on Windows, none, as nobody knows."""
-    for path in folder.glob(".*.tangible"):
+    """Delete temporary files and folders that killed processes left in a folder; on Windows, no folders."""
+    for path in leftovers(folder):
         with suppress(OSError):
-            if TEMPORARY.fullmatch(path.name) and time.time() - path.lstat().st_mtime > LEFT_S:
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+
+
+def leftovers(folder: Path, age_s: float = LEFT_S) -> Generator[Path]:
+    """Yield the temporary files and folders that killed processes left in a folder, to be deleted at once.
+
+    age_s: the least age. A new file may be one that its writer is about to lock.
+    """
+    for path in temporary_paths(folder):
+        with suppress(OSError):
+            if time.time() - path.lstat().st_mtime > age_s:
                 with left_by_others(path):
-                    shutil.rmtree(path) if path.is_dir() else path.unlink()
+                    yield path
+
+
+def temporary_paths(folder: Path) -> list[Path]:
+    """Return the temporary files and folders in a folder, in use or left by killed processes."""
+    return [path for path in folder.glob(".*.tangible") if TEMPORARY.fullmatch(path.name)]
 
 
 def write_text(path: Path, text: str, *, private: bool = False) -> None:

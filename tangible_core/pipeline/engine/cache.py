@@ -13,6 +13,8 @@ import re
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import fields, is_dataclass
+from itertools import chain
+from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple, cast, get_args
 
@@ -24,7 +26,7 @@ from ...errors import OutputError, quoted, shown
 from ...files.arrays import Archive, write_arrays
 from ...files.paths import as_path
 from ...files.reading import check_file
-from ...files.writing import atomic_write
+from ...files.writing import atomic_write, leftovers, sweep, temporary_paths
 from ...runtime.system.files import BINARY
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -36,8 +38,8 @@ TALLY = ".tally"
 MOST_NUMBERS = 1 << 17
 """The numbers of a tally that are read; a longer one is unknown, and counting the folder again makes it short."""
 NOTES = "notes"
-_OURS = re.compile(r"[0-9a-f]{32,64}\.npz|\.[0-9a-f]{32,64}\.npz\..+")
-"""The names of entries and of unfinished ones: the folder may hold other files too."""
+_OURS = re.compile(r"[0-9a-f]{32,64}\.npz")
+"""The names of entries: the folder may hold other files too."""
 _unwritable: set[Path] = set()
 """Folders of which the log has a warning: one for each folder, not for each result."""
 KEPT = frozenset(name for name, each in vars(data).items() if is_dataclass(each))
@@ -154,17 +156,17 @@ class Cache:
             return False
 
     def size(self) -> tuple[int, int]:
-        """Return the number of results and their size in bytes, with unfinished files of killed processes."""
-        sizes = [_use_and_size(path)[1] for path in self._files()]
+        """Return the number of results and their size in bytes, with unfinished ones."""
+        sizes = [_use_and_size(path)[1] for path in (*self._results(), *temporary_paths(self.folder))]
         return len(sizes), sum(sizes)
 
     def clear(self) -> tuple[int, int]:
-        """Delete every result, and nothing else, and return their number and bytes.
+        """Delete every result, and nothing else, and return their number and bytes; what is being written stays.
 
         Raises: OutputError for a result that cannot be deleted.
         """
         freed: list[int] = []
-        for path in self._files():
+        for path in chain(self._results(), leftovers(self.folder, age_s=-inf)):
             size = _use_and_size(path)[1]
             try:
                 path.unlink(missing_ok=True)
@@ -174,13 +176,14 @@ class Cache:
         self._tally.path.unlink(missing_ok=True)
         return len(freed), sum(freed)
 
-    def _files(self) -> list[Path]:
-        return [path for path in self.folder.glob("*.npz*") if _OURS.fullmatch(path.name) and path.is_file()]
+    def _results(self) -> list[Path]:
+        return [path for path in self.folder.glob("*.npz") if _OURS.fullmatch(path.name) and path.is_file()]
 
     def _path(self, key: str) -> Path:
         return self.folder / f"{key}.npz"
 
     def _prune(self) -> None:
+        sweep(self.folder)
         entries = [(*_use_and_size(path), path) for path in self.folder.glob("*.npz")]
         held = sum(size for _, size, _ in entries)
         if held > self.max_bytes:

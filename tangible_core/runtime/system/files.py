@@ -54,9 +54,10 @@ if sys.platform == "win32":
             yield
 
     @contextmanager
-    def left_by_others(_path: Path) -> Generator[None]:
-        """Raise an OSError: nobody knows."""
-        raise OSError
+    def left_by_others(path: Path) -> Generator[None]:
+        """Do nothing for a file, as one that is open cannot be deleted here. Raises: OSError for a folder."""
+        if path.is_dir():
+            raise OSError
         yield
 
     def is_mine(path: Path) -> bool:

@@ -155,7 +155,7 @@ def test_cache_clear_deletes_only_results(folder: Path, cache_dir: Path):
 
 def test_cache_clear_deletes_temporary_files_of_killed_writers(cache_dir: Path):
     Cache().put("ab" * 16, Relief(np.zeros((2, 2), np.float32), (1.0, 1.0)))
-    (cache_dir / f".{'cd' * 16}.npz.x7f_k2").write_bytes(b"half")
+    (cache_dir / f".{'cd' * 25}.0123456789ab.tangible").write_bytes(b"half")  # a key has 64 digits, and 50 fit
     assert Cache().clear()[0] == 2
     assert list(cache_dir.iterdir()) == []
 

@@ -2,6 +2,8 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -257,6 +259,70 @@ def test_full_disk_leaves_no_files(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     Cache(tmp_path).put("k", RECORDS[1])
     assert "No space left" in caplog.text
     assert list(tmp_path.iterdir()) == []
+
+
+WRITER = """
+import sys
+from pathlib import Path
+import numpy as np
+from tangible_core.data import SegmentMap
+from tangible_core.pipeline.engine import cache
+
+def write_halfway(file, arrays):
+    file.write(bytes(100_000))
+    file.flush()
+    print("halfway", flush=True)
+    sys.stdin.readline()
+    real(file, arrays)
+
+real, cache.write_arrays = cache.write_arrays, write_halfway
+cache.Cache(Path(sys.argv[1])).put("ab" * 32, SegmentMap(np.zeros((20, 20), np.int32)))
+"""
+
+
+@contextmanager
+def halfway(folder: Path) -> Iterator[subprocess.Popen[str]]:
+    """A process that has written half an entry whose key is as long as those of products."""
+    pipe = subprocess.PIPE
+    with subprocess.Popen([sys.executable, "-c", WRITER, folder], stdin=pipe, stdout=pipe, text=True) as writer:
+        assert writer.stdout and writer.stdout.readline() == "halfway\n"
+        yield writer
+
+
+def bytes_in(folder: Path) -> int:
+    return sum(path.stat().st_size for path in folder.iterdir())
+
+
+class TestKilledWriter:
+    def test_unfinished_file_is_counted_and_cleared(self, tmp_path: Path):
+        for number in range(3):
+            with halfway(tmp_path) as writer:
+                writer.kill()
+            assert Cache(tmp_path).size() == (number + 1, 100_000 * (number + 1))
+        assert Cache(tmp_path).clear() == (3, 300_000)
+        assert bytes_in(tmp_path) == 0
+
+    def test_unfinished_file_is_deleted_by_pruning_after_a_minute(self, tmp_path: Path):
+        with halfway(tmp_path) as writer:
+            writer.kill()
+        (left,) = tmp_path.iterdir()
+        Cache(tmp_path, max_bytes=0).put("cd" * 32, RECORDS[1])
+        assert left.exists()
+        os.utime(left, (1e9, 1e9))
+        Cache(tmp_path, max_bytes=0).put("cd" * 32, RECORDS[1])
+        assert [path.name for path in tmp_path.iterdir()] == [".tally"]
+
+    def test_file_of_a_living_process_stays_and_becomes_an_entry(self, tmp_path: Path):
+        with halfway(tmp_path) as writer:
+            (part,) = tmp_path.iterdir()
+            os.utime(part, (1e9, 1e9))
+            Cache(tmp_path, max_bytes=0).put("cd" * 32, RECORDS[1])
+            assert Cache(tmp_path).clear() == (0, 0)
+            assert list(tmp_path.iterdir()) == [part]
+            assert Cache(tmp_path).size() == (1, 100_000)
+            writer.communicate("go on\n")
+        assert writer.returncode == 0
+        assert "ab" * 32 in Cache(tmp_path) and not part.exists()
 
 
 def size_of(folder: Path) -> int:

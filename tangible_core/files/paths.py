@@ -1,11 +1,14 @@
 """Paths as people write them: `~` stands for a home folder."""
 
+import re
 from os import PathLike, fsencode
 from pathlib import Path
 from typing import cast
 
 from ..errors import ConfigError, quoted, wrong_argument
 
+CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff]")
+"""Characters that a line of text, or an XML file, cannot have: controls, line breaks, halves of characters."""
 MOST_NAME_BYTES = 255
 """The most bytes of a file's name; every common file system allows as many and no more."""
 
@@ -36,7 +39,16 @@ def without_folders(name: str) -> str:
     >>> without_folders("/home/me/photo.jpg"), without_folders("builtin/brick")
     ('photo.jpg', 'builtin/brick')
     """
-    return Path(name).name if Path(name).is_absolute() else name
+    return plain_line(Path(name).name if Path(name).is_absolute() else name)
+
+
+def plain_line(name: str) -> str:
+    """Return the name of a file as one line of text: without line breaks, control characters, and bytes of no letter.
+
+    >>> plain_line("two\\nlines\\udce9.png")
+    'two lines .png'
+    """
+    return CONTROLS.sub(" ", name)
 
 
 def _check_name(path: Path) -> None:

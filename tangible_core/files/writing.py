@@ -129,7 +129,7 @@ def temporary_paths(folder: Path) -> list[Path]:
 def write_text(path: Path, text: str, *, private: bool = False) -> None:
     """Write a text file, whole or not at all (see `atomic_write`)."""
     with atomic_write(path, private=private) as file:
-        file.write(text.encode())
+        file.write(text.encode(errors="backslashreplace"))  # as JSON has it: names of files may hold half a character
 
 
 def open_alone(path: Path, *, private: bool = False) -> FileIO:

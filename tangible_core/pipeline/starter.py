@@ -1,7 +1,5 @@
 """A commented pipeline file for pictures, with values that suit these pictures."""
 
-import json
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
 from math import floor
@@ -14,6 +12,8 @@ from jaxtyping import Float32
 
 from ..data.pictures import to_grey
 from ..errors import ConfigError
+from ..files.paths import plain_line
+from ..files.yaml.editing import on_one_line
 from ..plugins.interfaces import DepthEstimator
 from ..plugins.registry import default_registry
 from ..runtime.opencv import plain_opencv
@@ -88,13 +88,16 @@ def starter(pictures: Sequence[Path], file: Path) -> Starter:
     scene = Scene.read(SceneFiles.model_validate(absolute), Path()) if parts else Scene.builtin(str(pictures[0]))
     kind: Kind = "heights" if scene.views is None else "pair" if scene.views.right is not None else "photo"
     block = ", ".join(f"{part}: {_path_in_yaml(path, file.parent)}" for part, path in parts.items())
-    values = {"scene": f"{{{block}}}" if parts else scene.name, "name": " and ".join(path.name for path in pictures)}
+    values = {
+        "scene": f"{{{block}}}" if parts else scene.name,
+        "name": " and ".join(plain_line(path.name) for path in pictures),
+    }
     if scene.frames is not None:
         values["name"] += ", its first frame"
         values["scene"] += "   # with layout: side-by-side, if each frame holds the two views of a pair"
     template = kind if scene.measured is None else "measured"
     text = files("tangible_core.pipeline").joinpath(f"starter_{template}.yaml").read_text(encoding="utf-8")
-    return Starter(Template(text).substitute(values, file=file, **_size(scene, kind)), scene)
+    return Starter(Template(text).substitute(values, file=plain_line(str(file)), **_size(scene, kind)), scene)
 
 
 def pipeline_of(pictures: Sequence[Path], overrides: Sequence[str] = ()) -> Pipeline:
@@ -187,9 +190,4 @@ def _path_in_yaml(path: Path, folder: Path) -> str:
     """Write a path relative to this folder if it is inside, in quotes where YAML needs them."""
     here = path.absolute()
     text = here.relative_to(folder.absolute()).as_posix() if here.is_relative_to(folder.absolute()) else here.as_posix()
-    return in_yaml(text)
-
-
-def in_yaml(text: str) -> str:
-    """Write a name or a path, in quotes where YAML needs them."""
-    return text if re.fullmatch(r"[A-Za-z0-9_./-]+", text) else json.dumps(text, ensure_ascii=False)
+    return on_one_line(text)

@@ -13,12 +13,13 @@ from tangible_authoring.label_picture import label_picture
 from tangible_core.data import Outcome, PartMap, SegmentMap
 from tangible_core.errors import ConfigError, OutputError, check_positive
 from tangible_core.files.writing import atomic_write, sole_writer
+from tangible_core.files.yaml.editing import on_one_line
 from tangible_core.parts import HeightChoice, PartHeights
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.pipeline.engine.part_heights import heights_of
 from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.pipeline.starter import MAPS, SIDE_MM, in_yaml, starter
+from tangible_core.pipeline.starter import MAPS, SIDE_MM, starter
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import Registry, default_registry
 from tangible_core.scene.scene import Scene
@@ -153,7 +154,7 @@ def _pipeline(
     if maps := [picture for picture in pictures if picture.suffix.lower() in MAPS]:
         raise ConfigError(f"{maps[0]}: is a map of heights, which are felt as they are; parts are those of a picture")
     template = starter(pictures, file)
-    chosen = f"texture={{use: {in_yaml(method)}}}" if method else f"texture.segments={segments_for(most)}"
+    chosen = f"texture={{use: {on_one_line(method)}}}" if method else f"texture.segments={segments_for(most)}"
     config = parse_config(template.text, file, registry, [chosen, *overrides])
     return Pipeline.from_config(config.with_values(scene=template.scene), registry, cache)
 

@@ -8,10 +8,12 @@ from pathlib import Path
 from string import Template
 
 from tangible_core.data.part_words import name_part
+from tangible_core.files.paths import plain_line
+from tangible_core.files.yaml.editing import on_one_line
 from tangible_core.files.yaml.parts_block import part_lines
 from tangible_core.parts import HeightChoice
 from tangible_core.pipeline.pipeline import Pipeline
-from tangible_core.pipeline.starter import SIDE_MM, in_yaml
+from tangible_core.pipeline.starter import SIDE_MM
 from tangible_core.scene.scene import Scene
 from tangible_core.scene.scene_files import SceneFiles, builtin_files
 
@@ -33,10 +35,10 @@ def parts_starter(
     guessed = all("guess" in each.why for each in listed)
     depth = pipeline.config.depth
     values = {
-        "name": Path(scene.name).name, "file": file, "columns": columns, "rows": rows,
+        "name": plain_line(Path(scene.name).name), "file": plain_line(str(file)), "columns": columns, "rows": rows,
         "count": _count_in_words(len(listed)),
         "labels": labels, "numbered": numbered, "scene": _scene_in_yaml(scene, file.parent, labels),
-        "title": in_yaml(title), "heights": GUESSED if guessed else MEASURED, "parts": _lines(listed),
+        "title": on_one_line(title), "heights": GUESSED if guessed else MEASURED, "parts": _lines(listed),
         "round_mm": f"{1000 * heights.round_m:g}", "bulge_mm": f"{1000 * heights.bulge_m:g}",
         "detail_mm": f"{1000 * heights.detail_m:g}", "relief_mm": f"{RELIEF_MM:g}",
         "width_mm": f"{SIDE_MM * columns / longer:.3g}",
@@ -52,7 +54,8 @@ def title_of(picture: Path) -> str:
     >>> title_of(Path("old/girl_with-a pearl.jpg")), title_of(Path("IMG_2041.JPG"))
     ('Girl with a pearl', 'IMG 2041')
     """
-    words = re.sub(r"[\s_-]+", " ", picture.stem).strip() or picture.stem
+    stem = plain_line(picture.stem)
+    words = re.sub(r"[\s_-]+", " ", stem).strip() or stem
     return words[:1].upper() + words[1:]
 
 
@@ -78,7 +81,7 @@ def _scene_in_yaml(scene: Scene, folder: Path, labels: str) -> str:
         name: _relative(value, folder) if isinstance(value, Path) and not installed else f"{value}"
         for name, value in named.items()
     }
-    return f"{{{', '.join(f'{name}: {in_yaml(value)}' for name, value in {**written, 'segments': labels}.items())}}}"
+    return on_one_line({**written, "segments": labels})
 
 
 def _relative(path: Path, folder: Path) -> str:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from tangible_core.errors import BatchError, quoted
 from tangible_core.files.paths import as_path
+from tangible_core.files.yaml.editing import json_in_yaml
 from tangible_core.scene.formats.decoding import PICTURES, VIDEOS
 from tangible_core.scene.scene_files import SceneFiles
 
@@ -114,11 +115,11 @@ def _text(key: str, value: Any, base: Path) -> str:
     """Return a value as YAML; a file with its whole path."""
     if key in FILES:
         return _file_text(base / as_path(value, key))
-    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    return value if isinstance(value, str) else json_in_yaml(value)
 
 
 def _file_text(path: Path) -> str:
-    return json.dumps(str(path.absolute()), ensure_ascii=False)
+    return json_in_yaml(str(path.absolute()))
 
 
 def _files(paths: Iterable[Path], besides: Path | None) -> list[Path]:

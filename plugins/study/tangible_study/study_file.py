@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
-from json import dumps
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 from tangible_core.errors import Complaint, ConfigError, TangibleError, did_you_mean, quoted
+from tangible_core.files.yaml.editing import json_in_yaml
 from tangible_core.files.yaml.source import Location, Source, parse_source, plain, read_text
 from tangible_core.pipeline.config.model import PipelineConfig
 from tangible_core.pipeline.config.parsing import load_config
@@ -121,7 +121,7 @@ def recipe_of(study: Study, folder: Path, comparison: Comparison, stimulus: Stim
 
 
 def _override(key: str, value: Any) -> str:
-    return f"{key}={dumps(value, ensure_ascii=False)}"
+    return f"{key}={json_in_yaml(value)}"
 
 
 def _expand(tree: Any) -> Any:

@@ -1,5 +1,6 @@
 """Changes to single keys of a YAML text; all other lines keep their order, form and comments."""
 
+import json
 import re
 from collections.abc import Mapping
 from copy import deepcopy
@@ -11,6 +12,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.nodes import MappingNode, ScalarNode
 
 from ...errors import ConfigError, quoted, wrong_argument
+from ..paths import CONTROLS
 from .bounds import MOST_DEPTH
 from .source import Location, Shorthand, expand_shorthand, key_of, no_shorthand, parse_value, plain_tree
 
@@ -263,6 +265,16 @@ def on_one_line(value: Any) -> str:
     if value is None or isinstance(value, bool | int | float):
         return _NUMBERS.get(str(value), str(value))
     raise wrong_argument("value", value, "a value that JSON can express")
+
+
+def json_in_yaml(value: Any) -> str:
+    r"""Return a value as JSON that YAML reads as the same value: YAML breaks lines at more characters.
+
+    >>> json_in_yaml(["\x85", "\N{SLIGHTLY SMILING FACE}"])
+    '["\\u0085", "\U0001f642"]'
+    """
+    text = json.dumps(value, ensure_ascii=False)
+    return CONTROLS.sub(lambda control: f"\\u{ord(control[0]):04x}", text)
 
 
 _NUMBERS = {"None": "null", "True": "true", "False": "false", "nan": ".nan", "inf": ".inf", "-inf": "-.inf"}

@@ -9,14 +9,15 @@ from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 from re import match
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self, cast, final
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from ruamel.yaml import YAML
+from ruamel.yaml.representer import SafeRepresenter
 
 from ...data.products import Product
 from ...errors import ConfigError, quoted
-from ...files.paths import without_folders
+from ...files.paths import CONTROLS, without_folders
 from ...files.yaml.source import Source
 from ...mapping import WorkspaceMapping, map_device
 from ...parts import HeightChoice, PartChoice, SimplifyChoice
@@ -49,10 +50,28 @@ LANGUAGE_TAG = "^[A-Za-z]{2,8}(-[A-Za-z0-9]{1,8})*$"
 """The form of a language's tag, as BCP 47 has it."""
 
 
+def _check_title(title: str) -> str:
+    if CONTROLS.search(title.strip()):
+        raise ValueError("Input should be one line of text without control characters")
+    return title
+
+
 def _check_tag(language: str) -> str:
     if not match(LANGUAGE_TAG, language):
         raise ValueError("Input should be the tag of a language, such as en, de or pt-BR")
     return language
+
+
+@final
+class _Representer(SafeRepresenter):
+    """A representer that escapes what cannot be printed; by itself, ruamel writes U+0085 as it is, a line break."""
+
+    def represent_str(self, data: str) -> Any:
+        """Return the node of a text."""
+        return cast(Any, self).represent_scalar("tag:yaml.org,2002:str", data, None if data.isprintable() else '"')
+
+
+_Representer.add_representer(str, _Representer.represent_str)  # pyright: ignore[reportUnknownMemberType]
 
 
 class PipelineConfig(BaseModel):
@@ -62,9 +81,13 @@ class PipelineConfig(BaseModel):
 
     scene: Annotated[str | SceneFiles | Scene, SceneBlock()]
     """The pictures, or the heights, that the surface is made of."""
-    title: Annotated[str, Field(max_length=MOST_TITLE, coerce_numbers_to_str=True), NULL_IS_DEFAULT, Word()] = (
-        ""  # a title may be a year
-    )
+    title: Annotated[
+        str,
+        Field(max_length=MOST_TITLE, coerce_numbers_to_str=True),  # a title may be a year
+        AfterValidator(_check_title),
+        NULL_IS_DEFAULT,
+        Word(),
+    ] = ""
     """The name of the picture, in your own words; empty for the name of its file."""
     language: Annotated[
         str, Field(json_schema_extra={"pattern": LANGUAGE_TAG}), AfterValidator(_check_tag), NULL_IS_DEFAULT, Word()
@@ -225,6 +248,7 @@ class PipelineConfig(BaseModel):
     def as_yaml(self, leave_out: Collection[str] = ()) -> str:
         """Return the completed configuration as a pipeline file, without these keys. Raises: as `as_data`."""
         yaml, text = YAML(typ="safe"), StringIO()
+        yaml.Representer = _Representer  # pyright: ignore[reportAttributeAccessIssue]
         yaml.default_flow_style = False
         yaml.sort_base_mapping_type_on_output = False  # pyright: ignore[reportAttributeAccessIssue]
         plain = {key: value for key, value in self.as_data().items() if key not in leave_out}

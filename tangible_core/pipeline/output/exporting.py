@@ -14,6 +14,7 @@ from ...data import Note, Outcome, Outcomes, Record, Work
 from ...data.outcome import OutcomeKind
 from ...data.products import EXPORTABLE
 from ...errors import BrokenMethod, ConfigError, Stopped, TangibleError, exit_error, quoted, wrong_argument
+from ...files.paths import plain_line
 from ...files.writing import sole_writer, temporary_folder
 from ...plugins import failures, hooks
 from ...plugins.interfaces import Exporter
@@ -227,7 +228,7 @@ def title_of(config: PipelineConfig, scene: Scene) -> str:
     if config.title.strip():
         return config.title.strip()
     name = Path(scene.name)
-    return name.stem if isinstance(scene.files, SceneFiles) else name.name
+    return plain_line(name.stem if isinstance(scene.files, SceneFiles) else name.name)
 
 
 def stem_of(config: PipelineConfig, scene: Scene) -> str:

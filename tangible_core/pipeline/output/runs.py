@@ -7,6 +7,7 @@ from functools import partial
 from html import escape
 from importlib.metadata import version
 from pathlib import Path
+from textwrap import indent
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -163,7 +164,7 @@ def about(engine: Engine) -> About:
     try:
         text = engine.config.as_yaml()
     except ConfigError as error:
-        text = f"# {error}"
+        text = indent(str(error), "# ")
     parts, materials = names_text(engine.config.part_names), materials_text(engine.make_on_grid("surface"))
     return About(names["device"], names["render"], text, parts=parts, materials=materials)
 

@@ -1,4 +1,5 @@
 import errno
+import json
 import os
 import signal
 import stat
@@ -170,6 +171,12 @@ def test_file_of_the_longest_name_is_written(tmp_path):
         path = tmp_path / (letter * (255 // len(letter.encode())))
         write_text(path, "new")
         assert path.read_text() == "new"
+
+
+def test_name_that_is_not_unicode_is_read_back_from_json(tmp_path):
+    name = os.fsdecode(b"caf\xe9")
+    write_text(tmp_path / "c.json", json.dumps([name], ensure_ascii=False))
+    assert json.loads((tmp_path / "c.json").read_text("utf-8")) == [name]
 
 
 def test_concurrent_writers_leave_one_whole_file(tmp_path):

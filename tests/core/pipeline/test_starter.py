@@ -1,6 +1,9 @@
 """A pipeline file for pictures that have none, and pictures in place of a file."""
 
+import json
+import re
 from pathlib import Path
+from xml.etree import ElementTree
 
 import cv2
 import numpy as np
@@ -9,7 +12,9 @@ import pytest
 from command_line import tangible
 from pictures import write_png
 from tangible_core.errors import ConfigError
+from tangible_core.files.writing import write_text
 from tangible_core.pipeline.config.parsing import parse_config
+from tangible_core.pipeline.pipeline import load_pipeline
 from tangible_core.pipeline.starter import are_pictures, starter
 from tangible_core.plugins.registry import default_registry
 from tangible_core.scene.scene_files import SceneFiles
@@ -138,3 +143,53 @@ def test_picture_runs_without_a_file(folder: Path):
     assert "builtin/coins" in other.stdout
     assert "name one pipeline file" in tangible("run", "a.yaml", "calm.png", cwd=folder).stderr
     assert "there is no such file (did you mean 'calm.png'?)" in tangible("run", "calmm.png", cwd=folder).stderr
+
+
+NAMES = [
+    "a\ntitle: X\nsafety: {max_force_n: 7}\n#.png",
+    *(f"a{control}title: X.png" for control in "\r\t\x1b\x7f\x85\x9b\u2028\u2029\ufeff\uffff\udce9"),
+    "$name {b: 'c\"} #d\\n.png",
+]
+"""Names that break a line, that a file of YAML or UTF-8 cannot hold as they are, or that look like YAML."""
+
+
+class TestHostileNames:
+    @pytest.mark.parametrize("name", NAMES, ids=ascii)
+    def test_name_of_a_picture_is_read_back_and_adds_no_line(self, folder: Path, name: str):
+        (folder / name).write_bytes((folder / "calm.png").read_bytes())
+        text = starter([Path(name)], folder / "p.yaml").text
+        assert text.count("\n") == starter([Path("calm.png")], folder / "p.yaml").text.count("\n")
+        write_text(folder / "p.yaml", text)
+        config = load_pipeline(folder / "p.yaml").config
+        assert isinstance(config.scene, SceneFiles) and config.scene.photo == folder / name
+        assert (config.title, config.safety.max_force_n) == ("", None)
+        write_text(folder / "completed.yaml", config.as_yaml())
+        assert load_pipeline(folder / "completed.yaml").config.scene == config.scene
+
+    @pytest.mark.parametrize("name", [NAMES[0], "a\udce9.png"], ids=ascii)
+    def test_picture_is_run_and_exported_under_a_plain_name(self, folder: Path, name: str):
+        (folder / name).write_bytes((folder / "calm.png").read_bytes())
+        done = tangible("run", name, "--set", "want=relief", "--out", "out", cwd=folder)
+        assert done.returncode == 0, done.stderr
+        outcomes = json.loads((folder / "out/outcomes.json").read_text("utf-8"))
+        assert Path(outcomes["scene"]).name == name
+        done = tangible("export", name, "--to", "swell,text", "--out", "out", cwd=folder)
+        assert done.returncode == 0, done.stderr
+        plain = re.sub("[\n\udce9]", " ", name.removesuffix(".png"))
+        titles = [
+            ElementTree.parse(drawing).getroot().findtext("{http://www.w3.org/2000/svg}title")
+            for drawing in (folder / "out").glob("*.svg")
+        ]
+        assert titles and all(title is not None and title.startswith(plain) for title in titles)
+
+    def test_file_that_is_written_has_a_plain_comment(self, folder: Path):
+        text = starter([Path("calm.png")], folder / "a\nwant: relief\n.yaml").text
+        assert "want: relief" not in text.splitlines()
+
+
+@pytest.mark.parametrize("title", [r"a\nb", r"a\eb", r"a\x85b", r"a\Lb"])
+def test_title_that_no_line_holds_is_refused(title: str):
+    with pytest.raises(ConfigError, match=r"p.yaml:2:1: .*one line of text without control characters"):
+        parse_config(f'scene: builtin/coins\ntitle: "{title}"\n', Path("p.yaml"), default_registry())
+    kept = 'scene: builtin/coins\ntitle: "\\u00A0\U0001f642 z. B.\\n"\n'
+    assert parse_config(kept, Path("p.yaml"), default_registry()).title.strip() == "🙂 z. B."

@@ -16,8 +16,10 @@ from tangible_authoring.renumbering import MOST_NAMED, Moved, in_words
 from tangible_core.data import Outcome
 from tangible_core.errors import OutputError
 from tangible_core.files.writing import sole_writer
+from tangible_core.pipeline.pipeline import load_pipeline
 from tangible_core.plugins import hooks
 from tangible_core.plugins.registry import Registry
+from tangible_core.scene.scene_files import SceneFiles
 
 
 @pytest.fixture
@@ -111,3 +113,12 @@ def test_message_names_as_many_moved_parts_as_a_line_holds():
     said = in_words(moved)
     assert said.endswith(f"{MOST_NAMED} is now {MOST_NAMED + 1}, and 2 more")
     assert in_words(moved[:MOST_NAMED]).endswith(f"{MOST_NAMED} is now {MOST_NAMED + 1}")
+
+
+@pytest.mark.parametrize("name", ["a\nwant: touch\n#.png", "a\x1b\x85\udce9b.png"], ids=ascii)
+def test_picture_of_a_hostile_name_is_read_back_from_the_file(stripes: Path, name: str):
+    (stripes / name).write_bytes((stripes / "stripes.png").read_bytes())
+    first_parts([stripes / name], stripes / "p.yaml", method="histogram").write()
+    config = load_pipeline(stripes / "p.yaml").config
+    assert isinstance(config.scene, SceneFiles) and config.scene.photo == stripes / name
+    assert config.title.startswith("A ")

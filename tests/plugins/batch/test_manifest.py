@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from tangible_batch.manifest import rows_from, rows_of
+from tangible_batch.manifest import file_of, rows_from, rows_of
+from tangible_core.files.yaml.source import parse_override
 
 
 def touch(folder: Path, *names: str) -> None:
@@ -69,3 +70,12 @@ def test_parquet_of_many_rows_gives_all_and_cells_without_a_value_change_nothing
     assert found == [
         (str(number), (*(("workspace.width_m=0.05",) if number % 2 else ()), "title=ä")) for number in range(5000)
     ]
+
+
+@pytest.mark.parametrize("name", ["a\n\x1b\x7f\x85\u2028\uffff.png", "caf\udce9.png", "🙂 ä.png"], ids=ascii)
+def test_picture_of_any_name_is_read_back_from_its_setting(tmp_path: Path, name: str):
+    touch(tmp_path, name)
+    ((setting,),) = scenes(tmp_path).values()
+    assert parse_override(setting) == (("scene", "photo"), str(tmp_path / name))
+    assert file_of(setting) == tmp_path / name
+    assert next(rows_from([{"scene.photo": name}], tmp_path)).sets == (setting,)

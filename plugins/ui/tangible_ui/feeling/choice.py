@@ -1,11 +1,11 @@
 """The chosen device, and the person's consent to its motor."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from tangible_core.errors import ConfigError
+from tangible_core.files.yaml.editing import json_in_yaml
 from tangible_core.plugins.interfaces import HapticDevice
 
 NOT_FOR_A_PAGE = ("mapping.clutch_button=null", "mapping.limits_m=null")
@@ -28,8 +28,8 @@ class Choice:
     def sets(self, own_device: Mapping[str, Any]) -> list[str]:
         """Return the changes to the document, as `--set` takes them."""
         if self.kind == "hand":
-            return [f"device={json.dumps(own_device)}", *NOT_FOR_A_PAGE]
-        return [f"device={json.dumps({'use': self.name})}"] if self.kind == "other" else []
+            return [f"device={json_in_yaml(own_device)}", *NOT_FOR_A_PAGE]
+        return [f"device={json_in_yaml({'use': self.name})}"] if self.kind == "other" else []
 
     def check(self, device: HapticDevice) -> None:
         """Check that a device may be opened. Raises: NotConfirmed for a motor that nobody agreed to."""

@@ -1,9 +1,9 @@
 """Requests to judge the document before a hand meets it, and to correct what can be."""
 
-import json
 from typing import Any
 
 from tangible_core.data import TICK_COLUMNS
+from tangible_core.files.yaml.editing import json_in_yaml
 from tangible_core.plugins.interfaces import Medium
 from tangible_core.servo.ring import PERIOD_NS, SPINS
 
@@ -48,7 +48,7 @@ async def legible(
 
 def _loop(session: Session) -> dict[str, Any]:
     """Return the page's own hand, and the lateness of the loop's ticks if there were enough of them."""
-    own = f"device={json.dumps(session.feeling.own_device)}"
+    own = f"device={json_in_yaml(session.feeling.own_device)}"
     servo = session.feeling.servo
     if servo is None or not session.feeling.running:
         return {"own": own, "late": None}

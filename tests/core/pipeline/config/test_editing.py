@@ -11,6 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tangible_core.errors import ConfigError, TangibleError
+from tangible_core.files.yaml.editing import json_in_yaml
+from tangible_core.files.yaml.source import parse_value, plain
 from tangible_core.pipeline.config.editing import REMOVE, edit_text, read_values
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
@@ -278,3 +280,13 @@ def _with_word_keys(node: Any) -> Any:
     if isinstance(node, list):
         return [_with_word_keys(value) for value in node]
     return str(node) if isinstance(node, float) and not abs(node) < float("inf") else node
+
+
+@given(
+    st.recursive(st.text() | st.sampled_from("\x7f\x85\u2028\ufffe\udce9🙂"), lambda more: st.lists(more, max_size=3))
+)
+def test_json_in_yaml_is_read_as_the_same_value_by_both(value: Any):
+    written = json_in_yaml(value)
+    assert plain(parse_value(written)) == value
+    assert json.loads(written) == value
+    assert len(written.splitlines()) == 1

@@ -1,6 +1,5 @@
 """Jobs that write exported files into a folder that pages fetch from, and pack them."""
 
-import json
 import re
 import secrets
 import shutil
@@ -13,6 +12,7 @@ from zipfile import ZIP_DEFLATED, ZipFile
 
 from tangible_core.data.records import digest_of as digest_of_records
 from tangible_core.errors import ConfigError
+from tangible_core.files.yaml.editing import json_in_yaml
 from tangible_core.pipeline.output.export_folder import read_list
 from tangible_core.pipeline.output.export_result import Exported
 from tangible_core.pipeline.output.exporting import work_for
@@ -45,7 +45,7 @@ def export(
     `Pipeline.export`.
     """
     begun_s = perf_counter()
-    pipeline = state.pipeline_of(text, path, [*sets, f"export={json.dumps(exports)}"])
+    pipeline = state.pipeline_of(text, path, [*sets, f"export={json_in_yaml(exports)}"])
     at = state.folder / f"{FOLDER}{secrets.token_hex(8)}"
     try:
         with state.work(pipeline, number) as work:
@@ -73,7 +73,7 @@ def export_preview(state: WorkerState, text: str, path: Path, sets: list[str], b
     no file for an exporter without a picture, or while something slow is not made yet (`waits`).
     Raises: ConfigError; TangibleError if the exporter could not write.
     """
-    pipeline = state.pipeline_of(text, path, [*sets, f"export={json.dumps([block])}"])
+    pipeline = state.pipeline_of(text, path, [*sets, f"export={json_in_yaml([block])}"])
     (chosen,) = pipeline.config.export
     none = {"file": "", "waits": False, "columns": 0, "rows": 0, "width_m": 0.0}
     if not isinstance(chosen.method, Previewing):

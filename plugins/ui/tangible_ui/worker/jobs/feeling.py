@@ -1,11 +1,11 @@
 """Jobs that prepare input of the force loop: a beacon, and several force laws on one surface."""
 
-import json
 from pathlib import Path
 from typing import Any, cast
 
 from tangible_core.data import HapticSurface
 from tangible_core.errors import ConfigError, quoted
+from tangible_core.files.yaml.editing import json_in_yaml
 from tangible_core.files.yaml.source import parse_value, plain
 from tangible_core.pipeline.pipeline import Pipeline
 from tangible_core.servo import beacon_to, parcel
@@ -55,5 +55,5 @@ def laws(
     first = state.pipeline_of(text, path, sets)
     if first.config.render is None:
         raise first.config.missing("render")
-    with_others = [state.config_of(text, path, [*sets, f"render={json.dumps(each)}"]) for each in others]
+    with_others = [state.config_of(text, path, [*sets, f"render={json_in_yaml(each)}"]) for each in others]
     return [loop_input_of(first), *(loop_input_of(Pipeline.from_config(config, like=first)) for config in with_others)]

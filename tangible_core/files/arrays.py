@@ -106,7 +106,7 @@ def _plain_errors() -> Generator[None]:
     try:
         with warnings.catch_warnings(action="ignore"):
             yield
-    except TooLargeError:
+    except (TooLargeError, MemoryError):
         raise
     except Exception as error:
         raise ValueError(shown(str(error) or type(error).__name__, 200)) from error

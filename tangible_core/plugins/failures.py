@@ -1,9 +1,11 @@
 """Unforeseen errors in one sentence: the plugin that failed, the verb, and the file with the traceback."""
 
 import logging
+import re
 import sys
 from collections.abc import Generator
 from contextlib import contextmanager
+from errno import ENOMEM
 from importlib.util import find_spec
 from traceback import walk_tb
 from types import FrameType
@@ -24,6 +26,8 @@ PACKAGES = {
     "usb": "pyusb",
 }
 """Packages whose modules have another name."""
+NO_MEMORY = re.compile("failed to map segment|[Cc]annot allocate memory|Insufficient memory")
+"""What the system's loader, the C library and OpenCV say when the memory runs out."""
 _PLACE = "tangible_place"
 """The attribute of an error from another process that holds its place there."""
 
@@ -76,10 +80,26 @@ def sentence(error: BaseException) -> str:
         return f"{who} needs the package {missing}, which is not installed; pip install {missing}"
     what = f"{type(error).__name__}: {text}" if text else type(error).__name__
     log.debug("the traceback", exc_info=error)
+    if lacks_memory(error):
+        who = "tangible" if place is None else plugin_name(place.kind, place.module, place.owner)
+        return f"{who} ran out of memory ({what}); end other programs, choose a smaller picture, or allow more memory"
     if place is None:
         return f"tangible itself failed: {what}; please report it: {where_kept(error)}"
     name = plugin_name(place.kind, place.module, place.owner)
     return f"{name} failed in {place.function}: {what}; {where_kept(error)}"
+
+
+def lacks_memory(error: BaseException | None) -> bool:
+    """Return True if an error, or one that it came from, is that the memory ran out: an import has its own for that.
+
+    >>> lacks_memory(ImportError("c.so: failed to map segment from shared object")), lacks_memory(ImportError("c.so"))
+    (True, False)
+    """
+    while error is not None:
+        if isinstance(error, MemoryError) or getattr(error, "errno", 0) == ENOMEM or NO_MEMORY.search(str(error)):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
 
 
 def missing_package(error: BaseException) -> str | None:

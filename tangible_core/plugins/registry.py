@@ -111,6 +111,10 @@ class Registry:
             with warn_if_slow(log, f"importing {kind} method {name} ({each.target}, from {each.origin})"):
                 cls: Any = each.point.load()
         except (Exception, SystemExit) as error:
+            from .failures import lacks_memory
+
+            if lacks_memory(error):
+                raise
             raise BrokenMethod(
                 f"{kind} method {name!r} ({each.target}, from {each.origin}) cannot be loaded: "
                 f"{type(error).__name__}: {shown(str(error), 500)}; repair or remove {each.distribution}; "

@@ -120,6 +120,8 @@ class Cache:
             os.utime(path)  # least recently used, not oldest, goes first
         except FileNotFoundError:  # or dropped by another process while it was read
             return None
+        except MemoryError:  # which is no damage
+            raise
         except Exception as error:  # noqa: BLE001 - a damaged file can provoke any
             if self._is_there():
                 log.warning("cache entry %s is damaged and is made again: %s", path, shown(str(error), 200))

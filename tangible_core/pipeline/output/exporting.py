@@ -250,4 +250,4 @@ def _fault(error: BaseException, folder: Path) -> tuple[OutcomeKind, str]:
         return "failed" if isinstance(error, BrokenMethod) else "refused", str(error)
     if isinstance(error, OSError) and error.errno in NO_ROOM:
         return "refused", f"{folder}: cannot be written: {error.strerror}; free some space or choose another folder"
-    return "failed", failures.sentence(error)
+    return "refused" if failures.lacks_memory(error) else "failed", failures.sentence(error)

@@ -1,15 +1,25 @@
 """The plugin that an error came from: the innermost one, or none for a fault of the core."""
 
+import re
+import subprocess
+import sys
 from importlib import import_module
+from importlib.metadata import EntryPoint
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from tangible_core import Force
+from command_line import tangible
+from tangible_core import Force, Relief
 from tangible_core.compiled.touch import CompiledTouch
+from tangible_core.pipeline.engine.cache import Cache
 from tangible_core.plugins import PlainTouch
 from tangible_core.plugins.failures import Place, missing_package, place_of, sentence
+from tangible_core.plugins.registry import Registry
 from tangible_core.session.recording.files import READERS, read
+from tangible_export import Heights
+from tangible_report import Sheet
 
 
 class Law(PlainTouch):
@@ -58,3 +68,67 @@ def test_recording_without_scipy_is_not_called_damaged(tmp_path: Path, monkeypat
     monkeypatch.setitem(READERS, ".nc", lambda path: import_module("acme_that_is_not_there"))
     with pytest.raises(ModuleNotFoundError, match="acme"):
         read(tmp_path / "hand.nc")
+
+
+WITHOUT_MEMORY = """
+import resource
+from tangible_core.plugins.failures import sentence
+import numpy
+used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + (3 << 20),) * 2)
+for fail in (lambda: numpy.zeros(10**8), lambda: __import__("cv2")):
+    try:
+        fail()
+    except Exception as error:
+        print(sentence(error))
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux bounds the memory of a process")
+def test_array_and_import_that_lack_memory_say_so_with_the_cure():
+    done = subprocess.run([sys.executable, "-c", WITHOUT_MEMORY], capture_output=True, text=True)
+    array, imported = done.stdout.splitlines()
+    for line, kind in ((array, "MemoryError"), (imported, "ImportError")):
+        assert re.match(rf"tangible ran out of memory \(_?(Array)?{kind}: ", line)
+        assert line.endswith("end other programs, choose a smaller picture, or allow more memory")
+
+
+def unmapped(*_: object) -> None:
+    raise ImportError("_backend_agg.so: failed to map segment from shared object")
+
+
+def test_sheet_that_lacks_memory_ends_the_run_as_a_mistake_and_keeps_its_products(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    np.save(tmp_path / "h.npy", np.eye(8))
+    monkeypatch.setattr(Sheet, "draw", unmapped)
+    done = tangible("run", "h.npy", "--set", "want=relief", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "ran out of memory (ImportError: _backend_agg.so: failed to map segment" in done.stderr
+    assert (tmp_path / "out/relief.npz").stat().st_size > 0
+
+
+def test_method_whose_import_lacks_memory_is_not_called_broken(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(EntryPoint, "load", unmapped)
+    with pytest.raises(ImportError, match="failed to map segment"):
+        Registry().load("depth", "semi-global")
+
+
+def test_exporter_that_lacks_memory_refuses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    np.save(tmp_path / "h.npy", np.eye(8))
+    monkeypatch.setattr(Heights, "write", unmapped)
+    done = tangible("export", "h.npy", "--to", "heights", "--out", "out", cwd=tmp_path)
+    assert (done.returncode, done.stderr.count("ran out of memory")) == (2, 1)
+
+
+def test_cached_result_is_kept_where_memory_lacks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    cache = Cache(tmp_path)
+    cache.put("ab" * 32, Relief(np.zeros((2, 2), np.float32), (1.0, 1.0)))
+    with monkeypatch.context() as patch, pytest.raises(MemoryError):
+        patch.setattr(np, "empty", lambda *_: unmapped_array())
+        cache.get("ab" * 32)
+    assert cache.get("ab" * 32) is not None
+
+
+def unmapped_array() -> None:
+    raise MemoryError

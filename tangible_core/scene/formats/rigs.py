@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
@@ -9,7 +10,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from ...errors import ConfigError, GeometryError, quoted
-from ...files.yaml.source import parse_source, read_text
+from ...files.yaml.source import parse_source, plain, read_text
 from ..rig import Camera, Distortion, StereoRig
 
 OPENCV: Mapping[str, tuple[str, ...]] = {
@@ -71,14 +72,12 @@ def _matrix(path: Path, tree: Mapping[Any, Any], part: str, names: Sequence[str]
             f"{path}: has no {part} ({', '.join(names)}), an OpenCV matrix with rows, cols and data; where the "
             "parts lie in two files, put both into one"
         )
-    return _numbers(path, part, block["data"]).reshape(_shape(path, part, cast("Mapping[str, Any]", block)))
-
-
-def _shape(path: Path, part: str, block: Mapping[str, Any]) -> tuple[int, int]:
-    rows, columns, data = block["rows"], block["cols"], cast("Sequence[Any]", block["data"])
-    if not (isinstance(rows, int) and isinstance(columns, int) and rows * columns == len(data)):
-        raise ConfigError(f"{path}: {part}: {quoted(rows)} rows and {quoted(columns)} cols are not {len(data)} numbers")
-    return rows, columns
+    rows, columns, numbers = plain(block["rows"]), plain(block["cols"]), _numbers(path, part, block["data"])
+    if {type(rows), type(columns)} != {int} or min(rows, columns) < 0 or rows * columns != numbers.size:
+        raise ConfigError(
+            f"{path}: {part}: {quoted(rows)} rows and {quoted(columns)} cols are not {numbers.size} numbers"
+        )
+    return numbers.reshape(rows, columns)
 
 
 def _of_kalibr(path: Path, left: Any, right: Any, unit_m: float) -> RigFile:
@@ -86,9 +85,11 @@ def _of_kalibr(path: Path, left: Any, right: Any, unit_m: float) -> RigFile:
     pose = _numbers(path, "cam1.T_cn_cnm1", right.get("T_cn_cnm1"))
     if pose.shape != (4, 4):
         raise ConfigError(f"{path}: cam1.T_cn_cnm1 is the 4 x 4 pose of cam1 to cam0, not {quoted(pose.tolist())}")
-    size = _numbers(path, "cam0.resolution", left.get("resolution", []))
+    size = [int(side) for side in _numbers(path, "cam0.resolution", left.get("resolution")).ravel()]
+    if size and (len(size) != 2 or min(size) < 1):
+        raise ConfigError(f"{path}: cam0.resolution is [width, height] in pixels, not {quoted(size)}")
     rig = StereoRig(*cameras, pose[:3, :3].copy(), unit_m * pose[:3, 3])
-    return RigFile(rig, (int(size[0]), int(size[1])) if size.shape == (2,) else None)
+    return RigFile(rig, (size[0], size[1]) if size else None)
 
 
 def _camera(path: Path, name: str, block: Any) -> Camera:
@@ -107,7 +108,16 @@ def _camera(path: Path, name: str, block: Any) -> Camera:
 
 
 def _numbers(path: Path, part: str, values: Any) -> Float64[np.ndarray, "..."]:
+    values = [] if values is None else plain(values)
     try:
-        return np.array(values if values is not None else [], np.float64)
-    except (TypeError, ValueError) as error:
-        raise ConfigError(f"{path}: {part} must be numbers, not {quoted(values)}") from error
+        if isinstance(values, list) and _are_finite(values):
+            return np.array(values, np.float64)
+    except ValueError:  # rows of different lengths
+        pass
+    raise ConfigError(f"{path}: {part} must be a list of finite numbers, not {quoted(values)}")
+
+
+def _are_finite(values: Any) -> bool:
+    if isinstance(values, list):
+        return all(map(_are_finite, cast("list[Any]", values)))
+    return type(values) in (int, float) and isfinite(values)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from ruamel.yaml import YAML
 
 from tangible_core.data import Views
 from tangible_core.errors import ConfigError, GeometryError, PictureError
@@ -177,6 +178,7 @@ cam1:
   distortion_coeffs: {coefficients}
   resolution: [120, 90]
 """
+KALIBR_NONE = KALIBR.format(model="none", coefficients=[])
 
 
 def write_opencv(path: Path, cameras: StereoRig, unit_m: float = 1.0) -> None:
@@ -227,6 +229,18 @@ class TestFiles:
         assert seen_m == pytest.approx([-0.864, -0.01, 0.523])
         assert found.centre_m == pytest.approx((0.1, 0.01, -0.005))
 
+    def test_kalibr_pose_takes_points_of_the_left_camera_to_the_right_one_in_the_unit_of_the_file(self, tmp_path: Path):
+        """A right camera that is turned by 0.1 rad to its right sees what is ahead of the left one on its left."""
+        cos, sin = np.cos(0.1), np.sin(0.1)
+        pose = [[cos, 0, -sin, -0.1 * cos], [0, 1, 0, 0], [sin, 0, cos, -0.1 * sin], [0, 0, 0, 1]]
+        chain = YAML(typ="safe").load(KALIBR_NONE)
+        chain["cam1"]["T_cn_cnm1"] = np.array(pose).tolist()
+        YAML(typ="safe").dump(chain, tmp_path / "camchain.yaml")
+        found, _ = read_rig(tmp_path / "camchain.yaml", 0.001)
+        np.testing.assert_allclose(found.centre_m, (1e-4, 0, 0), atol=1e-12)
+        ahead = found.rotation @ [0, 0, 1.0] + found.translation_m
+        assert ahead[0] < -0.09
+
     @pytest.mark.parametrize(
         ("text", "message"),
         [
@@ -240,10 +254,21 @@ class TestFiles:
             ("cam0: 5\ncam1: {}\n", "cam0 is a camera with camera_model pinhole, not 5"),
             ("cam0: {camera_model: omni}\ncam1: {}\n", "cam0 is a camera with camera_model pinhole"),
             (KALIBR.format(model="fov", coefficients=[]), "distortion_model: 'fov' is not one of radtan"),
-            (KALIBR.format(model="radtan", coefficients=["x"]), "distortion_coeffs must be numbers"),
+            (KALIBR.format(model="radtan", coefficients=["x"]), "distortion_coeffs must be a list of finite numbers"),
             (KALIBR.format(model="radtan", coefficients=[1]), "rig.yml: a radial-tangential lens has 0 or 4"),
             (KALIBR.format(model="none", coefficients=[]).replace("110.0, ", ""), "is [fu, fv, pu, pv]"),
             (KALIBR.format(model="none", coefficients=[]).replace("T_cn_cnm1", "T"), "is the 4 x 4 pose of cam1"),
+            (KALIBR_NONE.replace("[120, 90]", "[.nan, 48]"), "cam0.resolution must be a list of finite numbers"),
+            (KALIBR_NONE.replace("[120, 90]", "[120]"), "cam0.resolution is [width, height] in pixels, not [120]"),
+            (KALIBR_NONE.replace("[120, 90]", "[120, -90]"), "cam0.resolution is [width, height] in pixels"),
+            (KALIBR_NONE.replace("[120, 90]", "120"), "cam0.resolution must be a list of finite numbers, not 120"),
+            (KALIBR_NONE.replace("110.0,", "true,"), "cam0.intrinsics must be a list of finite numbers"),
+            (KALIBR_NONE.replace("110.0,", "1e999,"), "cam0.intrinsics must be a list of finite numbers"),
+            (KALIBR_NONE.replace("0.0, 1.0, 0.0, 0.01", "0.0"), "cam1.T_cn_cnm1 must be a list of finite numbers"),
+            ("M1: {rows: 1, cols: 1, data: 5}\n", "rig.yml: left matrix must be a list of finite numbers, not 5"),
+            ("M1: {rows: -3, cols: -3, data: [1,2,3,4,5,6,7,8,9]}\n", "-3 rows and -3 cols are not 9 numbers"),
+            ("M1: {rows: true, cols: 1, data: [1]}\n", "True rows and 1 cols are not 1 numbers"),
+            ("M1: {rows: 1, cols: 1, data: [[1, 2]]}\n", "1 rows and 1 cols are not 2 numbers"),
         ],
     )
     def test_wrong_calibration_file_raises(self, tmp_path: Path, text: str, message: str):

@@ -8,7 +8,7 @@ from os.path import commonpath
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tangible_core.errors import BatchError, quoted
+from tangible_core.errors import BatchError, quoted, shown, what_is
 from tangible_core.files.paths import as_path
 from tangible_core.files.yaml.editing import json_in_yaml
 from tangible_core.scene.formats.decoding import PICTURES, VIDEOS
@@ -20,6 +20,8 @@ FILES = tuple(f"scene.{name}" for name, field in SceneFiles.model_fields.items()
 SIDES = (("_left", "_right"), ("_l", "_r"), ("-left", "-right"), ("_L", "_R"))
 """The ends of the names of a pair's two pictures."""
 ID = "id"
+MAX_IN_REASON = 200
+"""Number of characters of a library's reason in a message."""
 
 
 class SceneRow(NamedTuple):
@@ -115,7 +117,10 @@ def _text(key: str, value: Any, base: Path) -> str:
     """Return a value as YAML; a file with its whole path."""
     if key in FILES:
         return _file_text(base / as_path(value, key))
-    return value if isinstance(value, str) else json_in_yaml(value)
+    try:
+        return value if isinstance(value, str) else json_in_yaml(value)
+    except (TypeError, ValueError) as error:
+        raise BatchError(f"column {quoted(key)}: holds {what_is(value)}; write texts or numbers there") from error
 
 
 def _file_text(path: Path) -> str:
@@ -153,11 +158,13 @@ def _parquet(path: Path) -> Iterator[dict[str, Any]]:
 
     parquet: Any = need("pyarrow.parquet")
     try:
-        file = parquet.ParquetFile(path)
-    except ValueError as error:
-        raise BatchError(f"{path}: is not a Parquet file: {error}") from error
-    for part in file.iter_batches(4096):
-        yield from part.to_pylist()
+        for part in parquet.ParquetFile(path).iter_batches(4096):
+            yield from part.to_pylist()
+    except Exception as error:  # a damaged file can provoke any
+        if getattr(error, "errno", None):  # the system's own
+            raise
+        why = shown(str(error), MAX_IN_REASON)
+        raise BatchError(f"{path}: is not a Parquet file, or is damaged: {why}; write it again") from error
 
 
 def _pictures(files: list[Path], base: Path) -> Iterator[SceneRow]:

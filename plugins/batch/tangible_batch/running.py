@@ -107,13 +107,13 @@ def run_batch(
 ) -> Iterator[Row]:
     """Run a batch as `batch` does, for the text of the pipeline file at a path. tally: is kept up to date."""
     need_all()
-    tally = tally or Tally()
+    tally, scenes = tally or Tally(), list(scenes)
+    job_of = JobMaker(text, path, out.absolute(), workforce.threads_each, options)
+    if scenes:  # before the folder: what is refused leaves nothing behind
+        job_of.check(scenes[0])
     with stoppable(stop), JsonLines(out / ROWS, alone=True) as file:
         earlier, waiting = last_rows(out), list[Job]()
-        job_of = JobMaker(text, path, out.absolute(), workforce.threads_each, options)
         for scene in scenes:
-            if not tally.wanted:
-                job_of.check(scene)
             tally.wanted += 1
             job = job_of(scene)
             if (row := earlier.get(scene.id)) and _is_current(row, job, options.retry):

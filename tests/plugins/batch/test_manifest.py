@@ -1,10 +1,12 @@
 """Scenes of folders, globs and tables: their names, their files, and what a cell changes."""
 
+from datetime import datetime
 from pathlib import Path
 
 import pytest
 
 from tangible_batch.manifest import file_of, rows_from, rows_of
+from tangible_core.errors import BatchError
 from tangible_core.files.yaml.source import parse_override
 
 
@@ -79,3 +81,27 @@ def test_picture_of_any_name_is_read_back_from_its_setting(tmp_path: Path, name:
     assert parse_override(setting) == (("scene", "photo"), str(tmp_path / name))
     assert file_of(setting) == tmp_path / name
     assert next(rows_from([{"scene.photo": name}], tmp_path)).sets == (setting,)
+
+
+def parquet(path: Path, **columns: list[object]) -> Path:
+    import pyarrow as arrow
+    import pyarrow.parquet as parquet
+
+    parquet.write_table(arrow.table(columns), path, compression="snappy")
+    return path
+
+
+@pytest.mark.parametrize("place", [0, 30, 80, -20, -2], ids=str)
+def test_damaged_table_of_parquet_is_refused_with_its_name(tmp_path: Path, place: int):
+    path = parquet(tmp_path / "rows.parquet", id=[f"scene {number}" for number in range(100)])
+    data = bytearray(path.read_bytes())
+    data[place : place + 8 or None] = b"\xff" * 8
+    path.write_bytes(data)
+    with pytest.raises(BatchError, match=r"rows\.parquet: is not a Parquet file, or is damaged"):
+        scenes(path)
+
+
+def test_cell_that_no_pipeline_file_can_hold_names_its_column(tmp_path: Path):
+    path = parquet(tmp_path / "rows.parquet", want=[datetime(2026, 1, 1)])
+    with pytest.raises(BatchError, match="column 'want': holds a datetime"):
+        scenes(path)

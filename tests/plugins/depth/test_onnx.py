@@ -25,13 +25,20 @@ from tangible_core.scene.workspace import SUITS, FeltSize
 from tangible_core.testing import run_checks
 from tangible_core.testing.synthetic.scenes import wall
 from tangible_depth import Auto, Contour, Luminance, Onnx, SemiGlobal
-from tangible_depth.network import onnx_file
+from tangible_depth.network import onnx_file, runtimes
 from tangible_depth.network.card import PRESETS
 from tangible_depth.network.onnx_file import read_inputs
 from tangible_depth.network.runtimes import Runtime
 
 RUNTIMES = ("opencv", "onnxruntime")
 STEREO = "input: {left: left, right: right}\noutput: {means: disparity-px}\n"
+
+
+@pytest.fixture(autouse=True)
+def ran_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Networks run in this process; the first run, in one of its own, is tested in its room."""
+    monkeypatch.setattr(runtimes, "_key", lambda *_: "ran")
+    monkeypatch.setattr(runtimes, "Cache", lambda: {"ran"})
 
 
 @pytest.fixture(scope="module")
@@ -263,8 +270,6 @@ class TestMistakes:
 
     def test_missing_onnxruntime_is_refused(self, networks: Path, monkeypatch: pytest.MonkeyPatch):
         monkeypatch.setitem(__import__("sys").modules, "onnxruntime", None)
-        from tangible_depth.network import runtimes
-
         runtimes._load.cache_clear()
         with pytest.raises(BrokenMethod, match=r"pip install onnxruntime"):
             Onnx(model=networks / "mono.onnx", runtime="onnxruntime").estimate(wall())

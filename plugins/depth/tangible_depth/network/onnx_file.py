@@ -1,6 +1,7 @@
 """What an ONNX file declares, read before a runtime reads it, as runtimes trust the file.
 
-OpenCV 5 ends the program at a negative size, and reads weights from any file of the machine that the network names.
+OpenCV 5 ends the program at a negative size, and at an error that quotes a text which is not UTF-8; it reads weights
+from any file of the machine that the network names.
 Only the wire format of Protocol Buffers is read: https://protobuf.dev/programming-guides/encoding/; the numbers of the
 fields are those of onnx.proto of ONNX 1.17.
 """
@@ -19,10 +20,32 @@ Value: TypeAlias = int | memoryview
 MOST_NUMBERS = 2**31
 """Largest number of numbers of one weight: more than the largest file holds."""
 
-GRAPH, NODES, WEIGHTS, INPUTS = 7, 1, 5, 11
+GRAPH, WEIGHTS, INPUTS = 7, 5, 11
 """Fields of a model (the first) and of a graph."""
-ATTRIBUTES, TENSOR, SUBGRAPH = 5, 5, 6
-"""Fields of a node (the first) and of an attribute."""
+MESSAGES: Mapping[str, tuple[set[int], Mapping[int, str]]] = {
+    "model": ({2, 3, 4, 6}, {7: "graph", 8: "import", 14: "pair", 25: "function"}),
+    "import": ({1}, {}),
+    "pair": ({1, 2}, {}),
+    "function": ({1, 4, 5, 6, 8, 10, 13}, {7: "node", 9: "import", 11: "attribute", 12: "value", 14: "pair"}),
+    "graph": (
+        {2, 10},
+        {1: "node", 5: "tensor", 11: "value", 12: "value", 13: "value", 14: "annotation", 15: "sparse", 16: "pair"},
+    ),
+    "annotation": ({1}, {2: "pair", 3: "pair"}),
+    "node": ({1, 2, 3, 4, 6, 7, 8}, {5: "attribute", 9: "pair"}),
+    "attribute": (
+        {1, 4, 9, 13, 21},
+        {5: "tensor", 6: "graph", 10: "tensor", 11: "graph", 14: "type", 15: "type", 22: "sparse", 23: "sparse"},
+    ),
+    "sparse": (set(), {1: "tensor", 2: "tensor"}),
+    "tensor": ({8, 12}, {13: "pair", 16: "pair"}),
+    "value": ({1, 3}, {2: "type", 4: "pair"}),
+    "type": ({6}, {1: "array", 4: "type", 9: "type"}),
+    "array": (set(), {1: "type", 2: "shape"}),
+    "shape": (set(), {1: "dimension"}),
+    "dimension": ({2, 3}, {}),
+}
+"""Fields of each message that are texts, and those that are messages, with their kinds."""
 SIZES, NAME, PLACES = 1, 8, 13
 """Fields of a tensor: its dimensions, its name, the file with its numbers."""
 VARINT, EIGHT_BYTES, BYTES, FOUR_BYTES = 0, 1, 2, 5
@@ -40,35 +63,40 @@ def read_inputs(model: Path) -> Mapping[str, Shape]:
         whole = memoryview(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))
     try:
         return _inputs(model, whole)
-    except (IndexError, ValueError) as error:
+    except (IndexError, ValueError, RecursionError) as error:
         raise damaged from error
 
 
 def _inputs(model: Path, whole: memoryview) -> Mapping[str, Shape]:
+    for kind, message in _messages("model", whole):
+        if kind == "tensor":
+            _check_tensor(model, message)
     graphs = list(_parts(whole, GRAPH))
-    weights = {name for graph in graphs for name in _checked_weights(model, graph)}
-    inputs = dict(_input(each) for graph in graphs for each in _parts(graph, INPUTS))
+    weights = {_name(tensor) for graph in graphs for tensor in _parts(graph, WEIGHTS)}
+    inputs = dict(_input(value) for graph in graphs for value in _parts(graph, INPUTS))
     return {name: shape for name, shape in inputs.items() if name not in weights}
 
 
-def _checked_weights(model: Path, graph: memoryview) -> Iterator[str]:
-    """Yield the names of a graph's weights, checked, and check those of its nodes and of graphs in these."""
-    for tensor in _parts(graph, WEIGHTS):
-        yield _check_tensor(model, tensor)
-    for node in _parts(graph, NODES):
-        for attribute in _parts(node, ATTRIBUTES):
-            for tensor in _parts(attribute, TENSOR):
-                _check_tensor(model, tensor)
-            for below in _parts(attribute, SUBGRAPH):
-                yield from _checked_weights(model, below)
+def _messages(kind: str, message: memoryview) -> Iterator[tuple[str, memoryview]]:
+    """Yield a message and all messages in it with their kinds. Raises: ValueError for a text that is not UTF-8."""
+    yield kind, message
+    texts, kinds = MESSAGES[kind]
+    for number, value in _fields(message):
+        if number in texts and isinstance(value, memoryview):
+            _text(value)
+        elif number in kinds and isinstance(value, memoryview):
+            yield from _messages(kinds[number], value)
 
 
-def _check_tensor(model: Path, tensor: memoryview) -> str:
-    """Return a weight's name. Raises: ConfigError for an impossible size, or numbers in a file that is elsewhere."""
-    name = next((_text(each) for each in _parts(tensor, NAME)), "")
+def _name(tensor: memoryview) -> str:
+    return next((_text(name) for name in _parts(tensor, NAME)), "")
+
+
+def _check_tensor(model: Path, tensor: memoryview) -> None:
+    """Check a weight. Raises: ConfigError for an impossible size, or numbers in a file that is elsewhere."""
     sizes = [size for number, value in _fields(tensor) if number == SIZES for size in _numbers(value)]
     if min(sizes, default=0) < 0 or math.prod(sizes) > MOST_NUMBERS:
-        raise ConfigError(f"model: {model}: the weight {quoted(name)} has the impossible size {quoted(sizes)}")
+        raise ConfigError(f"model: {model}: the weight {quoted(_name(tensor))} has the impossible size {quoted(sizes)}")
     for entry in _parts(tensor, PLACES):
         key, value = ("".join(map(_text, _parts(entry, number))) for number in (1, 2))
         if key == "location" and not (model.parent / value).resolve().is_relative_to(model.parent.resolve()):
@@ -76,7 +104,6 @@ def _check_tensor(model: Path, tensor: memoryview) -> str:
                 f"model: {model} takes weights from {quoted(value)}, which is outside its folder; use a network whose "
                 "files lie together"
             )
-    return name
 
 
 def _input(value: memoryview) -> tuple[str, Shape]:

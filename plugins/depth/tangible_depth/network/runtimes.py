@@ -1,25 +1,43 @@
-"""Runtimes of networks: OpenCV, or onnxruntime if installed."""
+"""Runtimes of networks: OpenCV, or onnxruntime if installed.
+
+A damaged file can end the process that runs it, so the first run of a file is in a process of its own. The cache
+remembers by its content and the version of the runtime that it ran; all later runs are in this process.
+"""
 # OpenCV's `dnn` and onnxruntime have no types.
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
+import hashlib
+import os
+import pickle
+import sys
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
+from signal import Signals
+from subprocess import DEVNULL, PIPE, Popen
 from threading import Lock
 from typing import Any, Literal, Protocol
 
 import numpy as np
 from jaxtyping import Float32
 
+from tangible_core.data import Calibration
 from tangible_core.errors import BrokenMethod, ConfigError, shown
+from tangible_core.files.reading import content_digest
+from tangible_core.pipeline.engine.cache import Cache
+from tangible_core.provenance.versions import of_imported
+from tangible_core.runtime.child_process import command, pipe_of
+from tangible_core.runtime.system.processes import exit_with_parent
 
 from .onnx_file import Shape, read_inputs
 
 Runtime = Literal["opencv", "onnxruntime"]
 OLDEST_OPENCV = 5
 """Oldest version of OpenCV that runs transformers, and pictures of another size than the network's own."""
+RAN = Calibration(1.0, 1.0)
+"""Entry of the cache that marks a file as run: its key says all, and this is the smallest record."""
 _lock = Lock()
 """Lock for one network at a time: none is thread-safe, and each uses all threads itself."""
 
@@ -43,8 +61,12 @@ def run(
     with _lock:
         try:
             _check_sizes(model, _inputs(model, status.st_mtime_ns, status.st_size), inputs)
-            network = _load(model, status.st_mtime_ns, status.st_size, runtime)
-            return network.run(inputs, outputs)
+            if (key := _key(model, runtime)) in (cache := Cache()):
+                network = _load(model, status.st_mtime_ns, status.st_size, runtime)
+                return network.run(inputs, outputs)
+            arrays = _run_apart(model, runtime, inputs, outputs)
+            cache.put(key, RAN)
+            return arrays
         except (BrokenMethod, ConfigError, MemoryError):
             raise
         except Exception as error:  # runtimes raise errors of any type, with a useful message
@@ -53,6 +75,51 @@ def run(
                 f"model: {model} cannot be run by {runtime} on {sizes}: {shown(' '.join(str(error).split()), 300)}; "
                 f"check the card's inputs and outputs, or try `runtime: {_other_runtime(runtime)}`"
             ) from error
+
+
+def _key(model: Path, runtime: Runtime) -> str:
+    """Return the key under which the cache remembers that this content ran with this version of the runtime."""
+    versions = of_imported(["cv2" if runtime == "opencv" else "onnxruntime"])
+    return hashlib.sha256(repr((__name__, content_digest(model), runtime, versions)).encode()).hexdigest()
+
+
+def _run_apart(
+    model: Path, runtime: Runtime, inputs: Mapping[str, np.ndarray], outputs: Sequence[str]
+) -> list[np.ndarray]:
+    """Run the network in a process of its own. Raises: what it raises there; ConfigError if the process dies."""
+    with Popen(command(__name__), stdin=PIPE, stdout=PIPE, stderr=DEVNULL) as process:
+        try:
+            pickle.dump((os.getpid(), model, runtime, dict(inputs), list(outputs)), pipe_of(process.stdin))
+            pipe_of(process.stdin).flush()
+            answer = pickle.load(pipe_of(process.stdout))
+        except (EOFError, pickle.UnpicklingError) as error:
+            code = process.wait()
+            how = Signals(-code).name if code < 0 else code
+            raise ConfigError(
+                f"model: {model} ended the process that ran it with {runtime} ({how}): it is damaged, or {runtime} "
+                f"fails on it; fetch it again, or try `runtime: {_other_runtime(runtime)}`"
+            ) from error
+        finally:
+            process.kill()
+    if isinstance(answer, Exception):
+        raise answer
+    return answer
+
+
+def main() -> None:
+    """Run the network that arrives on standard input, in a process of its own, and answer on standard output."""
+    answers = os.dup(1)
+    os.dup2(2, 1)  # what a library prints is not the answer
+    parent, model, runtime, inputs, outputs = pickle.load(sys.stdin.buffer)
+    exit_with_parent(parent, sys.stdin.buffer)
+    try:
+        answer = _load(model, 0, 0, runtime).run(inputs, outputs)
+    except (BrokenMethod, MemoryError) as error:
+        answer = error
+    except Exception as error:  # noqa: BLE001 - of a class that the other process may not know
+        answer = RuntimeError(str(error))
+    with os.fdopen(answers, "wb") as file:
+        pickle.dump(answer, file)
 
 
 def _check_sizes(model: Path, declared: Mapping[str, Shape], given: Mapping[str, np.ndarray]) -> None:

@@ -6,9 +6,12 @@ from html import escape
 from io import BytesIO
 from itertools import islice
 from pathlib import Path
-from typing import Any, cast
+from typing import Annotated, Any, ClassVar, Literal, cast
 from urllib.parse import quote
 
+from pydantic import BaseModel, ConfigDict, Field, InstanceOf, ValidationError
+
+from tangible_core.errors import ResultsError, shown
 from tangible_core.files.json_lines import read_rows
 from tangible_core.files.paths import without_folders
 from tangible_core.files.writing import atomic_write, write_text
@@ -20,11 +23,72 @@ from .job import Row
 ROWS, INDEX, GALLERY = "rows.jsonl", "index.parquet", "gallery"
 PER_PAGE = 500
 PER_PART = 200
+HUGE = 1e300
+Number = Annotated[float, Field(ge=-HUGE, le=HUGE)]
+Text = InstanceOf[str]
+"""A text that may hold bytes of a file's name that are not characters, which pydantic's own does not."""
+
+
+class _Part(BaseModel):
+    model_config: ClassVar[ConfigDict] = ConfigDict(strict=True)
+
+
+class SurfaceSize(_Part):
+    """The size of a surface in a row, millimetres."""
+
+    width_mm: Number
+    length_mm: Number
+    height_mm: Number
+
+
+class DisparityErrors(_Part):
+    """The errors of a disparity map in a row, per cent of the pixels."""
+
+    bad2: Number | None = None
+
+
+class Forces(_Part):
+    """The forces of a session in a row."""
+
+    peak_force_n: Number
+
+
+class Figures(_Part):
+    """The figures in a row."""
+
+    surface: SurfaceSize | None = None
+    disparity: DisparityErrors | None = None
+    materials: dict[str, Any] | None = None
+    force: Forces | None = None
+
+
+class WrittenRow(_Part):
+    """The fields of a row in the file, as far as the gallery shows them; see `Row`."""
+
+    id: Text
+    key: Text
+    outcome: Literal["ok", "failed"]
+    error: Text | None
+    seconds: Number | None
+    folder: Text
+    scene: Text = ""
+    figures: Figures | None = None
+    notes: list[Text] = []
+    files: list[Text] = []
+    card: Text = ""
 
 
 def last_rows(out: Path) -> dict[str, Row]:
-    """Return the last row of each scene in the folder. Raises: ResultsError for a damaged file."""
-    return {str(row.get("id")): row for _, row in read_rows(out / ROWS)}
+    """Return the last row of each scene in the folder. Raises: ResultsError for a damaged file, with the line."""
+    rows: dict[str, Row] = {}
+    for number, row in read_rows(out / ROWS):
+        try:
+            rows[WrittenRow.model_validate(row).id] = row
+        except ValidationError as error:
+            first = error.errors()[0]
+            place = shown(".".join(map(str, first["loc"])))
+            raise ResultsError(f"{out / ROWS}:{number}: {place}: {first['msg']}; remove the line") from error
+    return rows
 
 
 def rows_of_scenes(out: Path, names: Iterable[str]) -> Iterator[Row]:
@@ -74,13 +138,13 @@ def _flatten(name: str, value: Any) -> Iterator[tuple[str, Any]]:
     """Yield columns with dotted names, such as `figures.disparity.bad2`; lists become text."""
     if isinstance(value, Mapping):
         for key, each in cast("Mapping[str, Any]", value).items():
-            yield from _flatten(f"{name}.{key}" if name else key, each)
+            yield from _flatten(printable(f"{name}.{key}" if name else key), each)
     elif isinstance(value, list):
         yield name, "; ".join(map(str, cast("list[Any]", value)))
     elif isinstance(value, str):
         yield name, printable(value)
     else:
-        yield name, None if value is None else float(value)
+        yield name, None if value is None else float(min(max(value, -HUGE), HUGE))  # a damaged count may be any
 
 
 def _cell(value: Any, text: bool) -> Any:

@@ -22,7 +22,7 @@ from tangible_batch.farm import Done
 from tangible_batch.job import Job, make_scene
 from tangible_batch.manifest import rows_of
 from tangible_core import Pipeline, Scene
-from tangible_core.errors import ArgumentError, BatchError, OutputError, Stopped
+from tangible_core.errors import ArgumentError, BatchError, OutputError, ResultsError, Stopped
 from videos import greys
 
 CONFIG = "scene: builtin/brick\nwant: relief\ndepth: luminance\nworkspace: {width_m: 0.04}\n"
@@ -63,6 +63,42 @@ def damage_first_page(path: Path) -> None:
     data = bytearray(path.read_bytes())
     data[30:60] = b"\xff" * 30
     path.write_bytes(data)
+
+
+ROW = {"id": "a\udcff", "key": "k", "outcome": "ok", "error": None, "seconds": 1, "folder": "scenes/a"}
+"""As little as a row has; a name may have bytes that are not characters."""
+
+
+@pytest.mark.parametrize(
+    ("change", "place"),
+    [
+        ({"id": None}, "id"),
+        ({"id": 3}, "id"),
+        ({"outcome": "done"}, "outcome"),
+        ({"folder": ["a"]}, "folder"),
+        ({"seconds": "1"}, "seconds"),
+        ({"seconds": 10**400}, "seconds"),
+        ({"figures": {"surface": {"width_mm": 4.0, "length_mm": 3.0}}}, "figures.surface.height_mm"),
+        ({"figures": {"force": {}}}, "figures.force.peak_force_n"),
+        ({"figures": {"disparity": {"bad2": [1]}}}, "figures.disparity.bad2"),
+        ({"notes": "dark"}, "notes"),
+    ],
+)
+def test_damaged_row_is_refused_with_its_line_and_field(tmp_path: Path, change: dict, place: str):
+    (tmp_path / "rows.jsonl").write_text("".join(json.dumps(row) + "\n" for row in (ROW, ROW | change)))
+    with pytest.raises(ResultsError, match=rf"rows\.jsonl:2: {place}: .*; remove the line$"):
+        results.last_rows(tmp_path)
+    (tmp_path / "rows.jsonl").write_text(json.dumps(ROW) + "\n")
+    assert results.last_rows(tmp_path) == {ROW["id"]: ROW}
+
+
+def test_figure_of_a_damaged_row_is_a_cell_of_the_table_whatever_it_is(tmp_path: Path):
+    import pyarrow.parquet as pq
+
+    row = ROW | {"figures": {"b\udcff": 10**400, "c": [1, None], "d": True}}
+    (tmp_path / "rows.jsonl").write_text(json.dumps(row) + "\n")
+    (line,) = pq.read_table(results.write_index(tmp_path, [ROW["id"]])).to_pylist()
+    assert (line["figures.b?"], line["figures.c"], line["figures.d"]) == (1e300, "1; None", 1)
 
 
 class TestScenes:

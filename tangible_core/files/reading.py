@@ -79,7 +79,7 @@ def content_digest(path: Path) -> str:
     try:
         state = path.stat()
         return _digest(path, state.st_mtime_ns, state.st_size, state.st_ino) if path.is_file() else ""
-    except OSError:  # the reader of the file reports it
+    except (OSError, ValueError):  # the reader of the file reports it; no file can have some names
         return ""
 
 

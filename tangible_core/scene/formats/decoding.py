@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from ...errors import PictureError, did_you_mean, shown
+from ...errors import PictureError, TangibleError, did_you_mean, shown
 from ...files import arrays
 from ...files.reading import MOST_PIXELS, TOO_MANY_PIXELS, TooLargeError, check_size, read_bytes
 from ...runtime.opencv import silent_opencv
@@ -184,7 +184,7 @@ def _picture_errors(path: Path) -> Generator[None]:
         raise _too_large(path, TOO_MANY_PIXELS) from error
     except TooLargeError as error:
         raise _too_large(path, error) from error
-    except PictureError:
+    except TangibleError:  # also a stop, which is no damage
         raise
     except Exception as error:  # a damaged file can provoke any
         raise PictureError(

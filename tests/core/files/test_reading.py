@@ -6,7 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from tangible_core.files.reading import MOST_BYTES, MOST_PIXELS, TooLargeError, check_file, check_size, read_bytes
+from tangible_core.files.reading import (
+    MOST_BYTES,
+    MOST_PIXELS,
+    TooLargeError,
+    check_file,
+    check_size,
+    content_digest,
+    read_bytes,
+)
 
 
 def test_file_within_the_limit_is_read_whole(tmp_path: Path):
@@ -81,3 +89,9 @@ def test_array_size_over_a_limit_is_refused(shape: tuple[int, ...], itemsize: in
 )
 def test_array_size_at_the_limit_is_accepted(shape: tuple[int, ...], itemsize: int):
     check_size(shape, itemsize)
+
+
+@pytest.mark.parametrize("name", ["", "missing", "a\0b", "half \ud800", "x" * 300, "folder"])
+def test_digest_of_what_is_no_file_is_empty(tmp_path: Path, name: str):
+    (tmp_path / "folder").mkdir()
+    assert content_digest(tmp_path / name) == ""

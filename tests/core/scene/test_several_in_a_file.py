@@ -1,34 +1,22 @@
 """Files with more in them than one picture: pages, both views of a pair, a phone's depth, a value for no data."""
 
-import io
 import struct
-from base64 import b64encode
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image, TiffImagePlugin
 
+from phone_photos import PHOTO, RAMP, dynamic, gdepth, iphone, jpeg, segment, write_mpo
 from tangible_core import Scene
-from tangible_core.errors import PictureError
+from tangible_core.errors import PictureError, Stopped
 from tangible_core.scene.formats import decoding
-from tangible_core.scene.formats.pictures import read_map
+from tangible_core.scene.formats.pictures import read_map, read_picture
 from tangible_core.scene.formats.tiff_tags import stated_nodata
 
 RNG = np.random.default_rng(0)
 LEFT = np.repeat(RNG.integers(0, 255, (6, 8, 1), dtype=np.uint8), 3, axis=2)
 RIGHT = np.ascontiguousarray(LEFT[:, ::-1])
-
-
-def jpeg(picture: np.ndarray, xmp: bytes = b"", **options) -> bytes:
-    file = io.BytesIO()
-    Image.fromarray(picture).save(file, format="JPEG", quality=95, **options)
-    data = file.getvalue()
-    return data[:2] + segment(b"http://ns.adobe.com/xap/1.0/\0" + xmp) + data[2:] if xmp else data
-
-
-def segment(content: bytes, marker: int = 0xE1) -> bytes:
-    return struct.pack(">BBH", 0xFF, marker, len(content) + 2) + content
 
 
 class TestSeveralPictures:
@@ -51,6 +39,14 @@ class TestSeveralPictures:
         other.encoderinfo = {"tiffinfo": tags}
         page.save(tmp_path / "two.tif", save_all=True, append_images=[other])
         assert len(Scene.photo(tmp_path / "two.tif").notes) == pages - 1
+
+    def test_stop_while_a_picture_is_read_is_no_damage(self, tmp_path: Path):
+        def stop(_: str) -> None:
+            raise Stopped
+
+        Image.fromarray(LEFT).save(tmp_path / "two.gif", save_all=True, append_images=[Image.fromarray(RIGHT)])
+        with pytest.raises(Stopped):
+            read_picture(tmp_path / "two.gif", notify=stop)
 
     def test_file_of_one_picture_gives_no_note(self, tmp_path: Path):
         Image.fromarray(LEFT).save(tmp_path / "one.png")
@@ -116,63 +112,6 @@ class TestPairs:
             Scene.pair(LEFT[:, :1])
 
 
-def write_mpo(path: Path, pictures: list[np.ndarray], kind: int) -> None:
-    """Write pictures with Pillow, then change their type in the directory of the file."""
-    first, *others = (Image.fromarray(each) for each in pictures)
-    first.save(path, format="MPO", save_all=True, append_images=others, quality=95)
-    data = bytearray(path.read_bytes())
-    entries = data.index(b"MPF\0") + 54  # behind the head of the directory and its three tags
-    for number in range(len(pictures)):
-        first_kind = 0x030000 if kind == 0x010001 else kind
-        struct.pack_into("<I", data, entries + 16 * number, kind if number else first_kind)
-    path.write_bytes(bytes(data))
-
-
-RAMP = np.tile(np.linspace(0, 255, 16).astype(np.uint8), (12, 1))
-"""A depth map, 0 near."""
-PHOTO = np.full((24, 32, 3), 90, np.uint8)
-
-
-def gdepth(depth: bytes) -> bytes:
-    """Return a JPEG whose depth is in extended XMP: two segments, in the wrong order."""
-    text = b'<x GDepth:Format="RangeInverse" GDepth:Near="1" GDepth:Far="9" GDepth:Data="' + b64encode(depth) + b'"/>'
-    half = len(text) // 2
-    parts = [(half, text[half:]), (0, text[:half])]
-    extended = [
-        segment(b"http://ns.adobe.com/xmp/extension/\0" + b"A" * 32 + struct.pack(">II", len(text), at) + part)
-        for at, part in parts
-    ]
-    data = jpeg(PHOTO, b'<x xmpNote:HasExtendedXMP="AA"/>')
-    return data[:2] + b"".join(extended) + data[2:]
-
-
-def dynamic(depth: bytes) -> bytes:
-    other = b"a video"
-    items = [("Primary", b"", 0), ("MotionPhoto", other, 3), ("Depth", depth, 5), ("Confidence", other, 7)]
-    xmp = "".join(
-        f'<Container:Item Item:Semantic="{name}" Item:Length="{len(part)}" Item:Padding="{pad}"/>'
-        for name, part, pad in items
-    )
-    return jpeg(PHOTO, xmp.encode()) + b"".join(part + bytes(pad) for _, part, pad in items)
-
-
-def iphone(depth: bytes) -> bytes:
-    """Return a JPEG with a disparity map, in which near is light."""
-    xmp = b"<apdi:AuxiliaryImageType>disparity</apdi:AuxiliaryImageType>"
-    file = io.BytesIO()
-    Image.fromarray(PHOTO).save(
-        file, format="MPO", save_all=True, append_images=[Image.fromarray(255 - RAMP)], quality=95
-    )
-    data = file.getvalue()
-    start = data.rindex(b"\xff\xd8\xff")
-    extra = segment(b"http://ns.adobe.com/xap/1.0/\0" + xmp)
-    grown = bytearray(data[: start + 2] + extra + data[start + 2 :])
-    size = struct.pack("<I", len(data) - start)
-    at = grown.index(size, grown.index(b"MPF\0"))
-    grown[at : at + 4] = struct.pack("<I", len(data) - start + len(extra))
-    return bytes(grown)
-
-
 class TestPhoneDepth:
     @pytest.mark.parametrize("write", [gdepth, dynamic, iphone])
     def test_phone_depth_becomes_the_disparity_of_the_scene(self, tmp_path: Path, write):
@@ -185,6 +124,14 @@ class TestPhoneDepth:
         [note] = scene.notes
         assert note.startswith("portrait.jpg holds a depth map of 16 x 12 (")
         assert note.endswith("which is used; `photo_depth: false` leaves it out")
+
+    @pytest.mark.parametrize("pads", [(0, 0), (5, 0), (0, 7), (3, 4)])
+    def test_padding_behind_the_items_of_a_container_is_no_part_of_the_depth(self, tmp_path: Path, pads):
+        """Pad the depth and what follows it; with the wrong place the depth is no picture."""
+        (tmp_path / "portrait.jpg").write_bytes(dynamic(jpeg(RAMP), *pads))
+        scene = Scene.photo(tmp_path / "portrait.jpg")
+        assert scene.disparity is not None
+        assert scene.notes[0].startswith("portrait.jpg holds a depth map of 16 x 12 (Dynamic Depth)")
 
     @pytest.mark.parametrize("write", [gdepth, dynamic, iphone])
     def test_phone_depth_is_found_in_a_photo_that_is_reduced(self, tmp_path: Path, monkeypatch, write):

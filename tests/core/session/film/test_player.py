@@ -7,7 +7,7 @@ import pytest
 
 from films import GivenFrames, NearnessOfGrey, Seen, greys
 from tangible_core.data import NO_FORCE, HapticState, ServoReport
-from tangible_core.errors import BrokenMethod, PictureError
+from tangible_core.errors import BrokenMethod, PictureError, Stopped
 from tangible_core.session.film import ByClock, FrameMaker, Player, Reliefs
 from tangible_core.session.film.player import STOPPING_S
 from waiting import until
@@ -146,6 +146,37 @@ def test_player_raises_a_plugin_error_once_and_ends(play, error):
 
     until(raised)
     player.check()
+
+
+def test_stopped_work_ends_a_film_and_is_no_damage(play, caplog):
+    """A stop may come while a frame is made: the player ends in silence, and one by the clock says so."""
+    player = play(greys(BOX, BOX), Seen(), maker=Faulty(Stopped()))
+    player._thread.join(SOON_S)
+    assert not player._thread.is_alive()
+    player.check()
+    assert (player.counts.damaged, caplog.messages) == (0, [])
+
+
+def test_stopped_work_by_the_clock_is_raised():
+    frames = GivenFrames(greys(BOX, BOX), fps=10)
+    with Reliefs(lambda: frames, NearnessOfGrey()) as reliefs:
+        show = ByClock(reliefs, Seen())
+        reliefs._maker = Faulty(Stopped())
+        with pytest.raises(Stopped):
+            for tick in range(200):
+                show(tick / 1000)
+        assert show.counts.damaged == 0
+
+
+def test_first_frame_is_due_at_once_whatever_time_it_has(monkeypatch):
+    """A film that begins at 50 s, as a part that was cut out of a longer one, is not late by 50 s."""
+    asked, frames = [], GivenFrames(greys(BOX), first_s=50.0)
+    monkeypatch.setattr(frames, "at", asked.append)
+    monkeypatch.setattr("tangible_core.session.film.player.time.monotonic", iter([1000.0, 1000.25]).__next__)
+    player = Player(Reliefs(lambda: frames, NearnessOfGrey()), Seen())
+    assert player._due(frames).time_s == 50.0
+    assert player._due(frames) is None
+    assert asked == [50.25]
 
 
 def test_player_stops_soon_during_a_slow_method_and_keeps_no_process_alive(play):

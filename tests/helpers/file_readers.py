@@ -3,8 +3,12 @@
 import json
 import os
 import shutil
+import struct
+import zipfile
+import zlib
 from collections.abc import Callable
 from dataclasses import asdict
+from functools import cache
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -573,8 +577,71 @@ def _make_uploads(folder: Path) -> None:
     (folder / "parts.png").write_bytes(as_png(LABELS.astype(np.int32), "p.yaml"))
 
 
-def _make_sheets(folder: Path) -> None:
-    Image.fromarray(COLOURS).save(folder / "sheet.png")
+def _members(make: Callable[[Path], object], name: str) -> Callable[[Path], object]:
+    """Write the arrays of an archive as files, which are damaged and then packed: else its check sums find all."""
+
+    def write(folder: Path) -> None:
+        make(folder)
+        with zipfile.ZipFile(next(folder.rglob(name))) as archive:
+            members = {each: archive.read(each) for each in archive.namelist()}
+        for path in folder.iterdir():
+            path.unlink()
+        for member, data in members.items():
+            (folder / member).write_bytes(data)
+
+    return write
+
+
+def _packed(read: Callable[[Path], object], name: str) -> Callable[[Path], object]:
+    def read_archive(path: Path) -> object:
+        archive = path.parent.parent / name
+        with zipfile.ZipFile(archive, "w", strict_timestamps=False) as file:
+            for member in path.parent.iterdir():
+                file.write(member, member.name)
+        return read(archive)
+
+    return read_archive
+
+
+def _check_sums(data: bytes) -> bytes:
+    """Return a PNG with the check sums of its chunks put right."""
+    whole, at = bytearray(data), 8
+    while at + 12 <= len(whole):
+        (size,) = struct.unpack_from(">I", whole, at)
+        if (end := at + 8 + size) + 4 > len(whole):
+            break
+        struct.pack_into(">I", whole, end, zlib.crc32(whole[at + 4 : end]))
+        at = end + 4
+    return bytes(whole)
+
+
+def _make_study_folder(folder: Path) -> None:
+    from tangible_study.session.folder import Place, enrol, prepare, write_sidecar
+    from tangible_study.study_file import load_study
+
+    file = load_study(studies.write_study(folder))
+    root = folder / "out"
+    root.mkdir()
+    prepare(root, file)
+    enrol(root, "P1", file.study, False)
+    enrol(root, "P2", file.study, False)
+    place = Place(root, "P1", "small")
+    write_sidecar(place, file, {"Faults": ["late"], "Device": "mock"})
+
+
+@cache
+def _study_once(path: Path) -> Any:
+    from tangible_study.study_file import load_study
+
+    return load_study(path)
+
+
+def _study_folder(path: Path) -> object:
+    from tangible_study.session.folder import Place, check_name, faults_before, participants, prepare
+
+    root = next(each for each in path.parents if each.name == "out")
+    prepare(root, _study_once(root.parent / "study.yaml"))
+    return participants(root), faults_before(Place(root, "P1", "small")), check_name(root, "P1", resume=True)
 
 
 READERS = {
@@ -584,6 +651,7 @@ READERS = {
             _by_opencv("e.png", np.dstack([DEEP] * 3)), _image("f.png", np.dstack([COLOURS, GREY])),
         ),
         _picture,
+        repair=_check_sums,
     ),
     "jpeg": Reader(_all(_image("a.jpg", COLOURS), _image("b.jpg", GREY, progressive=True)), _picture),
     "tiff": Reader(
@@ -617,6 +685,7 @@ READERS = {
             _image("e.tif", GREY, compression="tiff_adobe_deflate"), _palette("f.png"), _image("g.tif", MAP),
         ),
         _large,
+        repair=lambda data: _check_sums(data) if data[:4] == b"\x89PNG" else data,
     ),
     "pair": Reader(
         _all(
@@ -656,6 +725,9 @@ READERS = {
     "network-inputs": Reader(_make_networks, _network_inputs, "*.onnx"),
     "network-card": Reader(_bytes("card.yaml", CARD), _card, text=True),
     "cache": Reader(_make_cache, _cache, "*.npz"),
+    "cache-members": Reader(_members(_make_cache, f"{'1' * 32}.npz"), _packed(_cache, f"{'1' * 32}.npz"), text=True),
+    "recording-members": Reader(_members(_make_recordings, "*.npz"), _packed(_recording, "stroke.npz")),
+    "study-folder": Reader(_make_study_folder, _study_folder, "out/**/*.*s*", text=True),
     "device-calibration": Reader(_make_device, _device, "*.json", text=True),
     "firmware": Reader(_bytes("firmware.bin", FIRMWARE), _firmware),
     "draft": Reader(_bytes("draft.json", json.dumps({"text": "scene: x\n", "path": "/tmp/p.yaml"})), _draft, text=True),

@@ -48,6 +48,8 @@ class Reader(NamedTuple):
     """Pattern of the files that are damaged; others lie beside them."""
     text: bool = False
     """True for files that people write: words are replaced more often than bytes."""
+    repair: Callable[[bytes], bytes] | None = None
+    """Puts check sums right, for half of the files: else a reader looks no further."""
 
 
 class Finding(NamedTuple):
@@ -159,6 +161,13 @@ def _lines(data: bytes, chance: random.Random) -> bytes:
     return b"".join(lines)
 
 
+def _nest(data: bytes, chance: random.Random) -> bytes:
+    """Open many brackets where a value begins."""
+    marks = list(re.finditer(rb"[:=,\t] *(?=.)|^", data))
+    at = chance.choice(marks).end()
+    return data[:at] + chance.choice((b"[", b"{a: ", b'{"a":')) * chance.choice((30, 3000)) + data[at:]
+
+
 def _no_utf_8(data: bytes, chance: random.Random) -> bytes:
     at = chance.randrange(len(data) + 1)
     return data[:at] + chance.choice((b"\xff", b"\xc3", b"\xed\xa0\x80", b"\xff\xfe", b"\xef\xbb\xbf")) + data[at:]
@@ -180,7 +189,7 @@ BYTE_CHANGES = (
     _zero,
     _word,
 )
-TEXT_CHANGES = (_word, _word, _word, _put_word, _value, _value, _lines, _lines, _no_utf_8)
+TEXT_CHANGES = (_word, _word, _word, _put_word, _value, _value, _lines, _lines, _no_utf_8, _nest)
 
 
 class Damage:
@@ -196,7 +205,8 @@ class Damage:
         """Return the path and the content of a damaged file."""
         chance = random.Random(f"{self.name} {number}")
         path = chance.choice(list(self.valid))
-        return path, mutate(self.valid[path], chance, self.reader.text)
+        data = mutate(self.valid[path], chance, self.reader.text)
+        return path, self.reader.repair(data) if self.reader.repair and chance.random() < 0.5 else data
 
     def findings(self, numbers: range) -> Iterator[Finding]:
         """Read these files in forks of this process, and yield what should not be."""

@@ -8,6 +8,8 @@ from ruamel.yaml.constructor import RoundTripConstructor
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.scanner import RoundTripScanner
 
+from ...errors import quoted
+
 MOST_DEPTH = 20
 """The most levels of nested blocks; files for this program need six."""
 TOO_DEEP = f"more than {MOST_DEPTH} blocks are nested"
@@ -16,6 +18,9 @@ MOST_NODES = 40_000
 MOST_DIGITS = 64
 """The most characters of a number, with its sign, point and exponent."""
 
+_TAG = "tag:yaml.org,2002:"
+_PLAIN = (None, *(_TAG + kind for kind in ("int", "float", "bool", "null")))
+"""Tags of which the parser makes plain values; of others, also that of a text, it makes objects of its own."""
 _NUMBERS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
 
 
@@ -43,11 +48,13 @@ def check_events(events: Iterable[Any]) -> None:
     """Check the events of a parser one after the other, before a tree is built from them.
 
     Raises: MarkedYAMLError with the place of a block that is too deep or too large, of an alias inside its own anchor,
-    or of a block as a key, whose hash takes time that doubles with each level.
+    of a block as a key, whose hash takes time that doubles with each level, or of a value with a tag.
     """
     count = _Count()
     for event in events:
-        kind = type(event).__name__
+        kind, tag = type(event).__name__, getattr(event, "tag", None)
+        if tag == f"{_TAG}set" or (kind == "ScalarEvent" and tag not in _PLAIN):
+            raise _refusal(event, f"a value cannot have the tag {quoted(tag)}; leave it out")
         if kind in ("MappingStartEvent", "SequenceStartEvent"):
             _open(count, event, kind == "MappingStartEvent")
         elif kind in ("MappingEndEvent", "SequenceEndEvent"):

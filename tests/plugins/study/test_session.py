@@ -16,7 +16,7 @@ from tangible_core.session import Recording, Writer
 from tangible_study.desks.desk import Left
 from tangible_study.presenting.stimuli import Stimuli
 from tangible_study.procedures import Trial
-from tangible_study.session.folder import participants
+from tangible_study.session.folder import Place, faults_before, participants
 from tangible_study.session.start import begin
 from tangible_study.session.words import response, right_answer
 from tangible_study.study_file import parse_study
@@ -52,6 +52,19 @@ def test_all_answers_and_the_force_of_each_trial_are_kept(study: Path):
     assert participant.has_finished
     consent = (study.parent / "out/sub-P1/consent.txt").read_text()
     assert consent.startswith("You may stop at any time.\n\nagreed: ")
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"Faults": 3}', '{"Faults": [1]}', '{"Faults": ' + "[" * 3000])
+def test_damaged_description_of_answers_or_of_the_study_is_no_fault_of_the_program(study: Path, text: str):
+    """The description is written anew at each start; a study whose own description is damaged is not mixed with."""
+    with pytest.raises(Left):
+        sit_down(study, answer=leave_after(2)).run()
+    sidecar = study.parent / "out/sub-P1/beh/sub-P1_task-small_beh.json"
+    sidecar.write_text(text)
+    assert faults_before(Place(study.parent / "out", "P1", "small")) == (["1"] if "[1]" in text else [])
+    (study.parent / "out/dataset_description.json").write_text(text)
+    with pytest.raises(OutputError, match="has participants of another version of this study"):
+        sit_down(study, "P2")
 
 
 def test_sidecar_has_the_worst_lateness_of_all_intervals(study: Path):

@@ -64,6 +64,13 @@ class TestDrafts:
         assert found.left is None
         assert not list(tmp_path.iterdir())
 
+    @pytest.mark.parametrize(
+        "text", ["", "{", "[]", "3", '{"text": 1}', "[" * 3000 + "]" * 3000, '{"text": ' + "[" * 3000]
+    )
+    def test_damaged_draft_is_not_offered(self, tmp_path: Path, gone: int, text: str) -> None:
+        (tmp_path / f"{gone}.json").write_text(text)
+        assert Drafts(tmp_path).look() is None
+
     def test_draft_of_a_saved_text_is_not_written(self, tmp_path: Path) -> None:
         kept = Drafts(tmp_path)
         kept.remember_opened(OPENED)

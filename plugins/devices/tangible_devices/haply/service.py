@@ -169,5 +169,5 @@ def _service_errors(uri: str) -> Generator[None]:
         raise DeviceError(f"{uri}: the Haply service no longer answers; restart it, open the device again") from error
     except ConnectionClosed as error:
         raise DeviceError(f"{uri}: the Haply service closed the connection ({error}); open the device again") from error
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise DeviceError(f"{uri}: sends invalid answers ({error!r}); is this the service 3.5?") from error

@@ -108,7 +108,7 @@ def _prepare(root: Path, file: StudyFile, digest: str) -> None:
     if (root / "study.yaml").exists():
         try:
             before = loads(there.read_text(encoding="utf-8")).get("Design")
-        except (OSError, ValueError, AttributeError):
+        except (OSError, ValueError, AttributeError, RecursionError):
             before = None
         if before != digest:
             raise OutputError(
@@ -201,9 +201,9 @@ def faults_before(place: Place) -> list[str]:
     """Return the faults of earlier starts of this participant, from the description of the answers."""
     try:
         faults: list[str] = loads(place.sidecar.read_text(encoding="utf-8"))["Faults"]
-    except (OSError, ValueError, KeyError):
+        return list(map(str, faults))
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return []
-    return faults
 
 
 def write_sidecar(place: Place, file: StudyFile, facts: Mapping[str, Any]) -> None:

@@ -90,7 +90,7 @@ def _read(file: Path) -> Draft | None:
     try:
         said: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         return Draft(file, Text(str(said["text"]), Path(str(said["path"]))), file.stat().st_mtime)
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
 
 

@@ -9,7 +9,7 @@ from tangible_core.errors import MOST_IN_LINE, MOST_LINES, ConfigError
 from tangible_core.files.reading import MOST_TEXT_BYTES
 from tangible_core.files.yaml import bounds
 from tangible_core.files.yaml.bounds import MOST_DEPTH, MOST_DIGITS, MOST_NODES
-from tangible_core.files.yaml.source import Source, parse_source
+from tangible_core.files.yaml.source import Source, parse_source, plain
 from tangible_core.materials.files import parse_materials
 from tangible_core.pipeline.config.parsing import parse_config
 from tangible_core.plugins.registry import default_registry
@@ -175,3 +175,17 @@ def test_hostile_override_gives_one_short_complaint(override: str, reason: str):
     assert line.startswith("--set ")
     assert reason in line
     assert len(line) < 500
+
+
+@pytest.mark.parametrize(
+    "value", ["!foo x", "!!str x", "! x", "!!binary aGk=", "!!set {a, b}", "[1, !foo x]", "{b: !!x 1}"]
+)
+def test_value_with_a_tag_is_refused_with_its_place(value: str):
+    with pytest.raises(ConfigError, match=r"p\.yaml:2:\d+: a value cannot have the tag '.*'; leave it out"):
+        parse_source(f"# a comment\na: {value}\n", Path("p.yaml"), "a mapping")
+
+
+def test_plain_value_with_its_own_tag_and_tagged_mapping_are_read():
+    text = "a: !!int 3\nb: !!bool true\nc: !!opencv-matrix {rows: 3}\nd: !!float 2\n"
+    tree = parse_source(text, Path("p.yaml"), "a mapping").tree
+    assert {key: plain(value) for key, value in tree.items()} == {"a": 3, "b": True, "c": {"rows": 3}, "d": 2.0}

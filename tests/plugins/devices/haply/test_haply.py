@@ -283,7 +283,10 @@ class TestFaults:
             '{"inverse3": [{"device_id": "049D", "state": {"cursor_position": {"x": 0, "y": 0}}}]}',
             '{"inverse3": [{"device_id": "049D", "state": {"cursor_position": {"x": NaN, "y": 0, "z": 0}}}]}',
             '{"inverse3": [{"device_id": "049D", "state": {"cursor_position": [0, 0, 0]}}]}',
+            '{"inverse3": [{"device_id": "049D", "state": [0, 0, 0]}]}',
+            '{"inverse3": ["state"]}',
             '{"inverse3": "none"}',
+            '{"inverse3": ' + "[" * 3000,
             "{}",
         ],
     )

@@ -30,7 +30,7 @@ Text = InstanceOf[str]
 
 
 class _Part(BaseModel):
-    model_config: ClassVar[ConfigDict] = ConfigDict(strict=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(strict=True, frozen=True)
 
 
 class SurfaceSize(_Part):

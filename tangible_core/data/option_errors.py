@@ -53,9 +53,12 @@ def sentences_about(
 
 
 def _sentence(error: dict[str, Any], model: type[BaseModel], location: Location) -> tuple[Location, str]:
-    where = (*location, *(part for part in error["loc"] if part != "[key]" and not str(part).startswith(":")))
+    is_key = error["type"] == "extra_forbidden"  # the last part is then the file's, and not a name of pydantic's
+    inner = error["loc"][:-1] if is_key else error["loc"]
+    plain = (part for part in inner if part != "[key]" and not str(part).startswith(":"))
+    where = (*location, *plain, *error["loc"][len(inner) :])
     name = shown(".".join(str(part) for part in where))
-    if error["type"] == "extra_forbidden":
+    if is_key:
         options = list(model_at(model, error["loc"][:-1]).model_fields)
         known = f"; known: {', '.join(options)}" if options else "; there are no options"
         return where, f"{name}: unknown option{did_you_mean(str(where[-1]), options)}{known}"

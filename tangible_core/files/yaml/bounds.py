@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, cast, final
 
+from ruamel.yaml.comments import TaggedScalar
 from ruamel.yaml.constructor import RoundTripConstructor
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.scanner import RoundTripScanner
@@ -128,7 +129,9 @@ class BoundedConstructor(RoundTripConstructor):
         if node.tag in _NUMBERS and len(node.value) > MOST_DIGITS:
             raise MarkedYAMLError(None, None, f"a number of more than {MOST_DIGITS} digits", node.start_mark)
         try:
-            return cast(Any, super()).construct_non_recursive_object(node, tag)
+            value: Any = cast(Any, super()).construct_non_recursive_object(node, tag)
+            is_mark = isinstance(value, TaggedScalar)  # `<<` in place of a value
+            return str(cast(Any, value).value) if is_mark else value
         except YAMLError:
             raise
         except Exception as error:  # such as ValueError, for `!!int word`

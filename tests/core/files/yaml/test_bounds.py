@@ -1,8 +1,10 @@
 """Hostile YAML: each text gives one complaint with its place, quickly."""
 
+import json
 from pathlib import Path
 
 import pytest
+from pydantic import BaseModel
 
 from hostile import LAUGHS, YAML_BOMBS
 from tangible_core.errors import MOST_IN_LINE, MOST_LINES, ConfigError
@@ -185,7 +187,28 @@ def test_value_with_a_tag_is_refused_with_its_place(value: str):
         parse_source(f"# a comment\na: {value}\n", Path("p.yaml"), "a mapping")
 
 
+@pytest.mark.parametrize("text", ["<<", "=", "<"])
+def test_mark_of_yaml_in_place_of_a_value_is_a_text(text: str):
+    tree = parse_source(f"a: {text}\nb: [{text}, 1]\n", Path("p.yaml"), "a mapping").tree
+    assert json.loads(json.dumps(plain(tree))) == {"a": text, "b": [text, 1]}
+
+
 def test_plain_value_with_its_own_tag_and_tagged_mapping_are_read():
     text = "a: !!int 3\nb: !!bool true\nc: !!opencv-matrix {rows: 3}\nd: !!float 2\n"
     tree = parse_source(text, Path("p.yaml"), "a mapping").tree
     assert {key: plain(value) for key, value in tree.items()} == {"a": 3, "b": True, "c": {"rows": 3}, "d": 2.0}
+
+
+class Options(BaseModel, extra="forbid"):
+    width: int = 1
+
+
+@pytest.mark.parametrize("key", [":", ":text", "[key]", "widht"])
+@pytest.mark.parametrize("place", [(), ("pen",)])
+def test_unknown_key_is_named_though_pydantic_has_such_names(key: str, place: tuple[str, ...]):
+    """Pydantic names the forms of an option `:text` and a key `[key]` where it says where a mistake is."""
+    source = parse(f"'{key}': 1\n")
+    assert source.model(place, Options, source.tree) is None
+    ((sentence, _),) = source.complaints
+    hint = " (did you mean 'width'?)" if key == "widht" else ""
+    assert sentence == f"here/p.yaml:1:1: {'.'.join((*place, key))}: unknown option{hint}; known: width"

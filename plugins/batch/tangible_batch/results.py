@@ -140,7 +140,7 @@ def _flatten(name: str, value: Any) -> Iterator[tuple[str, Any]]:
         for key, each in cast("Mapping[str, Any]", value).items():
             yield from _flatten(printable(f"{name}.{key}" if name else key), each)
     elif isinstance(value, list):
-        yield name, "; ".join(map(str, cast("list[Any]", value)))
+        yield name, printable("; ".join(map(str, cast("list[Any]", value))))
     elif isinstance(value, str):
         yield name, printable(value)
     else:

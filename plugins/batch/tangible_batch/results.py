@@ -130,7 +130,7 @@ def write_gallery(out: Path, names: Iterable[str]) -> tuple[Path, ...]:
     paths = tuple(out / f"{GALLERY}{number or ''}.html" for number in range(max(1, -(-len(names) // PER_PAGE))))
     rows = rows_of_scenes(out, names)
     for path in paths:
-        write_text(path, _page(out.name, islice(rows, PER_PAGE), paths, path))
+        write_text(path, printable(_page(out.name, islice(rows, PER_PAGE), paths, path)))
     return paths
 
 

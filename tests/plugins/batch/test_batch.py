@@ -92,6 +92,14 @@ def test_damaged_row_is_refused_with_its_line_and_field(tmp_path: Path, change: 
     assert results.last_rows(tmp_path) == {ROW["id"]: ROW}
 
 
+def test_half_characters_of_a_row_are_question_marks_in_the_gallery(tmp_path: Path):
+    odd = "a\udcff"
+    row = ROW | {"card": odd, "files": [f"sheet.{odd}", f"{odd}.html"], "notes": [odd], "scene": odd, "folder": odd}
+    (tmp_path / "rows.jsonl").write_text(json.dumps(row) + "\n")
+    (page,) = results.write_gallery(tmp_path, [ROW["id"]])
+    assert 'src="a%3F/a?"' in page.read_text()
+
+
 def test_figure_of_a_damaged_row_is_a_cell_of_the_table_whatever_it_is(tmp_path: Path):
     import pyarrow.parquet as pq
 

@@ -200,8 +200,8 @@ def parse_value(text: str) -> Any:
     parser: Any = YAML(typ="rt")
     parser.Scanner = BoundedScanner
     with warnings.catch_warnings(action="ignore"):  # about anchors that occur twice
-        check_events(parser.parse(text))
         try:
+            check_events(parser.parse(text))
             return yaml.load(text)
         except YAMLError:
             raise

@@ -45,7 +45,7 @@ def read_rig(path: Path, unit_m: float = 1.0) -> RigFile:
     unit_m: metres in one unit of the translation, 0.001 if the chessboard was measured in millimetres.
     Raises: ConfigError if the file cannot be read or lacks a part, GeometryError for numbers that no camera has.
     """
-    text = re.sub(r"\A%YAML:1\.0\s*\n", "", read_text(path))  # OpenCV's head, which is not YAML
+    text = re.sub(r"\A%YAML[: ]1\.0\s*\n", "", read_text(path))  # OpenCV's head, which is not YAML
     tree = parse_source(text, path, "a calibration of two cameras is a mapping, as OpenCV or Kalibr write it").tree
     try:
         if "cam0" in tree and "cam1" in tree:

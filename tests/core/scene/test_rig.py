@@ -205,6 +205,13 @@ class TestFiles:
         np.testing.assert_allclose(found.rotation, cameras.rotation, atol=1e-15)
         np.testing.assert_allclose(found.translation_m, cameras.translation_m, atol=1e-12)
 
+    @pytest.mark.parametrize("head", ["%YAML:1.0\n---\n", "%YAML 1.0\n---\n", ""])
+    def test_head_of_opencv_or_of_yaml_1_0_or_none_is_read(self, tmp_path: Path, head: str):
+        write_opencv(tmp_path / "rig.yml", rig(lens="radial"))
+        text = (tmp_path / "rig.yml").read_text()
+        (tmp_path / "rig.yml").write_text(head + text[text.index("M1:") :])
+        assert read_rig(tmp_path / "rig.yml").cameras.left.distortion.size == 4
+
     @pytest.mark.parametrize("model", ["radtan", "equidistant"])
     def test_kalibr_file_gives_the_same_rig(self, tmp_path: Path, model: str):
         (tmp_path / "camchain.yaml").write_text(KALIBR.format(model=model, coefficients=list(FISHEYE)))

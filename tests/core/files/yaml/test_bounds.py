@@ -212,3 +212,11 @@ def test_unknown_key_is_named_though_pydantic_has_such_names(key: str, place: tu
     ((sentence, _),) = source.complaints
     hint = " (did you mean 'width'?)" if key == "widht" else ""
     assert sentence == f"here/p.yaml:1:1: {'.'.join((*place, key))}: unknown option{hint}; known: width"
+
+
+@pytest.mark.parametrize("version", ["1.0", "0.9", "2.0", "1.99", "1"])
+def test_version_that_the_parser_does_not_know_is_a_complaint(version: str):
+    try:
+        parse(f"%YAML {version}\n---\na: 1\n")
+    except ConfigError as error:
+        assert str(error).startswith("here/p.yaml")

@@ -132,6 +132,7 @@ baseline: constat
             "gives 'seed' to this",
         ),
         ("compare: depth\nmethods: [{use: ranged, given: 3}]\nscenes: [synthetic/bars]\n", "2:25", "max_disparity_px"),
+        ("compare: depth\nmethods: [{use: ranged, given: [[1]]}]\nscenes: [synthetic/bars]\n", "2:25", "gives [1]"),
         ("compare: depth\nmethods: [{use: half, given: [value_px]}]\nscenes: [synthetic/bars]\n", "2:23", "nothing"),
         (GOOD + "perturb: [loud]\n", "4:11", "write none, or for example"),
         (GOOD + "perturb: [{noise: loud}]\n", "4:12", "not 'loud'"),

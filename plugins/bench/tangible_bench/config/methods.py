@@ -75,13 +75,13 @@ def _grid(source: Source, place: Location, block: Any) -> dict[str, list[Any]]:
 
 def _can_be_given(source: Source, place: Location, given: Any, task: Task, method: Method) -> bool:
     names = cast("list[Any]", given) if isinstance(given, list) else [given]
-    options = set(task.given) & set(type(method).model_fields)
+    options = sorted(set(task.given) & set(type(method).model_fields))  # a list, as a name in the file may be any value
     for name in names:
         if name not in options:
             hint = did_you_mean(str(name), options)
             source.complain(
                 place,
                 f"given: no scene gives {quoted(name)} to this method{hint}; known: "
-                + (", ".join(sorted(options)) or "nothing"),
+                + (", ".join(options) or "nothing"),
             )
-    return isinstance(given, list) and options.issuperset(names)
+    return isinstance(given, list) and all(name in options for name in names)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from tangible_core.errors import ConfigError, ResultsError
-from tangible_study.procedures import Trial, score
+from tangible_study.procedures import Stimulus, Trial, score
+from tangible_study.procedures.adjustment import Adjustment
 from tangible_study.session.order import StudyCourse, comparison_order, latin_square, replay
 from tangible_study.study_file import StudyFile, parse_study
 from tangible_study.trials import Answer
@@ -95,6 +96,25 @@ def test_what_a_procedure_cannot_ask_is_refused(tmp_path: Path, comparison: str,
     head = STUDY.partition("comparisons:")[0]
     with pytest.raises(ConfigError, match=said):
         parse_study(f"{head}comparisons:\n- {{name: x, {comparison}}}\n", tmp_path / "study.yaml")
+
+
+def test_adjustments_begin_at_the_least_and_the_greatest_level_in_turn(file: StudyFile):
+    begins: dict[str, set[tuple[float, ...]]] = {"one": set(), "two": set()}
+    for seed in range(6):
+        course = Adjustment().course(file.study.comparison("equal"), np.random.default_rng(seed))
+        trials = []
+        while (trial := course.next()) is not None:
+            trials.append(trial)
+            course.take(trial, trial.choices[2])
+        assert Counter(each.condition for each in trials) == {"one": 2, "two": 2}
+        for name in begins:
+            own = [each for each in trials if each.condition == name]
+            assert all(each.intervals[0] == Stimulus(name, 0.002) for each in own), "the standard comes first"
+            assert [each.level for each in own] == [each.intervals[1].level for each in own]
+            begins[name].add(tuple(each.level for each in own))
+        assert trials[0].choices == ("0.001", "0.0015", "0.002", "0.0025", "0.003")
+    both = {(0.001, 0.003), (0.003, 0.001)}
+    assert begins == {"one": both, "two": both}
 
 
 def test_number_of_trials_is_the_one_foretold(file: StudyFile):

@@ -69,6 +69,34 @@ def test_scale_of_participants_who_disagree_is_less_certain():
 
 
 @pytest.mark.parametrize(
+    ("first", "robust"), [((9, 2, 7, 5, 8), True), ((10, 0, 10, 0), False), ((6, 6, 7, 6, 6), False)],
+    ids=["five who differ", "four who differ", "five who are alike"],
+)  # fmt: skip
+def test_interval_of_a_difference_of_two_is_that_of_the_logit(first: tuple[int, ...], robust: bool):
+    """Ten choices each, the first chosen so often. By hand: the difference is logit(p); by the trials its variance is
+    1 / (N p q), by the participants n / (n - 1) times the sum of their squared residuals times that squared."""
+    scale = fit_scale([np.array([[0.0, each], [10 - each, 0]]) for each in first])
+    count, trials, share = len(first), 10 * len(first), sum(first) / (10 * len(first))
+    by_trials = 1 / (trials * share * (1 - share))
+    apart = sum((each - 10 * share) ** 2 for each in first) * count / (count - 1) * by_trials**2
+    assert (apart > by_trials) is (robust or count < 5)
+    quantile = stats.t.ppf(0.975, count - 1) if robust else stats.norm.ppf(0.975)
+    half = quantile * (apart if robust else by_trials) ** 0.5
+    logit = np.log(share / (1 - share))
+    assert scale.difference(0, 1) == pytest.approx((logit, logit - half, logit + half), abs=1e-9)
+    assert scale.difference(1, 0) == pytest.approx((-logit, -logit - half, -logit + half), abs=1e-9)
+    assert scale.estimate(0) == pytest.approx((logit / 2, (logit - half) / 2, (logit + half) / 2), abs=1e-9)
+
+
+def test_scale_is_where_choices_are_as_many_as_expected():
+    """Where the likelihood is greatest, wins are the sum of the chances, however far apart the values are."""
+    for wins in (BASEBALL, np.array([[0.0, 999, 999], [1, 0, 990], [1, 10, 0]])):
+        values = fit_scale([wins]).values
+        chance = 1 / (1 + np.exp(values[None] - values[:, None]))
+        assert ((wins + wins.T) * chance).sum(axis=1) - 0.5 * np.diag(wins + wins.T) == pytest.approx(wins.sum(axis=1))
+
+
+@pytest.mark.parametrize(
     ("share", "dprime"), [(0.36, 0.55), (0.5, 1.47), (0.6, 1.98), (0.7, 2.50), (0.8, 3.13), (0.9, 4.03), (0.95, 4.80)]
 )
 def test_dprime_of_the_odd_one_is_that_of_the_triangular_method(share: float, dprime: float):

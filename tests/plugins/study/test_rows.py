@@ -1,0 +1,200 @@
+"""Rows about several participants: means, differences and p, with Student's t in closed form for two degrees of freedom
+and the binomial distribution summed."""
+
+from math import comb, isnan, nan, sqrt
+from statistics import mean, stdev
+
+import pytest
+
+from tangible_study.analysis.analysing import Analysis, analyse_comparison
+from tangible_study.analysis.curves import blocks_of
+from tangible_study.analysis.files import as_markdown, as_tsv
+from tangible_study.analysis.results_folder import Kept
+from tangible_study.analysis.rows import ALL, Result, Row, What
+from tangible_study.analysis.sentences import is_sure
+from tangible_study.design.study import Comparison, Study
+from tangible_study.statistics.intervals import Estimate, difference, proportion, wider
+from tangible_study.trials import Answer
+
+T_2 = 0.95 / sqrt(2 * 0.025 * 0.975)
+"""Student's t that 2.5 % exceed, for two degrees of freedom: (2 q - 1) / sqrt(2 q (1 - q)) for the quantile q."""
+
+
+def p_of_three(values: list[float], expected: float) -> float:
+    """Return Student's two-sided p of three values: 1 - t / sqrt(t^2 + 2)."""
+    t = abs(mean(values) - expected) / (stdev(values) / sqrt(3))
+    return 1 - t / sqrt(t * t + 2)
+
+
+def at_least(count: int, trials: int, chance: float) -> float:
+    """Return the binomial probability of as many or more."""
+    return sum(comb(trials, n) * chance**n * (1 - chance) ** (trials - n) for n in range(count, trials + 1))
+
+
+def answer(condition: str, response: str = "1", **more) -> Answer:
+    return Answer(1, "test", "c", "any", "any", condition, response=response, **more)
+
+
+def hits(right: int, trials: int, **more) -> list[Answer]:
+    return [answer("one", other="two", correct=int(n < right), chosen=int(n < right), **more) for n in range(trials)]
+
+
+def table(result: Result) -> dict[tuple[str, str, str, str], Row]:
+    rows = {(*row.what, row.participant): row for row in result.rows}
+    assert len(rows) == len(result.rows)
+    return rows
+
+
+@pytest.mark.parametrize(
+    ("right", "by_trials"),
+    [((6, 7, 8), False), ((4, 4, 5), True), ((7, 7, 7), True)],
+    ids=["participants", "trials", "participants who do not differ at all"],
+)
+def test_p_of_right_answers_is_the_greater_of_trials_and_participants(right: tuple[int, ...], by_trials: bool):
+    given = {f"S0{n}": hits(each, 10) for n, each in enumerate(right)}
+    rows = table(analyse_comparison(Comparison(name="c", question="same"), given))
+    both = rows["proportion correct", "one", "two", ALL]
+    shares = [each / 10 for each in right]
+    of_trials = at_least(sum(right), 30, 1 / 3)
+    expected = of_trials if by_trials else p_of_three(shares, 1 / 3)
+    assert both.p == pytest.approx(expected, rel=1e-9)
+    assert (both.trials, both.count, both.chance) == (30, sum(right), 1 / 3)
+    half = T_2 * stdev(shares) / sqrt(3)
+    exact = proportion(sum(right), 30)
+    assert both.estimate == pytest.approx(
+        (mean(shares), min(exact.low, mean(shares) - half), max(exact.high, mean(shares) + half))
+    )
+    for name, each in zip(given, right, strict=True):
+        own = rows["proportion correct", "one", "two", name]
+        assert own.p == pytest.approx(at_least(each, 10, 1 / 3))
+        assert own.estimate == proportion(each, 10)
+
+
+def test_p_of_choices_counts_both_sides_and_that_of_right_answers_one():
+    chosen = {"S01": hits(2, 10)}
+    rows = table(analyse_comparison(Comparison(name="c", question="rougher", conditions=("one", "two")), chosen))
+    assert rows["proportion chosen", "one", "two", "S01"].p == pytest.approx(2 * at_least(8, 10, 0.5))
+    worse = table(analyse_comparison(Comparison(name="c", question="same"), chosen))
+    assert worse["proportion correct", "one", "two", "S01"].p == pytest.approx(at_least(2, 10, 1 / 3))
+
+
+def test_interval_over_participants_stays_within_what_the_measure_can_be():
+    """Student's interval of 1, 1 and .5 reaches to 1.55, and that of d' below 0."""
+    given = {name: hits(right, 10) for name, right in (("S01", 10), ("S02", 10), ("S03", 5))}
+    rows = table(analyse_comparison(Comparison(name="c", question="same"), given))
+    assert rows["proportion correct", "one", "two", ALL].estimate[1:] == pytest.approx(
+        (5 / 6 - T_2 * sqrt(1 / 12) / sqrt(3), 1.0)
+    )
+    differ = {
+        name: [answer("one", "different", other="two", target="different")] * hit
+        + [answer("one", "same", other="two", target="different")] * (20 - hit)
+        + [answer("one", "different", other="two", target="same")] * 2
+        + [answer("one", "same", other="two", target="same")] * 18
+        for name, hit in (("S01", 20), ("S02", 4), ("S03", 3))
+    }
+    dprime = table(analyse_comparison(Comparison(name="c", question="different"), differ))["d'", "one", "two", ALL]
+    assert dprime.estimate.low == 0.0 < dprime.estimate.value < dprime.estimate.high
+    assert dprime.chance == 0.0
+
+
+def test_difference_is_that_of_participants_who_have_both_conditions():
+    given = {
+        "S01": [answer("one", "2"), answer("one", "4"), answer("two", "5"), answer("two", "7")],
+        "S02": [answer("one", "1"), answer("two", "2"), answer("two", "4")],
+        "S03": [answer("one", "3"), answer("two", "7")],
+        "S04": [answer("one", "7")],
+    }
+    rows = table(analyse_comparison(Comparison(name="c", question="rating"), given))
+    found = rows["difference of mean rating", "two", "one", ALL]
+    assert found.estimate == pytest.approx((3.0, 3 - T_2 / sqrt(3), 3 + T_2 / sqrt(3)))
+    assert found.p == pytest.approx(p_of_three([3.0, 2.0, 4.0], 0.0))
+    assert found.trials == 5 + 5
+    assert rows["mean rating", "one", "", ALL].estimate.value == pytest.approx((3 + 1 + 3 + 7) / 4)
+    assert isnan(rows["mean rating", "one", "", ALL].p), "a rating has no value by chance"
+    assert rows["standard deviation", "one", "", "S01"].estimate.value == pytest.approx(sqrt(2))
+    assert ("standard deviation", "one", "", "S03") not in rows, "of one value"
+
+
+def test_difference_of_one_participant_follows_from_both_intervals():
+    given = {
+        "S01": [answer(name, f"{each}") for name, some in (("one", (1, 2, 3)), ("two", (4, 6, 8))) for each in some]
+    }
+    rows = table(analyse_comparison(Comparison(name="c", question="rating"), given))
+    one, two = 1 * T_2 / sqrt(3), 2 * T_2 / sqrt(3)  # half the intervals of 2 and 6
+    assert rows["difference of mean rating", "two", "one", "S01"].estimate == pytest.approx(
+        (4.0, 4 - sqrt(one**2 + two**2), 4 + sqrt(one**2 + two**2))
+    )
+
+
+def test_difference_of_shares_holds_that_of_all_trials_too():
+    """Three participants whose differences are alike: Student's interval is narrow, and the trials are few."""
+    given = {
+        name: [answer(of, correct=int(n < right)) for of, right in (("one", 1), ("two", two)) for n in range(4)]
+        for name, two in (("S01", 3), ("S02", 3), ("S03", 2))
+    }
+    rows = table(analyse_comparison(Comparison(name="c", question="name", names=("ear", "eye")), given))
+    found = rows["difference of proportion correct", "two", "one", ALL]
+    apart = [0.5, 0.5, 0.25]
+    half = T_2 * stdev(apart) / sqrt(3)
+    of_trials = difference(proportion(8, 12), proportion(3, 12))
+    assert found.estimate == pytest.approx(
+        wider(Estimate(mean(apart), mean(apart) - half, mean(apart) + half), of_trials)
+    )
+    assert found.p == pytest.approx(p_of_three(apart, 0.0))
+
+
+def test_constant_error_is_counted_from_the_standard():
+    given = {"S01": [answer("one", each, level=0.1) for each in ("0.4", "0.5", "0.6")]}
+    equal = Comparison(name="c", question="equal", levels=(0.1, 0.9), standard=0.3, unit="m")
+    row = table(analyse_comparison(equal, given))["constant error", "one", "", "S01"]
+    assert row.estimate == pytest.approx((0.2, 0.2 - T_2 * 0.1 / sqrt(3), 0.2 + T_2 * 0.1 / sqrt(3)))
+    assert (row.unit, row.chance, row.trials) == ("m", 0.0, 3)
+    assert row.p == pytest.approx(p_of_three([0.4, 0.5, 0.6], 0.3))
+
+
+def test_answers_about_levels_are_counted_by_level_or_by_distance():
+    some = [
+        answer("one", level=level, standard=2.0, chosen=chosen, correct=correct)
+        for level, chosen, correct in ((3.0, 1, 1), (1.0, 1, 0), (3.0, 0, 0), (1.0, 0, 1), (2.5, 1, 1))
+    ]
+    by_level, by_distance = blocks_of(some, differences=False), blocks_of(some, differences=True)
+    assert [each.tolist() for each in by_level] == [[1.0, 2.5, 3.0], [1, 1, 1], [2, 1, 2]]
+    assert [each.tolist() for each in by_distance] == [[0.5, 1.0], [1, 2], [1, 4]]
+
+
+@pytest.mark.parametrize(
+    ("estimate", "p", "sure"),
+    [
+        ((0.8, 0.6, 0.9), 0.049, True),
+        ((0.8, 0.6, 0.9), 0.05, False),
+        ((0.8, 0.6, 0.9), nan, True),
+        ((0.8, 0.5, 0.9), 0.001, False),
+        ((0.2, 0.1, 0.4), 0.001, True),
+        ((0.8,), 0.001, False),
+    ],
+)
+def test_what_is_sure_is_outside_the_interval_and_below_5_percent(estimate: tuple[float, ...], p: float, sure: bool):
+    assert is_sure(Row(What("m", "one", "two"), "S01", Estimate(*estimate), "", 20, 16, 0.5, p)) is sure
+
+
+def test_tables_have_each_figure_in_its_column():
+    """A table for a paper has the rows of all, and p of three digits; that for programs has every row."""
+    rows = [
+        Row(What("share", "one", "two"), "S01", Estimate(0.75, 0.5, 1.0), "", 4, 3, 0.5, 0.25),
+        Row(What("share", "one", "two"), ALL, Estimate(0.7, 0.41, 0.9), "m", 8, None, 1 / 3, 0.0009),
+        Row(What("share", "one", "three"), ALL, Estimate(0.25), "", 9, None, nan, 0.0496),
+        Row(What("share", "two", "three"), ALL, Estimate(0.25), "", 9, None, nan, nan),
+    ]
+    result = Result("c", "rating", ["S01", "S02"], rows, "share")
+    analysis = Analysis(Kept(Study(study="s", title="Of waves"), {}, 0, 0), [result])
+    assert [line for line in as_markdown(analysis).splitlines() if line.startswith(("# ", "| share"))] == [
+        "# Of waves",
+        "| share | one | two | 0.7 m | 0.41 to 0.9 | 0.333 | < .001 | 8 |",
+        "| share | one | three | 0.25 |  |  | .050 | 9 |",
+        "| share | two | three | 0.25 |  |  |  | 9 |",
+    ]
+    assert [line.split("\t") for line in as_tsv(analysis).splitlines()][:3] == [
+        "comparison measure condition other participant value low high unit trials count chance p".split(),
+        ["c", "share", "one", "two", "S01", "0.75", "0.5", "1", "n/a", "4", "3", "0.5", "0.25"],
+        ["c", "share", "one", "two", "all", "0.7", "0.41", "0.9", "m", "8", "n/a", "0.33333333", "0.0009"],
+    ]  # fmt: skip

@@ -74,7 +74,7 @@ def _junctions(labels: Int32[np.ndarray, "h w"]) -> tuple[Int64[np.ndarray, "k 3
     rows, columns = labels.shape
     radius = max(2, round(REACH * sqrt(rows * rows + columns * columns)))
     row, column = np.nonzero(_three_meet(labels))
-    inside = (np.minimum(row, column) >= radius) & (row < rows - radius) & (column < columns - radius)
+    inside = (np.minimum(row, column) >= radius - 1) & (row < rows - radius) & (column < columns - radius)
     step = np.count_nonzero(inside) // MOST_JUNCTIONS + 1
     row, column = row[inside][::step], column[inside][::step]
     corner = np.stack([labels[row + y, column + x] for y, x in np.ndindex(2, 2)], axis=1).astype(np.int64)

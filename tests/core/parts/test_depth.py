@@ -62,6 +62,22 @@ def test_speck_with_a_wrong_depth_does_not_flatten_the_others():
     assert sorted(heights.heights_m) == pytest.approx([0, 0.002, 0.004, 0.004])
 
 
+@pytest.mark.parametrize(("columns", "clipped"), [(4, True), (6, False)])
+def test_heights_run_between_what_has_half_a_percent_of_the_picture_on_either_side(columns: int, clipped: bool):
+    """Of 1000 columns, so many are much farther and so many much nearer than all others."""
+    labels = np.searchsorted([columns, 300, 600, 1000 - columns], np.arange(1000), side="right")
+    parts = find_parts(SegmentMap(np.tile(labels, (3, 1)).astype(np.int32)))
+    disparity = DisparityMap(np.float32([-900, 10, 20, 40, 1000])[parts.labels])
+    expected = (0, 0, 1 / 3, 1, 1) if clipped else (0, 91 / 190, 92 / 190, 94 / 190, 1)
+    assert depth_heights(parts, disparity, 0.004).heights_m == pytest.approx([0.004 * each for each in expected])
+
+
+def test_unknown_parts_lie_as_far_as_the_farthest_of_their_neighbours_one_after_the_other():
+    """Three unknown parts in a row between 40 and 20 px, and one that is beside 10 and 30 px."""
+    heights = depth_heights(*stripes(40, np.nan, np.nan, np.nan, 20, 30, np.nan, 10), 0.003).heights_m
+    assert heights == pytest.approx((0.003, 0.003, 0.001, 0.001, 0.001, 0.002, 0, 0))
+
+
 def test_part_of_unknown_depth_lies_behind():
     parts, disparity = stripes(30, 20, np.nan, np.nan, 10, 40)
     heights = depth_heights(parts, disparity, 0.003)

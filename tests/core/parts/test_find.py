@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from tangible_core.data import SegmentMap
+from tangible_core.data import PartMap, SegmentMap
 from tangible_core.parts import find_parts, part_sizes, reduced_parts
 
 SMALL = arrays.arrays(np.int32, arrays.array_shapes(min_dims=2, max_dims=2, max_side=9), elements=st.integers(0, 3))
@@ -67,3 +67,18 @@ def test_coarser_grid_keeps_numbers_and_parts():
     few_of_both = np.where(few.labels == parts.labels[5, 7], 0, few.labels)
     assert np.array_equal(few_of_both, parts.labels[:4, 27:33])
     assert reduced_parts(parts, (40, 60)) is parts
+
+
+def test_coarser_grid_has_middle_pixels_and_a_cell_for_what_lies_between_them():
+    """Whatever the numbers of rows and columns: specks at the rim and inside of it, and a part without any pixel."""
+    labels = np.arange(35)[:, None] // 20 * 2 + np.arange(90) // 40
+    specks = {(0, 0): (0, 0), (0, 89): (0, 9), (34, 1): (6, 0), (34, 89): (6, 9), (11, 64): (2, 7), (19, 35): (3, 3)}
+    for place in specks:
+        labels[place] = 9
+    parts = find_parts(SegmentMap(labels.astype(np.int32)))
+    few = reduced_parts(PartMap(parts.labels, (*parts.segments, 99)), (7, 10))
+    expected = parts.labels[2::5, 4::9].copy()
+    for place, cell in specks.items():
+        expected[cell] = parts.labels[place]
+    assert np.array_equal(few.labels, expected)
+    assert few.segments == (*parts.segments, 99) and parts.count == 6 + len(specks)

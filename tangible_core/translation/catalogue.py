@@ -19,6 +19,8 @@ MOST_WORDS = 2
 """Most words of a name, which stays as it is between texts that are known."""
 MOST_CHARACTERS = 3000
 """Longest text that is taken apart."""
+MAX_JOINTS = 30
+"""Most marks of one kind at which a text is taken apart: a longer list stays as it is."""
 CACHED = 8192
 """Texts that are kept with their translations: a page shows the same ones again and again."""
 
@@ -145,7 +147,7 @@ class Catalogue:
         return found and f"{found}."
 
     def _halves(self, text: str) -> Iterator[tuple[tuple[str, str], str]]:
-        for joint in JOINTS:
+        for joint in (each for each in JOINTS if text.count(each) <= MAX_JOINTS):
             place = text.find(joint)
             while place > 0:
                 yield (text[:place], text[place + len(joint) :]), joint

@@ -201,6 +201,26 @@ def test_certainty_counts_the_junctions_whose_disc_is_within_the_picture():
         assert [edge[1, brick] for brick in (2, 3, 4)] == pytest.approx([-1 / 2, -2 / 3, -1 / 2])
 
 
+def test_three_parts_meet_at_each_corner_with_three_labels():
+    labels = np.random.default_rng(0).integers(0, 4, (40, 60)).astype(np.int32)
+    expected = [[len({*labels[y : y + 2, x : x + 2].ravel().tolist()}) == 3 for x in range(59)] for y in range(39)]
+    assert neighbours_module._three_meet(labels).tolist() == expected
+
+
+@pytest.mark.parametrize(("rows", "steps"), [(40, 3), (41, 2)])
+def test_a_thousandth_of_the_picture_takes_a_step_and_less_does_not(rows: int, steps: int):
+    labels = np.zeros((rows, 25), np.int32)
+    labels[rows // 2 :], labels[rows - 4, 12] = 1, 2
+    assert len({*guess(labels).values()}) == steps
+
+
+def test_hole_of_one_pixel_has_its_colour():
+    labels = np.zeros((20, 30), np.int32)
+    labels[8:18, 8:22], labels[12, 15] = 1, 2
+    picture = np.uint8([[70, 95, 150], [50, 40, 30], [70, 95, 150]])[labels]
+    assert "; it is behind part 2" in guess_heights(parts_of(labels), 0.004, picture).reasons[2]
+
+
 def test_many_junctions_are_thinned_evenly(monkeypatch: pytest.MonkeyPatch):
     """Of seven junctions, three may be examined: every third of them is."""
     monkeypatch.setattr(neighbours_module, "MOST_JUNCTIONS", 3)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from flights import shape
-from tangible_core.preflight.bumps import feature_m, leakage, threshold_m
+from tangible_core.data import Relief
+from tangible_core.preflight.bumps import feature_m, leakage, reduce_relief, threshold_m
 
 
 def sine_response(wavelength_m: float, width_m: float) -> float:
@@ -41,6 +42,25 @@ def test_feature_m_sine_matches_the_formula(wavelength_m: float):
 def test_feature_m_plane_has_no_feature(width_m: float):
     plane = shape(lambda x, y: 0.4 * x - 0.2 * y, 100)
     assert feature_m(plane.relief, width_m) < 1e-7
+
+
+@pytest.mark.parametrize("along", [False, True], ids=["x", "y"])
+@pytest.mark.parametrize("cells", [(64, 256), (256, 64), (1024, 200)])
+def test_feature_m_is_that_of_metres_where_cells_are_no_squares(cells: tuple[int, int], along: bool):
+    """A ridge and a plane, 80 by 60 mm; beyond the borders a plane goes on along both axes."""
+    y, x = (np.indices(cells) + 0.5) * np.array([0.06 / cells[0], 0.08 / cells[1]]).reshape(2, 1, 1)
+    ridge = 1e-3 * np.exp(-(((y - 0.03) if along else (x - 0.04)) ** 2) / (2 * 0.005**2))
+    assert feature_m(Relief(np.float32(ridge), (0.08, 0.06)), 0.005) == pytest.approx(1e-3, rel=0.03)
+    assert feature_m(Relief(np.float32(0.4 * x - 0.2 * y + 0.02), (0.08, 0.06)), 0.005) < 1e-7
+
+
+def test_reduced_relief_has_cells_of_about_the_size_along_both_axes():
+    fine = Relief(np.zeros((400, 900), np.float32), (0.09, 0.03))
+    assert reduce_relief(fine, 0.001).height_m.shape == (30, 90)
+    assert reduce_relief(fine, 0.0009).height_m.shape == (34, 100)
+    assert reduce_relief(fine, 0.0001).height_m.shape == (300, 900)
+    assert reduce_relief(fine, 1.0).height_m.shape == (1, 1)
+    assert reduce_relief(fine, 1e-6).height_m.shape == (400, 900)
 
 
 def test_threshold_m_is_a_power_through_the_measurements():

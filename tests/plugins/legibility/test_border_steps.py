@@ -86,12 +86,16 @@ def test_borders_are_counted_by_their_length(tall):
     assert found["borders_found"] == pytest.approx((60 * tall + 200) / (60 * tall + 200 + 100 * tall))
 
 
-def test_shares_depend_on_metres_and_not_on_pixels():
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("times", [(2, 2), (1, 4), (4, 1)])
+def test_shares_depend_on_metres_and_not_on_pixels(times: tuple[int, int], turned: bool):
     relief = steps_at(0.01, 0.03, height_m=0.001)
-    finer = Relief(relief.height_m.repeat(2, axis=0).repeat(2, axis=1), relief.extent_m)
     labels = halves(relief, 0.01)
-    found = border_steps(finer, labels.repeat(2, axis=0).repeat(2, axis=1))
-    assert found == pytest.approx(border_steps(relief, labels), abs=0.01)
+    if turned:
+        relief, labels = Relief(np.ascontiguousarray(relief.height_m.T), relief.extent_m[::-1]), labels.T
+    finer = Relief(relief.height_m.repeat(times[0], axis=0).repeat(times[1], axis=1), relief.extent_m)
+    found = border_steps(finer, np.ascontiguousarray(labels.repeat(times[0], axis=0).repeat(times[1], axis=1)))
+    assert found == pytest.approx(border_steps(relief, np.ascontiguousarray(labels)), abs=0.01)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 9), (9, 1)])

@@ -61,8 +61,10 @@ def test_notes_are_read_with_the_record(tmp_path: Path):
 @pytest.mark.parametrize("tree", [["x"], {"relief": [["x", "shout"]]}, {"relief": [[1, "doubt"]]}, {"relief": ["x"]}])
 def test_entry_with_invalid_notes_is_damaged(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
     record = {"class": "SegmentMap", "fields": {"labels": {"array": "a"}}}
-    packed = np.frombuffer(json.dumps(tree).encode(), np.uint8)
-    entry(tmp_path / "k.npz", record, notes=packed, a=np.zeros((2, 2), np.int32))
+    for key, notes in (("good", {"relief": [["x", "doubt"]]}), ("k", tree)):
+        packed = np.frombuffer(json.dumps(notes).encode(), np.uint8)
+        entry(tmp_path / f"{key}.npz", record, notes=packed, a=np.zeros((2, 2), np.int32))
+    assert Cache(tmp_path).notes("good") == {"relief": (Note("x", "doubt"),)}
     assert Cache(tmp_path).notes("k") == {}
     assert Cache(tmp_path).get("k") is None
     assert "damaged" in caplog.text

@@ -7,6 +7,7 @@ import pytest
 
 from flights import fly, grades, level, material, of, shape, surface_with_materials, value_in_cure
 from tangible_core import HapticSurface
+from tangible_core.data import Relief
 from tangible_core.preflight.bumps import threshold_m
 from tangible_core.preflight.checks.device import workspace
 from tangible_core.preflight.checks.features import features, textures
@@ -62,6 +63,19 @@ class TestFeatures:
         cells, width_m = 321, 4.5 * self.WAVE_M
         relief = shape(lambda x, y: amplitude_m * np.sin(2 * np.pi * x / self.WAVE_M + np.pi / 2), cells, width_m)
         return fly(relief, relief_m=2 * amplitude_m, **changes)
+
+    def test_widths_are_those_that_cells_and_surface_hold_along_both_axes(self):
+        """From two of the longer cells to half of the shorter side."""
+        noise = np.random.default_rng(2).random((40, 400)).astype(np.float32)
+        for extent_m, found in (
+            ((0.1, 0.02), ["1 mm wide", "3.2 mm wide", "10 mm wide"]),
+            ((0.1, 0.0199), ["1 mm wide", "3.2 mm wide"]),
+            ((0.1, 0.0201), ["3.2 mm wide", "10 mm wide"]),
+        ):
+            for turned in (False, True):
+                relief = Relief(noise.T.copy(), extent_m[::-1]) if turned else Relief(noise, extent_m)
+                widths = [each.of for each in features(fly(HapticSurface(relief, None, None)))]
+                assert widths == found
 
     def test_feature_below_the_threshold_has_a_cure(self):
         found = of(features(self.wave(0.9)), "3.2 mm wide")

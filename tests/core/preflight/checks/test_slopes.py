@@ -145,6 +145,11 @@ class TestSlopes:
         np.testing.assert_allclose(slopes(step.relief), [[0, 1, 1, 0]], rtol=1e-6)
         assert slopes(Relief(np.zeros((1, 1), np.float32), (0.1, 0.1))).tolist() == [[0]]
 
+    def test_slopes_are_those_of_metres_where_cells_are_no_squares(self):
+        row, column = np.indices((6, 9))
+        plane = Relief(np.float32(0.3 * 0.001 * column + 0.4 * 0.004 * row), (0.009, 0.024))
+        np.testing.assert_allclose(slopes(plane), 0.5, rtol=1e-5)
+
 
 class TestClipping:
     def test_clipping_half_of_the_surface_has_cures_that_pass(self):

@@ -224,7 +224,9 @@ def test_liblouis_breaking_later_is_replaced_with_a_note(without: Callable[[obje
         ("ok 🙂", "de", "'ok 🙂': character 4, '🙂' (U+1F642), is not in "),
         ("ale ł", "fr", "'ale ł': character 5, 'ł' (U+0142), is not in "),
         ("a\x07", "en", r"'a\x07': character 2, '\x07' (U+0007), is not in "),
-        ("a\ud800", "en", r"'a\ud800': character 2, '\ud800' (U+D800), is not in "),
+        ("a\ud800", "en", r"'a\ud800': character 2, '\ud800' (U+D800), is not in any braille;"),
+        ("a\ue000", "de", r"'a\ue000': character 2, '\ue000' (U+E000), is not in any braille;"),
+        ("a\u0378", "fr", r"'a\u0378': character 2, '\u0378' (U+0378), is not in any braille;"),
     ],
 )
 def test_translation_of_unknown_character_names_it(

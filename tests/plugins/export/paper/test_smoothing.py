@@ -65,3 +65,13 @@ def test_smooth_borders_keep_every_part_and_its_pieces():
     shapes = smooth_borders(PartMap(labels, (0, 1, 2)), WIDTH_MM)
     assert shapes[1].is_empty and len(shapely.get_parts(shapes[2])) == 2
     assert sum(each.area for each in shapes) == pytest.approx(WIDTH_MM**2)
+
+
+def test_lines_have_no_more_points_than_they_need():
+    """An arc that is 0.02 mm off its chord spans 2 arccos(1 - 0.02 / r), so a circle of 20 mm needs 70 chords."""
+    ground, disc = smooth_borders(PartMap((disc_and_halves(720, 20).labels == 2).astype(np.int32), (0, 1)), WIDTH_MM)
+    assert 40 < len(disc.exterior.coords) < 200
+    assert np.hypot(*points_along(disc).T) == pytest.approx(20, abs=0.15)
+    assert len(ground.exterior.coords) == 5
+    left, right = smooth_borders(PartMap((np.indices((90, 120))[1] > 70).astype(np.int32), (0, 1)), WIDTH_MM)
+    assert len(left.exterior.coords) == len(right.exterior.coords) == 5

@@ -30,13 +30,15 @@ def test_speck_joins_its_most_similar_neighbour():
     assert unmerged.count == 4, "it is as wide as a part must be"
 
 
-def test_speck_of_a_colour_between_joins_along_its_longest_border():
+@pytest.mark.parametrize(("columns", "joins"), [(slice(18, 26), 39), (slice(14, 22), 0)])
+def test_speck_of_a_colour_between_joins_along_its_longest_border(columns: slice, joins: int):
+    """Two of its eight columns are on one side, and six on the other."""
     labels = np.repeat([[0, 1]], 20, axis=1).repeat(30, 0).astype(np.int32)
-    labels[10:13, 18:26] = 2  # 2 columns on the left, 6 on the right
+    labels[10:13, columns] = 2
     picture = np.array([(60, 60, 60), (140, 140, 140), (100, 100, 100)], np.uint8)[labels]
     merged = large_parts(SegmentMap(labels), picture, least_px=6, most=12)
     assert merged.count == 2
-    assert (merged.labels[11, 18:26] == merged.labels[0, 39]).all()
+    assert (merged.labels[11, columns] == merged.labels[0, joins]).all()
 
 
 def test_part_as_wide_as_the_least_is_no_speck():

@@ -202,6 +202,19 @@ def test_window_around_a_change_ends_with_the_map(box, window):
     assert opening._grow(box, 2, (10, 12)) == window
 
 
+def test_crumbs_go_to_the_nearest_cell_but_for_those_at_the_rim():
+    """A window's rim may cut a piece. A disc of 4 cells has an area of 12.6: 13 cells are no crumb."""
+    labels = np.zeros((30, 40), np.int32)
+    labels[5:8, 5:9] = 1  # 12 cells
+    labels[15:18, 5:9], labels[18, 5] = 2, 2  # 13
+    labels[0, 20], labels[10, 39], labels[29, 20], labels[10, 0] = 3, 4, 5, 6
+    labels[20:24, 30:33], labels[24, 33] = 7, 8  # 12 and one at its corner
+    settled = opening.Opening(SimplifyChoice(part_m=0.004), np.zeros(9, np.bool_), 0.001, None)._remove_crumbs(labels)
+    expected = labels.copy()
+    expected[np.isin(labels, (1, 7, 8))] = 0
+    assert np.array_equal(settled, expected)
+
+
 @pytest.mark.parametrize("width_m", [0.0, -1.0, float("nan"), float("inf")])
 def test_simplify_width_not_positive_is_refused(width_m):
     with pytest.raises(GeometryError, match="width_m"):

@@ -39,6 +39,9 @@ def test_facts_are_sorted_from_near_to_far():
     assert (cup.material, table.material, wall.material) == ("glass", "wood", "stone")
     assert cup.neighbours == (0, 1)  # 42 sides of pixels with the wall, 36 with the table
     assert table.neighbours == (0, 2)
+    swapped = np.array([1, 0, 2])[LABELS]
+    cup, _, _ = facts(replace(still_life(), labels=swapped.astype(np.int32)))
+    assert (cup.number, cup.neighbours) == (2, (1, 0))
 
 
 def test_facts_of_parts_on_another_grid_are_known():

@@ -72,9 +72,10 @@ def test_coarser_grid_keeps_numbers_and_parts():
 def test_coarser_grid_has_middle_pixels_and_a_cell_for_what_lies_between_them():
     """Whatever the numbers of rows and columns: specks at the rim and inside of it, and a part without any pixel."""
     labels = np.arange(35)[:, None] // 20 * 2 + np.arange(90) // 40
-    specks = {(0, 0): (0, 0), (0, 89): (0, 9), (34, 1): (6, 0), (34, 89): (6, 9), (11, 64): (2, 7), (19, 35): (3, 3)}
+    specks = {(0, 0): (0, 0), (0, 89): (0, 9), (34, 1): (6, 0), (34, 89): (6, 9), (11, 62): (2, 6), (19, 35): (3, 3)}
     for place in specks:
         labels[place] = 9
+    labels[11, 62:66] = 9  # of one part, whose first pixel counts
     parts = find_parts(SegmentMap(labels.astype(np.int32)))
     few = reduced_parts(PartMap(parts.labels, (*parts.segments, 99)), (7, 10))
     expected = parts.labels[2::5, 4::9].copy()

@@ -184,6 +184,7 @@ def test_tables_have_each_figure_in_its_column():
         Row(What("share", "one", "two"), ALL, Estimate(0.7, 0.41, 0.9), "m", 8, None, 1 / 3, 0.0009),
         Row(What("share", "one", "three"), ALL, Estimate(0.25), "", 9, None, nan, 0.0496),
         Row(What("share", "two", "three"), ALL, Estimate(0.25), "", 9, None, nan, nan),
+        Row(What("share", "two", "four"), ALL, Estimate(0.25), "", 9, None, nan, 0.001),
     ]
     result = Result("c", "rating", ["S01", "S02"], rows, "share")
     analysis = Analysis(Kept(Study(study="s", title="Of waves"), {}, 0, 0), [result])
@@ -192,6 +193,7 @@ def test_tables_have_each_figure_in_its_column():
         "| share | one | two | 0.7 m | 0.41 to 0.9 | 0.333 | < .001 | 8 |",
         "| share | one | three | 0.25 |  |  | .050 | 9 |",
         "| share | two | three | 0.25 |  |  |  | 9 |",
+        "| share | two | four | 0.25 |  |  | .001 | 9 |",
     ]
     assert as_tsv(analysis).replace("\t", " ").splitlines()[:3] == [
         "comparison measure condition other participant value low high unit trials count chance p",

@@ -59,7 +59,9 @@ def test_notes_are_read_with_the_record(tmp_path: Path):
 
 
 @pytest.mark.parametrize("tree", [["x"], {"relief": [["x", "shout"]]}, {"relief": [[1, "doubt"]]}, {"relief": ["x"]}])
-def test_entry_with_invalid_notes_is_damaged(tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture):
+def test_entry_with_invalid_notes_is_damaged(
+    unchecked_shapes: None, tmp_path: Path, tree: object, caplog: pytest.LogCaptureFixture
+):
     record = {"class": "SegmentMap", "fields": {"labels": {"array": "a"}}}
     for key, notes in (("good", {"relief": [["x", "doubt"]]}), ("k", tree)):
         packed = np.frombuffer(json.dumps(notes).encode(), np.uint8)

@@ -116,6 +116,18 @@ msgstr "; der Rest ist {what}"
 msgid " in all directions"
 msgstr " in alle Richtungen"
 
+msgid "near, far"
+msgstr "nah, fern"
+
+msgid "left, right"
+msgstr "links, rechts"
+
+msgid "It was felt."
+msgstr "Es wurde gefühlt."
+
+msgid "Was it long?"
+msgstr "War es lang?"
+
 msgid "and"
 msgstr "und"
 
@@ -163,6 +175,10 @@ msgstr ""
         ("1,234.5 N/mm > 3e-5 m", "1.234,5 N/mm > 3e-5 m"),
         ("whatever somebody called it: too small", "whatever somebody called it: zu klein"),
         ("too small: whatever somebody called it", None),
+        ("near, far, left, right", "nah, fern, links, rechts"),
+        ("near, far; left, right", "nah, fern; links, rechts"),
+        ("It was felt. Was it long?  It was felt.", "Es wurde gefühlt. War es lang? Es wurde gefühlt."),
+        ("It was felt. Nobody knows this.", None),
         ("no translation yet", None),
         ("and", "und"),
         ("", None),

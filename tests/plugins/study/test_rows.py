@@ -6,9 +6,11 @@ from statistics import mean, stdev
 
 import pytest
 
+from tangible_core.errors import TangibleError
 from tangible_study.analysis.analysing import Analysis, analyse_comparison
 from tangible_study.analysis.curves import blocks_of
 from tangible_study.analysis.files import as_markdown, as_tsv
+from tangible_study.analysis.pairs import wins_of
 from tangible_study.analysis.results_folder import Kept
 from tangible_study.analysis.rows import ALL, Result, Row, What
 from tangible_study.analysis.sentences import is_sure
@@ -160,6 +162,77 @@ def test_answers_about_levels_are_counted_by_level_or_by_distance():
     by_level, by_distance = blocks_of(some, differences=False), blocks_of(some, differences=True)
     assert [each.tolist() for each in by_level] == [[1.0, 2.5, 3.0], [1, 1, 1], [2, 1, 2]]
     assert [each.tolist() for each in by_distance] == [[0.5, 1.0], [1, 2], [1, 4]]
+
+
+def at_levels(condition: str, *counts: int) -> list[Answer]:
+    """Return 20 answers at each of five levels about 2, so many of which chose the level."""
+    return [
+        answer(condition, level=level, standard=2.0, chosen=int(n < count), correct=int(n < count))
+        for level, count in zip((1.0, 1.5, 2.0, 2.5, 3.0), counts, strict=True)
+        for n in range(20)
+    ]
+
+
+def test_conditions_differ_in_the_point_of_equality_and_in_what_is_noticed():
+    """One curve is steep about 2, the other shallow about 2.25; the second participant answered at one level alone."""
+    higher = Comparison(name="c", question="higher", levels=(1.0, 1.5, 2.0, 2.5, 3.0), standard=2.0, unit="N")
+    given = {"S01": [*at_levels("one", 0, 1, 10, 19, 20), *at_levels("two", 1, 4, 8, 12, 17)]}
+    given["S02"] = [each for each in at_levels("one", 0, 1, 10, 19, 20) if each.level == 2.0]
+    result = analyse_comparison(higher, given)
+    rows = table(result)
+    for measure in ("point of equality", "just noticeable difference"):
+        one, two = (rows[measure, name, "", "S01"].estimate for name in ("one", "two"))
+        assert two.value > one.value
+        apart = rows[f"difference of {measure}", "two", "one", ALL]
+        assert apart.estimate.value == pytest.approx(two.value - one.value)
+    assert rows["point of equality", "one", "", "S01"].estimate.value == pytest.approx(2.0, abs=0.03)
+    noticed, width = (rows[each, "one", "", "S01"].estimate.value for each in ("just noticeable difference", "width"))
+    assert noticed == pytest.approx(0.6744898 / 3.2897073 * width, rel=1e-5)
+    assert rows["point of equality", "one", "", "S01"].chance == 2.0
+    assert rows["point of equality", "one", "", "S01"].unit == rows["width", "one", "", "S01"].unit == "N"
+    assert any("S02/one has answers at one level only" in each for each in result.notes)
+    with pytest.raises(TangibleError, match="c: has answers at one level only; run it to the end"):
+        analyse_comparison(higher, {"S02": given["S02"]})
+
+
+def test_threshold_of_a_difference_has_no_noticeable_difference_and_may_be_a_guess():
+    same = Comparison(name="c", question="same", levels=(1.0, 1.5, 2.5, 3.0), standard=2.0, unit="N")
+    some = [each for each in at_levels("one", 12, 8, 0, 8, 12) if each.level != 2.0]
+    result = analyse_comparison(same, {"S01": some})
+    assert {(row.what.measure, row.unit) for row in result.rows} == {("threshold", "N"), ("width", "ln")}
+    assert result.curves["S01/one"].chance == 1 / 3 and result.main == "threshold"
+    (threshold,) = (row.estimate.value for row in result.rows if row.what.measure == "threshold")
+    outside = not 0.5 <= threshold <= 1.0
+    assert any("is outside the levels that were presented" in each for each in result.notes) is outside
+
+
+@pytest.mark.parametrize(("first", "noted"), [(15, False), (16, True), (5, True), (6, False)])
+def test_answers_that_favour_an_interval_are_noted(first: int, noted: bool):
+    """Of 21: the exact interval of 16 reaches down to .528, and that of 15 to .478."""
+    given = [answer("one", "1" if n < first else "2", other="two", chosen=n % 2) for n in range(21)]
+    pair = Comparison(name="c", question="rougher", conditions=("one", "two"))
+    notes = analyse_comparison(pair, {"S01": given}).notes
+    assert [
+        each.startswith(f"The first interval was chosen in {100 * first / 21:.0f} % of the trials") for each in notes
+    ] == ([True] if noted else [])
+
+
+def test_three_conditions_are_on_a_scale_with_wins_on_the_right_side():
+    """By hand: two beats one in 9 of 10, three beats two in 6 of 10, and one never beats three."""
+    wins = {("one", "two"): 1, ("two", "three"): 4, ("one", "three"): 0}
+    given = [answer(one, other=other, chosen=int(n < won)) for (one, other), won in wins.items() for n in range(10)]
+    result = analyse_comparison(
+        Comparison(name="c", question="rougher", conditions=("one", "two", "three")), {"S01": given}
+    )
+    assert wins_of(given, ["one", "two", "three"]).tolist() == [[0, 1, 0], [9, 0, 4], [10, 6, 0]]
+    rows = table(result)
+    scale = [rows["scale value", each, "", "S01"].estimate.value for each in ("one", "two", "three")]
+    assert scale[0] < scale[1] < scale[2] and sum(scale) == pytest.approx(0, abs=1e-9)
+    assert rows["difference of scale value", "two", "one", "S01"].estimate.value == pytest.approx(scale[1] - scale[0])
+    assert ("difference of scale value", "one", "two", "S01") not in rows
+    assert (result.main, rows["scale value", "one", "", "S01"].trials) == ("scale value", 30)
+    assert [each for each in result.notes if "half a choice" in each] == []
+    assert rows["proportion chosen", "two", "three", "S01"].count == 4
 
 
 @pytest.mark.parametrize(

@@ -1,16 +1,24 @@
 """Observer models and power: their answers have the shares that theory gives, and a plan keeps its promise."""
 
 from pathlib import Path
+from statistics import NormalDist
 
 import numpy as np
 import pytest
 
 from tangible_core.errors import ConfigError
 from tangible_study.analysis.analysing import analyse_comparison
+from tangible_study.analysis.rows import Result, Row, What
 from tangible_study.analysis.sentences import is_sure
+from tangible_study.design.study import Comparison
+from tangible_study.procedures import Stimulus, Trial
+from tangible_study.simulation.detection import Detection
+from tangible_study.simulation.hand import Hand
 from tangible_study.simulation.observers import observer_of
-from tangible_study.simulation.power import participants_needed, plan, power_of, shortened
+from tangible_study.simulation.power import effects_of, participants_needed, plan, power_of, shortened
+from tangible_study.simulation.psychometric import Psychometric
 from tangible_study.simulation.simulating import kept_of, simulate
+from tangible_study.statistics.intervals import Estimate
 from tangible_study.statistics.sensitivity import naming_correct, oddity_correct, two_afc
 from tangible_study.study_file import StudyFile, load_study, parse_study
 
@@ -131,3 +139,145 @@ def test_examples_can_be_planned(name: str):
     assert 40 <= len(answers) <= 80  # half an hour
     assert file.study.consent
     assert set(file.study.comparisons[0].names) <= {"door", "front wheel", "seat", "tank", "engine"}
+
+
+class Still:
+    """A source of chance without noise; its draws are given."""
+
+    def __init__(self, *drawn: float) -> None:
+        self.drawn = list(drawn)
+
+    def standard_normal(self, size: int | None = None) -> float | np.ndarray:
+        return 0.0 if size is None else np.zeros(size)
+
+    def normal(self, middle: float, spread: float) -> float:
+        return middle + self.drawn.pop(0) * spread
+
+    def random(self) -> float:
+        return self.drawn.pop(0)
+
+    def choice(self, choices: list[str]) -> str:
+        return choices[-1]
+
+
+LEVELS = (1.0, 2.0, 3.0, 4.0)
+
+
+def trial(question: str, *intervals: Stimulus, given: str = "12", **more) -> Trial:
+    choices = tuple(map(repr, LEVELS)) if question == "equal" else tuple(given)
+    return Trial("c", question, "any", intervals, choices, intervals[-1].condition, **more)
+
+
+def compared(question: str, **more) -> Comparison:
+    return Comparison(name="c", question=question, conditions=("one", "two", "three"), **more)
+
+
+@pytest.mark.parametrize(
+    ("asked", "answer"),
+    [
+        (trial("rougher", Stimulus("two"), Stimulus("one")), "1"),
+        (trial("rougher", Stimulus("one"), Stimulus("three")), "2"),
+        (trial("same", Stimulus("one"), Stimulus("three"), Stimulus("one"), given="123"), "2"),
+        (trial("same", Stimulus("three"), Stimulus("three"), Stimulus("two"), given="123"), "3"),
+        (trial("different", Stimulus("one"), Stimulus("two")), "same"),  # 1 is less than the criterion
+        (trial("different", Stimulus("three"), Stimulus("one")), "different"),
+        (trial("name", Stimulus("one"), given="abc", target="b"), "b"),
+        (trial("rating", Stimulus("one"), given="12345"), "3"),
+        (trial("rating", Stimulus("two"), given="12345"), "4"),
+        (trial("rating", Stimulus("three"), given="1234"), "4"),
+        (trial("equal", Stimulus("one", 2.6), Stimulus("one", 1.0)), "3.0"),
+        (trial("equal", Stimulus("one", 2.4), Stimulus("one", 4.0)), "2.0"),
+    ],
+)
+def test_observer_without_noise_answers_by_what_differs(asked: Trial, answer: str):
+    """Conditions are one standard deviation apart."""
+    observer = Detection(difference=1.0, lapse=0.0)
+    levels = LEVELS if asked.question == "equal" else ()
+    assert observer.answer(asked, compared(asked.question, levels=levels), Still(0.5)) == answer
+
+
+@pytest.mark.parametrize(("drawn", "answer"), [(0.0199, "2"), (0.02, "1")])
+def test_lapse_is_any_of_the_choices(drawn: float, answer: str):
+    asked = trial("rougher", Stimulus("three"), Stimulus("one"))
+    assert Detection(lapse=0.02).answer(asked, compared("rougher"), Still(drawn)) == answer
+
+
+def test_psychometric_observer_answers_by_its_function():
+    """By draws just below and above its share: a cumulative Gaussian, and a Weibull function from 1/3 on."""
+    higher = compared("higher", levels=LEVELS, standard=2.5)
+    same = compared("same", levels=LEVELS, standard=2.5)
+    gaussian = NormalDist(2.5 + 0.4, 1.2 / 3.28970725)
+    plain = {"lapse": 0.0, "width": 1.2, "difference": 0.4}
+    for level in LEVELS:
+        for position in (1, 2):
+            of = {"level": level, "standard": 2.5, "position": position}
+            told = [
+                Psychometric(**plain).respond(trial("higher", Stimulus("two"), **of), higher, Still(draw))
+                for draw in (gaussian.cdf(level) - 1e-9, gaussian.cdf(level) + 1e-9)
+            ]
+            assert told == [str(position), str(3 - position)]
+        share = 1 / 3 + 2 / 3 * (1 - 2 ** -((abs(level - 2.5) / (0.75 + 0.4)) ** 2.0))
+        of = {"level": level, "standard": 2.5, "position": 1}
+        told = [
+            Psychometric(**plain).respond(trial("same", Stimulus("two"), given="123", **of), same, Still(draw))
+            for draw in (share - 1e-9, share + 1e-9)
+        ]
+        assert told == ["1", "3"]
+    equal = compared("equal", levels=LEVELS, standard=2.5)
+    set_by = {
+        (name, draw): Psychometric(**plain).respond(trial("equal", Stimulus(name), level=1.0), equal, Still(draw))
+        for name in ("one", "three")
+        for draw in (-2.0, 0.5)
+    }
+    assert set_by == {("one", -2.0): "2.0", ("one", 0.5): "3.0", ("three", -2.0): "3.0", ("three", 0.5): "3.0"}
+    assert Psychometric().respond(trial("equal", Stimulus("one"), level=1.0), equal, Still(1.0)) == "3.0"
+
+
+def test_hand_feels_noticeable_differences_of_force_and_height():
+    """A difference of one is noticed in three of four trials: 0.95 deviations, as Phi(0.95 / sqrt 2) is 0.75."""
+    noticed = NormalDist().inv_cdf(0.75) * 2**0.5
+    for quantity, levels, apart in (
+        ("force", (0.5, 1.0, 1.07), [np.log(0.5) / np.log(1.07) * noticed, 0.0, noticed]),
+        ("height", (0.5, 1.0, 1.00013), [-0.5 / 0.00013 * noticed, 0.0, noticed]),
+    ):
+        hand = Hand(quantity=quantity, lapse=0.0)
+        for level, expected in zip(levels, apart, strict=True):
+            for just in (-1e-6 - 1e-3 * abs(expected), 1e-6 + 1e-3 * abs(expected)):
+
+                class Noisy(Still):
+                    def standard_normal(self, size=None, by=(expected + just)):
+                        return np.array([0.0, by])
+
+                asked = trial("higher", Stimulus("one", level), Stimulus("one", 1.0))
+                told = hand.respond(asked, compared("higher", levels=levels, standard=1.0), Noisy())
+                assert told == ("2" if just > 0 else "1")
+
+
+def test_effects_are_differences_of_conditions_or_from_chance():
+    def row(
+        measure: str, name: str, value: float, condition: str, other: str = "", chance: float = float("nan")
+    ) -> Row:
+        return Row(What(measure, condition, other), name, Estimate(value), "", 10, None, chance)
+
+    ratings = {"S01": {"one": 3.0, "two": 5.0, "three": 4.0}, "S02": {"one": 2.0, "two": 5.0}, "all": {"one": 9.0}}
+    single = [
+        row("mean rating", name, value, condition) for name, of in ratings.items() for condition, value in of.items()
+    ]
+    rated = Result("c", "rating", ["S01", "S02"], single, "mean rating")
+    assert effects_of(rated) == {("two", "one"): [2.0, 3.0], ("three", "one"): [1.0], ("three", "two"): [-1.0]}
+    odd = [row("proportion correct", name, share, "one", "two", 1 / 3) for name, share in (("S01", 0.5), ("S02", 0.25))]
+    found = effects_of(
+        Result("c", "same", ["S01", "S02"], [*odd, row("d'", "S01", 1.0, "one", "two", 0.0)], "proportion correct")
+    )
+    assert found == {("one", "two"): pytest.approx([1 / 6, -1 / 12])}
+    chosen = [row("proportion chosen", "S01", 0.8, "one", "two", 0.5), row("scale value", "all", 0.3, "one")]
+    assert effects_of(Result("c", "rougher", ["S01"], chosen, "scale value")) == {("one", "two"): pytest.approx([0.3])}
+
+
+@pytest.mark.parametrize(("apart", "participants"), [(0.2, 199), (0.5, 34), (0.8, 15), (1.2, 8), (0.19, None)])
+def test_participants_needed_are_those_of_cohen_s_tables(apart: float, participants: int | None):
+    """For one sample, two-sided at 5 %, power .80: Cohen (1988) and G*Power 3.1."""
+    assert participants_needed([apart - 1.0, apart + 1.0] * 50_000, 0.8) == participants
+    assert participants_needed([-apart - 1.0, 1.0 - apart] * 50_000, 0.8) == participants
+    assert participants_needed([-0.1, 0.1], 0.8) is None
+    assert power_of(0.0, 0.0, 9) == 0.0 < power_of(0.1, 0.0, 2) == 1.0

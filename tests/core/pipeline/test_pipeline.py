@@ -19,9 +19,10 @@ from tangible_core.errors import (
     UnknownMethod,
 )
 from tangible_core.pipeline.engine.stage import StageEvent
+from tangible_core.pipeline.feeling import Feeling
 from tangible_core.plugins import DepthEstimator
 from tangible_core.session import STOPPED, compare_replay
-from tangible_depth import SemiGlobal, Zncc
+from tangible_depth import Luminance, SemiGlobal, Zncc
 from tangible_devices import Mock
 from tangible_render import GreyLevel, Penalty, Proxy
 from tangible_texture import Gabor, Histogram
@@ -397,3 +398,20 @@ class TestShown:
     def test_properties_have_the_types_of_their_products(self, sample_pipeline: Pipeline):
         assert isinstance(sample_pipeline.make("surface"), HapticSurface)
         logging.getLogger(__name__).debug("%s", sample_pipeline.make("surface").extent_m)
+
+
+def test_touch_is_made_for_the_device_on_which_it_is_felt():
+    """Through a mapping of a twentieth the hand's device is weak: a scene without a device comes after one on it."""
+    same = {
+        "depth": Luminance(),
+        "render": Proxy(),
+        "texture": Histogram(segments=2),
+        "mapping": {"scale": 0.05},
+        "cached": False,
+    }
+    views = (pair()[0] // 2).astype(np.uint8)
+    first, second = Pipeline(Scene.photo(views), device=Mock(), **same), Pipeline(Scene.photo(views), **same)
+    strong, weak = (each.touch.stiffness_n_per_m for each in (Feeling(second), Feeling(first)))
+    assert 0 < weak < strong / 5
+    assert Feeling(second)._turn(Feeling(first), None).touch.stiffness_n_per_m == weak
+    assert Feeling(first, Mock()).touch.stiffness_n_per_m == Feeling(second, Mock()).touch.stiffness_n_per_m == weak

@@ -122,11 +122,11 @@ msgstr "nah, fern"
 msgid "left, right"
 msgstr "links, rechts"
 
-msgid "It was felt."
-msgstr "Es wurde gefühlt."
+msgid "It rained."
+msgstr "Es regnete."
 
-msgid "Was it long?"
-msgstr "War es lang?"
+msgid "Really?"
+msgstr "Wirklich?"
 
 msgid "and"
 msgstr "und"
@@ -177,8 +177,8 @@ msgstr ""
         ("too small: whatever somebody called it", None),
         ("near, far, left, right", "nah, fern, links, rechts"),
         ("near, far; left, right", "nah, fern; links, rechts"),
-        ("It was felt. Was it long?  It was felt.", "Es wurde gefühlt. War es lang? Es wurde gefühlt."),
-        ("It was felt. Nobody knows this.", None),
+        ("It rained. Really?  It rained.", "Es regnete. Wirklich? Es regnete."),
+        ("It rained. Nobody knows this.", None),
         ("no translation yet", None),
         ("and", "und"),
         ("", None),

@@ -281,3 +281,10 @@ def test_participants_needed_are_those_of_cohen_s_tables(apart: float, participa
     assert participants_needed([-apart - 1.0, 1.0 - apart] * 50_000, 0.8) == participants
     assert participants_needed([-0.1, 0.1], 0.8) is None
     assert power_of(0.0, 0.0, 9) == 0.0 < power_of(0.1, 0.0, 2) == 1.0
+
+
+def test_simulated_answers_all_count_but_for_training(tmp_path: Path):
+    file = study_of(tmp_path, "- {name: odd, question: same, repetitions: 6, training: 2}\n")
+    kept = kept_of(file, [simulate(file, observer_of("detection", [], file), number, 1) for number in range(3)])
+    assert (kept.trials, kept.training, kept.not_rendered) == (18, 6, 0)
+    assert list(kept.answers) == ["S01", "S02", "S03"]

@@ -30,7 +30,8 @@ def find_parts(segments: SegmentMap) -> PartMap:
 def reduced_parts(parts: PartMap, shape: tuple[int, int]) -> PartMap:
     """Reduce parts to a coarser grid of (r, c), by the middle pixel of each cell, with the same numbers.
 
-    A part that has no middle pixel keeps one cell; a part without pixels has none.
+    A part that has no middle pixel takes the cell of its first pixel, of several the last one; a part without pixels
+    has none.
     """
     whole = parts.labels
     if whole.shape == shape:

@@ -128,6 +128,9 @@ msgstr "Es regnete."
 msgid "Really?"
 msgstr "Wirklich?"
 
+msgid "attention: rain"
+msgstr "Achtung: Regen"
+
 msgid "and"
 msgstr "und"
 
@@ -174,6 +177,7 @@ msgstr ""
         ("3 mm <= 4.5 mm", "3 mm <= 4,5 mm"),
         ("1,234.5 N/mm > 3e-5 m", "1.234,5 N/mm > 3e-5 m"),
         ("whatever somebody called it: too small", "whatever somebody called it: zu klein"),
+        ("whatever somebody called it: attention: rain", "whatever somebody called it: Achtung: Regen"),
         ("too small: whatever somebody called it", None),
         ("near, far, left, right", "nah, fern, links, rechts"),
         ("near, far; left, right", "nah, fern; links, rechts"),
